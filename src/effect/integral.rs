@@ -1,0 +1,280 @@
+//! The sum of a density over a table of shape functions: where the time of a Newton iteration goes.
+//!
+//! The work is dispatched once per effect on the table's width, so that the loops below are compiled with the number
+//! of functions known (4 for the cable element; 8, 10 and 12 for radial point interpolation), and runs in two passes
+//! per cell. The first evaluates the density at the cell's points and multiplies its second derivatives into the rows,
+//!
+//! ```text
+//! P_md = w Σ_n H_mn(d, ·) N⁽ᵒⁿ⁾        (2 M rows of 2 W numbers, x and y interleaved, per point)
+//! ```
+//!
+//! the second adds Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md to row (a, d) of the matrix, a tile of 4 × 4 numbers (two nodes) at a
+//! time, so that the tile stays in registers while the points go by and is loaded and stored once per cell. Of a
+//! symmetric matrix only the tiles on and above the diagonal are computed.
+
+use super::{Density, Effect, Gradient, Hessian, Kind};
+use crate::basis::BasisTable;
+use crate::linear::Matrix;
+use crate::linear::fma::fma;
+use nalgebra::Vector2;
+
+/// Memory that the assembly of a cell uses; kept by the caller so that nothing is allocated in the loops.
+#[derive(Clone, Debug, Default)]
+pub struct Workspace {
+    products: Vec<f64>,
+}
+
+/// A density, the shape functions at its quadrature points, and the place of its beam among the coordinates.
+#[derive(Clone, Debug)]
+pub struct Integral<D, const M: usize> {
+    kind: Kind,
+    beam: usize,
+    /// First coefficient of the beam; coefficient c has the coordinates 2c and 2c + 1.
+    offset: usize,
+    table: BasisTable,
+    density: D,
+}
+
+/// `f(const width, arguments…)`, the width a compile-time constant for the common tables and 0 for all others.
+macro_rules! with_width {
+    ($self:ident . $method:ident ( $($argument:expr),* )) => {
+        match $self.table.width {
+            4 => $self.$method::<4>($($argument),*),
+            8 => $self.$method::<8>($($argument),*),
+            12 => $self.$method::<12>($($argument),*),
+            _ => $self.$method::<0>($($argument),*),
+        }
+    };
+}
+
+impl<D: Density<M>, const M: usize> Integral<D, M> {
+    /// `offset` is the beam's first coefficient (two per node) in the system; `table` must hold the rows
+    /// [`Density::ORDERS`].
+    pub fn new(kind: Kind, beam: usize, offset: usize, table: BasisTable, density: D) -> Self {
+        debug_assert_eq!(table.orders, D::ORDERS);
+        Self { kind, beam, offset, table, density }
+    }
+
+    fn width<const W: usize>(&self) -> usize {
+        if W == 0 { self.table.width } else { W }
+    }
+
+    /// Local fields of `q` from the rows of one point; `q` starts at the cell's first coefficient.
+    #[inline(always)]
+    fn fields<const W: usize>(&self, rows: &[f64], q: &[f64]) -> Gradient<M> {
+        let width = self.width::<W>();
+        std::array::from_fn(|m| {
+            let row = &rows[m * width..(m + 1) * width];
+            let (mut x, mut y) = (0.0, 0.0);
+            for (n, q) in row.iter().zip(q[..2 * width].chunks_exact(2)) {
+                x = fma(*n, q[0], x);
+                y = fma(*n, q[1], y);
+            }
+            Vector2::new(x, y)
+        })
+    }
+
+    #[inline(always)]
+    fn add_gradient<const W: usize>(&self, weight: f64, rows: &[f64], gradient: &Gradient<M>, f: &mut [f64]) {
+        let width = self.width::<W>();
+        for (m, g) in gradient.iter().enumerate() {
+            let (gx, gy) = (weight * g.x, weight * g.y);
+            for (n, f) in rows[m * width..(m + 1) * width].iter().zip(f[..2 * width].chunks_exact_mut(2)) {
+                f[0] = fma(*n, gx, f[0]);
+                f[1] = fma(*n, gy, f[1]);
+            }
+        }
+    }
+
+    fn energy_of<const W: usize>(&self, q: &[f64]) -> f64 {
+        let width = self.width::<W>();
+        let mut sum = 0.0;
+        for (cell, entry) in self.table.cells.iter().enumerate() {
+            let (weights, rows) = self.table.block(*entry);
+            let q = &q[2 * (self.offset + entry.first as usize)..];
+            for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
+                let z = self.fields::<W>(rows, q);
+                sum += weight * self.density.energy(cell * weights.len() + p, &z);
+            }
+        }
+        sum
+    }
+
+    fn force_of<const W: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+        let width = self.width::<W>();
+        for (cell, entry) in self.table.cells.iter().enumerate() {
+            let (weights, rows) = self.table.block(*entry);
+            let first = 2 * (self.offset + entry.first as usize);
+            let (q, f) = (&q[first..first + 2 * width], &mut f[first..first + 2 * width]);
+            for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
+                let z = self.fields::<W>(rows, q);
+                let gradient = self.density.gradient(cell * weights.len() + p, &z);
+                self.add_gradient::<W>(factor * weight, rows, &gradient, f);
+            }
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn tangent_of<const W: usize>(
+        &self,
+        factor: f64,
+        q: &[f64],
+        before: &[f64],
+        f: &mut [f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
+        let width = self.width::<W>();
+        let columns = 2 * width;
+        let products = &mut workspace.products;
+        products.resize(self.table.points_per_cell * 2 * M * columns, 0.0);
+        for (cell, entry) in self.table.cells.iter().enumerate() {
+            let (weights, rows) = self.table.block(*entry);
+            let first = 2 * (self.offset + entry.first as usize);
+            let range = first..first + columns;
+            let (q, before, f) = (&q[range.clone()], &before[range.clone()], &mut f[range]);
+            for (p, ((weight, rows), products)) in weights
+                .iter()
+                .zip(rows.chunks_exact(M * width))
+                .zip(products.chunks_exact_mut(2 * M * columns))
+                .enumerate()
+            {
+                let weight = factor * weight;
+                let (z, z_before) = (self.fields::<W>(rows, q), self.fields::<W>(rows, before));
+                let point = cell * weights.len() + p;
+                let (gradient, hessian) = self.density.gradient_and_hessian(point, &z, &z_before);
+                self.add_gradient::<W>(weight, rows, &gradient, f);
+                multiply_rows::<M>(weight, &hessian, rows, width, products);
+            }
+            add_tiles::<M>(rows, products, width, first / 4, k);
+        }
+    }
+}
+
+/// `P_md[2b + e] = w Σ_n H_mn(d, e) N_b⁽ᵒⁿ⁾`.
+#[inline(always)]
+fn multiply_rows<const M: usize>(
+    weight: f64,
+    hessian: &Hessian<M>,
+    rows: &[f64],
+    width: usize,
+    products: &mut [f64],
+) {
+    let columns = 2 * width;
+    for m in 0..M {
+        for d in 0..2 {
+            let out = &mut products[(2 * m + d) * columns..(2 * m + d + 1) * columns];
+            let h: [[f64; 2]; M] =
+                std::array::from_fn(|n| [weight * hessian[m][n][(d, 0)], weight * hessian[m][n][(d, 1)]]);
+            for (b, pair) in out.chunks_exact_mut(2).enumerate() {
+                let (mut x, mut y) = (0.0, 0.0);
+                for n in 0..M {
+                    let shape = rows[n * width + b];
+                    x = fma(h[n][0], shape, x);
+                    y = fma(h[n][1], shape, y);
+                }
+                pair[0] = x;
+                pair[1] = y;
+            }
+        }
+    }
+}
+
+/// Adds all tiles of a cell to the matrix; the cell's first node is `node` of the system.
+#[inline(always)]
+fn add_tiles<const M: usize>(rows: &[f64], products: &[f64], width: usize, node: usize, k: &mut Matrix) {
+    let nodes = width / 2;
+    match k {
+        Matrix::Symmetric(matrix) => {
+            let stride = matrix.stride();
+            for a in 0..nodes {
+                let panel = matrix.panel_mut(node + a);
+                for b in a..nodes {
+                    let tile = tile::<M>(rows, products, width, a, b);
+                    for (r, values) in tile.iter().enumerate() {
+                        let start = r * stride + 4 * (b - a);
+                        for (target, value) in panel[start..start + 4].iter_mut().zip(values) {
+                            *target += value;
+                        }
+                    }
+                }
+            }
+        }
+        Matrix::General(matrix) => {
+            for a in 0..nodes {
+                for b in 0..nodes {
+                    let tile = tile::<M>(rows, products, width, a, b);
+                    for (r, values) in tile.iter().enumerate() {
+                        let row = matrix.row_mut(4 * (node + a) + r, 4 * (node + b), 4);
+                        for (target, value) in row.iter_mut().zip(values) {
+                            *target += value;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Rows of node `a`, columns of node `b`: Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md.
+#[inline(always)]
+fn tile<const M: usize>(rows: &[f64], products: &[f64], width: usize, a: usize, b: usize) -> [[f64; 4]; 4] {
+    let columns = 2 * width;
+    let mut tile = [[0.0; 4]; 4];
+    for (rows, products) in rows.chunks_exact(M * width).zip(products.chunks_exact(2 * M * columns)) {
+        for m in 0..M {
+            let shape = &rows[m * width + 2 * a..m * width + 2 * a + 2];
+            for d in 0..2 {
+                let start = (2 * m + d) * columns + 4 * b;
+                let product = &products[start..start + 4];
+                for e in 0..4 {
+                    tile[d][e] = fma(shape[0], product[e], tile[d][e]);
+                    tile[2 + d][e] = fma(shape[1], product[e], tile[2 + d][e]);
+                }
+            }
+        }
+    }
+    tile
+}
+
+impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
+    fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    fn beam(&self) -> usize {
+        self.beam
+    }
+
+    fn is_symmetric(&self) -> bool {
+        D::SYMMETRIC
+    }
+
+    fn energy(&self, q: &[f64]) -> f64 {
+        with_width!(self.energy_of(q))
+    }
+
+    fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+        with_width!(self.force_of(factor, q, f));
+    }
+
+    fn add_force_and_tangent(
+        &self,
+        factor: f64,
+        q: &[f64],
+        before: &[f64],
+        f: &mut [f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
+        if D::HAS_TANGENT {
+            with_width!(self.tangent_of(factor, q, before, f, k, workspace));
+        } else {
+            self.add_force(factor, q, f);
+        }
+    }
+
+    fn size(&self) -> (usize, usize) {
+        (self.table.cells.len() * self.table.points_per_cell, self.table.bytes())
+    }
+}

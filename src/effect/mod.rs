@@ -1,0 +1,147 @@
+//! Physics as densities at a point of the beam.
+//!
+//! An effect is a function W of a few local fields z = (r⁽ᵒ¹⁾, r⁽ᵒ²⁾, …): the position r, the gradient r' and its
+//! derivative r'' at one arc length s. With the shape functions r⁽ᵒ⁾(s) = Σ_a N_a⁽ᵒ⁾(s) q_a, everything that a solver
+//! asks for follows from the first and second derivatives of W at that point:
+//!
+//! ```text
+//! energy     U   = ∫ W(z) ds
+//! force      f_a = ∫ Σ_m N_a⁽ᵒᵐ⁾ ∂W/∂z_m ds
+//! tangent    K_ab = ∫ Σ_m Σ_n N_a⁽ᵒᵐ⁾ ∂²W/∂z_m∂z_n N_b⁽ᵒⁿ⁾ ds
+//! ```
+//!
+//! A [`Density`] gives W and its derivatives and knows no node, no step and no other effect; an [`Integral`] sums it
+//! over a table of shape functions. A load that has no energy (a follower force) is a density that gives its virtual
+//! work's coefficients as "∂W/∂z" and their derivatives as "∂²W/∂z∂z", which then is not symmetric.
+//!
+//! # The tangent between two iterates
+//! The stress resultants that enter the tangent's second term (N for stretch, M for bend) are taken by linear
+//! extrapolation from the previous iterate, S = C (ε(z⁻) + ∂ε/∂z (z − z⁻)), and not from the strain at the current one.
+//! This is Newton's method on the mixed problem in which S is an unknown of its own at every quadrature point, with S
+//! eliminated (Magisano, Leonetti, Garcea, *Int. J. Numer. Meth. Engng* 109, 2017, 1237–1262). The equilibria are the
+//! same and convergence stays quadratic; but a slender beam's large EA no longer turns the strain of a not yet
+//! converged rotation into an enormous axial force, so that steps can be many times longer. With z⁻ = z it is the
+//! ordinary tangent.
+
+mod bend;
+mod inertia;
+mod integral;
+mod load;
+mod stretch;
+
+pub use bend::{Bend, curvature};
+pub use inertia::Inertia;
+pub use integral::{Integral, Workspace};
+pub use load::{DeadForce, FollowerForce, Moment};
+pub use stretch::{Engineering, Green, Strain, Stretch};
+
+use crate::linear::Matrix;
+use nalgebra::{Matrix2, Vector2};
+
+/// First derivatives of a density by each of its local fields.
+pub type Gradient<const M: usize> = [Vector2<f64>; M];
+
+/// Second derivatives of a density: block (m, n) is ∂²W/∂z_m∂z_n.
+pub type Hessian<const M: usize> = [[Matrix2<f64>; M]; M];
+
+/// A quantity per unit of arc length that depends on `M` local fields.
+pub trait Density<const M: usize>: Send + Sync {
+    /// The local fields, as derivative orders of r in rising order: `[1, 2]` for (r', r'').
+    const ORDERS: [usize; M];
+
+    /// Whether ∂²W/∂z∂z is symmetric, as it is for everything that has an energy.
+    const SYMMETRIC: bool = true;
+
+    /// Whether ∂²W/∂z∂z is more than zero; where it is not, no tangent is assembled.
+    const HAS_TANGENT: bool = true;
+
+    /// W at quadrature point number `point` [J/m]; zero for what has no energy.
+    fn energy(&self, point: usize, z: &Gradient<M>) -> f64;
+
+    /// ∂W/∂z.
+    fn gradient(&self, point: usize, z: &Gradient<M>) -> Gradient<M>;
+
+    /// ∂W/∂z and ∂²W/∂z∂z, stress resultants in the latter extrapolated from the iterate `before`.
+    fn gradient_and_hessian(&self, point: usize, z: &Gradient<M>, before: &Gradient<M>)
+    -> (Gradient<M>, Hessian<M>);
+}
+
+/// What an effect is, for energies and inventories.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Axial strain energy.
+    Stretch,
+    /// Bending strain energy.
+    Bend,
+    /// Kinetic energy of the centreline.
+    Inertia,
+    /// Weight.
+    Gravity,
+    /// Concentrated force.
+    Force,
+    /// Concentrated moment.
+    Moment,
+    /// Force per length.
+    DistributedForce,
+}
+
+impl Kind {
+    /// All kinds that exist.
+    pub const ALL: [Self; 7] = [
+        Self::Stretch,
+        Self::Bend,
+        Self::Inertia,
+        Self::Gravity,
+        Self::Force,
+        Self::Moment,
+        Self::DistributedForce,
+    ];
+
+    /// The name used in scenes and inventories.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stretch => "stretch",
+            Self::Bend => "bend",
+            Self::Inertia => "inertia",
+            Self::Gravity => "gravity",
+            Self::Force => "force",
+            Self::Moment => "moment",
+            Self::DistributedForce => "distributed_force",
+        }
+    }
+}
+
+/// A density summed over a beam: what a system is made of.
+///
+/// Coordinates `q` and forces `f` are those of the whole system, `[x, y, x', y']` node after node.
+pub trait Effect: Send + Sync {
+    /// What it is.
+    fn kind(&self) -> Kind;
+
+    /// Index of the beam on which it acts.
+    fn beam(&self) -> usize;
+
+    /// Whether its tangent is symmetric.
+    fn is_symmetric(&self) -> bool;
+
+    /// U [J].
+    fn energy(&self, q: &[f64]) -> f64;
+
+    /// `f += factor · ∂U/∂q`.
+    fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]);
+
+    /// `f += factor · ∂U/∂q`, `k += factor · ∂²U/∂q∂q`, the latter with stress resultants extrapolated from `before`.
+    fn add_force_and_tangent(
+        &self,
+        factor: f64,
+        q: &[f64],
+        before: &[f64],
+        f: &mut [f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    );
+
+    /// Quadrature points, and bytes of its tables and data.
+    fn size(&self) -> (usize, usize);
+}

@@ -1,0 +1,120 @@
+//! Axial strain energy ½ EA ε².
+
+use super::{Density, Gradient, Hessian};
+use nalgebra::{Matrix2, Vector2};
+
+/// An axial strain as a function of the gradient r'.
+pub trait Strain: Copy + Send + Sync {
+    /// The strain of a gradient, against a straight unit reference.
+    fn strain(r: &Vector2<f64>) -> f64;
+
+    /// ε and ∂ε/∂r'.
+    fn first(r: &Vector2<f64>) -> (f64, Vector2<f64>);
+
+    /// ε, ∂ε/∂r' and ∂²ε/∂r'∂r'.
+    fn second(r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>);
+}
+
+/// ε = ½ (r'·r' − 1): ∂ε/∂r' = r', ∂²ε/∂r'² = 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Green;
+
+impl Strain for Green {
+    // Factored as ½ (x'−1)(x'+1) + ½ y'², the subtraction would lose fewer digits for a beam along x only; the plain
+    // form treats all directions alike.
+    #[inline(always)]
+    fn strain(r: &Vector2<f64>) -> f64 {
+        0.5 * (r.norm_squared() - 1.0)
+    }
+
+    #[inline(always)]
+    fn first(r: &Vector2<f64>) -> (f64, Vector2<f64>) {
+        (Self::strain(r), *r)
+    }
+
+    #[inline(always)]
+    fn second(r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>) {
+        (Self::strain(r), *r, Matrix2::identity())
+    }
+}
+
+/// ε = |r'| − 1: ∂ε/∂r' = t, ∂²ε/∂r'² = (1 − t tᵀ)/|r'|, with t = r'/|r'|.
+#[derive(Clone, Copy, Debug)]
+pub struct Engineering;
+
+impl Strain for Engineering {
+    #[inline(always)]
+    fn strain(r: &Vector2<f64>) -> f64 {
+        r.norm_squared().sqrt() - 1.0
+    }
+
+    #[inline(always)]
+    fn first(r: &Vector2<f64>) -> (f64, Vector2<f64>) {
+        let length = r.norm_squared().sqrt();
+        (length - 1.0, r / length)
+    }
+
+    #[inline(always)]
+    fn second(r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>) {
+        let length = r.norm_squared().sqrt();
+        let inverse = 1.0 / length;
+        let t = r * inverse;
+        (length - 1.0, t, (Matrix2::identity() - t * t.transpose()) * inverse)
+    }
+}
+
+/// W = ½ EA (ε(r') − ε₀)², ε₀ the strain of the stress-free shape as the discretisation sees it.
+///
+/// For a beam that starts out straight ε₀ = 0 and no table of it exists.
+#[derive(Clone, Debug)]
+pub struct Stretch<S> {
+    axial_stiffness: f64,
+    /// ε₀ per quadrature point; empty for a straight beam.
+    reference: Vec<f64>,
+    strain: std::marker::PhantomData<S>,
+}
+
+impl<S: Strain> Stretch<S> {
+    /// EA [N], and the gradients r' of the stress-free shape at the quadrature points (none: straight).
+    pub fn new(axial_stiffness: f64, reference: &[Vector2<f64>]) -> Self {
+        let reference = reference.iter().map(S::strain).collect();
+        Self { axial_stiffness, reference, strain: std::marker::PhantomData }
+    }
+
+    #[inline(always)]
+    fn reference(&self, point: usize) -> f64 {
+        self.reference.get(point).copied().unwrap_or(0.0)
+    }
+}
+
+impl<S: Strain> Density<1> for Stretch<S> {
+    const ORDERS: [usize; 1] = [1];
+
+    #[inline(always)]
+    fn energy(&self, point: usize, z: &Gradient<1>) -> f64 {
+        let strain = S::strain(&z[0]) - self.reference(point);
+        0.5 * self.axial_stiffness * strain * strain
+    }
+
+    #[inline(always)]
+    fn gradient(&self, point: usize, z: &Gradient<1>) -> Gradient<1> {
+        let (strain, first) = S::first(&z[0]);
+        [first * (self.axial_stiffness * (strain - self.reference(point)))]
+    }
+
+    #[inline(always)]
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<1>,
+        before: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
+        let reference = self.reference(point);
+        let (strain, first, second) = S::second(&z[0]);
+        let (strain_before, first_before) = S::first(&before[0]);
+        let force = self.axial_stiffness * (strain - reference);
+        let extrapolated = strain_before + first_before.dot(&(z[0] - before[0])) - reference;
+        let hessian = (first * first.transpose() + second * extrapolated) * self.axial_stiffness;
+        ([first * force], [[hessian]])
+    }
+}

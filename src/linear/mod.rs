@@ -1,0 +1,221 @@
+//! Linear algebra of the tangent: storage by pattern, factorisation, inertia.
+//!
+//! Every unknown belongs to a node, and a node has four: x, y, x', y'. A beam's tangent is therefore a band of
+//! 4 × 4 blocks, as many to the right of the diagonal as a support has further nodes (1 for the cable element, 5 for
+//! six-node radial point interpolation). Three factorisations serve, chosen by the pattern and never by the caller:
+//!
+//! | pattern | method | file |
+//! |---|---|---|
+//! | symmetric band | LDLᵀ by blocks, no pivoting; its signs are the inertia | [`symmetric`] |
+//! | band (follower loads), or a symmetric one with a vanishing pivot | LU with partial pivoting | [`band`] |
+//! | band bordered by constraint rows | sparse LU by faer | [`bordered`] |
+
+pub mod band;
+pub mod bordered;
+pub(crate) mod fma;
+pub mod symmetric;
+
+use band::{Band, BandLu};
+use bordered::{BorderRow, Bordered};
+use symmetric::{Ldl, SymmetricBand};
+
+/// A tangent matrix under assembly.
+#[derive(Clone, Debug)]
+pub enum Matrix {
+    /// Upper half of a symmetric matrix.
+    Symmetric(SymmetricBand),
+    /// All of a matrix without symmetry.
+    General(Band),
+}
+
+/// A matrix could not be factorised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the matrix is singular: no pivot in row {row}")]
+pub struct Singular {
+    /// Row (unknown) at which no pivot was found.
+    pub row: usize,
+}
+
+impl Matrix {
+    /// A zero matrix for `nodes` nodes of four unknowns whose supports span `blocks` nodes.
+    pub fn zeros(nodes: usize, blocks: usize, symmetric: bool) -> Self {
+        if symmetric {
+            Self::Symmetric(SymmetricBand::zeros(nodes, blocks))
+        } else {
+            Self::General(Band::zeros(4 * nodes, 4 * blocks - 1))
+        }
+    }
+
+    /// Number of rows.
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Symmetric(matrix) => matrix.size(),
+            Self::General(matrix) => matrix.size(),
+        }
+    }
+
+    /// Sets all entries to zero.
+    pub fn clear(&mut self) {
+        match self {
+            Self::Symmetric(matrix) => matrix.clear(),
+            Self::General(matrix) => matrix.clear(),
+        }
+    }
+
+    /// The entry in row `i`, column `j`; zero outside the band.
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        match self {
+            Self::Symmetric(matrix) => matrix.get(i, j),
+            Self::General(matrix) => matrix.get(i, j),
+        }
+    }
+
+    /// Columns that can be different from zero in row `i`.
+    pub fn columns(&self, i: usize) -> std::ops::Range<usize> {
+        match self {
+            Self::Symmetric(matrix) => matrix.columns(i),
+            Self::General(matrix) => matrix.columns(i),
+        }
+    }
+
+    /// Bytes of the entries.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::Symmetric(matrix) => matrix.bytes(),
+            Self::General(matrix) => matrix.bytes(),
+        }
+    }
+
+    /// Turns the unknowns `2 pair` and `2 pair + 1` into a frame at the angle with the given cosine and sine:
+    /// rows and columns are replaced by their components along that frame's axes.
+    pub fn rotate_pair(&mut self, pair: usize, cosine: f64, sine: f64) {
+        let (x, y) = (2 * pair, 2 * pair + 1);
+        for j in self.columns(x) {
+            if j == x || j == y {
+                continue;
+            }
+            let (a, b) = (self.get(x, j), self.get(y, j));
+            self.set(x, j, cosine * a + sine * b);
+            self.set(y, j, cosine * b - sine * a);
+            if let Self::General(matrix) = self {
+                let (a, b) = (matrix.get(j, x), matrix.get(j, y));
+                matrix.set(j, x, cosine * a + sine * b);
+                matrix.set(j, y, cosine * b - sine * a);
+            }
+        }
+        let k = nalgebra::Matrix2::new(self.get(x, x), self.get(x, y), self.get(y, x), self.get(y, y));
+        let r = nalgebra::Matrix2::new(cosine, sine, -sine, cosine);
+        let k = r * k * r.transpose();
+        self.set(x, x, k[(0, 0)]);
+        self.set(x, y, k[(0, 1)]);
+        self.set(y, y, k[(1, 1)]);
+        if let Self::General(matrix) = self {
+            matrix.set(y, x, k[(1, 0)]);
+        }
+    }
+
+    /// Replaces row and column `i` by those of the identity times `diagonal`.
+    pub fn eliminate(&mut self, i: usize, diagonal: f64) {
+        for j in self.columns(i) {
+            self.set(i, j, 0.0);
+            if let Self::General(matrix) = self {
+                matrix.set(j, i, 0.0);
+            }
+        }
+        self.set(i, i, diagonal);
+    }
+
+    /// Adds `factor · vᵀ v` of a row `v` whose entries lie within one support, so that the band holds the product.
+    pub fn add_outer_product(&mut self, factor: f64, v: &BorderRow) {
+        for &(i, a) in v {
+            for &(j, b) in v {
+                if matches!(self, Self::General(_)) || i <= j {
+                    self.set(i, j, self.get(i, j) + factor * a * b);
+                }
+            }
+        }
+    }
+
+    /// `y += factor · A x`.
+    pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        match self {
+            Self::Symmetric(matrix) => matrix.multiply_add(factor, x, y),
+            Self::General(matrix) => matrix.multiply_add(factor, x, y),
+        }
+    }
+
+    fn set(&mut self, i: usize, j: usize, value: f64) {
+        match self {
+            Self::Symmetric(matrix) => matrix.set(i, j, value),
+            Self::General(matrix) => matrix.set(i, j, value),
+        }
+    }
+}
+
+/// A factorised [`Matrix`].
+#[derive(Clone, Debug)]
+pub enum Factor {
+    /// LDLᵀ of a symmetric band.
+    Ldl(Ldl),
+    /// LU of a band.
+    Lu(BandLu),
+    /// Sparse LU of a bordered band.
+    Bordered(Box<Bordered>),
+}
+
+impl Factor {
+    /// Factorises `matrix`, bordered by constraint rows if there are any. A symmetric matrix whose LDLᵀ meets a
+    /// vanishing pivot is factorised again with pivoting.
+    ///
+    /// # Errors
+    /// [`Singular`] where the matrix has no inverse to round-off.
+    pub fn new(matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
+        if !border.is_empty() {
+            return Ok(Self::Bordered(Box::new(Bordered::new(matrix, border, None)?)));
+        }
+        match matrix {
+            Matrix::Symmetric(symmetric) => match Ldl::new(symmetric) {
+                Ok(ldl) => Ok(Self::Ldl(ldl)),
+                Err(_) => Ok(Self::Lu(BandLu::new(&symmetric.to_band())?)),
+            },
+            Matrix::General(band) => Ok(Self::Lu(BandLu::new(band)?)),
+        }
+    }
+
+    /// The same as [`Self::new`], reusing what an earlier factorisation of the same pattern left.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn again(earlier: Option<Self>, matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
+        match (earlier, matrix) {
+            (Some(Self::Ldl(mut ldl)), Matrix::Symmetric(symmetric)) if border.is_empty() => {
+                match ldl.refactorize(symmetric) {
+                    Ok(()) => Ok(Self::Ldl(ldl)),
+                    Err(_) => Self::new(matrix, border),
+                }
+            }
+            (Some(Self::Bordered(earlier)), _) if !border.is_empty() => {
+                Ok(Self::Bordered(Box::new(Bordered::new(matrix, border, Some(*earlier))?)))
+            }
+            _ => Self::new(matrix, border),
+        }
+    }
+
+    /// Solves A x = b in place; `b` holds the multipliers' part last.
+    pub fn solve(&self, b: &mut [f64]) {
+        match self {
+            Self::Ldl(ldl) => ldl.solve(b),
+            Self::Lu(lu) => lu.solve(b),
+            Self::Bordered(bordered) => bordered.solve(b),
+        }
+    }
+
+    /// Number of negative eigenvalues of a symmetric matrix (Sylvester's law of inertia); `None` where the
+    /// factorisation does not tell.
+    pub fn negative_eigenvalues(&self) -> Option<usize> {
+        match self {
+            Self::Ldl(ldl) => Some(ldl.negative_pivots()),
+            Self::Lu(_) | Self::Bordered(_) => None,
+        }
+    }
+}

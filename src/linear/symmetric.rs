@@ -1,0 +1,254 @@
+//! Symmetric band of 4 × 4 blocks and its factorisation A = L D Lᵀ.
+//!
+//! Block row I is kept as a panel of four rows, each holding the columns of nodes I, I + 1, …, I + b contiguously
+//! (b + 1 blocks, 4(b + 1) numbers). Within the diagonal block the entries left of the diagonal are carried along but
+//! never read. Elimination works panel by panel: a panel is reduced by its own four pivots, and each row of a later
+//! panel then takes the four eliminated rows in one fused pass, 4 multiply–adds per number loaded and stored.
+//!
+//! Cost per node: 4·4·(b + 1) + 16·(b)(b + 1)/2 · 4 multiply–adds, 112 for the cable element (b = 1) and 1 056 for
+//! six-node supports (b = 5); a pivoted LU of the same band takes 3.5 to 4 times as many.
+
+use super::Singular;
+use super::band::Band;
+use super::fma::fma;
+
+/// Upper half of a symmetric matrix, banded by blocks.
+#[derive(Clone, Debug)]
+pub struct SymmetricBand {
+    nodes: usize,
+    /// Blocks in a panel, the diagonal one included.
+    blocks: usize,
+    data: Vec<f64>,
+}
+
+impl SymmetricBand {
+    /// A zero matrix for `nodes` nodes whose supports span `blocks` nodes.
+    pub fn zeros(nodes: usize, blocks: usize) -> Self {
+        let blocks = blocks.clamp(1, nodes.max(1));
+        Self { nodes, blocks, data: vec![0.0; nodes * 16 * blocks] }
+    }
+
+    /// Number of rows.
+    pub fn size(&self) -> usize {
+        4 * self.nodes
+    }
+
+    /// Bytes of the entries.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.data[..])
+    }
+
+    /// Sets all entries to zero.
+    pub fn clear(&mut self) {
+        self.data.fill(0.0);
+    }
+
+    /// Four rows of node `node`, from its own columns on; each row has [`Self::stride`] numbers.
+    #[inline]
+    pub fn panel_mut(&mut self, node: usize) -> &mut [f64] {
+        let length = 16 * self.blocks;
+        &mut self.data[node * length..(node + 1) * length]
+    }
+
+    /// Numbers in a row of a panel.
+    #[inline]
+    pub fn stride(&self) -> usize {
+        4 * self.blocks
+    }
+
+    /// Adds `factor` times another matrix of the same pattern.
+    pub fn add(&mut self, factor: f64, other: &Self) {
+        debug_assert_eq!(self.data.len(), other.data.len());
+        for (a, b) in self.data.iter_mut().zip(&other.data) {
+            *a = fma(factor, *b, *a);
+        }
+    }
+
+    fn index(&self, i: usize, j: usize) -> Option<usize> {
+        let (i, j) = if i <= j { (i, j) } else { (j, i) };
+        let column = j - 4 * (i / 4);
+        (column < self.stride() && j < self.size()).then(|| i * self.stride() + column)
+    }
+
+    /// The entry in row `i`, column `j`.
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        self.index(i, j).map_or(0.0, |k| self.data[k])
+    }
+
+    /// Sets the entries (i, j) and (j, i), which must lie in the band.
+    pub fn set(&mut self, i: usize, j: usize, value: f64) {
+        if let Some(k) = self.index(i, j) {
+            self.data[k] = value;
+        }
+    }
+
+    /// Columns that can be different from zero in row `i`.
+    pub fn columns(&self, i: usize) -> std::ops::Range<usize> {
+        let node = i / 4;
+        4 * node.saturating_sub(self.blocks - 1)..(4 * (node + self.blocks)).min(self.size())
+    }
+
+    /// `y += factor · A x`.
+    pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        let (n, stride) = (self.size(), self.stride());
+        for i in 0..n {
+            let start = 4 * (i / 4);
+            let end = (start + stride).min(n);
+            let row = &self.data[i * stride..(i + 1) * stride];
+            let xi = factor * x[i];
+            let mut sum = row[i - start] * x[i];
+            for j in i + 1..end {
+                let a = row[j - start];
+                sum = fma(a, x[j], sum);
+                y[j] = fma(a, xi, y[j]);
+            }
+            y[i] = fma(factor, sum, y[i]);
+        }
+    }
+
+    /// The same matrix with both halves stored.
+    pub fn to_band(&self) -> Band {
+        let mut band = Band::zeros(self.size(), self.stride() - 1);
+        for i in 0..self.size() {
+            for j in self.columns(i) {
+                band.set(i, j, self.get(i, j));
+            }
+        }
+        band
+    }
+}
+
+/// A = L D Lᵀ without pivoting. The rows hold D Lᵀ.
+#[derive(Clone, Debug)]
+pub struct Ldl {
+    rows: SymmetricBand,
+    reciprocal: Vec<f64>,
+    negative: usize,
+}
+
+/// A pivot smaller than this fraction of its diagonal entry carries no significant digit.
+const SMALLEST_PIVOT: f64 = 1e-15;
+
+impl Ldl {
+    /// Factorises.
+    ///
+    /// # Errors
+    /// [`Singular`] where a pivot vanishes against the diagonal entry it came from, or is not finite.
+    pub fn new(matrix: &SymmetricBand) -> Result<Self, Singular> {
+        let reciprocal = vec![0.0; matrix.size()];
+        let mut ldl = Self { rows: matrix.clone(), reciprocal, negative: 0 };
+        ldl.factorize(matrix)?;
+        Ok(ldl)
+    }
+
+    /// Factorises a matrix of the same pattern in the memory of this one.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; the factorisation is then unusable.
+    pub fn refactorize(&mut self, matrix: &SymmetricBand) -> Result<(), Singular> {
+        if self.rows.data.len() != matrix.data.len() || self.rows.blocks != matrix.blocks {
+            *self = Self::new(matrix)?;
+            return Ok(());
+        }
+        self.rows.data.copy_from_slice(&matrix.data);
+        self.factorize(matrix)
+    }
+
+    fn factorize(&mut self, original: &SymmetricBand) -> Result<(), Singular> {
+        match self.rows.blocks {
+            2 => self.eliminate::<8>(original),
+            4 => self.eliminate::<16>(original),
+            6 => self.eliminate::<24>(original),
+            _ => self.eliminate::<0>(original),
+        }
+    }
+
+    /// `STRIDE` is the panel's row length where it is known at compile time, 0 otherwise.
+    fn eliminate<const STRIDE: usize>(&mut self, original: &SymmetricBand) -> Result<(), Singular> {
+        let stride = if STRIDE == 0 { self.rows.stride() } else { STRIDE };
+        let nodes = self.rows.nodes;
+        self.negative = 0;
+        for node in 0..nodes {
+            let (panel, later) = self.rows.data[node * 4 * stride..].split_at_mut(4 * stride);
+            let mut reciprocal = [0.0; 4];
+            for r in 0..4 {
+                let (done, rest) = panel.split_at_mut((r + 1) * stride);
+                let row = &done[r * stride..];
+                let pivot = row[r];
+                let i = 4 * node + r;
+                let scale = original.data[i * stride + r].abs();
+                // Written so that a NaN fails too.
+                if !(pivot.abs() > SMALLEST_PIVOT * scale && pivot.is_finite()) {
+                    return Err(Singular { row: i });
+                }
+                self.negative += usize::from(pivot < 0.0);
+                reciprocal[r] = 1.0 / pivot;
+                for (below, target) in rest.chunks_exact_mut(stride).enumerate() {
+                    let factor = row[r + 1 + below] * reciprocal[r];
+                    for (t, s) in target.iter_mut().zip(row) {
+                        *t = fma(-factor, *s, *t);
+                    }
+                }
+            }
+            self.reciprocal[4 * node..4 * node + 4].copy_from_slice(&reciprocal);
+            let (u0, tail) = panel.split_at(stride);
+            let (u1, tail) = tail.split_at(stride);
+            let (u2, u3) = tail.split_at(stride);
+            let reach = (stride / 4 - 1).min(nodes - 1 - node);
+            for (ahead, target_panel) in later.chunks_exact_mut(4 * stride).take(reach).enumerate() {
+                let from = 4 * (ahead + 1);
+                for (r, target) in target_panel.chunks_exact_mut(stride).enumerate() {
+                    let c = from + r;
+                    let l = [
+                        -u0[c] * reciprocal[0],
+                        -u1[c] * reciprocal[1],
+                        -u2[c] * reciprocal[2],
+                        -u3[c] * reciprocal[3],
+                    ];
+                    let sources = u0[from..].iter().zip(&u1[from..]).zip(&u2[from..]).zip(&u3[from..]);
+                    for (t, (((a, b), c), d)) in target[..stride - from].iter_mut().zip(sources) {
+                        *t = fma(l[3], *d, fma(l[2], *c, fma(l[1], *b, fma(l[0], *a, *t))));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves A x = b in place.
+    pub fn solve(&self, b: &mut [f64]) {
+        match self.rows.blocks {
+            2 => self.substitute::<8>(b),
+            6 => self.substitute::<24>(b),
+            _ => self.substitute::<0>(b),
+        }
+    }
+
+    fn substitute<const STRIDE: usize>(&self, b: &mut [f64]) {
+        let stride = if STRIDE == 0 { self.rows.stride() } else { STRIDE };
+        let n = self.rows.size();
+        for i in 0..n {
+            let start = 4 * (i / 4);
+            let end = (start + stride).min(n);
+            let row = &self.rows.data[i * stride..(i + 1) * stride];
+            let z = b[i] * self.reciprocal[i];
+            for (t, u) in b[i + 1..end].iter_mut().zip(&row[i + 1 - start..]) {
+                *t = fma(-z, *u, *t);
+            }
+            b[i] = z;
+        }
+        for i in (0..n).rev() {
+            let start = 4 * (i / 4);
+            let end = (start + stride).min(n);
+            let row = &self.rows.data[i * stride..(i + 1) * stride];
+            let sum: f64 =
+                b[i + 1..end].iter().zip(&row[i + 1 - start..]).fold(0.0, |sum, (x, u)| fma(*x, *u, sum));
+            b[i] = fma(-sum, self.reciprocal[i], b[i]);
+        }
+    }
+
+    /// Number of negative pivots, which is the number of negative eigenvalues.
+    pub fn negative_pivots(&self) -> usize {
+        self.negative
+    }
+}

@@ -1,0 +1,427 @@
+//! The continuous problem: beams, sections, supports, loads and probes, all in SI units.
+//!
+//! Nothing here knows of nodes, elements or steps. A scene file is one way to make a [`Model`];
+//! a program that uses the library can fill one directly.
+
+use std::fmt;
+
+/// A complete mechanical model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Model {
+    /// One line that says what this is.
+    pub title: String,
+    /// The beams; everything else refers to them by index.
+    pub beams: Vec<Beam>,
+    /// What is held, and what is moved by prescription.
+    pub supports: Vec<Support>,
+    /// What acts on the beams besides their own elasticity and inertia.
+    pub loads: Vec<Load>,
+    /// Where to watch.
+    pub probes: Vec<Probe>,
+}
+
+/// A slender planar beam: a centreline with a section and a way to discretise it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beam {
+    /// The name under which a scene refers to this beam.
+    pub name: String,
+    /// The stress-free shape.
+    pub centreline: Centreline,
+    /// Stiffness and mass.
+    pub section: Section,
+    /// How the axial strain is measured.
+    pub strain: StrainMeasure,
+    /// How the centreline is approximated.
+    pub discretization: Discretization,
+    /// Gauss points in every cell between neighbouring nodes, for each energy.
+    pub gauss_points: GaussPoints,
+}
+
+/// The stress-free centreline r₀(s), parametrised by arc length s ∈ [0, L].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Centreline {
+    /// Straight from `start` to `end` [m].
+    Line {
+        /// First end [m].
+        start: [f64; 2],
+        /// Second end [m].
+        end: [f64; 2],
+    },
+    /// Part of a circle; the polar angle runs from `from` to `to` [rad], either way round.
+    Arc {
+        /// Centre of the circle [m].
+        center: [f64; 2],
+        /// Radius [m], positive.
+        radius: f64,
+        /// Polar angle of the beam's start [rad].
+        from: f64,
+        /// Polar angle of the beam's end [rad].
+        to: f64,
+    },
+    /// A smooth curve through the given points [m], in order.
+    Points(Vec<[f64; 2]>),
+}
+
+/// What the section resists and weighs. `None`: the scene does not name it, so it is not simulated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Section {
+    /// EA [N].
+    pub axial_stiffness: Option<f64>,
+    /// EI [N m²].
+    pub bending_stiffness: Option<f64>,
+    /// ρA [kg/m].
+    pub mass_per_length: Option<f64>,
+}
+
+/// The axial strain ε as a function of the gradient r'.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StrainMeasure {
+    /// ε = ½ (r'·r' − 1), the paper's.
+    #[default]
+    Green,
+    /// ε = |r'| − 1.
+    Engineering,
+}
+
+/// How a beam's centreline is approximated between nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Discretization {
+    /// Gradient-deficient cable element: cubic Hermite shape functions between neighbouring nodes.
+    Ancf {
+        /// Where the nodes are.
+        nodes: Nodes,
+    },
+    /// Hermite radial point interpolation.
+    Rpim {
+        /// Where the nodes are.
+        nodes: Nodes,
+        /// Radial function.
+        kernel: Kernel,
+        /// Number of polynomial terms 1, s, s², …
+        polynomial_terms: usize,
+        /// Sign of the slope terms in the side conditions.
+        side_condition: SideCondition,
+        /// Nodes beyond the cell's own two, on each side.
+        neighbours: usize,
+    },
+}
+
+/// The places of the nodes along a beam.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Nodes {
+    /// `n` nodes at equal distances.
+    Uniform(usize),
+    /// `n` nodes at s_i = L/2 − L/2 cos((i−1)π/(n−1)).
+    Chebyshev(usize),
+    /// Arc lengths [m], increasing from 0 to L.
+    Given(Vec<f64>),
+}
+
+/// Radial function R(d) of a support, d in units of the average spacing d_c.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kernel {
+    /// (d² + α²)^q
+    Multiquadric {
+        /// Exponent q, not a whole number.
+        q: f64,
+        /// α_c.
+        shape: f64,
+    },
+    /// exp(−α d²)
+    Exponential {
+        /// α_c.
+        shape: f64,
+    },
+    /// d^η, or d^η ln d where η is an even whole number.
+    ThinPlateSpline {
+        /// η, larger than 3: three derivatives must exist at d = 0.
+        exponent: f64,
+    },
+    /// (1 − d/δ)₊⁸ (32 (d/δ)³ + 25 (d/δ)² + 8 d/δ + 1), Wendland's C⁶ function of compact support.
+    Wendland {
+        /// Radius δ of the support.
+        radius: f64,
+    },
+}
+
+/// The sign in Σ [p_j(s_i) a_i ± p_j'(s_i) b_i] = 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SideCondition {
+    /// The paper's; the moment matrix is not symmetric.
+    #[default]
+    Plus,
+    /// The symmetric choice.
+    Minus,
+}
+
+/// Gauss points in a cell, by energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GaussPoints {
+    /// For ½ EA ε².
+    pub stretch: usize,
+    /// For ½ EI κ².
+    pub bend: usize,
+}
+
+/// A point of a beam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Index of the beam.
+    pub beam: usize,
+    /// Arc length [m].
+    pub s: f64,
+}
+
+/// Holds a point of a beam, or moves it by prescription.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Support {
+    /// Where.
+    pub at: Place,
+    /// What is held.
+    pub fix: Fixed,
+    /// By how much the held quantities move until the load factor is 1: x [m], y [m], angle [rad].
+    pub displacement: Displacement,
+}
+
+impl Default for Place {
+    fn default() -> Self {
+        Self { beam: 0, s: 0.0 }
+    }
+}
+
+/// The quantities that a support holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Fixed {
+    /// Position along x.
+    pub x: bool,
+    /// Position along y.
+    pub y: bool,
+    /// Direction of r'.
+    pub rotation: FixedRotation,
+}
+
+/// What a support holds of the gradient r'.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FixedRotation {
+    /// Nothing.
+    #[default]
+    Free,
+    /// Its direction; the stretch at this point stays free.
+    Angle,
+    /// Both components (the clamp of the paper).
+    Gradient,
+}
+
+/// Prescribed motion of a support.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Displacement {
+    /// Along x [m].
+    pub x: f64,
+    /// Along y [m].
+    pub y: f64,
+    /// Rotation [rad]; more than a full turn is meant as such.
+    pub angle: f64,
+}
+
+/// What acts on the beams.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Load {
+    /// Concentrated force [N]; a follower turns with the section.
+    Force {
+        /// Where it acts.
+        at: Place,
+        /// Components in the fixed frame; of a follower, those while the beam is undeformed.
+        value: [f64; 2],
+        /// Turns with the section.
+        follower: bool,
+    },
+    /// Concentrated moment [N m], counter-clockwise. In the plane a moment about z has no direction
+    /// that could follow, so there is no follower moment.
+    Moment {
+        /// Where it acts.
+        at: Place,
+        /// Counter-clockwise.
+        value: f64,
+    },
+    /// Force per reference length [N/m] along a whole beam.
+    DistributedForce {
+        /// Index of the beam.
+        beam: usize,
+        /// Components, as for [`Load::Force`].
+        value: [f64; 2],
+        /// Turns with the section.
+        follower: bool,
+    },
+    /// Weight of every beam that has mass.
+    Gravity {
+        /// [m/s²].
+        acceleration: [f64; 2],
+    },
+}
+
+/// A point that is watched.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// Name of its columns in the output.
+    pub name: String,
+    /// Where.
+    pub at: Place,
+}
+
+/// What is to be computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Analysis {
+    /// Equilibrium under the full loads.
+    Static(Static),
+    /// Motion in time.
+    Dynamic(Dynamic),
+    /// Load factors at which the straight path becomes unstable.
+    Buckling {
+        /// How many.
+        count: usize,
+    },
+    /// Natural frequencies and mode shapes.
+    Modal {
+        /// How many.
+        count: usize,
+    },
+}
+
+/// Settings of a static analysis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Static {
+    /// Load factors at which states are recorded: this many equal parts. `None`: chosen by the solver.
+    pub steps: Option<usize>,
+    /// Relative accuracy of every equilibrium, in increments per length. `None`: the solver's default.
+    pub tolerance: Option<f64>,
+    /// Follow the path by arc length, through limit points.
+    pub arc_length: Option<ArcLength>,
+}
+
+/// Settings of arc-length continuation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArcLength {
+    /// Stop when the load factor first reaches this value.
+    pub until_load: Option<f64>,
+    /// Stop after this many points on the path.
+    pub max_points: usize,
+    /// Longest step along the path, as a fraction of the beam's length.
+    pub max_step: Option<f64>,
+    /// Stop when a probe's coordinate reaches a value.
+    pub until_probe: Option<ProbeTarget>,
+}
+
+/// A value of a probe's coordinate that ends a path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbeTarget {
+    /// Name of the probe.
+    pub probe: String,
+    /// 0 for x, 1 for y.
+    pub axis: usize,
+    /// [m].
+    pub value: f64,
+}
+
+/// Settings of a dynamic analysis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dynamic {
+    /// Simulated time [s].
+    pub duration: f64,
+    /// Time between records [s].
+    pub output_every: f64,
+    /// How time advances.
+    pub integrator: Integrator,
+}
+
+/// A method of time integration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integrator {
+    /// Chung and Hulbert's generalised-α method.
+    GeneralizedAlpha {
+        /// How steps are chosen.
+        step: StepControl,
+        /// Spectral radius at infinite frequency, from 0 to 1.
+        spectral_radius: f64,
+    },
+    /// Gauss collocation, of order 2 `stages`.
+    Gauss {
+        /// 1, 2 or 3.
+        stages: usize,
+        /// How steps are chosen.
+        step: StepControl,
+    },
+    /// Radau IIA collocation, of order 2 `stages` − 1.
+    Radau {
+        /// 2 or 3.
+        stages: usize,
+        /// How steps are chosen.
+        step: StepControl,
+    },
+}
+
+/// How the steps of an integrator are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepControl {
+    /// All alike [s].
+    Fixed(f64),
+    /// As long as this relative accuracy allows.
+    Tolerance(f64),
+}
+
+impl fmt::Display for StrainMeasure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Green => "green",
+            Self::Engineering => "engineering",
+        })
+    }
+}
+
+impl Nodes {
+    /// Number of nodes.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Uniform(n) | Self::Chebyshev(n) => *n,
+            Self::Given(s) => s.len(),
+        }
+    }
+}
+
+impl fmt::Display for Nodes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Uniform(n) => write!(f, "{n} uniform nodes"),
+            Self::Chebyshev(n) => write!(f, "{n} Chebyshev nodes"),
+            Self::Given(s) => write!(f, "{} given nodes", s.len()),
+        }
+    }
+}
+
+impl fmt::Display for Kernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Multiquadric { q, shape } => write!(f, "multiquadric (q = {q}, shape {shape})"),
+            Self::Exponential { shape } => write!(f, "exponential (shape {shape})"),
+            Self::ThinPlateSpline { exponent } => write!(f, "thin plate spline (exponent {exponent})"),
+            Self::Wendland { radius } => write!(f, "Wendland C⁶ (radius {radius})"),
+        }
+    }
+}
+
+impl fmt::Display for Discretization {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ancf { nodes } => write!(f, "ANCF cable elements, {nodes}"),
+            Self::Rpim { nodes, kernel, polynomial_terms, side_condition, neighbours } => {
+                let sign = match side_condition {
+                    SideCondition::Plus => '+',
+                    SideCondition::Minus => '−',
+                };
+                write!(
+                    f,
+                    "RPIM, {nodes}, {kernel}, {polynomial_terms} polynomial terms, side condition {sign}, {neighbours} neighbours a side"
+                )
+            }
+        }
+    }
+}

@@ -1,0 +1,355 @@
+//! One model, one analysis: build, solve, and look at the states.
+
+use crate::model::{Analysis, Model, Place, StrainMeasure};
+use crate::solve::path::Stuck;
+use crate::solve::statics::{self, Solution, Target};
+use crate::solve::{buckling, modal};
+use crate::system::{Inventory, Needs, System, SystemError, View};
+use crate::trajectory::{AnalysisKind, Energy, Frame, ProbeSample, ProbeSeries, Shape, Trajectory};
+use std::f64::consts::TAU;
+use std::time::Instant;
+
+/// How far a computation is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Load factor or time [s] reached.
+    pub parameter: f64,
+    /// Where it ends.
+    pub target: f64,
+    /// The next step.
+    pub step: f64,
+    /// Newton iterations so far.
+    pub newton_iterations: usize,
+}
+
+/// Whether to go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// End with what has been computed.
+    Stop,
+}
+
+/// Called after every step.
+pub type Observer<'o> = &'o mut dyn FnMut(&Progress) -> Control;
+
+/// Why there is no result.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum RunError {
+    /// The model cannot be turned into equations.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    System(#[from] SystemError),
+    /// No equilibrium was found beyond some load factor.
+    #[error(
+        "no equilibrium beyond load factor {load:.6}: {cause}; smallest step tried {step:.1e}, worst at s = {s:.4} m of beam `{beam}`"
+    )]
+    #[diagnostic(help("{advice}"))]
+    NoEquilibrium {
+        /// Load factor of the last equilibrium.
+        load: f64,
+        /// Smallest step tried.
+        step: f64,
+        /// What went wrong.
+        cause: String,
+        /// The beam on which the iteration went worst.
+        beam: String,
+        /// Where on it [m].
+        s: f64,
+        /// What to try.
+        advice: String,
+        /// What was computed until then.
+        partial: Box<Trajectory>,
+    },
+    /// A setting refers to a probe that does not exist.
+    #[error("the path is to end at probe `{probe}`, but the probes are: {known}")]
+    NoSuchProbe {
+        /// The name given.
+        probe: String,
+        /// The names that exist.
+        known: String,
+    },
+    /// An eigenvalue problem could not be solved.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Eigen(#[from] crate::solve::eigen::EigenError),
+    /// The analysis is described but this version cannot compute it.
+    #[error("{0} analysis is not available in this version")]
+    Unavailable(&'static str),
+}
+
+impl RunError {
+    /// 2 where the input is at fault, 1 where the computation failed.
+    pub fn exit_status(&self) -> u8 {
+        match self {
+            Self::System(_) | Self::NoSuchProbe { .. } | Self::Unavailable(_) => 2,
+            Self::NoEquilibrium { .. } | Self::Eigen(_) => 1,
+        }
+    }
+}
+
+fn needs(analysis: &Analysis) -> Needs {
+    Needs { inertia: matches!(analysis, Analysis::Modal { .. } | Analysis::Dynamic(_)) }
+}
+
+/// Builds the model's equations and lists them.
+///
+/// # Errors
+/// [`RunError`] where the model contradicts itself.
+pub fn inspect(model: &Model, analysis: &Analysis) -> Result<Inventory, RunError> {
+    Ok(System::build(model, needs(analysis))?.inventory())
+}
+
+/// Solves `model`. `observer` is called after every step.
+///
+/// # Errors
+/// [`RunError`]: what was expected, what was found, where, and what to try.
+pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result<Trajectory, RunError> {
+    let start = Instant::now();
+    let system = System::build(model, needs(analysis))?;
+    let look = Look::new(model, &system)?;
+    let build = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let mut trajectory = match analysis {
+        Analysis::Static(settings) => {
+            let report = &mut |load: f64, step: f64, statistics: &crate::trajectory::Statistics| {
+                let iterations = statistics.newton_iterations;
+                observer(&Progress { parameter: load, target: 1.0, step, newton_iterations: iterations })
+                    == Control::Continue
+            };
+            let outcome = match &settings.arc_length {
+                None => statics::solve(&system, settings, report),
+                Some(arc) => {
+                    let probe = match &arc.until_probe {
+                        None => None,
+                        Some(target) => {
+                            let found = look.probes.iter().find(|(name, ..)| *name == target.probe);
+                            let (_, view, _) = found.ok_or_else(|| RunError::NoSuchProbe {
+                                probe: target.probe.clone(),
+                                known: look.probes.iter().map(|(n, ..)| n.as_str()).collect::<Vec<_>>().join(", "),
+                            })?;
+                            Some((view.clone(), target.axis, target.value))
+                        }
+                    };
+                    statics::follow(&system, settings, &Target { arc, probe }, report)
+                }
+            };
+            match outcome {
+                Ok(solution) => look.statics(&solution),
+                Err((stuck, solution)) => return Err(look.stuck(&stuck, &solution)),
+            }
+        }
+        Analysis::Buckling { count } => look.buckling(&buckling::solve(&system, *count)?),
+        Analysis::Modal { count } => look.modal(&modal::solve(&system, *count)?),
+        Analysis::Dynamic(_) => return Err(RunError::Unavailable("dynamic")),
+    };
+    trajectory.seconds.solve = start.elapsed().as_secs_f64();
+    trajectory.seconds.build = build;
+    Ok(trajectory)
+}
+
+/// Points at which shapes are sampled.
+const SHAPE_POINTS: usize = 201;
+/// Points of a beam in a frame of the animation.
+const FRAME_POINTS: usize = 101;
+/// Frames kept for the animation.
+const FRAMES: usize = 400;
+
+/// Everything needed to look at states of one system.
+struct Look<'a> {
+    model: &'a Model,
+    system: &'a System,
+    shapes: Vec<View>,
+    frames: Vec<View>,
+    probes: Vec<(String, View, StrainMeasure)>,
+}
+
+fn evenly(length: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|i| length * i as f64 / (count - 1) as f64).collect()
+}
+
+impl<'a> Look<'a> {
+    fn new(model: &'a Model, system: &'a System) -> Result<Self, RunError> {
+        let view = |beam: usize, s: &[f64]| {
+            let part = &system.beams()[beam];
+            View::points(&part.basis, part.offset(), s)
+                .map_err(|source| SystemError::Basis { beam: part.name.clone(), source })
+        };
+        let sampled = |count: usize| -> Result<Vec<View>, SystemError> {
+            (0..system.beams().len())
+                .map(|beam| view(beam, &evenly(system.beams()[beam].basis.length(), count)))
+                .collect()
+        };
+        let probes = model
+            .probes
+            .iter()
+            .map(|probe| {
+                let Place { beam, s } = probe.at;
+                system.check_place("a probe", probe.at)?;
+                Ok((probe.name.clone(), view(beam, &[s])?, model.beams[beam].strain))
+            })
+            .collect::<Result<_, SystemError>>()?;
+        Ok(Self { model, system, shapes: sampled(SHAPE_POINTS)?, frames: sampled(FRAME_POINTS)?, probes })
+    }
+
+    fn empty(&self, analysis: AnalysisKind) -> Trajectory {
+        let reference = self.system.reference();
+        Trajectory {
+            title: self.model.title.clone(),
+            analysis,
+            degrees_of_freedom: self.system.degrees_of_freedom(),
+            settings: self.settings(),
+            undeformed: self.shape(reference),
+            last: self.shape(reference),
+            probes: self.probes.iter().map(|(name, ..)| ProbeSeries { name: name.clone(), samples: vec![] }).collect(),
+            ..Trajectory::default()
+        }
+    }
+
+    fn settings(&self) -> Vec<(String, String)> {
+        let mut settings = Vec::new();
+        for (beam, part) in self.model.beams.iter().zip(self.system.beams()) {
+            let name = &beam.name;
+            settings.push((format!("beam {name}"), format!("{} m, {}", part.basis.length(), beam.discretization)));
+            settings.push((
+                format!("beam {name}, strain"),
+                format!(
+                    "{}; Gauss points {} (stretch), {} (bend) a cell",
+                    beam.strain, beam.gauss_points.stretch, beam.gauss_points.bend
+                ),
+            ));
+        }
+        let inventory = self.system.inventory();
+        let mut kinds: Vec<_> = inventory.effects.iter().map(|e| e.kind.name()).collect();
+        kinds.dedup();
+        settings.push(("effects".into(), kinds.join(", ")));
+        settings.push(("linear solver".into(), inventory.solver.into()));
+        settings
+    }
+
+    fn shape(&self, q: &[f64]) -> Vec<Shape> {
+        let beams = self.model.beams.iter().zip(self.system.beams()).zip(&self.shapes);
+        beams
+            .map(|((beam, part), view)| {
+                let mut shape = Shape { beam: beam.name.clone(), s: view.s().to_vec(), ..Shape::default() };
+                let mut angle = None;
+                for fields in view.all(q) {
+                    shape.x.push(fields.position[0]);
+                    shape.y.push(fields.position[1]);
+                    let unfolded = unfold(fields.angle(), angle);
+                    angle = Some(unfolded);
+                    shape.angle.push(unfolded);
+                    shape.strain.push(fields.strain(beam.strain));
+                    shape.curvature.push(fields.curvature());
+                }
+                let first = 4 * part.first_node;
+                let nodes = q[first..first + 4 * part.basis.nodes().len()].chunks_exact(4);
+                shape.nodes = nodes.map(|n| [n[0], n[1]]).collect();
+                shape
+            })
+            .collect()
+    }
+
+    fn frame(&self, parameter: f64, q: &[f64]) -> Frame {
+        let beams = self.frames.iter().map(|view| view.all(q).map(|f| f.position).collect()).collect();
+        Frame { parameter, beams }
+    }
+
+    fn record(&self, trajectory: &mut Trajectory, parameter: f64, q: &[f64], energy: Energy) {
+        trajectory.parameter.push(parameter);
+        trajectory.energy.push(energy);
+        for ((_, view, strain), series) in self.probes.iter().zip(&mut trajectory.probes) {
+            let fields = view.fields(q);
+            let angle = unfold(fields.angle(), series.samples.last().map(|s| s.angle));
+            series.samples.push(ProbeSample {
+                x: fields.position[0],
+                y: fields.position[1],
+                angle,
+                curvature: fields.curvature(),
+                strain: fields.strain(*strain),
+                vx: None,
+                vy: None,
+            });
+        }
+    }
+
+    fn statics(&self, solution: &Solution) -> Trajectory {
+        let mut trajectory = self.empty(AnalysisKind::Static);
+        let every = solution.states.len().div_ceil(FRAMES).max(1);
+        for (i, (load, q)) in solution.states.iter().enumerate() {
+            self.record(&mut trajectory, *load, q, self.system.energy(*load, q, None));
+            if i % every == 0 || i + 1 == solution.states.len() {
+                trajectory.frames.push(self.frame(*load, q));
+            }
+        }
+        if let Some((_, q)) = solution.states.last() {
+            trajectory.last = self.shape(q);
+        }
+        trajectory.history = solution.history.clone();
+        trajectory.statistics = solution.statistics;
+        for event in &solution.events {
+            let (change, advice) = if event.after > event.before {
+                ("loses", "beyond it the equilibrium found is unstable: a bifurcation or a limit point")
+            } else {
+                ("regains", "the path is back on a more stable branch")
+            };
+            trajectory.warnings.push(format!(
+                "the tangent {change} definiteness at load factor {:.6}: {} unstable direction{} before, {} after; {advice}",
+                event.load,
+                event.before,
+                if event.before == 1 { "" } else { "s" },
+                event.after,
+            ));
+        }
+        trajectory
+    }
+
+    fn stuck(&self, stuck: &Stuck, solution: &Solution) -> RunError {
+        let (beam, s) = stuck.at;
+        let advice = if stuck.step == 0.0 {
+            "the undeformed structure can move without resistance: add a support, or give the beam a bending stiffness"
+        } else {
+            "near a limit point the load cannot grow: follow the path with `arc_length` in [analysis.static]; \
+             if the shape is folded there, use more nodes or smaller loads"
+        };
+        RunError::NoEquilibrium {
+            load: stuck.load,
+            step: stuck.step,
+            cause: stuck.failure.to_string(),
+            beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
+            s,
+            advice: advice.into(),
+            partial: Box::new(self.statics(solution)),
+        }
+    }
+
+    /// The reference with a mode added, its largest displacement a tenth of a beam length.
+    fn mode_shape(&self, mode: &[f64]) -> Vec<Shape> {
+        let largest = mode.chunks_exact(4).fold(0.0_f64, |m, d| m.max(d[0].hypot(d[1])));
+        let factor = if largest > 0.0 { 0.1 * self.system.length() / largest } else { 0.0 };
+        let q: Vec<f64> = self.system.reference().iter().zip(mode).map(|(q, m)| q + factor * m).collect();
+        self.shape(&q)
+    }
+
+    fn modal(&self, modes: &modal::Modes) -> Trajectory {
+        let mut trajectory = self.empty(AnalysisKind::Modal);
+        trajectory.frequencies = modes.frequencies.clone();
+        trajectory.modes = modes.shapes.iter().map(|m| self.mode_shape(m)).collect();
+        trajectory.statistics.factorizations = modes.factorizations;
+        trajectory
+    }
+
+    fn buckling(&self, modes: &buckling::Modes) -> Trajectory {
+        let mut trajectory = self.empty(AnalysisKind::Buckling);
+        trajectory.load_factors = modes.load_factors.clone();
+        trajectory.modes = modes.shapes.iter().map(|m| self.mode_shape(m)).collect();
+        trajectory.statistics.factorizations = modes.factorizations;
+        trajectory
+    }
+}
+
+/// The representative of an angle nearest to the one before.
+fn unfold(angle: f64, before: Option<f64>) -> f64 {
+    before.map_or(angle, |before| angle + TAU * ((before - angle) / TAU).round())
+}

@@ -1,0 +1,308 @@
+//! The equations of statics at a load factor, in the form that Newton's method and the path solvers ask for.
+
+use super::newton::{Equations, RESIDUAL_TOLERANCE};
+use crate::effect::Workspace;
+use crate::linear::bordered::BorderRow;
+use crate::linear::{Factor, Matrix, Singular};
+use crate::system::System;
+use crate::trajectory::Statistics;
+
+/// Residuals of so many round-offs of the internal forces count as zero.
+const ROUND_OFFS: f64 = 100.0;
+
+/// Residual, tangent and its factorisation at one load factor. Unknowns are the system's coordinates followed by the
+/// scaled multipliers.
+pub struct Equilibrium<'a> {
+    system: &'a System,
+    tangent: Matrix,
+    factor: Option<Factor>,
+    border: Vec<BorderRow>,
+    workspace: Workspace,
+    force: Vec<f64>,
+    held_rate: Vec<f64>,
+    /// Counts so far.
+    pub statistics: Statistics,
+}
+
+impl<'a> Equilibrium<'a> {
+    /// The equations of `system`.
+    pub fn new(system: &'a System) -> Self {
+        let n = system.coordinates();
+        Self {
+            system,
+            tangent: system.matrix(),
+            factor: None,
+            border: Vec::new(),
+            workspace: Workspace::default(),
+            force: vec![0.0; n],
+            held_rate: vec![0.0; n],
+            statistics: Statistics::default(),
+        }
+    }
+
+    /// The system whose equations these are.
+    pub fn system(&self) -> &'a System {
+        self.system
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.system.coordinates() + self.system.multipliers()
+    }
+
+    /// The stress-free state without multipliers.
+    pub fn start(&self) -> Vec<f64> {
+        let mut x = self.system.reference().to_vec();
+        x.resize(self.unknowns(), 0.0);
+        x
+    }
+
+    /// Adds Bᵀμ to the force, turns it into the supports' frames as `−R` and appends `−g`; returns the scaled residual.
+    fn finish_residual(&mut self, load: f64, x: &[f64], negative: &mut [f64]) -> f64 {
+        let system = self.system;
+        let n = system.coordinates();
+        let scale_of = |force: &[f64]| {
+            force.chunks_exact(4).fold(0.0_f64, |m, f| {
+                m.max(f[0].abs()).max(f[1].abs()).max((f[2].abs()).max(f[3].abs()) / system.length())
+            })
+        };
+        let mut g_max = 0.0_f64;
+        let mut scale = scale_of(&self.force);
+        for (r, constraint) in system.constraints().iter().enumerate() {
+            let unit = constraint.scale(system.stiffness(), system.length());
+            let mu = x[n + r] * unit;
+            for (i, value) in constraint.gradient(load) {
+                scale = scale.max((mu * value).abs() * if i % 4 < 2 { 1.0 } else { 1.0 / system.length() });
+                self.force[i] += mu * value;
+            }
+            let g = constraint.value(load, &x[..n]);
+            negative[n + r] = -unit * g;
+            g_max = g_max.max((unit * g).abs() / system.stiffness() * system.length().min(1.0 / system.length()));
+        }
+        for (negative, force) in negative.iter_mut().zip(&self.force) {
+            *negative = -force;
+        }
+        system.supports().to_frames(load, &mut negative[..n]);
+        let floor = ROUND_OFFS / RESIDUAL_TOLERANCE * system.round_off();
+        let residual = scale_of(&negative[..n]);
+        if residual == 0.0 { 0.0 } else { residual / (scale + floor) }
+    }
+
+    /// Writes −R(x) to `negative` and returns the scaled residual: its largest component against the largest force on
+    /// a coordinate (reactions included) plus the round-off of the internal forces.
+    pub fn residual(&mut self, load: f64, x: &[f64], negative: &mut [f64]) -> f64 {
+        let n = self.system.coordinates();
+        self.statistics.residual_evaluations += 1;
+        self.system.force(load, &x[..n], &mut self.force);
+        self.finish_residual(load, x, negative)
+    }
+
+    /// The same as [`Self::residual`]; also factorises the tangent at `x`, and with `rate` writes the right-hand side
+    /// of the path's tangent dx/dλ there.
+    ///
+    /// # Errors
+    /// [`Singular`] where the tangent has no inverse.
+    pub fn linearize(
+        &mut self,
+        load: f64,
+        x: &[f64],
+        before: &[f64],
+        negative: &mut [f64],
+        rate: Option<&mut [f64]>,
+    ) -> Result<f64, Singular> {
+        let system = self.system;
+        let n = system.coordinates();
+        self.statistics.residual_evaluations += 1;
+        self.statistics.tangent_evaluations += 1;
+        self.statistics.factorizations += 1;
+        let (q, before) = (&x[..n], &before[..n]);
+        system.force_and_tangent(load, q, before, &mut self.force, &mut self.tangent, &mut self.workspace);
+        let residual = self.finish_residual(load, x, negative);
+        system.supports().turn_matrix(load, &mut self.tangent);
+        if let Some(rate) = rate {
+            self.rate_right_hand_side(load, x, rate);
+        }
+        system.supports().eliminate(load, &mut self.tangent);
+        self.border = system.border(load);
+        self.factor = Some(Factor::again(self.factor.take(), &self.tangent, &self.border)?);
+        Ok(residual)
+    }
+
+    /// −∂R/∂λ − K v with the prescribed rates v of held coordinates; the tangent must not be eliminated yet.
+    fn rate_right_hand_side(&mut self, load: f64, x: &[f64], rate: &mut [f64]) {
+        let system = self.system;
+        let n = system.coordinates();
+        let q = &x[..n];
+        rate.fill(0.0);
+        system.add_loads(-1.0, q, &mut rate[..n]);
+        for (r, constraint) in system.constraints().iter().enumerate() {
+            let unit = constraint.scale(system.stiffness(), system.length());
+            rate[n + r] = -unit * constraint.rate(load, q);
+        }
+        system.supports().rate(load, q, &mut self.held_rate);
+        if system.supports().moves() {
+            system.supports().to_frames(load, &mut rate[..n]);
+            self.tangent.multiply_add(-1.0, &self.held_rate, &mut rate[..n]);
+            system.supports().from_frames(load, &mut rate[..n]);
+            let mut global = self.held_rate.clone();
+            system.supports().from_frames(load, &mut global);
+            for (r, constraint) in system.constraints().iter().enumerate() {
+                let unit = constraint.scale(system.stiffness(), system.length());
+                rate[n + r] -=
+                    unit * constraint.gradient(load).map(|(i, value)| value * global[i]).sum::<f64>();
+            }
+        }
+        system.supports().to_frames(load, &mut rate[..n]);
+    }
+
+    /// Solves with the last tangent; `b` comes in the supports' frames and leaves in fixed axes. With `moving`, held
+    /// coordinates receive their prescribed rates.
+    pub fn solve(&self, load: f64, b: &mut [f64], moving: bool) {
+        let n = self.system.coordinates();
+        if let Some(factor) = &self.factor {
+            factor.solve(b);
+        }
+        if moving {
+            for (b, rate) in b[..n].iter_mut().zip(&self.held_rate) {
+                // Held components are zero in a solved right-hand side, free ones have no prescribed rate.
+                *b += rate;
+            }
+        }
+        self.system.supports().from_frames(load, &mut b[..n]);
+    }
+
+    /// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not count.
+    pub fn size(&self, increment: &[f64]) -> f64 {
+        let n = self.system.coordinates();
+        let inverse = 1.0 / self.system.length();
+        let mut largest = 0.0_f64;
+        for d in increment[..n].chunks_exact(4) {
+            let size = (d[0].abs().max(d[1].abs()) * inverse).max(d[2].abs().max(d[3].abs()));
+            // `max` would drop a NaN.
+            if !(size <= largest) {
+                largest = size;
+            }
+        }
+        largest
+    }
+
+    /// Number of unstable directions at the last linearised state: negative eigenvalues of the tangent restricted to
+    /// motions that constraints and supports allow. `None` under follower loads.
+    pub fn unstable_directions(&self) -> Option<usize> {
+        if self.border.is_empty() {
+            return self.factor.as_ref()?.negative_eigenvalues();
+        }
+        if !self.system.is_symmetric() {
+            return None;
+        }
+        // A penalty on the constraints leaves the allowed motions' inertia and makes all others positive.
+        let mut penalised = self.tangent.clone();
+        let penalty = 1e4 / self.system.stiffness() * self.system.length().min(1.0 / self.system.length());
+        for row in &self.border {
+            penalised.add_outer_product(penalty, row);
+        }
+        Factor::new(&penalised, &[]).ok()?.negative_eigenvalues()
+    }
+
+    /// The factorised tangent.
+    pub fn factor(&self) -> Option<&Factor> {
+        self.factor.as_ref()
+    }
+}
+
+/// Equilibrium at a given load factor.
+pub struct AtLoad<'e, 'a> {
+    /// The equations.
+    pub equilibrium: &'e mut Equilibrium<'a>,
+    /// λ.
+    pub load: f64,
+    scratch: Vec<f64>,
+}
+
+impl<'e, 'a> AtLoad<'e, 'a> {
+    /// The equations at load factor `load`.
+    pub fn new(equilibrium: &'e mut Equilibrium<'a>, load: f64) -> Self {
+        let scratch = vec![0.0; equilibrium.unknowns()];
+        Self { equilibrium, load, scratch }
+    }
+}
+
+impl Equations for AtLoad<'_, '_> {
+    fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular> {
+        self.equilibrium.statistics.newton_iterations += 1;
+        let residual = self.equilibrium.linearize(self.load, x, before, increment, None)?;
+        self.equilibrium.solve(self.load, increment, false);
+        Ok(residual)
+    }
+
+    fn residual(&mut self, x: &[f64]) -> f64 {
+        self.equilibrium.residual(self.load, x, &mut self.scratch)
+    }
+
+    fn size(&self, increment: &[f64]) -> f64 {
+        self.equilibrium.size(increment)
+    }
+}
+
+/// Equilibrium on a plane across the path: unknowns (x, λ) with ⟨τ, (x, λ) − (x, λ)_predicted⟩ = 0.
+///
+/// The plane's normal τ is the predictor's direction (Keller's pseudo-arc length); the bordered system is solved with
+/// the same tangent twice, δx = a + δλ b with K a = −R and K b = −∂R/∂λ.
+pub struct AcrossPath<'e, 'a> {
+    /// The equations.
+    pub equilibrium: &'e mut Equilibrium<'a>,
+    /// τ, one longer than x; already weighted, so that its dot product with a change is that change along the path.
+    pub normal: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+impl<'e, 'a> AcrossPath<'e, 'a> {
+    /// `normal` as in [`Self::normal`].
+    pub fn new(equilibrium: &'e mut Equilibrium<'a>, normal: Vec<f64>) -> Self {
+        let rate = vec![0.0; equilibrium.unknowns()];
+        Self { equilibrium, normal, rate }
+    }
+}
+
+impl Equations for AcrossPath<'_, '_> {
+    fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular> {
+        let n = self.equilibrium.unknowns();
+        let load = x[n];
+        self.equilibrium.statistics.newton_iterations += 1;
+        let residual = self.equilibrium.linearize(
+            load,
+            &x[..n],
+            &before[..n],
+            &mut increment[..n],
+            Some(&mut self.rate),
+        )?;
+        self.equilibrium.solve(load, &mut increment[..n], false);
+        self.equilibrium.solve(load, &mut self.rate, true);
+        let along = |v: &[f64]| -> f64 { v.iter().zip(&self.normal).map(|(v, n)| v * n).sum() };
+        let change = -along(&increment[..n]) / (self.normal[n] + along(&self.rate));
+        for (increment, rate) in increment[..n].iter_mut().zip(&self.rate) {
+            *increment += change * rate;
+        }
+        increment[n] = change;
+        Ok(residual)
+    }
+
+    fn residual(&mut self, x: &[f64]) -> f64 {
+        let n = self.equilibrium.unknowns();
+        self.equilibrium.residual(x[n], &x[..n], &mut self.rate)
+    }
+
+    fn size(&self, increment: &[f64]) -> f64 {
+        self.equilibrium.size(increment)
+    }
+
+    fn apply(&self, increment: &[f64], x: &mut [f64]) {
+        for (x, d) in x.iter_mut().zip(increment) {
+            *x += d;
+        }
+        // Prescribed rotations are not linear in the load factor.
+        let n = self.equilibrium.unknowns();
+        let load = x[n];
+        self.equilibrium.system().supports().impose(load, &mut x[..self.equilibrium.system().coordinates()]);
+    }
+}

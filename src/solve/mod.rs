@@ -1,0 +1,10 @@
+//! Solvers. Each asks the system for forces, tangents, supports and constraints, and knows neither discretisation nor
+//! effect.
+
+pub mod buckling;
+pub mod eigen;
+pub mod equilibrium;
+pub mod modal;
+pub mod newton;
+pub mod path;
+pub mod statics;

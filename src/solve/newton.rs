@@ -1,0 +1,139 @@
+//! Newton's method, which knows nothing of loads or time.
+//!
+//! Convergence is judged by the increment in a scaled norm, which is what the user's accuracy means, and by the scaled
+//! residual, which catches a tangent that lies. Because convergence is quadratic, an increment δ_k with contraction
+//! Θ = |δ_k|/|δ_{k−1}| leaves an error of about Θ² |δ_k|; iteration stops when that is below the tolerance. The first
+//! contraction also tells the caller how far the predictor was from the solution (Deuflhard, *Newton Methods for
+//! Nonlinear Problems*, 2004, ch. 5).
+
+use crate::linear::Singular;
+
+/// A nonlinear system of equations.
+pub trait Equations {
+    /// Writes the Newton increment at `x` to `increment` and returns the scaled residual at `x`. The tangent may take
+    /// account of the iterate `before`.
+    ///
+    /// # Errors
+    /// [`Singular`] where the tangent has no inverse.
+    fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular>;
+
+    /// The scaled residual at `x`.
+    fn residual(&mut self, x: &[f64]) -> f64;
+
+    /// The scaled size of an increment.
+    fn size(&self, increment: &[f64]) -> f64;
+
+    /// `x += increment`.
+    fn apply(&self, increment: &[f64], x: &mut [f64]) {
+        for (x, d) in x.iter_mut().zip(increment) {
+            *x += d;
+        }
+    }
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Largest error of the solution in the norm of the increments.
+    pub tolerance: f64,
+    /// Largest scaled residual.
+    pub residual_tolerance: f64,
+    /// Give up after this many iterations.
+    pub max_iterations: usize,
+}
+
+/// Largest scaled residual of a solution.
+pub const RESIDUAL_TOLERANCE: f64 = 1e-6;
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { tolerance: 1e-10, residual_tolerance: RESIDUAL_TOLERANCE, max_iterations: 16 }
+    }
+}
+
+/// How the iteration went.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Iterations {
+    /// Scaled increment of each iteration.
+    pub increments: Vec<f64>,
+    /// Scaled residual before each iteration.
+    pub residuals: Vec<f64>,
+}
+
+/// Why the iteration did not converge.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// The tangent has no inverse.
+    #[error(transparent)]
+    Singular(#[from] Singular),
+    /// Increments grow.
+    #[error("the increments grow (the last is {last:.1e} of a beam length)")]
+    Diverging {
+        /// The last scaled increment.
+        last: f64,
+    },
+    /// A force or an increment overflowed or is not a number.
+    #[error("a force or an increment is not finite")]
+    NotFinite,
+    /// Converged, but so far from the prediction that it may be another equilibrium than the one that continues the path.
+    #[error("the solution lies {turn:.2} rad from the prediction, perhaps on another branch")]
+    OtherBranch {
+        /// Largest turn of a node between prediction and solution [rad].
+        turn: f64,
+    },
+    /// The limit of iterations was reached.
+    #[error("no convergence within {iterations} iterations (the last increment is {last:.1e} of a beam length)")]
+    TooSlow {
+        /// Iterations made.
+        iterations: usize,
+        /// The last scaled increment.
+        last: f64,
+    },
+}
+
+/// Increments that no longer shrink count as converged below this size: what is left is round-off.
+const ROUND_OFF: f64 = 1e-6;
+
+/// Iterates from `x`, which receives the solution; `before` is the iterate from which the first tangent is extrapolated.
+/// `record` receives what happened, also on failure.
+///
+/// # Errors
+/// [`Failure`]; `x` is then meaningless.
+pub fn solve(
+    equations: &mut impl Equations,
+    x: &mut [f64],
+    before: &[f64],
+    settings: &Settings,
+    record: &mut Iterations,
+) -> Result<(), Failure> {
+    let mut before = before.to_vec();
+    let mut increment = vec![0.0; x.len()];
+    let (mut first, mut last) = (0.0, f64::INFINITY);
+    for iteration in 0..settings.max_iterations {
+        let residual = equations.increment(x, &before, &mut increment)?;
+        let size = equations.size(&increment);
+        record.residuals.push(residual);
+        record.increments.push(size);
+        if !(size.is_finite() && residual.is_finite()) {
+            return Err(Failure::NotFinite);
+        }
+        if iteration == 0 {
+            first = size;
+        }
+        let contraction = if iteration == 0 { 1.0 } else { size / last };
+        let stalled = contraction > 0.5 && size <= ROUND_OFF;
+        if !stalled && (size > 10.0 * first || (iteration >= 4 && contraction > 1.0)) {
+            return Err(Failure::Diverging { last: size });
+        }
+        before.copy_from_slice(x);
+        equations.apply(&increment, x);
+        let remaining = size * contraction * contraction;
+        if (remaining <= settings.tolerance || stalled)
+            && (size <= 1e-3 * settings.tolerance || equations.residual(x) <= settings.residual_tolerance)
+        {
+            return Ok(());
+        }
+        last = size;
+    }
+    Err(Failure::TooSlow { iterations: settings.max_iterations, last })
+}

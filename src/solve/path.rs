@@ -1,0 +1,349 @@
+//! Following a path of equilibria: predictor, step control, and what is noticed on the way.
+//!
+//! Points of the path are functions of a parameter t, the load factor or the arc length. The next point is predicted by
+//! extrapolating the polynomial through the last points (at first, along the tangent), and corrected by Newton's
+//! method. The step is controlled by the *turn of the corrector*: the largest change of a nodal gradient between
+//! predicted and corrected state, which is an angle in radians for slender beams whatever their size. A predictor of
+//! order p errs by O(h^{p+1}), so that the step for a wanted turn follows at once. A step whose corrector turns too far
+//! is redone smaller even though it converged: a solution that far from the prediction may lie on another branch.
+
+use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
+use super::newton::{self, Failure, Iterations, Settings};
+use crate::trajectory::StepRecord;
+
+/// An equilibrium on the path.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Load factor or arc length.
+    pub parameter: f64,
+    /// Load factor.
+    pub load: f64,
+    /// Coordinates and multipliers.
+    pub x: Vec<f64>,
+    /// Unstable directions, where the factorisation tells.
+    pub unstable: Option<usize>,
+}
+
+/// By what the path is parametrised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// The load factor, which is prescribed.
+    Load,
+    /// The arc length in the scaled space of states and load factors.
+    ArcLength,
+}
+
+/// Points kept for extrapolation: a cubic predictor.
+const MEMORY: usize = 4;
+/// Turn of the corrector that the step control aims at [rad].
+const WANTED_TURN: f64 = 0.12;
+/// Turn of the corrector beyond which a converged step is not trusted [rad].
+const LARGEST_TURN: f64 = 0.5;
+/// Predicted turn of any node in one step [rad].
+const LARGEST_STEP: f64 = 0.8;
+/// Smallest step, relative to the first one tried.
+const SMALLEST_STEP: f64 = 1e-9;
+
+/// Why a path could not be followed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stuck {
+    /// Load factor of the last equilibrium.
+    pub load: f64,
+    /// The smallest step tried.
+    pub step: f64,
+    /// What went wrong with it.
+    pub failure: Failure,
+    /// Arc length [m] along beam `beam` at which the last iterate changed most.
+    pub at: (usize, f64),
+}
+
+/// A path under construction.
+pub struct Path<'e, 'a> {
+    /// The equations.
+    pub equilibrium: &'e mut Equilibrium<'a>,
+    settings: Settings,
+    parameter: Parameter,
+    points: Vec<Point>,
+    step: f64,
+    /// Attempted steps so far.
+    pub history: Vec<StepRecord>,
+}
+
+impl<'e, 'a> Path<'e, 'a> {
+    /// Starts at the stress-free state; `step` is the first step to try.
+    pub fn new(
+        equilibrium: &'e mut Equilibrium<'a>,
+        parameter: Parameter,
+        settings: Settings,
+        step: f64,
+    ) -> Result<Self, Stuck> {
+        let mut x = equilibrium.start();
+        let n = equilibrium.system().coordinates();
+        equilibrium.system().supports().impose(0.0, &mut x[..n]);
+        let start = Point { parameter: 0.0, load: 0.0, x, unstable: None };
+        Ok(Self { equilibrium, settings, parameter, points: vec![start], step, history: Vec::new() })
+    }
+
+    /// The last equilibrium.
+    pub fn last(&self) -> &Point {
+        &self.points[self.points.len() - 1]
+    }
+
+    /// Load factor of the point before the last one.
+    pub fn previous_load(&self) -> Option<f64> {
+        self.points.len().checked_sub(2).map(|i| self.points[i].load)
+    }
+
+    /// Extreme value of the load factor near the last two points: the vertex of the parabola through the last three,
+    /// where it lies between them, else the last load.
+    pub fn extreme_load(&self) -> f64 {
+        let [.., a, b, c] = &self.points[..] else { return self.last().load };
+        let slope = |p: &Point, q: &Point| (q.load - p.load) / (q.parameter - p.parameter);
+        let (first, second) = (slope(a, b), slope(b, c));
+        let bend = (second - first) / (c.parameter - a.parameter);
+        let vertex = 0.5 * (a.parameter + b.parameter) - 0.5 * first / bend;
+        if (a.parameter..=c.parameter).contains(&vertex) {
+            a.load + first * (vertex - a.parameter) + bend * (vertex - a.parameter) * (vertex - b.parameter)
+        } else {
+            c.load
+        }
+    }
+
+    /// The step that will be tried next.
+    pub fn next_step(&self) -> f64 {
+        self.step
+    }
+
+    /// Limits the next step.
+    pub fn limit_step(&mut self, largest: f64) {
+        self.step = self.step.min(largest);
+    }
+
+    /// Takes one step to a new equilibrium, not beyond the parameter `end`, halving it as often as needed.
+    ///
+    /// # Errors
+    /// [`Stuck`] where no step converges.
+    pub fn advance(&mut self, end: f64) -> Result<&Point, Stuck> {
+        let first_step = self.step;
+        let tangent = if self.points.len() == 1 { Some(self.tangent()?) } else { None };
+        let here = self.last().parameter;
+        loop {
+            // No sliver is left before the end.
+            let left = end - here;
+            let mut step = self.step.min(left);
+            if step > 0.5 * left && step < left {
+                step = 0.5 * left;
+            }
+            let mut predicted = self.predict(here + step, tangent.as_deref());
+            let turn = self.turn(&predicted.x, &self.last().x);
+            if turn > LARGEST_STEP {
+                self.step = step * (0.95 * LARGEST_STEP / turn);
+                step = self.step;
+                predicted = self.predict(here + step, tangent.as_deref());
+            }
+            let target = if step >= left { end } else { here + step };
+            match self.correct(predicted, target, step) {
+                Ok((point, turn)) => {
+                    let order = self.points.len().min(MEMORY) as i32;
+                    let order = if tangent.is_some() { 2 } else { order };
+                    let factor = (WANTED_TURN / turn.max(1e-12)).powf(1.0 / f64::from(order));
+                    self.step = self.step.max(step) * factor.clamp(0.4, 2.5);
+                    self.points.push(point);
+                    if self.points.len() > MEMORY {
+                        self.points.remove(0);
+                    }
+                    self.equilibrium.statistics.steps += 1;
+                    self.equilibrium.statistics.load_steps += 1;
+                    return Ok(self.last());
+                }
+                Err((failure, at)) => {
+                    self.equilibrium.statistics.rejected_steps += 1;
+                    self.step = step * 0.4;
+                    if self.step < SMALLEST_STEP * first_step.min(left) {
+                        return Err(Stuck { load: self.last().load, step, failure, at });
+                    }
+                }
+            }
+        }
+    }
+
+    /// (dx/dt, dλ/dt) at the start.
+    fn tangent(&mut self) -> Result<Vec<f64>, Stuck> {
+        let n = self.equilibrium.unknowns();
+        let point = self.points[0].clone();
+        let mut negative = vec![0.0; n];
+        let mut rate = vec![0.0; n];
+        self.equilibrium
+            .linearize(point.load, &point.x, &point.x, &mut negative, Some(&mut rate))
+            .map_err(|singular| Stuck {
+                load: point.load,
+                step: 0.0,
+                failure: singular.into(),
+                at: self.place(singular.row),
+            })?;
+        self.equilibrium.solve(point.load, &mut rate, true);
+        self.points[0].unstable = self.equilibrium.unstable_directions();
+        rate.push(1.0);
+        if self.parameter == Parameter::ArcLength {
+            let length = self.dot(&rate, &rate).sqrt();
+            rate.iter_mut().for_each(|r| *r /= length);
+        }
+        Ok(rate)
+    }
+
+    /// ⟨a, b⟩ over (x, λ): mean square of nodal changes, positions in beam lengths, plus the load factor.
+    fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+        self.weights(a).iter().zip(b).map(|(a, b)| a * b).sum()
+    }
+
+    fn weights(&self, v: &[f64]) -> Vec<f64> {
+        let system = self.equilibrium.system();
+        let n = system.coordinates();
+        let nodes = (n / 4) as f64;
+        let inverse = system.length().powi(-2) / nodes;
+        let mut weighted: Vec<f64> = v.to_vec();
+        for (i, w) in weighted.iter_mut().enumerate() {
+            *w *= match i {
+                _ if i + 1 == v.len() => 1.0,
+                _ if i >= n => 0.0,
+                _ if i % 4 < 2 => inverse,
+                _ => 1.0 / nodes,
+            };
+        }
+        weighted
+    }
+
+    fn predict(&self, parameter: f64, tangent: Option<&[f64]>) -> Point {
+        let last = self.last();
+        let (mut x, mut load) = (last.x.clone(), last.load);
+        if let Some(tangent) = tangent {
+            let h = parameter - last.parameter;
+            for (x, rate) in x.iter_mut().zip(tangent) {
+                *x += h * rate;
+            }
+            load += h * tangent[x.len()];
+        } else {
+            x.fill(0.0);
+            load = 0.0;
+            for (i, point) in self.points.iter().enumerate() {
+                let weight: f64 = self
+                    .points
+                    .iter()
+                    .enumerate()
+                    .filter(|(j, _)| *j != i)
+                    .map(|(_, other)| (parameter - other.parameter) / (point.parameter - other.parameter))
+                    .product();
+                for (x, p) in x.iter_mut().zip(&point.x) {
+                    *x += weight * p;
+                }
+                load += weight * point.load;
+            }
+        }
+        if self.parameter == Parameter::Load {
+            load = parameter;
+        }
+        let n = self.equilibrium.system().coordinates();
+        self.equilibrium.system().supports().impose(load, &mut x[..n]);
+        Point { parameter, load, x, unstable: None }
+    }
+
+    /// Largest change of a nodal gradient between two states.
+    fn turn(&self, a: &[f64], b: &[f64]) -> f64 {
+        let n = self.equilibrium.system().coordinates();
+        let pairs = a[..n].chunks_exact(4).zip(b[..n].chunks_exact(4));
+        pairs.fold(0.0, |turn: f64, (a, b)| turn.max((a[2] - b[2]).hypot(a[3] - b[3])))
+    }
+
+    fn correct(&mut self, predicted: Point, target: f64, step: f64) -> Result<(Point, f64), (Failure, (usize, f64))> {
+        let mut record = Iterations::default();
+        let before = self.last().clone();
+        let mut point = predicted.clone();
+        let result = match self.parameter {
+            Parameter::Load => {
+                point.load = target;
+                let mut equations = AtLoad::new(self.equilibrium, target);
+                newton::solve(&mut equations, &mut point.x, &before.x, &self.settings, &mut record)
+            }
+            Parameter::ArcLength => {
+                let mut direction: Vec<f64> = point.x.iter().zip(&before.x).map(|(a, b)| a - b).collect();
+                direction.push(point.load - before.load);
+                let length = self.dot(&direction, &direction).sqrt();
+                direction.iter_mut().for_each(|d| *d /= length);
+                let normal = self.weights(&direction);
+                let mut x = std::mem::take(&mut point.x);
+                x.push(point.load);
+                let mut start = before.x.clone();
+                start.push(before.load);
+                let mut equations = AcrossPath::new(self.equilibrium, normal);
+                let result = newton::solve(&mut equations, &mut x, &start, &self.settings, &mut record);
+                point.load = x.pop().unwrap_or(before.load);
+                point.x = x;
+                let mut change: Vec<f64> = point.x.iter().zip(&before.x).map(|(a, b)| a - b).collect();
+                change.push(point.load - before.load);
+                point.parameter = before.parameter + self.dot(&change, &change).sqrt();
+                result
+            }
+        };
+        if self.parameter == Parameter::Load {
+            point.parameter = target;
+        }
+        let turn = self.turn(&point.x, &predicted.x);
+        let outcome = match result {
+            Ok(()) if turn > LARGEST_TURN => Err((Failure::OtherBranch { turn }, self.worst(&point.x, &predicted.x))),
+            Ok(()) => Ok(turn),
+            Err(failure) => Err((failure, self.worst(&point.x, &predicted.x))),
+        };
+        self.history.push(StepRecord {
+            parameter: point.load,
+            step,
+            accepted: outcome.is_ok(),
+            increments: record.increments,
+            residuals: record.residuals,
+        });
+        let turn = outcome?;
+        point.unstable = self.equilibrium.unstable_directions();
+        Ok((point, turn))
+    }
+
+    /// Beam and arc length of the node that changed most.
+    fn worst(&self, a: &[f64], b: &[f64]) -> (usize, f64) {
+        let n = self.equilibrium.system().coordinates();
+        let node = a[..n]
+            .chunks_exact(4)
+            .zip(b[..n].chunks_exact(4))
+            .map(|(a, b)| (a[2] - b[2]).hypot(a[3] - b[3]))
+            .enumerate()
+            .fold((0, 0.0), |worst, (i, d)| if d > worst.1 || d.is_nan() { (i, d) } else { worst })
+            .0;
+        self.place(4 * node)
+    }
+
+    /// Beam and arc length to which an unknown belongs.
+    fn place(&self, unknown: usize) -> (usize, f64) {
+        let node = unknown / 4;
+        let beams = self.equilibrium.system().beams();
+        beams
+            .iter()
+            .enumerate()
+            .rev()
+            .find(|(_, part)| part.first_node <= node)
+            .and_then(|(i, part)| Some((i, *part.basis.nodes().get(node - part.first_node)?)))
+            .unwrap_or((0, 0.0))
+    }
+
+    /// The equilibrium at load factor `load`, starting from the state between the last two points nearest to it; the
+    /// path itself is not changed.
+    pub fn between(&mut self, load: f64) -> Option<Point> {
+        let [.., a, b] = &self.points[..] else { return None };
+        let share = (load - a.load) / (b.load - a.load);
+        let mut x: Vec<f64> = a.x.iter().zip(&b.x).map(|(a, b)| a + share * (b - a)).collect();
+        let start = x.clone();
+        let n = self.equilibrium.system().coordinates();
+        self.equilibrium.system().supports().impose(load, &mut x[..n]);
+        let mut record = Iterations::default();
+        let mut equations = AtLoad::new(self.equilibrium, load);
+        newton::solve(&mut equations, &mut x, &start, &self.settings, &mut record).ok()?;
+        let unstable = self.equilibrium.unstable_directions();
+        Some(Point { parameter: load, load, x, unstable })
+    }
+}

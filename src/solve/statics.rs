@@ -1,0 +1,190 @@
+//! Static analysis: from the stress-free state to the full loads, or along the path through limit points.
+
+use super::equilibrium::Equilibrium;
+use super::newton::Settings;
+use super::path::{Parameter, Path, Point, Stuck};
+use crate::model::{ArcLength, Static};
+use crate::system::{System, View};
+use crate::trajectory::{Statistics, StepRecord};
+
+/// What a static analysis found.
+#[derive(Clone, Debug, Default)]
+pub struct Solution {
+    /// (load factor, coordinates) of the recorded equilibria, the stress-free state first.
+    pub states: Vec<(f64, Vec<f64>)>,
+    /// Attempted steps.
+    pub history: Vec<StepRecord>,
+    /// Instabilities met.
+    pub events: Vec<Event>,
+    /// Counts.
+    pub statistics: Statistics,
+}
+
+/// The tangent lost or regained definiteness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// Load factor at which it happened.
+    pub load: f64,
+    /// Unstable directions before.
+    pub before: usize,
+    /// Unstable directions after.
+    pub after: usize,
+}
+
+/// Where a path ends.
+pub struct Target<'a> {
+    /// The settings of the path.
+    pub arc: &'a ArcLength,
+    /// The probe whose coordinate ends it.
+    pub probe: Option<(View, usize, f64)>,
+}
+
+/// Whether to go on.
+pub type Observer<'o> = &'o mut dyn FnMut(f64, f64, &Statistics) -> bool;
+
+/// Solves for the full loads by adaptive load steps. `observe` is called with (load factor, step, counts) after every
+/// step and ends the analysis by returning false.
+///
+/// # Errors
+/// [`Stuck`], with what was found until then.
+pub fn solve(system: &System, settings: &Static, observe: Observer<'_>) -> Result<Solution, (Stuck, Solution)> {
+    let mut equilibrium = Equilibrium::new(system);
+    let mut solution = Solution::default();
+    let newton = newton_settings(settings);
+    let outcome = along_load(&mut equilibrium, settings, newton, &mut solution, observe);
+    solution.statistics = equilibrium.statistics;
+    match outcome {
+        Ok(()) => Ok(solution),
+        Err(stuck) => Err((stuck, solution)),
+    }
+}
+
+fn newton_settings(settings: &Static) -> Settings {
+    let mut newton = Settings::default();
+    if let Some(tolerance) = settings.tolerance {
+        newton.tolerance = tolerance;
+    }
+    newton
+}
+
+fn along_load(
+    equilibrium: &mut Equilibrium<'_>,
+    settings: &Static,
+    newton: Settings,
+    solution: &mut Solution,
+    observe: Observer<'_>,
+) -> Result<(), Stuck> {
+    let n = equilibrium.system().coordinates();
+    let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0)?;
+    solution.states.push((0.0, path.last().x[..n].to_vec()));
+    let parts = settings.steps.unwrap_or(1).max(1);
+    let result = (1..=parts).try_for_each(|part| {
+        let end = if part == parts { 1.0 } else { part as f64 / parts as f64 };
+        while path.last().load < end {
+            let before = path.last().unstable;
+            let point = path.advance(end)?.clone();
+            notice(&mut path, before, &point, &mut solution.events);
+            if settings.steps.is_none() || point.load >= end {
+                solution.states.push((point.load, point.x[..n].to_vec()));
+            }
+            if !observe(point.load, path.next_step(), &path.equilibrium.statistics) {
+                return Ok(());
+            }
+        }
+        Ok(())
+    });
+    solution.history = std::mem::take(&mut path.history);
+    result
+}
+
+/// Records a change of stability and, under load control, locates it.
+fn notice(path: &mut Path<'_, '_>, before: Option<usize>, point: &Point, events: &mut Vec<Event>) {
+    let (Some(before), Some(after)) = (before, point.unstable) else { return };
+    if before == after {
+        return;
+    }
+    let mut bracket = (path.previous_load().unwrap_or(0.0), point.load);
+    for _ in 0..20 {
+        let middle = 0.5 * (bracket.0 + bracket.1);
+        match path.between(middle).and_then(|p| p.unstable) {
+            Some(count) if count == before => bracket.0 = middle,
+            Some(_) => bracket.1 = middle,
+            None => break,
+        }
+    }
+    events.push(Event { load: 0.5 * (bracket.0 + bracket.1), before, after });
+}
+
+/// Follows the path by arc length until its target.
+///
+/// # Errors
+/// [`Stuck`], with what was found until then.
+pub fn follow(
+    system: &System,
+    settings: &Static,
+    target: &Target<'_>,
+    observe: Observer<'_>,
+) -> Result<Solution, (Stuck, Solution)> {
+    let mut equilibrium = Equilibrium::new(system);
+    let mut solution = Solution::default();
+    let newton = newton_settings(settings);
+    let outcome = along_arc(&mut equilibrium, target, newton, &mut solution, observe);
+    solution.statistics = equilibrium.statistics;
+    match outcome {
+        Ok(()) => Ok(solution),
+        Err(stuck) => Err((stuck, solution)),
+    }
+}
+
+fn along_arc(
+    equilibrium: &mut Equilibrium<'_>,
+    target: &Target<'_>,
+    newton: Settings,
+    solution: &mut Solution,
+    observe: Observer<'_>,
+) -> Result<(), Stuck> {
+    let n = equilibrium.system().coordinates();
+    let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
+    let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05))?;
+    solution.states.push((0.0, path.last().x[..n].to_vec()));
+    let mut outcome = Ok(());
+    for _ in 0..target.arc.max_points {
+        path.limit_step(largest);
+        let previous = path.last().clone();
+        match path.advance(f64::INFINITY) {
+            Err(stuck) => {
+                outcome = Err(stuck);
+                break;
+            }
+            Ok(point) => {
+                let point = point.clone();
+                if let (Some(before), Some(after)) = (previous.unstable, point.unstable)
+                    && before != after
+                {
+                    let load = if (point.load - previous.load).abs() < f64::EPSILON {
+                        point.load
+                    } else {
+                        path.extreme_load()
+                    };
+                    solution.events.push(Event { load, before, after });
+                }
+                let load_reached = target.arc.until_load.is_some_and(|until| {
+                    (previous.load < until) != (point.load < until) || point.load == until
+                });
+                let probe_reached = target.probe.as_ref().is_some_and(|(view, axis, value)| {
+                    let at = |x: &[f64]| view.fields(&x[..n]).position[*axis];
+                    (at(&previous.x) < *value) != (at(&point.x) < *value)
+                });
+                let end = if load_reached { target.arc.until_load.and_then(|load| path.between(load)) } else { None };
+                let point = end.unwrap_or(point);
+                solution.states.push((point.load, point.x[..n].to_vec()));
+                let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
+                if load_reached || probe_reached || !go_on {
+                    break;
+                }
+            }
+        }
+    }
+    solution.history = std::mem::take(&mut path.history);
+    outcome
+}

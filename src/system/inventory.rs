@@ -1,0 +1,165 @@
+//! What was built, and what was not.
+
+use super::System;
+use crate::effect::Kind;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// The parts of a system: effects with their tables, unknowns, matrix.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Inventory {
+    /// Effects that were built, by beam.
+    pub effects: Vec<EffectEntry>,
+    /// Kinds of effects that exist and that this system is without.
+    pub absent: Vec<Kind>,
+    /// Per beam: name, discretisation's size and quality.
+    pub beams: Vec<BeamEntry>,
+    /// Unknowns after elimination, plus multipliers.
+    pub degrees_of_freedom: usize,
+    /// Coordinates, held ones included.
+    pub coordinates: usize,
+    /// Coordinates eliminated by supports at nodes.
+    pub held: usize,
+    /// Multipliers of supports between nodes.
+    pub multipliers: usize,
+    /// Whether the tangent is symmetric.
+    pub symmetric: bool,
+    /// Diagonals on either side of the main one.
+    pub half_bandwidth: usize,
+    /// The factorisation that the pattern asks for.
+    pub solver: &'static str,
+    /// Bytes of one tangent.
+    pub matrix_bytes: usize,
+}
+
+/// One effect.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EffectEntry {
+    /// What it is.
+    pub kind: Kind,
+    /// The beam's name.
+    pub beam: String,
+    /// Quadrature points.
+    pub points: usize,
+    /// Bytes of tables and data.
+    pub bytes: usize,
+}
+
+/// One beam.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BeamEntry {
+    /// The beam's name.
+    pub name: String,
+    /// Nodes.
+    pub nodes: usize,
+    /// Length [m].
+    pub length: f64,
+    /// Functions that are different from zero at a point.
+    pub width: usize,
+    /// Distinct cells whose shape functions were solved.
+    pub distinct_cells: usize,
+    /// Bits of the arithmetic in which they were solved; 53 for closed-form shape functions.
+    pub bits: usize,
+}
+
+impl System {
+    /// Lists what was built.
+    pub fn inventory(&self) -> Inventory {
+        let mut entries: BTreeMap<(usize, Kind), (usize, usize)> = BTreeMap::new();
+        for effect in self.internal.iter().chain(&self.inertia).chain(&self.loads) {
+            let (points, bytes) = effect.size();
+            let entry = entries.entry((effect.beam(), effect.kind())).or_default();
+            entry.0 += points;
+            entry.1 += bytes;
+        }
+        let absent = Kind::ALL.into_iter().filter(|kind| !entries.keys().any(|(_, k)| k == kind)).collect();
+        let effects = entries
+            .into_iter()
+            .map(|((beam, kind), (points, bytes))| EffectEntry {
+                kind,
+                beam: self.beams[beam].name.clone(),
+                points,
+                bytes,
+            })
+            .collect();
+        let beams = self
+            .beams
+            .iter()
+            .map(|part| {
+                let defects = part.basis.defects();
+                BeamEntry {
+                    name: part.name.clone(),
+                    nodes: part.basis.nodes().len(),
+                    length: part.basis.length(),
+                    width: part.basis.width(),
+                    distinct_cells: defects.distinct_cells,
+                    bits: defects.bits,
+                }
+            })
+            .collect();
+        let symmetric = self.is_symmetric();
+        Inventory {
+            effects,
+            absent,
+            beams,
+            degrees_of_freedom: self.degrees_of_freedom(),
+            coordinates: self.coordinates(),
+            held: self.supports.count(),
+            multipliers: self.multipliers(),
+            symmetric,
+            half_bandwidth: 4 * self.blocks - 1,
+            solver: match (self.constraints.is_empty(), symmetric) {
+                (false, _) => "sparse LU (faer)",
+                (true, true) => "banded LDLᵀ",
+                (true, false) => "banded LU",
+            },
+            matrix_bytes: self.matrix().bytes(),
+        }
+    }
+}
+
+fn size(bytes: usize) -> String {
+    match bytes {
+        0..10_000 => format!("{bytes} B"),
+        10_000..10_000_000 => format!("{} kB", bytes / 1000),
+        _ => format!("{} MB", bytes / 1_000_000),
+    }
+}
+
+impl fmt::Display for Inventory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for beam in &self.beams {
+            writeln!(
+                f,
+                "beam {:<16} {} nodes, {} m, {} functions a point, {} distinct cells solved with {} bits",
+                beam.name, beam.nodes, beam.length, beam.width, beam.distinct_cells, beam.bits
+            )?;
+        }
+        for effect in &self.effects {
+            let kind = effect.kind.name();
+            writeln!(
+                f,
+                "effect {kind:<18} {:<16} {:>8} points {:>10}",
+                effect.beam,
+                effect.points,
+                size(effect.bytes)
+            )?;
+        }
+        let absent: Vec<_> = self.absent.iter().map(|kind| kind.name()).collect();
+        writeln!(f, "absent: {}", if absent.is_empty() { "nothing".into() } else { absent.join(", ") })?;
+        writeln!(
+            f,
+            "unknowns: {} ({} coordinates, {} held, {} multipliers)",
+            self.degrees_of_freedom, self.coordinates, self.held, self.multipliers
+        )?;
+        write!(
+            f,
+            "tangent: {}, half bandwidth {}, {}, {}",
+            if self.symmetric { "symmetric" } else { "not symmetric" },
+            self.half_bandwidth,
+            size(self.matrix_bytes),
+            self.solver
+        )
+    }
+}

@@ -1,0 +1,94 @@
+//! Looking at a state: position, gradient, strain and curvature anywhere on a beam.
+
+use crate::basis::{Basis, BasisError, BasisTable};
+use crate::effect::{Engineering, Green, Strain, curvature};
+use crate::model::StrainMeasure;
+use nalgebra::Vector2;
+
+/// Local fields at one arc length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fields {
+    /// r [m].
+    pub position: [f64; 2],
+    /// r'.
+    pub gradient: [f64; 2],
+    /// r'' [1/m].
+    pub second: [f64; 2],
+}
+
+impl Fields {
+    /// κ [1/m].
+    pub fn curvature(&self) -> f64 {
+        curvature(&Vector2::from(self.gradient), &Vector2::from(self.second))
+    }
+
+    /// ε by the given measure, against a straight unit reference.
+    pub fn strain(&self, measure: StrainMeasure) -> f64 {
+        let gradient = Vector2::from(self.gradient);
+        match measure {
+            StrainMeasure::Green => Green::strain(&gradient),
+            StrainMeasure::Engineering => Engineering::strain(&gradient),
+        }
+    }
+
+    /// Direction of r' in (−π, π].
+    pub fn angle(&self) -> f64 {
+        self.gradient[1].atan2(self.gradient[0])
+    }
+}
+
+/// Rows of r, r', r'' at one point or several of a beam.
+#[derive(Clone, Debug)]
+pub struct View {
+    table: BasisTable,
+    offset: usize,
+}
+
+impl View {
+    /// At one arc length; `offset` is the beam's first coefficient in the system.
+    pub fn point(basis: &Basis, offset: usize, s: f64) -> Result<Self, BasisError> {
+        Self::points(basis, offset, &[s])
+    }
+
+    /// At several arc lengths.
+    pub fn points(basis: &Basis, offset: usize, s: &[f64]) -> Result<Self, BasisError> {
+        Ok(Self { table: basis.points(s, &[0, 1, 2])?, offset })
+    }
+
+    /// Arc lengths [m].
+    pub fn s(&self) -> &[f64] {
+        &self.table.s
+    }
+
+    /// Fields at the first point.
+    pub fn fields(&self, q: &[f64]) -> Fields {
+        self.fields_at(0, q)
+    }
+
+    /// Fields at all points.
+    pub fn all<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = Fields> + 'a {
+        (0..self.table.s.len()).map(move |point| self.fields_at(point, q))
+    }
+
+    fn fields_at(&self, point: usize, q: &[f64]) -> Fields {
+        let [position, gradient, second] = [0, 1, 2].map(|row| self.combine(point, row, q));
+        Fields { position, gradient, second }
+    }
+
+    /// The velocity at the first point, from the coordinates' velocities.
+    pub fn velocity(&self, v: &[f64]) -> [f64; 2] {
+        self.combine(0, 0, v)
+    }
+
+    fn combine(&self, point: usize, row: usize, q: &[f64]) -> [f64; 2] {
+        let width = self.table.width;
+        let (_, rows) = self.table.block(self.table.cells[point]);
+        let q = &q[2 * (self.offset + self.table.cells[point].first as usize)..];
+        let mut sum = [0.0; 2];
+        for (n, q) in rows[row * width..(row + 1) * width].iter().zip(q.chunks_exact(2)) {
+            sum[0] += n * q[0];
+            sum[1] += n * q[1];
+        }
+        sum
+    }
+}

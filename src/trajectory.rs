@@ -1,0 +1,183 @@
+//! What a computation leaves: states at the recorded times or load factors, seen through probes,
+//! energies and shapes. Output and verification read nothing else.
+
+use serde::Serialize;
+
+/// The result of one run.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Trajectory {
+    /// The scene's title.
+    pub title: String,
+    /// Kind of analysis.
+    pub analysis: AnalysisKind,
+    /// Unknowns after supports are eliminated, plus multipliers.
+    pub degrees_of_freedom: usize,
+    /// Lines for the reader: what was simulated and how (name, value).
+    pub settings: Vec<(String, String)>,
+    /// Load factors (statics), times [s] (dynamics) or mode numbers of the records, in order.
+    pub parameter: Vec<f64>,
+    /// Per probe, one sample per entry of `parameter`.
+    pub probes: Vec<ProbeSeries>,
+    /// One entry per entry of `parameter`.
+    pub energy: Vec<Energy>,
+    /// Centrelines, one frame per entry of `parameter` (thinned where there are very many).
+    pub frames: Vec<Frame>,
+    /// The stress-free shape of each beam.
+    pub undeformed: Vec<Shape>,
+    /// The last state of each beam.
+    pub last: Vec<Shape>,
+    /// One entry per attempted step.
+    pub history: Vec<StepRecord>,
+    /// Natural frequencies [Hz], ascending; modal analysis only.
+    pub frequencies: Vec<f64>,
+    /// Critical load factors, ascending; buckling only.
+    pub load_factors: Vec<f64>,
+    /// Mode shapes (modal, buckling): per mode one shape per beam, largest displacement scaled for drawing.
+    pub modes: Vec<Vec<Shape>>,
+    /// What the user should know: instabilities met, with the load factor.
+    pub warnings: Vec<String>,
+    /// Counts.
+    pub statistics: Statistics,
+    /// Where the time went.
+    pub seconds: Seconds,
+}
+
+/// The kind of analysis that made a trajectory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum AnalysisKind {
+    /// Equilibria; `parameter` is the load factor.
+    #[default]
+    Static,
+    /// Motion; `parameter` is the time [s].
+    Dynamic,
+    /// Small vibrations; `parameter` is the mode number.
+    Modal,
+    /// Critical loads; `parameter` is the mode number.
+    Buckling,
+}
+
+/// What one probe saw.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ProbeSeries {
+    /// The probe's name.
+    pub name: String,
+    /// One sample per record.
+    pub samples: Vec<ProbeSample>,
+}
+
+/// The state of one point of a beam.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ProbeSample {
+    /// Position [m].
+    pub x: f64,
+    /// Position [m].
+    pub y: f64,
+    /// Direction of r' [rad], continuous along a run (not folded into ±π).
+    pub angle: f64,
+    /// Curvature κ [1/m].
+    pub curvature: f64,
+    /// Axial strain ε by the beam's measure.
+    pub strain: f64,
+    /// Velocity [m/s]; dynamics only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vx: Option<f64>,
+    /// Velocity [m/s]; dynamics only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vy: Option<f64>,
+}
+
+/// Energies [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Energy {
+    /// ½∫ EA ε² ds.
+    pub stretch: f64,
+    /// ½∫ EI κ² ds.
+    pub bend: f64,
+    /// ½∫ ρA ṙ·ṙ ds.
+    pub kinetic: f64,
+    /// −∫ ρA g·(r − r₀) ds, zero in the stress-free shape, and that of conservative loads.
+    pub potential: f64,
+}
+
+impl Energy {
+    /// Sum of all parts.
+    pub fn total(&self) -> f64 {
+        self.stretch + self.bend + self.kinetic + self.potential
+    }
+}
+
+/// The centrelines of all beams at one record.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Frame {
+    /// Load factor, time or mode number.
+    pub parameter: f64,
+    /// Per beam: positions [m] at evenly spaced arc lengths.
+    pub beams: Vec<Vec<[f64; 2]>>,
+}
+
+/// One beam sampled at 201 arc lengths or more.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Shape {
+    /// Name of the beam.
+    pub beam: String,
+    /// Arc lengths [m].
+    pub s: Vec<f64>,
+    /// Positions [m].
+    pub x: Vec<f64>,
+    /// Positions [m].
+    pub y: Vec<f64>,
+    /// Direction of r' [rad], continuous along s.
+    pub angle: Vec<f64>,
+    /// ε.
+    pub strain: Vec<f64>,
+    /// κ [1/m].
+    pub curvature: Vec<f64>,
+    /// Positions of the nodes [m].
+    pub nodes: Vec<[f64; 2]>,
+}
+
+/// One attempted step.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct StepRecord {
+    /// Load factor or time [s] at the end of the step.
+    pub parameter: f64,
+    /// Step size in the load factor, along the path, or in time [s].
+    pub step: f64,
+    /// Whether it was kept.
+    pub accepted: bool,
+    /// Per Newton iteration: the scaled increment (dimensionless).
+    pub increments: Vec<f64>,
+    /// Per Newton iteration: the scaled residual (dimensionless).
+    pub residuals: Vec<f64>,
+}
+
+/// Counts of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Statistics {
+    /// Steps kept.
+    pub steps: usize,
+    /// Steps tried again smaller.
+    pub rejected_steps: usize,
+    /// Load steps kept (statics).
+    pub load_steps: usize,
+    /// Newton iterations in all.
+    pub newton_iterations: usize,
+    /// Evaluations of the residual.
+    pub residual_evaluations: usize,
+    /// Evaluations of the tangent.
+    pub tangent_evaluations: usize,
+    /// Matrix factorisations.
+    pub factorizations: usize,
+}
+
+/// Wall time [s].
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Seconds {
+    /// Shape functions, tables, patterns.
+    pub build: f64,
+    /// The solution itself.
+    pub solve: f64,
+    /// Files, so far as written when the summary is.
+    pub write: f64,
+}
