@@ -64,9 +64,6 @@ impl Curve {
                 if !(center.iter().all(|c| c.is_finite()) && from.is_finite() && turn.is_finite()) {
                     return Err(CurveError::NotFinite);
                 }
-                if !(*radius > 0.0) {
-                    return Err(CurveError::NoLength);
-                }
                 Shape::Arc { center: *center, radius: *radius, from: *from, turn, length }
             }
             Centreline::Points(points) => match points.as_slice() {
@@ -218,7 +215,7 @@ impl Piece {
         let middle = 0.5 * (from + to);
         let whole = self.arc_length(from, to);
         let halves = self.arc_length(from, middle) + self.arc_length(middle, to);
-        if (whole - halves).abs() <= 1e-15 * halves || depth == 0 {
+        if (whole - halves).abs() <= 1e-15 * self.h || depth == 0 {
             panels.push(Panel { piece, from, to, start: 0.0, length: halves });
         } else {
             self.panels(piece, from, middle, depth - 1, panels);
@@ -266,16 +263,17 @@ impl Spline {
         let mut panels = Vec::with_capacity(pieces.len());
         let mut start = 0.0;
         for (index, piece) in pieces.iter().enumerate() {
-            let slowest = (0..=32).map(|k| piece.speed(piece.h * f64::from(k) / 32.0)).fold(f64::INFINITY, f64::min);
-            if slowest.is_nan() || !(0..=32).all(|k| piece.speed(piece.h * f64::from(k) / 32.0).is_finite()) {
-                return Err(CurveError::NotFinite);
-            }
-            if slowest < SLOWEST {
-                return Err(CurveError::Cusp { first: index });
-            }
             let first = panels.len();
             piece.panels(index, 0.0, piece.h, 12, &mut panels);
             for panel in panels.iter_mut().skip(first) {
+                // The halving crowds panels where the speed has a kink, so their ends find every cusp.
+                let slowest = piece.speed(panel.from).min(piece.speed(panel.to));
+                if !panel.length.is_finite() || !slowest.is_finite() {
+                    return Err(CurveError::NotFinite);
+                }
+                if slowest < SLOWEST {
+                    return Err(CurveError::Cusp { first: index });
+                }
                 panel.start = start;
                 start += panel.length;
             }
@@ -411,7 +409,11 @@ mod tests {
             .pieces
             .iter()
             .map(|piece| {
-                (0..64).map(|k| piece.arc_length(piece.h * f64::from(k) / 64.0, piece.h * f64::from(k + 1) / 64.0)).sum::<f64>()
+                (0..64)
+                    .map(|k| {
+                        piece.arc_length(piece.h * f64::from(k) / 64.0, piece.h * f64::from(k + 1) / 64.0)
+                    })
+                    .sum::<f64>()
             })
             .sum();
         assert!((spline.length() - fine).abs() < 1e-14 * fine);
@@ -443,7 +445,10 @@ mod tests {
         let points = |list: &[[f64; 2]]| Curve::new(&Centreline::Points(list.to_vec())).unwrap_err();
         assert_eq!(points(&[[0.0, 0.0]]), CurveError::TooFewPoints(1));
         assert_eq!(points(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]]), CurveError::Coincident { first: 1 });
-        assert!(matches!(points(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1e-9], [1.0, 0.0]]), CurveError::Cusp { .. }));
+        assert!(matches!(
+            points(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1e-9], [1.0, 0.0]]),
+            CurveError::Cusp { .. }
+        ));
         assert_eq!(points(&[[0.0, 0.0], [f64::NAN, 0.0], [2.0, 0.0]]), CurveError::NotFinite);
         let line = Centreline::Line { start: [1.0, 2.0], end: [1.0, 2.0] };
         assert_eq!(Curve::new(&line).unwrap_err(), CurveError::NoLength);

@@ -1,12 +1,109 @@
-//! Planar flexible beams.
+//! Planar flexible beams with large rotations and deformations, by two discretisations of the absolute nodal coordinate
+//! formulation: the gradient-deficient **ANCF** cable element, and its meshfree variant with Hermite radial point
+//! interpolation (**RPIM**; Chen, Zhang, Li, *J. Vibration Engineering* 31(2), 2018, 245–254), which needs far fewer
+//! nodes for the same accuracy.
+//!
+//! Physics is a density at a point of the beam; a discretisation is a table of shape functions; the system sums one over
+//! the other; every solver asks the system for the same few things.
+//!
+//! ```text
+//! scene.toml ─parse─► Scene ─► Model ─build─► System ─solve─► Trajectory ─► csv · json · vtu · svg · html
+//!   text           checked,   continuous,   tables, effects,   states at
+//!                  spans      SI            constraints        chosen loads
+//! ```
+//!
+//! # Where things are
+//! | module | subject | depends on |
+//! |---|---|---|
+//! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`model`] |
+//! | [`model`], [`centreline`] | the continuous problem: beams, sections, supports, loads, probes; stress-free curves | – |
+//! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | [`model`] |
+//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives | [`basis`], [`linear`] |
+//! | [`system`] | coordinates, supports, constraints, sums over effects, inventory | the above |
+//! | [`linear`] | block-banded LDLᵀ, banded LU, bordered sparse LU | – |
+//! | [`solve`] | Newton, path following, buckling, vibrations | [`system`], [`linear`] |
+//! | [`run`](mod@run), [`trajectory`] | one model, one analysis; what it leaves | [`solve`] |
+//! | [`output`] | files, plots, the report page | [`trajectory`] |
+//!
+//! # The beam
+//! | symbol | formula | unit |
+//! |---|---|---|
+//! | r(s), s ∈ [0, L] | centreline over the reference arc length | m |
+//! | ε, Green | ½ (r'·r' − 1) | – |
+//! | ε, engineering | \|r'\| − 1 | – |
+//! | κ | (r' × r'')/\|r'\|² | 1/m |
+//! | U | ½∫ EA (ε − ε₀)² ds + ½∫ EI (κ − κ₀)² ds | J |
+//! | T | ½∫ ρA ṙ·ṙ ds | J |
+//! | M on the section at s | δW = M δθ, θ = atan2(y', x') | N m |
+//! | q | nodal coordinates \[x, y, x', y'\] | m, – |
+//! | λ | load factor: loads and prescribed displacements grow with it from 0 to 1 | – |
+//!
+//! No shear, no rotary inertia. ε₀ and κ₀ are those of the stress-free shape as the discretisation sees it, so that a
+//! curved beam starts without stress.
+//!
+//! # Invariants
+//! - `scene` never imports `system`.
+//! - An effect never sees a node number, a step size or another effect.
+//! - No solver matches on a discretisation or on an effect.
+//! - A discretisation is asked for shape functions only while a system is built or a state looked at.
+//! - Only the command line prints. No module starts a thread. The crate never links Python.
+//! - Where a model does not name an effect there is no object, no table, no matrix and no instruction for it;
+//!   [`system::System::inventory`] says what was built.
+//!
+//! # A beam rolled up into a circle
+//! ```
+//! use ancf::model::*;
+//! use ancf::run::{Control, run};
+//!
+//! let (length, bending_stiffness) = (1.0, 2.0);
+//! let beam = Beam {
+//!     name: "cantilever".into(),
+//!     centreline: Centreline::Line { start: [0.0, 0.0], end: [length, 0.0] },
+//!     section: Section {
+//!         axial_stiffness: Some(1e4),
+//!         bending_stiffness: Some(bending_stiffness),
+//!         mass_per_length: None,
+//!     },
+//!     strain: StrainMeasure::Green,
+//!     discretization: Discretization::Rpim {
+//!         nodes: Nodes::Uniform(12),
+//!         kernel: Kernel::Multiquadric { q: 1.03, shape: 3.3 },
+//!         polynomial_terms: 2,
+//!         side_condition: SideCondition::Plus,
+//!         neighbours: 2,
+//!     },
+//!     gauss_points: GaussPoints { stretch: 4, bend: 4 },
+//! };
+//! let model = Model {
+//!     beams: vec![beam],
+//!     supports: vec![Support {
+//!         at: Place { beam: 0, s: 0.0 },
+//!         fix: Fixed { x: true, y: true, rotation: FixedRotation::Angle },
+//!         ..Support::default()
+//!     }],
+//!     loads: vec![Load::Moment {
+//!         at: Place { beam: 0, s: length },
+//!         value: std::f64::consts::TAU * bending_stiffness / length,
+//!     }],
+//!     probes: vec![Probe { name: "tip".into(), at: Place { beam: 0, s: length } }],
+//!     ..Model::default()
+//! };
+//! let trajectory = run(&model, &Analysis::Static(Static::default()), &mut |_| Control::Continue)?;
+//! let tip = trajectory.probes[0].samples.last().expect("a static run records its last state");
+//! assert!(tip.x.hypot(tip.y) < 1e-4 * length);
+//! # Ok::<(), ancf::run::RunError>(())
+//! ```
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
+
 pub mod basis;
 pub mod centreline;
 pub mod effect;
 pub mod linear;
 pub mod model;
+pub mod output;
 pub mod run;
+pub mod scene;
 pub mod solve;
 pub mod system;
 pub mod trajectory;

@@ -7,7 +7,7 @@
 //! Source: Gerstmayr and Shabana, *Nonlinear Dynamics* 45 (2006) 109–130, the thin cable element.
 
 /// The four functions' derivative of order `order` (0, 1 or 2) with respect to s, at ξ ∈ [0, 1] of a cell of
-/// length `l` [m].
+/// length `l` in metres.
 pub fn row(l: f64, xi: f64, order: usize, out: &mut [f64; 4]) {
     let x = xi;
     *out = match order {

@@ -9,7 +9,7 @@ pub enum BasisError {
     /// The beam has no usable length.
     #[error("expected a beam of positive, finite length, found {length} m")]
     Length {
-        /// Length found [m].
+        /// Length found \[m\].
         length: f64,
     },
     /// A beam needs two nodes.
@@ -28,7 +28,7 @@ pub enum BasisError {
         nodes: usize,
         /// Largest number accepted.
         limit: usize,
-        /// Estimated memory [GB].
+        /// Estimated memory \[GB\].
         gigabytes: f64,
     },
     /// A node is NaN or infinite.
@@ -36,9 +36,9 @@ pub enum BasisError {
     NodeNotFinite {
         /// Index of the node, from 0.
         index: usize,
-        /// Its arc length [m].
+        /// Its arc length \[m\].
         value: f64,
-        /// Length of the beam [m].
+        /// Length of the beam \[m\].
         length: f64,
     },
     /// The given nodes do not span the beam.
@@ -48,9 +48,9 @@ pub enum BasisError {
     NodesDoNotSpan {
         /// Index of the node, from 0.
         index: usize,
-        /// Its arc length [m].
+        /// Its arc length \[m\].
         found: f64,
-        /// Where it should be [m].
+        /// Where it should be \[m\].
         expected: f64,
     },
     /// Two neighbouring nodes are out of order.
@@ -58,9 +58,9 @@ pub enum BasisError {
     NodesOutOfOrder {
         /// Index of the first of the two, from 0.
         index: usize,
-        /// Its arc length [m].
+        /// Its arc length \[m\].
         left: f64,
-        /// Arc length of the second [m].
+        /// Arc length of the second \[m\].
         right: f64,
     },
     /// Two neighbouring nodes are so close that their distance is mostly round-off.
@@ -72,11 +72,11 @@ pub enum BasisError {
     NodesCoincide {
         /// Index of the first of the two, from 0.
         index: usize,
-        /// Its arc length [m].
+        /// Its arc length \[m\].
         left: f64,
-        /// Their distance [m].
+        /// Their distance \[m\].
         spacing: f64,
-        /// Smallest distance accepted here [m].
+        /// Smallest distance accepted here \[m\].
         least: f64,
     },
     /// A parameter of the radial function makes no usable shape functions.
@@ -89,7 +89,7 @@ pub enum BasisError {
         /// Value found.
         value: f64,
         /// What is wrong and what to try.
-        problem: &'static str,
+        problem: String,
     },
     /// Without the constant term a translated beam would be strained; too many terms make the moment matrix singular.
     #[error(
@@ -127,9 +127,9 @@ pub enum BasisError {
         first_node: usize,
         /// Last node of its support.
         last_node: usize,
-        /// Smallest distance of neighbours in the support [m].
+        /// Smallest distance of neighbours in the support \[m\].
         min_spacing: f64,
-        /// Largest distance of neighbours in the support [m].
+        /// Largest distance of neighbours in the support \[m\].
         max_spacing: f64,
         /// The kernel and its parameters.
         kernel: String,
@@ -171,9 +171,9 @@ pub enum BasisError {
     /// A point beside the beam.
     #[error("arc length {s} m is not on the beam, expected 0 to {length} m")]
     OffBeam {
-        /// Arc length found [m].
+        /// Arc length found \[m\].
         s: f64,
-        /// Length of the beam [m].
+        /// Length of the beam \[m\].
         length: f64,
     },
 }

@@ -16,9 +16,17 @@
 //! ```
 
 mod ancf;
+mod arithmetic;
+mod cells;
+mod double_double;
 mod error;
+mod kernel;
+mod lu;
+mod moments;
+mod multiprecision;
 mod nodes;
 mod quadrature;
+mod rpim;
 mod table;
 
 pub use error::BasisError;
@@ -27,11 +35,14 @@ pub use table::{BasisTable, Cell};
 
 use crate::model::Discretization;
 
+use cells::{distinct_cells, support};
+use rpim::{Interpolation, Precisions, Quality, Shape, Wanted};
+
 /// Distance at which a point is taken to be a node, in units of the round-off of the beam's length.
 const NODE_SNAP: f64 = 16.0 * f64::EPSILON;
 
-/// How many of the latest distinct cells a new one is compared with: enough for meshes that repeat a pattern.
-const RECENT: usize = 16;
+/// Most nodes in a support: the work of a cell grows with the third power and the digits it needs with the first.
+const MOST_SUPPORT: usize = 64;
 
 /// The shape functions of one beam.
 #[derive(Debug)]
@@ -50,6 +61,12 @@ pub struct Basis {
 #[derive(Debug)]
 enum Shapes {
     Ancf,
+    Rpim {
+        interpolation: Interpolation,
+        neighbours: usize,
+        /// Per geometry.
+        shapes: Vec<Shape>,
+    },
 }
 
 /// How well the shape functions satisfy what defines them, over all cells.
@@ -61,6 +78,8 @@ pub struct Defects {
     pub reproduction: f64,
     /// Largest estimated relative error of any row.
     pub estimated_error: f64,
+    /// Decimal logarithm of the largest estimated condition number of a moment matrix; 0 where there is none.
+    pub condition_log10: f64,
     /// Bits of the most precise arithmetic that a cell needed: 53 where formulas are exact in double precision.
     pub bits: usize,
     /// Cells of distinct geometry, each solved once.
@@ -68,7 +87,7 @@ pub struct Defects {
 }
 
 impl Basis {
-    /// The shape functions of a beam of length `length` [m].
+    /// The shape functions of a beam of length `length` \[m\].
     ///
     /// # Errors
     /// Unusable nodes or kernel parameters, and cells whose shape functions cannot be found to 13 digits.
@@ -79,16 +98,56 @@ impl Basis {
                 let (shape_of, representative) = distinct_cells(&nodes, 0);
                 Ok(Self { length, nodes, width: 4, shape_of, representative, shapes: Shapes::Ancf })
             }
-            Discretization::Rpim { .. } => todo!(),
+            Discretization::Rpim { nodes, kernel, polynomial_terms, side_condition, neighbours } => {
+                let nodes = nodes::arc_lengths(nodes, length)?;
+                let interpolation = Interpolation {
+                    kernel: *kernel,
+                    terms: *polynomial_terms,
+                    side_condition: *side_condition,
+                    length,
+                    spacings: nodes.len() - 1,
+                };
+                Self::rpim(nodes, interpolation, *neighbours)
+            }
         }
     }
 
-    /// Length of the beam [m].
+    fn rpim(nodes: Vec<f64>, interpolation: Interpolation, neighbours: usize) -> Result<Self, BasisError> {
+        let Interpolation { length, spacings, terms, ref kernel, .. } = interpolation;
+        let widest = support(spacings / 2, neighbours.min(spacings), nodes.len()).len();
+        if widest > MOST_SUPPORT {
+            return Err(BasisError::SupportTooWide { nodes: widest, limit: MOST_SUPPORT });
+        }
+        let smallest = support(0, neighbours, nodes.len()).len();
+        if !(1..=2 * smallest).contains(&terms) {
+            return Err(BasisError::PolynomialTerms { found: terms, limit: 2 * smallest });
+        }
+        let widest_cell =
+            nodes.windows(2).map(|p| p[1] - p[0]).fold(0.0, f64::max) / length * spacings as f64;
+        kernel::check(kernel, widest_cell)?;
+
+        let (shape_of, representative) = distinct_cells(&nodes, neighbours);
+        let mut precisions = Precisions::default();
+        let mut shapes = Vec::with_capacity(representative.len());
+        for &cell in &representative {
+            let cell = cell as usize;
+            let here = support(cell, neighbours, nodes.len());
+            let place = rpim::place(&nodes, here.clone(), cell);
+            let shape = Shape::solve(&interpolation, place, &mut precisions)
+                .map_err(|quality| ill_conditioned(cell, here.start, place.nodes, kernel, quality))?;
+            shapes.push(shape);
+        }
+        let width = 2 * neighbours.saturating_mul(2).saturating_add(2).min(nodes.len());
+        let shapes = Shapes::Rpim { interpolation, neighbours, shapes };
+        Ok(Self { length, nodes, width, shape_of, representative, shapes })
+    }
+
+    /// Length of the beam \[m\].
     pub fn length(&self) -> f64 {
         self.length
     }
 
-    /// Arc lengths of the nodes [m]: increasing, the first 0, the last the beam's length.
+    /// Arc lengths of the nodes \[m\]: increasing, the first 0, the last the beam's length.
     pub fn nodes(&self) -> &[f64] {
         &self.nodes
     }
@@ -103,7 +162,7 @@ impl Basis {
         2 * self.nodes.len()
     }
 
-    /// The node at `s` [m], to within round-off of the beam's length.
+    /// The node at `s` \[m\], to within round-off of the beam's length.
     pub fn node_at(&self, s: f64) -> Option<usize> {
         let right = self.nodes.partition_point(|&node| node < s);
         [right.saturating_sub(1), right].into_iter().find(|&i| {
@@ -130,13 +189,14 @@ impl Basis {
             s: Vec::with_capacity(self.shape_of.len() * xi.len()),
         };
         let stride = table.row_stride();
+        let mut precisions = Precisions::default();
         let mut rows = table.rows.chunks_exact_mut(stride.max(1));
         for &cell in &self.representative {
             let h = self.spacing(cell as usize);
             for (xi, w) in xi.iter().zip(&w) {
                 table.weights.push(h * w);
                 if let Some(rows) = rows.next() {
-                    self.fill(cell as usize, *xi, orders, rows);
+                    self.fill(cell as usize, *xi, orders, rows, &mut precisions);
                 }
             }
         }
@@ -166,6 +226,7 @@ impl Basis {
             s: Vec::with_capacity(s.len()),
         };
         let stride = table.row_stride();
+        let mut precisions = Precisions::default();
         let mut rows = table.rows.chunks_exact_mut(stride.max(1));
         for (block, &s) in s.iter().enumerate() {
             let slack = NODE_SNAP * self.length;
@@ -184,7 +245,7 @@ impl Basis {
             table.cells.push(Cell { first: self.first(cell), block: block as u32 });
             table.s.push(s.clamp(0.0, self.length));
             if let Some(rows) = rows.next() {
-                self.fill(cell, xi, orders, rows);
+                self.fill(cell, xi, orders, rows, &mut precisions);
             }
         }
         Ok(table)
@@ -196,10 +257,23 @@ impl Basis {
             Shapes::Ancf => {
                 Defects { bits: 53, distinct_cells: self.representative.len(), ..Defects::default() }
             }
+            Shapes::Rpim { shapes, .. } => {
+                let start = Defects { distinct_cells: shapes.len(), ..Defects::default() };
+                shapes.iter().map(|shape| shape.quality).fold(start, |worst, cell| Defects {
+                    kronecker: worst.kronecker.max(cell.kronecker),
+                    reproduction: worst.reproduction.max(cell.reproduction),
+                    estimated_error: worst.estimated_error.max(cell.error),
+                    condition_log10: worst
+                        .condition_log10
+                        .max(cell.log2_condition * std::f64::consts::LOG10_2),
+                    bits: worst.bits.max(cell.bits),
+                    ..worst
+                })
+            }
         }
     }
 
-    /// Distance from node `cell` to the next [m]; infinite beyond the last.
+    /// Distance from node `cell` to the next \[m\]; infinite beyond the last.
     fn spacing(&self, cell: usize) -> f64 {
         match self.nodes.get(cell..cell + 2) {
             Some(ends) => ends[1] - ends[0],
@@ -211,11 +285,15 @@ impl Basis {
     fn first(&self, cell: usize) -> u32 {
         match &self.shapes {
             Shapes::Ancf => 2 * cell as u32,
+            Shapes::Rpim { neighbours, .. } => {
+                let start = support(cell, *neighbours, self.nodes.len()).start;
+                2 * start.min(self.nodes.len() - self.width / 2) as u32
+            }
         }
     }
 
     /// Fills the zeroed rows of one point, ξ ∈ [0, 1] of a cell.
-    fn fill(&self, cell: usize, xi: f64, orders: &[usize], rows: &mut [f64]) {
+    fn fill(&self, cell: usize, xi: f64, orders: &[usize], rows: &mut [f64], precisions: &mut Precisions) {
         match &self.shapes {
             Shapes::Ancf => {
                 let h = self.spacing(cell);
@@ -225,7 +303,59 @@ impl Basis {
                     row.copy_from_slice(&values);
                 }
             }
+            Shapes::Rpim { interpolation, neighbours, shapes } => {
+                let Some(shape) = shapes.get(self.shape_of[cell] as usize) else { return };
+                // The geometry was solved at its representative; there it is evaluated too.
+                let solved = self.representative[self.shape_of[cell] as usize] as usize;
+                let here = support(solved, *neighbours, self.nodes.len());
+                let padding =
+                    2 * support(cell, *neighbours, self.nodes.len()).start - self.first(cell) as usize;
+                let place = rpim::place(&self.nodes, here, solved);
+                if let Some(rows) = rows.get_mut(padding..) {
+                    let wanted = Wanted { xi, orders, stride: self.width };
+                    shape.rows(interpolation, place, precisions, wanted, rows);
+                }
+            }
         }
+        // At a node, values and slopes are coefficients; what round-off leaves beside them is removed.
+        if xi == 0.0 || xi == 1.0 {
+            let node = cell + usize::from(xi == 1.0);
+            for (row, &order) in
+                rows.chunks_exact_mut(self.width).zip(orders).filter(|(_, order)| **order < 2)
+            {
+                row.fill(0.0);
+                row[2 * node + order - self.first(cell) as usize] = 1.0;
+            }
+        }
+    }
+}
+
+/// The message for a cell that no precision could solve.
+fn ill_conditioned(
+    cell: usize,
+    first_node: usize,
+    nodes: &[f64],
+    kernel: &crate::model::Kernel,
+    quality: Quality,
+) -> BasisError {
+    let spacings = || nodes.windows(2).map(|p| p[1] - p[0]);
+    let (min_spacing, max_spacing) =
+        (spacings().fold(f64::INFINITY, f64::min), spacings().fold(0.0, f64::max));
+    BasisError::IllConditioned {
+        cell,
+        first_node,
+        last_node: first_node + nodes.len() - 1,
+        min_spacing,
+        max_spacing,
+        kernel: kernel::describe(kernel),
+        bits: quality.bits,
+        error: quality.error,
+        condition_log10: quality.log2_condition * std::f64::consts::LOG10_2,
+        advice: if max_spacing > 100.0 * min_spacing {
+            "space the nodes more evenly, use fewer neighbours, or another shape parameter"
+        } else {
+            "use another shape parameter, fewer neighbours, fewer polynomial terms, or the other side condition"
+        },
     }
 }
 
@@ -234,44 +364,4 @@ fn check_orders(orders: &[usize]) -> Result<(), BasisError> {
         Some(&order) => Err(BasisError::Order { order }),
         None => Ok(()),
     }
-}
-
-/// Nodes of the support of `cell`, as a half-open range: its own two and `neighbours` more on each side that exists.
-fn support(cell: usize, neighbours: usize, nodes: usize) -> std::ops::Range<usize> {
-    cell.saturating_sub(neighbours)..cell.saturating_add(neighbours).saturating_add(2).min(nodes)
-}
-
-/// Groups cells whose supports are translations of each other: per cell the number of its group, per group its first
-/// cell.
-///
-/// Node positions are rounded to double precision, so the spacings of an even mesh differ in their last digits. Two
-/// supports are the same if they agree within that round-off and within 1e-9 of the smallest spacing. The first of a
-/// group stands for it: nearest to s = 0, its spacings are rounded the least.
-fn distinct_cells(nodes: &[f64], neighbours: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut representative: Vec<u32> = Vec::new();
-    let shape_of = (0..nodes.len() - 1)
-        .map(|cell| {
-            let here = support(cell, neighbours, nodes.len());
-            let found = representative.iter().enumerate().rev().take(RECENT).find(|(_, other)| {
-                let other = **other as usize;
-                let there = support(other, neighbours, nodes.len());
-                here.len() == there.len() && cell - here.start == other - there.start && {
-                    let (here, there) = (&nodes[here.clone()], &nodes[there]);
-                    let round_off = 4.0 * f64::EPSILON * here[here.len() - 1].max(there[there.len() - 1]);
-                    here.windows(2).zip(there.windows(2)).all(|(a, b)| {
-                        let (a, b) = (a[1] - a[0], b[1] - b[0]);
-                        (a - b).abs() <= round_off.min(1e-9 * a.min(b))
-                    })
-                }
-            });
-            match found {
-                Some((group, _)) => group as u32,
-                None => {
-                    representative.push(cell as u32);
-                    (representative.len() - 1) as u32
-                }
-            }
-        })
-        .collect();
-    (shape_of, representative)
 }

@@ -7,13 +7,13 @@ use super::error::BasisError;
 /// Most nodes of one beam. Beyond, tables and unknowns take gigabytes and coefficient numbers outgrow their type.
 pub const MOST_NODES: usize = 20_000_000;
 
-/// Rough memory of one node in tables, states and tangents, for the message that refuses too many [bytes].
+/// Rough memory of one node in tables, states and tangents, for the message that refuses too many \[bytes\].
 const BYTES_PER_NODE: f64 = 2000.0;
 
 /// Relative distance of neighbouring nodes below which their difference carries fewer than three digits.
 const LEAST_RELATIVE_SPACING: f64 = 1e3 * f64::EPSILON;
 
-/// Arc lengths of the nodes [m]: increasing, the first exactly 0, the last exactly `length`.
+/// Arc lengths of the nodes \[m\]: increasing, the first exactly 0, the last exactly `length`.
 ///
 /// # Errors
 /// An unusable length, too few or too many nodes, nodes that are not finite, out of order, indistinguishable, or that

@@ -12,7 +12,7 @@ pub struct Cell {
 /// Rows of shape functions at quadrature points or at single points.
 ///
 /// A row of order d holds dᵈN_j/dsᵈ for `width` consecutive coefficients, so that
-/// dᵈr/dsᵈ = Σ_j row[j] · coefficient[first + j]. Where a cell touches fewer coefficients (at the ends of a
+/// `dᵈr/dsᵈ = Σ_j row[j] · coefficient[first + j]`. Where a cell touches fewer coefficients (at the ends of a
 /// beam), the row is padded with zeros, and `first` is such that all coefficients exist.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BasisTable {
@@ -24,12 +24,12 @@ pub struct BasisTable {
     pub points_per_cell: usize,
     /// Cells, or points, in order.
     pub cells: Vec<Cell>,
-    /// Per block, per point: the quadrature weight ds [m]; 1 for single points.
+    /// Per block, per point: the quadrature weight ds \[m\]; 1 for single points.
     pub weights: Vec<f64>,
     /// Per block, per point, per order: a row of `width` numbers. Of order d, those of a value are in m⁻ᵈ, those of
     /// a slope in m¹⁻ᵈ.
     pub rows: Vec<f64>,
-    /// Per cell, per point: the arc length s [m].
+    /// Per cell, per point: the arc length s \[m\].
     pub s: Vec<f64>,
 }
 
@@ -65,7 +65,7 @@ impl BasisTable {
         self.cells.len() * self.points_per_cell
     }
 
-    /// Memory held on the heap [bytes].
+    /// Memory held on the heap \[bytes\].
     pub fn bytes(&self) -> usize {
         size_of_val(self.cells.as_slice())
             + size_of_val(self.weights.as_slice())

@@ -1,0 +1,291 @@
+//! The conditions that define the shape functions of one support, and how well their solution is known.
+//!
+//! How the error is known: to first order, perturbing φ and G by relative amounts u changes y by at most
+//! u |G⁻ᵀ| (|φ| + |Gᵀ| |y|), taken entry by entry (Bauer and Skeel; Higham, *Accuracy and Stability of Numerical
+//! Algorithms*, 2nd ed., SIAM 2002, §7.2). With the residual of each solution added, that bound covers the evaluation of
+//! the kernel as well as the factorisation. A check of the rows against the same factors would not: it passes for a
+//! wrong G.
+
+use crate::model::SideCondition;
+
+use super::arithmetic::Arithmetic;
+use super::kernel::Radial;
+use super::lu::Lu;
+use super::rpim::{Interpolation, Place, Quality, Wanted};
+
+/// Where in a cell the error is estimated, ξ ∈ [0, 1].
+const SAMPLES: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
+
+/// Round-offs that meet in one entry of G or φ, and growth in the factorisation.
+const SAFETY: f64 = 16.0;
+
+/// A function that is this much smaller in the cell than the largest of its kind is judged by the latter.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// The conditions of one support, at one precision.
+pub struct System<'a, A: Arithmetic> {
+    arithmetic: &'a A,
+    interpolation: &'a Interpolation,
+    place: Place<'a>,
+    radial: Radial<'a, A>,
+    /// Nodes in the scaled coordinate, the cell's left end at 0.
+    x: Vec<A::Number>,
+    /// The middle of the cell, where the polynomials are centred.
+    middle: A::Number,
+    zero: A::Number,
+}
+
+impl<'a, A: Arithmetic> System<'a, A> {
+    /// The conditions of the support at `place`.
+    pub fn new(arithmetic: &'a A, interpolation: &'a Interpolation, place: Place<'a>) -> Self {
+        let n = |x| arithmetic.number(x);
+        let scale = arithmetic.div(&n(interpolation.spacings as f64), &n(interpolation.length));
+        let left = n(place.nodes[place.left]);
+        let x: Vec<_> =
+            place.nodes.iter().map(|&s| arithmetic.mul(&arithmetic.sub(&n(s), &left), &scale)).collect();
+        let middle = arithmetic.mul(&x[place.left + 1], &n(0.5));
+        let radial = Radial::new(arithmetic, interpolation.kernel);
+        Self { arithmetic, interpolation, place, radial, x, middle, zero: n(0.0) }
+    }
+
+    /// 2k + m.
+    pub fn size(&self) -> usize {
+        2 * self.x.len() + self.interpolation.terms
+    }
+
+    /// d_c \[m\].
+    fn spacing(&self) -> f64 {
+        self.interpolation.length / self.interpolation.spacings as f64
+    }
+
+    /// Derivative of order `order` of 1, X, X², … at distance `x` from the cell's left end.
+    fn polynomials(&self, x: &A::Number, order: usize) -> Vec<A::Number> {
+        let a = self.arithmetic;
+        let x = a.sub(x, &self.middle);
+        let mut power = a.number(1.0);
+        (0..self.interpolation.terms)
+            .map(|j| {
+                if j < order {
+                    return self.zero.clone();
+                }
+                // d^k X^j / dX^k = j (j − 1) … (j − k + 1) X^(j−k).
+                let factor: f64 = (0..order).map(|i| (j - i) as f64).product();
+                let term = a.mul(&a.number(factor), &power);
+                power = a.mul(&power, &x);
+                term
+            })
+            .collect()
+    }
+
+    /// Gᵀ, row by row: row j belongs to the function φ_j, column l to the condition l; values and slopes alternate.
+    pub fn transposed_moments(&self) -> Vec<A::Number> {
+        let a = self.arithmetic;
+        let (k, n) = (self.x.len(), self.size());
+        let mut g = vec![self.zero.clone(); n * n];
+        let minus = |x: &A::Number| a.sub(&self.zero, x);
+        for i in 0..k {
+            for l in i..k {
+                // Even derivatives are even in the distance, the first is odd.
+                let [r, r1, r2, _] = self.radial.derivatives(&a.sub(&self.x[l], &self.x[i]));
+                let (fi, fl) = (2 * i, 2 * l);
+                g[fl * n + fi] = r.clone();
+                g[(fl + 1) * n + fi] = minus(&r1);
+                g[fl * n + fi + 1] = minus(&r1);
+                g[(fl + 1) * n + fi + 1] = r2.clone();
+                g[fi * n + fl] = r;
+                g[(fi + 1) * n + fl] = r1.clone();
+                g[fi * n + fl + 1] = r1;
+                g[(fi + 1) * n + fl + 1] = r2;
+            }
+            let values = self.polynomials(&self.x[i], 0);
+            let slopes = self.polynomials(&self.x[i], 1);
+            for (j, (value, slope)) in values.into_iter().zip(slopes).enumerate() {
+                let j = 2 * k + j;
+                let side = match self.interpolation.side_condition {
+                    SideCondition::Plus => slope.clone(),
+                    SideCondition::Minus => minus(&slope),
+                };
+                g[2 * i * n + j] = value.clone();
+                g[(2 * i + 1) * n + j] = side;
+                g[j * n + 2 * i] = value;
+                g[j * n + 2 * i + 1] = slope;
+            }
+        }
+        g
+    }
+
+    /// The radial functions of all nodes with their derivatives, and the place, at ξ.
+    fn radials(&self, xi: f64) -> (A::Number, Vec<[A::Number; 4]>) {
+        let a = self.arithmetic;
+        let x = a.mul(&a.number(xi), &self.x[self.place.left + 1]);
+        let radials = self.x.iter().map(|node| self.radial.derivatives(&a.sub(&x, node))).collect();
+        (x, radials)
+    }
+
+    /// φ, differentiated `order` times.
+    fn functions(&self, at: &(A::Number, Vec<[A::Number; 4]>), order: usize) -> Vec<A::Number> {
+        let mut phi = Vec::with_capacity(self.size());
+        for r in &at.1 {
+            phi.extend([r[order].clone(), r[order + 1].clone()]);
+        }
+        phi.extend(self.polynomials(&at.0, order));
+        phi
+    }
+
+    /// Rounds the solution y of Gᵀ y = φ to a row in units of length.
+    fn round(&self, y: &[A::Number], order: usize, row: &mut [f64]) {
+        let spacing = self.spacing();
+        let value = spacing.powi(-(order as i32));
+        let slope = spacing.powi(1 - order as i32);
+        for (j, (row, y)) in row.iter_mut().zip(y).enumerate() {
+            *row = self.arithmetic.nearest(y) * if j % 2 == 0 { value } else { slope };
+        }
+    }
+
+    /// Fills a row for each wanted order.
+    pub fn rows(&self, lu: &Lu<A::Number>, wanted: Wanted<'_>, rows: &mut [f64]) {
+        let at = self.radials(wanted.xi);
+        for (&order, row) in wanted.orders.iter().zip(rows.chunks_mut(wanted.stride.max(1))) {
+            let y = lu.solve(self.arithmetic, &self.functions(&at, order));
+            let width = (2 * self.x.len()).min(row.len());
+            self.round(&y, order, &mut row[..width]);
+        }
+    }
+
+    /// Estimates errors and measures defects at a few points of the cell; `None` if anything is not finite.
+    pub fn quality(&self, lu: &Lu<A::Number>, matrix: &[A::Number], moments: &[f64]) -> Option<Quality> {
+        let a = self.arithmetic;
+        let (n, width) = (self.size(), 2 * self.x.len());
+        let (inverse, shift) = self.inverse_magnitudes(lu)?;
+        let log2_unit = a.log2_round_off() + SAFETY.log2() + shift as f64;
+        let mut quality = Quality { bits: a.bits(), ..Quality::default() };
+        let mut bounds = [vec![0.0f64; width], vec![0.0; width], vec![0.0; width]];
+        let mut largest = bounds.clone();
+        let mut row = vec![0.0; width];
+        for xi in SAMPLES {
+            let at = self.radials(xi);
+            for order in 0..3 {
+                let phi = self.functions(&at, order);
+                let y = lu.solve(a, &phi);
+                let size: Vec<f64> = y.iter().map(|y| a.scaled_magnitude(y, 0)).collect();
+                let perturbation = self.perturbation(matrix, moments, &phi, &y, &size);
+                for l in 0..width {
+                    let entries = inverse[l * n..(l + 1) * n].iter();
+                    let bound: f64 = entries.zip(&perturbation).map(|(g, p)| g * p).sum();
+                    bounds[order][l] = bounds[order][l].max(bound);
+                    largest[order][l] = largest[order][l].max(size[l]);
+                    if !(bound.is_finite() && size[l].is_finite()) {
+                        return None;
+                    }
+                }
+                self.round(&y, order, &mut row);
+                quality.reproduction = quality.reproduction.max(self.reproduction(&row, xi, order));
+                if order < 2 && (xi == 0.0 || xi == 1.0) {
+                    quality.kronecker = quality.kronecker.max(self.kronecker(&row, xi, order));
+                }
+            }
+        }
+        let mut log2_error = f64::NEG_INFINITY;
+        for (bounds, largest) in bounds.iter().zip(&largest) {
+            for kind in 0..2 {
+                let of_kind = || largest.iter().skip(kind).step_by(2);
+                let floor = NEGLIGIBLE * of_kind().copied().fold(f64::MIN_POSITIVE, f64::max);
+                for (bound, largest) in bounds.iter().skip(kind).step_by(2).zip(of_kind()) {
+                    log2_error = log2_error.max(log2_unit + bound.log2() - largest.max(floor).log2());
+                }
+            }
+        }
+        let norm = moments.chunks_exact(n).map(|row| row.iter().sum::<f64>()).fold(0.0, f64::max);
+        let inverse_norm = inverse.chunks_exact(n).map(|row| row.iter().sum::<f64>()).fold(0.0, f64::max);
+        quality.error = log2_error.exp2();
+        quality.log2_condition = norm.log2() + inverse_norm.log2() + shift as f64;
+        Some(quality)
+    }
+
+    /// |φ| + |Gᵀ| |y| and what the residual φ − Gᵀ y adds to it, in units of the round-off.
+    fn perturbation(
+        &self,
+        matrix: &[A::Number],
+        moments: &[f64],
+        phi: &[A::Number],
+        y: &[A::Number],
+        size: &[f64],
+    ) -> Vec<f64> {
+        let a = self.arithmetic;
+        let unit = (a.log2_round_off() + SAFETY.log2()) as i64;
+        let rows = matrix.chunks_exact(y.len()).zip(moments.chunks_exact(y.len()));
+        rows.zip(phi)
+            .map(|((row, magnitudes), phi)| {
+                let terms: f64 = magnitudes.iter().zip(size).map(|(g, y)| g * y).sum();
+                let residual = row.iter().zip(y).fold(phi.clone(), |rest, (g, y)| a.sub(&rest, &a.mul(g, y)));
+                a.scaled_magnitude(phi, 0) + terms + a.scaled_magnitude(&residual, unit)
+            })
+            .collect()
+    }
+
+    /// |G⁻ᵀ| · 2^−shift, row by row, with a shift that keeps the largest entry near one.
+    fn inverse_magnitudes(&self, lu: &Lu<A::Number>) -> Option<(Vec<f64>, i64)> {
+        let a = self.arithmetic;
+        let n = self.size();
+        let mut columns = Vec::with_capacity(n);
+        let mut unit = vec![self.zero.clone(); n];
+        for j in 0..n {
+            unit[j] = a.number(1.0);
+            columns.push(lu.solve(a, &unit));
+            unit[j] = self.zero.clone();
+        }
+        if !columns.iter().flatten().all(|x| a.is_finite(x)) {
+            return None;
+        }
+        let shift = columns.iter().flatten().filter_map(|x| a.exponent(x)).max()?;
+        let mut inverse = vec![0.0; n * n];
+        for (j, column) in columns.iter().enumerate() {
+            for (i, x) in column.iter().enumerate() {
+                inverse[i * n + j] = a.scaled_magnitude(x, shift);
+            }
+        }
+        Some((inverse, shift))
+    }
+
+    /// Defect of the rounded row in reproducing 1 and, given two terms, s − s_left. Each is relative to the sum of
+    /// absolute terms, or to the natural size in a cell of length h, h^−order and h^(1−order), where at a node all terms
+    /// vanish but for round-off.
+    fn reproduction(&self, row: &[f64], xi: f64, order: usize) -> f64 {
+        let nodes = self.place.nodes;
+        let left = nodes[self.place.left];
+        let h = nodes[self.place.left + 1] - left;
+        let natural = h.powi(-(order as i32));
+        let (constant, linear) = match order {
+            0 => (1.0, xi * h),
+            1 => (0.0, 1.0),
+            _ => (0.0, 0.0),
+        };
+        let (mut one, mut one_size) = (-constant, natural);
+        let (mut s, mut s_size) = (-linear, h * natural);
+        for (pair, node) in row.chunks_exact(2).zip(nodes) {
+            let (value, slope) = (pair[0], pair[1]);
+            one += value;
+            one_size += value.abs();
+            let moment = value * (node - left);
+            s += moment + slope;
+            s_size += moment.abs() + slope.abs();
+        }
+        let defect = (one / one_size).abs();
+        if self.interpolation.terms > 1 { defect.max((s / s_size).abs()) } else { defect }
+    }
+
+    /// Largest difference from the unit row at an end of the cell: of values as they are (order 0) or in units of
+    /// 1/h (order 1), of slopes in units of h or as they are, with h the cell's length.
+    fn kronecker(&self, row: &[f64], xi: f64, order: usize) -> f64 {
+        let h = self.place.nodes[self.place.left + 1] - self.place.nodes[self.place.left];
+        let node = self.place.left + usize::from(xi == 1.0);
+        let own = 2 * node + order;
+        let mut defect = 0.0f64;
+        for (j, &entry) in row.iter().enumerate() {
+            let exact = if j == own { 1.0 } else { 0.0 };
+            let scale = h.powi(order as i32 - (j % 2) as i32);
+            defect = defect.max(((entry - exact) * scale).abs());
+        }
+        defect
+    }
+}

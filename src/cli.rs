@@ -1,0 +1,194 @@
+//! Commands of the `ancf` program. This module and those below it are the only code that prints.
+//!
+//! Results go to files, or to standard output where a command is there to print them; progress, tables, warnings and
+//! errors go to standard error. Exit status: 0 done, 1 the computation or the writing of its results failed, 2 the
+//! input is wrong.
+
+mod destination;
+mod failure;
+mod terminal;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use ancf::output::OutputOptions;
+use ancf::run::{self, Control, Progress};
+use ancf::scene::{self, Scene};
+use clap::{Args, Parser, Subcommand};
+
+use destination::Destination;
+use failure::Failure;
+use terminal::ProgressLine;
+
+/// Planar flexible beams by the absolute nodal coordinate formulation: cable elements and Hermite radial point
+/// interpolation.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    arg_required_else_help = true,
+    after_help = "Exit status: 0 done, 1 the computation failed, 2 the input is wrong."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Solve a scene and write its results, plots and report page
+    Run(RunArguments),
+    /// Say whether scenes are legal and can be built; nothing is solved or written
+    Check(CheckArguments),
+    /// Print what would be built for a scene: effects, tables, unknowns, bandwidth, memory
+    Inspect(InspectArguments),
+    /// Print the JSON schema of scene files
+    Schema,
+}
+
+#[derive(Debug, Args)]
+struct RunArguments {
+    /// The scene file (TOML)
+    scene: PathBuf,
+    /// Directory of the results [default: out/<stem of the scene file>]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    overrides: Overrides,
+    /// Print warnings and errors only
+    #[arg(short, long)]
+    quiet: bool,
+    /// Print summary.json on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct CheckArguments {
+    /// Scene files (TOML)
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    overrides: Overrides,
+    /// Print errors only
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+#[derive(Debug, Args)]
+struct InspectArguments {
+    /// The scene file (TOML)
+    scene: PathBuf,
+    #[command(flatten)]
+    overrides: Overrides,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct Overrides {
+    /// Set one value of the scene, such as beam.arm.basis.ancf.elements=9 or effect.moment.0.value="3 kN m"; repeatable
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    set: Vec<String>,
+}
+
+/// Runs the program.
+pub fn main() -> ExitCode {
+    let done = match Arguments::parse().command {
+        Command::Run(arguments) => solve(&arguments).map_err(|failure| vec![failure]),
+        Command::Check(arguments) => check(&arguments),
+        Command::Inspect(arguments) => inspect(&arguments).map_err(|failure| vec![failure]),
+        Command::Schema => print_json(&scene::schema()).map_err(|failure| vec![failure]),
+    };
+    let failures = done.err().unwrap_or_default();
+    failures.iter().for_each(terminal::report);
+    ExitCode::from(failures.iter().map(Failure::exit_status).max().unwrap_or(0))
+}
+
+fn load(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
+    Scene::load(path, &overrides.set).map_err(Failure::Scene)
+}
+
+fn solve(arguments: &RunArguments) -> Result<(), Failure> {
+    let scene = load(&arguments.scene, &arguments.overrides)?;
+    let destination = match &arguments.output {
+        Some(directory) => Destination::prepare(directory)?,
+        None => Destination::prepare(&default_directory(&arguments.scene))?,
+    };
+    let progress = ProgressLine::new(scene.analysis(), arguments.quiet);
+    let observer = &mut |progress_now: &Progress| {
+        progress.show(progress_now);
+        Control::Continue
+    };
+    let outcome = run::run(scene.model(), scene.analysis(), observer);
+    progress.clear();
+    let mut trajectory = outcome.map_err(|error| Failure::run(scene.name(), error))?;
+    let options = OutputOptions { states: scene.output().states, vtu: scene.output().vtu };
+    let summary =
+        ancf::output::write(destination.path(), &mut trajectory, &options).map_err(Failure::Output)?;
+    terminal::warnings(&trajectory);
+    if !arguments.quiet {
+        terminal::results(&trajectory, destination.path());
+    }
+    destination.keep();
+    if arguments.json { print_json(&summary) } else { Ok(()) }
+}
+
+fn default_directory(scene: &Path) -> PathBuf {
+    Path::new("out").join(scene.file_stem().unwrap_or(scene.as_os_str()))
+}
+
+/// Every scene is looked at, so that one call tells all that is wrong.
+fn check(arguments: &CheckArguments) -> Result<(), Vec<Failure>> {
+    let mut failures = Vec::new();
+    for path in &arguments.scenes {
+        let checked = load(path, &arguments.overrides).and_then(|scene| {
+            // Some faults, such as shape functions that cannot be solved for, show only when they are built.
+            run::inspect(scene.model(), scene.analysis()).map_err(|error| Failure::run(scene.name(), error))
+        });
+        match checked {
+            Ok(_) if arguments.quiet => {}
+            Ok(_) => terminal::note(&format!("{}: ok", path.display())),
+            Err(failure) => failures.push(failure),
+        }
+    }
+    if failures.is_empty() { Ok(()) } else { Err(failures) }
+}
+
+fn inspect(arguments: &InspectArguments) -> Result<(), Failure> {
+    let scene = load(&arguments.scene, &arguments.overrides)?;
+    let inventory =
+        run::inspect(scene.model(), scene.analysis()).map_err(|error| Failure::run(scene.name(), error))?;
+    if arguments.json { print_json(&inventory) } else { print(&inventory.to_string()) }
+}
+
+fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value).map_err(|error| Failure::Print(error.into()))?;
+    print(&text)
+}
+
+/// Writes to standard output. A reader that closes the pipe early, as `head` does, is no failure.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::Print(error)),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn results_go_to_out_and_the_stem() {
+        assert_eq!(default_directory(Path::new("a/b/roll-up.toml")), Path::new("out/roll-up"));
+    }
+}

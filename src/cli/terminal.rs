@@ -1,0 +1,251 @@
+//! What people see on standard error: progress, a table of results, warnings, errors.
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::io::{self, IsTerminal, Write as _};
+use std::path::Path;
+use std::time::Duration;
+
+use ancf::model::Analysis;
+use ancf::run::Progress;
+use ancf::trajectory::{AnalysisKind, ProbeSample, Trajectory};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
+
+use super::failure::Failure;
+
+/// One line on standard error. That nobody reads it is no reason to fail.
+pub fn note(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// Prints a failure: with the lines of the scene on a terminal, else as plain text with everything in it.
+pub fn report(failure: &Failure) {
+    if io::stderr().is_terminal() {
+        let plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let theme = if plain { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
+        let mut text = String::new();
+        let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(2);
+        if handler.render_report(&mut text, failure).is_ok() {
+            return note(&text);
+        }
+    }
+    note(&format!("error: {}", plain(failure)));
+}
+
+/// The message of a failure with its causes and its help.
+fn plain(failure: &Failure) -> String {
+    if let Failure::Scene(error) = failure
+        && error.place().is_some()
+    {
+        return error.to_string();
+    }
+    let mut text = failure.to_string();
+    let mut source = failure.source();
+    while let Some(cause) = source {
+        let _ = write!(text, ": {cause}");
+        source = cause.source();
+    }
+    if let Some(help) = failure.help() {
+        for line in help.to_string().lines() {
+            let _ = write!(text, "\n    {line}");
+        }
+    }
+    text
+}
+
+/// The progress of a run; silent where standard error is no terminal.
+pub struct ProgressLine {
+    bar: ProgressBar,
+    unit: &'static str,
+    name: &'static str,
+}
+
+/// Parts of the bar.
+const PARTS: u64 = 1000;
+
+impl ProgressLine {
+    /// A line for this analysis.
+    pub fn new(analysis: &Analysis, quiet: bool) -> Self {
+        let target =
+            if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr_with_hz(10) };
+        let bar = ProgressBar::with_draw_target(Some(PARTS), target);
+        if let Ok(style) = ProgressStyle::with_template("[{bar:30}] {msg} · {elapsed_precise}, {eta} left") {
+            bar.set_style(style.progress_chars("█▌ "));
+        }
+        bar.enable_steady_tick(Duration::from_millis(200));
+        let (name, unit) = match analysis {
+            Analysis::Dynamic(_) => ("t", " s"),
+            _ => ("load", ""),
+        };
+        Self { bar, unit, name }
+    }
+
+    /// Brings the line up to date.
+    pub fn show(&self, now: &Progress) {
+        if self.bar.is_hidden() {
+            return;
+        }
+        let done = (now.parameter / now.target).clamp(0.0, 1.0);
+        // A path may turn back, and a target may be zero: then the bar stays where it was.
+        if done.is_finite() {
+            self.bar.set_position((done * PARTS as f64) as u64);
+        }
+        let Self { unit, name, .. } = self;
+        self.bar.set_message(format!(
+            "{name} = {:.4}{unit} of {:.4}{unit}, step {:.2e}{unit}, {} Newton iterations",
+            now.parameter, now.target, now.step, now.newton_iterations
+        ));
+    }
+
+    /// Removes the line.
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Prints what the user should know.
+pub fn warnings(trajectory: &Trajectory) {
+    for warning in &trajectory.warnings {
+        note(&format!("warning: {warning}"));
+    }
+}
+
+/// Prints the table at the end of a run.
+pub fn results(trajectory: &Trajectory, directory: &Path) {
+    note(&table(trajectory, directory));
+}
+
+fn table(trajectory: &Trajectory, directory: &Path) -> String {
+    let mut rows: Vec<(String, String)> = Vec::new();
+    let mut row = |name: &str, text: String| rows.push((name.to_owned(), text));
+    if let Some(last) = trajectory.parameter.last() {
+        match trajectory.analysis {
+            AnalysisKind::Static => row("load factor", number(*last)),
+            AnalysisKind::Dynamic => row("time", format!("{} s", number(*last))),
+            AnalysisKind::Modal | AnalysisKind::Buckling => {}
+        }
+    }
+    for probe in &trajectory.probes {
+        if let Some(sample) = probe.samples.last() {
+            row(&probe.name, sample_text(sample));
+        }
+    }
+    for (index, frequency) in trajectory.frequencies.iter().enumerate() {
+        row(&format!("frequency {}", index + 1), format!("{} Hz", number(*frequency)));
+    }
+    for (index, factor) in trajectory.load_factors.iter().enumerate() {
+        row(&format!("critical load {}", index + 1), format!("{} × the load", number(*factor)));
+    }
+    if let Some(energy) = trajectory.energy.last() {
+        row(
+            "energy",
+            format!(
+                "stretch {} J, bend {} J, kinetic {} J, potential {} J, total {} J",
+                number(energy.stretch),
+                number(energy.bend),
+                number(energy.kinetic),
+                number(energy.potential),
+                number(energy.total())
+            ),
+        );
+    }
+    let counts = &trajectory.statistics;
+    let mut work = Vec::new();
+    for (count, one, many) in [
+        (counts.steps, "step", "steps"),
+        (counts.rejected_steps, "rejected", "rejected"),
+        (counts.newton_iterations, "Newton iteration", "Newton iterations"),
+        (counts.factorizations, "factorisation", "factorisations"),
+    ] {
+        if count > 0 {
+            work.push(format!("{count} {}", if count == 1 { one } else { many }));
+        }
+    }
+    row("unknowns", trajectory.degrees_of_freedom.to_string());
+    if !work.is_empty() {
+        row("work", work.join(", "));
+    }
+    let seconds = &trajectory.seconds;
+    row(
+        "seconds",
+        format!("build {:.3}, solve {:.3}, write {:.3}", seconds.build, seconds.solve, seconds.write),
+    );
+    row("report", directory.join("report.html").display().to_string());
+
+    let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    let mut text = trajectory.title.clone();
+    for (name, value) in rows {
+        let gap = " ".repeat(width - name.chars().count());
+        let _ = write!(text, "{}  {name}{gap}  {value}", if text.is_empty() { "" } else { "\n" });
+    }
+    text
+}
+
+fn sample_text(sample: &ProbeSample) -> String {
+    let mut text = format!(
+        "x = {} m, y = {} m, angle = {}°, curvature = {} /m, strain = {}",
+        number(sample.x),
+        number(sample.y),
+        number(sample.angle.to_degrees()),
+        number(sample.curvature),
+        number(sample.strain)
+    );
+    if let (Some(vx), Some(vy)) = (sample.vx, sample.vy) {
+        let _ = write!(text, ", vx = {} m/s, vy = {} m/s", number(vx), number(vy));
+    }
+    text
+}
+
+/// Seven significant digits, as short as they allow.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".into()
+    } else if (1e-3..1e7).contains(&size) {
+        let decimals = (6 - size.log10().floor() as i32).clamp(0, 9) as usize;
+        let text = format!("{value:.decimals$}");
+        match text.contains('.') {
+            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+            false => text,
+        }
+    } else {
+        format!("{value:.6e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ancf::trajectory::{Energy, ProbeSeries};
+
+    #[test]
+    fn numbers_keep_seven_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-0.316_634_321, "-0.3166343"),
+            (360.0, "360"),
+            (1_234_567.0, "1234567"),
+            (12_345_678.0, "1.234568e7"),
+            (1e-9, "1.000000e-9"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(number(value), text);
+        }
+    }
+
+    #[test]
+    fn the_table_names_what_was_computed() {
+        let trajectory = Trajectory {
+            title: "Arm".into(),
+            parameter: vec![1.0],
+            probes: vec![ProbeSeries { name: "tip".into(), samples: vec![ProbeSample::default()] }],
+            energy: vec![Energy { bend: 0.5, ..Energy::default() }],
+            ..Trajectory::default()
+        };
+        let text = table(&trajectory, Path::new("out/arm"));
+        for part in ["Arm\n", "load factor  1", "tip          x = 0 m", "bend 0.5 J", "out/arm/report.html"] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Files for people and for programs: what a [`Trajectory`] holds, as tables, plots and one page.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `summary.json` | [`Summary`]: last values, energies, counts, times |
+//! | `probes.csv`, `energy.csv` | one row per load factor or time; 17 significant digits, SI |
+//! | `shape.csv` | the last state along every beam |
+//! | `frequencies.csv` or `load_factors.csv`, `modes.csv` | modal analysis or buckling |
+//! | `report.html` | everything to look at, the moving beam included; needs no network |
+//! | `shape.svg`, `curvature.svg`, … | the page's plots, one each |
+//! | `states.csv`; `states.pvd`, `vtu/` | all recorded states as a table; for ParaView (both when asked for) |
+//!
+//! Files are written under temporary names and renamed when all of them are complete: a failure leaves no
+//! half-written file under a final name.
+
+mod error;
+mod figures;
+mod motion;
+pub mod plot;
+mod report;
+mod stage;
+mod summary;
+mod tables;
+mod vtu;
+
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+pub use error::OutputError;
+pub use summary::{EnergySummary, Summary};
+
+use crate::trajectory::{AnalysisKind, Trajectory};
+use stage::Stage;
+
+/// Which of the larger files to write.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OutputOptions {
+    /// `states.csv`: every beam at every record.
+    pub states: bool,
+    /// `states.pvd` and `vtu/…`: the same for ParaView.
+    pub vtu: bool,
+}
+
+/// Names that a run may leave; those that this run does not write are removed when it replaces an older one, so that a
+/// directory never mixes two runs.
+const NAMES: [&str; 21] = [
+    "summary.json",
+    "probes.csv",
+    "energy.csv",
+    "shape.csv",
+    "frequencies.csv",
+    "load_factors.csv",
+    "modes.csv",
+    "states.csv",
+    "states.pvd",
+    "vtu/last.vtu",
+    "report.html",
+    "shape.svg",
+    "curvature.svg",
+    "strain.svg",
+    "position.svg",
+    "angle.svg",
+    "velocity.svg",
+    "energy.svg",
+    "convergence.svg",
+    "steps.svg",
+    "modes.svg",
+];
+
+/// Writes the results into `directory`, which is made where it is missing, and returns what `summary.json` says.
+/// Sets `trajectory.seconds.write` to the time taken until the summary was written.
+///
+/// # Errors
+/// [`OutputError`] where the trajectory contradicts itself, or a file cannot be written: then no file has a new
+/// content that is not complete, and directories made for it are removed.
+pub fn write(
+    directory: &Path,
+    trajectory: &mut Trajectory,
+    options: &OutputOptions,
+) -> Result<Summary, OutputError> {
+    let start = Instant::now();
+    check(trajectory)?;
+    let t = &*trajectory;
+    let figures = figures::figures(t)?;
+    let page = report::page(t, &Summary::of(t), &figures)?;
+    let mut stage = Stage::new(directory)?;
+    if !t.parameter.is_empty() {
+        stage.add("probes.csv", |out| tables::probes(t, out))?;
+        stage.add("energy.csv", |out| tables::energy(t, out))?;
+    }
+    stage.add("shape.csv", |out| tables::shape(t, out))?;
+    match t.analysis {
+        AnalysisKind::Modal => {
+            stage.add("frequencies.csv", |out| tables::eigenvalues("frequency", &t.frequencies, out))?;
+        }
+        AnalysisKind::Buckling => {
+            stage.add("load_factors.csv", |out| tables::eigenvalues("load_factor", &t.load_factors, out))?;
+        }
+        AnalysisKind::Static | AnalysisKind::Dynamic => {}
+    }
+    if !t.modes.is_empty() {
+        stage.add("modes.csv", |out| tables::modes(t, out))?;
+    }
+    if options.states {
+        stage.add("states.csv", |out| tables::states(t, out))?;
+    }
+    if options.vtu {
+        for (name, text) in vtu::series(t) {
+            stage.add(&name, |out| out.write_all(text.as_bytes()))?;
+        }
+    }
+    for figure in &figures {
+        stage.add(&format!("{}.svg", figure.name), |out| out.write_all(figure.svg.as_bytes()))?;
+    }
+    stage.add("report.html", |out| out.write_all(page.as_bytes()))?;
+    trajectory.seconds.write = start.elapsed().as_secs_f64();
+    let summary = Summary::of(trajectory);
+    stage.add("summary.json", |out| out.write_all(summary.to_json()?.as_bytes()))?;
+    // Only beside a summary are these names surely those of an older run.
+    let replaces = directory.join("summary.json").is_file();
+    let older: Vec<&str> = NAMES.into_iter().filter(|name| replaces && !stage.holds(name)).collect();
+    stage.commit()?;
+    for name in older {
+        // Missing, most often. A file that cannot be removed does not make the new ones wrong.
+        let _ = fs::remove_file(directory.join(name));
+    }
+    if replaces {
+        // Frames are numbered without gaps.
+        let first = if options.vtu { trajectory.frames.len() } else { 0 };
+        let _ = (first..).try_for_each(|i| fs::remove_file(directory.join(vtu::frame_name(i))));
+        let _ = fs::remove_dir(directory.join("vtu"));
+    }
+    Ok(summary)
+}
+
+/// Refuses lists whose lengths do not fit together, which would put values beside the wrong parameter.
+fn check(t: &Trajectory) -> Result<(), OutputError> {
+    let fits = |quantity: &dyn Fn() -> String, expected: usize, found: usize| {
+        if expected == found {
+            return Ok(());
+        }
+        Err(OutputError::Inconsistent { quantity: quantity(), expected, found })
+    };
+    let records = t.parameter.len();
+    fits(&|| "energies".into(), records, t.energy.len())?;
+    for probe in &t.probes {
+        fits(&|| format!("samples of probe `{}`", probe.name), records, probe.samples.len())?;
+    }
+    for shape in t.undeformed.iter().chain(&t.last).chain(t.modes.iter().flatten()) {
+        for values in [&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature] {
+            fits(&|| format!("values along beam `{}`", shape.beam), shape.s.len(), values.len())?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,127 @@
+//! The data of the moving picture in the report: positions as whole numbers on a grid much finer than a screen, so
+//! that a page with hundreds of frames stays small.
+
+use serde::Serialize;
+
+use super::tables::parameter_name;
+use crate::trajectory::{AnalysisKind, Shape, Trajectory};
+
+/// Cells of the grid along the longer side of the picture.
+const CELLS: f64 = 8000.0;
+/// Coordinates in all; each takes about five characters.
+const COORDINATES: usize = 200_000;
+/// Points of a beam in a mode shape.
+const MODE_POINTS: usize = 101;
+
+/// Polylines as x₀, y₀, x₁, y₁ … in grid cells, one a beam.
+type Lines = Vec<Vec<i32>>;
+
+#[derive(Serialize)]
+pub(super) struct Motion {
+    /// Frames follow each other, or are vibrations about rest.
+    vibration: bool,
+    /// Name of the parameter.
+    name: &'static str,
+    unit: &'static str,
+    /// Position \[m\] of cell (0, 0).
+    origin: [f64; 2],
+    /// Side of a cell \[m\].
+    cell: f64,
+    /// Size of the picture in cells.
+    size: [i32; 2],
+    /// Load factor, time, frequency of each frame.
+    parameter: Vec<f64>,
+    rest: Lines,
+    frames: Vec<Lines>,
+}
+
+type Polyline = Vec<[f64; 2]>;
+
+fn polyline(shape: &Shape) -> Polyline {
+    let stride = shape.x.len().div_ceil(MODE_POINTS).max(1);
+    let points = shape.x.iter().zip(&shape.y).map(|(&x, &y)| [x, y]);
+    every(&points.collect::<Vec<_>>(), stride)
+}
+
+/// Every `stride`th entry, and the last one.
+fn every<T: Clone>(all: &[T], stride: usize) -> Vec<T> {
+    let last = all.len().saturating_sub(1);
+    all.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, v)| v.clone()).collect()
+}
+
+impl Motion {
+    /// The frames of a trajectory, or its mode shapes; `None` where nothing moves.
+    pub(super) fn of(t: &Trajectory) -> Option<Self> {
+        let vibration = matches!(t.analysis, AnalysisKind::Modal | AnalysisKind::Buckling);
+        let rest: Vec<Polyline> = t.undeformed.iter().map(polyline).collect();
+        let (parameter, frames): (Vec<f64>, Vec<Vec<Polyline>>) = if vibration {
+            let values = if t.analysis == AnalysisKind::Modal { &t.frequencies } else { &t.load_factors };
+            let frames: Vec<_> = t.modes.iter().map(|mode| mode.iter().map(polyline).collect()).collect();
+            ((0..frames.len()).map(|i| values.get(i).copied().unwrap_or(f64::NAN)).collect(), frames)
+        } else {
+            let coordinates: usize = t.frames.iter().flat_map(|f| &f.beams).map(|b| 2 * b.len()).sum();
+            // First fewer frames, as long as a hundred stay; then fewer points.
+            let fewer = coordinates.div_ceil(COORDINATES).max(1);
+            let frame_stride = fewer.min((t.frames.len() / 100).max(1));
+            let point_stride = fewer.div_ceil(frame_stride);
+            let kept = every(&t.frames, frame_stride);
+            let lines = |beams: &[Polyline]| beams.iter().map(|b| every(b, point_stride)).collect();
+            (kept.iter().map(|f| f.parameter).collect(), kept.iter().map(|f| lines(&f.beams)).collect())
+        };
+        if frames.is_empty() {
+            return None;
+        }
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for point in
+            rest.iter().chain(frames.iter().flatten()).flatten().filter(|p| p.iter().all(|c| c.is_finite()))
+        {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(point[axis]);
+                high[axis] = high[axis].max(point[axis]);
+            }
+        }
+        let sides = [high[0] - low[0], high[1] - low[1]];
+        let longer = sides[0].max(sides[1]);
+        if !(longer.is_finite() && longer > 0.0) {
+            return None;
+        }
+        let cell = longer / CELLS;
+        // A vibration swings to both sides, a mode shape shows one.
+        let swing = if vibration { 0.22 * longer } else { 0.0 };
+        let origin = [low[0] - swing.min(0.1 * longer), low[1] - swing];
+        let size = [sides[0] + 2.0 * (low[0] - origin[0]), sides[1] + 2.0 * swing]
+            .map(|side| (side / cell).round() as i32);
+        let cells = |lines: &Vec<Polyline>| -> Lines {
+            let number = |(axis, c): (usize, &f64)| ((c - origin[axis]) / cell).round() as i32;
+            lines
+                .iter()
+                .map(|line| line.iter().flat_map(|p| p.iter().enumerate().map(number)).collect())
+                .collect()
+        };
+        Some(Self {
+            vibration,
+            name: match t.analysis {
+                AnalysisKind::Static => "load factor",
+                AnalysisKind::Buckling => "load factor of mode",
+                AnalysisKind::Modal => "frequency of mode",
+                AnalysisKind::Dynamic => parameter_name(t.analysis),
+            },
+            unit: match t.analysis {
+                AnalysisKind::Dynamic => "s",
+                AnalysisKind::Modal => "Hz",
+                AnalysisKind::Static | AnalysisKind::Buckling => "",
+            },
+            origin,
+            cell,
+            size,
+            parameter,
+            rest: cells(&rest),
+            frames: frames.iter().map(cells).collect(),
+        })
+    }
+
+    /// JSON that may stand inside a `script` element.
+    pub(super) fn to_json(&self) -> Result<String, serde_json::Error> {
+        Ok(serde_json::to_string(self)?.replace('<', "\\u003c"))
+    }
+}

@@ -1,0 +1,156 @@
+//! `report.html`: one page that needs nothing beside it.
+
+use askama::Template;
+
+use super::error::OutputError;
+use super::figures::Figure;
+use super::motion::Motion;
+use super::plot::human;
+use super::summary::Summary;
+use crate::trajectory::{AnalysisKind, Trajectory};
+
+#[derive(Template)]
+#[template(path = "report.html", config = "src/output/askama.toml")]
+struct Page<'a> {
+    title: &'a str,
+    subtitle: String,
+    style: &'static str,
+    player: &'static str,
+    warnings: &'a [String],
+    results: Vec<Table>,
+    settings: &'a [(String, String)],
+    counts: Vec<(&'static str, String)>,
+    /// JSON, free of `<`; empty where nothing moves.
+    motion: String,
+    figures: &'a [Figure],
+    version: &'a str,
+}
+
+/// A table of numbers.
+struct Table {
+    caption: String,
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+/// The page.
+pub(super) fn page(t: &Trajectory, summary: &Summary, figures: &[Figure]) -> Result<String, OutputError> {
+    let kind = match t.analysis {
+        AnalysisKind::Static => "Equilibrium",
+        AnalysisKind::Dynamic => "Motion",
+        AnalysisKind::Modal => "Natural vibrations",
+        AnalysisKind::Buckling => "Critical loads",
+    };
+    let title = if t.title.trim().is_empty() { kind } else { &t.title };
+    // The data are numbers and fixed words: they always have a JSON form.
+    let motion = Motion::of(t).and_then(|motion| motion.to_json().ok()).unwrap_or_default();
+    let page = Page {
+        title,
+        subtitle: format!(
+            "{kind} · {} degree{} of freedom",
+            t.degrees_of_freedom,
+            if t.degrees_of_freedom == 1 { "" } else { "s" }
+        ),
+        style: include_str!("templates/report.css"),
+        player: include_str!("templates/player.js"),
+        warnings: &t.warnings,
+        results: [eigenvalues(t), probes(t, summary), energy(t, summary)].into_iter().flatten().collect(),
+        settings: &t.settings,
+        counts: counts(t, summary),
+        motion,
+        figures,
+        version: &summary.version,
+    };
+    page.render().map_err(|source| OutputError::Report { source })
+}
+
+fn last(t: &Trajectory) -> String {
+    match (t.analysis, t.parameter.last()) {
+        (AnalysisKind::Static, Some(&load)) => format!(" at load factor {}", human(load, 6)),
+        (AnalysisKind::Dynamic, Some(&time)) => format!(" at {} s", human(time, 6)),
+        _ => String::new(),
+    }
+}
+
+fn probes(t: &Trajectory, summary: &Summary) -> Option<Table> {
+    if summary.probes.is_empty() {
+        return None;
+    }
+    let moving = summary.probes.iter().any(|(_, s)| s.vx.is_some());
+    let mut header: Vec<String> =
+        ["probe", "x [m]", "y [m]", "angle [°]", "κ [1/m]", "ε [–]"].map(String::from).into();
+    if moving {
+        header.extend(["vx [m/s]", "vy [m/s]"].map(String::from));
+    }
+    let length = t.undeformed.iter().filter_map(|b| b.s.last()).fold(0.0_f64, |m, l| m.max(*l));
+    // One digit is enough for round-off.
+    let number = |(v, scale): (f64, f64)| human(v, if v.abs() < 1e-12 * scale { 1 } else { 7 });
+    let row = |(name, s): &(String, crate::trajectory::ProbeSample)| {
+        let mut row = vec![name.clone()];
+        row.extend([(s.x, length), (s.y, length), (s.angle.to_degrees(), 1.0)].map(number));
+        row.extend([(s.curvature, 1.0 / length), (s.strain, 1.0)].map(number));
+        if moving {
+            row.extend([s.vx, s.vy].map(|v| v.map_or("–".into(), |v| human(v, 7))));
+        }
+        row
+    };
+    Some(Table {
+        caption: format!("Probes{}", last(t)),
+        header,
+        rows: summary.probes.iter().map(row).collect(),
+    })
+}
+
+fn energy(t: &Trajectory, summary: &Summary) -> Option<Table> {
+    let e = summary.energy?;
+    let parts = [
+        ("stretch", e.stretch),
+        ("bend", e.bend),
+        ("kinetic", e.kinetic),
+        ("potential", e.potential),
+        ("total", e.total),
+    ];
+    let mut header: Vec<String> = vec!["energy [J]".into()];
+    let mut row: Vec<String> = vec!["last record".into()];
+    for (name, value) in parts {
+        header.push(name.into());
+        row.push(human(value, 7));
+    }
+    if let Some(drift) = e.drift {
+        header.push("drift [–]".into());
+        row.push(human(drift, 3));
+    }
+    Some(Table { caption: format!("Energies{}", last(t)), header, rows: vec![row] })
+}
+
+fn eigenvalues(t: &Trajectory) -> Option<Table> {
+    let (caption, name, values) = match t.analysis {
+        AnalysisKind::Modal => ("Natural frequencies", "frequency [Hz]", &t.frequencies),
+        AnalysisKind::Buckling => ("Critical loads", "load factor", &t.load_factors),
+        AnalysisKind::Static | AnalysisKind::Dynamic => return None,
+    };
+    let rows = values.iter().enumerate().map(|(i, &v)| vec![format!("{}", i + 1), human(v, 8)]).collect();
+    Some(Table { caption: caption.into(), header: vec!["mode".into(), name.into()], rows })
+}
+
+fn counts(t: &Trajectory, summary: &Summary) -> Vec<(&'static str, String)> {
+    let s = &t.statistics;
+    let mut counts: Vec<(&'static str, String)> = [
+        ("steps", s.steps),
+        ("rejected steps", s.rejected_steps),
+        ("load steps", s.load_steps),
+        ("Newton iterations", s.newton_iterations),
+        ("residual evaluations", s.residual_evaluations),
+        ("tangent evaluations", s.tangent_evaluations),
+        ("factorisations", s.factorizations),
+    ]
+    .into_iter()
+    .filter(|(_, count)| *count > 0)
+    .map(|(name, count)| (name, count.to_string()))
+    .collect();
+    let seconds =
+        |v: f64| if v < 0.1 { format!("{} ms", human(1e3 * v, 3)) } else { format!("{} s", human(v, 3)) };
+    counts.push(("time to build", seconds(summary.seconds.build)));
+    counts.push(("time to solve", seconds(summary.seconds.solve)));
+    counts
+}

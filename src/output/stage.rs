@@ -1,0 +1,108 @@
+//! Files that appear all together, each complete, or not at all.
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::TempPath;
+
+use super::error::OutputError;
+
+/// Files written under temporary names beside their final ones, waiting to be renamed.
+///
+/// Dropped before [`Stage::commit`], it removes the files and those directories that it made.
+pub(super) struct Stage {
+    directory: PathBuf,
+    /// Directories that did not exist before, outermost first.
+    made: Vec<PathBuf>,
+    waiting: Vec<(TempPath, PathBuf)>,
+    /// Names relative to `directory`, of everything staged so far.
+    names: Vec<String>,
+    /// A file that cannot be written fails before the first one is renamed, so that what fails leaves no mixture.
+    committed: bool,
+}
+
+impl Stage {
+    /// Makes `directory` where it is missing.
+    pub(super) fn new(directory: &Path) -> Result<Self, OutputError> {
+        let mut stage = Self {
+            directory: directory.to_owned(),
+            made: Vec::new(),
+            waiting: Vec::new(),
+            names: Vec::new(),
+            committed: false,
+        };
+        stage.make(directory)?;
+        Ok(stage)
+    }
+
+    fn make(&mut self, directory: &Path) -> Result<(), OutputError> {
+        let missing: Vec<PathBuf> = directory
+            .ancestors()
+            .take_while(|a| !a.as_os_str().is_empty() && !a.exists())
+            .map(Path::to_owned)
+            .collect();
+        self.made.extend(missing.into_iter().rev());
+        fs::create_dir_all(directory)
+            .map_err(|source| OutputError::Directory { path: directory.to_owned(), source })
+    }
+
+    /// Writes one file under a temporary name. `name` is relative to the directory, its parts separated by `/`.
+    pub(super) fn add(
+        &mut self,
+        name: &str,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), OutputError> {
+        let path = self.directory.join(name);
+        if path.is_dir() {
+            return Err(OutputError::Occupied { path });
+        }
+        let parent = path.parent().unwrap_or(&self.directory).to_owned();
+        if !parent.exists() {
+            self.make(&parent)?;
+        }
+        let write = || -> io::Result<TempPath> {
+            let mut builder = tempfile::Builder::new();
+            builder.prefix(".ancf-").suffix(".part");
+            // Results are for others to read too; the user's umask still applies.
+            #[cfg(unix)]
+            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+            let mut file = BufWriter::new(builder.tempfile_in(&parent)?);
+            fill(&mut file)?;
+            Ok(file.into_inner().map_err(io::IntoInnerError::into_error)?.into_temp_path())
+        };
+        let written = write().map_err(|source| OutputError::Write { path: path.clone(), source })?;
+        self.waiting.push((written, path));
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Whether a file of this name is staged.
+    pub(super) fn holds(&self, name: &str) -> bool {
+        self.names.iter().any(|n| n == name)
+    }
+
+    /// Gives every file its final name, in the order in which they were added.
+    pub(super) fn commit(mut self) -> Result<(), OutputError> {
+        for (temporary, path) in std::mem::take(&mut self.waiting) {
+            temporary
+                .persist(&path)
+                .map_err(|e| OutputError::Write { path: path.clone(), source: e.error })?;
+            self.committed = true;
+        }
+        self.committed = true;
+        Ok(())
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        self.waiting.clear();
+        if !self.committed {
+            for directory in self.made.iter().rev() {
+                // Not empty or gone already: then it is not ours to remove.
+                let _ = fs::remove_dir(directory);
+            }
+        }
+    }
+}

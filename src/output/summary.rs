@@ -1,0 +1,104 @@
+//! The few numbers that a script reads first.
+
+use serde::{Serialize, Serializer};
+
+use crate::trajectory::{AnalysisKind, Energy, ProbeSample, Seconds, Statistics, Trajectory};
+
+/// What `summary.json` holds; keys and their order are the fields and theirs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// The scene's title.
+    pub title: String,
+    /// Kind of analysis.
+    pub analysis: AnalysisKind,
+    /// Version of this library.
+    pub version: String,
+    /// Unknowns after supports are eliminated, plus multipliers.
+    pub degrees_of_freedom: usize,
+    /// Load factor or time \[s\] of the last record; `null` where there is none.
+    pub last: Option<f64>,
+    /// Per probe, by name, its last sample.
+    #[serde(serialize_with = "as_map")]
+    pub probes: Vec<(String, ProbeSample)>,
+    /// Energies of the last record; `null` where there is none (modal, buckling).
+    pub energy: Option<EnergySummary>,
+    /// Natural frequencies \[Hz\], ascending; modal analysis only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequencies: Option<Vec<f64>>,
+    /// Critical load factors, ascending; buckling only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_factors: Option<Vec<f64>>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// Counts.
+    pub statistics: Statistics,
+    /// Wall time \[s\].
+    pub seconds: Seconds,
+}
+
+/// Energies \[J\] of the last record.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EnergySummary {
+    /// ½∫ EA ε² ds.
+    pub stretch: f64,
+    /// ½∫ EI κ² ds.
+    pub bend: f64,
+    /// ½∫ ρA ṙ·ṙ ds.
+    pub kinetic: f64,
+    /// Of gravity and conservative loads.
+    pub potential: f64,
+    /// Their sum.
+    pub total: f64,
+    /// max |total − initial total| / max kinetic over all records; `null` where nothing moves.
+    pub drift: Option<f64>,
+}
+
+impl Summary {
+    /// Reads the summary off a trajectory.
+    pub fn of(trajectory: &Trajectory) -> Self {
+        let last_sample =
+            |p: &crate::trajectory::ProbeSeries| p.samples.last().map(|sample| (p.name.clone(), *sample));
+        Self {
+            title: trajectory.title.clone(),
+            analysis: trajectory.analysis,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            degrees_of_freedom: trajectory.degrees_of_freedom,
+            last: trajectory.parameter.last().copied(),
+            probes: trajectory.probes.iter().filter_map(last_sample).collect(),
+            energy: trajectory.energy.last().map(|last| EnergySummary {
+                stretch: last.stretch,
+                bend: last.bend,
+                kinetic: last.kinetic,
+                potential: last.potential,
+                total: last.total(),
+                drift: drift(&trajectory.energy),
+            }),
+            frequencies: (trajectory.analysis == AnalysisKind::Modal).then(|| trajectory.frequencies.clone()),
+            load_factors: (trajectory.analysis == AnalysisKind::Buckling)
+                .then(|| trajectory.load_factors.clone()),
+            warnings: trajectory.warnings.clone(),
+            statistics: trajectory.statistics,
+            seconds: trajectory.seconds,
+        }
+    }
+
+    /// The text of `summary.json`, indented, with a final newline. Numbers round-trip exactly.
+    ///
+    /// # Errors
+    /// None in practice: every field has a JSON form (what is not finite becomes `null`).
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string_pretty(self).map(|text| text + "\n")
+    }
+}
+
+/// max |total − initial total| / max kinetic.
+fn drift(energy: &[Energy]) -> Option<f64> {
+    let initial = energy.first()?.total();
+    let kinetic = energy.iter().fold(0.0_f64, |m, e| m.max(e.kinetic));
+    let change = energy.iter().fold(0.0_f64, |m, e| m.max((e.total() - initial).abs()));
+    (kinetic > 0.0).then(|| change / kinetic)
+}
+
+fn as_map<S: Serializer>(probes: &[(String, ProbeSample)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(probes.iter().map(|(name, sample)| (name, sample)))
+}

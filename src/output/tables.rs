@@ -1,0 +1,148 @@
+//! The comma-separated files. Numbers have 17 significant digits, so that reading them back gives the same bits.
+
+use std::io::{self, Write};
+
+use crate::trajectory::{AnalysisKind, Frame, ProbeSample, Shape, Trajectory};
+
+/// Name of the first column: what the records are ordered by.
+pub(super) fn parameter_name(analysis: AnalysisKind) -> &'static str {
+    match analysis {
+        AnalysisKind::Static => "load",
+        AnalysisKind::Dynamic => "time",
+        AnalysisKind::Modal | AnalysisKind::Buckling => "mode",
+    }
+}
+
+/// 17 significant digits.
+fn exact(value: f64) -> String {
+    format!("{value:.16e}")
+}
+
+struct Table<'a>(csv::Writer<&'a mut dyn Write>);
+
+impl<'a> Table<'a> {
+    fn new(out: &'a mut dyn Write, header: &[String]) -> io::Result<Self> {
+        let mut writer = csv::Writer::from_writer(out);
+        writer.write_record(header)?;
+        Ok(Self(writer))
+    }
+
+    fn row(&mut self, words: &[&str], numbers: impl IntoIterator<Item = f64>) -> io::Result<()> {
+        for word in words {
+            self.0.write_field(word)?;
+        }
+        for number in numbers {
+            self.0.write_field(exact(number))?;
+        }
+        self.0.write_record(None::<&[u8]>)?;
+        Ok(())
+    }
+
+    fn finish(mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+fn words(names: &[&str]) -> Vec<String> {
+    names.iter().map(|&n| n.to_owned()).collect()
+}
+
+/// `probes.csv`: the parameter, then per probe `x, y, angle, curvature, strain`, in dynamics also `vx, vy`.
+pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
+    let moving = t.probes.iter().flat_map(|p| &p.samples).any(|s| s.vx.is_some() || s.vy.is_some());
+    let mut quantities = vec!["x", "y", "angle", "curvature", "strain"];
+    if moving {
+        quantities.extend(["vx", "vy"]);
+    }
+    let mut header = words(&[parameter_name(t.analysis)]);
+    header.extend(t.probes.iter().flat_map(|p| quantities.iter().map(move |q| format!("{}.{q}", p.name))));
+    let values = |sample: &ProbeSample| {
+        let mut values = vec![sample.x, sample.y, sample.angle, sample.curvature, sample.strain];
+        if moving {
+            values.extend([sample.vx.unwrap_or(f64::NAN), sample.vy.unwrap_or(f64::NAN)]);
+        }
+        values
+    };
+    let mut table = Table::new(out, &header)?;
+    for (i, &parameter) in t.parameter.iter().enumerate() {
+        let samples = t.probes.iter().filter_map(|p| p.samples.get(i));
+        table.row(&[], std::iter::once(parameter).chain(samples.flat_map(values)))?;
+    }
+    table.finish()
+}
+
+/// `energy.csv`: the parameter, `stretch, bend, kinetic, potential, total` \[J\].
+pub(super) fn energy(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
+    let header = [parameter_name(t.analysis), "stretch", "bend", "kinetic", "potential", "total"];
+    let mut table = Table::new(out, &words(&header))?;
+    for (&parameter, e) in t.parameter.iter().zip(&t.energy) {
+        table.row(&[], [parameter, e.stretch, e.bend, e.kinetic, e.potential, e.total()])?;
+    }
+    table.finish()
+}
+
+fn shape_rows(table: &mut Table<'_>, lead: &[&str], shape: &Shape) -> io::Result<()> {
+    let mut words = lead.to_vec();
+    words.push(&shape.beam);
+    let columns = [&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
+    for (i, &s) in shape.s.iter().enumerate() {
+        let values = columns.iter().map(|c| c.get(i).copied().unwrap_or(f64::NAN));
+        table.row(&words, std::iter::once(s).chain(values))?;
+    }
+    Ok(())
+}
+
+/// `shape.csv`: the last state, `beam, s, x, y, angle, strain, curvature`.
+pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
+    let mut table = Table::new(out, &words(&["beam", "s", "x", "y", "angle", "strain", "curvature"]))?;
+    for shape in &t.last {
+        shape_rows(&mut table, &[], shape)?;
+    }
+    table.finish()
+}
+
+/// `modes.csv`: the mode shapes, scaled for drawing; `mode, beam, s, x, y, angle, strain, curvature`.
+pub(super) fn modes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
+    let mut table =
+        Table::new(out, &words(&["mode", "beam", "s", "x", "y", "angle", "strain", "curvature"]))?;
+    for (i, mode) in t.modes.iter().enumerate() {
+        for shape in mode {
+            shape_rows(&mut table, &[&(i + 1).to_string()], shape)?;
+        }
+    }
+    table.finish()
+}
+
+/// `frequencies.csv` or `load_factors.csv`: the mode's number and its eigenvalue.
+pub(super) fn eigenvalues(name: &str, values: &[f64], out: &mut dyn Write) -> io::Result<()> {
+    let mut table = Table::new(out, &words(&["mode", name]))?;
+    for (i, &value) in values.iter().enumerate() {
+        table.row(&[&(i + 1).to_string()], [value])?;
+    }
+    table.finish()
+}
+
+/// `states.csv`: every beam at every recorded frame; the parameter, `beam, s, x, y`.
+pub(super) fn states(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
+    let header = [parameter_name(t.analysis), "beam", "s", "x", "y"];
+    let mut table = Table::new(out, &words(&header))?;
+    for frame in &t.frames {
+        let parameter = exact(frame.parameter);
+        for (beam, points) in frame.beams.iter().enumerate() {
+            let name = t.undeformed.get(beam).map_or("", |shape| &shape.beam);
+            for (s, [x, y]) in frame_arc_lengths(t, frame, beam).into_iter().zip(points) {
+                table.row(&[&parameter, name], [s, *x, *y])?;
+            }
+        }
+    }
+    table.finish()
+}
+
+/// The arc lengths \[m\] of a frame's points: even, from one end of the beam to the other.
+pub(super) fn frame_arc_lengths(t: &Trajectory, frame: &Frame, beam: usize) -> Vec<f64> {
+    let count = frame.beams.get(beam).map_or(0, Vec::len);
+    let s = t.undeformed.get(beam).map_or(&[][..], |shape| &shape.s);
+    let (first, last) = (s.first().copied().unwrap_or(0.0), s.last().copied().unwrap_or(1.0));
+    let parts = count.saturating_sub(1).max(1) as f64;
+    (0..count).map(|i| first + (last - first) * i as f64 / parts).collect()
+}

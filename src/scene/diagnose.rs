@@ -1,0 +1,134 @@
+//! Turns the messages of the TOML reader and of serde into faults that say what is legal.
+
+use std::ops::Range;
+
+use toml::de::{DeTable, DeValue};
+
+use super::error::Fault;
+
+/// The fault behind an error of the TOML syntax.
+pub(super) fn syntax(error: &toml::de::Error, text: &str) -> Fault {
+    let span = error.span().unwrap_or(text.len()..text.len());
+    let message = error.message().lines().collect::<Vec<_>>().join("; ");
+    let help = if message.contains("duplicate key") {
+        "a key may be given once in its table"
+    } else {
+        "the file is TOML: `key = value` lines under [table] headings, text in \"quotation marks\""
+    };
+    Fault::new(span, format!("TOML syntax: {message}")).help(help)
+}
+
+/// The fault behind an error that serde found in the tables of `document`.
+pub(super) fn data(error: &toml::de::Error, document: &DeTable<'_>) -> Fault {
+    let span = error.span().unwrap_or(0..0);
+    // An empty span is that of the scene as a whole.
+    let path = if span.is_empty() { String::new() } else { path_at(document, &span).join(".") };
+    let (first, rest) = error.message().split_once('\n').unwrap_or((error.message(), ""));
+    let place = if path.is_empty() { "at the top of the scene".to_owned() } else { format!("in `{path}`") };
+
+    if let Some(rest) = first.strip_prefix("unknown field ") {
+        let (found, legal) = quoted(rest);
+        // The span is that of the key itself, so the last part of the path is the unknown key.
+        let table = path.rsplit_once('.').map(|(table, _)| table);
+        let place = table.map_or("at the top of the scene".to_owned(), |table| format!("in `{table}`"));
+        let fault = Fault::new(span, format!("unknown key `{found}` {place}"));
+        return if legal.is_empty() { fault } else { fault.help(choices("legal keys", &found, &legal)) };
+    }
+    if let Some(rest) = first.strip_prefix("unknown variant ") {
+        let (found, legal) = quoted(rest);
+        return Fault::new(
+            span,
+            format!("`{path}`: found \"{found}\", expected one of {}", list(&legal, '"')),
+        )
+        .help(choices("legal values", &found, &legal));
+    }
+    if let Some(rest) = first.strip_prefix("missing field ") {
+        let (missing, _) = quoted(rest);
+        return Fault::new(span, format!("missing key `{missing}` {place}"))
+            .help(match missing.as_str() {
+                "analysis" => "add one of `[analysis.static]`, `[analysis.dynamic]`, `[analysis.buckling]`, `[analysis.modal]`".into(),
+                "basis" => format!("add `[{path}.basis.ancf]` with `elements = 10`, or `[{path}.basis.rpim]` with `nodes = 11`"),
+                _ => format!("add `{missing} = …` there; `ancf schema` describes every key"),
+            });
+    }
+    let message = if let Some(rest) =
+        first.strip_prefix("invalid type: ").or_else(|| first.strip_prefix("invalid value: "))
+    {
+        format!("found {rest}")
+    } else {
+        match first {
+            "wanted string or table" => "expected a word in quotation marks".to_owned(),
+            "floating-point number overflowed" => "the number is beyond the largest one, 1.8e308".to_owned(),
+            "integer number overflowed" => "the whole number has too many digits".to_owned(),
+            other => other.to_owned(),
+        }
+    };
+    let place = if path.is_empty() { String::new() } else { format!("`{path}`: ") };
+    let fault = Fault::new(span, format!("{place}{message}"));
+    if rest.is_empty() { fault } else { fault.help(rest) }
+}
+
+/// The first word in backticks, and all that follow it.
+fn quoted(text: &str) -> (String, Vec<String>) {
+    let mut words = text.split('`').skip(1).step_by(2).map(str::to_owned);
+    (words.next().unwrap_or_default(), words.collect())
+}
+
+/// `a, b or c`, each within `mark`.
+pub(super) fn list(words: &[String], mark: char) -> String {
+    let words: Vec<_> = words.iter().map(|word| format!("{mark}{word}{mark}")).collect();
+    match words.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        Some((last, _)) => last.clone(),
+        None => "nothing".into(),
+    }
+}
+
+/// `did you mean …?` with the legal words.
+pub(super) fn choices(what: &str, found: &str, legal: &[String]) -> String {
+    let near = legal
+        .iter()
+        .map(|word| (strsim::jaro_winkler(&found.to_lowercase(), word), word))
+        .filter(|(likeness, _)| *likeness > 0.75)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let guess = near.map_or(String::new(), |(_, word)| format!("did you mean `{word}`? "));
+    format!("{guess}{what}: {}", legal.join(", "))
+}
+
+/// The path of the innermost key or value whose text covers `span`; list entries go by number.
+pub(super) fn path_at(document: &DeTable<'_>, span: &Range<usize>) -> Vec<String> {
+    let mut best = (usize::MAX, Vec::new());
+    visit_table(document, &mut Vec::new(), &mut |path, of| {
+        if of.start <= span.start && span.end <= of.end && of.len() <= best.0 {
+            best = (of.len(), path.to_vec());
+        }
+    });
+    best.1
+}
+
+type See<'a> = &'a mut dyn FnMut(&[String], Range<usize>);
+
+fn visit_table(table: &DeTable<'_>, path: &mut Vec<String>, see: See<'_>) {
+    for (key, value) in table {
+        path.push(key.get_ref().to_string());
+        see(path, key.span());
+        see(path, value.span());
+        visit_value(value.get_ref(), path, see);
+        path.pop();
+    }
+}
+
+fn visit_value(value: &DeValue<'_>, path: &mut Vec<String>, see: See<'_>) {
+    match value {
+        DeValue::Table(table) => visit_table(table, path, see),
+        DeValue::Array(items) => {
+            for (index, item) in items.iter().enumerate() {
+                path.push(index.to_string());
+                see(path, item.span());
+                visit_value(item.get_ref(), path, see);
+                path.pop();
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,480 @@
+//! The tables of a scene file, as serde reads them and as the JSON schema describes them.
+//!
+//! Each struct is one table; a key that no struct has is an error. Alternatives ("one of these keys") are
+//! optional fields here and are checked in `to_model`, because only there can a message point at both.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::quantity::{
+    Acceleration, Angle, Area, BendingStiffness, Density, Force, ForcePerLength, Length, MassPerLength,
+    Moment, Positive, Quantity, Ratio, SecondMoment, Stress, Time,
+};
+use super::value::{At, Count, Located, NodeList, Vector};
+
+/// A planar flexible-beam problem: beams, supports, loads, probes and one analysis. Numbers are SI; text
+/// carries a unit, such as "1.8 m". What is not named is not simulated.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "Scene of ancf")]
+pub struct SceneTable {
+    /// One line that says what this is.
+    #[serde(default)]
+    pub title: String,
+    /// The beams, by name.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, BeamTable>", extend("minProperties" = 1), required)]
+    pub beam: BTreeMap<Located<String>, BeamTable>,
+    /// What is held, and what is moved by prescription.
+    #[serde(default)]
+    pub support: Vec<Located<SupportTable>>,
+    /// What acts on the beams.
+    #[serde(default)]
+    pub effect: EffectTable,
+    /// Points to watch.
+    #[serde(default)]
+    pub probe: Vec<ProbeTable>,
+    /// What to compute: exactly one kind.
+    pub analysis: Located<AnalysisTable>,
+    /// Files beyond those that are always written.
+    #[serde(default)]
+    pub output: OutputTable,
+}
+
+/// A slender planar beam. Its geometry is one of `start` and `end`, `arc`, or `points`, all stress-free as given.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["start", "end"] }, { "required": ["arc"] }, { "required": ["points"] }]))]
+pub struct BeamTable {
+    /// First end of a straight beam.
+    pub start: Option<Located<Vector<Length>>>,
+    /// Second end of a straight beam.
+    pub end: Option<Located<Vector<Length>>>,
+    /// Part of a circle.
+    pub arc: Option<Located<ArcTable>>,
+    /// A smooth curve through these points, in order.
+    #[schemars(length(min = 2))]
+    pub points: Option<Located<Vec<Located<Vector<Length>>>>>,
+    /// Young's modulus E.
+    pub youngs_modulus: Option<Located<Quantity<Stress, Positive>>>,
+    /// Area A of the section.
+    pub area: Option<Located<Quantity<Area, Positive>>>,
+    /// Second moment of area I of the section.
+    pub second_moment: Option<Located<Quantity<SecondMoment, Positive>>>,
+    /// Density ρ.
+    pub density: Option<Located<Quantity<Density, Positive>>>,
+    /// Axial stiffness EA, in place of `youngs_modulus` and `area`.
+    pub axial_stiffness: Option<Located<Quantity<Force, Positive>>>,
+    /// Bending stiffness EI, in place of `youngs_modulus` and `second_moment`.
+    pub bending_stiffness: Option<Located<Quantity<BendingStiffness, Positive>>>,
+    /// Mass per length ρA, in place of `density` and `area`.
+    pub mass_per_length: Option<Located<Quantity<MassPerLength, Positive>>>,
+    /// How the axial strain is measured.
+    #[serde(default)]
+    pub strain: StrainName,
+    /// How the beam is discretised: exactly one of the kinds.
+    pub basis: Located<BasisTable>,
+}
+
+/// Axial strain as a function of the gradient r'.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum StrainName {
+    /// ½ (r'·r' − 1).
+    #[default]
+    Green,
+    /// |r'| − 1.
+    Engineering,
+}
+
+/// Part of a circle, from one polar angle to another, either way round.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ArcTable {
+    /// Centre of the circle.
+    pub center: Vector<Length>,
+    /// Radius of the circle.
+    pub radius: Quantity<Length, Positive>,
+    /// Polar angle of the beam's start.
+    pub from: Quantity<Angle>,
+    /// Polar angle of the beam's end.
+    pub to: Quantity<Angle>,
+}
+
+/// A beam's discretisation.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
+pub struct BasisTable {
+    /// Gradient-deficient cable elements, cubic between neighbouring nodes.
+    pub ancf: Option<Located<AncfTable>>,
+    /// Hermite radial point interpolation.
+    pub rpim: Option<Located<RpimTable>>,
+}
+
+/// Gradient-deficient cable elements; `elements` or `nodes` is needed.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AncfTable {
+    /// Number of elements, one less than nodes.
+    pub elements: Option<Located<Count<1>>>,
+    /// Number of nodes, or the arc length of each.
+    pub nodes: Option<Located<NodeList>>,
+    /// How counted nodes are spaced.
+    pub spacing: Option<Located<SpacingName>>,
+    /// Gauss points in every element; 5 and 3 when left out.
+    pub gauss_points: Option<GaussPointsTable>,
+}
+
+/// Hermite radial point interpolation. What is left out takes values that were chosen by measurement.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RpimTable {
+    /// Number of nodes, or the arc length of each.
+    pub nodes: Located<NodeList>,
+    /// How counted nodes are spaced.
+    pub spacing: Option<Located<SpacingName>>,
+    /// Radial function: exactly one kind.
+    pub kernel: Option<Located<KernelTable>>,
+    /// Polynomial terms 1, s, s², … of the interpolation.
+    pub polynomial_terms: Option<Located<Count<1>>>,
+    /// Sign of the slope terms in the side conditions.
+    pub side_condition: Option<SideConditionName>,
+    /// Nodes beyond the cell's own two, on each side.
+    pub neighbours: Option<Located<Count<0>>>,
+    /// Gauss points in every cell between neighbouring nodes.
+    pub gauss_points: Option<GaussPointsTable>,
+}
+
+/// How nodes are spaced along the beam.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum SpacingName {
+    /// At equal distances.
+    #[default]
+    Uniform,
+    /// s_i = L/2 − L/2 cos((i−1)π/(n−1)).
+    Chebyshev,
+}
+
+/// Sign in Σ [p_j(s_i) a_i ± p_j'(s_i) b_i] = 0.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum SideConditionName {
+    /// As published.
+    Plus,
+    /// The choice that makes the moment matrix symmetric.
+    Minus,
+}
+
+/// Gauss points in a cell, by energy.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GaussPointsTable {
+    /// For the stretching energy.
+    pub stretch: Located<Count<1>>,
+    /// For the bending energy.
+    pub bend: Located<Count<1>>,
+}
+
+/// Radial function of the distance d, in units of the average spacing.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
+pub struct KernelTable {
+    /// (d² + shape²)^q.
+    pub multiquadric: Option<MultiquadricTable>,
+    /// exp(−shape d²).
+    pub exponential: Option<ExponentialTable>,
+    /// d^exponent, times ln d where the exponent is even.
+    pub thin_plate_spline: Option<ThinPlateSplineTable>,
+    /// Wendland's C⁶ function, zero beyond `radius`.
+    pub wendland: Option<WendlandTable>,
+}
+
+/// (d² + shape²)^q.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MultiquadricTable {
+    /// Exponent, not one of 0, 1, 2, …
+    pub q: Located<Quantity<Ratio>>,
+    /// Shape parameter.
+    pub shape: Quantity<Ratio, Positive>,
+}
+
+/// exp(−shape d²).
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExponentialTable {
+    /// Shape parameter.
+    pub shape: Quantity<Ratio, Positive>,
+}
+
+/// d^exponent, times ln d where the exponent is even.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ThinPlateSplineTable {
+    /// Larger than 3: three derivatives must exist at d = 0.
+    pub exponent: Located<Quantity<Ratio, Positive>>,
+}
+
+/// Wendland's C⁶ function of compact support.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WendlandTable {
+    /// Where it becomes zero, in units of the average spacing.
+    pub radius: Quantity<Ratio, Positive>,
+}
+
+/// Holds a point of a beam, or moves it by prescription.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SupportTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Which point of it.
+    pub at: Located<At>,
+    /// What is held.
+    #[schemars(length(min = 1))]
+    pub fix: Located<Vec<Located<FixName>>>,
+    /// By how much held quantities move until the load is full.
+    #[serde(rename = "move")]
+    pub displacement: Option<MoveTable>,
+}
+
+/// What a support can hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum FixName {
+    /// Position along x.
+    X,
+    /// Position along y.
+    Y,
+    /// Direction of r' alone.
+    Angle,
+    /// Both components of r'.
+    Gradient,
+}
+
+/// Prescribed motion of a support, for quantities that it fixes.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MoveTable {
+    /// Along x.
+    pub x: Option<Located<Quantity<Length>>>,
+    /// Along y.
+    pub y: Option<Located<Quantity<Length>>>,
+    /// Rotation, counter-clockwise.
+    pub angle: Option<Located<Quantity<Angle>>>,
+}
+
+/// What acts on the beams.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct EffectTable {
+    /// Concentrated forces.
+    pub force: Vec<ForceTable>,
+    /// Concentrated moments.
+    pub moment: Vec<MomentTable>,
+    /// Forces per length along whole beams.
+    pub distributed_force: Vec<DistributedForceTable>,
+    /// Weight of every beam.
+    pub gravity: Option<Located<GravityTable>>,
+}
+
+/// A concentrated force.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ForceTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Which point of it.
+    pub at: Located<At>,
+    /// Components in the fixed frame; of a follower, those while the beam is undeformed.
+    pub value: Vector<Force>,
+    /// Turns with the section.
+    #[serde(default)]
+    pub follower: bool,
+}
+
+/// A concentrated moment.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MomentTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Which point of it.
+    pub at: Located<At>,
+    /// Counter-clockwise.
+    pub value: Quantity<Moment>,
+    /// Accepted for symmetry with forces; in the plane a moment has no direction that could follow.
+    #[serde(default)]
+    #[expect(dead_code, reason = "legal, and without effect")]
+    pub follower: bool,
+}
+
+/// A force per reference length along a whole beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DistributedForceTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Components, as for a concentrated force.
+    pub value: Vector<ForcePerLength>,
+    /// Turns with the section.
+    #[serde(default)]
+    pub follower: bool,
+}
+
+/// Weight of every beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GravityTable {
+    /// Such as [0.0, −9.81].
+    pub acceleration: Vector<Acceleration>,
+}
+
+/// A point that is watched.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ProbeTable {
+    /// Name of its columns in the output.
+    pub name: Located<String>,
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Which point of it.
+    pub at: Located<At>,
+}
+
+/// What to compute.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
+pub struct AnalysisTable {
+    /// Equilibrium under the full loads.
+    #[serde(rename = "static")]
+    pub statics: Option<StaticTable>,
+    /// Motion in time.
+    pub dynamic: Option<Located<DynamicTable>>,
+    /// Critical load factors.
+    pub buckling: Option<ModesTable>,
+    /// Natural frequencies.
+    pub modal: Option<ModesTable>,
+}
+
+/// Settings of a static analysis; every one may be left out.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StaticTable {
+    /// Record the state at this many equal parts of the load.
+    pub steps: Option<Located<Count<1>>>,
+    /// Relative accuracy of every equilibrium.
+    pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
+    /// Follow the path by arc length, through limit points.
+    pub arc_length: Option<Located<ArcLengthTable>>,
+}
+
+/// Arc-length continuation; at least one of the `until` keys or `max_points` ends it.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ArcLengthTable {
+    /// Stop when the load factor first reaches this value.
+    pub until_load: Option<Quantity<Ratio>>,
+    /// Stop after this many points on the path; 1000 when left out.
+    pub max_points: Option<Located<Count<1>>>,
+    /// Longest step, as a fraction of the beam's length.
+    pub max_step: Option<Quantity<Ratio, Positive>>,
+    /// Stop when a probe's coordinate reaches a value.
+    pub until_probe: Option<Located<UntilProbeTable>>,
+}
+
+/// A value of a probe's coordinate: `x` or `y`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["x"] }, { "required": ["y"] }]))]
+pub struct UntilProbeTable {
+    /// Name of the probe.
+    pub probe: Located<String>,
+    /// Value of its x.
+    pub x: Option<Quantity<Length>>,
+    /// Value of its y.
+    pub y: Option<Quantity<Length>>,
+}
+
+/// Motion in time; at most one integrator.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DynamicTable {
+    /// Simulated time.
+    pub duration: Quantity<Time, Positive>,
+    /// Time between records; a two-hundredth of the duration when left out.
+    pub output_every: Option<Located<Quantity<Time, Positive>>>,
+    /// Chung and Hulbert's generalised-α method.
+    pub generalized_alpha: Option<Located<GeneralizedAlphaTable>>,
+    /// Gauss collocation: symplectic, of order 2, 4 or 6.
+    pub gauss: Option<Located<GaussTable>>,
+    /// Radau IIA collocation: for stiff motion, of order 3 or 5.
+    pub radau: Option<Located<RadauTable>>,
+}
+
+/// Generalised-α; `step` or `tolerance`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["step"] }, { "required": ["tolerance"] }]))]
+pub struct GeneralizedAlphaTable {
+    /// Fixed step.
+    pub step: Option<Located<Quantity<Time, Positive>>>,
+    /// Relative accuracy that chooses the steps.
+    pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
+    /// Spectral radius at infinite frequency, from 0 to 1; 0.9 when left out.
+    #[schemars(range(min = 0, max = 1))]
+    pub spectral_radius: Option<Located<Quantity<Ratio>>>,
+}
+
+/// Gauss collocation; `step` or `tolerance`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["step"] }, { "required": ["tolerance"] }]))]
+pub struct GaussTable {
+    /// 1, 2 or 3; 3 when left out.
+    #[schemars(range(max = 3))]
+    pub stages: Option<Located<Count<1>>>,
+    /// Fixed step.
+    pub step: Option<Located<Quantity<Time, Positive>>>,
+    /// Relative accuracy that chooses the steps.
+    pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
+}
+
+/// Radau IIA collocation; `step` or `tolerance`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["step"] }, { "required": ["tolerance"] }]))]
+pub struct RadauTable {
+    /// 2 or 3; 3 when left out.
+    #[schemars(range(max = 3))]
+    pub stages: Option<Located<Count<2>>>,
+    /// Fixed step.
+    pub step: Option<Located<Quantity<Time, Positive>>>,
+    /// Relative accuracy that chooses the steps.
+    pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
+}
+
+/// An analysis by modes.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModesTable {
+    /// How many.
+    pub count: Located<Count<1>>,
+}
+
+/// Files beyond those that are always written.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct OutputTable {
+    /// `states.csv`: every beam at every record.
+    pub states: bool,
+    /// A VTU series for ParaView.
+    pub vtu: bool,
+}

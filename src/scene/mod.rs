@@ -1,0 +1,165 @@
+//! Scene files: text → checked description.
+//!
+//! A scene is a TOML file; numbers in it are SI, text carries a unit (`"45 cm"`). Reading it goes through
+//!
+//! ```text
+//! text ──syntax──► tables ──keys, types, units──► tables with spans ──cross-field rules──► Model + Analysis
+//! ```
+//!
+//! and every fault on the way names file, line and column, what was found, and what is legal. Nothing here knows of
+//! shape functions, degrees of freedom or solvers; a geometry is measured only to place nodes and loads on it.
+
+mod diagnose;
+mod error;
+mod file;
+mod held;
+mod overrides;
+mod quantity;
+mod schema;
+mod to_analysis;
+mod to_basis;
+mod to_model;
+mod unit;
+mod value;
+
+use std::io::Read;
+use std::path::Path;
+
+use serde::Deserialize;
+use toml::de::DeTable;
+
+use crate::model::{Analysis, Model};
+use error::Fault;
+use overrides::Overridden;
+
+pub use error::{Brief, Invalid, SceneError};
+pub use schema::schema;
+pub use to_analysis::{
+    ARC_LENGTH_MAX_POINTS, DYNAMIC_RECORDS, INTEGRATOR, MAX_RECORDS, MAX_STEPS, SPECTRAL_RADIUS,
+};
+pub use to_basis::{
+    ANCF_GAUSS_POINTS, MAX_GAUSS_POINTS, MAX_MEMORY, MAX_NEIGHBOURS, MAX_NODES, RPIM_GAUSS_POINTS,
+    RPIM_KERNEL, RPIM_NEIGHBOURS, RPIM_POLYNOMIAL_TERMS, RPIM_SIDE_CONDITION,
+};
+
+/// Longest scene file that is read [bytes]: more than 10⁷ node places, and a bound for what is no file at all.
+const LONGEST: u64 = 1 << 29;
+
+/// A checked scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    name: String,
+    text: String,
+    model: Model,
+    analysis: Analysis,
+    output: Output,
+}
+
+/// Files asked for beyond those that are always written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Output {
+    /// Every beam at every record, as `states.csv`.
+    pub states: bool,
+    /// A VTU series for ParaView.
+    pub vtu: bool,
+}
+
+impl Scene {
+    /// Reads the scene file at `path`, with `overrides` of the form `PATH=VALUE`: a dotted path whose list entries go
+    /// by number (`effect.moment.0.value=12.5`), and a TOML value, or else text.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, an override has no place in it, or the scene is not legal.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, SceneError> {
+        let name = path.display().to_string();
+        let unreadable = |reason: String| SceneError::Unreadable { path: path.to_owned(), reason };
+        let mut bytes = Vec::new();
+        std::fs::File::open(path)
+            .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
+            .map_err(|error| unreadable(error.to_string()))?;
+        if bytes.len() as u64 > LONGEST {
+            return Err(unreadable(format!("it is longer than {} MiB", LONGEST >> 20)));
+        }
+        match String::from_utf8(bytes) {
+            Ok(text) => Self::read(&name, &text, overrides),
+            Err(error) => {
+                let at = error.utf8_error().valid_up_to();
+                let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+                Err(Fault::new(at..at, "the file is not UTF-8 text from here on")
+                    .help("save it as UTF-8; a scene is a text file in the TOML format")
+                    .at(&name, &text))
+            }
+        }
+    }
+
+    fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, SceneError> {
+        DeTable::parse(text).map_err(|error| diagnose::syntax(&error, text).at(name, text))?;
+        let overridden = Overridden::apply(name, text, overrides)?;
+        let text = overridden.text();
+        let (model, analysis, output) = tables(text).map_err(|fault| overridden.blame(fault))?;
+        Ok(Self { name: name.to_owned(), text: text.to_owned(), model, analysis, output })
+    }
+
+    /// The continuous problem, in SI.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// What is to be computed.
+    pub fn analysis(&self) -> &Analysis {
+        &self.analysis
+    }
+
+    /// Which further files are asked for.
+    pub fn output(&self) -> Output {
+        self.output
+    }
+
+    /// The name that messages give to the scene: its path.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The text that was read, overrides included.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+}
+
+/// Reads a scene from text; `name` stands for the file in messages.
+///
+/// # Errors
+/// Where the scene is not legal, with line and column.
+///
+/// ```
+/// let scene = ancf::scene::parse("arch.toml", r#"
+/// [beam.arch]
+/// arc = { center = [0.0, 0.0], radius = "2 m", from = "180 deg", to = "0 deg" }
+/// axial_stiffness = "8 MN"
+/// bending_stiffness = 90.0
+/// basis.ancf.elements = 12
+///
+/// [[support]]
+/// beam = "arch"
+/// at = "start"
+/// fix = ["x", "y", "angle"]
+///
+/// [analysis.static]
+/// "#)?;
+/// assert_eq!(scene.model().beams[0].name, "arch");
+///
+/// let error = ancf::scene::parse("arch.toml", "[beam.arch]\nradius = 3").unwrap_err();
+/// assert!(error.to_string().starts_with("arch.toml:2:1: unknown key `radius`"));
+/// # Ok::<(), ancf::scene::SceneError>(())
+/// ```
+pub fn parse(name: &str, text: &str) -> Result<Scene, SceneError> {
+    Scene::read(name, text, &[])
+}
+
+fn tables(text: &str) -> Result<(Model, Analysis, Output), Fault> {
+    let root = DeTable::parse(text).map_err(|error| diagnose::syntax(&error, text))?;
+    let file = file::SceneTable::deserialize(toml::Deserializer::from(root.clone()))
+        .map_err(|error| diagnose::data(&error, root.get_ref()))?;
+    let (model, analysis) = to_model::convert(&file)?;
+    Ok((model, analysis, Output { states: file.output.states, vtu: file.output.vtu }))
+}

@@ -1,0 +1,184 @@
+//! `--set PATH=VALUE`: values of a scene changed from outside, under the same checks as the file's own.
+
+use std::ops::Range;
+
+use toml::de::DeTable;
+use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, Value};
+
+use super::diagnose::{choices, path_at};
+use super::error::{Fault, SceneError};
+
+/// A scene's text before and after each override.
+pub(super) struct Overridden<'a> {
+    name: &'a str,
+    overrides: &'a [String],
+    /// One more than overrides; the last is what is read.
+    texts: Vec<String>,
+    /// Paths that were set.
+    paths: Vec<Vec<String>>,
+}
+
+impl<'a> Overridden<'a> {
+    /// Applies `overrides` in order to the scene `text`, which must be TOML.
+    pub fn apply(name: &'a str, text: &str, overrides: &'a [String]) -> Result<Self, SceneError> {
+        let mut this = Self { name, overrides, texts: vec![text.to_owned()], paths: Vec::new() };
+        for option in overrides {
+            let (text, path) = set(this.text(), option).map_err(|fault| on_option(fault, option))?;
+            this.texts.push(text);
+            this.paths.push(path);
+        }
+        Ok(this)
+    }
+
+    /// The text with every override applied.
+    pub fn text(&self) -> &str {
+        self.texts.last().map_or("", String::as_str)
+    }
+
+    /// Blames a fault of [`text`](Self::text) on the override that brought it, or on its place in the file.
+    pub fn blame(&self, mut fault: Fault) -> SceneError {
+        let document = DeTable::parse(self.text());
+        let path = document.map(|root| path_at(root.get_ref(), &fault.span)).unwrap_or_default();
+        let setter = self.paths.iter().rposition(|set| path.starts_with(set));
+        let steps = self.texts.windows(2).zip(self.overrides).enumerate().rev();
+        for (index, (pair, option)) in steps {
+            let [before, after] = pair else { continue };
+            let origin = origin(before, after, &fault.span);
+            match origin {
+                Some(start) if setter != Some(index) => {
+                    let length = fault.span.len();
+                    fault.span = start..start.saturating_add(length);
+                }
+                _ => {
+                    let start = option.find('=').map_or(0, |at| at + 1);
+                    fault.span = start..option.len();
+                    return on_option(fault, option);
+                }
+            }
+        }
+        fault.at(self.name, self.texts.first().map_or("", String::as_str))
+    }
+}
+
+/// A fault in the text of the option itself.
+fn on_option(mut fault: Fault, option: &str) -> SceneError {
+    fault.message = format!("{} (in the override `{option}`)", fault.message);
+    fault.at("--set", option)
+}
+
+/// Where the text at `span` of `after` began in `before`, unless it was touched by the change between the two.
+fn origin(before: &str, after: &str, span: &Range<usize>) -> Option<usize> {
+    let same = |(a, b): &(u8, u8)| a == b;
+    let prefix = before.bytes().zip(after.bytes()).take_while(same).count();
+    let longest = before.len().min(after.len()) - prefix;
+    let suffix = before.bytes().rev().zip(after.bytes().rev()).take(longest).take_while(same).count();
+    if span.end <= prefix {
+        Some(span.start)
+    } else if span.start >= after.len() - suffix && suffix > 0 {
+        Some(span.start - (after.len() - suffix) + (before.len() - suffix))
+    } else {
+        None
+    }
+}
+
+/// The text with one override applied, and the path that it sets.
+fn set(text: &str, option: &str) -> Result<(String, Vec<String>), Fault> {
+    const USAGE: &str =
+        "such as --set beam.arm.basis.ancf.elements=9 or --set effect.moment.0.value=\"3 kN m\"";
+    let Some((path, value)) = option.split_once('=') else {
+        return Err(Fault::new(0..option.len(), "expected PATH=VALUE, found no `=`").help(USAGE));
+    };
+    let keys = Key::parse(path).map_err(|_| {
+        Fault::new(0..path.len(), format!("`{path}` is not a path of keys joined by dots")).help(USAGE)
+    })?;
+    let value = value.trim().parse::<Value>().unwrap_or_else(|_| Value::from(value.trim()));
+    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
+        Fault::new(0..option.len(), format!("cannot be applied to this scene: {}", error.message()))
+    })?;
+    let names: Vec<String> = keys.iter().map(|key| key.get().to_owned()).collect();
+    assign(document.as_item_mut(), &names, value)
+        .map_err(|(message, help)| Fault::new(0..path.len(), message).help(help))?;
+    let text = document.to_string();
+    // The editor writes what it reads; should it ever not, say so rather than blame the file.
+    if let Err(error) = DeTable::parse(&text) {
+        return Err(
+            Fault::new(0..option.len(), format!("cannot be applied here: {}", error.message())).help(USAGE)
+        );
+    }
+    Ok((text, names))
+}
+
+/// Sets the value at `path` below `root`; adds the last key, and tables on the way, where they are missing.
+fn assign(root: &mut Item, path: &[String], value: Value) -> Result<(), (String, String)> {
+    let Some((last, parents)) = path.split_last() else {
+        return Err(("the path is empty".into(), "name a key of the scene".into()));
+    };
+    let mut item = root;
+    for (depth, key) in parents.iter().enumerate() {
+        // A beam cannot come into being by a single value: a name that is not there is a misspelt one.
+        let may_add = depth != 1 || path.first().is_none_or(|first| first != "beam");
+        item = child(item, path, depth, key, may_add)?;
+    }
+    let depth = parents.len();
+    if item.is_table_like() && item.get(last.as_str()).is_none() && !(depth == 1 && path[0] == "beam") {
+        if let Some(table) = item.as_table_like_mut() {
+            table.insert(last, Item::Value(value));
+        }
+        return Ok(());
+    }
+    let place = child(item, path, depth, last, false)?;
+    let decor = place.as_value().map(|old| old.decor().clone());
+    *place = Item::Value(value);
+    if let (Some(decor), Some(new)) = (decor, place.as_value_mut()) {
+        *new.decor_mut() = decor;
+    }
+    Ok(())
+}
+
+fn child<'a>(
+    item: &'a mut Item,
+    path: &[String],
+    depth: usize,
+    key: &str,
+    may_add: bool,
+) -> Result<&'a mut Item, (String, String)> {
+    let so_far = path.get(..depth).unwrap_or_default().join(".");
+    let there = if so_far.is_empty() { "the scene".to_owned() } else { format!("`{so_far}`") };
+    if item.is_table_like() {
+        let inline = item.is_inline_table();
+        let keys: Vec<String> =
+            item.as_table_like().map(|t| t.iter().map(|(k, _)| k.to_owned()).collect()).unwrap_or_default();
+        let absent = !keys.iter().any(|k| k == key);
+        if absent && !may_add {
+            return Err((format!("{there} has no `{key}`"), choices("it has", key, &keys)));
+        }
+        let table = item.as_table_like_mut().map(|table| {
+            table.entry(key).or_insert_with(|| {
+                if inline {
+                    return Item::Value(Value::InlineTable(InlineTable::new()));
+                }
+                let mut table = Table::new();
+                table.set_implicit(true);
+                Item::Table(table)
+            })
+        });
+        return table.ok_or_else(|| (format!("{there} is no table"), String::new()));
+    }
+    let length = item.as_array().map(|a| a.len()).or_else(|| item.as_array_of_tables().map(|a| a.len()));
+    let Some(length) = length else {
+        return Err((
+            format!("{there} is a {}, so `{key}` cannot be set in it", item.type_name()),
+            format!("set {there} itself, or check the path"),
+        ));
+    };
+    let help = match length {
+        0 => "the list is empty".to_owned(),
+        1 => "its only entry is 0".to_owned(),
+        n => format!("its entries are 0 to {}", n - 1),
+    };
+    let found = key.parse::<usize>().ok().filter(|index| *index < length);
+    match found.and_then(|index| item.get_mut(index)) {
+        Some(entry) => Ok(entry),
+        None => Err((format!("{there} is a list and has no entry `{key}`"), help)),
+    }
+}

@@ -1,0 +1,254 @@
+//! Numbers with a dimension, as a scene writes them: `1.8` (SI) or `"180 cm"`.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Deserialize, Deserializer, Visitor};
+
+use super::unit::{self, Dimension};
+
+/// What a key measures: its dimension, and the words and examples of its messages.
+pub trait Measure {
+    /// Name in messages and in the schema, such as `length`.
+    const NAME: &'static str;
+    /// The SI unit of plain numbers; empty for a pure number.
+    const SI: &'static str;
+    /// An example with a unit, without quotation marks.
+    const EXAMPLE: &'static str;
+    /// Its dimension.
+    const DIMENSION: Dimension;
+}
+
+macro_rules! measures {
+    ($($(#[$doc:meta])* $type:ident: $name:literal, $si:literal, $example:literal, $dimension:expr;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum $type {}
+
+        impl Measure for $type {
+            const NAME: &'static str = $name;
+            const SI: &'static str = $si;
+            const EXAMPLE: &'static str = $example;
+            const DIMENSION: Dimension = $dimension;
+        }
+    )*};
+}
+
+measures! {
+    /// A length or coordinate [m].
+    Length: "length", "m", "1.8 m", Dimension::new(1, 0, 0);
+    /// A duration [s].
+    Time: "time", "s", "10 ms", Dimension::new(0, 0, 1);
+    /// An angle [rad].
+    Angle: "angle", "rad", "90 deg", Dimension::ANGLE;
+    /// Young's modulus [Pa].
+    Stress: "stress", "Pa", "68.95 GPa", Dimension::new(-1, 1, -2);
+    /// Area of a section [m²].
+    Area: "area", "m^2", "2.5 cm^2", Dimension::new(2, 0, 0);
+    /// Second moment of area [m⁴].
+    SecondMoment: "second moment of area", "m^4", "0.13 cm^4", Dimension::new(4, 0, 0);
+    /// Mass per volume [kg/m³].
+    Density: "density", "kg/m^3", "7.85 g/cm^3", Dimension::new(-3, 1, 0);
+    /// Force; also axial stiffness EA [N].
+    Force: "force", "N", "3 kN", Dimension::new(1, 1, -2);
+    /// Bending stiffness EI [N m²].
+    BendingStiffness: "bending stiffness", "N m^2", "89.6 N m^2", Dimension::new(3, 1, -2);
+    /// Mass per length [kg/m].
+    MassPerLength: "mass per length", "kg/m", "0.69 kg/m", Dimension::new(-1, 1, 0);
+    /// Moment [N m].
+    Moment: "moment", "N m", "3 kN m", Dimension::new(2, 1, -2);
+    /// Force per length [N/m].
+    ForcePerLength: "force per length", "N/m", "5 N/mm", Dimension::new(0, 1, -2);
+    /// Acceleration [m/s²].
+    Acceleration: "acceleration", "m/s^2", "9.81 m/s^2", Dimension::new(1, 0, -2);
+    /// A pure number.
+    Ratio: "number", "", "0.5", Dimension::new(0, 0, 0);
+}
+
+/// Which values a key accepts, besides finite ones.
+pub trait Range {
+    /// In words, with a trailing blank, such as `positive `.
+    const WORD: &'static str;
+    /// The bound for the schema, as key and value.
+    const BOUND: Option<&'static str>;
+    /// Whether `value` lies within.
+    fn contains(value: f64) -> bool;
+}
+
+/// Any finite number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Any {}
+
+impl Range for Any {
+    const WORD: &'static str = "";
+    const BOUND: Option<&'static str> = None;
+
+    fn contains(_: f64) -> bool {
+        true
+    }
+}
+
+/// Greater than zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Positive {}
+
+impl Range for Positive {
+    const WORD: &'static str = "positive ";
+    const BOUND: Option<&'static str> = Some("exclusiveMinimum");
+
+    fn contains(value: f64) -> bool {
+        value > 0.0
+    }
+}
+
+/// A finite number in SI, of dimension `M` and within `R`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantity<M, R = Any> {
+    /// In SI.
+    pub si: f64,
+    kind: PhantomData<(M, R)>,
+}
+
+impl<M: Measure, R: Range> Quantity<M, R> {
+    /// `a positive length: a number in m, or text with a unit such as "1.8 m"`.
+    pub fn expected() -> String {
+        let article =
+            if R::WORD.is_empty() && M::NAME.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        if M::SI.is_empty() {
+            return format!("{article} {}{}, such as {}", R::WORD, M::NAME, M::EXAMPLE);
+        }
+        format!(
+            "{article} {}{}: a number in {}, or text with a unit such as \"{}\"",
+            R::WORD,
+            M::NAME,
+            M::SI,
+            M::EXAMPLE
+        )
+    }
+
+    fn check(value: f64, found: &dyn fmt::Display) -> Result<Self, String> {
+        if !value.is_finite() || !R::contains(value) {
+            let finite = if value.is_finite() { "" } else { "; it must be finite" };
+            return Err(format!("found {found}, expected {}{finite}", Self::expected()));
+        }
+        Ok(Self { si: value, kind: PhantomData })
+    }
+
+    /// Reads `"1.8 m"`.
+    ///
+    /// # Errors
+    /// What was found and what is legal, in one sentence.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let expected = Self::expected;
+        let quoted = format!("{text:?}");
+        let (number, symbol) = unit::split_number(text)
+            .map_err(|reason| format!("found {quoted}, expected {}: {reason}", expected()))?;
+        if symbol.is_empty() {
+            if M::SI.is_empty() {
+                return Self::check(number, &quoted);
+            }
+            return Err(format!(
+                "found {quoted}, which has no unit, expected {}\nwrite {number} without quotation marks for {}, \
+                 or \"{number} {}\"",
+                expected(),
+                M::SI,
+                M::SI
+            ));
+        }
+        let unit = unit::parse_unit(symbol)
+            .map_err(|reason| format!("found {quoted}, expected {}\nin the unit: {reason}", expected()))?;
+        if unit.dimension != M::DIMENSION {
+            return Err(format!(
+                "found {quoted}, whose dimension is {}, not {}; expected {}",
+                unit.dimension,
+                M::DIMENSION,
+                expected()
+            ));
+        }
+        Self::check(number * unit.factor, &quoted)
+    }
+}
+
+impl<'de, M: Measure, R: Range> Deserialize<'de> for Quantity<M, R> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader<M, R>(PhantomData<(M, R)>);
+
+        impl<M: Measure, R: Range> Visitor<'_> for Reader<M, R> {
+            type Value = Quantity<M, R>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(&Quantity::<M, R>::expected())
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Self::Value, E> {
+                Quantity::check(value, &value).map_err(E::custom)
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Self::Value, E> {
+                Quantity::check(value as f64, &value).map_err(E::custom)
+            }
+
+            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Self::Value, E> {
+                Quantity::check(value as f64, &value).map_err(E::custom)
+            }
+
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Self::Value, E> {
+                Quantity::parse(text).map_err(E::custom)
+            }
+        }
+
+        deserializer.deserialize_any(Reader(PhantomData))
+    }
+}
+
+impl<M: Measure, R: Range> JsonSchema for Quantity<M, R> {
+    fn schema_name() -> Cow<'static, str> {
+        let mut name: String = R::WORD.trim_end().into();
+        for word in M::NAME.split(' ') {
+            name.push_str(word.get(..1).unwrap_or_default().to_uppercase().as_str());
+            name.push_str(word.get(1..).unwrap_or_default());
+        }
+        name.replace("positive", "Positive").into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut number = json_schema!({ "type": "number" });
+        if let Some(bound) = R::BOUND {
+            number.insert(bound.into(), 0.into());
+        }
+        if M::SI.is_empty() {
+            number.insert("description".into(), Self::expected().into());
+            return number;
+        }
+        json_schema!({
+            "description": Self::expected(),
+            "anyOf": [
+                number,
+                { "type": "string", "pattern": r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\d\s]" },
+            ],
+            "examples": [M::EXAMPLE],
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wrong_dimension_names_both() {
+        let message = Quantity::<Length>::parse("3 kg").unwrap_err();
+        assert!(message.contains("is kg, not m") && message.contains("\"1.8 m\""), "{message}");
+    }
+
+    #[test]
+    fn only_finite_values_in_range() {
+        assert!(Quantity::<Length, Positive>::parse("0 m").is_err());
+        assert!(Quantity::<Length, Positive>::parse("-1 m").is_err());
+        assert!(Quantity::<Length>::parse("1e308 Tm").is_err());
+        assert_eq!(Quantity::<Length>::parse("-45 cm").unwrap().si, -0.45);
+        assert!(Quantity::<Angle>::parse("3 m").is_err());
+    }
+}

@@ -1,0 +1,213 @@
+//! The `analysis` table → [`Analysis`].
+
+use crate::model::{Analysis, ArcLength, Dynamic, Integrator, Model, ProbeTarget, Static, StepControl};
+
+use super::diagnose::choices;
+use super::error::Fault;
+use super::file::{ArcLengthTable, DynamicTable, ModesTable, SceneTable, StaticTable};
+use super::quantity::{Positive, Quantity, Ratio, Time};
+use super::to_basis::Size;
+use super::value::{Count, Located};
+
+/// Points on a path unless the scene says otherwise.
+pub const ARC_LENGTH_MAX_POINTS: usize = 1000;
+/// Most records, load steps and path points of a run: all are kept in memory.
+pub const MAX_RECORDS: u64 = 1_000_000;
+/// Most time steps of a run with a fixed step.
+pub const MAX_STEPS: f64 = 1e9;
+/// Time integration unless the scene says otherwise.
+pub const INTEGRATOR: Integrator = Integrator::Gauss { stages: 3, step: StepControl::Tolerance(1e-6) };
+/// Spectral radius of the generalised-α method unless the scene says otherwise.
+pub const SPECTRAL_RADIUS: f64 = 0.9;
+/// Records of a dynamic run unless the scene says otherwise.
+pub const DYNAMIC_RECORDS: f64 = 200.0;
+
+/// The one analysis of the scene.
+pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<Analysis, Fault> {
+    let table = file.analysis.get();
+    match (&table.statics, &table.dynamic, &table.buckling, &table.modal) {
+        (Some(table), None, None, None) => Ok(Analysis::Static(statics(table, model)?)),
+        (None, Some(table), None, None) => Ok(Analysis::Dynamic(dynamic(table)?)),
+        (None, None, Some(table), None) => Ok(Analysis::Buckling { count: modes(table, size)? }),
+        (None, None, None, Some(table)) => Ok(Analysis::Modal { count: modes(table, size)? }),
+        (None, None, None, None) => {
+            Err(Fault::new(file.analysis.span(), "`analysis` is empty").help(ANALYSES))
+        }
+        _ => Err(Fault::new(file.analysis.span(), "the scene has more than one analysis").help(ANALYSES)),
+    }
+}
+
+const ANALYSES: &str = "give exactly one of `[analysis.static]`, `[analysis.dynamic]`, `[analysis.buckling]`, `[analysis.modal]`";
+
+fn modes(table: &ModesTable, size: Size) -> Result<usize, Fault> {
+    let most = 4.0 * size.nodes;
+    let count = table.count.get().0;
+    if count as f64 > most {
+        return Err(Fault::new(table.count.span(), format!("found {count} modes"))
+            .help(format!("this scene has {most} coordinates and so at most as many modes")));
+    }
+    bounded(&table.count, "modes")
+}
+
+fn bounded<const MIN: u64>(count: &Located<Count<MIN>>, what: &str) -> Result<usize, Fault> {
+    match usize::try_from(count.get().0) {
+        Ok(value) if count.get().0 <= MAX_RECORDS => Ok(value),
+        _ => Err(Fault::new(count.span(), format!("found {} {what}", count.get().0))
+            .help(format!("from {MIN} to {MAX_RECORDS} are legal: every state is kept in memory"))),
+    }
+}
+
+fn tolerance(value: &Located<Quantity<Ratio, Positive>>) -> Result<f64, Fault> {
+    let tolerance = value.get().si;
+    if tolerance >= 1.0 {
+        return Err(Fault::new(value.span(), format!("found the relative tolerance {tolerance}"))
+            .help("it must be smaller than 1; 1e-6 is a usual choice"));
+    }
+    Ok(tolerance)
+}
+
+fn statics(table: &StaticTable, model: &Model) -> Result<Static, Fault> {
+    if let (Some(steps), Some(_)) = (&table.steps, &table.arc_length) {
+        return Err(Fault::new(steps.span(), "`steps` beside `arc_length`").help(
+            "`steps` records at parts of the load, `arc_length` at points of the path; keep one of them",
+        ));
+    }
+    Ok(Static {
+        steps: table.steps.as_ref().map(|n| bounded(n, "load steps")).transpose()?,
+        tolerance: table.tolerance.as_ref().map(tolerance).transpose()?,
+        arc_length: table.arc_length.as_ref().map(|table| arc_length(table, model)).transpose()?,
+    })
+}
+
+fn arc_length(located: &Located<ArcLengthTable>, model: &Model) -> Result<ArcLength, Fault> {
+    let table = located.get();
+    if table.until_load.is_none() && table.until_probe.is_none() && table.max_points.is_none() {
+        return Err(Fault::new(located.span(), "nothing says where the path ends").help(
+            "give `until_load = 1.0`, `until_probe = { probe = \"NAME\", y = -0.5 }` or `max_points = 200`",
+        ));
+    }
+    let until_probe = table.until_probe.as_ref().map(|located| {
+        let target = located.get();
+        let name = target.probe.get();
+        if !model.probes.iter().any(|probe| probe.name == *name) {
+            let names: Vec<String> = model.probes.iter().map(|probe| probe.name.clone()).collect();
+            return Err(Fault::new(target.probe.span(), format!("there is no probe named `{name}`"))
+                .help(choices("probes of this scene", name, &names)));
+        }
+        let (axis, value) = match (&target.x, &target.y) {
+            (Some(x), None) => (0, x.si),
+            (None, Some(y)) => (1, y.si),
+            _ => {
+                return Err(Fault::new(located.span(), "`until_probe` needs either `x` or `y`")
+                    .help("such as `until_probe = { probe = \"tip\", y = -0.5 }`"));
+            }
+        };
+        Ok(ProbeTarget { probe: name.clone(), axis, value })
+    });
+    Ok(ArcLength {
+        until_load: table.until_load.map(|v| v.si),
+        max_points: table
+            .max_points
+            .as_ref()
+            .map_or(Ok(ARC_LENGTH_MAX_POINTS), |n| bounded(n, "points on the path"))?,
+        max_step: table.max_step.map(|v| v.si),
+        until_probe: until_probe.transpose()?,
+    })
+}
+
+fn dynamic(located: &Located<DynamicTable>) -> Result<Dynamic, Fault> {
+    let table = located.get();
+    let duration = table.duration.si;
+    let output_every = match &table.output_every {
+        Some(every) => {
+            let (value, records) = (every.get().si, duration / every.get().si);
+            if value > duration {
+                return Err(Fault::new(
+                    every.span(),
+                    format!("output_every = {value} s is longer than duration = {duration} s"),
+                )
+                .help("records are taken at 0, output_every, 2 output_every, … up to duration"));
+            }
+            if records > MAX_RECORDS as f64 {
+                return Err(Fault::new(
+                    every.span(),
+                    format!("duration / output_every = {records:.3e} records"),
+                )
+                .help(format!("up to {MAX_RECORDS} are legal: every record is kept in memory")));
+            }
+            value
+        }
+        None => duration / DYNAMIC_RECORDS,
+    };
+    const ONE: &str = "give one of `[analysis.dynamic.generalized_alpha]`, `[analysis.dynamic.gauss]`, \
+                       `[analysis.dynamic.radau]`, or none for Gauss collocation with its default accuracy";
+    let integrator = match (&table.generalized_alpha, &table.gauss, &table.radau) {
+        (None, None, None) => INTEGRATOR,
+        (Some(alpha), None, None) => {
+            let t = alpha.get();
+            let spectral_radius = match &t.spectral_radius {
+                Some(radius) if !(0.0..=1.0).contains(&radius.get().si) => {
+                    return Err(Fault::new(
+                        radius.span(),
+                        format!("found the spectral radius {}", radius.get().si),
+                    )
+                    .help("from 0 (most damping of high frequencies) to 1 (none) are legal; 0.9 is usual"));
+                }
+                Some(radius) => radius.get().si,
+                None => SPECTRAL_RADIUS,
+            };
+            let step = step_control(alpha, &t.step, &t.tolerance, duration)?;
+            Integrator::GeneralizedAlpha { step, spectral_radius }
+        }
+        (None, Some(gauss), None) => {
+            let t = gauss.get();
+            let step = step_control(gauss, &t.step, &t.tolerance, duration)?;
+            Integrator::Gauss { stages: stages(&t.stages)?, step }
+        }
+        (None, None, Some(radau)) => {
+            let t = radau.get();
+            let step = step_control(radau, &t.step, &t.tolerance, duration)?;
+            Integrator::Radau { stages: stages(&t.stages)?, step }
+        }
+        _ => return Err(Fault::new(located.span(), "more than one integrator").help(ONE)),
+    };
+    Ok(Dynamic { duration, output_every, integrator })
+}
+
+fn stages<const MIN: u64>(count: &Option<Located<Count<MIN>>>) -> Result<usize, Fault> {
+    match count {
+        None => Ok(3),
+        Some(count) => match count.get().0 {
+            n @ 1..=3 => Ok(n as usize),
+            n => Err(Fault::new(count.span(), format!("found {n} stages")).help(format!(
+                "from {MIN} to 3 are legal; 3 is the most efficient where accuracy is wanted"
+            ))),
+        },
+    }
+}
+
+fn step_control<T>(
+    integrator: &Located<T>,
+    step: &Option<Located<Quantity<Time, Positive>>>,
+    accuracy: &Option<Located<Quantity<Ratio, Positive>>>,
+    duration: f64,
+) -> Result<StepControl, Fault> {
+    match (step, accuracy) {
+        (Some(step), None) => {
+            let value = step.get().si;
+            if value > duration || duration / value > MAX_STEPS {
+                return Err(Fault::new(
+                    step.span(),
+                    format!("a step of {value} s in a duration of {duration} s"),
+                )
+                .help(format!("the step must lie between duration / {MAX_STEPS:e} and duration")));
+            }
+            Ok(StepControl::Fixed(value))
+        }
+        (None, Some(accuracy)) => Ok(StepControl::Tolerance(tolerance(accuracy)?)),
+        (Some(step), Some(_)) => Err(Fault::new(step.span(), "both `step` and `tolerance`")
+            .help("keep `tolerance` (steps chosen for that accuracy), or `step` (all alike)")),
+        (None, None) => Err(Fault::new(integrator.span(), "the integrator needs `tolerance` or `step`")
+            .help("such as `tolerance = 1e-5`, or `step = \"1 ms\"`")),
+    }
+}

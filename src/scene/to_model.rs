@@ -1,0 +1,319 @@
+//! Tables of a scene file → [`Model`] and [`Analysis`]: everything that one key alone cannot tell.
+
+use std::ops::Range;
+
+use crate::centreline::Curve;
+use crate::model::{
+    Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Load, Model, Place, Probe, Section,
+    StrainMeasure, Support,
+};
+
+use super::diagnose::choices;
+use super::error::Fault;
+use super::file::{BeamTable, FixName, SceneTable, StrainName, SupportTable};
+use super::to_basis::{self, Size};
+use super::value::{At, Located};
+use super::{held, to_analysis};
+
+/// A beam with what the checks of other tables need to know of it.
+pub(super) struct Built {
+    pub name: Located<String>,
+    pub curve: Curve,
+}
+
+/// Converts and checks everything.
+pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
+    // In the order of the file: the reader returns tables sorted by name.
+    let mut tables: Vec<_> = file.beam.iter().collect();
+    tables.sort_by_key(|(name, _)| name.span().start);
+    if tables.is_empty() {
+        return Err(Fault::new(0..0, "the scene has no beam").help(
+            "add a table such as `[beam.NAME]` with `start`, `end`, stiffness, and `[beam.NAME.basis.ancf]`",
+        ));
+    }
+
+    let mut model = Model { title: file.title.clone(), ..Model::default() };
+    let mut built = Vec::with_capacity(tables.len());
+    let mut size = Size::default();
+    for (name, table) in tables {
+        let (beam, curve, needs) = beam(name, table)?;
+        size.nodes += needs.nodes;
+        size.memory += needs.memory;
+        to_basis::check_size(size, &table.basis)?;
+        model.beams.push(beam);
+        built.push(Built { name: name.clone(), curve });
+    }
+    for table in &file.support {
+        model.supports.push(support(table, &built)?);
+    }
+    held::check_duplicates(file, &model)?;
+    loads(file, &built, &mut model)?;
+    probes(file, &built, &mut model)?;
+    let analysis = to_analysis::analysis(file, &model, size)?;
+    check_needs(file, &model, &built, &analysis)?;
+    if matches!(analysis, Analysis::Static(_) | Analysis::Buckling { .. }) {
+        held::check_rigid_motions(&model, &built)?;
+    }
+    Ok((model, analysis))
+}
+
+fn beam(name: &Located<String>, table: &BeamTable) -> Result<(Beam, Curve, Size), Fault> {
+    let label = name.get();
+    let (centreline, span) = centreline(name, table)?;
+    let curve = Curve::new(&centreline).map_err(|reason| {
+        Fault::new(span, format!("beam `{label}` cannot have this shape: {reason}")).help(
+            "ends and neighbouring points must differ, points must not double back, and an arc needs an angle",
+        )
+    })?;
+    let (discretization, gauss_points, size) = to_basis::discretization(label, &table.basis, curve.length())?;
+    let beam = Beam {
+        name: label.clone(),
+        centreline,
+        section: section(label, table)?,
+        strain: match table.strain {
+            StrainName::Green => StrainMeasure::Green,
+            StrainName::Engineering => StrainMeasure::Engineering,
+        },
+        discretization,
+        gauss_points,
+    };
+    Ok((beam, curve, size))
+}
+
+fn centreline(name: &Located<String>, table: &BeamTable) -> Result<(Centreline, Range<usize>), Fault> {
+    const HELP: &str = "give one of: `start` and `end`; `arc = { center = [0.0, 0.0], radius = 1.0, from = 0.0, \
+                        to = \"90 deg\" }`; `points = [[0.0, 0.0], [1.0, 0.2], [2.0, 0.0]]`";
+    let label = name.get();
+    let given: Vec<(&str, Range<usize>)> = [
+        ("start", table.start.as_ref().map(Located::span)),
+        ("end", table.end.as_ref().map(Located::span)),
+        ("arc", table.arc.as_ref().map(Located::span)),
+        ("points", table.points.as_ref().map(Located::span)),
+    ]
+    .into_iter()
+    .filter_map(|(key, span)| Some((key, span?)))
+    .collect();
+    match (&table.start, &table.end, &table.arc, &table.points) {
+        (Some(start), Some(end), None, None) => {
+            Ok((Centreline::Line { start: start.get().si, end: end.get().si }, end.span()))
+        }
+        (None, None, Some(arc), None) => {
+            let a = arc.get();
+            let arc_line =
+                Centreline::Arc { center: a.center.si, radius: a.radius.si, from: a.from.si, to: a.to.si };
+            Ok((arc_line, arc.span()))
+        }
+        (None, None, None, Some(points)) => {
+            Ok((Centreline::Points(points.get().iter().map(|p| p.get().si).collect()), points.span()))
+        }
+        _ => {
+            let keys: Vec<&str> = given.iter().map(|(key, _)| *key).collect();
+            let (span, message) = match keys.as_slice() {
+                [] => (name.span(), format!("beam `{label}` has no geometry")),
+                ["start"] => (name.span(), format!("beam `{label}` has a `start` but no `end`")),
+                ["end"] => (name.span(), format!("beam `{label}` has an `end` but no `start`")),
+                keys => (
+                    given.last().map_or(name.span(), |(_, span)| span.clone()),
+                    format!("beam `{label}` has more than one geometry: `{}`", keys.join("`, `")),
+                ),
+            };
+            Err(Fault::new(span, message).help(HELP))
+        }
+    }
+}
+
+fn section(beam: &str, table: &BeamTable) -> Result<Section, Fault> {
+    let e = table.youngs_modulus.as_ref().map(|v| (v.get().si, v.span()));
+    let area = table.area.as_ref().map(|v| (v.get().si, v.span()));
+    let inertia = table.second_moment.as_ref().map(|v| (v.get().si, v.span()));
+    let density = table.density.as_ref().map(|v| (v.get().si, v.span()));
+    let ea = table.axial_stiffness.as_ref().map(|v| (v.get().si, v.span()));
+    let ei = table.bending_stiffness.as_ref().map(|v| (v.get().si, v.span()));
+    let mass = table.mass_per_length.as_ref().map(|v| (v.get().si, v.span()));
+    type Given<'a> = &'a Option<(f64, Range<usize>)>;
+    let either = |direct: Given<'_>, a: Given<'_>, b: Given<'_>, key: &str, product: [&str; 2]| {
+        let value = match (direct, a, b) {
+            (Some((_, span)), Some(_), Some(_)) => {
+                let [a, b] = product;
+                return Err(Fault::new(
+                    span.clone(),
+                    format!("beam `{beam}` has `{key}` twice: by itself, and as `{a}` times `{b}`"),
+                )
+                .help(format!("keep `{key}`, or `{a}` and `{b}`")));
+            }
+            (Some((value, span)), ..) => Some((*value, span)),
+            (None, Some((a, span)), Some((b, _))) => Some((a * b, span)),
+            _ => None,
+        };
+        match value {
+            Some((value, span)) if !value.is_normal() => {
+                Err(Fault::new(span.clone(), format!("beam `{beam}`: {key} = {value} is no usable number"))
+                    .help("it must be a positive number between 1e-300 and 1e300"))
+            }
+            other => Ok(other.map(|(value, _)| value)),
+        }
+    };
+    Ok(Section {
+        axial_stiffness: either(&ea, &e, &area, "axial_stiffness", ["youngs_modulus", "area"])?,
+        bending_stiffness: either(
+            &ei,
+            &e,
+            &inertia,
+            "bending_stiffness",
+            ["youngs_modulus", "second_moment"],
+        )?,
+        mass_per_length: either(&mass, &density, &area, "mass_per_length", ["density", "area"])?,
+    })
+}
+
+/// Refuses a scene whose analysis or effects need what a beam lacks.
+fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Analysis) -> Result<(), Fault> {
+    let kind = match analysis {
+        Analysis::Static(_) => "a static analysis",
+        Analysis::Buckling { .. } => "a buckling analysis",
+        Analysis::Modal { .. } => "a modal analysis",
+        Analysis::Dynamic(_) => "a dynamic analysis",
+    };
+    let mass = match analysis {
+        Analysis::Modal { .. } | Analysis::Dynamic(_) => Some(kind),
+        _ if file.effect.gravity.is_some() => Some("gravity"),
+        _ => None,
+    };
+    for (beam, built) in model.beams.iter().zip(built) {
+        let lacks = |what: &str, who: &str, key: &str, product: [&str; 2]| {
+            let [a, b] = product;
+            Err(Fault::new(
+                built.name.span(),
+                format!("beam `{}` has no {what}, which {who} needs", beam.name),
+            )
+            .help(format!("give `{key}`, or `{a}` and `{b}`")))
+        };
+        if beam.section.axial_stiffness.is_none() {
+            lacks("axial stiffness EA", kind, "axial_stiffness", ["youngs_modulus", "area"])?;
+        }
+        if beam.section.bending_stiffness.is_none() {
+            lacks("bending stiffness EI", kind, "bending_stiffness", ["youngs_modulus", "second_moment"])?;
+        }
+        if let (None, Some(who)) = (beam.section.mass_per_length, mass) {
+            lacks("mass", who, "mass_per_length", ["density", "area"])?;
+        }
+    }
+    Ok(())
+}
+
+fn beam_index(name: &Located<String>, built: &[Built]) -> Result<usize, Fault> {
+    built.iter().position(|beam| beam.name.get() == name.get()).ok_or_else(|| {
+        let names: Vec<String> = built.iter().map(|beam| beam.name.get().clone()).collect();
+        Fault::new(name.span(), format!("there is no beam named `{}`", name.get())).help(choices(
+            "beams of this scene",
+            name.get(),
+            &names,
+        ))
+    })
+}
+
+fn place(beam: &Located<String>, at: &Located<At>, built: &[Built]) -> Result<Place, Fault> {
+    let index = beam_index(beam, built)?;
+    let length = built.get(index).map_or(0.0, |b| b.curve.length());
+    let s = match *at.get() {
+        At::Start => 0.0,
+        At::End => length,
+        // An end typed with fewer digits than L has is meant as the end.
+        At::ArcLength(s) if (s - length).abs() <= 1e-9 * length => length,
+        At::ArcLength(s) if (0.0..=length).contains(&s) => s,
+        At::ArcLength(s) => {
+            return Err(Fault::new(
+                at.span(),
+                format!("arc length {s} m is not on beam `{}`, which is {length} m long", beam.get()),
+            )
+            .help(format!("give \"start\", \"end\" or an arc length from 0 to {length} m")));
+        }
+    };
+    Ok(Place { beam: index, s })
+}
+
+fn support(table: &Located<SupportTable>, built: &[Built]) -> Result<Support, Fault> {
+    let t = table.get();
+    let at = place(&t.beam, &t.at, built)?;
+    let mut fix = Fixed::default();
+    if t.fix.get().is_empty() {
+        return Err(Fault::new(t.fix.span(), "this support fixes nothing")
+            .help("name some of \"x\", \"y\", \"angle\", \"gradient\", or leave the support out"));
+    }
+    for item in t.fix.get() {
+        let twice = match item.get() {
+            FixName::X => std::mem::replace(&mut fix.x, true),
+            FixName::Y => std::mem::replace(&mut fix.y, true),
+            FixName::Angle => {
+                std::mem::replace(&mut fix.rotation, FixedRotation::Angle) != FixedRotation::Free
+            }
+            FixName::Gradient => {
+                std::mem::replace(&mut fix.rotation, FixedRotation::Gradient) != FixedRotation::Free
+            }
+        };
+        if twice {
+            return Err(Fault::new(item.span(), "this support fixes one quantity twice").help(
+                "name each of \"x\", \"y\" once, and \"angle\" (the direction of r') or \"gradient\" (both components), not both",
+            ));
+        }
+    }
+    let mut displacement = Displacement::default();
+    if let Some(by) = &t.displacement {
+        let check = |key: &str, fixed: bool, span: Range<usize>| {
+            if fixed {
+                return Ok(());
+            }
+            let needed = if key == "angle" { "\"angle\" or \"gradient\"" } else { key };
+            Err(Fault::new(span, format!("`move.{key}` of a quantity that this support does not fix"))
+                .help(format!("add {needed} to `fix`, or leave `move.{key}` out")))
+        };
+        if let Some(x) = &by.x {
+            check("x", fix.x, x.span())?;
+            displacement.x = x.get().si;
+        }
+        if let Some(y) = &by.y {
+            check("y", fix.y, y.span())?;
+            displacement.y = y.get().si;
+        }
+        if let Some(angle) = &by.angle {
+            check("angle", fix.rotation != FixedRotation::Free, angle.span())?;
+            displacement.angle = angle.get().si;
+        }
+    }
+    Ok(Support { at, fix, displacement })
+}
+
+fn loads(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {
+    for force in &file.effect.force {
+        let at = place(&force.beam, &force.at, built)?;
+        model.loads.push(Load::Force { at, value: force.value.si, follower: force.follower });
+    }
+    for moment in &file.effect.moment {
+        let at = place(&moment.beam, &moment.at, built)?;
+        model.loads.push(Load::Moment { at, value: moment.value.si });
+    }
+    for force in &file.effect.distributed_force {
+        let beam = beam_index(&force.beam, built)?;
+        model.loads.push(Load::DistributedForce { beam, value: force.value.si, follower: force.follower });
+    }
+    if let Some(gravity) = &file.effect.gravity {
+        model.loads.push(Load::Gravity { acceleration: gravity.get().acceleration.si });
+    }
+    Ok(())
+}
+
+fn probes(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {
+    for probe in &file.probe {
+        let name = probe.name.get();
+        if name.trim().is_empty() || name.chars().any(char::is_control) {
+            return Err(Fault::new(probe.name.span(), format!("{name:?} cannot name a probe"))
+                .help("a probe's name heads its columns in the output: give one line of text"));
+        }
+        if model.probes.iter().any(|other| other.name == *name) {
+            return Err(Fault::new(probe.name.span(), format!("there are two probes named `{name}`"))
+                .help("every probe needs a name of its own"));
+        }
+        model.probes.push(Probe { name: name.clone(), at: place(&probe.beam, &probe.at, built)? });
+    }
+    Ok(())
+}

@@ -1,0 +1,313 @@
+//! Values of scene files that are not plain quantities: counts, places along a beam, node lists — and
+//! [`Located`], which remembers where in the text a value stands.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::Range as ByteRange;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
+use toml::Spanned;
+
+use super::quantity::{Length, Measure, Quantity};
+
+/// A value and the bytes of the text that it came from.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Located<T>(Spanned<T>);
+
+impl<T> Located<T> {
+    /// The value.
+    pub fn get(&self) -> &T {
+        self.0.get_ref()
+    }
+
+    /// Where it stands.
+    pub fn span(&self) -> ByteRange<usize> {
+        self.0.span()
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Located<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Spanned::deserialize(deserializer).map(Self)
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Located<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+
+    fn schema_id() -> Cow<'static, str> {
+        T::schema_id()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        T::json_schema(generator)
+    }
+}
+
+/// A whole number from `MIN` on; the upper bounds depend on what is counted and are checked later.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Count<const MIN: u64>(pub u64);
+
+impl<const MIN: u64> Count<MIN> {
+    fn expected() -> String {
+        format!("a whole number, {MIN} or more")
+    }
+
+    fn check<E: serde::de::Error>(value: i128) -> Result<Self, E> {
+        match u64::try_from(value) {
+            Ok(value) if value >= MIN => Ok(Self(value)),
+            _ => Err(E::custom(format!("found {value}, expected {}", Self::expected()))),
+        }
+    }
+}
+
+impl<'de, const MIN: u64> Deserialize<'de> for Count<MIN> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader<const MIN: u64>;
+
+        impl<const MIN: u64> Visitor<'_> for Reader<MIN> {
+            type Value = Count<MIN>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(&Count::<MIN>::expected())
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Self::Value, E> {
+                Count::check(value.into())
+            }
+
+            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Self::Value, E> {
+                Count::check(value.into())
+            }
+        }
+
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+impl<const MIN: u64> JsonSchema for Count<MIN> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        format!("CountFrom{MIN}").into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "integer", "minimum": MIN })
+    }
+}
+
+/// A point of a beam: `"start"`, `"end"`, or an arc length from the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum At {
+    /// s = 0.
+    Start,
+    /// s = L.
+    End,
+    /// s [m].
+    ArcLength(f64),
+}
+
+impl At {
+    const EXPECTED: &'static str =
+        "\"start\", \"end\" or an arc length from the start: a number in m, or text such as \"45 cm\"";
+}
+
+impl<'de> Deserialize<'de> for At {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+
+        impl Visitor<'_> for Reader {
+            type Value = At;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(At::EXPECTED)
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<At, E> {
+                if value.is_finite() {
+                    return Ok(At::ArcLength(value));
+                }
+                Err(E::custom(format!("found {value}, expected {}", At::EXPECTED)))
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<At, E> {
+                Ok(At::ArcLength(value as f64))
+            }
+
+            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<At, E> {
+                Ok(At::ArcLength(value as f64))
+            }
+
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<At, E> {
+                match text {
+                    "start" => Ok(At::Start),
+                    "end" => Ok(At::End),
+                    _ if text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) => {
+                        Quantity::<Length>::parse(text).map(|s| At::ArcLength(s.si)).map_err(E::custom)
+                    }
+                    _ => Err(E::custom(format!("found {text:?}, expected {}", At::EXPECTED))),
+                }
+            }
+        }
+
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+impl JsonSchema for At {
+    fn schema_name() -> Cow<'static, str> {
+        "At".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let length = generator.subschema_for::<Quantity<Length>>();
+        json_schema!({
+            "description": "A point of a beam: its start, its end, or the arc length from its start.",
+            "anyOf": [{ "enum": ["start", "end"] }, length],
+            "examples": ["start", "end", 0.45, "45 cm"],
+        })
+    }
+}
+
+/// A point or vector in the plane; each component may carry a unit of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vector<M> {
+    /// Components in SI.
+    pub si: [f64; 2],
+    kind: PhantomData<M>,
+}
+
+impl<M: Measure> Vector<M> {
+    fn expected() -> String {
+        let unit = if M::SI.is_empty() { String::new() } else { format!(" in {}", M::SI) };
+        format!("two components [x, y]{unit}, such as [0.0, \"{}\"]", M::EXAMPLE)
+    }
+}
+
+impl<'de, M: Measure> Deserialize<'de> for Vector<M> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader<M>(PhantomData<M>);
+
+        impl<'de, M: Measure> Visitor<'de> for Reader<M> {
+            type Value = Vector<M>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(&Vector::<M>::expected())
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Vector<M>, A::Error> {
+                let mut si = [0.0; 2];
+                let mut count = 0;
+                while let Some(item) = items.next_element::<Quantity<M>>()? {
+                    if let Some(place) = si.get_mut(count) {
+                        *place = item.si;
+                    }
+                    count += 1;
+                }
+                if count != 2 {
+                    return Err(serde::de::Error::custom(format!(
+                        "found {count} component{}, expected {}",
+                        if count == 1 { "" } else { "s" },
+                        Vector::<M>::expected()
+                    )));
+                }
+                Ok(Vector { si, kind: PhantomData })
+            }
+        }
+
+        deserializer.deserialize_any(Reader(PhantomData))
+    }
+}
+
+impl<M: Measure> JsonSchema for Vector<M> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        format!("VectorOf{}", Quantity::<M>::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let component = generator.subschema_for::<Quantity<M>>();
+        json_schema!({ "type": "array", "items": component, "minItems": 2, "maxItems": 2 })
+    }
+}
+
+/// How many nodes, or where each one is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NodeList {
+    /// This many.
+    Count(u64),
+    /// At these arc lengths [m].
+    At(Vec<Located<Quantity<Length>>>),
+}
+
+impl NodeList {
+    const EXPECTED: &'static str =
+        "a number of nodes, 2 or more, or a list of arc lengths such as [0.0, \"45 cm\", 1.8]";
+}
+
+impl<'de> Deserialize<'de> for NodeList {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+
+        impl<'de> Visitor<'de> for Reader {
+            type Value = NodeList;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(NodeList::EXPECTED)
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<NodeList, E> {
+                match u64::try_from(value) {
+                    Ok(count) if count >= 2 => Ok(NodeList::Count(count)),
+                    _ => Err(E::custom(format!("found {value}, expected {}", NodeList::EXPECTED))),
+                }
+            }
+
+            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<NodeList, E> {
+                Ok(NodeList::Count(value))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<NodeList, A::Error> {
+                let mut list = Vec::new();
+                while let Some(item) = items.next_element()? {
+                    list.push(item);
+                }
+                Ok(NodeList::At(list))
+            }
+        }
+
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+impl JsonSchema for NodeList {
+    fn schema_name() -> Cow<'static, str> {
+        "NodeList".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let length = generator.subschema_for::<Quantity<Length>>();
+        json_schema!({
+            "description": "The number of nodes, or the arc length of each, increasing from 0 to the beam's length.",
+            "anyOf": [
+                { "type": "integer", "minimum": 2 },
+                { "type": "array", "items": length, "minItems": 2 },
+            ],
+            "examples": [5, [0.0, "45 cm", 1.8]],
+        })
+    }
+}

@@ -1,0 +1,138 @@
+//! The program as people call it: exit status, what goes to which stream, what is left on disk.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+const ROLL_UP: &str = include_str!("../scenes/roll-up-ancf.toml");
+
+/// A folder with `scene.toml` in it.
+fn folder(text: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.toml"), text).unwrap();
+    folder
+}
+
+fn ancf(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_ancf")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn status(output: &Output) -> i32 {
+    output.status.code().unwrap_or_else(|| panic!("killed: {}", stderr(output)))
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn entries(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn run_writes_its_results_and_says_where() {
+    let folder = folder(ROLL_UP);
+    let output = ancf(folder.path(), &["run", "scene.toml"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    assert!(output.stdout.is_empty());
+    assert!(folder.path().join("out/scene/summary.json").is_file());
+    let text = stderr(&output);
+    for part in ["Roll-up, ANCF, 4 nodes", "tip", "energy", "unknowns", "report.html"] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+}
+
+#[test]
+fn json_goes_to_standard_output_and_quiet_is_quiet() {
+    let folder = folder(ROLL_UP);
+    let output = ancf(folder.path(), &["run", "scene.toml", "-o", "a/b", "--json", "--quiet"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["title"], "Roll-up, ANCF, 4 nodes");
+    assert_eq!(stderr(&output).lines().filter(|line| !line.starts_with("warning: ")).count(), 0);
+    assert!(folder.path().join("a/b/summary.json").is_file());
+}
+
+#[test]
+fn a_wrong_scene_ends_with_2_and_writes_nothing() {
+    let folder = folder(&ROLL_UP.replace("elements = 3 ", "elemnts = 3 "));
+    for command in ["run", "check", "inspect"] {
+        let output = ancf(folder.path(), &[command, "scene.toml"]);
+        assert_eq!(status(&output), 2, "{command}");
+        assert!(output.stdout.is_empty());
+        let text = stderr(&output);
+        assert!(text.contains("scene.toml:13:1: unknown key `elemnts`"), "{text}");
+        assert!(text.contains("did you mean `elements`?"), "{text}");
+        assert_eq!(entries(folder.path()), ["scene.toml"]);
+    }
+}
+
+#[test]
+fn a_wrong_override_ends_with_2() {
+    let folder = folder(ROLL_UP);
+    let output = ancf(folder.path(), &["run", "scene.toml", "--set", "beam.cantilever.basis.ancf.elements=0"]);
+    assert_eq!(status(&output), 2);
+    assert!(stderr(&output).contains("in the override `beam.cantilever.basis.ancf.elements=0`"));
+    assert_eq!(entries(folder.path()), ["scene.toml"]);
+}
+
+#[test]
+fn an_unwritable_destination_ends_with_2_before_solving() {
+    let folder = folder(ROLL_UP);
+    fs::write(folder.path().join("occupied"), "a file").unwrap();
+    let output = ancf(folder.path(), &["run", "scene.toml", "-o", "occupied/results"]);
+    assert_eq!(status(&output), 2, "{}", stderr(&output));
+    assert!(stderr(&output).contains("cannot write results into occupied/results"), "{}", stderr(&output));
+    assert_eq!(entries(folder.path()), ["occupied", "scene.toml"]);
+}
+
+#[test]
+fn a_failed_run_leaves_no_directory() {
+    // No step of this size can be solved to this accuracy: the tolerance is below round-off.
+    let folder = folder(&ROLL_UP.replace("value = 312.885175", "value = 1e12"));
+    let output = ancf(folder.path(), &["run", "scene.toml"]);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    assert!(stderr(&output).starts_with("error: scene.toml: "), "{}", stderr(&output));
+    assert_eq!(entries(folder.path()), ["scene.toml"]);
+}
+
+#[test]
+fn check_tells_all_that_is_wrong() {
+    let folder = folder(ROLL_UP);
+    fs::write(folder.path().join("bad.toml"), "nonsense = 1").unwrap();
+    let output = ancf(folder.path(), &["check", "scene.toml"]);
+    assert_eq!((status(&output), stderr(&output).as_str()), (0, "scene.toml: ok\n"));
+    let output = ancf(folder.path(), &["check", "bad.toml", "scene.toml", "absent.toml"]);
+    assert_eq!(status(&output), 2);
+    let text = stderr(&output);
+    for part in ["scene.toml: ok", "bad.toml:1:1: unknown key `nonsense`", "absent.toml: cannot read the scene"] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    assert_eq!(entries(folder.path()), ["bad.toml", "scene.toml"]);
+}
+
+#[test]
+fn inspect_and_schema_print() {
+    let folder = folder(ROLL_UP);
+    let output = ancf(folder.path(), &["inspect", "scene.toml", "--json"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    let inventory: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(inventory["degrees_of_freedom"], 12);
+    let output = ancf(folder.path(), &["inspect", "scene.toml"]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("cantilever"));
+    let output = ancf(folder.path(), &["schema"]);
+    assert_eq!(serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap(), ancf::scene::schema());
+}
+
+#[test]
+fn wrong_usage_ends_with_2() {
+    let folder = folder(ROLL_UP);
+    for arguments in [&[][..], &["fly"], &["run"], &["check"], &["run", "scene.toml", "--fast"]] {
+        assert_eq!(status(&ancf(folder.path(), arguments)), 2, "{arguments:?}");
+    }
+}

@@ -1,0 +1,190 @@
+//! What people read when a scene is wrong, word for word.
+
+use ancf::scene::{self, Scene};
+
+const BASE: &str = r#"title = "Cantilever"
+
+[beam.arm]
+start = [0.0, 0.0]
+end = ["1.8 m", 0.0]
+youngs_modulus = "68.95 GPa"
+area = "2.5 cm^2"
+second_moment = "0.130 cm^4"
+
+[beam.arm.basis.ancf]
+elements = 3
+
+[[support]]
+beam = "arm"
+at = "start"
+fix = ["x", "y", "angle"]
+
+[[effect.force]]
+beam = "arm"
+at = "end"
+value = [0.0, "-5 N"]
+
+[[probe]]
+name = "tip"
+beam = "arm"
+at = "end"
+
+[analysis.static]
+"#;
+
+/// Title, what stands in the legal scene, what is put in its place.
+const CASES: &[(&str, &str, &str)] = &[
+    ("syntax", "elements = 3", "elements = = 3"),
+    ("duplicate key", "elements = 3", "elements = 3\nelements = 4"),
+    ("unknown key", "area =", "aera ="),
+    ("unknown key at the top", "[[probe]]", "[[prob]]"),
+    ("unknown effect", "[[effect.force]]", "[[effect.contact]]"),
+    ("unknown analysis", "[analysis.static]", "[analysis.statics]"),
+    ("missing key", "at = \"start\"\n", ""),
+    ("missing basis", "[beam.arm.basis.ancf]\nelements = 3", ""),
+    ("missing analysis", "[analysis.static]", ""),
+    ("wrong type", "\"2.5 cm^2\"", "true"),
+    ("wrong unit", "\"2.5 cm^2\"", "\"2.5 cm\""),
+    ("unknown unit", "\"2.5 cm^2\"", "\"2.5 furlong\""),
+    ("ambiguous unit", "\"2.5 cm^2\"", "\"2.5 m^3/m s\""),
+    ("no unit", "\"2.5 cm^2\"", "\"2.5\""),
+    ("negative", "\"2.5 cm^2\"", "-2.5e-4"),
+    ("not a number", "\"2.5 cm^2\"", "nan"),
+    ("overflow", "\"2.5 cm^2\"", "1e400"),
+    ("overflow in text", "\"2.5 cm^2\"", "\"1e400 m^2\""),
+    ("product overflows", "\"2.5 cm^2\"", "1e300"),
+    ("EA given twice", "area =", "axial_stiffness = 1e6\narea ="),
+    ("EI missing", "second_moment = \"0.130 cm^4\"\n", ""),
+    ("mass missing for gravity", "[[probe]]", "[effect.gravity]\nacceleration = [0.0, -9.81]\n[[probe]]"),
+    ("three components", "[0.0, \"-5 N\"]", "[0.0, 1.0, 2.0]"),
+    ("no length", "[\"1.8 m\", 0.0]", "[0.0, 0.0]"),
+    ("two geometries", "start = [0.0, 0.0]", "start = [0.0, 0.0]\npoints = [[0.0, 0.0], [1.0, 0.0]]"),
+    ("no end", "end = [\"1.8 m\", 0.0]\n", ""),
+    ("cusp", "start = [0.0, 0.0]\nend = [\"1.8 m\", 0.0]", "points = [[0, 0], [1, 0], [0, 1e-9], [1, 0]]"),
+    ("no elements", "elements = 3", "elements = 0"),
+    ("fractional elements", "elements = 3", "elements = 3.5"),
+    ("too many elements", "elements = 3", "elements = 1_000_000_000_000"),
+    ("nodes out of order", "elements = 3", "nodes = [0.0, \"90 cm\", 0.5, 1.8]"),
+    ("nodes do not reach the end", "elements = 3", "nodes = [0.0, 1.0]"),
+    ("two bases", "elements = 3", "elements = 3\n[beam.arm.basis.rpim]\nnodes = 5"),
+    (
+        "kernel",
+        "[beam.arm.basis.ancf]\nelements = 3",
+        "[beam.arm.basis.rpim]\nnodes = 5\nkernel.multiquadric = { q = 1, shape = 3 }",
+    ),
+    ("unknown beam", "beam = \"arm\"\nat = \"end\"\nvalue", "beam = \"arn\"\nat = \"end\"\nvalue"),
+    ("beyond the end", "at = \"end\"\nvalue", "at = \"2 m\"\nvalue"),
+    ("nowhere", "at = \"start\"", "at = \"middle\""),
+    ("unknown fix", "\"angle\"", "\"rotation\""),
+    ("fix twice", "\"angle\"", "\"angle\", \"gradient\""),
+    (
+        "moves what is free",
+        "\"angle\"]",
+        "\"angle\"]\n[support.move]\nangle = \"90 deg\"\n[[support]]\nbeam = \"arm\"\nat = \"end\"\nfix = [\"y\"]\nmove = { x = 0.1 }",
+    ),
+    (
+        "held twice",
+        "[[effect.force]]",
+        "[[support]]\nbeam = \"arm\"\nat = 0.0\nfix = [\"x\"]\n[[effect.force]]",
+    ),
+    ("free to turn", "\"angle\"]", "]"),
+    ("free to slide", "[\"x\", \"y\", \"angle\"]", "[\"y\", \"angle\"]"),
+    ("two analyses", "[analysis.static]", "[analysis.static]\n[analysis.modal]\ncount = 3"),
+    (
+        "two probes of one name",
+        "[analysis.static]",
+        "[[probe]]\nname = \"tip\"\nbeam = \"arm\"\nat = 1\n[analysis.static]",
+    ),
+    ("endless path", "[analysis.static]", "[analysis.static]\narc_length = {}"),
+    (
+        "integrator",
+        "[analysis.static]",
+        "[analysis.dynamic]\nduration = 1\n[analysis.dynamic.gauss]\nstages = 4\nstep = 0.1",
+    ),
+    (
+        "neither step nor tolerance",
+        "[analysis.static]",
+        "[analysis.dynamic]\nduration = 1\n[analysis.dynamic.radau]",
+    ),
+];
+
+const OVERRIDES: &[&str] = &[
+    "beam.arm.basis.ancf.elements=0",
+    "beam.arm.basis.ancf.element=4",
+    "beam.amr.area=3 cm^2",
+    "effect.force.1.value=[0, 1]",
+    "title.x=1",
+    "beam.arm.area",
+    "beam..arm=3",
+    "beam.arm.basis.rpim.nodes=4",
+    "beam.arm.end=[0, 0]",
+    "support.0.fix=['x', 'y']",
+];
+
+/// The scene is legal before each change, each change is refused, and the message says so in these words.
+#[test]
+fn scene_messages() {
+    scene::parse("arm.toml", BASE).unwrap_or_else(|e| panic!("{e}"));
+    let mut all = String::new();
+    for (title, from, to) in CASES {
+        assert!(BASE.contains(from), "{title}");
+        let error = scene::parse("arm.toml", &BASE.replacen(from, to, 1)).expect_err(title);
+        all.push_str(&format!("# {title}\n{error}\n\n"));
+    }
+    let error = scene::parse("arm.toml", "[analysis.static]").expect_err("no beam");
+    all.push_str(&format!("# no beam\n{error}\n"));
+    compare("scene_messages", &all);
+}
+
+#[test]
+fn override_messages() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.toml");
+    std::fs::write(&path, BASE).unwrap();
+    let mut all = String::new();
+    for option in OVERRIDES {
+        let error = Scene::load(&path, &[(*option).to_owned()]).expect_err(option);
+        let text = error.to_string().replace(&path.display().to_string(), "arm.toml");
+        all.push_str(&format!("# {option}\n{text}\n\n"));
+    }
+    compare("override_messages", &all);
+}
+
+/// A fault of the file keeps its own line where an override only moved it.
+#[test]
+fn overrides_do_not_move_the_blame() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.toml");
+    std::fs::write(&path, BASE.replace("at = \"end\"\nvalue", "at = \"3 m\"\nvalue")).unwrap();
+    for option in ["beam.arm.basis.ancf.elements=1000", "beam.arm.strain=green", "output.vtu=true", "title=x"]
+    {
+        let error = Scene::load(&path, &[option.to_owned()]).expect_err(option);
+        assert_eq!(error.place().map(|(_, line, column)| (line, column)), Some((20, 6)), "{option}: {error}");
+    }
+}
+
+#[test]
+fn unreadable_files_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    for path in [folder.path().join("absent.toml"), folder.path().to_owned()] {
+        let error = Scene::load(&path, &[]).unwrap_err();
+        assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
+    }
+    let path = folder.path().join("latin.toml");
+    std::fs::write(&path, b"title = \"x\"\nname = \"\xe9\"").unwrap();
+    let error = Scene::load(&path, &[]).unwrap_err().to_string();
+    assert!(error.contains("latin.toml:2:9: the file is not UTF-8"), "{error}");
+}
+
+/// The committed schema is the one that the program prints.
+#[test]
+fn schema_snapshot_is_fresh() {
+    let text = serde_json::to_string_pretty(&scene::schema()).unwrap();
+    compare("scene_schema", &text);
+}
+
+fn compare(name: &str, text: &str) {
+    insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false, omit_expression => true }, {
+        insta::assert_snapshot!(name, text);
+    });
+}

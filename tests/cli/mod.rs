@@ -1,0 +1,5 @@
+//! The program as its users meet it: commands, exit statuses, messages, files.
+
+mod commands;
+mod messages;
+mod output;

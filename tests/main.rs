@@ -1,0 +1,5 @@
+//! Tests of the whole: properties, validation against reference data, regression snapshots, the command line.
+
+mod cli;
+mod property;
+mod validate;

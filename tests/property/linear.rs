@@ -1,0 +1,116 @@
+//! Factorisations against each other: banded LDLᵀ, banded LU, faer's sparse LU, faer's dense LU.
+
+use ancf::linear::{Factor, Matrix, band::BandLu, bordered::Bordered, symmetric::Ldl};
+use faer::linalg::solvers::Solve;
+use proptest::prelude::*;
+
+/// A symmetric band filled from a list of numbers, with a diagonal that makes it definite (`shift` > 0) or not.
+fn symmetric(nodes: usize, blocks: usize, numbers: &[f64], shift: f64) -> Matrix {
+    let mut matrix = Matrix::zeros(nodes, blocks, true);
+    let mut next = numbers.iter().cycle();
+    for i in 0..4 * nodes {
+        for j in matrix.columns(i).filter(|j| *j >= i) {
+            let value = next.next().copied().unwrap_or(0.0);
+            let diagonal = if i == j { shift * (1.0 + value.abs()) } else { 0.0 };
+            if let Matrix::Symmetric(m) = &mut matrix {
+                m.set(i, j, value + diagonal);
+            }
+        }
+    }
+    matrix
+}
+
+fn dense(matrix: &Matrix) -> faer::Mat<f64> {
+    faer::Mat::from_fn(matrix.size(), matrix.size(), |i, j| matrix.get(i, j))
+}
+
+fn numbers() -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(-1.0..1.0, 40..97)
+}
+
+fn agree(a: &[f64], b: &[f64], tolerance: f64) -> Result<(), TestCaseError> {
+    let scale = b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    for (a, b) in a.iter().zip(b) {
+        prop_assert!((a - b).abs() <= tolerance * scale, "{} against {}", a, b);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn all_factorisations_solve_alike(nodes in 1..12_usize, blocks in 1..7_usize, numbers in numbers()) {
+        let matrix = symmetric(nodes, blocks, &numbers, 30.0);
+        let n = matrix.size();
+        let b: Vec<f64> = numbers.iter().cycle().take(n).copied().collect();
+        let mut expected = faer::Mat::from_fn(n, 1, |i, _| b[i]);
+        dense(&matrix).partial_piv_lu().solve_in_place(&mut expected);
+        let expected: Vec<f64> = (0..n).map(|i| expected[(i, 0)]).collect();
+        let Matrix::Symmetric(symmetric) = &matrix else { unreachable!("built symmetric") };
+        let mut x = b.clone();
+        Ldl::new(symmetric).expect("definite").solve(&mut x);
+        agree(&x, &expected, 1e-12)?;
+        let mut x = b.clone();
+        BandLu::new(&symmetric.to_band()).expect("regular").solve(&mut x);
+        agree(&x, &expected, 1e-12)?;
+        let mut x = b.clone();
+        Bordered::new(&matrix, &[], None).expect("regular").solve(&mut x);
+        agree(&x, &expected, 1e-12)?;
+        // Multiplying back gives the right-hand side.
+        let mut back = vec![0.0; n];
+        matrix.multiply_add(1.0, &expected, &mut back);
+        agree(&back, &b, 1e-11)?;
+    }
+
+    #[test]
+    fn inertia_is_the_number_of_negative_eigenvalues(nodes in 1..10_usize, blocks in 1..7_usize, numbers in numbers()) {
+        let matrix = symmetric(nodes, blocks, &numbers, 0.0);
+        let eigenvalues = dense(&matrix).self_adjoint_eigenvalues(faer::Side::Lower).expect("symmetric");
+        prop_assume!(eigenvalues.iter().all(|e| e.abs() > 1e-6));
+        let factor = Factor::new(&matrix, &[]).expect("regular");
+        if let Some(count) = factor.negative_eigenvalues() {
+            prop_assert_eq!(count, eigenvalues.iter().filter(|e| **e < 0.0).count());
+        }
+    }
+
+    #[test]
+    fn pivoted_lu_solves_what_needs_pivots(n in 2..40_usize, half in 1..9_usize, numbers in numbers()) {
+        // No diagonal dominance, zeros on the diagonal.
+        let mut band = ancf::linear::band::Band::zeros(n, half);
+        let mut next = numbers.iter().cycle();
+        for i in 0..n {
+            for j in band.columns(i) {
+                band.set(i, j, if i == j { 0.0 } else { next.next().copied().unwrap_or(0.0) });
+            }
+        }
+        let matrix = Matrix::General(band.clone());
+        let lu = dense(&matrix).full_piv_lu();
+        let b: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
+        let mut expected = faer::Mat::from_fn(n, 1, |i, _| b[i]);
+        lu.solve_in_place(&mut expected);
+        let size = (0..n).map(|i| expected[(i, 0)].abs()).fold(0.0, f64::max);
+        prop_assume!(size < 1e3);
+        let mut x = b;
+        BandLu::new(&band).expect("regular").solve(&mut x);
+        agree(&x, &(0..n).map(|i| expected[(i, 0)]).collect::<Vec<_>>(), 1e-9)?;
+    }
+
+    #[test]
+    fn bordered_solution_satisfies_its_constraints(nodes in 2..8_usize, numbers in numbers(), at in 0..7_usize) {
+        let matrix = symmetric(nodes, 2, &numbers, 30.0);
+        let n = matrix.size();
+        let row = vec![(at, 1.0), (at + 1, -2.0)];
+        let mut x: Vec<f64> = numbers.iter().cycle().take(n).copied().collect();
+        x.push(0.25);
+        let b = x.clone();
+        Factor::new(&matrix, std::slice::from_ref(&row)).expect("regular").solve(&mut x);
+        prop_assert!((x[at] - 2.0 * x[at + 1] - 0.25).abs() < 1e-12);
+        let mut back = vec![0.0; n];
+        matrix.multiply_add(1.0, &x[..n], &mut back);
+        for (j, value) in row {
+            back[j] += value * x[n];
+        }
+        agree(&back, &b[..n], 1e-11)?;
+    }
+}

@@ -1,0 +1,8 @@
+//! What must hold at every state: derivatives, invariances, exactness.
+
+mod basis;
+mod derivatives;
+mod generators;
+mod invariance;
+mod linear;
+mod scene;

@@ -1,0 +1,118 @@
+//! Writes `reference_data`: the only code that does.
+
+use std::path::Path;
+
+use ancf_check::case::Oracle;
+use ancf_check::reference::{Provenance, Table, provenance_path, sha256};
+use ancf_check::{Case, Suite};
+use indexmap::IndexMap;
+
+use crate::python::Python;
+use crate::{Failure, chosen};
+
+/// Makes the tables of all oracles of some cases. With `check` nothing is written, and the answer is whether the
+/// tables are byte by byte what is there.
+pub fn freeze(suite: &Suite, cases: &[String], check: bool) -> Result<bool, Failure> {
+    let names = chosen(suite, cases)?;
+    let python = Python::prepare(suite)?;
+    let mut same = true;
+    for name in names {
+        let case = suite.case(&name)?;
+        for (key, oracle) in &case.text.oracle {
+            eprint!("{name}/{key} … ");
+            let (table, provenance) = make(suite, &case, key, oracle, &python).map_err(|e| format!("{name}/{key}: {e}"))?;
+            let path = suite.table_path(&name, key);
+            let known = Table::read(&path).ok();
+            let agrees = std::fs::read_to_string(&path).is_ok_and(|old| old == table);
+            same &= agrees;
+            if agrees && known.is_some_and(|known| says_the_same(&known.provenance, &provenance)) {
+                eprintln!("unchanged");
+            } else if check {
+                eprintln!("{}", if agrees { "same numbers" } else { "DIFFERS from reference_data" });
+            } else {
+                store(&path, &table)?;
+                let header = "# Written by `verify freeze`; not to be edited.\n";
+                store(&provenance_path(&path), &(header.to_owned() + &toml::to_string(&provenance)?))?;
+                eprintln!("{}", if agrees { "provenance renewed" } else { "written" });
+            }
+        }
+    }
+    Ok(same || !check)
+}
+
+fn make(
+    suite: &Suite,
+    case: &Case,
+    key: &str,
+    oracle: &Oracle,
+    python: &Python,
+) -> Result<(String, Provenance), Failure> {
+    let mut inputs = IndexMap::new();
+    let mut note = |path: &Path| -> Result<(), Failure> {
+        let bytes = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let name = path.strip_prefix(&suite.root).unwrap_or(path).to_string_lossy().replace('\\', "/");
+        inputs.insert(name, sha256(&bytes));
+        Ok(())
+    };
+    let (table, tool, command) = match (&oracle.script, &oracle.transcribed) {
+        (Some(script), _) => {
+            let path = suite.oracles_folder().join(script);
+            note(&path)?;
+            let mut arguments = oracle.arguments.clone();
+            for scene in &oracle.scenes {
+                let scene = case.folder.join(scene);
+                note(&scene)?;
+                arguments.push(scene.to_string_lossy().into_owned());
+            }
+            let table = python.run(&path, &arguments)?;
+            let shown: Vec<_> = oracle
+                .arguments
+                .iter()
+                .cloned()
+                .chain(oracle.scenes.iter().map(|s| format!("verification/cases/{}/{s}", case.name)))
+                .collect();
+            let command = format!("python3 verification/oracles/{script} {}", shown.join(" "));
+            (table, python.facts.tool.clone(), command.trim_end().to_owned())
+        }
+        (None, Some(file)) => {
+            let path = suite.oracles_folder().join(file);
+            note(&path)?;
+            let table = std::fs::read_to_string(&path)?;
+            (table, "typed from the publication".to_owned(), format!("cp verification/oracles/{file} …"))
+        }
+        (None, None) => return Err("it has neither `script` nor `transcribed`".into()),
+    };
+    let provenance = Provenance {
+        oracle: key.to_owned(),
+        title: oracle.title.clone(),
+        class: oracle.class,
+        citation: oracle.citation.trim().to_owned(),
+        note: oracle.note.as_deref().map(|n| n.trim().to_owned()),
+        tool,
+        command,
+        date: python.facts.date.clone(),
+        platform: python.facts.platform.clone(),
+        csv_sha256: sha256(table.as_bytes()),
+        inputs,
+    };
+    Ok((table, provenance))
+}
+
+/// Whether all is the same but the day and the machine, which alone are no reason to write.
+fn says_the_same(old: &Provenance, new: &Provenance) -> bool {
+    let without = |p: &Provenance| {
+        let mut p = p.clone();
+        (p.date, p.platform, p.tool) = Default::default();
+        toml::to_string(&p).ok()
+    };
+    without(old) == without(new)
+}
+
+/// Writes a file so that it is there whole or not at all.
+fn store(path: &Path, text: &str) -> Result<(), Failure> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
+    let beside = path.with_extension("new");
+    std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path)).map_err(|e| format!("{}: {e}", path.display()).into())
+}

@@ -1,0 +1,67 @@
+//! `verify`: makes the reference data of the verification cases, and reports how the solver compares with it.
+
+mod freeze;
+mod python;
+mod report;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use ancf_check::Suite;
+use clap::{Parser, Subcommand};
+
+/// What ends a command.
+type Failure = Box<dyn std::error::Error>;
+
+/// Verification of ancf against closed forms, publications and other codes.
+#[derive(Parser)]
+#[command(version, about)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run every case and write index.html and report.json; exit status 1 if any claim does not hold
+    Report {
+        /// Folder of the report
+        #[arg(short, long, default_value = "target/verification")]
+        out: PathBuf,
+        /// Cases; all if none is named
+        cases: Vec<String>,
+    },
+    /// Make reference data from the oracles and write it to reference_data
+    Freeze {
+        /// Write nothing; exit status 1 if an oracle gives other numbers today
+        #[arg(long)]
+        check: bool,
+        /// Cases; all if none is named
+        cases: Vec<String>,
+    },
+}
+
+fn main() -> ExitCode {
+    let suite = Suite::here();
+    let outcome = match Arguments::parse().command {
+        Command::Report { out, cases } => report::write(&suite, &out, &cases),
+        Command::Freeze { check, cases } => freeze::freeze(&suite, &cases, check),
+    };
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The named cases, or all; a name that is none is an error.
+fn chosen(suite: &Suite, cases: &[String]) -> Result<Vec<String>, Failure> {
+    let all = suite.names()?;
+    if let Some(unknown) = cases.iter().find(|c| !all.contains(c)) {
+        return Err(format!("there is no case `{unknown}`; there are: {}", all.join(", ")).into());
+    }
+    Ok(if cases.is_empty() { all } else { cases.to_vec() })
+}

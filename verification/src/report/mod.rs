@@ -1,0 +1,156 @@
+//! The report: every case run today, beside its references.
+
+mod figure;
+mod page;
+
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use ancf_check::{Examined, Outcome, Suite, audit, examine};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::{Failure, chosen};
+
+/// A case as it came out.
+pub struct Entry {
+    /// Name of the folder.
+    pub name: String,
+    /// What was found, or why nothing could be.
+    pub examined: ancf_check::Result<Examined>,
+    /// Wall time.
+    pub took: Duration,
+}
+
+/// `report.json`.
+#[derive(Serialize)]
+struct Json<'a> {
+    version: &'static str,
+    date: &'a str,
+    machine: &'a str,
+    passed: bool,
+    problems: &'a [String],
+    cases: Vec<JsonCase<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonCase<'a> {
+    name: &'a str,
+    title: Option<&'a str>,
+    claim: Option<&'a str>,
+    passed: bool,
+    seconds: f64,
+    error: Option<String>,
+    outcomes: &'a [Outcome],
+}
+
+/// Runs the cases and writes `index.html` and `report.json` into `out`. The answer is whether every claim holds.
+pub fn write(suite: &Suite, out: &Path, cases: &[String]) -> Result<bool, Failure> {
+    let names = chosen(suite, cases)?;
+    let problems = audit(suite)?;
+    let entries = run_all(suite, &names);
+    let passed = problems.is_empty()
+        && entries.iter().all(|e| e.examined.as_ref().is_ok_and(Examined::passed));
+
+    let date = now();
+    let machine = machine();
+    let json = Json {
+        version: env!("CARGO_PKG_VERSION"),
+        date: &date,
+        machine: &machine,
+        passed,
+        problems: &problems,
+        cases: entries
+            .iter()
+            .map(|entry| JsonCase {
+                name: &entry.name,
+                title: entry.examined.as_ref().ok().map(|e| e.case.text.title.as_str()),
+                claim: entry.examined.as_ref().ok().map(|e| e.case.text.claim.as_str()),
+                passed: entry.examined.as_ref().is_ok_and(Examined::passed),
+                seconds: entry.took.as_secs_f64(),
+                error: entry.examined.as_ref().err().map(ToString::to_string),
+                outcomes: entry.examined.as_ref().map_or(&[], |e| &e.outcomes),
+            })
+            .collect(),
+    };
+    std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
+    let html = page::render(suite, &entries, &problems, &date, &machine)?;
+    for (name, text) in [("report.json", serde_json::to_string_pretty(&json)?), ("index.html", html)] {
+        let path = out.join(name);
+        std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+    }
+
+    for problem in &problems {
+        eprintln!("files: {problem}");
+    }
+    let mut count = (0, 0);
+    for entry in &entries {
+        match &entry.examined {
+            Ok(examined) => {
+                for outcome in &examined.outcomes {
+                    if outcome.verdict.passed() {
+                        count.0 += 1;
+                    } else {
+                        count.1 += 1;
+                        eprintln!("FAILED {}", outcome.line(&entry.name));
+                    }
+                }
+            }
+            Err(error) => {
+                count.1 += 1;
+                eprintln!("FAILED {error}");
+            }
+        }
+    }
+    eprintln!("{} cases: {} passed, {} failed · {}", entries.len(), count.0, count.1, out.join("index.html").display());
+    Ok(passed)
+}
+
+/// Runs cases on all cores; cases are independent of each other.
+fn run_all(suite: &Suite, names: &[String]) -> Vec<Entry> {
+    let bar = ProgressBar::new(names.len() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+        bar.set_style(style);
+    }
+    let next = AtomicUsize::new(0);
+    let done = Mutex::new(Vec::new());
+    let workers = std::thread::available_parallelism().map_or(1, usize::from).min(names.len());
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                while let Some(name) = names.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    bar.set_message(name.clone());
+                    let start = Instant::now();
+                    let examined = examine(suite, name);
+                    let entry = Entry { name: name.clone(), examined, took: start.elapsed() };
+                    done.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(entry);
+                    bar.inc(1);
+                }
+            });
+        }
+    });
+    bar.finish_and_clear();
+    let mut entries = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    entries.sort_by(|a, b| a.name.cmp(&b.name));
+    entries
+}
+
+fn now() -> String {
+    jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC").to_string()
+}
+
+fn machine() -> String {
+    let cpu = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
+        let line = text.lines().find(|l| l.starts_with("model name"))?;
+        Some(line.split_once(':')?.1.trim().to_owned())
+    });
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    format!(
+        "{}, {cores} cores, {} {}",
+        cpu.unwrap_or_else(|| "unknown processor".to_owned()),
+        std::env::consts::OS,
+        std::env::consts::ARCH
+    )
+}
