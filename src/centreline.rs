@@ -1,4 +1,4 @@
-//! Geometry of stress-free centrelines: r₀(s), its unit tangent and its curvature by arc length s ∈ [0, L] [m].
+//! Geometry of stress-free centrelines: r₀(s), its unit tangent and its curvature by arc length s ∈ [0, L] \[m\].
 //!
 //! Lines and arcs are exact. Through given points runs a cubic spline in the accumulated chord length u
 //! with not-a-knot ends (fourth-order accurate up to the ends), whose arc length
@@ -74,7 +74,7 @@ impl Curve {
         Ok(Self(shape))
     }
 
-    /// Length L [m].
+    /// Length L \[m\].
     pub fn length(&self) -> f64 {
         match &self.0 {
             Shape::Line { length, .. } | Shape::Arc { length, .. } => *length,
@@ -82,7 +82,7 @@ impl Curve {
         }
     }
 
-    /// Position r₀(s) [m]; s beyond the ends continues a line or arc, and stops at the ends of a spline.
+    /// Position r₀(s) \[m\]; s beyond the ends continues a line or arc, and stops at the ends of a spline.
     pub fn position(&self, s: f64) -> [f64; 2] {
         match &self.0 {
             Shape::Line { start, direction, .. } => add(*start, *direction, s),
@@ -111,7 +111,7 @@ impl Curve {
         }
     }
 
-    /// Curvature κ₀(s) [1/m], positive where the curve turns counter-clockwise.
+    /// Curvature κ₀(s) \[1/m\], positive where the curve turns counter-clockwise.
     pub fn curvature(&self, s: f64) -> f64 {
         match &self.0 {
             Shape::Line { .. } => 0.0,
@@ -165,9 +165,9 @@ struct Panel {
     piece: usize,
     from: f64,
     to: f64,
-    /// Arc length at `from` [m].
+    /// Arc length at `from` \[m\].
     start: f64,
-    /// Arc length of the panel [m].
+    /// Arc length of the panel \[m\].
     length: f64,
 }
 

@@ -40,36 +40,36 @@ pub struct Beam {
 /// The stress-free centreline r₀(s), parametrised by arc length s ∈ [0, L].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Centreline {
-    /// Straight from `start` to `end` [m].
+    /// Straight from `start` to `end` \[m\].
     Line {
-        /// First end [m].
+        /// First end \[m\].
         start: [f64; 2],
-        /// Second end [m].
+        /// Second end \[m\].
         end: [f64; 2],
     },
-    /// Part of a circle; the polar angle runs from `from` to `to` [rad], either way round.
+    /// Part of a circle; the polar angle runs from `from` to `to` \[rad\], either way round.
     Arc {
-        /// Centre of the circle [m].
+        /// Centre of the circle \[m\].
         center: [f64; 2],
-        /// Radius [m], positive.
+        /// Radius \[m\], positive.
         radius: f64,
-        /// Polar angle of the beam's start [rad].
+        /// Polar angle of the beam's start \[rad\].
         from: f64,
-        /// Polar angle of the beam's end [rad].
+        /// Polar angle of the beam's end \[rad\].
         to: f64,
     },
-    /// A smooth curve through the given points [m], in order.
+    /// A smooth curve through the given points \[m\], in order.
     Points(Vec<[f64; 2]>),
 }
 
 /// What the section resists and weighs. `None`: the scene does not name it, so it is not simulated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Section {
-    /// EA [N].
+    /// EA \[N\].
     pub axial_stiffness: Option<f64>,
-    /// EI [N m²].
+    /// EI \[N m²\].
     pub bending_stiffness: Option<f64>,
-    /// ρA [kg/m].
+    /// ρA \[kg/m\].
     pub mass_per_length: Option<f64>,
 }
 
@@ -113,7 +113,7 @@ pub enum Nodes {
     Uniform(usize),
     /// `n` nodes at s_i = L/2 − L/2 cos((i−1)π/(n−1)).
     Chebyshev(usize),
-    /// Arc lengths [m], increasing from 0 to L.
+    /// Arc lengths \[m\], increasing from 0 to L.
     Given(Vec<f64>),
 }
 
@@ -168,7 +168,7 @@ pub struct GaussPoints {
 pub struct Place {
     /// Index of the beam.
     pub beam: usize,
-    /// Arc length [m].
+    /// Arc length \[m\].
     pub s: f64,
 }
 
@@ -179,7 +179,7 @@ pub struct Support {
     pub at: Place,
     /// What is held.
     pub fix: Fixed,
-    /// By how much the held quantities move until the load factor is 1: x [m], y [m], angle [rad].
+    /// By how much the held quantities move until the load factor is 1: x \[m\], y \[m\], angle \[rad\].
     pub displacement: Displacement,
 }
 
@@ -215,18 +215,18 @@ pub enum FixedRotation {
 /// Prescribed motion of a support.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Displacement {
-    /// Along x [m].
+    /// Along x \[m\].
     pub x: f64,
-    /// Along y [m].
+    /// Along y \[m\].
     pub y: f64,
-    /// Rotation [rad]; more than a full turn is meant as such.
+    /// Rotation \[rad\]; more than a full turn is meant as such.
     pub angle: f64,
 }
 
 /// What acts on the beams.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Load {
-    /// Concentrated force [N]; a follower turns with the section.
+    /// Concentrated force \[N\]; a follower turns with the section.
     Force {
         /// Where it acts.
         at: Place,
@@ -235,7 +235,7 @@ pub enum Load {
         /// Turns with the section.
         follower: bool,
     },
-    /// Concentrated moment [N m], counter-clockwise. In the plane a moment about z has no direction
+    /// Concentrated moment \[N m\], counter-clockwise. In the plane a moment about z has no direction
     /// that could follow, so there is no follower moment.
     Moment {
         /// Where it acts.
@@ -243,7 +243,7 @@ pub enum Load {
         /// Counter-clockwise.
         value: f64,
     },
-    /// Force per reference length [N/m] along a whole beam.
+    /// Force per reference length \[N/m\] along a whole beam.
     DistributedForce {
         /// Index of the beam.
         beam: usize,
@@ -254,7 +254,7 @@ pub enum Load {
     },
     /// Weight of every beam that has mass.
     Gravity {
-        /// [m/s²].
+        /// \[m/s²\].
         acceleration: [f64; 2],
     },
 }
@@ -318,16 +318,16 @@ pub struct ProbeTarget {
     pub probe: String,
     /// 0 for x, 1 for y.
     pub axis: usize,
-    /// [m].
+    /// \[m\].
     pub value: f64,
 }
 
 /// Settings of a dynamic analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dynamic {
-    /// Simulated time [s].
+    /// Simulated time \[s\].
     pub duration: f64,
-    /// Time between records [s].
+    /// Time between records \[s\].
     pub output_every: f64,
     /// How time advances.
     pub integrator: Integrator,
@@ -362,7 +362,7 @@ pub enum Integrator {
 /// How the steps of an integrator are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepControl {
-    /// All alike [s].
+    /// All alike \[s\].
     Fixed(f64),
     /// As long as this relative accuracy allows.
     Tolerance(f64),

@@ -12,7 +12,7 @@ use std::time::Instant;
 /// How far a computation is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Load factor or time [s] reached.
+    /// Load factor or time \[s\] reached.
     pub parameter: f64,
     /// Where it ends.
     pub target: f64,
@@ -55,7 +55,7 @@ pub enum RunError {
         cause: String,
         /// The beam on which the iteration went worst.
         beam: String,
-        /// Where on it [m].
+        /// Where on it \[m\].
         s: f64,
         /// What to try.
         advice: String,

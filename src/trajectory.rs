@@ -14,7 +14,7 @@ pub struct Trajectory {
     pub degrees_of_freedom: usize,
     /// Lines for the reader: what was simulated and how (name, value).
     pub settings: Vec<(String, String)>,
-    /// Load factors (statics), times [s] (dynamics) or mode numbers of the records, in order.
+    /// Load factors (statics), times \[s\] (dynamics) or mode numbers of the records, in order.
     pub parameter: Vec<f64>,
     /// Per probe, one sample per entry of `parameter`.
     pub probes: Vec<ProbeSeries>,
@@ -28,7 +28,7 @@ pub struct Trajectory {
     pub last: Vec<Shape>,
     /// One entry per attempted step.
     pub history: Vec<StepRecord>,
-    /// Natural frequencies [Hz], ascending; modal analysis only.
+    /// Natural frequencies \[Hz\], ascending; modal analysis only.
     pub frequencies: Vec<f64>,
     /// Critical load factors, ascending; buckling only.
     pub load_factors: Vec<f64>,
@@ -49,7 +49,7 @@ pub enum AnalysisKind {
     /// Equilibria; `parameter` is the load factor.
     #[default]
     Static,
-    /// Motion; `parameter` is the time [s].
+    /// Motion; `parameter` is the time \[s\].
     Dynamic,
     /// Small vibrations; `parameter` is the mode number.
     Modal,
@@ -69,25 +69,25 @@ pub struct ProbeSeries {
 /// The state of one point of a beam.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ProbeSample {
-    /// Position [m].
+    /// Position \[m\].
     pub x: f64,
-    /// Position [m].
+    /// Position \[m\].
     pub y: f64,
-    /// Direction of r' [rad], continuous along a run (not folded into ±π).
+    /// Direction of r' \[rad\], continuous along a run (not folded into ±π).
     pub angle: f64,
-    /// Curvature κ [1/m].
+    /// Curvature κ \[1/m\].
     pub curvature: f64,
     /// Axial strain ε by the beam's measure.
     pub strain: f64,
-    /// Velocity [m/s]; dynamics only.
+    /// Velocity \[m/s\]; dynamics only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vx: Option<f64>,
-    /// Velocity [m/s]; dynamics only.
+    /// Velocity \[m/s\]; dynamics only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vy: Option<f64>,
 }
 
-/// Energies [J].
+/// Energies \[J\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Energy {
     /// ½∫ EA ε² ds.
@@ -112,7 +112,7 @@ impl Energy {
 pub struct Frame {
     /// Load factor, time or mode number.
     pub parameter: f64,
-    /// Per beam: positions [m] at evenly spaced arc lengths.
+    /// Per beam: positions \[m\] at evenly spaced arc lengths.
     pub beams: Vec<Vec<[f64; 2]>>,
 }
 
@@ -121,28 +121,28 @@ pub struct Frame {
 pub struct Shape {
     /// Name of the beam.
     pub beam: String,
-    /// Arc lengths [m].
+    /// Arc lengths \[m\].
     pub s: Vec<f64>,
-    /// Positions [m].
+    /// Positions \[m\].
     pub x: Vec<f64>,
-    /// Positions [m].
+    /// Positions \[m\].
     pub y: Vec<f64>,
-    /// Direction of r' [rad], continuous along s.
+    /// Direction of r' \[rad\], continuous along s.
     pub angle: Vec<f64>,
     /// ε.
     pub strain: Vec<f64>,
-    /// κ [1/m].
+    /// κ \[1/m\].
     pub curvature: Vec<f64>,
-    /// Positions of the nodes [m].
+    /// Positions of the nodes \[m\].
     pub nodes: Vec<[f64; 2]>,
 }
 
 /// One attempted step.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct StepRecord {
-    /// Load factor or time [s] at the end of the step.
+    /// Load factor or time \[s\] at the end of the step.
     pub parameter: f64,
-    /// Step size in the load factor, along the path, or in time [s].
+    /// Step size in the load factor, along the path, or in time \[s\].
     pub step: f64,
     /// Whether it was kept.
     pub accepted: bool,
@@ -171,7 +171,7 @@ pub struct Statistics {
     pub factorizations: usize,
 }
 
-/// Wall time [s].
+/// Wall time \[s\].
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Seconds {
     /// Shape functions, tables, patterns.

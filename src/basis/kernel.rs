@@ -19,10 +19,10 @@ pub fn name(kernel: &Kernel) -> &'static str {
 pub fn describe(kernel: &Kernel) -> String {
     let name = name(kernel);
     match kernel {
-        Kernel::Multiquadric { q, shape } => format!("{name} with q = {q}, shape = {shape}"),
-        Kernel::Exponential { shape } => format!("{name} with shape = {shape}"),
-        Kernel::ThinPlateSpline { exponent } => format!("{name} with exponent = {exponent}"),
-        Kernel::Wendland { radius } => format!("{name} with radius = {radius}"),
+        Kernel::Multiquadric { q, shape } => format!("{name} with q = {q:?}, shape = {shape:?}"),
+        Kernel::Exponential { shape } => format!("{name} with shape = {shape:?}"),
+        Kernel::ThinPlateSpline { exponent } => format!("{name} with exponent = {exponent:?}"),
+        Kernel::Wendland { radius } => format!("{name} with radius = {radius:?}"),
     }
 }
 

@@ -20,7 +20,7 @@ pub struct Bend {
     reference: Vec<f64>,
 }
 
-/// κ = (r' × r'')/|r'|² [1/m].
+/// κ = (r' × r'')/|r'|² \[1/m\].
 #[inline(always)]
 pub fn curvature(first: &Vector2<f64>, second: &Vector2<f64>) -> f64 {
     (first.x * second.y - first.y * second.x) / first.norm_squared()
@@ -32,7 +32,7 @@ fn quarter_turn(v: &Vector2<f64>) -> Vector2<f64> {
 }
 
 impl Bend {
-    /// EI [N m²], and (r', r'') of the stress-free shape at the quadrature points (none: straight).
+    /// EI \[N m²\], and (r', r'') of the stress-free shape at the quadrature points (none: straight).
     pub fn new(bending_stiffness: f64, reference: &[[Vector2<f64>; 2]]) -> Self {
         let reference = reference.iter().map(|[first, second]| curvature(first, second)).collect();
         Self { bending_stiffness, reference }

@@ -6,7 +6,7 @@ use nalgebra::Matrix2;
 /// W = ½ ρA v·v, a density of the velocity field v = ṙ: its second derivative is the constant mass matrix.
 #[derive(Clone, Debug)]
 pub struct Inertia {
-    /// ρA [kg/m].
+    /// ρA \[kg/m\].
     pub mass_per_length: f64,
 }
 

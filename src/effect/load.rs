@@ -3,7 +3,7 @@
 use super::{Density, Gradient, Hessian};
 use nalgebra::{Matrix2, Vector2};
 
-/// A force of fixed direction, F [N] or [N/m]: W = −F·(r − r₀). Weight is such a force with F = ρA g.
+/// A force of fixed direction, F \[N\] or \[N/m\]: W = −F·(r − r₀). Weight is such a force with F = ρA g.
 #[derive(Clone, Debug)]
 pub struct DeadForce {
     force: Vector2<f64>,
@@ -97,13 +97,13 @@ impl Density<2> for FollowerForce {
     }
 }
 
-/// A moment M [N m], counter-clockwise: δW = −M δθ with θ = atan2(y', x').
+/// A moment M \[N m\], counter-clockwise: δW = −M δθ with θ = atan2(y', x').
 ///
 /// ∂θ/∂r' = J r'/|r'|², symmetric second derivative. Its work M θ is a potential only as long as θ is counted on
 /// through full turns, which no single state can tell; the energy is therefore reported with the loads' work.
 #[derive(Clone, Debug)]
 pub struct Moment {
-    /// Counter-clockwise [N m].
+    /// Counter-clockwise \[N m\].
     pub moment: f64,
 }
 

@@ -55,7 +55,7 @@ pub trait Density<const M: usize>: Send + Sync {
     /// Whether ∂²W/∂z∂z is more than zero; where it is not, no tangent is assembled.
     const HAS_TANGENT: bool = true;
 
-    /// W at quadrature point number `point` [J/m]; zero for what has no energy.
+    /// W at quadrature point number `point` \[J/m\]; zero for what has no energy.
     fn energy(&self, point: usize, z: &Gradient<M>) -> f64;
 
     /// ∂W/∂z.
@@ -125,7 +125,7 @@ pub trait Effect: Send + Sync {
     /// Whether its tangent is symmetric.
     fn is_symmetric(&self) -> bool;
 
-    /// U [J].
+    /// U \[J\].
     fn energy(&self, q: &[f64]) -> f64;
 
     /// `f += factor · ∂U/∂q`.

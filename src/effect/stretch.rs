@@ -75,7 +75,7 @@ pub struct Stretch<S> {
 }
 
 impl<S: Strain> Stretch<S> {
-    /// EA [N], and the gradients r' of the stress-free shape at the quadrature points (none: straight).
+    /// EA \[N\], and the gradients r' of the stress-free shape at the quadrature points (none: straight).
     pub fn new(axial_stiffness: f64, reference: &[Vector2<f64>]) -> Self {
         let reference = reference.iter().map(S::strain).collect();
         Self { axial_stiffness, reference, strain: std::marker::PhantomData }

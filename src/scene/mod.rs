@@ -42,7 +42,7 @@ pub use to_basis::{
     RPIM_KERNEL, RPIM_NEIGHBOURS, RPIM_POLYNOMIAL_TERMS, RPIM_SIDE_CONDITION,
 };
 
-/// Longest scene file that is read [bytes]: more than 10⁷ node places, and a bound for what is no file at all.
+/// Longest scene file that is read \[bytes\]: more than 10⁷ node places, and a bound for what is no file at all.
 const LONGEST: u64 = 1 << 29;
 
 /// A checked scene.

@@ -37,31 +37,31 @@ macro_rules! measures {
 }
 
 measures! {
-    /// A length or coordinate [m].
+    /// A length or coordinate \[m\].
     Length: "length", "m", "1.8 m", Dimension::new(1, 0, 0);
-    /// A duration [s].
+    /// A duration \[s\].
     Time: "time", "s", "10 ms", Dimension::new(0, 0, 1);
-    /// An angle [rad].
+    /// An angle \[rad\].
     Angle: "angle", "rad", "90 deg", Dimension::ANGLE;
     /// Young's modulus [Pa].
     Stress: "stress", "Pa", "68.95 GPa", Dimension::new(-1, 1, -2);
-    /// Area of a section [m²].
+    /// Area of a section \[m²\].
     Area: "area", "m^2", "2.5 cm^2", Dimension::new(2, 0, 0);
-    /// Second moment of area [m⁴].
+    /// Second moment of area \[m⁴\].
     SecondMoment: "second moment of area", "m^4", "0.13 cm^4", Dimension::new(4, 0, 0);
-    /// Mass per volume [kg/m³].
+    /// Mass per volume \[kg/m³\].
     Density: "density", "kg/m^3", "7.85 g/cm^3", Dimension::new(-3, 1, 0);
-    /// Force; also axial stiffness EA [N].
+    /// Force; also axial stiffness EA \[N\].
     Force: "force", "N", "3 kN", Dimension::new(1, 1, -2);
-    /// Bending stiffness EI [N m²].
+    /// Bending stiffness EI \[N m²\].
     BendingStiffness: "bending stiffness", "N m^2", "89.6 N m^2", Dimension::new(3, 1, -2);
-    /// Mass per length [kg/m].
+    /// Mass per length \[kg/m\].
     MassPerLength: "mass per length", "kg/m", "0.69 kg/m", Dimension::new(-1, 1, 0);
-    /// Moment [N m].
+    /// Moment \[N m\].
     Moment: "moment", "N m", "3 kN m", Dimension::new(2, 1, -2);
-    /// Force per length [N/m].
+    /// Force per length \[N/m\].
     ForcePerLength: "force per length", "N/m", "5 N/mm", Dimension::new(0, 1, -2);
-    /// Acceleration [m/s²].
+    /// Acceleration \[m/s²\].
     Acceleration: "acceleration", "m/s^2", "9.81 m/s^2", Dimension::new(1, 0, -2);
     /// A pure number.
     Ratio: "number", "", "0.5", Dimension::new(0, 0, 0);

@@ -39,7 +39,7 @@ pub(super) struct Size {
     pub memory: f64,
 }
 
-/// The discretisation that `basis` asks for, on a beam of the given length [m].
+/// The discretisation that `basis` asks for, on a beam of the given length \[m\].
 pub(super) fn discretization(
     beam: &str,
     basis: &Located<BasisTable>,

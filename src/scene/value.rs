@@ -114,7 +114,7 @@ pub enum At {
     Start,
     /// s = L.
     End,
-    /// s [m].
+    /// s \[m\].
     ArcLength(f64),
 }
 
@@ -250,7 +250,7 @@ impl<M: Measure> JsonSchema for Vector<M> {
 pub enum NodeList {
     /// This many.
     Count(u64),
-    /// At these arc lengths [m].
+    /// At these arc lengths \[m\].
     At(Vec<Located<Quantity<Length>>>),
 }
 

@@ -26,7 +26,7 @@ pub struct Modes {
     pub factorizations: usize,
 }
 
-/// Turn of a node by which the tangent is differenced [rad].
+/// Turn of a node by which the tangent is differenced \[rad\].
 const DIFFERENCE: f64 = 1e-3;
 
 /// The `count` lowest positive critical load factors.

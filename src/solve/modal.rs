@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 /// Vibrations, lowest first.
 #[derive(Clone, Debug, Default)]
 pub struct Modes {
-    /// f = ω/2π [Hz].
+    /// f = ω/2π \[Hz\].
     pub frequencies: Vec<f64>,
     /// Mode shapes as changes of the coordinates.
     pub shapes: Vec<Vec<f64>>,

@@ -78,7 +78,7 @@ pub enum Failure {
     /// Converged, but so far from the prediction that it may be another equilibrium than the one that continues the path.
     #[error("the solution lies {turn:.2} rad from the prediction, perhaps on another branch")]
     OtherBranch {
-        /// Largest turn of a node between prediction and solution [rad].
+        /// Largest turn of a node between prediction and solution \[rad\].
         turn: f64,
     },
     /// The limit of iterations was reached.

@@ -35,11 +35,11 @@ pub enum Parameter {
 
 /// Points kept for extrapolation: a cubic predictor.
 const MEMORY: usize = 4;
-/// Turn of the corrector that the step control aims at [rad].
+/// Turn of the corrector that the step control aims at \[rad\].
 const WANTED_TURN: f64 = 0.12;
-/// Turn of the corrector beyond which a converged step is not trusted [rad].
+/// Turn of the corrector beyond which a converged step is not trusted \[rad\].
 const LARGEST_TURN: f64 = 0.5;
-/// Predicted turn of any node in one step [rad].
+/// Predicted turn of any node in one step \[rad\].
 const LARGEST_STEP: f64 = 0.8;
 /// Smallest step, relative to the first one tried.
 const SMALLEST_STEP: f64 = 1e-9;
@@ -53,7 +53,7 @@ pub struct Stuck {
     pub step: f64,
     /// What went wrong with it.
     pub failure: Failure,
-    /// Arc length [m] along beam `beam` at which the last iterate changed most.
+    /// Arc length \[m\] along beam `beam` at which the last iterate changed most.
     pub at: (usize, f64),
 }
 

@@ -10,7 +10,7 @@ use crate::basis::BasisTable;
 /// What a row holds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Row {
-    /// Component `axis` of the position [m].
+    /// Component `axis` of the position \[m\].
     Position {
         /// 0 for x, 1 for y.
         axis: usize,
@@ -23,10 +23,10 @@ pub enum Row {
         axis: usize,
         /// r'₀.
         reference: [f64; 2],
-        /// φ [rad].
+        /// φ \[rad\].
         rotation: Ramp,
     },
-    /// The direction of the gradient [rad].
+    /// The direction of the gradient \[rad\].
     Direction(Ramp),
 }
 
@@ -74,8 +74,8 @@ impl Constraint {
             .sum()
     }
 
-    /// The number by which the row is multiplied so that its entries compare with those of the tangent: EA/L [N/m] for
-    /// a position, EA L [N m] for a gradient.
+    /// The number by which the row is multiplied so that its entries compare with those of the tangent: EA/L \[N/m\] for
+    /// a position, EA L \[N m\] for a gradient.
     pub fn scale(&self, stiffness: f64, length: f64) -> f64 {
         match self.row {
             Row::Position { .. } => stiffness / length,

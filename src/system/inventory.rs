@@ -53,7 +53,7 @@ pub struct BeamEntry {
     pub name: String,
     /// Nodes.
     pub nodes: usize,
-    /// Length [m].
+    /// Length \[m\].
     pub length: f64,
     /// Functions that are different from zero at a point.
     pub width: usize,

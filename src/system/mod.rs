@@ -61,9 +61,9 @@ pub enum SystemError {
         what: &'static str,
         /// The beam's name.
         beam: String,
-        /// Arc length asked for [m].
+        /// Arc length asked for \[m\].
         s: f64,
-        /// The beam's length [m].
+        /// The beam's length \[m\].
         length: f64,
     },
     /// A quantity is needed that the model does not give.
@@ -85,7 +85,7 @@ pub enum SystemError {
         what: &'static str,
         /// The beam's name.
         beam: String,
-        /// Where [m].
+        /// Where \[m\].
         s: f64,
     },
     /// The shape functions could not be built.
@@ -324,23 +324,23 @@ impl System {
         &self.reference
     }
 
-    /// Length of the longest beam [m]: the scale of positions.
+    /// Length of the longest beam \[m\]: the scale of positions.
     pub fn length(&self) -> f64 {
         self.length
     }
 
-    /// Largest EA [N], the scale of internal forces.
+    /// Largest EA \[N\], the scale of internal forces.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
 
-    /// By how much the internal forces on a node change when a position changes by its round-off [N]:
+    /// By how much the internal forces on a node change when a position changes by its round-off \[N\]:
     /// ε max(EA, EI/h²) L/h with the smallest spacing h of nodes.
     pub fn round_off(&self) -> f64 {
         self.round_off
     }
 
-    /// The order of magnitude of the lowest vibration's ω² [1/s²]: EI/(ρA L⁴), or for a string a small part of
+    /// The order of magnitude of the lowest vibration's ω² \[1/s²\]: EI/(ρA L⁴), or for a string a small part of
     /// EA/(ρA L²).
     pub fn lowest_vibration_scale(&self) -> f64 {
         self.lowest_vibration

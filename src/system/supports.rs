@@ -36,10 +36,10 @@ pub enum Hold {
     Gradient {
         /// r'₀.
         reference: [f64; 2],
-        /// The angle by which it is turned [rad].
+        /// The angle by which it is turned \[rad\].
         rotation: Ramp,
     },
-    /// The direction of a gradient [rad].
+    /// The direction of a gradient \[rad\].
     Direction(Ramp),
 }
 

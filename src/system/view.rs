@@ -8,16 +8,16 @@ use nalgebra::Vector2;
 /// Local fields at one arc length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fields {
-    /// r [m].
+    /// r \[m\].
     pub position: [f64; 2],
     /// r'.
     pub gradient: [f64; 2],
-    /// r'' [1/m].
+    /// r'' \[1/m\].
     pub second: [f64; 2],
 }
 
 impl Fields {
-    /// κ [1/m].
+    /// κ \[1/m\].
     pub fn curvature(&self) -> f64 {
         curvature(&Vector2::from(self.gradient), &Vector2::from(self.second))
     }
@@ -55,7 +55,7 @@ impl View {
         Ok(Self { table: basis.points(s, &[0, 1, 2])?, offset })
     }
 
-    /// Arc lengths [m].
+    /// Arc lengths \[m\].
     pub fn s(&self) -> &[f64] {
         &self.table.s
     }

@@ -66,7 +66,7 @@ fn a_wrong_scene_ends_with_2_and_writes_nothing() {
         assert_eq!(status(&output), 2, "{command}");
         assert!(output.stdout.is_empty());
         let text = stderr(&output);
-        assert!(text.contains("scene.toml:13:1: unknown key `elemnts`"), "{text}");
+        assert!(text.contains("scene.toml:14:1: unknown key `elemnts`"), "{text}");
         assert!(text.contains("did you mean `elements`?"), "{text}");
         assert_eq!(entries(folder.path()), ["scene.toml"]);
     }
@@ -93,7 +93,7 @@ fn an_unwritable_destination_ends_with_2_before_solving() {
 
 #[test]
 fn a_failed_run_leaves_no_directory() {
-    // No step of this size can be solved to this accuracy: the tolerance is below round-off.
+    // A moment that would roll the beam up three billion times, which three elements cannot follow.
     let folder = folder(&ROLL_UP.replace("value = 312.885175", "value = 1e12"));
     let output = ancf(folder.path(), &["run", "scene.toml"]);
     assert_eq!(status(&output), 1, "{}", stderr(&output));

@@ -219,7 +219,7 @@ proptest! {
     #[test]
     fn dead_forces_and_gravity(beam in beam(), noise in noise(), fx in -5.0..5.0, fy in -5.0..5.0, share in 0.0..1.0) {
         let s = share * free(&beam).beams()[0].basis.length();
-        let constant = move |scale: f64| -> Vec<[DualVec<f64, Dyn>; 2]> { vec![[DualVec::from_re(-fx * scale), DualVec::from_re(-fy * scale)]] };
+        let constant = move |scale: f64| vec![[fx, fy].map(|f: f64| DualVec::<f64, Dyn>::from_re(-f * scale))];
         let force = Load::Force { at: Place { beam: 0, s }, value: [fx, fy], follower: false };
         check_load(&beam, force, &noise, &[0], Some(s), |_, _| constant(1.0));
         let distributed = Load::DistributedForce { beam: 0, value: [fx, fy], follower: false };
