@@ -118,7 +118,7 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
                 observer(&Progress { parameter: load, target: 1.0, step, newton_iterations: iterations })
                     == Control::Continue
             };
-            let outcome = match &settings.arc_length {
+            let solution = match &settings.arc_length {
                 None => statics::solve(&system, settings, report),
                 Some(arc) => {
                     let probe = match &arc.until_probe {
@@ -127,7 +127,12 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
                             let found = look.probes.iter().find(|(name, ..)| *name == target.probe);
                             let (_, view, _) = found.ok_or_else(|| RunError::NoSuchProbe {
                                 probe: target.probe.clone(),
-                                known: look.probes.iter().map(|(n, ..)| n.as_str()).collect::<Vec<_>>().join(", "),
+                                known: look
+                                    .probes
+                                    .iter()
+                                    .map(|(n, ..)| n.as_str())
+                                    .collect::<Vec<_>>()
+                                    .join(", "),
                             })?;
                             Some((view.clone(), target.axis, target.value))
                         }
@@ -135,9 +140,9 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
                     statics::follow(&system, settings, &Target { arc, probe }, report)
                 }
             };
-            match outcome {
-                Ok(solution) => look.statics(&solution),
-                Err((stuck, solution)) => return Err(look.stuck(&stuck, &solution)),
+            match &solution.stuck {
+                None => look.statics(&solution),
+                Some(stuck) => return Err(look.stuck(stuck, &solution)),
             }
         }
         Analysis::Buckling { count } => look.buckling(&buckling::solve(&system, *count)?),
@@ -173,8 +178,7 @@ impl<'a> Look<'a> {
     fn new(model: &'a Model, system: &'a System) -> Result<Self, RunError> {
         let view = |beam: usize, s: &[f64]| {
             let part = &system.beams()[beam];
-            View::points(&part.basis, part.offset(), s)
-                .map_err(|source| SystemError::Basis { beam: part.name.clone(), source })
+            View::points(&part.basis, part.offset(), s).map_err(|e| SystemError::basis(&part.name, e))
         };
         let sampled = |count: usize| -> Result<Vec<View>, SystemError> {
             (0..system.beams().len())
@@ -202,7 +206,11 @@ impl<'a> Look<'a> {
             settings: self.settings(),
             undeformed: self.shape(reference),
             last: self.shape(reference),
-            probes: self.probes.iter().map(|(name, ..)| ProbeSeries { name: name.clone(), samples: vec![] }).collect(),
+            probes: self
+                .probes
+                .iter()
+                .map(|(name, ..)| ProbeSeries { name: name.clone(), samples: vec![] })
+                .collect(),
             ..Trajectory::default()
         }
     }
@@ -211,7 +219,10 @@ impl<'a> Look<'a> {
         let mut settings = Vec::new();
         for (beam, part) in self.model.beams.iter().zip(self.system.beams()) {
             let name = &beam.name;
-            settings.push((format!("beam {name}"), format!("{} m, {}", part.basis.length(), beam.discretization)));
+            settings.push((
+                format!("beam {name}"),
+                format!("{} m, {}", part.basis.length(), beam.discretization),
+            ));
             settings.push((
                 format!("beam {name}, strain"),
                 format!(

@@ -121,7 +121,12 @@ impl Density<1> for Moment {
     }
 
     #[inline(always)]
-    fn gradient_and_hessian(&self, point: usize, z: &Gradient<1>, _: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
         let (x, y) = (z[0].x, z[0].y);
         let inverse = 1.0 / z[0].norm_squared();
         let factor = -self.moment * inverse * inverse;

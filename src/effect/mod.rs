@@ -62,8 +62,12 @@ pub trait Density<const M: usize>: Send + Sync {
     fn gradient(&self, point: usize, z: &Gradient<M>) -> Gradient<M>;
 
     /// ∂W/∂z and ∂²W/∂z∂z, stress resultants in the latter extrapolated from the iterate `before`.
-    fn gradient_and_hessian(&self, point: usize, z: &Gradient<M>, before: &Gradient<M>)
-    -> (Gradient<M>, Hessian<M>);
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<M>,
+        before: &Gradient<M>,
+    ) -> (Gradient<M>, Hessian<M>);
 }
 
 /// What an effect is, for energies and inventories.

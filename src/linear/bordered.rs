@@ -52,10 +52,11 @@ impl Bordered {
             Some(earlier) if earlier.size == size => earlier.symbolic,
             _ => SymbolicLu::try_new(sparse.symbolic()).map_err(|_| singular)?,
         };
-        let lu = Lu::try_new_with_symbolic(symbolic.clone(), sparse.as_ref()).map_err(|error| match error {
-            faer::sparse::linalg::LuError::SymbolicSingular { index } => Singular { row: index },
-            faer::sparse::linalg::LuError::Generic(_) => singular,
-        })?;
+        let lu =
+            Lu::try_new_with_symbolic(symbolic.clone(), sparse.as_ref()).map_err(|error| match error {
+                faer::sparse::linalg::LuError::SymbolicSingular { index } => Singular { row: index },
+                faer::sparse::linalg::LuError::Generic(_) => singular,
+            })?;
         Ok(Self { symbolic, lu, size })
     }
 

@@ -92,7 +92,7 @@ pub fn largest_reciprocals(
         let aw = times_a(&w);
         let norm = dot(&w, &aw).max(0.0).sqrt();
         let scale = alpha.iter().chain(&beta).fold(0.0_f64, |m, a| m.max(a.abs()));
-        let exhausted = !(norm > 1e-14 * scale) || norm == 0.0;
+        let exhausted = norm.is_nan() || norm <= 1e-14 * scale || norm == 0.0;
         let m = vectors.len();
         if m > 0 && (exhausted || m >= limit || (m > count && m.is_multiple_of(5))) {
             let tridiagonal = faer::Mat::<f64>::from_fn(m, m, |i, j| match i.abs_diff(j) {
@@ -105,10 +105,8 @@ pub fn largest_reciprocals(
             let wanted: Vec<usize> =
                 (0..m).rev().filter(|&i| values[i] > 1e-13 * scale).take(count).collect();
             let last = if exhausted { 0.0 } else { norm };
-            let residual = wanted
-                .iter()
-                .map(|&i| (last * small[(m - 1, i)] / values[i]).abs())
-                .fold(0.0, f64::max);
+            let residual =
+                wanted.iter().map(|&i| (last * small[(m - 1, i)] / values[i]).abs()).fold(0.0, f64::max);
             if exhausted || m >= limit || (wanted.len() == count && residual < 1e-13) {
                 pairs.residual = residual;
                 for &i in &wanted {

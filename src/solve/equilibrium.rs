@@ -77,7 +77,8 @@ impl<'a> Equilibrium<'a> {
             }
             let g = constraint.value(load, &x[..n]);
             negative[n + r] = -unit * g;
-            g_max = g_max.max((unit * g).abs() / system.stiffness() * system.length().min(1.0 / system.length()));
+            g_max =
+                g_max.max((unit * g).abs() / system.stiffness() * system.length().min(1.0 / system.length()));
         }
         for (negative, force) in negative.iter_mut().zip(&self.force) {
             *negative = -force;
@@ -179,7 +180,7 @@ impl<'a> Equilibrium<'a> {
         for d in increment[..n].chunks_exact(4) {
             let size = (d[0].abs().max(d[1].abs()) * inverse).max(d[2].abs().max(d[3].abs()));
             // `max` would drop a NaN.
-            if !(size <= largest) {
+            if size > largest || size.is_nan() {
                 largest = size;
             }
         }

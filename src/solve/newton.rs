@@ -82,7 +82,9 @@ pub enum Failure {
         turn: f64,
     },
     /// The limit of iterations was reached.
-    #[error("no convergence within {iterations} iterations (the last increment is {last:.1e} of a beam length)")]
+    #[error(
+        "no convergence within {iterations} iterations (the last increment is {last:.1e} of a beam length)"
+    )]
     TooSlow {
         /// Iterations made.
         iterations: usize,

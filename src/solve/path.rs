@@ -173,14 +173,14 @@ impl<'e, 'a> Path<'e, 'a> {
         let point = self.points[0].clone();
         let mut negative = vec![0.0; n];
         let mut rate = vec![0.0; n];
-        self.equilibrium
-            .linearize(point.load, &point.x, &point.x, &mut negative, Some(&mut rate))
-            .map_err(|singular| Stuck {
+        self.equilibrium.linearize(point.load, &point.x, &point.x, &mut negative, Some(&mut rate)).map_err(
+            |singular| Stuck {
                 load: point.load,
                 step: 0.0,
                 failure: singular.into(),
                 at: self.place(singular.row),
-            })?;
+            },
+        )?;
         self.equilibrium.solve(point.load, &mut rate, true);
         self.points[0].unstable = self.equilibrium.unstable_directions();
         rate.push(1.0);
@@ -254,7 +254,12 @@ impl<'e, 'a> Path<'e, 'a> {
         pairs.fold(0.0, |turn: f64, (a, b)| turn.max((a[2] - b[2]).hypot(a[3] - b[3])))
     }
 
-    fn correct(&mut self, predicted: Point, target: f64, step: f64) -> Result<(Point, f64), (Failure, (usize, f64))> {
+    fn correct(
+        &mut self,
+        predicted: Point,
+        target: f64,
+        step: f64,
+    ) -> Result<(Point, f64), (Failure, (usize, f64))> {
         let mut record = Iterations::default();
         let before = self.last().clone();
         let mut point = predicted.clone();
@@ -289,7 +294,9 @@ impl<'e, 'a> Path<'e, 'a> {
         }
         let turn = self.turn(&point.x, &predicted.x);
         let outcome = match result {
-            Ok(()) if turn > LARGEST_TURN => Err((Failure::OtherBranch { turn }, self.worst(&point.x, &predicted.x))),
+            Ok(()) if turn > LARGEST_TURN => {
+                Err((Failure::OtherBranch { turn }, self.worst(&point.x, &predicted.x)))
+            }
             Ok(()) => Ok(turn),
             Err(failure) => Err((failure, self.worst(&point.x, &predicted.x))),
         };

@@ -18,6 +18,8 @@ pub struct Solution {
     pub events: Vec<Event>,
     /// Counts.
     pub statistics: Statistics,
+    /// Why the path ends before its target, if it does.
+    pub stuck: Option<Stuck>,
 }
 
 /// The tangent lost or regained definiteness.
@@ -44,19 +46,14 @@ pub type Observer<'o> = &'o mut dyn FnMut(f64, f64, &Statistics) -> bool;
 
 /// Solves for the full loads by adaptive load steps. `observe` is called with (load factor, step, counts) after every
 /// step and ends the analysis by returning false.
-///
-/// # Errors
-/// [`Stuck`], with what was found until then.
-pub fn solve(system: &System, settings: &Static, observe: Observer<'_>) -> Result<Solution, (Stuck, Solution)> {
+pub fn solve(system: &System, settings: &Static, observe: Observer<'_>) -> Solution {
     let mut equilibrium = Equilibrium::new(system);
     let mut solution = Solution::default();
     let newton = newton_settings(settings);
     let outcome = along_load(&mut equilibrium, settings, newton, &mut solution, observe);
     solution.statistics = equilibrium.statistics;
-    match outcome {
-        Ok(()) => Ok(solution),
-        Err(stuck) => Err((stuck, solution)),
-    }
+    solution.stuck = outcome.err();
+    solution
 }
 
 fn newton_settings(settings: &Static) -> Settings {
@@ -116,24 +113,14 @@ fn notice(path: &mut Path<'_, '_>, before: Option<usize>, point: &Point, events:
 }
 
 /// Follows the path by arc length until its target.
-///
-/// # Errors
-/// [`Stuck`], with what was found until then.
-pub fn follow(
-    system: &System,
-    settings: &Static,
-    target: &Target<'_>,
-    observe: Observer<'_>,
-) -> Result<Solution, (Stuck, Solution)> {
+pub fn follow(system: &System, settings: &Static, target: &Target<'_>, observe: Observer<'_>) -> Solution {
     let mut equilibrium = Equilibrium::new(system);
     let mut solution = Solution::default();
     let newton = newton_settings(settings);
     let outcome = along_arc(&mut equilibrium, target, newton, &mut solution, observe);
     solution.statistics = equilibrium.statistics;
-    match outcome {
-        Ok(()) => Ok(solution),
-        Err(stuck) => Err((stuck, solution)),
-    }
+    solution.stuck = outcome.err();
+    solution
 }
 
 fn along_arc(
@@ -175,7 +162,11 @@ fn along_arc(
                     let at = |x: &[f64]| view.fields(&x[..n]).position[*axis];
                     (at(&previous.x) < *value) != (at(&point.x) < *value)
                 });
-                let end = if load_reached { target.arc.until_load.and_then(|load| path.between(load)) } else { None };
+                let end = if load_reached {
+                    target.arc.until_load.and_then(|load| path.between(load))
+                } else {
+                    None
+                };
                 let point = end.unwrap_or(point);
                 solution.states.push((point.load, point.x[..n].to_vec()));
                 let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);

@@ -3,7 +3,8 @@
 use super::{BeamPart, Needs, System, SystemError};
 use crate::basis::{Basis, BasisError, BasisTable, Quadrature};
 use crate::effect::{
-    Bend, DeadForce, Density, Effect, Engineering, FollowerForce, Green, Inertia, Integral, Kind, Moment, Stretch,
+    Bend, DeadForce, Density, Effect, Engineering, FollowerForce, Green, Inertia, Integral, Kind, Moment,
+    Stretch,
 };
 use crate::model::{Beam, Load, Model, Place, StrainMeasure};
 use nalgebra::Vector2;
@@ -45,7 +46,7 @@ impl Builder<'_> {
         table: Result<BasisTable, BasisError>,
         density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
     ) -> Result<Box<dyn Effect>, SystemError> {
-        let table = table.map_err(|source| SystemError::Basis { beam: self.part.name.clone(), source })?;
+        let table = table.map_err(|e| SystemError::basis(&self.part.name, e))?;
         let fields = reference_fields::<M>(&table, self.part.offset(), self.reference);
         let density = density(fields);
         Ok(Box::new(Integral::new(kind, self.index, self.part.offset(), table, density)))
@@ -83,15 +84,16 @@ pub(super) fn add(system: &mut System, model: &Model, needs: Needs) -> Result<()
         }
         if let Some(ei) = beam.section.bending_stiffness {
             let table = basis.table(Quadrature::Gauss(beam.gauss_points.bend), &[1, 2]);
-            internal.push(builder.integral(Kind::Bend, table, |z| {
-                Bend::new(ei, if straight { &[] } else { &z })
-            })?);
+            internal.push(
+                builder.integral(Kind::Bend, table, |z| Bend::new(ei, if straight { &[] } else { &z }))?,
+            );
         }
         if needs.inertia {
             let mass_per_length =
                 beam.section.mass_per_length.ok_or_else(|| missing(beam, "mass per length", "inertia"))?;
             let table = basis.table(Quadrature::Gauss(mass_points(beam)), &[0]);
-            inertia.push(builder.integral(Kind::Inertia, table, |_: Vec<[_; 1]>| Inertia { mass_per_length })?);
+            inertia
+                .push(builder.integral(Kind::Inertia, table, |_: Vec<[_; 1]>| Inertia { mass_per_length })?);
         }
     }
     for load in &model.loads {
@@ -113,7 +115,9 @@ pub(super) fn add(system: &mut System, model: &Model, needs: Needs) -> Result<()
             }
             Load::Force { at, value, follower } => {
                 let (builder, basis) = place(system, "a force", at)?;
-                loads.push(force(&builder, Kind::Force, follower, value, |orders| basis.points(&[at.s], orders))?);
+                loads.push(force(&builder, Kind::Force, follower, value, |orders| {
+                    basis.points(&[at.s], orders)
+                })?);
             }
             Load::DistributedForce { beam, value, follower } => {
                 let (builder, basis) = place(system, "a distributed force", Place { beam, s: 0.0 })?;
@@ -133,7 +137,11 @@ pub(super) fn add(system: &mut System, model: &Model, needs: Needs) -> Result<()
     Ok(())
 }
 
-fn place<'a>(system: &'a System, what: &'static str, at: Place) -> Result<(Builder<'a>, &'a Basis), SystemError> {
+fn place<'a>(
+    system: &'a System,
+    what: &'static str,
+    at: Place,
+) -> Result<(Builder<'a>, &'a Basis), SystemError> {
     let part = system.part(what, at)?;
     Ok((Builder { index: at.beam, part, reference: &system.reference }, &part.basis))
 }

@@ -95,7 +95,7 @@ pub enum SystemError {
         beam: String,
         /// Why.
         #[source]
-        source: BasisError,
+        source: Box<BasisError>,
     },
     /// The centreline is not a curve.
     #[error("beam `{beam}`: {source}")]
@@ -106,6 +106,12 @@ pub enum SystemError {
         #[source]
         source: CurveError,
     },
+}
+
+impl SystemError {
+    pub(crate) fn basis(beam: &str, source: BasisError) -> Self {
+        Self::Basis { beam: beam.to_owned(), source: Box::new(source) }
+    }
 }
 
 /// A beam's part of the system.
@@ -159,7 +165,7 @@ impl System {
         let (mut stiffness, mut round_off) = (0.0_f64, 0.0_f64);
         for beam in &model.beams {
             let in_curve = |source| SystemError::Curve { beam: beam.name.clone(), source };
-            let in_basis = |source| SystemError::Basis { beam: beam.name.clone(), source };
+            let in_basis = |e| SystemError::basis(&beam.name, e);
             let curve = Curve::new(&beam.centreline).map_err(in_curve)?;
             let basis = Basis::new(&beam.discretization, curve.length()).map_err(in_basis)?;
             let first_node = reference.len() / 4;
@@ -232,11 +238,12 @@ impl System {
         let mut constraints = Vec::new();
         for support in supports {
             let part = self.part("a support", support.at)?;
-            let in_basis = |source| SystemError::Basis { beam: part.name.clone(), source };
+            let in_basis = |e| SystemError::basis(&part.name, e);
             let length = part.basis.length();
             let near = |node: &f64| (node - support.at.s).abs() <= 1e-12 * length;
-            let fields =
-                View::point(&part.basis, part.offset(), support.at.s).map_err(in_basis)?.fields(&self.reference);
+            let fields = View::point(&part.basis, part.offset(), support.at.s)
+                .map_err(in_basis)?
+                .fields(&self.reference);
             let (position, gradient) = (fields.position, fields.gradient);
             let angle = Ramp { start: gradient[1].atan2(gradient[0]), change: support.displacement.angle };
             let rotation = Ramp { start: 0.0, change: support.displacement.angle };
@@ -274,7 +281,11 @@ impl System {
                             add(pair + 1, Hold::Gradient { reference: gradient, rotation })
                         }
                     })
-                    .map_err(|what| SystemError::HeldTwice { what, beam: part.name.clone(), s: support.at.s })?;
+                    .map_err(|what| SystemError::HeldTwice {
+                        what,
+                        beam: part.name.clone(),
+                        s: support.at.s,
+                    })?;
             } else {
                 let mut rows: Vec<(usize, Row)> = components
                     .iter()

@@ -74,9 +74,7 @@ impl Held {
                 let (x, y) = (cosine * x - sine * y, sine * x + cosine * y);
                 [-y * rotation.change, x * rotation.change]
             }
-            Hold::Direction(angle) => {
-                [0.0, q[2 * self.pair].hypot(q[2 * self.pair + 1]) * angle.change]
-            }
+            Hold::Direction(angle) => [0.0, q[2 * self.pair].hypot(q[2 * self.pair + 1]) * angle.change],
         }
     }
 }

@@ -28,8 +28,10 @@ fn stderr(output: &Output) -> String {
 }
 
 fn entries(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
     names.sort();
     names
 }
@@ -75,7 +77,8 @@ fn a_wrong_scene_ends_with_2_and_writes_nothing() {
 #[test]
 fn a_wrong_override_ends_with_2() {
     let folder = folder(ROLL_UP);
-    let output = ancf(folder.path(), &["run", "scene.toml", "--set", "beam.cantilever.basis.ancf.elements=0"]);
+    let output =
+        ancf(folder.path(), &["run", "scene.toml", "--set", "beam.cantilever.basis.ancf.elements=0"]);
     assert_eq!(status(&output), 2);
     assert!(stderr(&output).contains("in the override `beam.cantilever.basis.ancf.elements=0`"));
     assert_eq!(entries(folder.path()), ["scene.toml"]);
@@ -110,7 +113,9 @@ fn check_tells_all_that_is_wrong() {
     let output = ancf(folder.path(), &["check", "bad.toml", "scene.toml", "absent.toml"]);
     assert_eq!(status(&output), 2);
     let text = stderr(&output);
-    for part in ["scene.toml: ok", "bad.toml:1:1: unknown key `nonsense`", "absent.toml: cannot read the scene"] {
+    for part in
+        ["scene.toml: ok", "bad.toml:1:1: unknown key `nonsense`", "absent.toml: cannot read the scene"]
+    {
         assert!(text.contains(part), "{part} in {text}");
     }
     assert_eq!(entries(folder.path()), ["bad.toml", "scene.toml"]);

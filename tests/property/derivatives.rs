@@ -11,7 +11,10 @@ use num_dual::{Dual2Vec, DualNum, DualVec, hessian, jacobian};
 use proptest::prelude::*;
 
 /// Local fields r⁽ᵒ⁾ of all points of a table, with their weights.
-fn fields<T: DualNum<Primitive = f64, InnerDual = f64>>(table: &BasisTable, q: &DVector<T>) -> Vec<(f64, Vec<[T; 2]>)> {
+fn fields<T: DualNum<Primitive = f64, InnerDual = f64>>(
+    table: &BasisTable,
+    q: &DVector<T>,
+) -> Vec<(f64, Vec<[T; 2]>)> {
     let mut out = Vec::new();
     for cell in &table.cells {
         let (weights, rows) = table.block(*cell);
@@ -44,8 +47,14 @@ fn curvature<T: DualNum<Primitive = f64, InnerDual = f64>>(z: &[[T; 2]]) -> T {
 }
 
 /// ½∫ EA (ε − ε₀)² + ½∫ EI (κ − κ₀)².
-fn elastic<T: DualNum<Primitive = f64, InnerDual = f64>>(beam: &Beam, basis: &Basis, reference: &[f64], q: &DVector<T>) -> T {
-    let table = |n: usize, orders: &[usize]| basis.table(Quadrature::Gauss(n), orders).expect("a legal table");
+fn elastic<T: DualNum<Primitive = f64, InnerDual = f64>>(
+    beam: &Beam,
+    basis: &Basis,
+    reference: &[f64],
+    q: &DVector<T>,
+) -> T {
+    let table =
+        |n: usize, orders: &[usize]| basis.table(Quadrature::Gauss(n), orders).expect("a legal table");
     let (first, both) = (table(beam.gauss_points.stretch, &[1]), table(beam.gauss_points.bend, &[1, 2]));
     let reference = DVector::from_column_slice(reference);
     let ea = beam.section.axial_stiffness.unwrap_or(0.0);
@@ -127,7 +136,10 @@ fn load_forces<T: DualNum<Primitive = f64, InnerDual = f64>>(
 }
 
 fn with_load(beam: &Beam, load: Load) -> System {
-    let elastic_free = Beam { section: ancf::model::Section { mass_per_length: Some(1.3), ..Default::default() }, ..beam.clone() };
+    let elastic_free = Beam {
+        section: ancf::model::Section { mass_per_length: Some(1.3), ..Default::default() },
+        ..beam.clone()
+    };
     let model = Model { beams: vec![elastic_free], supports: vec![], loads: vec![load], ..Model::default() };
     System::build(&model, Needs { inertia: false }).expect("a legal system")
 }
@@ -152,7 +164,8 @@ fn check_load(
     let q = perturbed(&system, 0.3, noise);
     let factor = 0.7;
     let (force, tangent) = assembled(&system, factor, &q);
-    let forces = |q: DVector<DualVec<f64, Dyn>>| load_forces(basis, &table, &q, &density) * DualVec::from_re(factor);
+    let forces =
+        |q: DVector<DualVec<f64, Dyn>>| load_forces(basis, &table, &q, &density) * DualVec::from_re(factor);
     let (expected, jacobian) = jacobian(forces, &DVector::from_column_slice(&q));
     close("load", &column(force), &column(expected), 1e-11);
     close("load tangent", &tangent, &jacobian, 1e-10);
@@ -265,8 +278,5 @@ proptest! {
 fn turned(force: [f64; 2], start: [f64; 2], now: &[DualVec<f64, Dyn>; 2]) -> [DualVec<f64, Dyn>; 2] {
     let angle = now[1].atan2(now[0].clone()) - start[1].atan2(start[0]);
     let (sine, cosine) = angle.sin_cos();
-    [
-        -(cosine.clone() * force[0] - sine.clone() * force[1]),
-        -(sine * force[0] + cosine * force[1]),
-    ]
+    [-(cosine.clone() * force[0] - sine.clone() * force[1]), -(sine * force[0] + cosine * force[1])]
 }

@@ -1,32 +1,36 @@
 //! Random models and states.
 
 use ancf::model::{
-    Beam, Centreline, Discretization, Fixed, FixedRotation, GaussPoints, Kernel, Model, Nodes, Place, Section,
-    SideCondition, StrainMeasure, Support,
+    Beam, Centreline, Discretization, Fixed, FixedRotation, GaussPoints, Kernel, Model, Nodes, Place,
+    Section, SideCondition, StrainMeasure, Support,
 };
 use ancf::system::{Needs, System};
 use proptest::prelude::*;
 
 /// Either discretisation with a few nodes.
 pub fn discretization() -> impl Strategy<Value = Discretization> {
-    let nodes = || prop_oneof![(2..7_usize).prop_map(Nodes::Uniform), (3..7_usize).prop_map(Nodes::Chebyshev)];
-    let rpim = (nodes(), 0.9..6.0, prop_oneof![Just(SideCondition::Plus), Just(SideCondition::Minus)], 0..3_usize)
-        .prop_map(|(nodes, shape, side_condition, neighbours)| Discretization::Rpim {
-            nodes,
-            kernel: Kernel::Multiquadric { q: 1.03, shape },
-            polynomial_terms: 2,
-            side_condition,
-            neighbours,
-        });
+    let nodes =
+        || prop_oneof![(2..7_usize).prop_map(Nodes::Uniform), (3..7_usize).prop_map(Nodes::Chebyshev)];
+    let rpim =
+        (nodes(), 0.9..6.0, prop_oneof![Just(SideCondition::Plus), Just(SideCondition::Minus)], 0..3_usize)
+            .prop_map(|(nodes, shape, side_condition, neighbours)| Discretization::Rpim {
+                nodes,
+                kernel: Kernel::Multiquadric { q: 1.03, shape },
+                polynomial_terms: 2,
+                side_condition,
+                neighbours,
+            });
     prop_oneof![nodes().prop_map(|nodes| Discretization::Ancf { nodes }), rpim]
 }
 
 /// Straight beams in any direction, and arcs.
 pub fn centreline() -> impl Strategy<Value = Centreline> {
     prop_oneof![
-        (-1.0..1.0, -1.0..1.0, 0.0..6.28, 0.5..3.0_f64).prop_map(|(x, y, angle, length): (f64, f64, f64, f64)| {
-            Centreline::Line { start: [x, y], end: [x + length * angle.cos(), y + length * angle.sin()] }
-        }),
+        (-1.0..1.0, -1.0..1.0, 0.0..std::f64::consts::TAU, 0.5..3.0_f64).prop_map(
+            |(x, y, angle, length): (f64, f64, f64, f64)| {
+                Centreline::Line { start: [x, y], end: [x + length * angle.cos(), y + length * angle.sin()] }
+            }
+        ),
         (0.5..2.0, -3.0..3.0, 0.3..2.0_f64, any::<bool>()).prop_map(|(radius, from, opening, turn)| {
             let to = if turn { from + opening } else { from - opening };
             Centreline::Arc { center: [0.3, -0.2], radius, from, to }

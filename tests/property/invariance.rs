@@ -2,8 +2,8 @@
 
 use super::generators::{beam, clamp, free, noise, perturbed};
 use ancf::model::{
-    Analysis, Beam, Centreline, Discretization, Kernel, Load, Model, Nodes, Place, Probe, Section, SideCondition, Static,
-    StrainMeasure,
+    Analysis, Beam, Centreline, Discretization, Kernel, Load, Model, Nodes, Place, Probe, Section,
+    SideCondition, Static, StrainMeasure,
 };
 use ancf::run::{Control, run};
 use ancf::trajectory::Trajectory;
@@ -111,7 +111,8 @@ fn cantilever(metre: f64, newton: f64, angle: f64, discretization: Discretizatio
 }
 
 fn solved(model: &Model) -> Trajectory {
-    run(model, &Analysis::Static(Static::default()), &mut |_| Control::Continue).expect("a plain cantilever has an equilibrium")
+    run(model, &Analysis::Static(Static::default()), &mut |_| Control::Continue)
+        .expect("a plain cantilever has an equilibrium")
 }
 
 fn both() -> impl Strategy<Value = Discretization> {

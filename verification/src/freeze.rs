@@ -20,7 +20,8 @@ pub fn freeze(suite: &Suite, cases: &[String], check: bool) -> Result<bool, Fail
         let case = suite.case(&name)?;
         for (key, oracle) in &case.text.oracle {
             eprint!("{name}/{key} … ");
-            let (table, provenance) = make(suite, &case, key, oracle, &python).map_err(|e| format!("{name}/{key}: {e}"))?;
+            let (table, provenance) =
+                make(suite, &case, key, oracle, &python).map_err(|e| format!("{name}/{key}: {e}"))?;
             let path = suite.table_path(&name, key);
             let known = Table::read(&path).ok();
             let agrees = std::fs::read_to_string(&path).is_ok_and(|old| old == table);
@@ -114,5 +115,7 @@ fn store(path: &Path, text: &str) -> Result<(), Failure> {
         std::fs::create_dir_all(folder)?;
     }
     let beside = path.with_extension("new");
-    std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path)).map_err(|e| format!("{}: {e}", path.display()).into())
+    std::fs::write(&beside, text)
+        .and_then(|()| std::fs::rename(&beside, path))
+        .map_err(|e| format!("{}: {e}", path.display()).into())
 }

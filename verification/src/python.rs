@@ -42,7 +42,8 @@ impl Python {
     /// not there or no longer the same.
     pub fn prepare(suite: &Suite) -> Result<Self, Failure> {
         let requirements = suite.oracles_folder().join("requirements.txt");
-        let wanted = sha256(&std::fs::read(&requirements).map_err(|e| format!("{}: {e}", requirements.display()))?);
+        let wanted =
+            sha256(&std::fs::read(&requirements).map_err(|e| format!("{}: {e}", requirements.display()))?);
         let folder = suite.root.join("target").join("verification").join("python");
         let program = folder.join("bin").join("python3");
         let stamp = folder.join("requirements.sha256");
@@ -51,7 +52,9 @@ impl Python {
             run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder)).map_err(|error| {
                 format!("{error}\nThe oracles need python3 with its venv module (Debian: apt install python3-venv).")
             })?;
-            run(Command::new(&program).args(["-m", "pip", "install", "--quiet", "--requirement"]).arg(&requirements))?;
+            run(Command::new(&program)
+                .args(["-m", "pip", "install", "--quiet", "--requirement"])
+                .arg(&requirements))?;
             std::fs::write(&stamp, wanted).map_err(|e| format!("{}: {e}", stamp.display()))?;
         }
         let output = run(Command::new(&program).args(["-c", FACTS]).arg(&requirements))?;
@@ -69,7 +72,8 @@ impl Python {
 
 fn run(command: &mut Command) -> Result<Output, Failure> {
     let name = format!("{command:?}");
-    let output = command.stdin(Stdio::null()).output().map_err(|e| format!("{name} cannot be started: {e}"))?;
+    let output =
+        command.stdin(Stdio::null()).output().map_err(|e| format!("{name} cannot be started: {e}"))?;
     if output.status.success() {
         Ok(output)
     } else {

@@ -26,7 +26,9 @@ pub fn audit(suite: &Suite) -> Result<Vec<String>> {
     }
     for name in &names {
         match suite.case(name) {
-            Ok(case) => problems.extend(audit_case(suite, &case)?.into_iter().map(|p| format!("{name}: {p}"))),
+            Ok(case) => {
+                problems.extend(audit_case(suite, &case)?.into_iter().map(|p| format!("{name}: {p}")))
+            }
             Err(error) => problems.push(error.to_string()),
         }
     }
@@ -69,7 +71,11 @@ fn audit_case(suite: &Suite, case: &Case) -> Result<Vec<String>> {
         let table = match suite.table(&case.name, name) {
             Ok(table) => table,
             Err(Error::Read { path, .. }) => {
-                problems.push(format!("{} is missing; `verify freeze {}` makes it", path.display(), case.name));
+                problems.push(format!(
+                    "{} is missing; `verify freeze {}` makes it",
+                    path.display(),
+                    case.name
+                ));
                 continue;
             }
             Err(error) => {

@@ -364,7 +364,8 @@ impl Case {
     /// Reads `folder/case.toml`.
     pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join("case.toml");
-        let text = std::fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
+        let text =
+            std::fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
         let text: CaseText = toml::from_str(&text)
             .map_err(|error| Error::Format { path: path.clone(), message: error.to_string() })?;
         let name = folder.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -411,7 +412,10 @@ impl Case {
             if let Some(oracle) = &check.oracle
                 && !self.text.oracle.contains_key(oracle)
             {
-                return Err(at(format!("no [oracle.{oracle}]; there are: {}", list(self.text.oracle.keys()))));
+                return Err(at(format!(
+                    "no [oracle.{oracle}]; there are: {}",
+                    list(self.text.oracle.keys())
+                )));
             }
             if check.why.trim().is_empty() {
                 return Err(at("`why` must say why this tolerance".to_owned()));

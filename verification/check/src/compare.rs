@@ -58,7 +58,8 @@ impl Verdict {
     fn of(error: f64, allowed: Option<f64>, at_least: Option<f64>, last_digit: Option<f64>) -> Self {
         // a bound met to round-off of decimal fractions is met: 0.00354 − 0.00353 is 1e-5
         let under = |limit: f64| error <= limit * (1.0 + 1e-9);
-        let pass = allowed.is_none_or(under) && at_least.is_none_or(|least| error >= least) && error.is_finite();
+        let pass =
+            allowed.is_none_or(under) && at_least.is_none_or(|least| error >= least) && error.is_finite();
         let beyond = last_digit.is_some_and(|digit| !under(digit));
         Self { allowed, at_least, pass, beyond_last_digit: pass && beyond, problem: None }
     }
@@ -83,10 +84,12 @@ impl Outcome {
     /// Ours and the reference, where both are single numbers.
     pub fn numbers(&self) -> Option<(f64, f64)> {
         match (self.ours.as_slice(), self.reference.as_slice()) {
-            ([ours], [reference]) if self.abscissa.is_empty() => match (ours.as_slice(), reference.as_slice()) {
-                ([ours], [reference]) => Some((*ours, *reference)),
-                _ => None,
-            },
+            ([ours], [reference]) if self.abscissa.is_empty() => {
+                match (ours.as_slice(), reference.as_slice()) {
+                    ([ours], [reference]) => Some((*ours, *reference)),
+                    _ => None,
+                }
+            }
             _ => None,
         }
     }
@@ -129,7 +132,8 @@ fn one(examined: &Examined, number: usize, check: &Check) -> std::result::Result
     let (_, runs) = examined.runs(check.run.as_deref())?;
     let mut outcomes = Vec::new();
     for (index, run) in runs.iter().enumerate().filter(|(_, run)| run.member.is(&check.only)) {
-        let outcome = member(examined, number, check, index, run).map_err(|e| format!("[{}] {e}", run.label))?;
+        let outcome =
+            member(examined, number, check, index, run).map_err(|e| format!("[{}] {e}", run.label))?;
         outcomes.push(outcome);
     }
     if outcomes.is_empty() {
@@ -152,9 +156,14 @@ fn member(
     index: usize,
     run: &Run,
 ) -> std::result::Result<Outcome, String> {
-    let quantities =
-        check.quantity.all().iter().map(|q| run.member.fill(q)).collect::<std::result::Result<Vec<_>, _>>()?;
-    let ours = quantities.iter().map(|q| values(q, &run.result)).collect::<std::result::Result<Vec<_>, _>>()?;
+    let quantities = check
+        .quantity
+        .all()
+        .iter()
+        .map(|q| run.member.fill(q))
+        .collect::<std::result::Result<Vec<_>, _>>()?;
+    let ours =
+        quantities.iter().map(|q| values(q, &run.result)).collect::<std::result::Result<Vec<_>, _>>()?;
     let over = match &check.abscissa {
         None => None,
         Some(quantity) => {
@@ -194,9 +203,11 @@ fn member(
             let wanted = filled(&check.rows, run)?;
             let rows = table.matching(&wanted)?;
             let columns = match &check.column {
-                Some(columns) => {
-                    columns.all().iter().map(|c| run.member.fill(c)).collect::<std::result::Result<Vec<_>, _>>()?
-                }
+                Some(columns) => columns
+                    .all()
+                    .iter()
+                    .map(|c| run.member.fill(c))
+                    .collect::<std::result::Result<Vec<_>, _>>()?,
                 None => quantities.iter().map(|q| q.rsplit('.').next().unwrap_or(q).to_owned()).collect(),
             };
             let theirs = columns
@@ -236,7 +247,9 @@ fn member(
                             value.curve().ok_or_else(|| format!("`{name}` is one number, no curve"))?;
                         let abscissa = over.as_deref().unwrap_or(abscissa);
                         for (point, &at) in outcome.ours.iter_mut().zip(&outcome.abscissa) {
-                            point.push(interpolated(abscissa, values, at).map_err(|e| format!("`{name}`: {e}"))?);
+                            point.push(
+                                interpolated(abscissa, values, at).map_err(|e| format!("`{name}`: {e}"))?,
+                            );
                         }
                     }
                 }
@@ -359,7 +372,10 @@ fn rate(
         let n = run.member.fill(&format!("{{{}}}", order.against))?;
         let n: f64 = n.parse().map_err(|_| format!("`{}` is no number: `{n}`", order.against))?;
         if !(n > 0.0 && outcome.error > 0.0) {
-            return Err(format!("a rate needs positive numbers: {} = {n}, error = {}", order.against, outcome.error));
+            return Err(format!(
+                "a rate needs positive numbers: {} = {n}, error = {}",
+                order.against, outcome.error
+            ));
         }
         points.push((n.ln(), outcome.error.ln()));
     }

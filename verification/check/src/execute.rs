@@ -104,12 +104,15 @@ fn run(case: &Case, member: &Member) -> std::result::Result<quantity::Result, St
     let scene = Scene::load(&case.folder.join(&member.scene), &member.set).map_err(|e| chain(&e))?;
     if member.interpolate {
         let [beam] = scene.model().beams.as_slice() else {
-            return Err(format!("interpolation looks at one beam; the scene has {}", scene.model().beams.len()));
+            return Err(format!(
+                "interpolation looks at one beam; the scene has {}",
+                scene.model().beams.len()
+            ));
         };
         return Ok(quantity::Result::Interpolated(Box::new(interpolate(beam)?)));
     }
-    let trajectory =
-        ancf::run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue).map_err(|error| chain(&error))?;
+    let trajectory = ancf::run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
+        .map_err(|error| chain(&error))?;
     Ok(quantity::Result::Solved(Box::new(trajectory)))
 }
 

@@ -55,7 +55,9 @@ fn fill(template: &str, variables: &IndexMap<String, String>, depth: usize) -> R
         let (before, after) = rest.split_at(open);
         out.push_str(before);
         // TOML's inline tables use braces too; a variable is a plain name between them
-        let close = after.find('}').filter(|&c| c > 1 && after[1..c].chars().all(|c| c.is_alphanumeric() || c == '_'));
+        let close = after
+            .find('}')
+            .filter(|&c| c > 1 && after[1..c].chars().all(|c| c.is_alphanumeric() || c == '_'));
         let Some(close) = close else {
             out.push('{');
             rest = &after[1..];
@@ -102,7 +104,9 @@ pub fn members(family: &Family) -> Result<Vec<Member>, String> {
                 .over
                 .values()
                 .zip(&point)
-                .flat_map(|(axis, &p)| axis.iter().filter_map(move |(k, v)| Some((k.clone(), v.get(p)?.to_string()))))
+                .flat_map(|(axis, &p)| {
+                    axis.iter().filter_map(move |(k, v)| Some((k.clone(), v.get(p)?.to_string())))
+                })
                 .collect();
             let mut member = Member {
                 axes: family.over.values().map(|axis| axis.keys().cloned().collect()).collect(),
@@ -148,7 +152,11 @@ mod tests {
     #[test]
     fn unknown_and_circular_variables_and_ragged_axes_are_refused() {
         assert!(members(&family(r#"set = ["{nowhere}"]"#)).is_err_and(|e| e.contains("{nowhere}")));
-        assert!(members(&family("set = ['{a}']\nover.x = { a = ['{a}'] }")).is_err_and(|e| e.contains("itself")));
-        assert!(members(&family("over.x = { a = [1, 2], b = [1] }")).is_err_and(|e| e.contains("equal length")));
+        assert!(
+            members(&family("set = ['{a}']\nover.x = { a = ['{a}'] }")).is_err_and(|e| e.contains("itself"))
+        );
+        assert!(
+            members(&family("over.x = { a = [1, 2], b = [1] }")).is_err_and(|e| e.contains("equal length"))
+        );
     }
 }

@@ -48,11 +48,8 @@ fn strain_and_curvature(measure: StrainMeasure, d: [f64; 2], dd: [f64; 2]) -> (f
 pub fn interpolate(beam: &Beam) -> Result<Interpolation, String> {
     let exact = Curve::new(&beam.centreline).map_err(|e| e.to_string())?;
     let basis = Basis::new(&beam.discretization, exact.length()).map_err(|e| e.to_string())?;
-    let coefficients: Vec<[f64; 2]> = basis
-        .nodes()
-        .iter()
-        .flat_map(|&s| [exact.position(s), exact.tangent(s)])
-        .collect();
+    let coefficients: Vec<[f64; 2]> =
+        basis.nodes().iter().flat_map(|&s| [exact.position(s), exact.tangent(s)]).collect();
 
     let energy = |stiffness: Option<f64>, points: usize, density: &dyn Fn(f64, f64) -> f64| match stiffness {
         None => Ok(None),
@@ -68,7 +65,8 @@ pub fn interpolate(beam: &Beam) -> Result<Interpolation, String> {
     };
     let section = &beam.section;
     let stretch = energy(section.axial_stiffness, beam.gauss_points.stretch, &|strain, _| strain * strain)?;
-    let bend = energy(section.bending_stiffness, beam.gauss_points.bend, &|_, curvature| curvature * curvature)?;
+    let bend =
+        energy(section.bending_stiffness, beam.gauss_points.bend, &|_, curvature| curvature * curvature)?;
 
     let s: Vec<f64> = (0..PLACES).map(|i| exact.length() * i as f64 / (PLACES - 1) as f64).collect();
     let table = basis.points(&s, &[0, 1, 2]).map_err(|e| e.to_string())?;

@@ -77,13 +77,13 @@ impl Values {
 
 /// The top of the parabola through the first record that exceeds both its neighbours, and these.
 fn first_maximum(abscissa: &[f64], values: &[f64]) -> std::result::Result<f64, String> {
-    let top = values
-        .windows(3)
-        .position(|w| matches!(w, [a, b, c] if b >= a && b > c))
-        .ok_or_else(|| "the series rises or falls throughout: it has no maximum between its ends".to_owned())?;
-    let (Some(&[x0, x1, x2]), Some(&[y0, y1, y2])) =
-        (abscissa.get(top..top + 3).and_then(|w| w.first_chunk()), values.get(top..top + 3).and_then(|w| w.first_chunk()))
-    else {
+    let top = values.windows(3).position(|w| matches!(w, [a, b, c] if b >= a && b > c)).ok_or_else(|| {
+        "the series rises or falls throughout: it has no maximum between its ends".to_owned()
+    })?;
+    let (Some(&[x0, x1, x2]), Some(&[y0, y1, y2])) = (
+        abscissa.get(top..top + 3).and_then(|w| w.first_chunk()),
+        values.get(top..top + 3).and_then(|w| w.first_chunk()),
+    ) else {
         return Err("the abscissa is shorter than the series".to_owned());
     };
     // Newton's form: y1 + d1 (x − x1) + d2 (x − x1)(x − x0)
@@ -202,7 +202,9 @@ fn statistic(t: &Trajectory, name: &str) -> std::result::Result<Values, String> 
 fn interpolated(words: &[&str], i: &Interpolation) -> std::result::Result<Values, String> {
     let along = |values: &[f64]| Values::Shape { abscissa: i.s.clone(), values: values.to_vec() };
     match words {
-        ["interpolated", "stretch"] => i.stretch.map(Values::Number).ok_or_else(|| "the beam has no EA".to_owned()),
+        ["interpolated", "stretch"] => {
+            i.stretch.map(Values::Number).ok_or_else(|| "the beam has no EA".to_owned())
+        }
         ["interpolated", "bend"] => i.bend.map(Values::Number).ok_or_else(|| "the beam has no EI".to_owned()),
         ["interpolated", "distance"] => Ok(Values::Number(i.distance)),
         ["interpolated", "s"] => Ok(along(&i.s)),
@@ -210,7 +212,8 @@ fn interpolated(words: &[&str], i: &Interpolation) -> std::result::Result<Values
         ["interpolated", "y"] => Ok(along(&i.y)),
         ["interpolated", "strain"] => Ok(along(&i.strain)),
         ["interpolated", "curvature"] => Ok(along(&i.curvature)),
-        _ => Err("an interpolation has interpolated.{stretch, bend, distance, s, x, y, strain, curvature}".to_owned()),
+        _ => Err("an interpolation has interpolated.{stretch, bend, distance, s, x, y, strain, curvature}"
+            .to_owned()),
     }
 }
 

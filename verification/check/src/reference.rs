@@ -74,7 +74,9 @@ impl Table {
             reader.headers().map_err(|e| format(path, e.to_string()))?.iter().map(str::to_owned).collect();
         let rows = reader
             .records()
-            .map(|record| Ok(record.map_err(|e| format(path, e.to_string()))?.iter().map(str::to_owned).collect()))
+            .map(|record| {
+                Ok(record.map_err(|e| format(path, e.to_string()))?.iter().map(str::to_owned).collect())
+            })
             .collect::<Result<Vec<Vec<String>>>>()?;
         let source = provenance_path(path);
         let provenance = toml::from_str(&read(&source)?).map_err(|e| format(&source, e.to_string()))?;

@@ -70,7 +70,8 @@ pub fn draw(frame: &Frame, traces: &[Trace]) -> Result<Drawing, Failure> {
     let drawn: Vec<Vec<(f64, f64)>> = traces
         .iter()
         .map(|t| {
-            let mapped = t.points.iter().map(|&(x, y)| (map(x, frame.logarithmic.0), map(y, frame.logarithmic.1)));
+            let mapped =
+                t.points.iter().map(|&(x, y)| (map(x, frame.logarithmic.0), map(y, frame.logarithmic.1)));
             mapped.filter(|(x, y)| x.is_finite() && y.is_finite()).collect()
         })
         .collect();

@@ -51,8 +51,8 @@ pub fn write(suite: &Suite, out: &Path, cases: &[String]) -> Result<bool, Failur
     let names = chosen(suite, cases)?;
     let problems = audit(suite)?;
     let entries = run_all(suite, &names);
-    let passed = problems.is_empty()
-        && entries.iter().all(|e| e.examined.as_ref().is_ok_and(Examined::passed));
+    let passed =
+        problems.is_empty() && entries.iter().all(|e| e.examined.as_ref().is_ok_and(Examined::passed));
 
     let date = now();
     let machine = machine();
@@ -104,7 +104,13 @@ pub fn write(suite: &Suite, out: &Path, cases: &[String]) -> Result<bool, Failur
             }
         }
     }
-    eprintln!("{} cases: {} passed, {} failed · {}", entries.len(), count.0, count.1, out.join("index.html").display());
+    eprintln!(
+        "{} cases: {} passed, {} failed · {}",
+        entries.len(),
+        count.0,
+        count.1,
+        out.join("index.html").display()
+    );
     Ok(passed)
 }
 

@@ -177,8 +177,15 @@ fn case_view(suite: &Suite, entry: &Entry) -> CaseView {
 
 /// The README without its heading and source, which the page shows elsewhere.
 fn sketch_and_goal(readme: &str) -> String {
-    let kept: Vec<&str> = readme.split("\n\n").filter(|p| !p.starts_with("# ") && !p.starts_with("**Source.**")).collect();
-    kept.join("\n\n").replace("**Goal.** ", "").replace("```\n", "").replace("```", "").replace('`', "").trim_end().to_owned()
+    let kept: Vec<&str> =
+        readme.split("\n\n").filter(|p| !p.starts_with("# ") && !p.starts_with("**Source.**")).collect();
+    kept.join("\n\n")
+        .replace("**Goal.** ", "")
+        .replace("```\n", "")
+        .replace("```", "")
+        .replace('`', "")
+        .trim_end()
+        .to_owned()
 }
 
 fn oracles(examined: &Examined) -> Vec<OracleView> {
@@ -213,8 +220,10 @@ fn worst(examined: &Examined) -> Vec<WorstView> {
         .into_iter()
         .filter_map(|class| {
             let of_class = || examined.outcomes.iter().filter(move |o| o.class == class);
-            let orders: Vec<String> =
-                of_class().filter(|o| o.is_rate()).filter_map(|o| Some(format!("{:.2}", o.numbers()?.0))).collect();
+            let orders: Vec<String> = of_class()
+                .filter(|o| o.is_rate())
+                .filter_map(|o| Some(format!("{:.2}", o.numbers()?.0)))
+                .collect();
             let urgency = |o: &&Outcome| if o.verdict.passed() { o.margin().unwrap_or(99.0) } else { -99.0 };
             let rates_last = |o: &&Outcome| !o.is_rate() && o.verdict.allowed.is_some();
             let pick = of_class()
@@ -347,14 +356,21 @@ fn error_drawing(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> (
         let Ok((_, runs)) = examined.runs(check.run.as_deref()) else { return (None, String::new()) };
         for outcome in outcomes.iter().filter(|o| !o.is_rate()) {
             let Some(run) = outcome.run.and_then(|k| runs.get(k)) else { continue };
-            let Some(n) = run.member.variables.get(&order.against).and_then(|n| n.parse::<f64>().ok()) else { continue };
+            let Some(n) = run.member.variables.get(&order.against).and_then(|n| n.parse::<f64>().ok()) else {
+                continue;
+            };
             let label = run.member.label_without(&order.against);
             let label = if label.is_empty() { "error".to_owned() } else { label };
             add(&mut traces, label, (n, outcome.error));
         }
         let marks: Vec<Trace> = traces
             .iter()
-            .map(|t: &Trace| Trace { line: ancf_check::case::Line::Points, points: t.points.clone(), label: t.label.clone(), color: t.color })
+            .map(|t: &Trace| Trace {
+                line: ancf_check::case::Line::Points,
+                points: t.points.clone(),
+                label: t.label.clone(),
+                color: t.color,
+            })
             .collect();
         traces.extend(marks);
         let frame = Frame { x: order.against.as_str(), y: "error", equal: false, logarithmic: (true, true) };
@@ -368,7 +384,10 @@ fn error_drawing(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> (
             }
         }
         let along = check.along.as_deref().unwrap_or("s");
-        (Frame { x: along, y: "difference", equal: false, logarithmic: (false, true) }, format!("Difference along {along}."))
+        (
+            Frame { x: along, y: "difference", equal: false, logarithmic: (false, true) },
+            format!("Difference along {along}."),
+        )
     };
     if traces.is_empty() {
         return (None, String::new());
@@ -411,13 +430,14 @@ fn traces(examined: &Examined, curves: &[Curve]) -> Result<Vec<Trace>, String> {
                 same.map_or_else(|| traces.iter().map(|t| t.color + 1).max().unwrap_or(0) % 7, |t| t.color)
             })
         };
-        let reference = |rows: &[(String, ancf_check::case::Scalar)]| -> Result<Option<Vec<(f64, f64)>>, String> {
-            let Some(oracle) = &curve.oracle else { return Ok(None) };
-            let table = examined.tables.get(oracle).ok_or_else(|| format!("no table of `{oracle}`"))?;
-            let rows = table.matching(rows)?;
-            let (x, y) = (table.numbers(&curve.x, &rows)?, table.numbers(&curve.y, &rows)?);
-            Ok(Some(x.into_iter().zip(y).collect()))
-        };
+        let reference =
+            |rows: &[(String, ancf_check::case::Scalar)]| -> Result<Option<Vec<(f64, f64)>>, String> {
+                let Some(oracle) = &curve.oracle else { return Ok(None) };
+                let table = examined.tables.get(oracle).ok_or_else(|| format!("no table of `{oracle}`"))?;
+                let rows = table.matching(rows)?;
+                let (x, y) = (table.numbers(&curve.x, &rows)?, table.numbers(&curve.y, &rows)?);
+                Ok(Some(x.into_iter().zip(y).collect()))
+            };
         if curve.oracle.is_some() && curve.run.is_none() {
             let rows: Vec<_> = curve.rows.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
             let label = curve.label.clone().unwrap_or_else(|| "reference".to_owned());
@@ -437,7 +457,8 @@ fn traces(examined: &Examined, curves: &[Curve]) -> Result<Vec<Trace>, String> {
                 None => {
                     let of = |quantity: &str| -> Result<Vec<f64>, String> {
                         let found = values(quantity, &run.result)?;
-                        let (_, list) = found.curve().ok_or_else(|| format!("`{quantity}` is one number, no curve"))?;
+                        let (_, list) =
+                            found.curve().ok_or_else(|| format!("`{quantity}` is one number, no curve"))?;
                         Ok(list.to_vec())
                     };
                     of(&curve.x)?.into_iter().zip(of(&curve.y)?).collect()
