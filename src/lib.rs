@@ -67,7 +67,7 @@
 //!     strain: StrainMeasure::Green,
 //!     discretization: Discretization::Rpim {
 //!         nodes: Nodes::Uniform(12),
-//!         kernel: Kernel::Multiquadric { q: 1.03, shape: 3.3 },
+//!         kernel: Kernel::Multiquadric { q: 1.03, shape: 5.0 },
 //!         polynomial_terms: 2,
 //!         side_condition: SideCondition::Plus,
 //!         neighbours: 2,

@@ -106,19 +106,25 @@ class Beam:
         return result
 
 
+def derivative(residual, unknown, value):
+    """Jacobian by one-sided differences: 14 of the 30 digits are right."""
+    n = len(unknown)
+    jacobian = matrix(n, n)
+    for j in range(n):
+        h = mpf(10) ** -14 * (1 + abs(unknown[j]))
+        moved = list(unknown)
+        moved[j] += h
+        for i, v in enumerate(residual(moved)):
+            jacobian[i, j] = (v - value[i]) / h
+    return jacobian
+
+
 def newton(residual, guess):
-    """Root of a vector function by Newton's method with one-sided differences at 30 digits."""
+    """Root of a vector function by Newton's method with differences at 30 digits."""
     unknown = [mpf(v) for v in guess]
     value = residual(unknown)
     for _ in range(60):
-        n = len(unknown)
-        jacobian = matrix(n, n)
-        for j in range(n):
-            h = mpf(10) ** -14 * (1 + abs(unknown[j]))
-            moved = list(unknown)
-            moved[j] += h
-            for i, v in enumerate(residual(moved)):
-                jacobian[i, j] = (v - value[i]) / h
+        jacobian = derivative(residual, unknown, value)
         step = lu_solve(jacobian, -matrix(value))
         size, scale = max(abs(v) for v in step), mpf(1)
         while True:
@@ -336,13 +342,16 @@ def deep_arch():
         second = beam.integrate((*first[:5], first[5] + load), half)[-1]
         return first, second
 
-    def at(base, tangent, t, guess=None):
-        """The point of the path whose projection on the tangent through `base` is t."""
+    def constraint(base, tangent, t):
+        """Zero at the point of the path whose projection on the tangent through `base` is t."""
         def residual(u):
             _, end = march(u)
             along = sum((a - b) * c for a, b, c in zip(u, base, tangent)) - t
             return [end[0] - right[0], end[1] - right[1], end[3], along]
-        return newton(residual, guess or [b + t * c for b, c in zip(base, tangent)])
+        return residual
+
+    def at(base, tangent, t, guess=None):
+        return newton(constraint(base, tangent, t), guess or [b + t * c for b, c in zip(base, tangent)])
 
     def unit(v):
         size = sqrt(sum(a * a for a in v))
@@ -351,7 +360,7 @@ def deep_arch():
     record = [[mpf(0)] * 4]
     tangent = [mpf(0), mpf(0), mpf(0), mpf(1)]
     while len(record) < 3 or record[-1][3] > record[-2][3]:
-        record.append(at(record[-1], tangent, mpf("0.5")))
+        record.append(at(record[-1], tangent, mpf(1)))
         tangent = unit([a - b for a, b in zip(record[-1], record[-2])])
         crown = march(record[-1])[0]
         print(f"crown at ({nstr(crown[0], 5)}, {nstr(crown[1], 5)}): P = {nstr(record[-1][3], 8)}", file=sys.stderr)
@@ -360,15 +369,15 @@ def deep_arch():
     tangent = unit([a - b for a, b in zip(record[-1], base)])
     place = {"u": record[-2]}
 
-    def slope(t):  # dP/dt by central differences of fourth order
-        d = mpf(10) ** -5
+    def slope(t):
+        """dP/dt by the implicit function theorem: J du/dt = (0, 0, 0, 1)."""
         place["u"] = at(base, tangent, t, place["u"])
-        p = [at(base, tangent, t + k * d, place["u"])[3] for k in (-2, -1, 1, 2)]
-        return (p[0] - 8 * p[1] + 8 * p[2] - p[3]) / (12 * d)
+        residual = constraint(base, tangent, t)
+        return lu_solve(derivative(residual, place["u"], residual(place["u"])), matrix([0, 0, 0, 1]))[3]
 
     low, high = mpf(0), sum((a - b) * c for a, b, c in zip(record[-1], base, tangent))
     values = slope(low), slope(high)
-    for _ in range(40):  # regula falsi (Illinois); the maximum forgives the square of what is left
+    for _ in range(40):  # regula falsi (Illinois); the load forgives the square of what is left
         t = (low * values[1] - high * values[0]) / (values[1] - values[0])
         v = slope(t)
         print(f"dP/dt = {nstr(v, 5)}", file=sys.stderr)
@@ -381,7 +390,8 @@ def deep_arch():
         high = t
     limit = at(base, tangent, t, place["u"])
     crown = march(limit)[0]
-    show(["load", "factor", "crown_x", "crown_y", "crown_angle"], [[limit[3], limit[3] / 10, *crown[:3]]])
+    place = [nstr(v, 12) for v in crown[:3]]  # of first order in what is left of the slope
+    show(["load", "factor", "crown_x", "crown_y", "crown_angle"], [[limit[3], limit[3] / 10, *place]])
 
 
 CASES = {

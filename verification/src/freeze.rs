@@ -51,8 +51,7 @@ fn make(
     let mut inputs = IndexMap::new();
     let mut note = |path: &Path| -> Result<(), Failure> {
         let bytes = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        let name = path.strip_prefix(&suite.root).unwrap_or(path).to_string_lossy().replace('\\', "/");
-        inputs.insert(name, sha256(&bytes));
+        inputs.insert(suite.short(path), sha256(&bytes));
         Ok(())
     };
     let (table, tool, command) = match (&oracle.script, &oracle.transcribed) {

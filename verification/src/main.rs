@@ -28,6 +28,9 @@ enum Command {
         /// Folder of the report
         #[arg(short, long, default_value = "target/verification")]
         out: PathBuf,
+        /// An earlier report.json: show what has changed; exit status 1 if a digit was lost
+        #[arg(long, value_name = "JSON")]
+        against: Option<PathBuf>,
         /// Cases; all if none is named
         cases: Vec<String>,
     },
@@ -44,7 +47,7 @@ enum Command {
 fn main() -> ExitCode {
     let suite = Suite::here();
     let outcome = match Arguments::parse().command {
-        Command::Report { out, cases } => report::write(&suite, &out, &cases),
+        Command::Report { out, against, cases } => report::write(&suite, &out, against.as_deref(), &cases),
         Command::Freeze { check, cases } => freeze::freeze(&suite, &cases, check),
     };
     match outcome {

@@ -73,7 +73,7 @@ fn audit_case(suite: &Suite, case: &Case) -> Result<Vec<String>> {
             Err(Error::Read { path, .. }) => {
                 problems.push(format!(
                     "{} is missing; `verify freeze {}` makes it",
-                    path.display(),
+                    suite.short(&path),
                     case.name
                 ));
                 continue;
@@ -93,26 +93,32 @@ fn audit_case(suite: &Suite, case: &Case) -> Result<Vec<String>> {
             let path = provenance_path(&table.path);
             problems.push(format!(
                 "{} says something else than [oracle.{name}]; `verify freeze {}` mends it",
-                path.display(),
+                suite.short(&path),
                 case.name
             ));
         }
-        changed(&table.path, &provenance.csv_sha256, "`verify freeze` alone writes it", &mut problems)?;
+        changed(
+            suite,
+            &table.path,
+            &provenance.csv_sha256,
+            "`verify freeze` alone writes it",
+            &mut problems,
+        )?;
         let remedy = format!("`verify freeze {}` makes the table from it anew", case.name);
         for (input, hash) in &provenance.inputs {
-            changed(&suite.root.join(input), hash, &remedy, &mut problems)?;
+            changed(suite, &suite.root.join(input), hash, &remedy, &mut problems)?;
         }
     }
     Ok(problems)
 }
 
 /// Notes a file whose contents have not the hash.
-fn changed(path: &Path, hash: &str, remedy: &str, problems: &mut Vec<String>) -> Result<()> {
+fn changed(suite: &Suite, path: &Path, hash: &str, remedy: &str, problems: &mut Vec<String>) -> Result<()> {
     match std::fs::read(path) {
         Ok(bytes) if sha256(&bytes) == hash => {}
-        Ok(_) => problems.push(format!("{} has changed since it was recorded; {remedy}", path.display())),
+        Ok(_) => problems.push(format!("{} has changed since it was recorded; {remedy}", suite.short(path))),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            problems.push(format!("{} is missing; {remedy}", path.display()));
+            problems.push(format!("{} is missing; {remedy}", suite.short(path)));
         }
         Err(source) => return Err(Error::Read { path: path.to_owned(), source }),
     }

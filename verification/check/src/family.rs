@@ -4,6 +4,9 @@ use indexmap::IndexMap;
 
 use crate::case::{Family, Scalar};
 
+/// The variable that names the point of an axis for the reader.
+const LABEL: &str = "label";
+
 /// One run of a family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Member {
@@ -27,7 +30,7 @@ impl Member {
         fill(template, &self.variables, 0)
     }
 
-    /// The member in one line, such as `nodes = 4, column = ancf_uniform`: of each axis its first variable.
+    /// The member in one line, such as `nodes = 4, RPIM`: of each axis its variable `label`, or else its first.
     pub fn label(&self) -> String {
         self.label_without("")
     }
@@ -36,8 +39,11 @@ impl Member {
     pub fn label_without(&self, except: &str) -> String {
         let axes = self.axes.iter().filter(|names| !names.iter().any(|n| n == except));
         let parts: Vec<_> = axes
-            .filter_map(|names| names.first())
-            .filter_map(|name| Some(format!("{name} = {}", self.variables.get(name)?)))
+            .filter_map(|names| {
+                let name = names.iter().find(|n| *n == LABEL).or(names.first())?;
+                let value = self.variables.get(name)?;
+                Some(if name == LABEL { value.clone() } else { format!("{name} = {value}") })
+            })
             .collect();
         parts.join(", ")
     }
@@ -83,7 +89,12 @@ fn fill(template: &str, variables: &IndexMap<String, String>, depth: usize) -> R
 /// All members, the last axis running fastest.
 pub fn members(family: &Family) -> Result<Vec<Member>, String> {
     let mut lengths = Vec::new();
+    let mut seen: Vec<&String> = Vec::new();
     for (name, axis) in &family.over {
+        if let Some(twice) = axis.keys().find(|variable| seen.contains(variable)) {
+            return Err(format!("the axis `{name}` has the variable `{twice}`, which another axis has too"));
+        }
+        seen.extend(axis.keys());
         let mut sizes = axis.values().map(Vec::len);
         let length = sizes.next().unwrap_or(0);
         if length == 0 || sizes.any(|s| s != length) {
@@ -154,6 +165,10 @@ mod tests {
         assert!(members(&family(r#"set = ["{nowhere}"]"#)).is_err_and(|e| e.contains("{nowhere}")));
         assert!(
             members(&family("set = ['{a}']\nover.x = { a = ['{a}'] }")).is_err_and(|e| e.contains("itself"))
+        );
+        assert!(
+            members(&family("over.x = { a = [1] }\nover.y = { a = [1] }"))
+                .is_err_and(|e| e.contains("another axis"))
         );
         assert!(
             members(&family("over.x = { a = [1, 2], b = [1] }")).is_err_and(|e| e.contains("equal length"))

@@ -33,6 +33,11 @@ impl Suite {
         self.root.join("reference_data")
     }
 
+    /// A path as seen from the root of the repository.
+    pub fn short(&self, path: &Path) -> String {
+        path.strip_prefix(&self.root).unwrap_or(path).to_string_lossy().replace('\\', "/")
+    }
+
     /// Names of the case folders, in alphabetical order.
     pub fn names(&self) -> Result<Vec<String>> {
         folders(&self.cases_folder())

@@ -60,9 +60,11 @@ const PALETTE: [RGBColor; 8] = [
     RGBColor(40, 40, 40),
 ];
 
-const WIDTH: f64 = 640.0;
+const WIDTH: f64 = 540.0;
 /// What axes and labels take of the width and of the height.
 const BORDER: (f64, f64) = (86.0, 62.0);
+/// The library rounds to whole pixels; it draws this many times larger, and the page shows it at its size.
+const FINE: u32 = 8;
 
 /// Draws curves. Points that cannot be drawn (not finite, or not positive on a logarithmic axis) are left out.
 pub fn draw(frame: &Frame, traces: &[Trace]) -> Result<Drawing, Failure> {
@@ -82,10 +84,10 @@ pub fn draw(frame: &Frame, traces: &[Trace]) -> Result<Drawing, Failure> {
     let mut xs = range(all().map(|p| p.0));
     let mut ys = range(all().map(|p| p.1));
     let inner = WIDTH - BORDER.0;
-    let mut height = 300.0;
+    let mut height = 270.0;
     if frame.equal {
         let natural = inner * (ys.1 - ys.0) / (xs.1 - xs.0);
-        height = natural.clamp(140.0, 460.0);
+        height = natural.clamp(120.0, 440.0);
         let wanted = height / inner;
         if (ys.1 - ys.0) / (xs.1 - xs.0) > wanted {
             widen(&mut xs, (ys.1 - ys.0) / wanted);
@@ -93,17 +95,17 @@ pub fn draw(frame: &Frame, traces: &[Trace]) -> Result<Drawing, Failure> {
             widen(&mut ys, (xs.1 - xs.0) * wanted);
         }
     }
-    let size = (WIDTH as u32, (height + BORDER.1) as u32);
+    let size = (WIDTH as u32 * FINE, (height + BORDER.1) as u32 * FINE);
 
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         let mut chart = ChartBuilder::on(&root)
-            .margin(8)
-            .x_label_area_size(46)
-            .y_label_area_size(70)
+            .margin(8 * FINE)
+            .x_label_area_size(46 * FINE)
+            .y_label_area_size(70 * FINE)
             .build_cartesian_2d(xs.0..xs.1, ys.0..ys.1)?;
-        let text = ("sans-serif", 13).into_font().color(&RGBColor(60, 60, 60));
+        let text = ("sans-serif", 13 * FINE).into_font().color(&RGBColor(60, 60, 60));
         let horizontal = |v: &f64| tick(*v, xs.1 - xs.0, frame.logarithmic.0);
         let vertical = |v: &f64| tick(*v, ys.1 - ys.0, frame.logarithmic.1);
         chart
@@ -116,26 +118,30 @@ pub fn draw(frame: &Frame, traces: &[Trace]) -> Result<Drawing, Failure> {
             .y_label_formatter(&vertical)
             .label_style(text.clone())
             .axis_desc_style(text)
-            .axis_style(RGBColor(120, 120, 120))
-            .bold_line_style(RGBColor(225, 225, 225))
+            .axis_style(RGBColor(120, 120, 120).stroke_width(FINE))
+            .set_all_tick_mark_size(5 * FINE)
+            .bold_line_style(RGBColor(225, 225, 225).stroke_width(FINE))
             .light_line_style(WHITE)
             .draw()?;
         for (trace, points) in traces.iter().zip(&drawn) {
             let color = color(trace.color);
             match trace.line {
                 Line::Solid => {
-                    chart.draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2)))?;
+                    chart
+                        .draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2 * FINE)))?;
                 }
                 Line::Dashed => {
                     chart.draw_series(DashedLineSeries::new(
                         points.iter().copied(),
-                        7,
-                        5,
-                        color.stroke_width(1),
+                        6 * FINE,
+                        5 * FINE,
+                        color.stroke_width(3 * FINE / 2),
                     ))?;
                 }
                 Line::Points => {
-                    chart.draw_series(points.iter().map(|&p| Circle::new(p, 3, color.stroke_width(1))))?;
+                    chart.draw_series(
+                        points.iter().map(|&p| Circle::new(p, 3 * FINE, color.stroke_width(FINE))),
+                    )?;
                 }
             }
         }
@@ -188,10 +194,15 @@ fn tick(value: f64, span: f64, logarithmic: bool) -> String {
             return format!("1e{decade}");
         }
         // an axis shorter than a decade needs its numbers all the same
-        return if span < 1.5 { format!("{:.2e}", 10f64.powf(value)) } else { String::new() };
+        let number = 10f64.powf(value);
+        return match (span < 1.5, (0.1..1000.0).contains(&number)) {
+            (false, _) => String::new(),
+            (true, true) => format!("{number:.1}"),
+            (true, false) => format!("{number:.1e}"),
+        };
     }
     let value = if value.abs() < 1e-9 * span { 0.0 } else { value };
-    if span < 1e-3 || span > 1e5 {
+    if !(1e-3..=1e5).contains(&span) {
         return format!("{value:.1e}");
     }
     let decimals = (1.0 - span.log10()).ceil().clamp(0.0, 6.0) as usize;

@@ -1,5 +1,6 @@
 //! The report: every case run today, beside its references.
 
+mod before;
 mod figure;
 mod page;
 
@@ -12,6 +13,7 @@ use ancf_check::{Examined, Outcome, Suite, audit, examine};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
+use self::before::Before;
 use crate::{Failure, chosen};
 
 /// A case as it came out.
@@ -46,9 +48,11 @@ struct JsonCase<'a> {
     outcomes: &'a [Outcome],
 }
 
-/// Runs the cases and writes `index.html` and `report.json` into `out`. The answer is whether every claim holds.
-pub fn write(suite: &Suite, out: &Path, cases: &[String]) -> Result<bool, Failure> {
+/// Runs the cases and writes `index.html` and `report.json` into `out`. The answer is whether every claim holds, and
+/// no error is ten times what it was in the report `against`.
+pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]) -> Result<bool, Failure> {
     let names = chosen(suite, cases)?;
+    let before = against.map(Before::read).transpose()?;
     let problems = audit(suite)?;
     let entries = run_all(suite, &names);
     let passed =
@@ -76,7 +80,7 @@ pub fn write(suite: &Suite, out: &Path, cases: &[String]) -> Result<bool, Failur
             .collect(),
     };
     std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
-    let html = page::render(suite, &entries, &problems, &date, &machine)?;
+    let html = page::render(suite, &entries, &problems, before.as_ref(), &date, &machine)?;
     for (name, text) in [("report.json", serde_json::to_string_pretty(&json)?), ("index.html", html)] {
         let path = out.join(name);
         std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -86,9 +90,15 @@ pub fn write(suite: &Suite, out: &Path, cases: &[String]) -> Result<bool, Failur
         eprintln!("files: {problem}");
     }
     let mut count = (0, 0);
+    let mut lost = false;
     for entry in &entries {
         match &entry.examined {
             Ok(examined) => {
+                let gained = before.as_ref().and_then(|b| b.gained(&entry.name, examined.outcomes.iter()));
+                if let Some(digits) = gained.filter(|&digits| digits <= -1.0) {
+                    lost = true;
+                    eprintln!("LOST {:.1} digits in {} since the report compared with", -digits, entry.name);
+                }
                 for outcome in &examined.outcomes {
                     if outcome.verdict.passed() {
                         count.0 += 1;
@@ -111,7 +121,7 @@ pub fn write(suite: &Suite, out: &Path, cases: &[String]) -> Result<bool, Failur
         count.1,
         out.join("index.html").display()
     );
-    Ok(passed)
+    Ok(passed && !lost)
 }
 
 /// Runs cases on all cores; cases are independent of each other.

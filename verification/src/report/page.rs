@@ -7,6 +7,7 @@ use ancf_check::{Examined, Outcome, Suite};
 use askama::Template;
 
 use super::Entry;
+use super::before::Before;
 use super::figure::{Drawing, Frame, Trace, draw};
 use crate::Failure;
 
@@ -20,6 +21,8 @@ struct Page<'a> {
     passed: usize,
     failed: usize,
     beyond: usize,
+    /// Day of the report that this one is compared with.
+    before: Option<&'a str>,
     cases: Vec<CaseView>,
 }
 
@@ -28,7 +31,7 @@ struct CaseView {
     title: String,
     claim: String,
     source: String,
-    readme: String,
+    readme: Vec<Paragraph>,
     pass: bool,
     error: Option<String>,
     oracles: Vec<OracleView>,
@@ -48,7 +51,15 @@ struct WorstView {
     allowed: String,
     margin: String,
     order: String,
+    trend: String,
+    lost: bool,
     pass: bool,
+}
+
+/// A part of a README.
+struct Paragraph {
+    sketch: bool,
+    text: String,
 }
 
 struct OracleView {
@@ -115,16 +126,18 @@ pub fn render(
     suite: &Suite,
     entries: &[Entry],
     problems: &[String],
+    before: Option<&Before>,
     date: &str,
     machine: &str,
 ) -> Result<String, Failure> {
-    let cases: Vec<CaseView> = entries.iter().map(|entry| case_view(suite, entry)).collect();
+    let cases: Vec<CaseView> = entries.iter().map(|entry| case_view(suite, entry, before)).collect();
     let outcomes = || entries.iter().filter_map(|e| e.examined.as_ref().ok()).flat_map(|e| &e.outcomes);
     let page = Page {
         version: env!("CARGO_PKG_VERSION"),
         date,
         machine,
         problems,
+        before: before.map(|b| b.date.as_str()),
         passed: outcomes().filter(|o| o.verdict.passed()).count(),
         failed: outcomes().filter(|o| !o.verdict.passed()).count()
             + entries.iter().filter(|e| e.examined.is_err()).count(),
@@ -134,9 +147,9 @@ pub fn render(
     Ok(page.render()?)
 }
 
-fn case_view(suite: &Suite, entry: &Entry) -> CaseView {
+fn case_view(suite: &Suite, entry: &Entry, before: Option<&Before>) -> CaseView {
     let readme = std::fs::read_to_string(suite.cases_folder().join(&entry.name).join("README.md"));
-    let readme = sketch_and_goal(&readme.unwrap_or_default());
+    let readme = paragraphs(&readme.unwrap_or_default());
     let seconds = format!("{:.2} s", entry.took.as_secs_f64());
     match &entry.examined {
         Err(error) => CaseView {
@@ -165,7 +178,7 @@ fn case_view(suite: &Suite, entry: &Entry) -> CaseView {
                 pass: examined.passed(),
                 error: None,
                 oracles: oracles(examined),
-                worst: worst(examined),
+                worst: worst(examined, before),
                 checks: text.check.iter().enumerate().map(|(k, c)| check_view(examined, k, c)).collect(),
                 figures: text.figure.iter().map(|f| figure_view(examined, f)).collect(),
                 seconds,
@@ -175,17 +188,24 @@ fn case_view(suite: &Suite, entry: &Entry) -> CaseView {
     }
 }
 
-/// The README without its heading and source, which the page shows elsewhere.
-fn sketch_and_goal(readme: &str) -> String {
-    let kept: Vec<&str> =
-        readme.split("\n\n").filter(|p| !p.starts_with("# ") && !p.starts_with("**Source.**")).collect();
-    kept.join("\n\n")
-        .replace("**Goal.** ", "")
-        .replace("```\n", "")
-        .replace("```", "")
-        .replace('`', "")
-        .trim_end()
-        .to_owned()
+/// The README without its heading and source, which the page shows elsewhere: paragraphs, and sketches between fences.
+fn paragraphs(readme: &str) -> Vec<Paragraph> {
+    let mut parts = Vec::new();
+    for (k, block) in readme.split("```").enumerate() {
+        if k % 2 == 1 {
+            parts.push(Paragraph { sketch: true, text: block.trim_matches('\n').to_owned() });
+            continue;
+        }
+        let kept = block
+            .split("\n\n")
+            .map(str::trim)
+            .filter(|p| !p.is_empty() && !p.starts_with("# ") && !p.starts_with("**Source.**"));
+        parts.extend(kept.map(|p| Paragraph {
+            sketch: false,
+            text: p.replace("**Goal.** ", "").replace(['`', '*'], "").replace('\n', " "),
+        }));
+    }
+    parts
 }
 
 fn oracles(examined: &Examined) -> Vec<OracleView> {
@@ -212,7 +232,7 @@ fn oracles(examined: &Examined) -> Vec<OracleView> {
         .collect()
 }
 
-fn worst(examined: &Examined) -> Vec<WorstView> {
+fn worst(examined: &Examined, before: Option<&Before>) -> Vec<WorstView> {
     let mut classes: Vec<Option<Class>> = examined.outcomes.iter().map(|o| o.class).collect();
     classes.sort();
     classes.dedup();
@@ -231,7 +251,16 @@ fn worst(examined: &Examined) -> Vec<WorstView> {
                 .min_by(|a, b| urgency(a).total_cmp(&urgency(b)))
                 .or_else(|| of_class().min_by(|a, b| urgency(a).total_cmp(&urgency(b))))?;
             let oracle = pick.oracle.as_ref().and_then(|o| examined.tables.get(o));
+            let change = before.and_then(|b| b.gained(&examined.case.name, of_class()));
             Some(WorstView {
+                trend: change.map_or_else(String::new, |digits| {
+                    if digits.abs() < 0.05 {
+                        "=".to_owned()
+                    } else {
+                        format!("{digits:+.1}").replace('-', "−")
+                    }
+                }),
+                lost: change.is_some_and(|digits| digits <= -1.0),
                 class: class.map_or("bound", Class::word),
                 oracle: oracle.map_or_else(String::new, |t| t.provenance.title.clone()),
                 quantity: pick.quantity.clone(),
@@ -328,7 +357,7 @@ fn grid(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Option<Gri
 }
 
 fn line_view(outcome: &Outcome, check: &Check) -> LineView {
-    let fine = check.last_digit.or(outcome.verdict.allowed).unwrap_or(1e-6) / 10.0;
+    let fine = check.last_digit.or(outcome.verdict.allowed).unwrap_or(outcome.error).max(1e-15) / 10.0;
     let scaled = if check.per.is_some() { fine * largest(&outcome.reference).max(1e-300) } else { fine };
     let text = |points: &[Vec<f64>], fine: f64| match points {
         [point] if outcome.abscissa.is_empty() => {
@@ -380,7 +409,7 @@ fn error_drawing(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> (
             for (k, &at) in outcome.abscissa.iter().enumerate() {
                 let (Some(a), Some(b)) = (outcome.ours.get(k), outcome.reference.get(k)) else { continue };
                 let distance = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
-                add(&mut traces, outcome.label.clone(), (at, distance.max(1e-17)));
+                add(&mut traces, outcome.label.clone(), (at, distance));
             }
         }
         let along = check.along.as_deref().unwrap_or("s");
@@ -389,7 +418,9 @@ fn error_drawing(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> (
             format!("Difference along {along}."),
         )
     };
-    if traces.is_empty() {
+    // a drawing of round-off shows nothing
+    let largest = traces.iter().flat_map(|t| &t.points).map(|p| p.1).fold(0.0, f64::max);
+    if largest < 1e-13 {
         return (None, String::new());
     }
     match draw(&frame, &traces) {
