@@ -1,6 +1,6 @@
 //! One model, one analysis: build, solve, and look at the states.
 
-use crate::model::{Analysis, Model, Place, StrainMeasure};
+use crate::model::{Analysis, Model, StrainMeasure};
 use crate::solve::path::Stuck;
 use crate::solve::statics::{self, Solution, Target};
 use crate::solve::{buckling, modal};
@@ -189,8 +189,8 @@ impl<'a> Look<'a> {
             .probes
             .iter()
             .map(|probe| {
-                let Place { beam, s } = probe.at;
-                system.check_place("a probe", probe.at)?;
+                let beam = probe.at.beam;
+                let s = system.arc_length("a probe", probe.at)?;
                 Ok((probe.name.clone(), view(beam, &[s])?, model.beams[beam].strain))
             })
             .collect::<Result<_, SystemError>>()?;

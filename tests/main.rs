@@ -2,4 +2,5 @@
 
 mod cli;
 mod property;
+mod regress;
 mod validate;

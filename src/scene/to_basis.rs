@@ -37,7 +37,7 @@ pub const RPIM_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 4, bend: 4 };
 
 /// Most nodes of a scene.
 pub const MAX_NODES: f64 = 1e7;
-/// Most memory that tables and tangent of a scene may need [GiB].
+/// Most memory that tables and tangent of a scene may need \[GiB\].
 pub const MAX_MEMORY: f64 = 64.0;
 /// Most Gauss points in a cell.
 pub const MAX_GAUSS_POINTS: u64 = 64;

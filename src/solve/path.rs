@@ -89,9 +89,12 @@ impl<'e, 'a> Path<'e, 'a> {
         &self.points[self.points.len() - 1]
     }
 
-    /// Load factor of the point before the last one.
-    pub fn previous_load(&self) -> Option<f64> {
-        self.points.len().checked_sub(2).map(|i| self.points[i].load)
+    /// The last two equilibria.
+    pub fn last_two(&self) -> Option<[&Point; 2]> {
+        match &self.points[..] {
+            [.., a, b] => Some([a, b]),
+            _ => None,
+        }
     }
 
     /// Extreme value of the load factor near the last two points: the vertex of the parabola through the last three,
@@ -308,8 +311,16 @@ impl<'e, 'a> Path<'e, 'a> {
             residuals: record.residuals,
         });
         let turn = outcome?;
-        point.unstable = self.equilibrium.unstable_directions();
+        point.unstable = self.unstable_directions_at(point.load, &point.x);
         Ok((point, turn))
+    }
+
+    /// Unstable directions of an equilibrium, from its own tangent: that of Newton's last iterate carries the stress of a
+    /// state not yet converged, which in a slender beam is enough to change the signs.
+    fn unstable_directions_at(&mut self, load: f64, x: &[f64]) -> Option<usize> {
+        let mut negative = vec![0.0; x.len()];
+        self.equilibrium.linearize(load, x, x, &mut negative, None).ok()?;
+        self.equilibrium.unstable_directions()
     }
 
     /// Beam and arc length of the node that changed most.
@@ -350,7 +361,7 @@ impl<'e, 'a> Path<'e, 'a> {
         let mut record = Iterations::default();
         let mut equations = AtLoad::new(self.equilibrium, load);
         newton::solve(&mut equations, &mut x, &start, &self.settings, &mut record).ok()?;
-        let unstable = self.equilibrium.unstable_directions();
+        let unstable = self.unstable_directions_at(load, &x);
         Some(Point { parameter: load, load, x, unstable })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::equilibrium::Equilibrium;
 use super::newton::Settings;
-use super::path::{Parameter, Path, Point, Stuck};
+use super::path::{Parameter, Path, Stuck};
 use crate::model::{ArcLength, Static};
 use crate::system::{System, View};
 use crate::trajectory::{Statistics, StepRecord};
@@ -78,9 +78,8 @@ fn along_load(
     let result = (1..=parts).try_for_each(|part| {
         let end = if part == parts { 1.0 } else { part as f64 / parts as f64 };
         while path.last().load < end {
-            let before = path.last().unstable;
             let point = path.advance(end)?.clone();
-            notice(&mut path, before, &point, &mut solution.events);
+            notice(&mut path, &mut solution.events);
             if settings.steps.is_none() || point.load >= end {
                 solution.states.push((point.load, point.x[..n].to_vec()));
             }
@@ -94,13 +93,14 @@ fn along_load(
     result
 }
 
-/// Records a change of stability and, under load control, locates it.
-fn notice(path: &mut Path<'_, '_>, before: Option<usize>, point: &Point, events: &mut Vec<Event>) {
-    let (Some(before), Some(after)) = (before, point.unstable) else { return };
+/// Records a change of stability in the last step and locates it by bisection.
+fn notice(path: &mut Path<'_, '_>, events: &mut Vec<Event>) {
+    let Some([a, b]) = path.last_two() else { return };
+    let (Some(before), Some(after)) = (a.unstable, b.unstable) else { return };
     if before == after {
         return;
     }
-    let mut bracket = (path.previous_load().unwrap_or(0.0), point.load);
+    let mut bracket = (a.load, b.load);
     for _ in 0..20 {
         let middle = 0.5 * (bracket.0 + bracket.1);
         match path.between(middle).and_then(|p| p.unstable) {

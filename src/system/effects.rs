@@ -114,21 +114,21 @@ pub(super) fn add(system: &mut System, model: &Model, needs: Needs) -> Result<()
                 }
             }
             Load::Force { at, value, follower } => {
-                let (builder, basis) = place(system, "a force", at)?;
+                let (builder, basis, s) = place(system, "a force", at)?;
                 loads.push(force(&builder, Kind::Force, follower, value, |orders| {
-                    basis.points(&[at.s], orders)
+                    basis.points(&[s], orders)
                 })?);
             }
             Load::DistributedForce { beam, value, follower } => {
-                let (builder, basis) = place(system, "a distributed force", Place { beam, s: 0.0 })?;
+                let (builder, basis, _) = place(system, "a distributed force", Place { beam, s: 0.0 })?;
                 let rule = Quadrature::Gauss(mass_points(&model.beams[beam]));
                 loads.push(force(&builder, Kind::DistributedForce, follower, value, |orders| {
                     basis.table(rule, orders)
                 })?);
             }
             Load::Moment { at, value } => {
-                let (builder, basis) = place(system, "a moment", at)?;
-                let table = basis.points(&[at.s], &[1]);
+                let (builder, basis, s) = place(system, "a moment", at)?;
+                let table = basis.points(&[s], &[1]);
                 loads.push(builder.integral(Kind::Moment, table, |_: Vec<[_; 1]>| Moment { moment: value })?);
             }
         }
@@ -141,9 +141,9 @@ fn place<'a>(
     system: &'a System,
     what: &'static str,
     at: Place,
-) -> Result<(Builder<'a>, &'a Basis), SystemError> {
-    let part = system.part(what, at)?;
-    Ok((Builder { index: at.beam, part, reference: &system.reference }, &part.basis))
+) -> Result<(Builder<'a>, &'a Basis, f64), SystemError> {
+    let (part, s) = system.part(what, at)?;
+    Ok((Builder { index: at.beam, part, reference: &system.reference }, &part.basis, s))
 }
 
 fn force(

@@ -114,6 +114,9 @@ impl SystemError {
     }
 }
 
+/// Distance beyond an end, per length, that counts as round-off.
+const PLACE_ROUND_OFF: f64 = 1e-9;
+
 /// A beam's part of the system.
 #[derive(Debug)]
 pub struct BeamPart {
@@ -211,23 +214,24 @@ impl System {
         Ok(system)
     }
 
-    /// Whether a place is on its beam.
+    /// The arc length of a place on its beam; round-off beyond an end is cut off.
     ///
     /// # Errors
-    /// [`SystemError`] naming `what`.
-    pub fn check_place(&self, what: &'static str, at: Place) -> Result<(), SystemError> {
-        self.part(what, at).map(|_| ())
+    /// [`SystemError`] naming `what`, if the place is off the beam.
+    pub fn arc_length(&self, what: &'static str, at: Place) -> Result<f64, SystemError> {
+        self.part(what, at).map(|(_, s)| s)
     }
 
-    fn part(&self, what: &'static str, at: Place) -> Result<&BeamPart, SystemError> {
+    fn part(&self, what: &'static str, at: Place) -> Result<(&BeamPart, f64), SystemError> {
         let part = self.beams.get(at.beam).ok_or(SystemError::NoSuchBeam {
             what,
             beam: at.beam,
             count: self.beams.len(),
         })?;
         let length = part.basis.length();
-        if (0.0..=length).contains(&at.s) {
-            Ok(part)
+        // A length computed elsewhere may differ by round-off.
+        if at.s >= -PLACE_ROUND_OFF * length && at.s <= (1.0 + PLACE_ROUND_OFF) * length {
+            Ok((part, at.s.clamp(0.0, length)))
         } else {
             Err(SystemError::OffBeam { what, beam: part.name.clone(), s: at.s, length })
         }
@@ -237,13 +241,10 @@ impl System {
         let mut held: Vec<Held> = Vec::new();
         let mut constraints = Vec::new();
         for support in supports {
-            let part = self.part("a support", support.at)?;
+            let (part, s) = self.part("a support", support.at)?;
             let in_basis = |e| SystemError::basis(&part.name, e);
-            let length = part.basis.length();
-            let near = |node: &f64| (node - support.at.s).abs() <= 1e-12 * length;
-            let fields = View::point(&part.basis, part.offset(), support.at.s)
-                .map_err(in_basis)?
-                .fields(&self.reference);
+            let fields =
+                View::point(&part.basis, part.offset(), s).map_err(in_basis)?.fields(&self.reference);
             let (position, gradient) = (fields.position, fields.gradient);
             let angle = Ramp { start: gradient[1].atan2(gradient[0]), change: support.displacement.angle };
             let rotation = Ramp { start: 0.0, change: support.displacement.angle };
@@ -252,7 +253,7 @@ impl System {
             let components: [Option<Ramp>; 2] = std::array::from_fn(|axis| {
                 fixed[axis].then_some(Ramp { start: position[axis], change: motion[axis] })
             });
-            if let Some(node) = part.basis.nodes().iter().position(near) {
+            if let Some(node) = part.basis.node_at(s) {
                 let pair = 2 * (part.first_node + node);
                 let mut add = |pair: usize, hold: Hold| match held.iter_mut().find(|h| h.pair == pair) {
                     None => {
@@ -300,7 +301,7 @@ impl System {
                     ),
                 }
                 for (order, row) in rows {
-                    let table = part.basis.points(&[support.at.s], &[order]).map_err(in_basis)?;
+                    let table = part.basis.points(&[s], &[order]).map_err(in_basis)?;
                     constraints.push(Constraint::new(&table, part.offset(), row));
                 }
             }

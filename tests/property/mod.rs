@@ -6,3 +6,4 @@ mod generators;
 mod invariance;
 mod linear;
 mod scene;
+mod supports;

@@ -4,7 +4,7 @@
 //! ```
 //! use ancf::output::plot::{Axis, Chart, PALETTE, Series};
 //! let curve: Vec<[f64; 2]> = (1..=4).map(|k| [10_f64.powi(-k), 10_f64.powi(-2 * k)]).collect();
-//! let chart = Chart::new("Convergence", Axis::log("element length \[m\]"), Axis::log("error \[m\]"))
+//! let chart = Chart::new("Convergence", Axis::log("element length [m]"), Axis::log("error [m]"))
 //!     .with(Series::line("cubic", curve.clone(), PALETTE[0]))
 //!     .with(Series::points("", curve, PALETTE[0]));
 //! assert!(chart.svg()?.starts_with("<svg"));

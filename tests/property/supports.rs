@@ -1,0 +1,139 @@
+//! Supports hold what they name, at nodes and between them, alone and together, at rest and in motion.
+
+use super::generators::clamp;
+use ancf::model::{
+    Analysis, Beam, Centreline, Discretization, Displacement, Fixed, FixedRotation, GaussPoints, Kernel,
+    Load, Model, Nodes, Place, Probe, Section, SideCondition, Static, StrainMeasure, Support,
+};
+use ancf::run::{Control, run};
+use ancf::system::{Needs, System, View};
+use proptest::prelude::*;
+
+const LENGTH: f64 = 2.0;
+
+fn model(discretization: Discretization, angle: f64, supports: Vec<Support>) -> Model {
+    let (s, c) = angle.sin_cos();
+    Model {
+        beams: vec![Beam {
+            name: "beam".into(),
+            centreline: Centreline::Line { start: [0.5, -0.3], end: [0.5 + LENGTH * c, -0.3 + LENGTH * s] },
+            section: Section {
+                axial_stiffness: Some(2e3),
+                bending_stiffness: Some(1.0),
+                mass_per_length: None,
+            },
+            strain: StrainMeasure::Engineering,
+            discretization,
+            gauss_points: GaussPoints { stretch: 4, bend: 4 },
+        }],
+        supports,
+        loads: vec![Load::Force { at: Place { beam: 0, s: LENGTH }, value: [0.2, 0.3], follower: false }],
+        probes: vec![
+            Probe { name: "held".into(), at: Place { beam: 0, s: 0.0 } },
+            Probe { name: "tip".into(), at: Place { beam: 0, s: LENGTH } },
+        ],
+        ..Model::default()
+    }
+}
+
+fn either() -> impl Strategy<Value = Discretization> {
+    prop_oneof![
+        Just(Discretization::Ancf { nodes: Nodes::Uniform(7) }),
+        Just(Discretization::Rpim {
+            nodes: Nodes::Uniform(7),
+            kernel: Kernel::Multiquadric { q: 1.03, shape: 5.0 },
+            polynomial_terms: 2,
+            side_condition: SideCondition::Plus,
+            neighbours: 2,
+        })
+    ]
+}
+
+fn rotation() -> impl Strategy<Value = FixedRotation> {
+    prop_oneof![Just(FixedRotation::Free), Just(FixedRotation::Angle), Just(FixedRotation::Gradient)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// The clamp at the start moves as prescribed; a second support somewhere holds any combination.
+    #[test]
+    fn supports_hold_and_move_what_they_name(
+        discretization in either(),
+        angle in -3.0..3.0,
+        at_node in any::<bool>(),
+        share in 0.3..0.9,
+        (x, y, rotation) in (any::<bool>(), any::<bool>(), rotation()),
+        turn in -0.4..0.4,
+        lift in -0.1..0.1,
+    ) {
+        // Node 4 of 7, or a place between nodes.
+        let s = if at_node { LENGTH * 4.0 / 6.0 } else { LENGTH * share };
+        let start = Support { displacement: Displacement { x: lift, y: -lift, angle: turn }, ..clamp() };
+        let second = Support {
+            at: Place { beam: 0, s },
+            fix: Fixed { x, y, rotation },
+            displacement: Displacement { x: 0.5 * lift, y: lift, angle: 0.5 * turn },
+        };
+        let model = model(discretization, angle, vec![start.clone(), second.clone()]);
+        let system = System::build(&model, Needs { inertia: false }).expect("a legal model");
+        let between = system.multipliers();
+        let rows = usize::from(x) + usize::from(y) + match rotation {
+            FixedRotation::Free => 0,
+            FixedRotation::Angle => 1,
+            FixedRotation::Gradient => 2,
+        };
+        let near_node = system.beams()[0].basis.node_at(s).is_some();
+        prop_assert_eq!(between, if near_node { 0 } else { rows });
+        let solution = ancf::solve::statics::solve(&system, &Static::default(), &mut |_, _, _| true);
+        prop_assert!(solution.stuck.is_none(), "{:?}", solution.stuck);
+        let q = &solution.states.last().expect("a solution").1;
+        let part = &system.beams()[0];
+        for support in [&start, &second] {
+            let view = View::point(&part.basis, part.offset(), support.at.s).expect("on the beam");
+            let (now, before) = (view.fields(q), view.fields(system.reference()));
+            let moved = [now.position[0] - before.position[0], now.position[1] - before.position[1]];
+            for (axis, (held, wanted)) in
+                [(support.fix.x, support.displacement.x), (support.fix.y, support.displacement.y)].into_iter().enumerate()
+            {
+                prop_assert!(!held || (moved[axis] - wanted).abs() < 1e-12, "axis {axis}: {} for {wanted}", moved[axis]);
+            }
+            let turned = now.angle() - before.angle() - support.displacement.angle;
+            let turned = turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round();
+            if support.fix.rotation != FixedRotation::Free {
+                prop_assert!(turned.abs() < 1e-11, "turned by {turned} too much");
+            }
+            if support.fix.rotation == FixedRotation::Gradient {
+                prop_assert!((now.gradient[0].hypot(now.gradient[1]) - 1.0).abs() < 1e-11);
+            }
+        }
+        // What is not held is in equilibrium.
+        let trajectory = run(&model, &Analysis::Static(Static::default()), &mut |_| Control::Continue);
+        prop_assert!(trajectory.is_ok());
+    }
+}
+
+/// A column that passes its buckling load undisturbed is reported, with the load.
+#[test]
+fn a_bifurcation_is_reported_with_its_load() {
+    let mut column = model(Discretization::Ancf { nodes: Nodes::Uniform(9) }, 0.0, vec![clamp()]);
+    column.beams[0].section.axial_stiffness = Some(1e6);
+    let critical = std::f64::consts::PI.powi(2) / (4.0 * LENGTH * LENGTH);
+    column.loads = vec![Load::Force {
+        at: Place { beam: 0, s: LENGTH },
+        value: [-2.0 * critical, 0.0],
+        follower: false,
+    }];
+    let system = System::build(&column, Needs { inertia: false }).expect("a legal model");
+    let solution = ancf::solve::statics::solve(&system, &Static::default(), &mut |_, _, _| true);
+    let [event] = solution.events[..] else { panic!("one loss of definiteness, not {:?}", solution.events) };
+    assert_eq!((event.before, event.after), (0, 1));
+    assert!((event.load - 0.5).abs() < 1e-4, "at load factor {}", event.load);
+    let trajectory =
+        run(&column, &Analysis::Static(Static::default()), &mut |_| Control::Continue).expect("solvable");
+    assert!(
+        trajectory.warnings[0].contains("loses definiteness at load factor 0.5000"),
+        "{:?}",
+        trajectory.warnings
+    );
+}
