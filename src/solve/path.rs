@@ -41,7 +41,7 @@ const WANTED_TURN: f64 = 0.12;
 const LARGEST_TURN: f64 = 0.5;
 /// Predicted turn of any node in one step \[rad\].
 const LARGEST_STEP: f64 = 0.8;
-/// Smallest step, relative to the first one tried.
+/// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
 
 /// Why a path could not be followed.
@@ -65,6 +65,7 @@ pub struct Path<'e, 'a> {
     parameter: Parameter,
     points: Vec<Point>,
     step: f64,
+    first_step: f64,
     /// Attempted steps so far.
     pub history: Vec<StepRecord>,
 }
@@ -81,7 +82,15 @@ impl<'e, 'a> Path<'e, 'a> {
         let n = equilibrium.system().coordinates();
         equilibrium.system().supports().impose(0.0, &mut x[..n]);
         let start = Point { parameter: 0.0, load: 0.0, x, unstable: None };
-        Ok(Self { equilibrium, settings, parameter, points: vec![start], step, history: Vec::new() })
+        Ok(Self {
+            equilibrium,
+            settings,
+            parameter,
+            points: vec![start],
+            step,
+            first_step: step,
+            history: Vec::new(),
+        })
     }
 
     /// The last equilibrium.
@@ -127,7 +136,6 @@ impl<'e, 'a> Path<'e, 'a> {
     /// # Errors
     /// [`Stuck`] where no step converges.
     pub fn advance(&mut self, end: f64) -> Result<&Point, Stuck> {
-        let first_step = self.step;
         let tangent = if self.points.len() == 1 { Some(self.tangent()?) } else { None };
         let here = self.last().parameter;
         loop {
@@ -162,7 +170,7 @@ impl<'e, 'a> Path<'e, 'a> {
                 Err((failure, at)) => {
                     self.equilibrium.statistics.rejected_steps += 1;
                     self.step = step * 0.4;
-                    if self.step < SMALLEST_STEP * first_step.min(left) {
+                    if self.step < SMALLEST_STEP * self.first_step {
                         return Err(Stuck { load: self.last().load, step, failure, at });
                     }
                 }
