@@ -1,6 +1,8 @@
 //! One model, one analysis: build, solve, and look at the states.
 
-use crate::model::{Analysis, Model, StrainMeasure};
+use crate::model::{Analysis, ArcLength, Dynamic, Integrator, Model, StepControl, StrainMeasure};
+use crate::solve::dynamics;
+use crate::solve::dynamics::generalized_alpha::{self, Task};
 use crate::solve::path::Stuck;
 use crate::solve::statics::{self, Solution, Target};
 use crate::solve::{buckling, modal};
@@ -74,8 +76,24 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Eigen(#[from] crate::solve::eigen::EigenError),
-    /// The analysis is described but this version cannot compute it.
-    #[error("{0} analysis is not available in this version")]
+    /// A Newton iteration of a time step did not converge.
+    #[error("no convergence in the step of {step:.1e} s after t = {time:.6} s: {cause}")]
+    #[diagnostic(help(
+        "use a smaller step, a spectral radius below 1, or more nodes where the beam bends most"
+    ))]
+    NoStep {
+        /// Time of the last state \[s\].
+        time: f64,
+        /// The step \[s\].
+        step: f64,
+        /// What went wrong.
+        cause: String,
+        /// What was computed until then.
+        partial: Box<Trajectory>,
+    },
+    /// The scene is legal, but this version cannot compute it.
+    #[error("{0} is not available in this version")]
+    #[diagnostic(help("use generalized_alpha with a fixed `step`"))]
     Unavailable(&'static str),
 }
 
@@ -84,7 +102,7 @@ impl RunError {
     pub fn exit_status(&self) -> u8 {
         match self {
             Self::System(_) | Self::NoSuchProbe { .. } | Self::Unavailable(_) => 2,
-            Self::NoEquilibrium { .. } | Self::Eigen(_) => 1,
+            Self::NoEquilibrium { .. } | Self::NoStep { .. } | Self::Eigen(_) => 1,
         }
     }
 }
@@ -118,28 +136,11 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
                 observer(&Progress { parameter: load, target: 1.0, step, newton_iterations: iterations })
                     == Control::Continue
             };
-            let solution = match &settings.arc_length {
-                None => statics::solve(&system, settings, report),
-                Some(arc) => {
-                    let probe = match &arc.until_probe {
-                        None => None,
-                        Some(target) => {
-                            let found = look.probes.iter().find(|(name, ..)| *name == target.probe);
-                            let (_, view, _) = found.ok_or_else(|| RunError::NoSuchProbe {
-                                probe: target.probe.clone(),
-                                known: look
-                                    .probes
-                                    .iter()
-                                    .map(|(n, ..)| n.as_str())
-                                    .collect::<Vec<_>>()
-                                    .join(", "),
-                            })?;
-                            Some((view.clone(), target.axis, target.value))
-                        }
-                    };
-                    statics::follow(&system, settings, &Target { arc, probe }, report)
-                }
+            let target = match &settings.arc_length {
+                None => None,
+                Some(arc) => Some(Target { arc, probe: look.end_of_path(arc)? }),
             };
+            let solution = statics::solve(&system, settings, target.as_ref(), report);
             match &solution.stuck {
                 None => look.statics(&solution),
                 Some(stuck) => return Err(look.stuck(stuck, &solution)),
@@ -147,11 +148,38 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
         }
         Analysis::Buckling { count } => look.buckling(&buckling::solve(&system, *count)?),
         Analysis::Modal { count } => look.modal(&modal::solve(&system, *count)?),
-        Analysis::Dynamic(_) => return Err(RunError::Unavailable("dynamic")),
+        Analysis::Dynamic(settings) => {
+            let task = generalized_alpha_task(settings)?;
+            let report = &mut |time: f64, step: f64, statistics: &crate::trajectory::Statistics| {
+                let newton_iterations = statistics.newton_iterations;
+                observer(&Progress { parameter: time, target: task.duration, step, newton_iterations })
+                    == Control::Continue
+            };
+            let solution = generalized_alpha::solve(&system, &task, report);
+            match &solution.stuck {
+                None => look.dynamics(&solution),
+                Some(stuck) => return Err(look.lost(stuck, &solution)),
+            }
+        }
     };
     trajectory.seconds.solve = start.elapsed().as_secs_f64();
     trajectory.seconds.build = build;
     Ok(trajectory)
+}
+
+/// The settings of the integrator that exists.
+fn generalized_alpha_task(settings: &Dynamic) -> Result<Task, RunError> {
+    match settings.integrator {
+        Integrator::GeneralizedAlpha { step: StepControl::Fixed(step), spectral_radius } => Ok(Task {
+            duration: settings.duration,
+            output_every: settings.output_every,
+            step,
+            spectral_radius,
+        }),
+        Integrator::GeneralizedAlpha { .. } => Err(RunError::Unavailable("step control of generalised-α")),
+        Integrator::Gauss { .. } => Err(RunError::Unavailable("Gauss collocation")),
+        Integrator::Radau { .. } => Err(RunError::Unavailable("Radau IIA collocation")),
+    }
 }
 
 /// Points at which shapes are sampled.
@@ -195,6 +223,17 @@ impl<'a> Look<'a> {
             })
             .collect::<Result<_, SystemError>>()?;
         Ok(Self { model, system, shapes: sampled(SHAPE_POINTS)?, frames: sampled(FRAME_POINTS)?, probes })
+    }
+
+    /// The probe at which a path is to end, as (view, axis, value).
+    fn end_of_path(&self, arc: &ArcLength) -> Result<Option<(View, usize, f64)>, RunError> {
+        let Some(target) = &arc.until_probe else { return Ok(None) };
+        let found = self.probes.iter().find(|(name, ..)| *name == target.probe);
+        let (_, view, _) = found.ok_or_else(|| RunError::NoSuchProbe {
+            probe: target.probe.clone(),
+            known: self.probes.iter().map(|(name, ..)| name.as_str()).collect::<Vec<_>>().join(", "),
+        })?;
+        Ok(Some((view.clone(), target.axis, target.value)))
     }
 
     fn empty(&self, analysis: AnalysisKind) -> Trajectory {
@@ -267,7 +306,14 @@ impl<'a> Look<'a> {
         Frame { parameter, beams }
     }
 
-    fn record(&self, trajectory: &mut Trajectory, parameter: f64, q: &[f64], energy: Energy) {
+    fn record(
+        &self,
+        trajectory: &mut Trajectory,
+        parameter: f64,
+        q: &[f64],
+        velocity: Option<&[f64]>,
+        energy: Energy,
+    ) {
         trajectory.parameter.push(parameter);
         trajectory.energy.push(energy);
         for ((_, view, strain), series) in self.probes.iter().zip(&mut trajectory.probes) {
@@ -279,8 +325,8 @@ impl<'a> Look<'a> {
                 angle,
                 curvature: fields.curvature(),
                 strain: fields.strain(*strain),
-                vx: None,
-                vy: None,
+                vx: velocity.map(|v| view.velocity(v)[0]),
+                vy: velocity.map(|v| view.velocity(v)[1]),
             });
         }
     }
@@ -289,7 +335,7 @@ impl<'a> Look<'a> {
         let mut trajectory = self.empty(AnalysisKind::Static);
         let every = solution.states.len().div_ceil(FRAMES).max(1);
         for (i, (load, q)) in solution.states.iter().enumerate() {
-            self.record(&mut trajectory, *load, q, self.system.energy(*load, q, None));
+            self.record(&mut trajectory, *load, q, None, self.system.energy(*load, q, None));
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(*load, q));
             }
@@ -332,6 +378,33 @@ impl<'a> Look<'a> {
             s,
             advice: advice.into(),
             partial: Box::new(self.statics(solution)),
+        }
+    }
+
+    fn dynamics(&self, solution: &dynamics::Solution) -> Trajectory {
+        let mut trajectory = self.empty(AnalysisKind::Dynamic);
+        let every = solution.states.len().div_ceil(FRAMES).max(1);
+        for (i, state) in solution.states.iter().enumerate() {
+            let (q, v) = (&state.q[..], Some(&state.v[..]));
+            self.record(&mut trajectory, state.time, q, v, self.system.energy(1.0, q, v));
+            if i % every == 0 || i + 1 == solution.states.len() {
+                trajectory.frames.push(self.frame(state.time, q));
+            }
+        }
+        if let Some(state) = solution.states.last() {
+            trajectory.last = self.shape(&state.q);
+        }
+        trajectory.history = solution.history.clone();
+        trajectory.statistics = solution.statistics;
+        trajectory
+    }
+
+    fn lost(&self, stuck: &dynamics::Stuck, solution: &dynamics::Solution) -> RunError {
+        RunError::NoStep {
+            time: stuck.time,
+            step: stuck.step,
+            cause: stuck.failure.to_string(),
+            partial: Box::new(self.dynamics(solution)),
         }
     }
 

@@ -17,6 +17,7 @@ pub mod symmetric;
 
 use band::{Band, BandLu};
 use bordered::{BorderRow, Bordered};
+use fma::fma;
 use symmetric::{Ldl, SymmetricBand};
 
 /// A tangent matrix under assembly.
@@ -75,6 +76,19 @@ impl Matrix {
         match self {
             Self::Symmetric(matrix) => matrix.columns(i),
             Self::General(matrix) => matrix.columns(i),
+        }
+    }
+
+    /// Adds `factor` times a matrix of the same size whose band is not wider.
+    pub fn add(&mut self, factor: f64, other: &Self) {
+        if let (Self::Symmetric(a), Self::Symmetric(b)) = (&mut *self, other) {
+            a.add(factor, b);
+            return;
+        }
+        for i in 0..other.size() {
+            for j in other.columns(i) {
+                self.set(i, j, fma(factor, other.get(i, j), self.get(i, j)));
+            }
         }
     }
 

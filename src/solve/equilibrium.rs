@@ -10,7 +10,17 @@ use crate::trajectory::Statistics;
 /// Residuals of so many round-offs of the internal forces count as zero.
 const ROUND_OFFS: f64 = 100.0;
 
-/// Residual, tangent and its factorisation at one load factor. Unknowns are the system's coordinates followed by the
+/// The inertia of a time step, in which an integrator makes the acceleration a linear function of the unknown positions,
+/// q̈ = c q + e.
+#[derive(Clone, Debug, Default)]
+pub struct Inertia {
+    /// c \[1/s²\].
+    pub coefficient: f64,
+    /// e, one per coordinate.
+    pub offset: Vec<f64>,
+}
+
+/// Residual, tangent and its factorisation at one load factor, or in one time step. Unknowns are the system's coordinates followed by the
 /// scaled multipliers.
 pub struct Equilibrium<'a> {
     system: &'a System,
@@ -20,6 +30,10 @@ pub struct Equilibrium<'a> {
     workspace: Workspace,
     force: Vec<f64>,
     held_rate: Vec<f64>,
+    mass: Option<Matrix>,
+    /// How the acceleration follows from the unknowns, where there is motion.
+    pub inertia: Inertia,
+    acceleration: Vec<f64>,
     /// Counts so far.
     pub statistics: Statistics,
 }
@@ -36,8 +50,27 @@ impl<'a> Equilibrium<'a> {
             workspace: Workspace::default(),
             force: vec![0.0; n],
             held_rate: vec![0.0; n],
+            mass: None,
+            inertia: Inertia::default(),
+            acceleration: Vec::new(),
             statistics: Statistics::default(),
         }
+    }
+
+    /// The equations of motion of `system`, which must have been built with inertia.
+    pub fn in_motion(system: &'a System) -> Self {
+        let zero = vec![0.0; system.coordinates()];
+        Self {
+            mass: Some(system.mass_matrix()),
+            inertia: Inertia { coefficient: 0.0, offset: zero.clone() },
+            acceleration: zero,
+            ..Self::new(system)
+        }
+    }
+
+    /// The mass matrix, if there is motion.
+    pub fn mass(&self) -> Option<&Matrix> {
+        self.mass.as_ref()
     }
 
     /// The system whose equations these are.
@@ -66,8 +99,13 @@ impl<'a> Equilibrium<'a> {
                 m.max(f[0].abs()).max(f[1].abs()).max((f[2].abs()).max(f[3].abs()) / system.length())
             })
         };
-        let mut g_max = 0.0_f64;
         let mut scale = scale_of(&self.force);
+        if let Some(mass) = &self.mass {
+            for ((a, q), e) in self.acceleration.iter_mut().zip(x).zip(&self.inertia.offset) {
+                *a = self.inertia.coefficient.mul_add(*q, *e);
+            }
+            mass.multiply_add(1.0, &self.acceleration, &mut self.force);
+        }
         for (r, constraint) in system.constraints().iter().enumerate() {
             let unit = constraint.scale(system.stiffness(), system.length());
             let mu = x[n + r] * unit;
@@ -75,10 +113,8 @@ impl<'a> Equilibrium<'a> {
                 scale = scale.max((mu * value).abs() * if i % 4 < 2 { 1.0 } else { 1.0 / system.length() });
                 self.force[i] += mu * value;
             }
-            let g = constraint.value(load, &x[..n]);
-            negative[n + r] = -unit * g;
-            g_max =
-                g_max.max((unit * g).abs() / system.stiffness() * system.length().min(1.0 / system.length()));
+            // Linear in q: Newton's method satisfies it to round-off at once.
+            negative[n + r] = -unit * constraint.value(load, &x[..n]);
         }
         for (negative, force) in negative.iter_mut().zip(&self.force) {
             *negative = -force;
@@ -119,6 +155,9 @@ impl<'a> Equilibrium<'a> {
         let (q, before) = (&x[..n], &before[..n]);
         system.force_and_tangent(load, q, before, &mut self.force, &mut self.tangent, &mut self.workspace);
         let residual = self.finish_residual(load, x, negative);
+        if let Some(mass) = &self.mass {
+            self.tangent.add(self.inertia.coefficient, mass);
+        }
         system.supports().turn_matrix(load, &mut self.tangent);
         if let Some(rate) = rate {
             self.rate_right_hand_side(load, x, rate);

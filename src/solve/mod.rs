@@ -2,6 +2,7 @@
 //! effect.
 
 pub mod buckling;
+pub mod dynamics;
 pub mod eigen;
 pub mod equilibrium;
 pub mod modal;

@@ -44,13 +44,21 @@ pub struct Target<'a> {
 /// Whether to go on.
 pub type Observer<'o> = &'o mut dyn FnMut(f64, f64, &Statistics) -> bool;
 
-/// Solves for the full loads by adaptive load steps. `observe` is called with (load factor, step, counts) after every
-/// step and ends the analysis by returning false.
-pub fn solve(system: &System, settings: &Static, observe: Observer<'_>) -> Solution {
+/// Solves for the full loads by adaptive load steps, or follows the path by arc length to `target`. `observe` is called
+/// with (load factor, step, counts) after every step and ends the analysis by returning false.
+pub fn solve(
+    system: &System,
+    settings: &Static,
+    target: Option<&Target<'_>>,
+    observe: Observer<'_>,
+) -> Solution {
     let mut equilibrium = Equilibrium::new(system);
     let mut solution = Solution::default();
     let newton = newton_settings(settings);
-    let outcome = along_load(&mut equilibrium, settings, newton, &mut solution, observe);
+    let outcome = match target {
+        None => along_load(&mut equilibrium, settings, newton, &mut solution, observe),
+        Some(target) => along_arc(&mut equilibrium, target, newton, &mut solution, observe),
+    };
     solution.statistics = equilibrium.statistics;
     solution.stuck = outcome.err();
     solution
@@ -110,17 +118,6 @@ fn notice(path: &mut Path<'_, '_>, events: &mut Vec<Event>) {
         }
     }
     events.push(Event { load: 0.5 * (bracket.0 + bracket.1), before, after });
-}
-
-/// Follows the path by arc length until its target.
-pub fn follow(system: &System, settings: &Static, target: &Target<'_>, observe: Observer<'_>) -> Solution {
-    let mut equilibrium = Equilibrium::new(system);
-    let mut solution = Solution::default();
-    let newton = newton_settings(settings);
-    let outcome = along_arc(&mut equilibrium, target, newton, &mut solution, observe);
-    solution.statistics = equilibrium.statistics;
-    solution.stuck = outcome.err();
-    solution
 }
 
 fn along_arc(

@@ -2,6 +2,7 @@
 
 mod basis;
 mod derivatives;
+mod dynamics;
 mod generators;
 mod invariance;
 mod linear;

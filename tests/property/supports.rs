@@ -85,7 +85,7 @@ proptest! {
         };
         let near_node = system.beams()[0].basis.node_at(s).is_some();
         prop_assert_eq!(between, if near_node { 0 } else { rows });
-        let solution = ancf::solve::statics::solve(&system, &Static::default(), &mut |_, _, _| true);
+        let solution = ancf::solve::statics::solve(&system, &Static::default(), None, &mut |_, _, _| true);
         prop_assert!(solution.stuck.is_none(), "{:?}", solution.stuck);
         let q = &solution.states.last().expect("a solution").1;
         let part = &system.beams()[0];
@@ -125,7 +125,7 @@ fn a_bifurcation_is_reported_with_its_load() {
         follower: false,
     }];
     let system = System::build(&column, Needs { inertia: false }).expect("a legal model");
-    let solution = ancf::solve::statics::solve(&system, &Static::default(), &mut |_, _, _| true);
+    let solution = ancf::solve::statics::solve(&system, &Static::default(), None, &mut |_, _, _| true);
     let [event] = solution.events[..] else { panic!("one loss of definiteness, not {:?}", solution.events) };
     assert_eq!((event.before, event.after), (0, 1));
     assert!((event.load - 0.5).abs() < 1e-4, "at load factor {}", event.load);
