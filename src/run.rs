@@ -195,7 +195,16 @@ struct Look<'a> {
     system: &'a System,
     shapes: Vec<View>,
     frames: Vec<View>,
-    probes: Vec<(String, View, StrainMeasure)>,
+    probes: Vec<Watched>,
+}
+
+/// A probe with the rows that see its point.
+struct Watched {
+    name: String,
+    view: View,
+    measure: StrainMeasure,
+    /// ε of the stress-free state there.
+    reference_strain: f64,
 }
 
 fn evenly(length: f64, count: usize) -> Vec<f64> {
@@ -219,7 +228,13 @@ impl<'a> Look<'a> {
             .map(|probe| {
                 let beam = probe.at.beam;
                 let s = system.arc_length("a probe", probe.at)?;
-                Ok((probe.name.clone(), view(beam, &[s])?, model.beams[beam].strain))
+                let (view, measure) = (view(beam, &[s])?, model.beams[beam].strain);
+                let reference_strain = if system.beams()[beam].straight {
+                    0.0
+                } else {
+                    view.fields(system.reference()).strain(measure)
+                };
+                Ok(Watched { name: probe.name.clone(), view, measure, reference_strain })
             })
             .collect::<Result<_, SystemError>>()?;
         Ok(Self { model, system, shapes: sampled(SHAPE_POINTS)?, frames: sampled(FRAME_POINTS)?, probes })
@@ -228,12 +243,12 @@ impl<'a> Look<'a> {
     /// The probe at which a path is to end, as (view, axis, value).
     fn end_of_path(&self, arc: &ArcLength) -> Result<Option<(View, usize, f64)>, RunError> {
         let Some(target) = &arc.until_probe else { return Ok(None) };
-        let found = self.probes.iter().find(|(name, ..)| *name == target.probe);
-        let (_, view, _) = found.ok_or_else(|| RunError::NoSuchProbe {
+        let found = self.probes.iter().find(|probe| probe.name == target.probe);
+        let probe = found.ok_or_else(|| RunError::NoSuchProbe {
             probe: target.probe.clone(),
-            known: self.probes.iter().map(|(name, ..)| name.as_str()).collect::<Vec<_>>().join(", "),
+            known: self.probes.iter().map(|probe| probe.name.as_str()).collect::<Vec<_>>().join(", "),
         })?;
-        Ok(Some((view.clone(), target.axis, target.value)))
+        Ok(Some((probe.view.clone(), target.axis, target.value)))
     }
 
     fn empty(&self, analysis: AnalysisKind) -> Trajectory {
@@ -248,7 +263,7 @@ impl<'a> Look<'a> {
             probes: self
                 .probes
                 .iter()
-                .map(|(name, ..)| ProbeSeries { name: name.clone(), samples: vec![] })
+                .map(|probe| ProbeSeries { name: probe.name.clone(), samples: vec![] })
                 .collect(),
             ..Trajectory::default()
         }
@@ -296,6 +311,13 @@ impl<'a> Look<'a> {
                 let first = 4 * part.first_node;
                 let nodes = q[first..first + 4 * part.basis.nodes().len()].chunks_exact(4);
                 shape.nodes = nodes.map(|n| [n[0], n[1]]).collect();
+                // A curved beam is free of stress with the strain that its interpolated shape has.
+                if !part.straight {
+                    let reference = view.all(self.system.reference());
+                    for (strain, reference) in shape.strain.iter_mut().zip(reference) {
+                        *strain -= reference.strain(beam.strain);
+                    }
+                }
                 shape
             })
             .collect()
@@ -316,7 +338,9 @@ impl<'a> Look<'a> {
     ) {
         trajectory.parameter.push(parameter);
         trajectory.energy.push(energy);
-        for ((_, view, strain), series) in self.probes.iter().zip(&mut trajectory.probes) {
+        for (Watched { view, measure, reference_strain, .. }, series) in
+            self.probes.iter().zip(&mut trajectory.probes)
+        {
             let fields = view.fields(q);
             let angle = unfold(fields.angle(), series.samples.last().map(|s| s.angle));
             series.samples.push(ProbeSample {
@@ -324,7 +348,7 @@ impl<'a> Look<'a> {
                 y: fields.position[1],
                 angle,
                 curvature: fields.curvature(),
-                strain: fields.strain(*strain),
+                strain: fields.strain(*measure) - reference_strain,
                 vx: velocity.map(|v| view.velocity(v)[0]),
                 vy: velocity.map(|v| view.velocity(v)[1]),
             });

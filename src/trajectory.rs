@@ -77,7 +77,7 @@ pub struct ProbeSample {
     pub angle: f64,
     /// Curvature κ \[1/m\].
     pub curvature: f64,
-    /// Axial strain ε by the beam's measure.
+    /// Axial strain ε by the beam's measure, zero in the stress-free state.
     pub strain: f64,
     /// Velocity \[m/s\]; dynamics only.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -129,7 +129,7 @@ pub struct Shape {
     pub y: Vec<f64>,
     /// Direction of r' \[rad\], continuous along s.
     pub angle: Vec<f64>,
-    /// ε.
+    /// ε, zero in the stress-free state.
     pub strain: Vec<f64>,
     /// κ \[1/m\].
     pub curvature: Vec<f64>,
