@@ -11,6 +11,14 @@
 //! the second adds Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md to row (a, d) of the matrix, a tile of 4 × 4 numbers (two nodes) at a
 //! time, so that the tile stays in registers while the points go by and is loaded and stored once per cell. Of a
 //! symmetric matrix only the tiles on and above the diagonal are computed.
+//!
+//! # What was measured
+//! A Newton iteration of 1000 cable elements with 5/3 points takes 0.31 µs an element on one core of a 2023 server
+//! (0.34 µs with 10 000, 0.46 µs with 100 000, where the matrices leave the caches): 0.19 µs are spent here, 0.04 µs in the
+//! LDLᵀ, the rest in the substitutions and the supports. The tiles' 528 multiply–adds would take 0.02 µs at the machine's
+//! peak: what bounds this loop are the short dependent sums of the local fields and the divisions of the curvature, not
+//! the tiles. Summing the fields of two functions at a time in independent registers was tried: 20 % slower with 4
+//! functions, no gain with 12.
 
 use super::{Density, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
