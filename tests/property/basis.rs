@@ -82,7 +82,7 @@ fn reproduction(basis: &Basis, table: &BasisTable, polynomial: impl Fn(f64, usiz
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(super::cases(48))]
 
     #[test]
     fn rpim_reproduces_straight_lines_on_any_mesh(
@@ -132,7 +132,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(super::cases(12))]
 
     /// ∫ N_j⁽ᵈ⁺¹⁾ ds over a cell is the difference of N_j⁽ᵈ⁾ between its ends, which is a difference of Kronecker deltas: ties
     /// values, first and second derivatives at interior points to what defines the functions, for all of them at once.

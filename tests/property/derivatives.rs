@@ -172,7 +172,7 @@ fn check_load(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(super::cases(24))]
 
     #[test]
     fn elastic_force_and_tangent_are_derivatives_of_the_energy(beam in beam(), noise in noise()) {
@@ -269,7 +269,7 @@ proptest! {
             };
             (tangent(&before) - tangent(&q)).norm()
         };
-        let ratio = difference(1e-3) / difference(5e-4);
+        let ratio = difference(1e-4) / difference(5e-5);
         prop_assert!((ratio - 4.0).abs() < 0.2, "halving the distance divides the difference by {ratio}");
     }
 }

@@ -24,7 +24,7 @@ fn moved(q: &[f64], angle: f64, shift: [f64; 2]) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(super::cases(48))]
 
     #[test]
     fn rigid_motion_changes_no_energy(beam in beam(), noise in noise(), angle in -7.0..7.0, x in -5.0..5.0, y in -5.0..5.0) {
@@ -129,7 +129,7 @@ fn both() -> impl Strategy<Value = Discretization> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(super::cases(12))]
 
     #[test]
     fn results_do_not_depend_on_units(d in both(), metre in -6.0..6.0, newton in -6.0..6.0) {

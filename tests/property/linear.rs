@@ -37,7 +37,7 @@ fn agree(a: &[f64], b: &[f64], tolerance: f64) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(super::cases(64))]
 
     #[test]
     fn all_factorisations_solve_alike(nodes in 1..12_usize, blocks in 1..7_usize, numbers in numbers()) {

@@ -8,3 +8,11 @@ mod invariance;
 mod linear;
 mod scene;
 mod supports;
+
+use proptest::test_runner::{Config, FileFailurePersistence};
+
+/// So many random cases; what once failed is kept beside the test and tried again first.
+fn cases(count: u32) -> Config {
+    let beside = FileFailurePersistence::WithSource("regressions");
+    Config { cases: count, failure_persistence: Some(Box::new(beside)), ..Config::default() }
+}

@@ -186,7 +186,7 @@ fn has_a_place(error: &SceneError, name: &str, text: &str) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
+    #![proptest_config(super::cases(2000))]
 
     #[test]
     fn mutated_scenes_never_panic(scene in 0..SCENES.len(), mutations in prop::collection::vec(mutation(), 1..5)) {
