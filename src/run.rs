@@ -1,6 +1,8 @@
 //! One model, one analysis: build, solve, and look at the states.
 
-use crate::model::{Analysis, ArcLength, Dynamic, Integrator, Model, StepControl, StrainMeasure};
+use crate::model::{
+    Analysis, ArcLength, Displacement, Dynamic, Integrator, Model, StepControl, StrainMeasure,
+};
 use crate::solve::dynamics;
 use crate::solve::dynamics::generalized_alpha::{self, Task};
 use crate::solve::path::Stuck;
@@ -92,16 +94,21 @@ pub enum RunError {
         partial: Box<Trajectory>,
     },
     /// The scene is legal, but this version cannot compute it.
-    #[error("{0} is not available in this version")]
-    #[diagnostic(help("use generalized_alpha with a fixed `step`"))]
-    Unavailable(&'static str),
+    #[error("{what} is not available in this version")]
+    #[diagnostic(help("{instead}"))]
+    Unavailable {
+        /// What the scene asks for.
+        what: &'static str,
+        /// What to use.
+        instead: &'static str,
+    },
 }
 
 impl RunError {
     /// 2 where the input is at fault, 1 where the computation failed.
     pub fn exit_status(&self) -> u8 {
         match self {
-            Self::System(_) | Self::NoSuchProbe { .. } | Self::Unavailable(_) => 2,
+            Self::System(_) | Self::NoSuchProbe { .. } | Self::Unavailable { .. } => 2,
             Self::NoEquilibrium { .. } | Self::NoStep { .. } | Self::Eigen(_) => 1,
         }
     }
@@ -149,7 +156,7 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
         Analysis::Buckling { count } => look.buckling(&buckling::solve(&system, *count)?),
         Analysis::Modal { count } => look.modal(&modal::solve(&system, *count)?),
         Analysis::Dynamic(settings) => {
-            let task = generalized_alpha_task(settings)?;
+            let task = generalized_alpha_task(model, settings)?;
             let report = &mut |time: f64, step: f64, statistics: &crate::trajectory::Statistics| {
                 let newton_iterations = statistics.newton_iterations;
                 observer(&Progress { parameter: time, target: task.duration, step, newton_iterations })
@@ -167,8 +174,16 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
     Ok(trajectory)
 }
 
-/// The settings of the integrator that exists.
-fn generalized_alpha_task(settings: &Dynamic) -> Result<Task, RunError> {
+/// What generalised-α is to do, if the model and its settings ask for what exists.
+fn generalized_alpha_task(model: &Model, settings: &Dynamic) -> Result<Task, RunError> {
+    let unavailable =
+        |what| RunError::Unavailable { what, instead: "use `generalized_alpha` with a fixed `step`" };
+    if model.supports.iter().any(|support| support.displacement != Displacement::default()) {
+        return Err(RunError::Unavailable {
+            what: "prescribed motion of a support in a dynamic analysis",
+            instead: "hold the support without `move`, or use a static analysis",
+        });
+    }
     match settings.integrator {
         Integrator::GeneralizedAlpha { step: StepControl::Fixed(step), spectral_radius } => Ok(Task {
             duration: settings.duration,
@@ -176,9 +191,9 @@ fn generalized_alpha_task(settings: &Dynamic) -> Result<Task, RunError> {
             step,
             spectral_radius,
         }),
-        Integrator::GeneralizedAlpha { .. } => Err(RunError::Unavailable("step control of generalised-α")),
-        Integrator::Gauss { .. } => Err(RunError::Unavailable("Gauss collocation")),
-        Integrator::Radau { .. } => Err(RunError::Unavailable("Radau IIA collocation")),
+        Integrator::GeneralizedAlpha { .. } => Err(unavailable("step control of generalised-α")),
+        Integrator::Gauss { .. } => Err(unavailable("Gauss collocation")),
+        Integrator::Radau { .. } => Err(unavailable("Radau IIA collocation")),
     }
 }
 

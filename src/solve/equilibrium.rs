@@ -10,6 +10,10 @@ use crate::trajectory::Statistics;
 /// Residuals of so many round-offs of the internal forces count as zero.
 const ROUND_OFFS: f64 = 100.0;
 
+/// How much stiffer than the structure a constraint is made where stability is judged: enough to dominate, and far from
+/// the reciprocal of round-off.
+const PENALTY: f64 = 1e4;
+
 /// The inertia of a time step, in which an integrator makes the acceleration a linear function of the unknown positions,
 /// q̈ = c q + e.
 #[derive(Clone, Debug, Default)]
@@ -235,11 +239,12 @@ impl<'a> Equilibrium<'a> {
         if !self.system.is_symmetric() {
             return None;
         }
-        // A penalty on the constraints leaves the allowed motions' inertia and makes all others positive.
+        // A penalty on the constraints leaves the allowed motions' inertia and makes all others positive. It is measured
+        // against the stiffness of the coordinate that the row holds most firmly, whatever the units.
         let mut penalised = self.tangent.clone();
-        let penalty = 1e4 / self.system.stiffness() * self.system.length().min(1.0 / self.system.length());
         for row in &self.border {
-            penalised.add_outer_product(penalty, row);
+            let firmest = row.iter().fold(0.0_f64, |m, &(i, b)| m.max(b * b / self.tangent.get(i, i).abs()));
+            penalised.add_outer_product(PENALTY / firmest, row);
         }
         Factor::new(&penalised, &[]).ok()?.negative_eigenvalues()
     }

@@ -83,22 +83,27 @@ fn along_load(
     let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0)?;
     solution.states.push((0.0, path.last().x[..n].to_vec()));
     let parts = settings.steps.unwrap_or(1).max(1);
-    let result = (1..=parts).try_for_each(|part| {
+    let mut part = 1;
+    let outcome = loop {
+        // The last part ends at 1 exactly.
         let end = if part == parts { 1.0 } else { part as f64 / parts as f64 };
-        while path.last().load < end {
-            let point = path.advance(end)?.clone();
-            notice(&mut path, &mut solution.events);
-            if settings.steps.is_none() || point.load >= end {
-                solution.states.push((point.load, point.x[..n].to_vec()));
-            }
-            if !observe(point.load, path.next_step(), &path.equilibrium.statistics) {
-                return Ok(());
-            }
+        let point = match path.advance(end) {
+            Ok(point) => point.clone(),
+            Err(stuck) => break Err(stuck),
+        };
+        notice(&mut path, &mut solution.events);
+        let at_end = point.load >= end;
+        if settings.steps.is_none() || at_end {
+            solution.states.push((point.load, point.x[..n].to_vec()));
         }
-        Ok(())
-    });
+        part += usize::from(at_end);
+        let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
+        if part > parts || !go_on {
+            break Ok(());
+        }
+    };
     solution.history = std::mem::take(&mut path.history);
-    result
+    outcome
 }
 
 /// Records a change of stability in the last step and locates it by bisection.

@@ -11,13 +11,13 @@ use ancf::system::{Needs, System};
 const LENGTH: f64 = 1.2;
 
 /// A beam under its own weight, hinged at its start or free.
-fn system(discretization: Discretization, hinged: bool) -> System {
+fn model(discretization: Discretization, hinged: bool) -> Model {
     let hinge = Support {
         at: Place { beam: 0, s: 0.0 },
         fix: Fixed { x: true, y: true, ..Fixed::default() },
         ..Support::default()
     };
-    let model = Model {
+    Model {
         beams: vec![Beam {
             name: "arm".into(),
             centreline: Centreline::Line { start: [0.0, 0.0], end: [LENGTH, 0.0] },
@@ -33,8 +33,11 @@ fn system(discretization: Discretization, hinged: bool) -> System {
         supports: if hinged { vec![hinge] } else { vec![] },
         loads: vec![Load::Gravity { acceleration: [1.5, -9.0] }],
         ..Model::default()
-    };
-    System::build(&model, Needs { inertia: true }).expect("a legal model")
+    }
+}
+
+fn system(discretization: Discretization, hinged: bool) -> System {
+    System::build(&model(discretization, hinged), Needs { inertia: true }).expect("a legal model")
 }
 
 fn either() -> [Discretization; 2] {
@@ -130,4 +133,19 @@ fn records_stand_at_the_times_asked_for() {
         let order = (distance(&coarse[i].q, &middle[i].q) / distance(&middle[i].q, &fine[i].q)).log2();
         assert!((order - 2.0).abs() < 0.25, "observed order {order} at {} s", expected[i]);
     }
+}
+
+/// What is not simulated is refused, not ignored: here a support that would have to move.
+#[test]
+fn prescribed_motion_is_refused() {
+    use ancf::model::{Analysis, Displacement, Dynamic, Integrator, StepControl};
+    let [ancf, _] = either();
+    let mut model = model(ancf, true);
+    model.supports[0].displacement = Displacement { y: 0.1, ..Displacement::default() };
+    let integrator = Integrator::GeneralizedAlpha { step: StepControl::Fixed(1e-3), spectral_radius: 0.9 };
+    let analysis = Analysis::Dynamic(Dynamic { duration: 0.1, output_every: 0.1, integrator });
+    let error =
+        ancf::run::run(&model, &analysis, &mut |_| ancf::run::Control::Continue).expect_err("not available");
+    assert_eq!(error.exit_status(), 2);
+    assert!(error.to_string().contains("prescribed motion"), "{error}");
 }

@@ -79,8 +79,8 @@ proptest! {
     }
 }
 
-/// A clamped beam with a dead tip force, everything in multiples of a unit of length and one of force.
-fn cantilever(metre: f64, newton: f64, angle: f64, discretization: Discretization) -> Model {
+/// A clamped beam with a dead or follower tip force, everything in multiples of a unit of length and one of force.
+fn cantilever(metre: f64, newton: f64, angle: f64, discretization: Discretization, follower: bool) -> Model {
     let turned = |x: f64, y: f64| {
         let (s, c) = angle.sin_cos();
         [c * x - s * y, s * x + c * y]
@@ -103,7 +103,7 @@ fn cantilever(metre: f64, newton: f64, angle: f64, discretization: Discretizatio
         loads: vec![Load::Force {
             at: Place { beam: 0, s: length },
             value: turned(20.0 * newton, 150.0 * newton),
-            follower: false,
+            follower,
         }],
         probes: vec![Probe { name: "tip".into(), at: Place { beam: 0, s: length } }],
         ..Model::default()
@@ -132,9 +132,9 @@ proptest! {
     #![proptest_config(super::cases(12))]
 
     #[test]
-    fn results_do_not_depend_on_units(d in both(), metre in -6.0..6.0, newton in -6.0..6.0) {
+    fn results_do_not_depend_on_units(d in both(), metre in -6.0..6.0, newton in -6.0..6.0, follower in any::<bool>()) {
         let (metre, newton) = (10f64.powf(metre), 10f64.powf(newton));
-        let (a, b) = (solved(&cantilever(1.0, 1.0, 0.0, d.clone())), solved(&cantilever(metre, newton, 0.0, d)));
+        let (a, b) = (solved(&cantilever(1.0, 1.0, 0.0, d.clone(), follower)), solved(&cantilever(metre, newton, 0.0, d, follower)));
         let (p, r) = (a.probes[0].samples.last().unwrap(), b.probes[0].samples.last().unwrap());
         for (ours, other) in [(p.x, r.x / metre), (p.y, r.y / metre), (p.curvature, r.curvature * metre), (p.angle, r.angle)] {
             prop_assert!((ours - other).abs() <= 1e-9 * (1.0 + ours.abs()), "{ours} against {other}");
@@ -143,8 +143,8 @@ proptest! {
     }
 
     #[test]
-    fn results_do_not_depend_on_orientation(d in both(), angle in -3.1..3.1) {
-        let (a, b) = (solved(&cantilever(1.0, 1.0, 0.0, d.clone())), solved(&cantilever(1.0, 1.0, angle, d)));
+    fn results_do_not_depend_on_orientation(d in both(), angle in -3.1..3.1, follower in any::<bool>()) {
+        let (a, b) = (solved(&cantilever(1.0, 1.0, 0.0, d.clone(), follower)), solved(&cantilever(1.0, 1.0, angle, d, follower)));
         let (p, r) = (a.probes[0].samples.last().unwrap(), b.probes[0].samples.last().unwrap());
         let (s, c) = f64::sin_cos(angle);
         for (ours, other) in [(p.x, c * r.x + s * r.y), (p.y, c * r.y - s * r.x), (p.curvature, r.curvature), (p.strain, r.strain)] {

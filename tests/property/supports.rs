@@ -135,3 +135,59 @@ fn a_bifurcation_is_reported_with_its_load() {
         trajectory.warnings
     );
 }
+
+/// A pinned column with a support between nodes in its middle buckles in two half waves, four times later than without,
+/// and stability is judged alike in all units.
+#[test]
+fn stability_between_constraint_rows_does_not_depend_on_units() {
+    for metre in [1e-6, 1.0, 1e6] {
+        let length = LENGTH * metre;
+        let mut column = model(Discretization::Ancf { nodes: Nodes::Uniform(10) }, 0.0, vec![]);
+        column.beams[0].centreline = Centreline::Line { start: [0.0, 0.0], end: [length, 0.0] };
+        column.beams[0].section = Section {
+            axial_stiffness: Some(1e6),
+            bending_stiffness: Some(metre * metre),
+            mass_per_length: None,
+        };
+        let pin = |s: f64, x: bool| Support {
+            at: Place { beam: 0, s },
+            fix: Fixed { x, y: true, ..Fixed::default() },
+            ..Support::default()
+        };
+        column.supports = vec![pin(0.0, true), pin(0.5 * length, false), pin(length, false)];
+        column.probes.clear();
+        let critical = 4.0 * std::f64::consts::PI.powi(2) / (LENGTH * LENGTH);
+        column.loads = vec![Load::Force {
+            at: Place { beam: 0, s: length },
+            value: [-2.0 * critical, 0.0],
+            follower: false,
+        }];
+        let system = System::build(&column, Needs { inertia: false }).expect("a legal model");
+        assert_eq!(system.multipliers(), 1, "the middle lies between nodes");
+        let solution = ancf::solve::statics::solve(&system, &Static::default(), None, &mut |_, _, _| true);
+        let first = solution.events.first().expect("the column passes its critical load");
+        assert_eq!((first.before, first.after), (0, 1), "lengths in {metre} m");
+        assert!((first.load - 0.5).abs() < 1e-3, "at load factor {} with lengths in {metre} m", first.load);
+    }
+}
+
+/// An observer that stops ends the analysis, whatever parts of the load were asked for.
+#[test]
+fn stopping_ends_the_analysis() {
+    let model = model(Discretization::Ancf { nodes: Nodes::Uniform(7) }, 0.0, vec![clamp()]);
+    let system = System::build(&model, Needs { inertia: false }).expect("a legal model");
+    let settings = Static { steps: Some(8), ..Static::default() };
+    let mut calls = 0;
+    let solution = ancf::solve::statics::solve(&system, &settings, None, &mut |_, _, _| {
+        calls += 1;
+        false
+    });
+    assert_eq!(calls, 1);
+    assert!(solution.stuck.is_none() && solution.states.iter().all(|(load, _)| *load <= 0.125));
+    let recorded = |steps| {
+        let settings = Static { steps: Some(steps), ..Static::default() };
+        let solution = ancf::solve::statics::solve(&system, &settings, None, &mut |_, _, _| true);
+        solution.states.iter().map(|(load, _)| *load).collect::<Vec<_>>()
+    };
+    assert_eq!(recorded(4), [0.0, 0.25, 0.5, 0.75, 1.0]);
+}
