@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use ancf::output::OutputOptions;
+use ancf::restart::SavedState;
 use ancf::run::{self, Control, Progress};
 use ancf::scene::{self, Scene};
 use clap::{Args, Parser, Subcommand};
@@ -53,6 +54,9 @@ struct RunArguments {
     /// Directory of the results [default: out/<stem of the scene file>]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Start a motion from the state that another run has saved (`state.json` in its directory)
+    #[arg(long, value_name = "STATE")]
+    from: Option<PathBuf>,
     #[command(flatten)]
     overrides: Overrides,
     /// Print warnings and errors only
@@ -112,6 +116,8 @@ fn load(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
 
 fn solve(arguments: &RunArguments) -> Result<(), Failure> {
     let scene = load(&arguments.scene, &arguments.overrides)?;
+    let saved = arguments.from.as_deref().map(SavedState::load).transpose();
+    let saved = saved.map_err(|error| Failure::run(scene.name(), error.into()))?;
     let destination = match &arguments.output {
         Some(directory) => Destination::prepare(directory)?,
         None => Destination::prepare(&default_directory(&arguments.scene))?,
@@ -121,7 +127,7 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
         progress.show(progress_now);
         Control::Continue
     };
-    let outcome = run::run(scene.model(), scene.analysis(), observer);
+    let outcome = run::run_from(scene.model(), scene.analysis(), saved.as_ref(), observer);
     progress.clear();
     let mut trajectory = outcome.map_err(|error| Failure::run(scene.name(), error))?;
     let options = OutputOptions { states: scene.output().states, vtu: scene.output().vtu };

@@ -397,23 +397,13 @@ pub enum Integrator {
         /// How steps are chosen.
         step: StepControl,
     },
-    /// An explicit symplectic method, for scenes that are not stiff.
-    Explicit {
-        /// 2 (Störmer, Verlet) or 4 (Blanes, Moan).
-        order: usize,
-        /// How steps are chosen.
-        step: StepControl,
-    },
 }
 
 impl Integrator {
     /// How steps are chosen.
     pub fn step_control(&self) -> StepControl {
         match *self {
-            Self::GeneralizedAlpha { step, .. }
-            | Self::Gauss { step, .. }
-            | Self::Radau { step, .. }
-            | Self::Explicit { step, .. } => step,
+            Self::GeneralizedAlpha { step, .. } | Self::Gauss { step, .. } | Self::Radau { step, .. } => step,
         }
     }
 }
@@ -436,7 +426,6 @@ impl fmt::Display for Integrator {
             }
             Self::Gauss { stages, .. } => write!(f, "Gauss collocation ({stages} stages), {step}"),
             Self::Radau { stages, .. } => write!(f, "Radau IIA collocation ({stages} stages), {step}"),
-            Self::Explicit { order, .. } => write!(f, "explicit symplectic method of order {order}, {step}"),
         }
     }
 }

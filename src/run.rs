@@ -6,7 +6,6 @@ use crate::model::{
 use crate::restart::{RestartError, SavedState};
 use crate::solve::dynamics;
 use crate::solve::dynamics::start::{self, StartError};
-use crate::solve::newton::Failure;
 use crate::solve::path::Stuck;
 use crate::solve::statics::{self, Solution, Target};
 use crate::solve::{buckling, modal};
@@ -501,6 +500,15 @@ impl<'a> Look<'a> {
             let ProbeTarget { probe, axis, value } = settings.events[*watch].target.clone();
             trajectory.events.push(Event { time: state.time, probe, axis: ["x", "y"][axis].into(), value });
         }
+        let divided = solution.statistics.rejected_steps;
+        if divided > 0 && matches!(settings.integrator.step_control(), StepControl::Fixed(_)) {
+            let smallest = solution.history.iter().map(|r| r.step).fold(f64::INFINITY, f64::min);
+            trajectory.warnings.push(format!(
+                "the step was divided {divided} time{}, down to {smallest:.1e} s, because its equations could not be solved: \
+                 give `tolerance` instead of `step`, or a smaller `step`",
+                if divided == 1 { "" } else { "s" }
+            ));
+        }
         trajectory.history = solution.history;
         trajectory.statistics = solution.statistics;
         trajectory.saved = solution.checkpoint.map(|checkpoint| SavedState::new(self.system, checkpoint));
@@ -509,15 +517,12 @@ impl<'a> Look<'a> {
 
     fn lost(&self, settings: &Dynamic, stuck: &dynamics::Stuck, solution: dynamics::Solution) -> RunError {
         let (beam, s) = stuck.at;
-        let advice = match (settings.integrator.step_control(), stuck.failure) {
-            (_, Failure::Unstable { .. }) => {
-                "give `tolerance` instead of `step`, a step below the limit, or an implicit integrator"
-            }
-            (StepControl::Fixed(_), _) => {
+        let advice = match settings.integrator.step_control() {
+            StepControl::Fixed(_) => {
                 "give `tolerance` instead of `step`, so that steps are as short as the motion needs them; a smaller `step`; \
                  or more nodes where the beam bends most"
             }
-            (StepControl::Tolerance(_), _) => {
+            StepControl::Tolerance(_) => {
                 "the motion has no continuation that the beam model can follow: look at the states until here, and use more \
                  nodes or softer loads if the beam folds"
             }

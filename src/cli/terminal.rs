@@ -150,6 +150,10 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
             ),
         );
     }
+    for event in &trajectory.events {
+        let at = format!("{} s: {} = {} m", number(event.time), event.axis, number(event.value));
+        row(&format!("event at {}", event.probe), at);
+    }
     let counts = &trajectory.statistics;
     let mut work = Vec::new();
     for (count, one, many) in [

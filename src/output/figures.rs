@@ -234,6 +234,7 @@ fn energy(t: &Trajectory) -> Option<Sketch> {
         ("bend", part(|e| e.bend), PALETTE[0]),
         ("kinetic", part(|e| e.kinetic), PALETTE[1]),
         ("potential", part(|e| e.potential), PALETTE[3]),
+        ("work of loads", part(|e| e.work), PALETTE[4]),
     ];
     let size = |points: &[[f64; 2]]| points.iter().fold(0.0_f64, |m, p| m.max(p[1].abs()));
     let largest = parts.iter().fold(0.0_f64, |m, (_, points, _)| m.max(size(points)));

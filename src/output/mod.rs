@@ -5,6 +5,7 @@
 //! | `summary.json` | [`Summary`]: last values, energies, counts, times |
 //! | `probes.csv`, `energy.csv` | one row per load factor or time; 17 significant digits, SI |
 //! | `shape.csv` | the last state along every beam |
+//! | `state.json` | the last state of a motion, from which another run can start |
 //! | `frequencies.csv` or `load_factors.csv`, `modes.csv` | modal analysis or buckling |
 //! | `report.html` | everything to look at, the moving beam included; needs no network |
 //! | `shape.svg`, `curvature.svg`, … | the page's plots, one each |
@@ -44,8 +45,9 @@ pub struct OutputOptions {
 
 /// Names that a run may leave; those that this run does not write are removed when it replaces an older one, so that a
 /// directory never mixes two runs.
-const NAMES: [&str; 21] = [
+const NAMES: [&str; 22] = [
     "summary.json",
+    "state.json",
     "probes.csv",
     "energy.csv",
     "shape.csv",
@@ -90,6 +92,9 @@ pub fn write(
         stage.add("energy.csv", |out| tables::energy(t, out))?;
     }
     stage.add("shape.csv", |out| tables::shape(t, out))?;
+    if let Some(saved) = &t.saved {
+        stage.add("state.json", |out| Ok(serde_json::to_writer(out, saved)?))?;
+    }
     match t.analysis {
         AnalysisKind::Modal => {
             stage.add("frequencies.csv", |out| tables::eigenvalues("frequency", &t.frequencies, out))?;

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::trajectory::{AnalysisKind, Energy, ProbeSample, Seconds, Statistics, Trajectory};
+use crate::trajectory::{AnalysisKind, Energy, Event, ProbeSample, Seconds, Statistics, Trajectory};
 
 /// What `summary.json` holds; keys and their order are the fields and theirs.
 #[derive(Clone, Debug, Serialize)]
@@ -22,6 +22,9 @@ pub struct Summary {
     pub probes: Vec<(String, ProbeSample)>,
     /// Energies of the last record; `null` where there is none (modal, buckling).
     pub energy: Option<EnergySummary>,
+    /// Events of a motion, in order; left out where none was asked for or none happened.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<Event>,
     /// Natural frequencies \[Hz\], ascending; modal analysis only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Vec<f64>>,
@@ -47,7 +50,9 @@ pub struct EnergySummary {
     pub kinetic: f64,
     /// Of gravity and conservative loads.
     pub potential: f64,
-    /// Their sum.
+    /// Done by loads without a potential since the start.
+    pub work: f64,
+    /// Sum of the energies, less the work.
     pub total: f64,
     /// max |total − initial total| / max kinetic over all records; `null` where nothing moves.
     pub drift: Option<f64>,
@@ -70,9 +75,11 @@ impl Summary {
                 bend: last.bend,
                 kinetic: last.kinetic,
                 potential: last.potential,
+                work: last.work,
                 total: last.total(),
                 drift: drift(&trajectory.energy),
             }),
+            events: trajectory.events.clone(),
             frequencies: (trajectory.analysis == AnalysisKind::Modal).then(|| trajectory.frequencies.clone()),
             load_factors: (trajectory.analysis == AnalysisKind::Buckling)
                 .then(|| trajectory.load_factors.clone()),

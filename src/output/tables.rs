@@ -71,12 +71,12 @@ pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     table.finish()
 }
 
-/// `energy.csv`: the parameter, `stretch, bend, kinetic, potential, total` \[J\].
+/// `energy.csv`: the parameter, `stretch, bend, kinetic, potential, work, total` \[J\].
 pub(super) fn energy(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let header = [parameter_name(t.analysis), "stretch", "bend", "kinetic", "potential", "total"];
+    let header = [parameter_name(t.analysis), "stretch", "bend", "kinetic", "potential", "work", "total"];
     let mut table = Table::new(out, &words(&header))?;
     for (&parameter, e) in t.parameter.iter().zip(&t.energy) {
-        table.row(&[], [parameter, e.stretch, e.bend, e.kinetic, e.potential, e.total()])?;
+        table.row(&[], [parameter, e.stretch, e.bend, e.kinetic, e.potential, e.work, e.total()])?;
     }
     table.finish()
 }

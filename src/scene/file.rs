@@ -434,8 +434,6 @@ pub struct DynamicTable {
     pub gauss: Option<Located<GaussTable>>,
     /// Radau IIA collocation: for stiff motion, of order 3 or 5.
     pub radau: Option<Located<RadauTable>>,
-    /// Explicit symplectic methods, for motion that is not stiff.
-    pub explicit: Option<Located<ExplicitTable>>,
     /// Probes' coordinates that cross a value.
     #[serde(default)]
     pub event: Vec<EventTable>,
@@ -471,20 +469,6 @@ pub enum CrossingName {
     Rising,
     /// From above.
     Falling,
-}
-
-/// Explicit methods; `step` or `tolerance`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [{ "required": ["step"] }, { "required": ["tolerance"] }]))]
-pub struct ExplicitTable {
-    /// 2 (Störmer, Verlet) or 4 (Blanes, Moan); 4 when left out.
-    #[schemars(extend("enum" = [2, 4]))]
-    pub order: Option<Located<Count<1>>>,
-    /// Fixed step.
-    pub step: Option<Located<Quantity<Time, Positive>>>,
-    /// Relative accuracy that chooses the steps.
-    pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
 }
 
 /// Generalised-α; `step` or `tolerance`.

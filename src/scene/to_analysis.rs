@@ -165,10 +165,10 @@ fn dynamic(located: &Located<DynamicTable>, model: &Model) -> Result<Dynamic, Fa
         None => duration / DYNAMIC_RECORDS,
     };
     const ONE: &str = "give one of `[analysis.dynamic.generalized_alpha]`, `[analysis.dynamic.gauss]`, \
-                       `[analysis.dynamic.radau]`, `[analysis.dynamic.explicit]`, or none for Gauss collocation with its default accuracy";
-    let integrator = match (&table.generalized_alpha, &table.gauss, &table.radau, &table.explicit) {
-        (None, None, None, None) => INTEGRATOR,
-        (Some(alpha), None, None, None) => {
+                       `[analysis.dynamic.radau]`, or none for Gauss collocation with its default accuracy";
+    let integrator = match (&table.generalized_alpha, &table.gauss, &table.radau) {
+        (None, None, None) => INTEGRATOR,
+        (Some(alpha), None, None) => {
             let t = alpha.get();
             let spectral_radius = match &t.spectral_radius {
                 Some(radius) if !(0.0..=1.0).contains(&radius.get().si) => {
@@ -184,33 +184,15 @@ fn dynamic(located: &Located<DynamicTable>, model: &Model) -> Result<Dynamic, Fa
             let step = step_control(alpha, &t.step, &t.tolerance, duration)?;
             Integrator::GeneralizedAlpha { step, spectral_radius }
         }
-        (None, Some(gauss), None, None) => {
+        (None, Some(gauss), None) => {
             let t = gauss.get();
             let step = step_control(gauss, &t.step, &t.tolerance, duration)?;
             Integrator::Gauss { stages: stages(&t.stages)?, step }
         }
-        (None, None, Some(radau), None) => {
+        (None, None, Some(radau)) => {
             let t = radau.get();
             let step = step_control(radau, &t.step, &t.tolerance, duration)?;
             Integrator::Radau { stages: stages(&t.stages)?, step }
-        }
-        (None, None, None, Some(explicit)) => {
-            let t = explicit.get();
-            let step = step_control(explicit, &t.step, &t.tolerance, duration)?;
-            let order = match &t.order {
-                None => 4,
-                Some(order) => match order.get().0 {
-                    n @ (2 | 4) => n as usize,
-                    n => {
-                        return Err(Fault::new(
-                            order.span(),
-                            format!("found an explicit method of order {n}"),
-                        )
-                        .help("2 and 4 are legal"));
-                    }
-                },
-            };
-            Integrator::Explicit { order, step }
         }
         _ => return Err(Fault::new(located.span(), "more than one integrator").help(ONE)),
     };

@@ -75,12 +75,6 @@ pub enum Failure {
     /// A force or an increment overflowed or is not a number.
     #[error("a force or an increment is not finite")]
     NotFinite,
-    /// A step beyond the limit of stability of an explicit method.
-    #[error("an explicit step is stable up to {limit:.2e} s in this scene")]
-    Unstable {
-        /// Longest stable step \[s\].
-        limit: f64,
-    },
     /// Converged, but so far from the prediction that it may be another equilibrium than the one that continues the path.
     #[error("the solution lies {turn:.2} rad from the prediction, perhaps on another branch")]
     OtherBranch {

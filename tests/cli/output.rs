@@ -57,7 +57,13 @@ fn motion(records: u32) -> Trajectory {
         parameter: (0..records).map(time).collect(),
         probes: vec![series("tip"), series("mid, of the arm")],
         energy: (0..records)
-            .map(|i| Energy { stretch: 0.1, bend: 1.0 / 3.0, kinetic: time(i), potential: -0.999 * time(i) })
+            .map(|i| Energy {
+                stretch: 0.1,
+                bend: 1.0 / 3.0,
+                kinetic: time(i),
+                potential: -0.999 * time(i),
+                work: 0.0,
+            })
             .collect(),
         frames: (0..records).map(|i| frame(time(i), time(i), 1)).collect(),
         undeformed: vec![line("arm", 0.0)],

@@ -26,10 +26,12 @@ use crate::linear::{Factor, Singular};
 use crate::solve::newton::{Failure, Iterations};
 use crate::trajectory::Statistics;
 
-/// Newton's increments at which a step of given length is solved: what is left of the stages' error is near round-off.
+/// Error of the stages of a step of given length, relative to the displacement in the step: the velocity takes the same relative error.
 const TOLERANCE: f64 = 1e-11;
 /// The same as a part of the error that a step may make.
 const TOLERANCE_OF_ERROR: f64 = 0.02;
+/// Largest error of the stages: what is left of it excites high frequencies, which are not damped.
+const LARGEST_TOLERANCE: f64 = 1e-7;
 /// Increments that no longer shrink count as converged below this size: what is left is round-off.
 const ROUND_OFF: f64 = 1e-8;
 /// Most iterations of a step.
@@ -110,6 +112,14 @@ impl<'a> Collocation<'a> {
         }
     }
 
+    /// Largest displacement of a node in the step, as predicted.
+    fn displacement(&mut self, from: &State, h: f64) -> f64 {
+        let last = self.tableau.stages() - 1;
+        self.stage(last, from, h);
+        self.stage.iter_mut().zip(&from.q).for_each(|(x, q)| *x -= q);
+        self.motion.size(&self.stage)
+    }
+
     /// Q_i.
     fn stage(&mut self, i: usize, from: &State, h: f64) {
         let n = self.motion.coordinates();
@@ -130,14 +140,13 @@ impl<'a> Collocation<'a> {
         );
     }
 
-    /// Factorises the transformed systems with the tangent at the mean of the stages.
-    fn linearize(&mut self, from: &State, h: f64) -> Result<(), Singular> {
+    /// Factorises the transformed systems with the tangent at `at`, turned with each node to where it is in each stage.
+    fn linearize(&mut self, at: &[f64], from: &State, h: f64) -> Result<(), Singular> {
         let s = self.tableau.stages();
-        // At the converged state, whose axial force is right: that of a predicted one is not, with a large EA.
-        self.motion.tangent_at(&from.q);
+        self.motion.tangent_at(at);
         for i in 0..s {
             self.stage(i, from, h);
-            let nodes = self.stage.chunks_exact(4).zip(from.q.chunks_exact(4));
+            let nodes = self.stage.chunks_exact(4).zip(at.chunks_exact(4));
             for (turn, (x, start)) in self.turns[i].iter_mut().zip(nodes) {
                 let (cosine, sine) = (x[2] * start[2] + x[3] * start[3], x[3] * start[2] - x[2] * start[3]);
                 let size = cosine.hypot(sine);
@@ -161,6 +170,17 @@ impl<'a> Collocation<'a> {
             self.factors.push(factor);
         }
         Ok(())
+    }
+
+    /// The mean of the stages.
+    fn mean(&mut self, from: &State, h: f64) -> Vec<f64> {
+        let s = self.tableau.stages();
+        let mut mean = vec![0.0; from.q.len()];
+        for i in 0..s {
+            self.stage(i, from, h);
+            mean.iter_mut().zip(&self.stage).for_each(|(mean, x)| *mean += x / s as f64);
+        }
+        mean
     }
 
     /// One iteration; returns the scaled increment and residual.
@@ -211,7 +231,8 @@ impl<'a> Collocation<'a> {
         tolerance: f64,
         record: &mut Iterations,
     ) -> Result<(), Failure> {
-        self.linearize(from, h)?;
+        // At the converged state, whose axial force is right: that of a predicted one is not, with a large EA.
+        self.linearize(&from.q, from, h)?;
         let mut fresh = false;
         // Sizes of the last two increments with the present tangent; rates alternate, and two together tell more than one.
         let mut last = [0.0_f64; 2];
@@ -240,7 +261,8 @@ impl<'a> Collocation<'a> {
             }
             if known && (rate > SLOW || hopeless) && !fresh {
                 fresh = true;
-                self.linearize(from, h)?;
+                let mean = self.mean(from, h);
+                self.linearize(&mean, from, h)?;
                 last = [0.0; 2];
             } else {
                 last = [last[1], size];
@@ -285,7 +307,8 @@ impl<'a> Collocation<'a> {
         let s = self.tableau.stages();
         let at = self.tableau.lagrange(x);
         let weights = (0..s).map(|j| {
-            (0..s).map(|i| at[i] * self.tableau.inverse_squared[(i, j)]).sum::<f64>() / self.trial_step.powi(2)
+            (0..s).map(|i| at[i] * self.tableau.inverse_squared[(i, j)]).sum::<f64>()
+                / self.trial_step.powi(2)
         });
         combine(&mut self.acceleration, weights, &self.displacements);
     }
@@ -338,7 +361,9 @@ impl Method for Collocation<'_> {
         record: &mut Iterations,
     ) -> Result<f64, Failure> {
         self.predict(h);
-        let tolerance = accuracy.map_or(TOLERANCE, |allowed| (TOLERANCE_OF_ERROR * allowed).clamp(TOLERANCE, 1e-7));
+        let tight = TOLERANCE * self.displacement(from, h);
+        let tolerance = accuracy
+            .map_or(tight, |allowed| (TOLERANCE_OF_ERROR * allowed).min(LARGEST_TOLERANCE).max(tight));
         self.solve_stages(from, h, tolerance, record)?;
         self.trial_step = h;
         let s = self.tableau.stages();

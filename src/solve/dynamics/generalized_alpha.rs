@@ -22,8 +22,10 @@ use crate::linear::{Factor, Singular};
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
 use crate::trajectory::Statistics;
 
-/// Newton's increments at which a step of given length is solved: far below the error of a second-order step.
+/// Error of the position in a step of given length: far below that of a second-order step.
 const TOLERANCE: f64 = 1e-9;
+/// The same relative to the displacement in the step, which counts where steps are very short: the velocity takes the same relative error.
+const RELATIVE_TOLERANCE: f64 = 1e-6;
 /// The same as a part of the error that a step may make.
 const TOLERANCE_OF_ERROR: f64 = 0.02;
 
@@ -194,8 +196,10 @@ impl Method for GeneralizedAlpha<'_> {
         self.start[..n].copy_from_slice(&from.q);
         self.start[n..].copy_from_slice(multipliers);
         self.motion.impose(&mut self.x);
+        let moved: Vec<f64> = self.x.iter().zip(&self.start).map(|(x, start)| x - start).collect();
+        let tight = TOLERANCE.min(RELATIVE_TOLERANCE * self.motion.size(&moved));
         let settings = Settings {
-            tolerance: accuracy.map_or(TOLERANCE, |allowed| TOLERANCE_OF_ERROR * allowed),
+            tolerance: accuracy.map_or(tight, |allowed| (TOLERANCE_OF_ERROR * allowed).max(tight)),
             // The tangent is exact, and inertia makes it well conditioned: the increments tell all.
             residual_tolerance: f64::INFINITY,
             ..Settings::default()

@@ -1,12 +1,16 @@
 //! The driver of all methods: chooses steps, records states, locates events, keeps what a restart needs.
 //!
 //! # Steps that meet a stated accuracy
-//! The tolerance is the sum, over the whole duration, of the local errors that are allowed, in beam lengths: a step of length h
-//! may err by tolerance · h / duration. With an estimate of order p + 1 the step for a wanted error follows; it is chosen by the
-//! proportional–integral rule of Gustafsson (*ACM Trans. Math. Softw.* 20, 1994, 496–517).
+//! The tolerance is relative to the beam length (positions) and to one (gradients). A step may err by a fixed part of it; with an
+//! estimate of order p + 1 the step for that follows, by the proportional–integral rule of Gustafsson (*ACM Trans. Math. Softw.* 20,
+//! 1994, 496–517). An allowance in proportion to the step was tried: it asks for ever smaller steps once a high frequency is excited,
+//! whose share in the error does not add up.
+//!
+//! # Steps of fixed length
+//! Where the equations of a step cannot be solved, that step is divided, which the counts of rejected steps and a warning tell; all others
+//! keep their length and their places.
 
 use super::collocation::Collocation;
-use super::explicit::Explicit;
 use super::generalized_alpha::GeneralizedAlpha;
 use super::method::Method;
 use super::motion::Motion;
@@ -56,6 +60,8 @@ const LIMITS: (f64, f64) = (0.2, 4.0);
 const SHRINK: f64 = 0.3;
 /// Smallest step, relative to the duration.
 const SMALLEST_STEP: f64 = 1e-12;
+/// Smallest part of a step of fixed length into which it is divided where its equations cannot be solved.
+const SMALLEST_PART: f64 = 1e-3;
 /// Iterations beyond which a step does not grow: the next tangent would be worse.
 const MANY_ITERATIONS: usize = 10;
 /// Attempted steps that are kept for the reader.
@@ -92,7 +98,6 @@ fn method<'a>(system: &'a System, integrator: Integrator) -> Result<Box<dyn Meth
         }
         Integrator::Gauss { stages, .. } => Box::new(Collocation::new(motion, Tableau::gauss(stages))),
         Integrator::Radau { stages, .. } => Box::new(Collocation::new(motion, Tableau::radau(stages))),
-        Integrator::Explicit { order, .. } => Box::new(Explicit::new(motion, order)),
     })
 }
 
@@ -119,7 +124,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         mut method: Box<dyn Method + 'a>,
         mut solution: Solution,
     ) -> Self {
-        let Checkpoint { state, method: name, memory, step, origin } = task.start.clone();
+        let Checkpoint { state, method: name, memory, step, last_ratio, origin } = task.start.clone();
         let control = task.integrator.step_control();
         let acceleration = method.start(&state);
         let continued = name == task.integrator.to_string() && method.restore(memory);
@@ -142,7 +147,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             step,
             origin,
             next_record,
-            last_ratio: 1.0,
+            last_ratio: if continued { last_ratio } else { 1.0 },
             rejected: false,
             stride: 1,
         }
@@ -183,6 +188,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             method: self.task.integrator.to_string(),
             memory: self.method.memory(),
             step: self.step,
+            last_ratio: self.last_ratio,
             origin: self.origin,
         });
         self.solution
@@ -191,21 +197,7 @@ impl<'t, 'a> Driver<'t, 'a> {
     /// Takes one step, smaller as often as needed, to `new`.
     fn advance(&mut self, new: &mut State) -> Result<(), Stuck> {
         loop {
-            let left = self.task.duration - self.state.time;
-            let (end, h) = match self.control {
-                StepControl::Fixed(step) => {
-                    let end = self.origin.0 + step * (self.origin.1 + 1) as f64;
-                    // No sliver is left before the end.
-                    let end = if end > self.task.duration - SLACK * step { self.task.duration } else { end };
-                    (end, end - self.state.time)
-                }
-                StepControl::Tolerance(_) if self.step >= left => (self.task.duration, left),
-                StepControl::Tolerance(_) => {
-                    // The last two steps share what is left.
-                    let h = self.step.min(0.5 * left.max(self.step));
-                    (self.state.time + h, h)
-                }
-            };
+            let (end, h) = self.next_end();
             let accuracy = match self.control {
                 StepControl::Fixed(_) => None,
                 StepControl::Tolerance(tolerance) => Some(STEP_PART * tolerance),
@@ -228,18 +220,21 @@ impl<'t, 'a> Driver<'t, 'a> {
             let power = 1.0 / self.method.order();
             if accepted {
                 self.method.statistics().steps += 1;
-                self.origin.1 += 1;
                 new.time = end;
                 new.work = self.state.work;
-                if accuracy.is_some() {
+                if let StepControl::Fixed(step) = self.control
+                    && end >= self.grid_end(step)
+                {
+                    self.origin.1 += 1;
+                    self.step = step;
+                } else if accuracy.is_some() {
                     let ratio = ratio.max(1e-10);
                     let mut factor = SAFETY * ratio.powf(-0.7 * power) * self.last_ratio.powf(0.4 * power);
                     if self.rejected || iterations > MANY_ITERATIONS {
                         factor = factor.min(1.0);
                     }
                     // A step that was cut at the end says nothing about the next.
-                    let step = self.step.max(h) * factor.clamp(LIMITS.0, LIMITS.1);
-                    self.step = step.min(self.method.longest_step());
+                    self.step = self.step.max(h) * factor.clamp(LIMITS.0, LIMITS.1);
                     (self.last_ratio, self.rejected) = (ratio, false);
                 }
                 return Ok(());
@@ -250,10 +245,13 @@ impl<'t, 'a> Driver<'t, 'a> {
             };
             self.method.statistics().rejected_steps += 1;
             match (result, accuracy) {
-                (Err(failure), None) => return Err(stuck(&*self.method, failure)),
-                (Err(failure), Some(_)) => {
-                    self.step = h * SHRINK;
-                    if self.step < SMALLEST_STEP * self.task.duration {
+                (Err(failure), _) => {
+                    let smallest = match self.control {
+                        StepControl::Fixed(step) => SMALLEST_PART * step,
+                        StepControl::Tolerance(_) => SMALLEST_STEP * self.task.duration,
+                    };
+                    self.step = if accuracy.is_some() { SHRINK * h } else { 0.5 * h };
+                    if self.step < smallest {
                         return Err(stuck(&*self.method, failure));
                     }
                 }
@@ -265,6 +263,31 @@ impl<'t, 'a> Driver<'t, 'a> {
                 }
             }
             self.rejected = true;
+        }
+    }
+
+    /// Where the present step of fixed length ends.
+    fn grid_end(&self, step: f64) -> f64 {
+        let end = self.origin.0 + step * (self.origin.1 + 1) as f64;
+        // No sliver is left before the end.
+        if end > self.task.duration - SLACK * step { self.task.duration } else { end }
+    }
+
+    /// Where the next step ends, and its length.
+    fn next_end(&self) -> (f64, f64) {
+        let now = self.state.time;
+        let (end, sliver) = match self.control {
+            StepControl::Fixed(step) => (self.grid_end(step), 1.0 + SLACK),
+            // The last two steps share what is left.
+            StepControl::Tolerance(_) => (self.task.duration, 2.0),
+        };
+        let left = end - now;
+        if self.step * (1.0 + SLACK) >= left {
+            (end, left)
+        } else if self.step * sliver > left {
+            (now + 0.5 * left, 0.5 * left)
+        } else {
+            (now + self.step, self.step)
         }
     }
 
@@ -411,7 +434,7 @@ fn first_step(
     let by_speed = part / largest(velocity);
     let by_acceleration = (2.0 * part / largest(acceleration)).sqrt();
     let remaining = 0.01 * (task.duration - task.start.state.time);
-    by_speed.min(by_acceleration).min(remaining).min(method.longest_step())
+    by_speed.min(by_acceleration).min(remaining)
 }
 
 /// The unknown that changed most.

@@ -27,11 +27,6 @@ pub trait Method {
         record: &mut Iterations,
     ) -> Result<f64, Failure>;
 
-    /// The longest step that is stable \[s\].
-    fn longest_step(&self) -> f64 {
-        f64::INFINITY
-    }
-
     /// Takes over what the last attempt found.
     fn accept(&mut self);
 

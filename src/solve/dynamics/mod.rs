@@ -6,9 +6,13 @@
 //! | [`method`] | what a method is to the driver |
 //! | [`generalized_alpha`] | second order, numerical damping by choice |
 //! | [`collocation`], [`tableau`] | Gauss (order 2, 4, 6; symplectic), Radau IIA (order 3, 5; stiff) |
-//! | [`explicit`] | order 2 and 4, symplectic, for scenes that are not stiff |
 //! | [`start`] | initial velocities |
 //! | [`integrate`] | the driver: steps, records, events, restart |
+//!
+//! # No explicit method
+//! Störmer's and Verlet's rule and the six-stage method of order 4 of Blanes and Moan were built and measured on the soft pendulum (E = 68.95 MPa, the least stiff
+//! scene at hand): axial waves limit the step to 90 µs with 23 cable elements and to 70 µs with 20 RPIM nodes, so that the cheaper of the two
+//! took 1.8 times (ANCF) and 2.5 times (RPIM) as long as Gauss' method with three stages and 4 ms, whose error is smaller. They were left out.
 //!
 //! # No energy–momentum scheme
 //! Schemes that keep the discrete energy exactly (discrete gradients; Simo & Tarnow 1992, Gonzalez 2000) are of second order, and their tangent is
@@ -17,7 +21,6 @@
 //! itself. Its exact energy would be the only digit that it has right; it was left out.
 
 pub mod collocation;
-pub mod explicit;
 pub mod generalized_alpha;
 pub mod integrate;
 pub mod method;
@@ -115,6 +118,8 @@ pub struct Checkpoint {
     pub memory: Vec<Vec<f64>>,
     /// The next step \[s\].
     pub step: f64,
+    /// Error of the last step against what it was allowed.
+    pub last_ratio: f64,
     /// Where steps of fixed length are counted from \[s\], and how many were taken.
     pub origin: (f64, u64),
 }

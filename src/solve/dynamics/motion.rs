@@ -183,19 +183,6 @@ impl<'a> Motion<'a> {
         self.free_mass.multiply_add(factor, &d[..n], &mut b[..n]);
     }
 
-    /// M⁻¹ K v with the last tangent K.
-    pub fn stiffness_over_mass(&self, v: &[f64]) -> Vec<f64> {
-        let n = self.coordinates();
-        let mut free = v.to_vec();
-        self.to_frames(&mut free);
-        let mut product = vec![0.0; self.unknowns()];
-        self.tangent.multiply_add(1.0, &free, &mut product[..n]);
-        self.mass_factor.solve(&mut product);
-        self.from_frames(&mut product);
-        product.truncate(n);
-        product
-    }
-
     /// Turns a vector of coordinates into the supports' frames and clears what is held.
     pub fn to_frames(&self, v: &mut [f64]) {
         let n = self.coordinates();

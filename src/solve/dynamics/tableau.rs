@@ -148,6 +148,9 @@ fn diagonalise(matrix: &DMatrix<f64>) -> (DMatrix<f64>, Vec<Block>) {
 /// The eigenvector whose last component is 1.
 fn eigenvector(matrix: &DMatrix<f64>, value: Complex<f64>) -> DVector<Complex<f64>> {
     let s = matrix.nrows();
+    if s == 1 {
+        return DVector::from_element(1, Complex::new(1.0, 0.0));
+    }
     let entry = |i: usize, j: usize| {
         Complex::new(matrix[(i, j)], 0.0) - if i == j { value } else { Complex::default() }
     };

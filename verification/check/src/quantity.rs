@@ -3,7 +3,7 @@
 //! | quantity | what it is | a series over |
 //! |---|---|---|
 //! | `probe.<name>.x` (`y`, `angle`, `curvature`, `strain`, `vx`, `vy`) | what a probe saw | time or load factor |
-//! | `energy.stretch` (`bend`, `kinetic`, `potential`, `total`) | energies \[J\] | time or load factor |
+//! | `energy.stretch` (`bend`, `kinetic`, `potential`, `work`, `total`) | energies \[J\] | time or load factor |
 //! | `energy.drift` | max abs(total − initial) / max kinetic | – |
 //! | `parameter` | load factor or time \[s\] itself | time or load factor |
 //! | `shape.x` (`s`, `y`, `angle`, `strain`, `curvature`), `shape.<beam>.x` | the last state | s \[m\] |
@@ -165,8 +165,9 @@ fn energy(e: &Energy, field: &str) -> std::result::Result<f64, String> {
         "bend" => Ok(e.bend),
         "kinetic" => Ok(e.kinetic),
         "potential" => Ok(e.potential),
+        "work" => Ok(e.work),
         "total" => Ok(e.total()),
-        _ => Err("there are stretch, bend, kinetic, potential, total, drift".to_owned()),
+        _ => Err("there are stretch, bend, kinetic, potential, work, total, drift".to_owned()),
     }
 }
 
