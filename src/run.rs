@@ -1,13 +1,15 @@
 //! One model, one analysis: build, solve, and look at the states.
 
+mod modes;
+
 use crate::model::{
     Analysis, ArcLength, Displacement, Dynamic, Integrator, Model, StepControl, StrainMeasure,
 };
+use crate::solve::buckling;
 use crate::solve::dynamics;
 use crate::solve::dynamics::generalized_alpha::{self, Task};
 use crate::solve::path::Stuck;
 use crate::solve::statics::{self, Solution, Target};
-use crate::solve::{buckling, modal};
 use crate::system::{Inventory, Needs, System, SystemError, View};
 use crate::trajectory::{AnalysisKind, Energy, Frame, ProbeSample, ProbeSeries, Shape, Trajectory};
 use std::f64::consts::TAU;
@@ -154,7 +156,7 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
             }
         }
         Analysis::Buckling { count } => look.buckling(&buckling::solve(&system, *count)?),
-        Analysis::Modal { count } => look.modal(&modal::solve(&system, *count)?),
+        Analysis::Modal { count, about } => look.vibrations(*count, *about, observer)?,
         Analysis::Dynamic(settings) => {
             let task = generalized_alpha_task(model, settings)?;
             let report = &mut |time: f64, step: f64, statistics: &crate::trajectory::Statistics| {
@@ -445,30 +447,6 @@ impl<'a> Look<'a> {
             cause: stuck.failure.to_string(),
             partial: Box::new(self.dynamics(solution)),
         }
-    }
-
-    /// The reference with a mode added, its largest displacement a tenth of a beam length.
-    fn mode_shape(&self, mode: &[f64]) -> Vec<Shape> {
-        let largest = mode.chunks_exact(4).fold(0.0_f64, |m, d| m.max(d[0].hypot(d[1])));
-        let factor = if largest > 0.0 { 0.1 * self.system.length() / largest } else { 0.0 };
-        let q: Vec<f64> = self.system.reference().iter().zip(mode).map(|(q, m)| q + factor * m).collect();
-        self.shape(&q)
-    }
-
-    fn modal(&self, modes: &modal::Modes) -> Trajectory {
-        let mut trajectory = self.empty(AnalysisKind::Modal);
-        trajectory.frequencies = modes.frequencies.clone();
-        trajectory.modes = modes.shapes.iter().map(|m| self.mode_shape(m)).collect();
-        trajectory.statistics.factorizations = modes.factorizations;
-        trajectory
-    }
-
-    fn buckling(&self, modes: &buckling::Modes) -> Trajectory {
-        let mut trajectory = self.empty(AnalysisKind::Buckling);
-        trajectory.load_factors = modes.load_factors.clone();
-        trajectory.modes = modes.shapes.iter().map(|m| self.mode_shape(m)).collect();
-        trajectory.statistics.factorizations = modes.factorizations;
-        trajectory
     }
 }
 

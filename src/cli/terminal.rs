@@ -121,9 +121,9 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
     let mut row = |name: &str, text: String| rows.push((name.to_owned(), text));
     if let Some(last) = trajectory.parameter.last() {
         match trajectory.analysis {
-            AnalysisKind::Static => row("load factor", number(*last)),
+            AnalysisKind::Static | AnalysisKind::Modal => row("load factor", number(*last)),
             AnalysisKind::Dynamic => row("time", format!("{} s", number(*last))),
-            AnalysisKind::Modal | AnalysisKind::Buckling => {}
+            AnalysisKind::Buckling => {}
         }
     }
     for probe in &trajectory.probes {
@@ -132,7 +132,8 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
         }
     }
     for (index, frequency) in trajectory.frequencies.iter().enumerate() {
-        row(&format!("frequency {}", index + 1), format!("{} Hz", number(*frequency)));
+        let free = if *frequency == 0.0 { " (nothing resists)" } else { "" };
+        row(&format!("frequency {}", index + 1), format!("{} Hz{free}", number(*frequency)));
     }
     for (index, factor) in trajectory.load_factors.iter().enumerate() {
         row(&format!("critical load {}", index + 1), format!("{} × the load", number(*factor)));

@@ -59,16 +59,18 @@ pub(super) fn figures(t: &Trajectory) -> Result<Vec<Figure>, OutputError> {
 /// How records are ordered, for an axis.
 fn parameter_axis(t: &Trajectory) -> Axis {
     match t.analysis {
-        AnalysisKind::Static => Axis::linear("load factor"),
+        AnalysisKind::Static | AnalysisKind::Modal => Axis::linear("load factor"),
         AnalysisKind::Dynamic => Axis::linear("time [s]"),
-        AnalysisKind::Modal | AnalysisKind::Buckling => Axis::linear("mode").whole(),
+        AnalysisKind::Buckling => Axis::linear("mode").whole(),
     }
 }
 
 /// Load factor or time of the last record, in words.
 fn moment(t: &Trajectory) -> String {
     match (t.analysis, t.parameter.last()) {
-        (AnalysisKind::Static, Some(&load)) => format!("at load factor {}", human(load, 6)),
+        (AnalysisKind::Static | AnalysisKind::Modal, Some(&load)) => {
+            format!("at load factor {}", human(load, 6))
+        }
         (AnalysisKind::Dynamic, Some(&time)) => format!("at {} s", human(time, 6)),
         _ => "in the reference state".into(),
     }
@@ -375,7 +377,7 @@ fn modes(t: &Trajectory) -> Option<Sketch> {
         });
         let mut chart =
             Chart::new(format!("mode {}{value}", i + 1), Axis::linear("x [m]"), Axis::linear("y [m]"));
-        for beam in &t.undeformed {
+        for beam in &t.last {
             chart = chart.with(Series::dashed("", centreline(beam), GREY));
         }
         for (j, beam) in mode.iter().enumerate() {
@@ -386,6 +388,8 @@ fn modes(t: &Trajectory) -> Option<Sketch> {
         }
         chart.sized(460, 300).equal_aspect(300)
     });
-    let caption = "Mode shapes in true proportion; their size is chosen for drawing. Dashed: undeformed.";
-    Some(Sketch { name: "modes", caption: caption.into(), charts: charts.collect() })
+    let rest = if t.parameter.is_empty() { "undeformed" } else { "the equilibrium" };
+    let caption =
+        format!("Mode shapes in true proportion; their size is chosen for drawing. Dashed: {rest}.");
+    Some(Sketch { name: "modes", caption, charts: charts.collect() })
 }

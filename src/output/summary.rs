@@ -22,7 +22,7 @@ pub struct Summary {
     pub probes: Vec<(String, ProbeSample)>,
     /// Energies of the last record; `null` where there is none (modal, buckling).
     pub energy: Option<EnergySummary>,
-    /// Natural frequencies \[Hz\], ascending; modal analysis only.
+    /// Natural frequencies \[Hz\], ascending, 0 where nothing resists the motion; modal analysis only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Vec<f64>>,
     /// Critical load factors, ascending; buckling only.

@@ -361,7 +361,7 @@ pub struct AnalysisTable {
     /// Critical load factors.
     pub buckling: Option<ModesTable>,
     /// Natural frequencies.
-    pub modal: Option<ModesTable>,
+    pub modal: Option<ModalTable>,
 }
 
 /// Settings of a static analysis; every one may be left out.
@@ -461,12 +461,34 @@ pub struct RadauTable {
     pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
 }
 
-/// An analysis by modes.
+/// Critical loads, the lowest first.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModesTable {
     /// How many.
     pub count: Located<Count<1>>,
+}
+
+/// Natural frequencies, the lowest first.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModalTable {
+    /// How many; motions that nothing resists count too, with 0 Hz.
+    pub count: Located<Count<1>>,
+    /// The state about which the beams vibrate.
+    #[serde(default)]
+    pub about: AboutName,
+}
+
+/// The state about which vibrations are small.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum AboutName {
+    /// The stress-free one, without loads.
+    #[default]
+    Reference,
+    /// The equilibrium under all loads and prescribed displacements, found first.
+    Equilibrium,
 }
 
 /// Files beyond those that are always written.
