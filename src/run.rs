@@ -114,6 +114,14 @@ impl RunError {
             Self::NoEquilibrium { .. } | Self::NoStep { .. } | Self::Eigen(_) => 1,
         }
     }
+
+    /// What was computed before the failure.
+    pub fn partial(&mut self) -> Option<&mut Trajectory> {
+        match self {
+            Self::NoEquilibrium { partial, .. } | Self::NoStep { partial, .. } => Some(partial),
+            _ => None,
+        }
+    }
 }
 
 fn needs(analysis: &Analysis) -> Needs {
@@ -138,7 +146,14 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
     let look = Look::new(model, &system)?;
     let build = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let mut trajectory = match analysis {
+    let (mut stopped, follows_path) = (false, follows_path(analysis));
+    let observer = &mut |progress: &Progress| {
+        let control = observer(progress);
+        // Who stops at the end stops nothing. A path may end anywhere.
+        stopped |= control == Control::Stop && (follows_path || progress.parameter < progress.target);
+        control
+    };
+    let mut outcome = match analysis {
         Analysis::Static(settings) => {
             let report = &mut |load: f64, step: f64, statistics: &crate::trajectory::Statistics| {
                 let iterations = statistics.newton_iterations;
@@ -151,12 +166,12 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
             };
             let solution = statics::solve(&system, settings, target.as_ref(), report);
             match &solution.stuck {
-                None => look.statics(&solution),
-                Some(stuck) => return Err(look.stuck(stuck, &solution)),
+                None => Ok(look.statics(&solution)),
+                Some(stuck) => Err(look.stuck(stuck, &solution)),
             }
         }
-        Analysis::Buckling { count } => look.buckling(&buckling::solve(&system, *count)?),
-        Analysis::Modal { count, about } => look.vibrations(*count, *about, observer)?,
+        Analysis::Buckling { count } => Ok(look.buckling(&buckling::solve(&system, *count)?)),
+        Analysis::Modal { count, about } => look.vibrations(*count, *about, observer),
         Analysis::Dynamic(settings) => {
             let task = generalized_alpha_task(model, settings)?;
             let report = &mut |time: f64, step: f64, statistics: &crate::trajectory::Statistics| {
@@ -166,14 +181,25 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
             };
             let solution = generalized_alpha::solve(&system, &task, report);
             match &solution.stuck {
-                None => look.dynamics(&solution),
-                Some(stuck) => return Err(look.lost(stuck, &solution)),
+                None => Ok(look.dynamics(&solution)),
+                Some(stuck) => Err(look.lost(stuck, &solution)),
             }
         }
     };
-    trajectory.seconds.solve = start.elapsed().as_secs_f64();
-    trajectory.seconds.build = build;
-    Ok(trajectory)
+    let left = match &mut outcome {
+        Ok(trajectory) => Some(trajectory),
+        Err(error) => error.partial(),
+    };
+    if let Some(trajectory) = left {
+        trajectory.complete &= !stopped;
+        trajectory.seconds.solve = start.elapsed().as_secs_f64();
+        trajectory.seconds.build = build;
+    }
+    outcome
+}
+
+fn follows_path(analysis: &Analysis) -> bool {
+    matches!(analysis, Analysis::Static(settings) if settings.arc_length.is_some())
 }
 
 /// What generalised-α is to do, if the model and its settings ask for what exists.
@@ -273,6 +299,7 @@ impl<'a> Look<'a> {
         Trajectory {
             title: self.model.title.clone(),
             analysis,
+            complete: true,
             degrees_of_freedom: self.system.degrees_of_freedom(),
             settings: self.settings(),
             undeformed: self.shape(reference),
@@ -418,7 +445,7 @@ impl<'a> Look<'a> {
             beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
             s,
             advice: advice.into(),
-            partial: Box::new(self.statics(solution)),
+            partial: Box::new(Trajectory { complete: false, ..self.statics(solution) }),
         }
     }
 
@@ -445,7 +472,7 @@ impl<'a> Look<'a> {
             time: stuck.time,
             step: stuck.step,
             cause: stuck.failure.to_string(),
-            partial: Box::new(self.dynamics(solution)),
+            partial: Box::new(Trajectory { complete: false, ..self.dynamics(solution) }),
         }
     }
 }

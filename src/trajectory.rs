@@ -10,6 +10,8 @@ pub struct Trajectory {
     pub title: String,
     /// Kind of analysis.
     pub analysis: AnalysisKind,
+    /// Whether it reaches as far as was asked for: not where the run was stopped, or found no way on.
+    pub complete: bool,
     /// Unknowns after supports are eliminated, plus multipliers.
     pub degrees_of_freedom: usize,
     /// Lines for the reader: what was simulated and how (name, value).

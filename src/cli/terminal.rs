@@ -119,6 +119,9 @@ pub fn results(trajectory: &Trajectory, directory: &Path) {
 fn table(trajectory: &Trajectory, directory: &Path) -> String {
     let mut rows: Vec<(String, String)> = Vec::new();
     let mut row = |name: &str, text: String| rows.push((name.to_owned(), text));
+    if !trajectory.complete {
+        row("complete", "no, the run ended before it was done".into());
+    }
     if let Some(last) = trajectory.parameter.last() {
         match trajectory.analysis {
             AnalysisKind::Static | AnalysisKind::Modal => row("load factor", number(*last)),
@@ -239,6 +242,7 @@ mod tests {
     fn the_table_names_what_was_computed() {
         let trajectory = Trajectory {
             title: "Arm".into(),
+            complete: true,
             parameter: vec![1.0],
             probes: vec![ProbeSeries { name: "tip".into(), samples: vec![ProbeSample::default()] }],
             energy: vec![Energy { bend: 0.5, ..Energy::default() }],
@@ -248,5 +252,8 @@ mod tests {
         for part in ["Arm\n", "load factor  1", "tip          x = 0 m", "bend 0.5 J", "out/arm/report.html"] {
             assert!(text.contains(part), "{part}: {text}");
         }
+        assert!(!text.contains("complete"), "{text}");
+        let text = table(&Trajectory { complete: false, ..trajectory }, Path::new("out/arm"));
+        assert!(text.contains("complete     no, the run ended"), "{text}");
     }
 }

@@ -53,6 +53,7 @@ pub(super) fn figures(t: &Trajectory) -> Result<Vec<Figure>, OutputError> {
     sketches.push(energy(t));
     sketches.push(convergence(t));
     sketches.push(steps(t));
+    sketches.push(newton(t));
     sketches.into_iter().flatten().map(Sketch::draw).collect()
 }
 
@@ -362,6 +363,34 @@ fn steps(t: &Trajectory) -> Option<Sketch> {
         chart = chart.with(Series::new("rejected", rejected, Mark::Crosses, PALETTE[1]));
     }
     Some(Sketch::one("steps", "Size of the steps that the solver took.", chart))
+}
+
+/// Newton iterations of every time step: where they grow, the steps are as long as the motion allows.
+fn newton(t: &Trajectory) -> Option<Sketch> {
+    if t.analysis != AnalysisKind::Dynamic {
+        return None;
+    }
+    let points = |accepted: bool| -> Vec<[f64; 2]> {
+        let steps = t.history.iter().filter(|s| s.accepted == accepted && !s.increments.is_empty());
+        steps.map(|s| [s.parameter, s.increments.len() as f64]).collect()
+    };
+    let (kept, rejected) = (points(true), points(false));
+    if kept.len() < 2 {
+        return None;
+    }
+    let total: f64 = kept.iter().map(|p| p[1]).sum();
+    let caption = format!(
+        "Newton iterations of every step; {} a step on average, {} steps tried again.",
+        human(total / kept.len() as f64, 3),
+        t.statistics.rejected_steps
+    );
+    let axis = Axis::linear("Newton iterations").whole();
+    let mut chart = Chart::new("", parameter_axis(t), axis).sized(SMALL.0, SMALL.1);
+    chart = chart.with(Series::points("accepted", kept, PALETTE[0]).size(1.6));
+    if !rejected.is_empty() {
+        chart = chart.with(Series::new("rejected", rejected, Mark::Crosses, PALETTE[1]));
+    }
+    Some(Sketch::one("newton", caption, chart))
 }
 
 /// Mode shapes, one small plot each.

@@ -44,7 +44,7 @@ pub struct OutputOptions {
 
 /// Names that a run may leave; those that this run does not write are removed when it replaces an older one, so that a
 /// directory never mixes two runs.
-const NAMES: [&str; 21] = [
+const NAMES: [&str; 22] = [
     "summary.json",
     "probes.csv",
     "energy.csv",
@@ -65,6 +65,7 @@ const NAMES: [&str; 21] = [
     "energy.svg",
     "convergence.svg",
     "steps.svg",
+    "newton.svg",
     "modes.svg",
 ];
 

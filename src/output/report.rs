@@ -14,6 +14,7 @@ use crate::trajectory::{AnalysisKind, Trajectory};
 struct Page<'a> {
     title: &'a str,
     subtitle: String,
+    complete: bool,
     style: &'static str,
     player: &'static str,
     warnings: &'a [String],
@@ -51,6 +52,7 @@ pub(super) fn page(t: &Trajectory, summary: &Summary, figures: &[Figure]) -> Res
             t.degrees_of_freedom,
             if t.degrees_of_freedom == 1 { "" } else { "s" }
         ),
+        complete: t.complete,
         style: include_str!("templates/report.css"),
         player: include_str!("templates/player.js"),
         warnings: &t.warnings,

@@ -13,6 +13,8 @@ pub struct Summary {
     pub analysis: AnalysisKind,
     /// Version of this library.
     pub version: String,
+    /// Whether the run reached as far as was asked for.
+    pub complete: bool,
     /// Unknowns after supports are eliminated, plus multipliers.
     pub degrees_of_freedom: usize,
     /// Load factor or time \[s\] of the last record; `null` where there is none.
@@ -62,6 +64,7 @@ impl Summary {
             title: trajectory.title.clone(),
             analysis: trajectory.analysis,
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            complete: trajectory.complete,
             degrees_of_freedom: trajectory.degrees_of_freedom,
             last: trajectory.parameter.last().copied(),
             probes: trajectory.probes.iter().filter_map(last_sample).collect(),
