@@ -379,11 +379,8 @@ fn newton(t: &Trajectory) -> Option<Sketch> {
         return None;
     }
     let total: f64 = kept.iter().map(|p| p[1]).sum();
-    let caption = format!(
-        "Newton iterations of every step; {} a step on average, {} steps tried again.",
-        human(total / kept.len() as f64, 3),
-        t.statistics.rejected_steps
-    );
+    let mean = human(total / kept.len() as f64, 3);
+    let caption = format!("Newton iterations of every step; {mean} a step on average.");
     let axis = Axis::linear("Newton iterations").whole();
     let mut chart = Chart::new("", parameter_axis(t), axis).sized(SMALL.0, SMALL.1);
     chart = chart.with(Series::points("accepted", kept, PALETTE[0]).size(1.6));

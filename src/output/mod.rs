@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `summary.json` | [`Summary`]: last values, energies, counts, times |
+//! | `summary.json` | [`Summary`]: last values, energies, counts, times, whether the run came to its end |
 //! | `probes.csv`, `energy.csv` | one row per load factor or time; 17 significant digits, SI |
 //! | `shape.csv` | the last state along every beam |
 //! | `frequencies.csv` or `load_factors.csv`, `modes.csv` | modal analysis or buckling |

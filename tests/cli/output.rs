@@ -123,6 +123,9 @@ fn tables_read_back_to_the_same_bits() {
     let directory = tempfile::tempdir().expect("a directory");
     let mut t = motion(5);
     write(directory.path(), &mut t, &EVERYTHING).expect("written");
+    for plot in ["steps.svg", "newton.svg", "convergence.svg"] {
+        assert!(names(directory.path()).contains(&plot.into()), "{plot}");
+    }
     let (header, rows) = table(&directory.path().join("probes.csv"));
     assert_eq!(
         header[..8],
