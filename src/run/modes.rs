@@ -2,12 +2,16 @@
 
 use super::{Control, Look, Observer, Progress, RunError};
 use crate::model::{About, Static};
+use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};
 use crate::trajectory::{AnalysisKind, Shape, Statistics, Trajectory};
 
 /// Accuracy of the equilibrium: as far as round-off lets Newton's method come, because stress, and with it the stiffness,
 /// is a small difference of large numbers.
 const TO_THE_END: f64 = 1e-14;
+/// A long step past the critical load of a nearly perfect structure may end on the unstable branch of a perfect one.
+/// Before a state is refused as unstable, its path is followed again in so many parts of the load.
+const FINER: [usize; 2] = [20, 200];
 /// Largest displacement of a drawn mode, in beam lengths.
 const DRAWN: f64 = 0.1;
 
@@ -27,18 +31,25 @@ impl Look<'_> {
             let newton_iterations = statistics.newton_iterations;
             observer(&Progress { parameter: load, target: 1.0, step, newton_iterations }) == Control::Continue
         };
-        let settings = Static { tolerance: Some(TO_THE_END), ..Static::default() };
-        let mut solution = statics::solve(self.system, &settings, None, report);
-        if let Some(stuck) = &solution.stuck {
-            return Err(self.stuck(stuck, &solution));
-        }
-        // The way there is of no interest, only that it led there.
-        solution.states.drain(..solution.states.len().saturating_sub(1));
-        let trajectory = Trajectory { analysis: AnalysisKind::Modal, ..self.statics(&solution) };
-        match solution.states.last() {
-            Some((load, q)) if *load == 1.0 => self.modal(trajectory, *load, q, count),
-            // Stopped on the way.
-            _ => Ok(trajectory),
+        let (mut parts, mut finer) = (1, FINER.into_iter());
+        loop {
+            let settings = Static { tolerance: Some(TO_THE_END), steps: Some(parts), ..Static::default() };
+            let mut solution = statics::solve(self.system, &settings, None, &mut *report);
+            if let Some(stuck) = &solution.stuck {
+                return Err(self.stuck(stuck, &solution));
+            }
+            // The way there is of no interest, only that it led there.
+            solution.states.drain(..solution.states.len().saturating_sub(1));
+            let trajectory = Trajectory { analysis: AnalysisKind::Modal, ..self.statics(&solution) };
+            let vibrations = match solution.states.last() {
+                Some((load, q)) if *load == 1.0 => self.modal(trajectory, *load, q, count),
+                // Stopped on the way.
+                _ => Ok(trajectory),
+            };
+            match (vibrations, finer.next()) {
+                (Err(RunError::Eigen(EigenError::Unstable { .. })), Some(next)) => parts = next,
+                (found, _) => return found,
+            }
         }
     }
 
