@@ -1,16 +1,18 @@
 //! Commands of the `ancf` program. This module and those below it are the only code that prints.
 //!
 //! Results go to files, or to standard output where a command is there to print them; progress, tables, warnings and
-//! errors go to standard error. Exit status: 0 done, 1 the computation or the writing of its results failed, 2 the
-//! input is wrong.
+//! errors go to standard error. Exit status: 0 done, 1 the computation or the writing of its results failed or was
+//! interrupted (what was computed until then is written, marked as incomplete), 2 the input is wrong.
 
 mod destination;
 mod failure;
+mod interrupt;
 mod terminal;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
 use ancf::output::OutputOptions;
 use ancf::restart::SavedState;
@@ -118,6 +120,7 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
     let scene = load(&arguments.scene, &arguments.overrides)?;
     let saved = arguments.from.as_deref().map(SavedState::load).transpose();
     let saved = saved.map_err(|error| Failure::run(scene.name(), error.into()))?;
+    let interrupted = interrupt::listen();
     let destination = match &arguments.output {
         Some(directory) => Destination::prepare(directory)?,
         None => Destination::prepare(&default_directory(&arguments.scene))?,
@@ -125,20 +128,37 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
     let progress = ProgressLine::new(scene.analysis(), arguments.quiet);
     let observer = &mut |progress_now: &Progress| {
         progress.show(progress_now);
-        Control::Continue
+        if interrupted.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
     };
     let outcome = run::run_from(scene.model(), scene.analysis(), saved.as_ref(), observer);
     progress.clear();
-    let mut trajectory = outcome.map_err(|error| Failure::run(scene.name(), error))?;
+    let (mut trajectory, failure) = match outcome {
+        Ok(trajectory) if trajectory.complete => (trajectory, None),
+        Ok(trajectory) => {
+            let (scene, results) = (scene.name().to_owned(), destination.path().to_owned());
+            (trajectory, Some(Failure::Interrupted { scene, results }))
+        }
+        Err(mut error) => match error.partial().map(std::mem::take) {
+            // The state at which everything starts is no result.
+            Some(partial) if partial.parameter.len() > 1 => {
+                (partial, Some(Failure::run(scene.name(), error)))
+            }
+            _ => return Err(Failure::run(scene.name(), error)),
+        },
+    };
+    terminal::warnings(&trajectory);
+    trajectory.warnings.extend(failure.as_ref().map(Failure::to_string));
     let options = OutputOptions { states: scene.output().states, vtu: scene.output().vtu };
     let summary =
         ancf::output::write(destination.path(), &mut trajectory, &options).map_err(Failure::Output)?;
-    terminal::warnings(&trajectory);
     if !arguments.quiet {
         terminal::results(&trajectory, destination.path());
     }
     destination.keep();
-    if arguments.json { print_json(&summary) } else { Ok(()) }
+    if arguments.json {
+        print_json(&summary)?;
+    }
+    failure.map_or(Ok(()), Err)
 }
 
 fn default_directory(scene: &Path) -> PathBuf {

@@ -297,9 +297,21 @@ pub enum Analysis {
     },
     /// Natural frequencies and mode shapes.
     Modal {
-        /// How many.
+        /// How many, motions without resistance (0 Hz) included.
         count: usize,
+        /// About which state.
+        about: About,
     },
+}
+
+/// The state about which vibrations are small.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum About {
+    /// The stress-free one, without loads.
+    #[default]
+    Reference,
+    /// The equilibrium under all loads and prescribed displacements.
+    Equilibrium,
 }
 
 /// Settings of a static analysis.

@@ -1,14 +1,16 @@
 //! One model, one analysis: build, solve, and look at the states.
 
+mod modes;
+
 use crate::model::{
     Analysis, ArcLength, Displacement, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure,
 };
 use crate::restart::{RestartError, SavedState};
+use crate::solve::buckling;
 use crate::solve::dynamics;
 use crate::solve::dynamics::start::{self, StartError};
 use crate::solve::path::Stuck;
 use crate::solve::statics::{self, Solution, Target};
-use crate::solve::{buckling, modal};
 use crate::system::{Inventory, Needs, System, SystemError, View};
 use crate::trajectory::{AnalysisKind, Energy, Event, Frame, ProbeSample, ProbeSeries, Shape, Trajectory};
 use std::f64::consts::TAU;
@@ -131,6 +133,14 @@ impl RunError {
             Self::NoEquilibrium { .. } | Self::NoStep { .. } | Self::Eigen(_) => 1,
         }
     }
+
+    /// What was computed before the failure.
+    pub fn partial(&mut self) -> Option<&mut Trajectory> {
+        match self {
+            Self::NoEquilibrium { partial, .. } | Self::NoStep { partial, .. } => Some(partial),
+            _ => None,
+        }
+    }
 }
 
 fn needs(analysis: &Analysis) -> Needs {
@@ -177,7 +187,14 @@ pub fn run_from(
     let look = Look::new(model, &system)?;
     let build = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let mut trajectory = match analysis {
+    let (mut stopped, follows_path) = (false, follows_path(analysis));
+    let observer = &mut |progress: &Progress| {
+        let control = observer(progress);
+        // Who stops at the end stops nothing. A path may end anywhere.
+        stopped |= control == Control::Stop && (follows_path || progress.parameter < progress.target);
+        control
+    };
+    let mut outcome = match analysis {
         Analysis::Static(settings) => {
             let report = &mut |load: f64, step: f64, statistics: &crate::trajectory::Statistics| {
                 let iterations = statistics.newton_iterations;
@@ -190,12 +207,12 @@ pub fn run_from(
             };
             let solution = statics::solve(&system, settings, target.as_ref(), report);
             match &solution.stuck {
-                None => look.statics(&solution),
-                Some(stuck) => return Err(look.stuck(stuck, &solution)),
+                None => Ok(look.statics(&solution)),
+                Some(stuck) => Err(look.stuck(stuck, &solution)),
             }
         }
-        Analysis::Buckling { count } => look.buckling(&buckling::solve(&system, *count)?),
-        Analysis::Modal { count } => look.modal(&modal::solve(&system, *count)?),
+        Analysis::Buckling { count } => Ok(look.buckling(&buckling::solve(&system, *count)?)),
+        Analysis::Modal { count, about } => look.vibrations(*count, *about, observer),
         Analysis::Dynamic(settings) => {
             let watches = look.watches(settings)?;
             let task = dynamics::Task {
@@ -212,14 +229,25 @@ pub fn run_from(
             };
             let solution = dynamics::solve(&system, &task, report);
             match &solution.stuck {
-                None => look.dynamics(settings, solution),
-                Some(stuck) => return Err(look.lost(settings, &stuck.clone(), solution)),
+                None => Ok(look.dynamics(settings, solution)),
+                Some(stuck) => Err(look.lost(settings, &stuck.clone(), solution)),
             }
         }
     };
-    trajectory.seconds.solve = start.elapsed().as_secs_f64();
-    trajectory.seconds.build = build;
-    Ok(trajectory)
+    let left = match &mut outcome {
+        Ok(trajectory) => Some(trajectory),
+        Err(error) => error.partial(),
+    };
+    if let Some(trajectory) = left {
+        trajectory.complete &= !stopped;
+        trajectory.seconds.solve = start.elapsed().as_secs_f64();
+        trajectory.seconds.build = build;
+    }
+    outcome
+}
+
+fn follows_path(analysis: &Analysis) -> bool {
+    matches!(analysis, Analysis::Static(settings) if settings.arc_length.is_some())
 }
 
 /// Where a motion begins.
@@ -332,6 +360,7 @@ impl<'a> Look<'a> {
         Trajectory {
             title: self.model.title.clone(),
             analysis,
+            complete: true,
             degrees_of_freedom: self.system.degrees_of_freedom(),
             settings: self.settings(),
             undeformed: self.shape(reference),
@@ -477,7 +506,7 @@ impl<'a> Look<'a> {
             beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
             s,
             advice: advice.into(),
-            partial: Box::new(self.statics(solution)),
+            partial: Box::new(Trajectory { complete: false, ..self.statics(solution) }),
         }
     }
 
@@ -534,32 +563,8 @@ impl<'a> Look<'a> {
             beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
             s,
             advice: advice.into(),
-            partial: Box::new(self.dynamics(settings, solution)),
+            partial: Box::new(Trajectory { complete: false, ..self.dynamics(settings, solution) }),
         }
-    }
-
-    /// The reference with a mode added, its largest displacement a tenth of a beam length.
-    fn mode_shape(&self, mode: &[f64]) -> Vec<Shape> {
-        let largest = mode.chunks_exact(4).fold(0.0_f64, |m, d| m.max(d[0].hypot(d[1])));
-        let factor = if largest > 0.0 { 0.1 * self.system.length() / largest } else { 0.0 };
-        let q: Vec<f64> = self.system.reference().iter().zip(mode).map(|(q, m)| q + factor * m).collect();
-        self.shape(&q)
-    }
-
-    fn modal(&self, modes: &modal::Modes) -> Trajectory {
-        let mut trajectory = self.empty(AnalysisKind::Modal);
-        trajectory.frequencies = modes.frequencies.clone();
-        trajectory.modes = modes.shapes.iter().map(|m| self.mode_shape(m)).collect();
-        trajectory.statistics.factorizations = modes.factorizations;
-        trajectory
-    }
-
-    fn buckling(&self, modes: &buckling::Modes) -> Trajectory {
-        let mut trajectory = self.empty(AnalysisKind::Buckling);
-        trajectory.load_factors = modes.load_factors.clone();
-        trajectory.modes = modes.shapes.iter().map(|m| self.mode_shape(m)).collect();
-        trajectory.statistics.factorizations = modes.factorizations;
-        trajectory
     }
 }
 

@@ -11,11 +11,14 @@ pub struct Trajectory {
     pub title: String,
     /// Kind of analysis.
     pub analysis: AnalysisKind,
+    /// Whether it reaches as far as was asked for: not where the run was stopped, or found no way on.
+    pub complete: bool,
     /// Unknowns after supports are eliminated, plus multipliers.
     pub degrees_of_freedom: usize,
     /// Lines for the reader: what was simulated and how (name, value).
     pub settings: Vec<(String, String)>,
-    /// Load factors (statics), times \[s\] (dynamics) or mode numbers of the records, in order.
+    /// Load factors (statics; also the one equilibrium about which vibrations are small) or times \[s\] (dynamics) of the
+    /// records, in order.
     pub parameter: Vec<f64>,
     /// Per probe, one sample per entry of `parameter`.
     pub probes: Vec<ProbeSeries>,
@@ -29,7 +32,7 @@ pub struct Trajectory {
     pub last: Vec<Shape>,
     /// One entry per attempted step.
     pub history: Vec<StepRecord>,
-    /// Natural frequencies \[Hz\], ascending; modal analysis only.
+    /// Natural frequencies \[Hz\], ascending, 0 where nothing resists the motion; modal analysis only.
     pub frequencies: Vec<f64>,
     /// Critical load factors, ascending; buckling only.
     pub load_factors: Vec<f64>,
@@ -57,9 +60,9 @@ pub enum AnalysisKind {
     Static,
     /// Motion; `parameter` is the time \[s\].
     Dynamic,
-    /// Small vibrations; `parameter` is the mode number.
+    /// Small vibrations; `parameter` is the load factor of the equilibrium, empty for the stress-free state.
     Modal,
-    /// Critical loads; `parameter` is the mode number.
+    /// Critical loads; without records.
     Buckling,
 }
 
@@ -131,7 +134,7 @@ pub struct Event {
 /// The centrelines of all beams at one record.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Frame {
-    /// Load factor, time or mode number.
+    /// Load factor or time.
     pub parameter: f64,
     /// Per beam: positions \[m\] at evenly spaced arc lengths.
     pub beams: Vec<Vec<[f64; 2]>>,

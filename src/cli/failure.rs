@@ -21,6 +21,13 @@ pub enum Failure {
         /// Why.
         error: Box<RunError>,
     },
+    /// It was interrupted.
+    Interrupted {
+        /// The scene file.
+        scene: String,
+        /// Where the results until then are.
+        results: PathBuf,
+    },
     /// Nothing can be written where the results should go.
     Directory {
         /// Where.
@@ -45,7 +52,7 @@ impl Failure {
         match self {
             Self::Scene(_) | Self::Directory { .. } => 2,
             Self::Run { error, .. } => error.exit_status(),
-            Self::Output(_) | Self::Print(_) => 1,
+            Self::Interrupted { .. } | Self::Output(_) | Self::Print(_) => 1,
         }
     }
 
@@ -54,7 +61,7 @@ impl Failure {
             Self::Scene(error) => Some(error),
             Self::Run { error, .. } => Some(error.as_ref()),
             Self::Output(error) => Some(error),
-            Self::Directory { .. } | Self::Print(_) => None,
+            Self::Interrupted { .. } | Self::Directory { .. } | Self::Print(_) => None,
         }
     }
 }
@@ -64,6 +71,9 @@ impl fmt::Display for Failure {
         match self {
             Self::Scene(error) => error.brief().fmt(f),
             Self::Run { scene, error } => write!(f, "{scene}: {error}"),
+            Self::Interrupted { scene, results } => {
+                write!(f, "{scene}: interrupted; what was computed until then is in {}", results.display())
+            }
             Self::Directory { path, error } => {
                 write!(f, "cannot write results into {}: {error}", path.display())
             }

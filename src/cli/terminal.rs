@@ -119,11 +119,14 @@ pub fn results(trajectory: &Trajectory, directory: &Path) {
 fn table(trajectory: &Trajectory, directory: &Path) -> String {
     let mut rows: Vec<(String, String)> = Vec::new();
     let mut row = |name: &str, text: String| rows.push((name.to_owned(), text));
+    if !trajectory.complete {
+        row("complete", "no, the run ended before it was done".into());
+    }
     if let Some(last) = trajectory.parameter.last() {
         match trajectory.analysis {
-            AnalysisKind::Static => row("load factor", number(*last)),
+            AnalysisKind::Static | AnalysisKind::Modal => row("load factor", number(*last)),
             AnalysisKind::Dynamic => row("time", format!("{} s", number(*last))),
-            AnalysisKind::Modal | AnalysisKind::Buckling => {}
+            AnalysisKind::Buckling => {}
         }
     }
     for probe in &trajectory.probes {
@@ -132,7 +135,8 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
         }
     }
     for (index, frequency) in trajectory.frequencies.iter().enumerate() {
-        row(&format!("frequency {}", index + 1), format!("{} Hz", number(*frequency)));
+        let free = if *frequency == 0.0 { " (nothing resists)" } else { "" };
+        row(&format!("frequency {}", index + 1), format!("{} Hz{free}", number(*frequency)));
     }
     for (index, factor) in trajectory.load_factors.iter().enumerate() {
         row(&format!("critical load {}", index + 1), format!("{} × the load", number(*factor)));
@@ -242,6 +246,7 @@ mod tests {
     fn the_table_names_what_was_computed() {
         let trajectory = Trajectory {
             title: "Arm".into(),
+            complete: true,
             parameter: vec![1.0],
             probes: vec![ProbeSeries { name: "tip".into(), samples: vec![ProbeSample::default()] }],
             energy: vec![Energy { bend: 0.5, ..Energy::default() }],
@@ -251,5 +256,8 @@ mod tests {
         for part in ["Arm\n", "load factor  1", "tip          x = 0 m", "bend 0.5 J", "out/arm/report.html"] {
             assert!(text.contains(part), "{part}: {text}");
         }
+        assert!(!text.contains("complete"), "{text}");
+        let text = table(&Trajectory { complete: false, ..trajectory }, Path::new("out/arm"));
+        assert!(text.contains("complete     no, the run ended"), "{text}");
     }
 }

@@ -122,6 +122,24 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         }
     }
 
+    fn product_of<const W: usize>(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
+        let width = self.width::<W>();
+        for (cell, entry) in self.table.cells.iter().enumerate() {
+            let (weights, rows) = self.table.block(*entry);
+            let first = 2 * (self.offset + entry.first as usize);
+            let range = first..first + 2 * width;
+            let (q, v, f) = (&q[range.clone()], &v[range.clone()], &mut f[range]);
+            for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
+                let (z, change) = (self.fields::<W>(rows, q), self.fields::<W>(rows, v));
+                let (_, hessian) = self.density.gradient_and_hessian(cell * weights.len() + p, &z, &z);
+                let product = std::array::from_fn(|m| {
+                    hessian[m].iter().zip(&change).map(|(h, change)| h * change).sum::<Vector2<f64>>()
+                });
+                self.add_gradient::<W>(factor * weight, rows, &product, f);
+            }
+        }
+    }
+
     #[allow(clippy::too_many_arguments)]
     fn tangent_of<const W: usize>(
         &self,
@@ -287,6 +305,12 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
             with_width!(self.tangent_of(factor, q, before, f, k, workspace));
         } else {
             self.add_force(factor, q, f);
+        }
+    }
+
+    fn add_tangent_product(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
+        if D::HAS_TANGENT {
+            with_width!(self.product_of(factor, q, v, f));
         }
     }
 

@@ -155,6 +155,10 @@ pub trait Effect: Send + Sync {
         workspace: &mut Workspace,
     );
 
+    /// `f += factor · ∂²U/∂q∂q v`, from point to point without a matrix: what differs by little between neighbouring nodes
+    /// is differentiated before it is multiplied by a large stiffness, so that fine meshes cost few digits.
+    fn add_tangent_product(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]);
+
     /// Quadrature points, and bytes of its tables and data.
     fn size(&self) -> (usize, usize);
 }

@@ -23,6 +23,10 @@ use bordered::{BorderRow, Bordered};
 use fma::fma;
 use symmetric::{Ldl, SymmetricBand};
 
+/// How much stiffer than the structure a constraint is made where stability is judged: enough to dominate, and far from
+/// the reciprocal of round-off.
+const PENALTY: f64 = 1e4;
+
 /// A tangent matrix under assembly.
 #[derive(Clone, Debug)]
 pub enum Matrix {
@@ -234,5 +238,24 @@ impl Factor {
             Self::Ldl(ldl) => Some(ldl.negative_pivots()),
             Self::Lu(_) | Self::Bordered(_) => None,
         }
+    }
+
+    /// Number of negative eigenvalues of the factorised `matrix` restricted to motions that the rows of `border` allow;
+    /// `None` where it has no symmetry or cannot be told.
+    pub fn negative_directions(&self, matrix: &Matrix, border: &[BorderRow]) -> Option<usize> {
+        if border.is_empty() {
+            return self.negative_eigenvalues();
+        }
+        if matches!(matrix, Matrix::General(_)) {
+            return None;
+        }
+        // A penalty on the constraints leaves the allowed motions' inertia and makes all others positive. It is measured
+        // against the stiffness of the coordinate that the row holds most firmly, whatever the units.
+        let mut penalised = matrix.clone();
+        for row in border {
+            let firmest = row.iter().fold(0.0_f64, |m, &(i, b)| m.max(b * b / matrix.get(i, i).abs()));
+            penalised.add_outer_product(PENALTY / firmest, row);
+        }
+        Self::new(&penalised, &[]).ok()?.negative_eigenvalues()
     }
 }

@@ -53,22 +53,25 @@ pub(super) fn figures(t: &Trajectory) -> Result<Vec<Figure>, OutputError> {
     sketches.push(energy(t));
     sketches.push(convergence(t));
     sketches.push(steps(t));
+    sketches.push(newton(t));
     sketches.into_iter().flatten().map(Sketch::draw).collect()
 }
 
 /// How records are ordered, for an axis.
 fn parameter_axis(t: &Trajectory) -> Axis {
     match t.analysis {
-        AnalysisKind::Static => Axis::linear("load factor"),
+        AnalysisKind::Static | AnalysisKind::Modal => Axis::linear("load factor"),
         AnalysisKind::Dynamic => Axis::linear("time [s]"),
-        AnalysisKind::Modal | AnalysisKind::Buckling => Axis::linear("mode").whole(),
+        AnalysisKind::Buckling => Axis::linear("mode").whole(),
     }
 }
 
 /// Load factor or time of the last record, in words.
 fn moment(t: &Trajectory) -> String {
     match (t.analysis, t.parameter.last()) {
-        (AnalysisKind::Static, Some(&load)) => format!("at load factor {}", human(load, 6)),
+        (AnalysisKind::Static | AnalysisKind::Modal, Some(&load)) => {
+            format!("at load factor {}", human(load, 6))
+        }
         (AnalysisKind::Dynamic, Some(&time)) => format!("at {} s", human(time, 6)),
         _ => "in the reference state".into(),
     }
@@ -363,6 +366,31 @@ fn steps(t: &Trajectory) -> Option<Sketch> {
     Some(Sketch::one("steps", "Size of the steps that the solver took.", chart))
 }
 
+/// Newton iterations of every time step: where they grow, the steps are as long as the motion allows.
+fn newton(t: &Trajectory) -> Option<Sketch> {
+    if t.analysis != AnalysisKind::Dynamic {
+        return None;
+    }
+    let points = |accepted: bool| -> Vec<[f64; 2]> {
+        let steps = t.history.iter().filter(|s| s.accepted == accepted && !s.increments.is_empty());
+        steps.map(|s| [s.parameter, s.increments.len() as f64]).collect()
+    };
+    let (kept, rejected) = (points(true), points(false));
+    if kept.len() < 2 {
+        return None;
+    }
+    let total: f64 = kept.iter().map(|p| p[1]).sum();
+    let mean = human(total / kept.len() as f64, 3);
+    let caption = format!("Newton iterations of every step; {mean} a step on average.");
+    let axis = Axis::linear("Newton iterations").whole();
+    let mut chart = Chart::new("", parameter_axis(t), axis).sized(SMALL.0, SMALL.1);
+    chart = chart.with(Series::points("accepted", kept, PALETTE[0]).size(1.6));
+    if !rejected.is_empty() {
+        chart = chart.with(Series::new("rejected", rejected, Mark::Crosses, PALETTE[1]));
+    }
+    Some(Sketch::one("newton", caption, chart))
+}
+
 /// Mode shapes, one small plot each.
 fn modes(t: &Trajectory) -> Option<Sketch> {
     if t.modes.is_empty() {
@@ -376,7 +404,7 @@ fn modes(t: &Trajectory) -> Option<Sketch> {
         });
         let mut chart =
             Chart::new(format!("mode {}{value}", i + 1), Axis::linear("x [m]"), Axis::linear("y [m]"));
-        for beam in &t.undeformed {
+        for beam in &t.last {
             chart = chart.with(Series::dashed("", centreline(beam), GREY));
         }
         for (j, beam) in mode.iter().enumerate() {
@@ -387,6 +415,8 @@ fn modes(t: &Trajectory) -> Option<Sketch> {
         }
         chart.sized(460, 300).equal_aspect(300)
     });
-    let caption = "Mode shapes in true proportion; their size is chosen for drawing. Dashed: undeformed.";
-    Some(Sketch { name: "modes", caption: caption.into(), charts: charts.collect() })
+    let rest = if t.parameter.is_empty() { "undeformed" } else { "the equilibrium" };
+    let caption =
+        format!("Mode shapes in true proportion; their size is chosen for drawing. Dashed: {rest}.");
+    Some(Sketch { name: "modes", caption, charts: charts.collect() })
 }

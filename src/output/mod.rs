@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `summary.json` | [`Summary`]: last values, energies, counts, times |
+//! | `summary.json` | [`Summary`]: last values, energies, counts, times, whether the run came to its end |
 //! | `probes.csv`, `energy.csv` | one row per load factor or time; 17 significant digits, SI |
 //! | `shape.csv` | the last state along every beam |
 //! | `state.json` | the last state of a motion, from which another run can start |
@@ -45,7 +45,7 @@ pub struct OutputOptions {
 
 /// Names that a run may leave; those that this run does not write are removed when it replaces an older one, so that a
 /// directory never mixes two runs.
-const NAMES: [&str; 22] = [
+const NAMES: [&str; 23] = [
     "summary.json",
     "state.json",
     "probes.csv",
@@ -67,6 +67,7 @@ const NAMES: [&str; 22] = [
     "energy.svg",
     "convergence.svg",
     "steps.svg",
+    "newton.svg",
     "modes.svg",
 ];
 

@@ -53,7 +53,8 @@ impl Motion {
     /// The frames of a trajectory, or its mode shapes; `None` where nothing moves.
     pub(super) fn of(t: &Trajectory) -> Option<Self> {
         let vibration = matches!(t.analysis, AnalysisKind::Modal | AnalysisKind::Buckling);
-        let rest: Vec<Polyline> = t.undeformed.iter().map(polyline).collect();
+        let rest = if vibration { &t.last } else { &t.undeformed };
+        let rest: Vec<Polyline> = rest.iter().map(polyline).collect();
         let (parameter, frames): (Vec<f64>, Vec<Vec<Polyline>>) = if vibration {
             let values = if t.analysis == AnalysisKind::Modal { &t.frequencies } else { &t.load_factors };
             let frames: Vec<_> = t.modes.iter().map(|mode| mode.iter().map(polyline).collect()).collect();

@@ -14,6 +14,7 @@ use crate::trajectory::{AnalysisKind, Trajectory};
 struct Page<'a> {
     title: &'a str,
     subtitle: String,
+    complete: bool,
     style: &'static str,
     player: &'static str,
     warnings: &'a [String],
@@ -51,6 +52,7 @@ pub(super) fn page(t: &Trajectory, summary: &Summary, figures: &[Figure]) -> Res
             t.degrees_of_freedom,
             if t.degrees_of_freedom == 1 { "" } else { "s" }
         ),
+        complete: t.complete,
         style: include_str!("templates/report.css"),
         player: include_str!("templates/player.js"),
         warnings: &t.warnings,
@@ -66,7 +68,9 @@ pub(super) fn page(t: &Trajectory, summary: &Summary, figures: &[Figure]) -> Res
 
 fn last(t: &Trajectory) -> String {
     match (t.analysis, t.parameter.last()) {
-        (AnalysisKind::Static, Some(&load)) => format!(" at load factor {}", human(load, 6)),
+        (AnalysisKind::Static | AnalysisKind::Modal, Some(&load)) => {
+            format!(" at load factor {}", human(load, 6))
+        }
         (AnalysisKind::Dynamic, Some(&time)) => format!(" at {} s", human(time, 6)),
         _ => String::new(),
     }
@@ -129,7 +133,11 @@ fn eigenvalues(t: &Trajectory) -> Option<Table> {
         AnalysisKind::Buckling => ("Critical loads", "load factor", &t.load_factors),
         AnalysisKind::Static | AnalysisKind::Dynamic => return None,
     };
-    let rows = values.iter().enumerate().map(|(i, &v)| vec![format!("{}", i + 1), human(v, 8)]).collect();
+    let number = |v: f64| match t.analysis {
+        AnalysisKind::Modal if v == 0.0 => "0 (nothing resists)".into(),
+        _ => human(v, 8),
+    };
+    let rows = values.iter().enumerate().map(|(i, &v)| vec![format!("{}", i + 1), number(v)]).collect();
     Some(Table { caption: caption.into(), header: vec!["mode".into(), name.into()], rows })
 }
 

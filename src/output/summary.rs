@@ -13,6 +13,8 @@ pub struct Summary {
     pub analysis: AnalysisKind,
     /// Version of this library.
     pub version: String,
+    /// Whether the run reached as far as was asked for.
+    pub complete: bool,
     /// Unknowns after supports are eliminated, plus multipliers.
     pub degrees_of_freedom: usize,
     /// Load factor or time \[s\] of the last record; `null` where there is none.
@@ -25,7 +27,7 @@ pub struct Summary {
     /// Events of a motion, in order; left out where none was asked for or none happened.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<Event>,
-    /// Natural frequencies \[Hz\], ascending; modal analysis only.
+    /// Natural frequencies \[Hz\], ascending, 0 where nothing resists the motion; modal analysis only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Vec<f64>>,
     /// Critical load factors, ascending; buckling only.
@@ -67,6 +69,7 @@ impl Summary {
             title: trajectory.title.clone(),
             analysis: trajectory.analysis,
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            complete: trajectory.complete,
             degrees_of_freedom: trajectory.degrees_of_freedom,
             last: trajectory.parameter.last().copied(),
             probes: trajectory.probes.iter().filter_map(last_sample).collect(),

@@ -7,9 +7,10 @@ use crate::trajectory::{AnalysisKind, Frame, ProbeSample, Shape, Trajectory};
 /// Name of the first column: what the records are ordered by.
 pub(super) fn parameter_name(analysis: AnalysisKind) -> &'static str {
     match analysis {
-        AnalysisKind::Static => "load",
+        // Vibrations have one record, the equilibrium about which they are small.
+        AnalysisKind::Static | AnalysisKind::Modal => "load",
         AnalysisKind::Dynamic => "time",
-        AnalysisKind::Modal | AnalysisKind::Buckling => "mode",
+        AnalysisKind::Buckling => "mode",
     }
 }
 

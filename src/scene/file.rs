@@ -364,7 +364,7 @@ pub struct AnalysisTable {
     /// Critical load factors.
     pub buckling: Option<ModesTable>,
     /// Natural frequencies.
-    pub modal: Option<ModesTable>,
+    pub modal: Option<ModalTable>,
 }
 
 /// The velocity of a beam as a rigid body; several of one beam add up.
@@ -513,12 +513,34 @@ pub struct RadauTable {
     pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
 }
 
-/// An analysis by modes.
+/// Critical loads, the lowest first.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModesTable {
     /// How many.
     pub count: Located<Count<1>>,
+}
+
+/// Natural frequencies, the lowest first.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModalTable {
+    /// How many; motions that nothing resists count too, with 0 Hz.
+    pub count: Located<Count<1>>,
+    /// The state about which the beams vibrate.
+    #[serde(default)]
+    pub about: AboutName,
+}
+
+/// The state about which vibrations are small.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum AboutName {
+    /// The stress-free one, without loads.
+    #[default]
+    Reference,
+    /// The equilibrium under all loads and prescribed displacements, found first.
+    Equilibrium,
 }
 
 /// Files beyond those that are always written.

@@ -62,7 +62,7 @@ pub(super) fn check_rigid_motions(model: &Model, built: &[Built]) -> Result<(), 
                 format!("beam `{}` is under-supported: it is free for {words}", beam.name.get()),
             )
             .help(
-                "a static analysis needs every rigid motion held: add a `[[support]]`, such as \
+                "an equilibrium needs every rigid motion held: add a `[[support]]`, such as \
                  `fix = [\"x\", \"y\", \"angle\"]` at the start",
             ));
         }

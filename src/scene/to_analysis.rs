@@ -1,13 +1,13 @@
 //! The `analysis` table → [`Analysis`].
 
 use crate::model::{
-    Analysis, ArcLength, Crossing, Dynamic, Event, Integrator, Model, ProbeTarget, Static, StepControl,
+    About, Analysis, ArcLength, Crossing, Dynamic, Event, Integrator, Model, ProbeTarget, Static, StepControl,
 };
 
 use super::diagnose::choices;
 use super::error::Fault;
 use super::file::{
-    ArcLengthTable, CrossingName, DynamicTable, EventTable, ModesTable, SceneTable, StaticTable,
+    AboutName, ArcLengthTable, CrossingName, DynamicTable, EventTable, SceneTable, StaticTable,
 };
 use super::quantity::{Length, Positive, Quantity, Ratio, Time};
 use super::to_basis::Size;
@@ -32,8 +32,14 @@ pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<A
     match (&table.statics, &table.dynamic, &table.buckling, &table.modal) {
         (Some(table), None, None, None) => Ok(Analysis::Static(statics(table, model)?)),
         (None, Some(table), None, None) => Ok(Analysis::Dynamic(dynamic(table, model)?)),
-        (None, None, Some(table), None) => Ok(Analysis::Buckling { count: modes(table, size)? }),
-        (None, None, None, Some(table)) => Ok(Analysis::Modal { count: modes(table, size)? }),
+        (None, None, Some(table), None) => Ok(Analysis::Buckling { count: modes(&table.count, size)? }),
+        (None, None, None, Some(table)) => Ok(Analysis::Modal {
+            count: modes(&table.count, size)?,
+            about: match table.about {
+                AboutName::Reference => About::Reference,
+                AboutName::Equilibrium => About::Equilibrium,
+            },
+        }),
         (None, None, None, None) => {
             Err(Fault::new(file.analysis.span(), "`analysis` is empty").help(ANALYSES))
         }
@@ -43,14 +49,14 @@ pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<A
 
 const ANALYSES: &str = "give exactly one of `[analysis.static]`, `[analysis.dynamic]`, `[analysis.buckling]`, `[analysis.modal]`";
 
-fn modes(table: &ModesTable, size: Size) -> Result<usize, Fault> {
+fn modes<const MIN: u64>(located: &Located<Count<MIN>>, size: Size) -> Result<usize, Fault> {
     let most = 4.0 * size.nodes;
-    let count = table.count.get().0;
+    let count = located.get().0;
     if count as f64 > most {
-        return Err(Fault::new(table.count.span(), format!("found {count} modes"))
+        return Err(Fault::new(located.span(), format!("found {count} modes"))
             .help(format!("this scene has {most} coordinates and so at most as many modes")));
     }
-    bounded(&table.count, "modes")
+    bounded(located, "modes")
 }
 
 fn bounded<const MIN: u64>(count: &Located<Count<MIN>>, what: &str) -> Result<usize, Fault> {

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::centreline::Curve;
 use crate::model::{
-    Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, InitialVelocity, Load, Model, Place,
-    Probe, Section, StrainMeasure, Support,
+    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, InitialVelocity, Load, Model,
+    Place, Probe, Section, StrainMeasure, Support,
 };
 
 use super::diagnose::choices;
@@ -52,7 +52,12 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
     probes(file, &built, &mut model)?;
     let analysis = to_analysis::analysis(file, &model, size)?;
     check_needs(file, &model, &built, &analysis)?;
-    if matches!(analysis, Analysis::Static(_) | Analysis::Buckling { .. }) {
+    let from_equilibrium = match analysis {
+        Analysis::Static(_) | Analysis::Buckling { .. } => true,
+        Analysis::Modal { about, .. } => about == About::Equilibrium,
+        Analysis::Dynamic(_) => false,
+    };
+    if from_equilibrium {
         held::check_rigid_motions(&model, &built)?;
     }
     Ok((model, analysis))

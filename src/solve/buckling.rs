@@ -8,11 +8,11 @@
 //! path alike), by central differences with one step of Richardson's extrapolation: the tangent is smooth, so that the
 //! error is of the order of round-off over the difference step, about 1e-12.
 
-use super::eigen::{EigenError, largest_reciprocals};
+use super::eigen::{EigenError, Pencil, largest_reciprocals};
 use super::equilibrium::Equilibrium;
 use crate::effect::Workspace;
+use crate::linear::Matrix;
 use crate::linear::symmetric::SymmetricBand;
-use crate::linear::{Factor, Matrix};
 use crate::system::System;
 
 /// Critical loads, lowest first.
@@ -69,15 +69,15 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     system.supports().clear_held(0.0, &mut geometric);
     let mut stiffness = tangent_at(0.0);
     system.supports().eliminate(0.0, &mut stiffness);
-    let border = system.border(0.0);
-    let factor = Factor::new(&stiffness, &border)?;
-    let pairs = largest_reciprocals(&stiffness, &factor, border.len(), &geometric, count)?;
+    let (border, held) = (system.border(0.0), system.held());
+    let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, held: &held };
+    let pairs = largest_reciprocals(&pencil, count)?;
     let shapes = pairs.vectors.into_iter().map(|mut v| {
         system.supports().from_frames(0.0, &mut v);
         v
     });
     Ok(Modes {
-        load_factors: pairs.reciprocal.iter().map(|r| 1.0 / r).collect(),
+        load_factors: pairs.reciprocals.iter().map(|r| 1.0 / r).collect(),
         shapes: shapes.collect(),
         factorizations: 2,
     })

@@ -10,10 +10,6 @@ use crate::trajectory::Statistics;
 /// Residuals of so many round-offs of the internal forces count as zero.
 const ROUND_OFFS: f64 = 100.0;
 
-/// How much stiffer than the structure a constraint is made where stability is judged: enough to dominate, and far from
-/// the reciprocal of round-off.
-const PENALTY: f64 = 1e4;
-
 /// Residual, tangent and its factorisation at one load factor. Unknowns are the system's coordinates followed by the
 /// scaled multipliers.
 pub struct Equilibrium<'a> {
@@ -152,20 +148,7 @@ impl<'a> Equilibrium<'a> {
     /// Number of unstable directions at the last linearised state: negative eigenvalues of the tangent restricted to
     /// motions that constraints and supports allow. `None` under follower loads.
     pub fn unstable_directions(&self) -> Option<usize> {
-        if self.border.is_empty() {
-            return self.factor.as_ref()?.negative_eigenvalues();
-        }
-        if !self.system.is_symmetric() {
-            return None;
-        }
-        // A penalty on the constraints leaves the allowed motions' inertia and makes all others positive. It is measured
-        // against the stiffness of the coordinate that the row holds most firmly, whatever the units.
-        let mut penalised = self.tangent.clone();
-        for row in &self.border {
-            let firmest = row.iter().fold(0.0_f64, |m, &(i, b)| m.max(b * b / self.tangent.get(i, i).abs()));
-            penalised.add_outer_product(PENALTY / firmest, row);
-        }
-        Factor::new(&penalised, &[]).ok()?.negative_eigenvalues()
+        self.factor.as_ref()?.negative_directions(&self.tangent, &self.border)
     }
 
     /// The factorised tangent.

@@ -1,60 +1,166 @@
-//! Natural frequencies and mode shapes about the stress-free state: K φ = ω² M φ.
+//! Natural frequencies and mode shapes of small vibrations about an equilibrium: K φ = ω² M φ.
+//!
+//! K is the tangent of all forces there, so that stress and loads stiffen or soften the structure; about the stress-free
+//! state it is the linear stiffness, and loads take no part. Motions that a support or a constraint row forbids are left
+//! out.
+//!
+//! What is inverted is K + σ M, with a σ of the order of the lowest ω² that also stands out of round-off: it is definite
+//! even for free bodies, whose rigid motions have ω = 0. The entries of K have lost digits where the mesh is fine (N
+//! elements, up to N⁴ round-offs), so that frequencies and shapes are then those of K itself, evaluated without a matrix,
+//! in the space of the vectors found (Rayleigh and Ritz). With 10 000 elements this leaves 1e-6 to 1e-5 of the first
+//! frequency of a clamped beam, where the matrix alone leaves 5e-2. What cannot be told from zero is zero.
 
-use super::eigen::{EigenError, largest_reciprocals};
+use super::eigen::{EigenError, Pencil, dot, largest_reciprocals};
 use crate::effect::Workspace;
-use crate::linear::{Factor, Matrix};
+use crate::linear::Matrix;
 use crate::system::System;
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use faer::{Mat, Par, Side};
 use std::f64::consts::TAU;
 
 /// Vibrations, lowest first.
 #[derive(Clone, Debug, Default)]
 pub struct Modes {
-    /// f = ω/2π \[Hz\].
+    /// f = ω/2π \[Hz\]; zero where nothing resists the motion.
     pub frequencies: Vec<f64>,
-    /// Mode shapes as changes of the coordinates.
+    /// Mode shapes φ as changes of the coordinates; φᵀ M φ = 1 kg m².
     pub shapes: Vec<Vec<f64>>,
     /// Factorisations made.
     pub factorizations: usize,
 }
 
-/// The `count` lowest vibrations. The stiffness is shifted by a little mass, so that a free beam's rigid motions come out
-/// as frequencies of zero.
+/// The `count` lowest vibrations about the equilibrium `q` at load factor `load`, motions without resistance included.
+/// At load factor 0 the loads are absent.
 ///
 /// # Errors
 /// [`EigenError`] where the state is unstable or the loads have no symmetric tangent.
-pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
-    if !system.is_symmetric() {
+pub fn solve(system: &System, load: f64, q: &[f64], count: usize) -> Result<Modes, EigenError> {
+    let supports = system.supports();
+    let mut stiffness = if load == 0.0 {
+        system.internal_tangent(q)
+    } else if system.is_symmetric() {
+        let (mut stiffness, mut force) = (system.matrix(), vec![0.0; q.len()]);
+        system.force_and_tangent(load, q, q, &mut force, &mut stiffness, &mut Workspace::default());
+        stiffness
+    } else {
         return Err(EigenError::NotSymmetric { analysis: "modal" });
-    }
-    let (q, n) = (system.reference(), system.coordinates());
-    let mut stiffness = system.matrix();
-    let mut force = vec![0.0; n];
-    // Loads are absent from the linearisation about the unloaded state.
-    system.force_and_tangent(0.0, q, q, &mut force, &mut stiffness, &mut Workspace::default());
+    };
     let mut mass = system.mass_matrix();
-    let shift = system.lowest_vibration_scale();
-    if let (Matrix::Symmetric(k), Matrix::Symmetric(m)) = (&mut stiffness, &mass) {
-        k.add(shift, m);
-    }
     for matrix in [&mut stiffness, &mut mass] {
-        system.supports().turn_matrix(0.0, matrix);
-        system.supports().eliminate(0.0, matrix);
+        supports.turn_matrix(load, matrix);
+        supports.eliminate(load, matrix);
     }
-    system.supports().clear_held(0.0, &mut mass);
-    let border = system.border(0.0);
-    let factor = Factor::new(&stiffness, &border)?;
-    if let Some(count) = factor.negative_eigenvalues().filter(|count| *count > 0) {
-        return Err(EigenError::Unstable { count });
+    supports.clear_held(load, &mut mass);
+    let shift = SHIFT * system.lowest_vibration_scale() + STAND_OUT * noise(&stiffness, &mass);
+    let mut shifted = stiffness.clone();
+    shifted.add(shift, &mass);
+    let (border, held) = (system.border(load), system.held());
+    let pencil = Pencil { a: &shifted, b: &mass, border: &border, held: &held };
+    let pairs = largest_reciprocals(&pencil, count + GUARD)?;
+    let stiff: Vec<Vec<f64>> = pairs
+        .vectors
+        .iter()
+        .map(|vector| {
+            let (mut v, mut f) = (vector.clone(), vec![0.0; q.len()]);
+            supports.from_frames(load, &mut v);
+            system.tangent_product(load, q, &v, &mut f);
+            supports.to_frames(load, &mut f);
+            f
+        })
+        .collect();
+    let (squares, mut shapes) = ritz(&pairs.vectors, &stiff, &mass)?;
+    let mut modes = Modes { factorizations: 1, ..Modes::default() };
+    let mut unstable = 0;
+    shapes.truncate(count);
+    for (square, mut shape) in squares.into_iter().zip(shapes) {
+        // Digits of K; and of the state, whose stress may be off by that much.
+        let zero =
+            round_off(&stiffness, &shape) + system.round_off() * system.length() * slope(&shape).powi(2);
+        unstable += usize::from(square < -zero);
+        point_up(&mut shape);
+        supports.from_frames(load, &mut shape);
+        modes.frequencies.push(if square > zero { square.sqrt() / TAU } else { 0.0 });
+        modes.shapes.push(shape);
     }
-    let pairs = largest_reciprocals(&stiffness, &factor, border.len(), &mass, count)?;
-    let frequency = |reciprocal: &f64| (1.0 / reciprocal - shift).max(0.0).sqrt() / TAU;
-    let shapes = pairs.vectors.into_iter().map(|mut v| {
-        system.supports().from_frames(0.0, &mut v);
-        v
+    if unstable > 0 { Err(EigenError::Unstable { count: unstable }) } else { Ok(modes) }
+}
+
+/// σ in units of EI/(ρA L⁴): less than the lowest ω² of a beam held at one end, 12.4, and enough to stand out of round-off.
+const SHIFT: f64 = 10.0;
+/// Vectors sought beyond those wanted, which the wanted ones may be mixed with.
+const GUARD: usize = 4;
+/// How far the shift stands out of what round-off makes of a zero ω².
+const STAND_OUT: f64 = 1e3;
+
+/// ω² and M-orthonormal shapes of the stiffness K restricted to the span of `vectors`, of which `stiff` are the products
+/// with K (Rayleigh and Ritz); lowest first.
+fn ritz(
+    vectors: &[Vec<f64>],
+    stiff: &[Vec<f64>],
+    mass: &Matrix,
+) -> Result<(Vec<f64>, Vec<Vec<f64>>), EigenError> {
+    let c = vectors.len();
+    let heavy: Vec<Vec<f64>> = vectors
+        .iter()
+        .map(|v| {
+            let mut product = vec![0.0; v.len()];
+            mass.multiply_add(1.0, v, &mut product);
+            product
+        })
+        .collect();
+    let form = |products: &[Vec<f64>]| {
+        Mat::from_fn(c, c, |i, j| 0.5 * (dot(&vectors[i], &products[j]) + dot(&vectors[j], &products[i])))
+    };
+    let factor = form(&heavy).llt(Side::Lower).map_err(|_| EigenError::Projection)?;
+    let lower = factor.L();
+    let mut k = form(stiff);
+    solve_lower_triangular_in_place(lower, k.as_mut(), Par::Seq);
+    let mut k = k.transpose().to_owned();
+    solve_lower_triangular_in_place(lower, k.as_mut(), Par::Seq);
+    let eigen = k.self_adjoint_eigen(Side::Lower).map_err(|_| EigenError::Projection)?;
+    let mut shares = eigen.U().to_owned();
+    solve_upper_triangular_in_place(lower.transpose(), shares.as_mut(), Par::Seq);
+    let shapes = (0..c).map(|k| {
+        let mut shape = vec![0.0; mass.size()];
+        for (i, vector) in vectors.iter().enumerate() {
+            shape.iter_mut().zip(vector).for_each(|(s, v)| *s += shares[(i, k)] * v);
+        }
+        shape
     });
-    Ok(Modes {
-        frequencies: pairs.reciprocal.iter().map(frequency).collect(),
-        shapes: shapes.collect(),
-        factorizations: 1,
-    })
+    Ok(((0..c).map(|i| eigen.S().column_vector()[i]).collect(), shapes.collect()))
+}
+
+/// Turns the largest displacement towards positive x or y.
+fn point_up(shape: &mut [f64]) {
+    let displacements = shape.chunks_exact(4).flat_map(|node| [node[0], node[1]]);
+    let largest = displacements.fold(0.0_f64, |a, b| if b.abs() > (1.0 + 1e-6) * a.abs() { b } else { a });
+    if largest < 0.0 {
+        shape.iter_mut().for_each(|value| *value = -*value);
+    }
+}
+
+/// Largest change of a gradient.
+fn slope(shape: &[f64]) -> f64 {
+    shape.chunks_exact(4).fold(0.0, |largest, node| node[2].hypot(node[3]).max(largest))
+}
+
+/// Standard deviation of φᵀ K φ if the entries of K carry independent round-off.
+fn round_off(k: &Matrix, shape: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (i, a) in shape.iter().enumerate() {
+        sum += k.columns(i).map(|j| (k.get(i, j) * a * shape[j]).powi(2)).sum::<f64>();
+    }
+    f64::EPSILON * sum.sqrt()
+}
+
+/// ω² \[1/s²\] that round-off gives to a translation, which has none.
+fn noise(k: &Matrix, mass: &Matrix) -> f64 {
+    let along = |axis: usize| {
+        let shape: Vec<f64> = (0..k.size()).map(|i| if i % 4 == axis { 1.0 } else { 0.0 }).collect();
+        let mut product = vec![0.0; shape.len()];
+        mass.multiply_add(1.0, &shape, &mut product);
+        let size = dot(&shape, &product);
+        if size > 0.0 { round_off(k, &shape) / size } else { 0.0 }
+    };
+    along(0).max(along(1))
 }

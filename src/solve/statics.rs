@@ -102,6 +102,11 @@ fn along_load(
             break Ok(());
         }
     };
+    // Where the path ends early, its end is worth a record too.
+    let last = path.last();
+    if solution.states.last().is_none_or(|(load, _)| *load != last.load) {
+        solution.states.push((last.load, last.x[..n].to_vec()));
+    }
     solution.history = std::mem::take(&mut path.history);
     outcome
 }

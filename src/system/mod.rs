@@ -380,6 +380,13 @@ impl System {
         &self.supports
     }
 
+    /// Per coordinate, whether a support at a node holds it, in that support's frame.
+    pub fn held(&self) -> Vec<bool> {
+        let mut held = vec![false; self.coordinates()];
+        self.supports.eliminated().for_each(|i| held[i] = true);
+        held
+    }
+
     /// The supports that are constraint rows.
     pub fn constraints(&self) -> &[Constraint] {
         &self.constraints
@@ -458,16 +465,35 @@ impl System {
         }
     }
 
+    /// `f = K v` with the tangent of [`Self::force_and_tangent`] at `q`, but to many more digits where the mesh is fine.
+    pub fn tangent_product(&self, load: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
+        f.fill(0.0);
+        for effect in &self.internal {
+            effect.add_tangent_product(1.0, q, v, f);
+        }
+        for effect in self.loads.iter().filter(|_| load != 0.0) {
+            effect.add_tangent_product(load, q, v, f);
+        }
+    }
+
+    /// The tangent of the internal forces alone, which is symmetric.
+    pub fn internal_tangent(&self, q: &[f64]) -> Matrix {
+        self.sum_of_tangents(&self.internal, q)
+    }
+
     /// The constant mass matrix, if inertia was asked for.
     pub fn mass_matrix(&self) -> Matrix {
-        let mut mass = Matrix::zeros(self.nodes, self.blocks, true);
-        let zero = vec![0.0; self.coordinates()];
-        let mut force = zero.clone();
+        self.sum_of_tangents(&self.inertia, &vec![0.0; self.coordinates()])
+    }
+
+    fn sum_of_tangents(&self, effects: &[Box<dyn Effect>], q: &[f64]) -> Matrix {
+        let mut sum = Matrix::zeros(self.nodes, self.blocks, true);
+        let mut force = vec![0.0; self.coordinates()];
         let mut workspace = Workspace::default();
-        for effect in &self.inertia {
-            effect.add_force_and_tangent(1.0, &zero, &zero, &mut force, &mut mass, &mut workspace);
+        for effect in effects {
+            effect.add_force_and_tangent(1.0, q, q, &mut force, &mut sum, &mut workspace);
         }
-        mass
+        sum
     }
 
     /// Scaled rows of ∂g/∂q in the supports' frames, without the held coordinates.

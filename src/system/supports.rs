@@ -95,9 +95,18 @@ impl Supports {
         Self { held }
     }
 
+    /// The coordinates that are eliminated, in the supports' frames.
+    pub fn eliminated(&self) -> impl Iterator<Item = usize> + '_ {
+        // Which components are fixed in a frame does not depend on where the frame stands.
+        self.held.iter().flat_map(|held| {
+            let (_, fixed) = held.frame(0.0);
+            (0..2).filter(move |component| fixed[*component]).map(|component| 2 * held.pair + component)
+        })
+    }
+
     /// Number of coordinates that are eliminated.
     pub fn count(&self) -> usize {
-        self.held.iter().map(|h| h.frame(0.0).1.iter().filter(|f| **f).count()).sum()
+        self.eliminated().count()
     }
 
     /// Sets the held coordinates of `q` to their values at load factor `load`.

@@ -6,28 +6,28 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-const ROLL_UP: &str = include_str!("../scenes/roll-up-ancf.toml");
+pub(super) const ROLL_UP: &str = include_str!("../scenes/roll-up-ancf.toml");
 
 /// A folder with `scene.toml` in it.
-fn folder(text: &str) -> TempDir {
+pub(super) fn folder(text: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.toml"), text).unwrap();
     folder
 }
 
-fn ancf(folder: &Path, arguments: &[&str]) -> Output {
+pub(super) fn ancf(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_ancf")).current_dir(folder).args(arguments).output().unwrap()
 }
 
-fn status(output: &Output) -> i32 {
+pub(super) fn status(output: &Output) -> i32 {
     output.status.code().unwrap_or_else(|| panic!("killed: {}", stderr(output)))
 }
 
-fn stderr(output: &Output) -> String {
+pub(super) fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-fn entries(folder: &Path) -> Vec<String> {
+pub(super) fn entries(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
         .unwrap()
         .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
@@ -95,13 +95,57 @@ fn an_unwritable_destination_ends_with_2_before_solving() {
 }
 
 #[test]
-fn a_failed_run_leaves_no_directory() {
-    // A moment that would roll the beam up three billion times, which three elements cannot follow.
-    let folder = folder(&ROLL_UP.replace("value = 312.885175", "value = 1e12"));
+fn a_run_that_computed_nothing_leaves_no_directory() {
+    // Standing on its clamp it buckles under its weight, so that it has no vibrations.
+    let modal = include_str!("../scenes/modal.toml");
+    let folder =
+        folder(&format!("{modal}\nabout = \"equilibrium\"\n[effect.gravity]\nacceleration = [-300, 0]\n"));
     let output = ancf(folder.path(), &["run", "scene.toml"]);
     assert_eq!(status(&output), 1, "{}", stderr(&output));
     assert!(stderr(&output).starts_with("error: scene.toml: "), "{}", stderr(&output));
     assert_eq!(entries(folder.path()), ["scene.toml"]);
+}
+
+/// Frequencies of zero are named as such, and those about an equilibrium come with the equilibrium.
+#[test]
+fn modal_results_say_what_they_are() {
+    let modal = include_str!("../scenes/modal.toml");
+    let free = folder(&modal.replace(r#"fix = ["x", "y", "angle"]"#, r#"fix = ["x", "y"]"#));
+    let output = ancf(free.path(), &["run", "scene.toml", "--json"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let frequencies = summary["frequencies"].as_array().unwrap();
+    assert_eq!((frequencies.len(), frequencies[0].as_f64()), (5, Some(0.0)));
+    assert!(stderr(&output).contains("frequency 1  0 Hz (nothing resists)"), "{}", stderr(&output));
+    assert!(!free.path().join("out/scene/probes.csv").exists());
+    let output = ancf(free.path(), &["check", "scene.toml", "--set", "analysis.modal.about=\"equilibrium\""]);
+    assert_eq!(status(&output), 2);
+    assert!(stderr(&output).contains("an equilibrium needs every rigid motion held"), "{}", stderr(&output));
+    let page = fs::read_to_string(free.path().join("out/scene/report.html")).unwrap();
+    assert!(page.contains("the stress-free state") && page.contains("0 (nothing resists)"));
+
+    let loaded = folder(&format!(
+        "{modal}\nabout = \"equilibrium\"\n[[probe]]\nname = \"tip\"\nbeam = \"cantilever\"\nat = \"end\"\n\
+         [effect.gravity]\nacceleration = [9.81, 0.0]\n"
+    ));
+    let output = ancf(loaded.path(), &["run", "scene.toml", "--json"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["last"], 1.0);
+    assert!(summary["probes"]["tip"]["x"].as_f64().unwrap() > 1.8, "stretched by its weight");
+    let energies = fs::read_to_string(loaded.path().join("out/scene/energy.csv")).unwrap();
+    assert!(energies.starts_with("load,stretch") && energies.lines().count() == 2, "{energies}");
+    let page = fs::read_to_string(loaded.path().join("out/scene/report.html")).unwrap();
+    assert!(page.contains("the equilibrium under all loads") && page.contains("Dashed: the equilibrium"));
+
+    let output =
+        ancf(loaded.path(), &["run", "scene.toml", "--set", "effect.gravity.acceleration=[-300, 0]"]);
+    assert_eq!(status(&output), 1);
+    assert!(
+        stderr(&output).contains("unstable (1 negative eigenvalue of the tangent)"),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]

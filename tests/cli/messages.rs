@@ -89,6 +89,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ),
     ("free to turn", "\"angle\"]", "]"),
     ("free to slide", "[\"x\", \"y\", \"angle\"]", "[\"y\", \"angle\"]"),
+    ("vibrations about nothing", "[analysis.static]", "[analysis.modal]\ncount = 3\nabout = \"equilbrium\""),
     ("two analyses", "[analysis.static]", "[analysis.static]\n[analysis.modal]\ncount = 3"),
     (
         "two probes of one name",

@@ -53,6 +53,7 @@ fn motion(records: u32) -> Trajectory {
     Trajectory {
         title: "Arm <&> </script> \"quoted\"".into(),
         analysis: AnalysisKind::Dynamic,
+        complete: true,
         degrees_of_freedom: 12,
         parameter: (0..records).map(time).collect(),
         probes: vec![series("tip"), series("mid, of the arm")],
@@ -86,6 +87,7 @@ fn modal() -> Trajectory {
     Trajectory {
         title: "Modes".into(),
         analysis: AnalysisKind::Modal,
+        complete: true,
         degrees_of_freedom: 12,
         probes: vec![ProbeSeries { name: "tip".into(), samples: vec![] }],
         undeformed: vec![line("arm", 0.0)],
@@ -127,6 +129,9 @@ fn tables_read_back_to_the_same_bits() {
     let directory = tempfile::tempdir().expect("a directory");
     let mut t = motion(5);
     write(directory.path(), &mut t, &EVERYTHING).expect("written");
+    for plot in ["steps.svg", "newton.svg", "convergence.svg"] {
+        assert!(names(directory.path()).contains(&plot.into()), "{plot}");
+    }
     let (header, rows) = table(&directory.path().join("probes.csv"));
     assert_eq!(
         header[..8],
@@ -177,6 +182,7 @@ fn summary_has_the_keys_of_the_contract() {
     assert_eq!(json["title"], t.title);
     assert_eq!(json["analysis"], "dynamic");
     assert_eq!(json["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(json["complete"], true);
     assert_eq!(json["degrees_of_freedom"], 12);
     for key in ["x", "y", "angle", "curvature", "strain", "vx", "vy"] {
         assert!(json["probes"]["tip"][key].is_f64(), "probes.tip.{key}");

@@ -6,6 +6,7 @@ mod dynamics;
 mod generators;
 mod invariance;
 mod linear;
+mod modal;
 mod scene;
 mod supports;
 

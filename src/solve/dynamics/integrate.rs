@@ -169,7 +169,6 @@ impl<'t, 'a> Driver<'t, 'a> {
                         return;
                     }
                     if !observe(self.state.time, self.step, self.method.statistics()) {
-                        self.solution.interrupted = self.task.duration > self.state.time;
                         return;
                     }
                 }

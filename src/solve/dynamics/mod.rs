@@ -101,8 +101,6 @@ pub struct Solution {
     pub statistics: Statistics,
     /// From which the motion can be continued.
     pub checkpoint: Option<Checkpoint>,
-    /// Whether the observer ended it before its time.
-    pub interrupted: bool,
     /// Why it ends before its time, if it does.
     pub stuck: Option<Stuck>,
 }

@@ -1,0 +1,88 @@
+//! Vibrations and critical loads, as a trajectory shows them.
+
+use super::{Control, Look, Observer, Progress, RunError};
+use crate::model::{About, Static};
+use crate::solve::eigen::EigenError;
+use crate::solve::{buckling, modal, statics};
+use crate::trajectory::{AnalysisKind, Shape, Statistics, Trajectory};
+
+/// Accuracy of the equilibrium: as far as round-off lets Newton's method come, because stress, and with it the stiffness,
+/// is a small difference of large numbers.
+const TO_THE_END: f64 = 1e-14;
+/// A long step past the critical load of a nearly perfect structure may end on the unstable branch of a perfect one.
+/// Before a state is refused as unstable, its path is followed again in so many parts of the load.
+const FINER: [usize; 2] = [20, 200];
+/// Largest displacement of a drawn mode, in beam lengths.
+const DRAWN: f64 = 0.1;
+
+impl Look<'_> {
+    /// The `count` lowest vibrations about a state, which is found first.
+    pub(super) fn vibrations(
+        &self,
+        count: usize,
+        about: About,
+        observer: Observer<'_>,
+    ) -> Result<Trajectory, RunError> {
+        if about == About::Reference {
+            let trajectory = self.empty(AnalysisKind::Modal);
+            return self.modal(trajectory, 0.0, self.system.reference(), count);
+        }
+        let report = &mut |load: f64, step: f64, statistics: &Statistics| {
+            let newton_iterations = statistics.newton_iterations;
+            observer(&Progress { parameter: load, target: 1.0, step, newton_iterations }) == Control::Continue
+        };
+        let (mut parts, mut finer) = (1, FINER.into_iter());
+        loop {
+            let settings = Static { tolerance: Some(TO_THE_END), steps: Some(parts), ..Static::default() };
+            let mut solution = statics::solve(self.system, &settings, None, &mut *report);
+            if let Some(stuck) = &solution.stuck {
+                return Err(self.stuck(stuck, &solution));
+            }
+            // The way there is of no interest, only that it led there.
+            solution.states.drain(..solution.states.len().saturating_sub(1));
+            let trajectory = Trajectory { analysis: AnalysisKind::Modal, ..self.statics(&solution) };
+            let vibrations = match solution.states.last() {
+                Some((load, q)) if *load == 1.0 => self.modal(trajectory, *load, q, count),
+                // Stopped on the way.
+                _ => Ok(trajectory),
+            };
+            match (vibrations, finer.next()) {
+                (Err(RunError::Eigen(EigenError::Unstable { .. })), Some(next)) => parts = next,
+                (found, _) => return found,
+            }
+        }
+    }
+
+    fn modal(
+        &self,
+        mut trajectory: Trajectory,
+        load: f64,
+        q: &[f64],
+        count: usize,
+    ) -> Result<Trajectory, RunError> {
+        let about = if load == 0.0 { "the stress-free state" } else { "the equilibrium under all loads" };
+        trajectory.settings.push(("vibrations about".into(), about.into()));
+        let modes = modal::solve(self.system, load, q, count)?;
+        trajectory.modes = modes.shapes.iter().map(|mode| self.mode_shape(q, mode)).collect();
+        trajectory.statistics.factorizations += modes.factorizations;
+        trajectory.frequencies = modes.frequencies;
+        Ok(trajectory)
+    }
+
+    pub(super) fn buckling(&self, modes: &buckling::Modes) -> Trajectory {
+        let mut trajectory = self.empty(AnalysisKind::Buckling);
+        trajectory.load_factors = modes.load_factors.clone();
+        let reference = self.system.reference();
+        trajectory.modes = modes.shapes.iter().map(|mode| self.mode_shape(reference, mode)).collect();
+        trajectory.statistics.factorizations = modes.factorizations;
+        trajectory
+    }
+
+    /// The state `q` with a mode added, its largest displacement a tenth of a beam length.
+    fn mode_shape(&self, q: &[f64], mode: &[f64]) -> Vec<Shape> {
+        let largest = mode.chunks_exact(4).fold(0.0_f64, |m, d| m.max(d[0].hypot(d[1])));
+        let factor = if largest > 0.0 { DRAWN * self.system.length() / largest } else { 0.0 };
+        let q: Vec<f64> = q.iter().zip(mode).map(|(q, m)| factor.mul_add(*m, *q)).collect();
+        self.shape(&q)
+    }
+}

@@ -1,0 +1,177 @@
+//! Lanczos' method for the operator A⁻¹ B in the inner product of A, with full reorthogonalisation.
+//!
+//! One factorisation of A serves all steps. A Krylov space holds one vector of every eigenspace, so that a structure with
+//! equal frequencies (two beams alike, the rigid motions of a free one) hides the others from it. What has converged is
+//! therefore set aside, and the search repeated orthogonally to it until nothing larger turns up.
+
+use super::{EigenError, NEGLIGIBLE, Pairs, Pencil, dot};
+use crate::linear::{Factor, Matrix};
+use faer::Side;
+
+/// Vectors that a search may keep, over twice the wanted ones.
+const EXTRA_VECTORS: usize = 120;
+/// Residual against 1/θ at which a pair is found. Eigenvalues are accurate to its square.
+const TOLERANCE: f64 = 1e-12;
+/// A pair found later counts as larger only beyond this fraction.
+const LARGER: f64 = 1e-9;
+/// Against the operator's size, what remains of a vector when its space is exhausted.
+const EXHAUSTED: f64 = 1e-14;
+
+/// The `count` largest positive 1/θ, fewer where there are not so many.
+///
+/// # Errors
+/// [`EigenError`] where A is singular or indefinite on the allowed motions, or the iteration fails.
+pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, EigenError> {
+    if count == 0 {
+        return Ok(Pairs::default());
+    }
+    let factor = Factor::new(pencil.a, pencil.border)?;
+    if let Some(count) = factor.negative_directions(pencil.a, pencil.border).filter(|count| *count > 0) {
+        return Err(EigenError::Unstable { count });
+    }
+    let mut search = Search { pencil, factor, found: Vec::new(), searches: 0 };
+    loop {
+        let missing = count.saturating_sub(search.found.len()).max(1);
+        let new = search.krylov(missing)?;
+        // The last one that is wanted, if there are enough.
+        let bound = search.found.get(count - 1).map_or(0.0, |pair| pair.reciprocal);
+        let ends = !new.iter().any(|pair| pair.reciprocal > bound * (1.0 + LARGER));
+        search.found.extend(new);
+        search.found.sort_by(|a, b| b.reciprocal.total_cmp(&a.reciprocal));
+        if ends {
+            break;
+        }
+    }
+    let mut pairs = Pairs::default();
+    for pair in search.found.into_iter().take(count) {
+        pairs.reciprocals.push(pair.reciprocal);
+        pairs.vectors.push(pair.vector);
+    }
+    Ok(pairs)
+}
+
+/// 1/θ and φ, and A φ.
+struct Pair {
+    reciprocal: f64,
+    vector: Vec<f64>,
+    weighted: Vec<f64>,
+}
+
+struct Search<'a> {
+    pencil: &'a Pencil<'a>,
+    factor: Factor,
+    /// Converged, the largest first.
+    found: Vec<Pair>,
+    searches: usize,
+}
+
+impl Search<'_> {
+    /// A⁻¹ B v.
+    fn apply(&self, v: &[f64]) -> Vec<f64> {
+        let n = self.pencil.a.size();
+        let mut w = vec![0.0; n + self.pencil.border.len()];
+        self.pencil.b.multiply_add(1.0, v, &mut w[..n]);
+        self.factor.solve(&mut w);
+        w.truncate(n);
+        w
+    }
+
+    /// The largest pairs orthogonal to those found, up to `count`; none where there are none.
+    fn krylov(&mut self, count: usize) -> Result<Vec<Pair>, EigenError> {
+        let n = self.pencil.a.size();
+        // A start with a share of every mode: low-discrepancy numbers, others in every search, the same in every run.
+        self.searches += 1;
+        let shift = self.searches as f64 * 0.754_877_666_246_693;
+        let seed: Vec<f64> =
+            (1..=n).map(|i| (i as f64).mul_add(0.618_033_988_749_895, shift).fract() - 0.5).collect();
+        let mut w = self.apply(&seed);
+        // The operator's size, as far as it is known.
+        let start = size_of(self.pencil.a, &w);
+        let largest = self.found.first().map_or(0.0, |pair| pair.reciprocal);
+        let (mut vectors, mut weighted): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+        let (mut alpha, mut beta): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+        let limit = self.pencil.motions().min(2 * count + EXTRA_VECTORS);
+        let mut next_look = count + 5;
+        loop {
+            let known = self.found.iter().map(|pair| (&pair.vector, &pair.weighted));
+            orthogonalize(&mut w, known.chain(vectors.iter().zip(&weighted)));
+            let mut aw = times(self.pencil.a, &w);
+            let norm = dot(&w, &aw).max(0.0).sqrt();
+            let m = vectors.len();
+            let off_diagonal = beta.iter().skip(1);
+            let size = match m {
+                0 => start,
+                _ => alpha.iter().chain(off_diagonal).fold(largest, |size, a: &f64| size.max(a.abs())),
+            };
+            let exhausted = norm.is_nan() || norm <= EXHAUSTED * size;
+            if m > 0 && (exhausted || m >= limit || m >= next_look) {
+                next_look = m + (m / 6).max(5);
+                let tridiagonal = faer::Mat::<f64>::from_fn(m, m, |i, j| match i.abs_diff(j) {
+                    0 => alpha[i],
+                    1 => beta[i.max(j)],
+                    _ => 0.0,
+                });
+                let eigen =
+                    tridiagonal.self_adjoint_eigen(Side::Lower).map_err(|_| EigenError::Projection)?;
+                let (values, small) = (eigen.S().column_vector(), eigen.U());
+                let last = if exhausted { 0.0 } else { norm };
+                let candidates: Vec<usize> =
+                    (0..m).rev().filter(|&i| values[i] > NEGLIGIBLE * size).take(count).collect();
+                let converged =
+                    |i: &&usize| (last * small[(m - 1, **i)]).abs() <= TOLERANCE * values[**i].abs();
+                let found = candidates.iter().take_while(converged).count();
+                if exhausted || m >= limit || found == count {
+                    if found == 0 && !candidates.is_empty() {
+                        return Err(EigenError::NotConverged { found: self.found.len(), wanted: count });
+                    }
+                    let pair = |&i: &usize| {
+                        let combine = |basis: &[Vec<f64>]| {
+                            let mut sum = vec![0.0; n];
+                            for (j, v) in basis.iter().enumerate() {
+                                let share = small[(j, i)];
+                                sum.iter_mut().zip(v).for_each(|(x, v)| *x += share * v);
+                            }
+                            sum
+                        };
+                        Pair {
+                            reciprocal: values[i],
+                            vector: combine(&vectors),
+                            weighted: combine(&weighted),
+                        }
+                    };
+                    return Ok(candidates[..found].iter().map(pair).collect());
+                }
+            }
+            if exhausted {
+                return Ok(Vec::new());
+            }
+            beta.push(norm);
+            w.iter_mut().for_each(|w| *w /= norm);
+            aw.iter_mut().for_each(|a| *a /= norm);
+            let next = self.apply(&w);
+            alpha.push(dot(&aw, &next));
+            vectors.push(std::mem::replace(&mut w, next));
+            weighted.push(aw);
+        }
+    }
+}
+
+/// Takes the shares of A-orthonormal vectors out of `w`; twice is enough (Kahan, Parlett).
+fn orthogonalize<'v>(w: &mut [f64], basis: impl Iterator<Item = (&'v Vec<f64>, &'v Vec<f64>)> + Clone) {
+    for _ in 0..2 {
+        for (v, av) in basis.clone() {
+            let share = dot(av, w);
+            w.iter_mut().zip(v).for_each(|(w, v)| *w -= share * v);
+        }
+    }
+}
+
+fn times(a: &Matrix, v: &[f64]) -> Vec<f64> {
+    let mut w = vec![0.0; v.len()];
+    a.multiply_add(1.0, v, &mut w);
+    w
+}
+
+fn size_of(a: &Matrix, v: &[f64]) -> f64 {
+    dot(v, &times(a, v)).max(0.0).sqrt()
+}

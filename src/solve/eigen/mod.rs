@@ -1,0 +1,117 @@
+//! A few eigenpairs of A φ = θ B φ on the allowed motions, with A symmetric and positive definite there and B symmetric.
+//!
+//! The largest 1/θ are wanted: the lowest vibrations (A the stiffness, B the mass matrix) and the lowest critical loads
+//! (B the negative geometric stiffness, which need not be definite). Both methods work with A⁻¹, in which the wanted
+//! pairs are the dominant ones; M⁻¹ K would leave them an error of the round-off of the highest frequency. (Measured for a
+//! cantilever of 100 elements with EA L²/EI = 1e6, error of the first frequency: 1e-9 with A⁻¹, 2e-7 with M⁻¹ K, 1e-7 with
+//! faer's generalised decomposition by QZ, which takes seven times as long.)
+//!
+//! | unknowns | method | file |
+//! |---|---|---|
+//! | few, or not many more than wanted pairs | Cholesky's A = L Lᵀ, all of L⁻¹ B L⁻ᵀ by faer | [`dense`] |
+//! | many | Lanczos with one factorisation of the band | [`lanczos`] |
+
+pub mod dense;
+pub mod lanczos;
+
+use crate::linear::bordered::BorderRow;
+use crate::linear::{Matrix, Singular};
+
+/// Why eigenpairs could not be found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
+pub enum EigenError {
+    /// The stiffness has no inverse on the allowed motions.
+    #[error("the stiffness matrix cannot be factorised: {0}")]
+    #[diagnostic(help("the structure can move without resistance: add supports"))]
+    Singular(#[from] Singular),
+    /// The stiffness has negative eigenvalues.
+    #[error(
+        "the state about which to linearise is unstable ({count} negative eigenvalue{} of the tangent)",
+        if *.count == 1 { "" } else { "s" }
+    )]
+    #[diagnostic(help(
+        "only about a stable equilibrium are there vibrations: the loads exceed a critical one, which \
+         `[analysis.buckling]` estimates and `[analysis.static]` locates on the path; use smaller loads or more supports"
+    ))]
+    Unstable {
+        /// Number of negative eigenvalues.
+        count: usize,
+    },
+    /// Follower loads make the tangent unsymmetric.
+    #[error("follower loads make the tangent unsymmetric, and a {analysis} analysis needs a symmetric one")]
+    #[diagnostic(help("use dead loads, or a static analysis along the path"))]
+    NotSymmetric {
+        /// The analysis.
+        analysis: &'static str,
+    },
+    /// The projected problem could not be solved.
+    #[error("the projected eigenproblem did not converge")]
+    Projection,
+    /// Lanczos' method stopped short of the wanted number.
+    #[error("found {found} of {wanted} eigenpairs to full accuracy")]
+    #[diagnostic(help(
+        "ask for fewer, or use a coarser mesh: the stiffness is at the limit of double precision"
+    ))]
+    NotConverged {
+        /// Pairs found.
+        found: usize,
+        /// Pairs wanted.
+        wanted: usize,
+    },
+}
+
+/// The matrices of A φ = θ B φ in the supports' frames. Held rows are those of a diagonal matrix in A, and zero in B.
+#[derive(Clone, Copy, Debug)]
+pub struct Pencil<'a> {
+    /// A.
+    pub a: &'a Matrix,
+    /// B.
+    pub b: &'a Matrix,
+    /// Rows g with g φ = 0.
+    pub border: &'a [BorderRow],
+    /// Per coordinate, whether it is held.
+    pub held: &'a [bool],
+}
+
+impl Pencil<'_> {
+    /// Number of independent motions.
+    pub fn motions(&self) -> usize {
+        let free = self.held.iter().filter(|held| !**held).count();
+        free.saturating_sub(self.border.len())
+    }
+}
+
+/// Eigenpairs in descending order of 1/θ.
+#[derive(Clone, Debug, Default)]
+pub struct Pairs {
+    /// 1/θ.
+    pub reciprocals: Vec<f64>,
+    /// φ, coordinates only, φᵀ A φ = 1.
+    pub vectors: Vec<Vec<f64>>,
+}
+
+/// A reciprocal smaller than this fraction of the largest one is round-off.
+const NEGLIGIBLE: f64 = 1e-13;
+
+/// Up to so many motions all eigenpairs are computed, however few are wanted. Measured for five of a cantilever: 33
+/// motions 0.1 ms by either method, 65 motions 0.3 against 0.1 ms, 401 motions 20 against 0.6 ms.
+const FEW: usize = 60;
+/// Up to so many times the wanted number of motions all eigenpairs are computed: of 129 motions a quarter takes 1.4 against
+/// 1.7 ms, of 401 20 ms by either method.
+const SHARE: usize = 4;
+
+/// The `count` largest positive 1/θ, fewer where there are not so many.
+///
+/// # Errors
+/// [`EigenError`] where A is singular or indefinite on the allowed motions, or an iteration fails.
+pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, EigenError> {
+    if pencil.motions() <= FEW.max(SHARE * count) {
+        dense::largest_reciprocals(pencil, count)
+    } else {
+        lanczos::largest_reciprocals(pencil, count)
+    }
+}
+
+pub(super) fn dot(u: &[f64], v: &[f64]) -> f64 {
+    u.iter().zip(v).map(|(u, v)| u * v).sum()
+}

@@ -1,0 +1,143 @@
+//! Runs that end early, by Ctrl-C or for want of a way on, leave what they have computed.
+
+use super::commands::{ROLL_UP, ancf, entries, folder, status, stderr};
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+const PENDULUM: &str = include_str!("../scenes/soft-pendulum.toml");
+
+fn summary(folder: &Path) -> serde_json::Value {
+    let text = fs::read_to_string(folder.join("out/scene/summary.json")).expect("a summary");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// Runs `scene.toml` and sends SIGINT, `times` times, once its directory has been made: the program listens by then.
+#[cfg(unix)]
+fn interrupted(folder: &Path, times: usize) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_ancf"))
+        .current_dir(folder)
+        .args(["run", "scene.toml", "--json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let start = Instant::now();
+    while !folder.join("out/scene").is_dir() && start.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(10));
+    }
+    for _ in 0..times {
+        sleep(Duration::from_millis(400));
+        let sent =
+            Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill exists");
+        assert!(sent.success(), "the program ended by itself");
+    }
+    while child.try_wait().expect("a child").is_none() {
+        if start.elapsed() > Duration::from_secs(120) {
+            child.kill().expect("a child");
+            panic!("the program went on");
+        }
+        sleep(Duration::from_millis(10));
+    }
+    child.wait_with_output().expect("its output")
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_motion_leaves_what_it_computed() {
+    let folder = folder(&PENDULUM.replace("\"2.5 s\"", "100").replace("\"1 ms\"", "\"0.1 ms\""));
+    let output = interrupted(folder.path(), 1);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    let text = stderr(&output);
+    for part in [
+        "interrupted: the run ends after this step; press Ctrl-C again",
+        "complete  no",
+        "error: scene.toml: interrupted; what was computed until then is in out/scene",
+    ] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    let written = summary(folder.path());
+    assert_eq!(written["complete"], false);
+    let last = written["last"].as_f64().expect("a time");
+    assert!((0.0..100.0).contains(&last), "{last}");
+    let printed: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(printed, written);
+    let page = fs::read_to_string(folder.path().join("out/scene/report.html")).expect("a page");
+    assert!(page.contains("<h2>Incomplete</h2>") && page.contains("scene.toml: interrupted"));
+    let probes = fs::read_to_string(folder.path().join("out/scene/probes.csv")).expect("a table");
+    assert!(probes.lines().count() > 1);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_path_leaves_what_it_computed() {
+    let folder = folder(&ROLL_UP.replace(
+        "[analysis.static]",
+        "[analysis.static]\narc_length = { until_load = 1e6, max_points = 1_000_000, max_step = 1e-7 }",
+    ));
+    let output = interrupted(folder.path(), 1);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    let written = summary(folder.path());
+    assert_eq!(written["complete"], false);
+    assert!(written["last"].as_f64().expect("a load factor") > 0.0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_second_interrupt_ends_the_program_at_once() {
+    // Nobody looks at the first one before a step is done.
+    let folder = folder(&ROLL_UP.replace("elements = 3 ", "elements = 1_000_000 "));
+    let output = interrupted(folder.path(), 2);
+    assert_eq!(status(&output), 130, "{}", stderr(&output));
+    assert!(!folder.path().join("out/scene/summary.json").exists());
+}
+
+/// No equilibrium follows beyond a limit point.
+#[test]
+fn a_failed_run_leaves_what_it_computed_and_says_that_it_failed() {
+    let snap = r#"
+title = "Arch"
+[beam.arch]
+arc = { center = [0.0, 0.0], radius = 1.0, from = "150 deg", to = "30 deg" }
+axial_stiffness = 1e4
+bending_stiffness = 1.0
+[beam.arch.basis.ancf]
+elements = 8
+[[support]]
+beam = "arch"
+at = "start"
+fix = ["x", "y"]
+[[support]]
+beam = "arch"
+at = "end"
+fix = ["x", "y"]
+[[effect.force]]
+beam = "arch"
+at = "50 %"
+value = [0.0, -1000.0]
+[[probe]]
+name = "crown"
+beam = "arch"
+at = "50 %"
+[analysis.static]
+steps = 1
+"#;
+    let folder = folder(&snap.replace("\"50 %\"", &format!("{}", std::f64::consts::PI / 3.0)));
+    let output = ancf(folder.path(), &["run", "scene.toml", "--json"]);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    assert!(stderr(&output).contains("no equilibrium beyond load factor"), "{}", stderr(&output));
+    assert_eq!(entries(folder.path()), ["out", "scene.toml"]);
+    let written = summary(folder.path());
+    assert_eq!(written["complete"], false);
+    let last = written["last"].as_f64().expect("a load factor");
+    assert!(last > 0.0 && last < 1.0, "{last}");
+    assert!(written["seconds"]["solve"].as_f64().expect("a time") > 0.0);
+    let page = fs::read_to_string(folder.path().join("out/scene/report.html")).expect("a page");
+    assert!(page.contains("<h2>Incomplete</h2>") && page.contains("no equilibrium beyond load factor"));
+    // A run that reaches its end says so, in the same place.
+    let output = ancf(folder.path(), &["run", "scene.toml", "--set", "effect.force.0.value=[0, -1]"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    assert_eq!(summary(folder.path())["complete"], true);
+}
