@@ -102,6 +102,7 @@ pub mod effect;
 pub mod linear;
 pub mod model;
 pub mod output;
+pub mod restart;
 pub mod run;
 pub mod scene;
 pub mod solve;

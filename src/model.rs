@@ -16,6 +16,8 @@ pub struct Model {
     pub supports: Vec<Support>,
     /// What acts on the beams besides their own elasticity and inertia.
     pub loads: Vec<Load>,
+    /// How the beams move at the start of a motion; at rest where nothing is said.
+    pub initial_velocities: Vec<InitialVelocity>,
     /// Where to watch.
     pub probes: Vec<Probe>,
 }
@@ -259,6 +261,19 @@ pub enum Load {
     },
 }
 
+/// The velocity of a beam as a rigid body: ṙ = v + ω × (r − c). Several of one beam add up.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InitialVelocity {
+    /// Index of the beam.
+    pub beam: usize,
+    /// v \[m/s\].
+    pub translation: [f64; 2],
+    /// ω \[rad/s\], counter-clockwise.
+    pub rotation: f64,
+    /// c \[m\].
+    pub center: [f64; 2],
+}
+
 /// A point that is watched.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
@@ -331,6 +346,31 @@ pub struct Dynamic {
     pub output_every: f64,
     /// How time advances.
     pub integrator: Integrator,
+    /// What to watch for.
+    pub events: Vec<Event>,
+}
+
+/// A probe's coordinate crosses a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// Which, and which value.
+    pub target: ProbeTarget,
+    /// Which way.
+    pub crossing: Crossing,
+    /// Whether the motion ends there.
+    pub stop: bool,
+}
+
+/// The way in which a value is crossed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Crossing {
+    /// Either way.
+    #[default]
+    Any,
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
 }
 
 /// A method of time integration.
@@ -357,6 +397,48 @@ pub enum Integrator {
         /// How steps are chosen.
         step: StepControl,
     },
+    /// An explicit symplectic method, for scenes that are not stiff.
+    Explicit {
+        /// 2 (Störmer, Verlet) or 4 (Blanes, Moan).
+        order: usize,
+        /// How steps are chosen.
+        step: StepControl,
+    },
+}
+
+impl Integrator {
+    /// How steps are chosen.
+    pub fn step_control(&self) -> StepControl {
+        match *self {
+            Self::GeneralizedAlpha { step, .. }
+            | Self::Gauss { step, .. }
+            | Self::Radau { step, .. }
+            | Self::Explicit { step, .. } => step,
+        }
+    }
+}
+
+impl fmt::Display for StepControl {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fixed(step) => write!(f, "step {step} s"),
+            Self::Tolerance(tolerance) => write!(f, "tolerance {tolerance:e}"),
+        }
+    }
+}
+
+impl fmt::Display for Integrator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let step = self.step_control();
+        match self {
+            Self::GeneralizedAlpha { spectral_radius, .. } => {
+                write!(f, "generalised-α (ρ∞ = {spectral_radius}), {step}")
+            }
+            Self::Gauss { stages, .. } => write!(f, "Gauss collocation ({stages} stages), {step}"),
+            Self::Radau { stages, .. } => write!(f, "Radau IIA collocation ({stages} stages), {step}"),
+            Self::Explicit { order, .. } => write!(f, "explicit symplectic method of order {order}, {step}"),
+        }
+    }
 }
 
 /// How the steps of an integrator are chosen.

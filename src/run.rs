@@ -1,15 +1,17 @@
 //! One model, one analysis: build, solve, and look at the states.
 
 use crate::model::{
-    Analysis, ArcLength, Displacement, Dynamic, Integrator, Model, StepControl, StrainMeasure,
+    Analysis, ArcLength, Displacement, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure,
 };
+use crate::restart::{RestartError, SavedState};
 use crate::solve::dynamics;
-use crate::solve::dynamics::generalized_alpha::{self, Task};
+use crate::solve::dynamics::start::{self, StartError};
+use crate::solve::newton::Failure;
 use crate::solve::path::Stuck;
 use crate::solve::statics::{self, Solution, Target};
 use crate::solve::{buckling, modal};
 use crate::system::{Inventory, Needs, System, SystemError, View};
-use crate::trajectory::{AnalysisKind, Energy, Frame, ProbeSample, ProbeSeries, Shape, Trajectory};
+use crate::trajectory::{AnalysisKind, Energy, Event, Frame, ProbeSample, ProbeSeries, Shape, Trajectory};
 use std::f64::consts::TAU;
 use std::time::Instant;
 
@@ -67,7 +69,7 @@ pub enum RunError {
         partial: Box<Trajectory>,
     },
     /// A setting refers to a probe that does not exist.
-    #[error("the path is to end at probe `{probe}`, but the probes are: {known}")]
+    #[error("there is no probe `{probe}`; the probes are: {known}")]
     NoSuchProbe {
         /// The name given.
         probe: String,
@@ -78,11 +80,11 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Eigen(#[from] crate::solve::eigen::EigenError),
-    /// A Newton iteration of a time step did not converge.
-    #[error("no convergence in the step of {step:.1e} s after t = {time:.6} s: {cause}")]
-    #[diagnostic(help(
-        "use a smaller step, a spectral radius below 1, or more nodes where the beam bends most"
-    ))]
+    /// A time step could not be taken.
+    #[error(
+        "no step of {step:.1e} s beyond t = {time:.6} s: {cause}; the last iterate changed most at s = {s:.4} m of beam `{beam}`"
+    )]
+    #[diagnostic(help("{advice}"))]
     NoStep {
         /// Time of the last state \[s\].
         time: f64,
@@ -90,9 +92,23 @@ pub enum RunError {
         step: f64,
         /// What went wrong.
         cause: String,
+        /// The beam on which the iteration went worst.
+        beam: String,
+        /// Where on it \[m\].
+        s: f64,
+        /// What to try.
+        advice: String,
         /// What was computed until then.
         partial: Box<Trajectory>,
     },
+    /// The motion cannot start as the scene says.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Start(#[from] StartError),
+    /// A saved state cannot be used.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Restart(#[from] RestartError),
     /// The scene is legal, but this version cannot compute it.
     #[error("{what} is not available in this version")]
     #[diagnostic(help("{instead}"))]
@@ -108,7 +124,11 @@ impl RunError {
     /// 2 where the input is at fault, 1 where the computation failed.
     pub fn exit_status(&self) -> u8 {
         match self {
-            Self::System(_) | Self::NoSuchProbe { .. } | Self::Unavailable { .. } => 2,
+            Self::System(_)
+            | Self::NoSuchProbe { .. }
+            | Self::Start(_)
+            | Self::Restart(_)
+            | Self::Unavailable { .. } => 2,
             Self::NoEquilibrium { .. } | Self::NoStep { .. } | Self::Eigen(_) => 1,
         }
     }
@@ -131,6 +151,28 @@ pub fn inspect(model: &Model, analysis: &Analysis) -> Result<Inventory, RunError
 /// # Errors
 /// [`RunError`]: what was expected, what was found, where, and what to try.
 pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result<Trajectory, RunError> {
+    run_from(model, analysis, None, observer)
+}
+
+/// The same, a motion starting from a saved state if one is given.
+///
+/// # Errors
+/// As [`run`], and where the saved state does not fit.
+pub fn run_from(
+    model: &Model,
+    analysis: &Analysis,
+    saved: Option<&SavedState>,
+    observer: Observer<'_>,
+) -> Result<Trajectory, RunError> {
+    let not_a_motion = match analysis {
+        Analysis::Static(_) => Some("static"),
+        Analysis::Buckling { .. } => Some("buckling"),
+        Analysis::Modal { .. } => Some("modal"),
+        Analysis::Dynamic(_) => None,
+    };
+    if let (Some(analysis), Some(_)) = (not_a_motion, saved) {
+        return Err(RestartError::Analysis { analysis }.into());
+    }
     let start = Instant::now();
     let system = System::build(model, needs(analysis))?;
     let look = Look::new(model, &system)?;
@@ -156,16 +198,23 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
         Analysis::Buckling { count } => look.buckling(&buckling::solve(&system, *count)?),
         Analysis::Modal { count } => look.modal(&modal::solve(&system, *count)?),
         Analysis::Dynamic(settings) => {
-            let task = generalized_alpha_task(model, settings)?;
+            let watches = look.watches(settings)?;
+            let task = dynamics::Task {
+                duration: settings.duration,
+                output_every: settings.output_every,
+                integrator: settings.integrator,
+                start: beginning(model, settings, &system, saved)?,
+                watches: &watches,
+            };
             let report = &mut |time: f64, step: f64, statistics: &crate::trajectory::Statistics| {
                 let newton_iterations = statistics.newton_iterations;
                 observer(&Progress { parameter: time, target: task.duration, step, newton_iterations })
                     == Control::Continue
             };
-            let solution = generalized_alpha::solve(&system, &task, report);
+            let solution = dynamics::solve(&system, &task, report);
             match &solution.stuck {
-                None => look.dynamics(&solution),
-                Some(stuck) => return Err(look.lost(stuck, &solution)),
+                None => look.dynamics(settings, solution),
+                Some(stuck) => return Err(look.lost(settings, &stuck.clone(), solution)),
             }
         }
     };
@@ -174,26 +223,25 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
     Ok(trajectory)
 }
 
-/// What generalised-α is to do, if the model and its settings ask for what exists.
-fn generalized_alpha_task(model: &Model, settings: &Dynamic) -> Result<Task, RunError> {
-    let unavailable =
-        |what| RunError::Unavailable { what, instead: "use `generalized_alpha` with a fixed `step`" };
+/// Where a motion begins.
+fn beginning(
+    model: &Model,
+    settings: &Dynamic,
+    system: &System,
+    saved: Option<&SavedState>,
+) -> Result<dynamics::Checkpoint, RunError> {
     if model.supports.iter().any(|support| support.displacement != Displacement::default()) {
         return Err(RunError::Unavailable {
             what: "prescribed motion of a support in a dynamic analysis",
             instead: "hold the support without `move`, or use a static analysis",
         });
     }
-    match settings.integrator {
-        Integrator::GeneralizedAlpha { step: StepControl::Fixed(step), spectral_radius } => Ok(Task {
-            duration: settings.duration,
-            output_every: settings.output_every,
-            step,
-            spectral_radius,
-        }),
-        Integrator::GeneralizedAlpha { .. } => Err(unavailable("step control of generalised-α")),
-        Integrator::Gauss { .. } => Err(unavailable("Gauss collocation")),
-        Integrator::Radau { .. } => Err(unavailable("Radau IIA collocation")),
+    match saved {
+        None => Ok(start::from_rest(system, &model.initial_velocities)?),
+        Some(saved) if saved.time() >= settings.duration => {
+            Err(RestartError::Over { time: saved.time(), duration: settings.duration }.into())
+        }
+        Some(saved) => Ok(saved.checkpoint(system)?),
     }
 }
 
@@ -258,12 +306,26 @@ impl<'a> Look<'a> {
     /// The probe at which a path is to end, as (view, axis, value).
     fn end_of_path(&self, arc: &ArcLength) -> Result<Option<(View, usize, f64)>, RunError> {
         let Some(target) = &arc.until_probe else { return Ok(None) };
+        Ok(Some((self.view_of(target)?, target.axis, target.value)))
+    }
+
+    fn view_of(&self, target: &ProbeTarget) -> Result<View, RunError> {
         let found = self.probes.iter().find(|probe| probe.name == target.probe);
         let probe = found.ok_or_else(|| RunError::NoSuchProbe {
             probe: target.probe.clone(),
             known: self.probes.iter().map(|probe| probe.name.as_str()).collect::<Vec<_>>().join(", "),
         })?;
-        Ok(Some((probe.view.clone(), target.axis, target.value)))
+        Ok(probe.view.clone())
+    }
+
+    /// The events of a motion, each with the view of its probe.
+    fn watches(&self, settings: &Dynamic) -> Result<Vec<dynamics::Watch>, RunError> {
+        let watch = |event: &crate::model::Event| {
+            let view = self.view_of(&event.target)?;
+            let (axis, value) = (event.target.axis, event.target.value);
+            Ok(dynamics::Watch { view, axis, value, crossing: event.crossing, stop: event.stop })
+        };
+        settings.events.iter().map(watch).collect()
     }
 
     fn empty(&self, analysis: AnalysisKind) -> Trajectory {
@@ -420,12 +482,14 @@ impl<'a> Look<'a> {
         }
     }
 
-    fn dynamics(&self, solution: &dynamics::Solution) -> Trajectory {
+    fn dynamics(&self, settings: &Dynamic, solution: dynamics::Solution) -> Trajectory {
         let mut trajectory = self.empty(AnalysisKind::Dynamic);
+        trajectory.settings.push(("integrator".into(), settings.integrator.to_string()));
         let every = solution.states.len().div_ceil(FRAMES).max(1);
         for (i, state) in solution.states.iter().enumerate() {
             let (q, v) = (&state.q[..], Some(&state.v[..]));
-            self.record(&mut trajectory, state.time, q, v, self.system.energy(1.0, q, v));
+            let energy = Energy { work: state.work, ..self.system.energy(1.0, q, v) };
+            self.record(&mut trajectory, state.time, q, v, energy);
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(state.time, q));
             }
@@ -433,17 +497,39 @@ impl<'a> Look<'a> {
         if let Some(state) = solution.states.last() {
             trajectory.last = self.shape(&state.q);
         }
-        trajectory.history = solution.history.clone();
+        for (watch, state) in &solution.events {
+            let ProbeTarget { probe, axis, value } = settings.events[*watch].target.clone();
+            trajectory.events.push(Event { time: state.time, probe, axis: ["x", "y"][axis].into(), value });
+        }
+        trajectory.history = solution.history;
         trajectory.statistics = solution.statistics;
+        trajectory.saved = solution.checkpoint.map(|checkpoint| SavedState::new(self.system, checkpoint));
         trajectory
     }
 
-    fn lost(&self, stuck: &dynamics::Stuck, solution: &dynamics::Solution) -> RunError {
+    fn lost(&self, settings: &Dynamic, stuck: &dynamics::Stuck, solution: dynamics::Solution) -> RunError {
+        let (beam, s) = stuck.at;
+        let advice = match (settings.integrator.step_control(), stuck.failure) {
+            (_, Failure::Unstable { .. }) => {
+                "give `tolerance` instead of `step`, a step below the limit, or an implicit integrator"
+            }
+            (StepControl::Fixed(_), _) => {
+                "give `tolerance` instead of `step`, so that steps are as short as the motion needs them; a smaller `step`; \
+                 or more nodes where the beam bends most"
+            }
+            (StepControl::Tolerance(_), _) => {
+                "the motion has no continuation that the beam model can follow: look at the states until here, and use more \
+                 nodes or softer loads if the beam folds"
+            }
+        };
         RunError::NoStep {
             time: stuck.time,
             step: stuck.step,
             cause: stuck.failure.to_string(),
-            partial: Box::new(self.dynamics(solution)),
+            beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
+            s,
+            advice: advice.into(),
+            partial: Box::new(self.dynamics(settings, solution)),
         }
     }
 

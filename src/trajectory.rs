@@ -1,6 +1,7 @@
 //! What a computation leaves: states at the recorded times or load factors, seen through probes,
 //! energies and shapes. Output and verification read nothing else.
 
+use crate::restart::SavedState;
 use serde::Serialize;
 
 /// The result of one run.
@@ -36,6 +37,11 @@ pub struct Trajectory {
     pub modes: Vec<Vec<Shape>>,
     /// What the user should know: instabilities met, with the load factor.
     pub warnings: Vec<String>,
+    /// Events of a motion, in order.
+    pub events: Vec<Event>,
+    /// From which a motion can be continued.
+    #[serde(skip)]
+    pub saved: Option<SavedState>,
     /// Counts.
     pub statistics: Statistics,
     /// Where the time went.
@@ -98,13 +104,28 @@ pub struct Energy {
     pub kinetic: f64,
     /// −∫ ρA g·(r − r₀) ds, zero in the stress-free shape, and that of conservative loads.
     pub potential: f64,
+    /// Work that loads without a potential (moments, follower forces) have done since the start of a motion.
+    pub work: f64,
 }
 
 impl Energy {
-    /// Sum of all parts.
+    /// Sum of all parts, less the work put in: constant as long as nothing is lost.
     pub fn total(&self) -> f64 {
-        self.stretch + self.bend + self.kinetic + self.potential
+        self.stretch + self.bend + self.kinetic + self.potential - self.work
     }
+}
+
+/// A probe's coordinate crossed a value.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Event {
+    /// When \[s\].
+    pub time: f64,
+    /// Name of the probe.
+    pub probe: String,
+    /// `x` or `y`.
+    pub axis: String,
+    /// The value \[m\].
+    pub value: f64,
 }
 
 /// The centrelines of all beams at one record.

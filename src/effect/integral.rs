@@ -258,6 +258,14 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
         D::SYMMETRIC
     }
 
+    fn is_constant(&self) -> bool {
+        !D::HAS_TANGENT
+    }
+
+    fn is_conservative(&self) -> bool {
+        D::CONSERVATIVE
+    }
+
     fn energy(&self, q: &[f64]) -> f64 {
         with_width!(self.energy_of(q))
     }

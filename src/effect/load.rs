@@ -70,6 +70,7 @@ impl FollowerForce {
 impl Density<2> for FollowerForce {
     const ORDERS: [usize; 2] = [0, 1];
     const SYMMETRIC: bool = false;
+    const CONSERVATIVE: bool = false;
 
     fn energy(&self, _: usize, _: &Gradient<2>) -> f64 {
         0.0
@@ -100,7 +101,7 @@ impl Density<2> for FollowerForce {
 /// A moment M \[N m\], counter-clockwise: δW = −M δθ with θ = atan2(y', x').
 ///
 /// ∂θ/∂r' = J r'/|r'|², symmetric second derivative. Its work M θ is a potential only as long as θ is counted on
-/// through full turns, which no single state can tell; the energy is therefore reported with the loads' work.
+/// through full turns, which no single state can tell; its work is therefore summed up along the motion.
 #[derive(Clone, Debug)]
 pub struct Moment {
     /// Counter-clockwise \[N m\].
@@ -109,6 +110,7 @@ pub struct Moment {
 
 impl Density<1> for Moment {
     const ORDERS: [usize; 1] = [1];
+    const CONSERVATIVE: bool = false;
 
     fn energy(&self, _: usize, _: &Gradient<1>) -> f64 {
         0.0

@@ -52,8 +52,11 @@ pub trait Density<const M: usize>: Send + Sync {
     /// Whether ∂²W/∂z∂z is symmetric, as it is for everything that has an energy.
     const SYMMETRIC: bool = true;
 
-    /// Whether ∂²W/∂z∂z is more than zero; where it is not, no tangent is assembled.
+    /// Whether ∂²W/∂z∂z is more than zero; where it is not, the force is constant and no tangent is assembled.
     const HAS_TANGENT: bool = true;
+
+    /// Whether the force has the potential W; where it has not, its work is summed up along the motion.
+    const CONSERVATIVE: bool = true;
 
     /// W at quadrature point number `point` \[J/m\]; zero for what has no energy.
     fn energy(&self, point: usize, z: &Gradient<M>) -> f64;
@@ -128,6 +131,12 @@ pub trait Effect: Send + Sync {
 
     /// Whether its tangent is symmetric.
     fn is_symmetric(&self) -> bool;
+
+    /// Whether its force is the same in all states.
+    fn is_constant(&self) -> bool;
+
+    /// Whether its force has a potential.
+    fn is_conservative(&self) -> bool;
 
     /// U \[J\].
     fn energy(&self, q: &[f64]) -> f64;

@@ -11,28 +11,35 @@ use super::{Matrix, Singular};
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMat, Triplet};
+use faer::traits::ComplexField;
+use faer::traits::math_utils::from_f64;
 
 /// One row of B: (unknown, entry), in rising order of the unknowns.
 pub type BorderRow = Vec<(usize, f64)>;
 
-/// Sparse LU of a bordered matrix.
+/// Sparse LU of a bordered matrix, real or complex.
 #[derive(Clone, Debug)]
-pub struct Bordered {
+pub struct Bordered<T = f64> {
     symbolic: SymbolicLu<usize>,
-    lu: Lu<usize, f64>,
+    lu: Lu<usize, T>,
     size: usize,
 }
 
-fn assemble(matrix: &Matrix, border: &[BorderRow]) -> Option<SparseColMat<usize, f64>> {
-    let n = matrix.size();
+fn assemble<T: ComplexField>(
+    pattern: &Matrix,
+    entry: impl Fn(usize, usize) -> T,
+    border: &[BorderRow],
+) -> Option<SparseColMat<usize, T>> {
+    let n = pattern.size();
     let mut entries = Vec::new();
     for i in 0..n {
         // Zeros inside the band stay in the pattern, so that it is the same for every tangent.
-        entries.extend(matrix.columns(i).map(|j| Triplet::new(i, j, matrix.get(i, j))));
+        entries.extend(pattern.columns(i).map(|j| Triplet::new(i, j, entry(i, j))));
     }
     for (r, row) in border.iter().enumerate() {
         for &(j, value) in row {
-            entries.push(Triplet::new(n + r, j, value));
+            let value = from_f64::<T>(value);
+            entries.push(Triplet::new(n + r, j, value.clone()));
             entries.push(Triplet::new(j, n + r, value));
         }
     }
@@ -45,9 +52,24 @@ impl Bordered {
     /// # Errors
     /// [`Singular`] where the whole matrix is.
     pub fn new(matrix: &Matrix, border: &[BorderRow], earlier: Option<Self>) -> Result<Self, Singular> {
-        let size = matrix.size() + border.len();
+        Self::from_entries(matrix, |i, j| matrix.get(i, j), border, earlier)
+    }
+}
+
+impl<T: ComplexField> Bordered<T> {
+    /// The same for a matrix with the pattern of `pattern` and the entries `entry(row, column)`.
+    ///
+    /// # Errors
+    /// As [`Bordered::new`].
+    pub fn from_entries(
+        pattern: &Matrix,
+        entry: impl Fn(usize, usize) -> T,
+        border: &[BorderRow],
+        earlier: Option<Self>,
+    ) -> Result<Self, Singular> {
+        let size = pattern.size() + border.len();
         let singular = Singular { row: size };
-        let sparse = assemble(matrix, border).ok_or(singular)?;
+        let sparse = assemble(pattern, entry, border).ok_or(singular)?;
         let symbolic = match earlier {
             Some(earlier) if earlier.size == size => earlier.symbolic,
             _ => SymbolicLu::try_new(sparse.symbolic()).map_err(|_| singular)?,
@@ -61,11 +83,11 @@ impl Bordered {
     }
 
     /// Solves in place: unknowns first, multipliers last.
-    pub fn solve(&self, b: &mut [f64]) {
-        let mut column = faer::Mat::from_fn(b.len(), 1, |i, _| b[i]);
+    pub fn solve(&self, b: &mut [T]) {
+        let mut column = faer::Mat::from_fn(b.len(), 1, |i, _| b[i].clone());
         self.lu.solve_in_place(&mut column);
         for (i, value) in b.iter_mut().enumerate() {
-            *value = column[(i, 0)];
+            *value = column[(i, 0)].clone();
         }
     }
 }

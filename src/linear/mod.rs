@@ -9,9 +9,12 @@
 //! | symmetric band | LDLᵀ by blocks, no pivoting; its signs are the inertia | [`symmetric`] |
 //! | band (follower loads), or a symmetric one with a vanishing pivot | LU with partial pivoting | [`band`] |
 //! | band bordered by constraint rows | sparse LU by faer | [`bordered`] |
+//!
+//! The complex matrices of collocation's stages are in [`complex`].
 
 pub mod band;
 pub mod bordered;
+pub mod complex;
 pub(crate) mod fma;
 pub mod symmetric;
 

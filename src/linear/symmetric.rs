@@ -50,6 +50,11 @@ impl SymmetricBand {
         &mut self.data[node * length..(node + 1) * length]
     }
 
+    /// All entries, panel after panel.
+    pub(super) fn data(&self) -> &[f64] {
+        &self.data
+    }
+
     /// Numbers in a row of a panel.
     #[inline]
     pub fn stride(&self) -> usize {

@@ -9,8 +9,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::quantity::{
-    Acceleration, Angle, Area, BendingStiffness, Density, Force, ForcePerLength, Length, MassPerLength,
-    Moment, Positive, Quantity, Ratio, SecondMoment, Stress, Time,
+    Acceleration, Angle, AngularVelocity, Area, BendingStiffness, Density, Force, ForcePerLength, Length,
+    MassPerLength, Moment, Positive, Quantity, Ratio, SecondMoment, Stress, Time, Velocity,
 };
 use super::value::{At, Count, Located, NodeList, Vector};
 
@@ -33,6 +33,9 @@ pub struct SceneTable {
     /// What acts on the beams.
     #[serde(default)]
     pub effect: EffectTable,
+    /// How beams move at the start; at rest where nothing is said.
+    #[serde(default)]
+    pub initial_velocity: Vec<InitialVelocityTable>,
     /// Points to watch.
     #[serde(default)]
     pub probe: Vec<ProbeTable>,
@@ -364,6 +367,20 @@ pub struct AnalysisTable {
     pub modal: Option<ModesTable>,
 }
 
+/// The velocity of a beam as a rigid body; several of one beam add up.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialVelocityTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Velocity of the point `about`.
+    pub value: Option<Vector<Velocity>>,
+    /// Angular velocity, counter-clockwise.
+    pub rotation: Option<Quantity<AngularVelocity>>,
+    /// The point about which the beam turns; the origin when left out.
+    pub about: Option<Vector<Length>>,
+}
+
 /// Settings of a static analysis; every one may be left out.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -417,6 +434,57 @@ pub struct DynamicTable {
     pub gauss: Option<Located<GaussTable>>,
     /// Radau IIA collocation: for stiff motion, of order 3 or 5.
     pub radau: Option<Located<RadauTable>>,
+    /// Explicit symplectic methods, for motion that is not stiff.
+    pub explicit: Option<Located<ExplicitTable>>,
+    /// Probes' coordinates that cross a value.
+    #[serde(default)]
+    pub event: Vec<EventTable>,
+}
+
+/// A probe's coordinate crosses a value, `x` or `y`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["x"] }, { "required": ["y"] }]))]
+pub struct EventTable {
+    /// Name of the probe.
+    pub probe: Located<String>,
+    /// Value of its x.
+    pub x: Option<Quantity<Length>>,
+    /// Value of its y.
+    pub y: Option<Quantity<Length>>,
+    /// Which way; either when left out.
+    #[serde(default)]
+    pub crossing: CrossingName,
+    /// Whether the motion ends there.
+    #[serde(default)]
+    pub stop: bool,
+}
+
+/// The way in which a value is crossed.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum CrossingName {
+    /// Either way.
+    #[default]
+    Any,
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
+}
+
+/// Explicit methods; `step` or `tolerance`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["step"] }, { "required": ["tolerance"] }]))]
+pub struct ExplicitTable {
+    /// 2 (Störmer, Verlet) or 4 (Blanes, Moan); 4 when left out.
+    #[schemars(extend("enum" = [2, 4]))]
+    pub order: Option<Located<Count<1>>>,
+    /// Fixed step.
+    pub step: Option<Located<Quantity<Time, Positive>>>,
+    /// Relative accuracy that chooses the steps.
+    pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
 }
 
 /// Generalised-α; `step` or `tolerance`.

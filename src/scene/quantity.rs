@@ -63,6 +63,10 @@ measures! {
     ForcePerLength: "force per length", "N/m", "5 N/mm", Dimension::new(0, 1, -2);
     /// Acceleration \[m/s²\].
     Acceleration: "acceleration", "m/s^2", "9.81 m/s^2", Dimension::new(1, 0, -2);
+    /// Velocity \[m/s\].
+    Velocity: "velocity", "m/s", "2 m/s", Dimension::new(1, 0, -1);
+    /// Angular velocity \[rad/s\].
+    AngularVelocity: "angular velocity", "rad/s", "90 deg/s", Dimension { metre: 0, kilogram: 0, second: -1, radian: 1 };
     /// A pure number.
     Ratio: "number", "", "0.5", Dimension::new(0, 0, 0);
 }

@@ -1,11 +1,15 @@
 //! The `analysis` table → [`Analysis`].
 
-use crate::model::{Analysis, ArcLength, Dynamic, Integrator, Model, ProbeTarget, Static, StepControl};
+use crate::model::{
+    Analysis, ArcLength, Crossing, Dynamic, Event, Integrator, Model, ProbeTarget, Static, StepControl,
+};
 
 use super::diagnose::choices;
 use super::error::Fault;
-use super::file::{ArcLengthTable, DynamicTable, ModesTable, SceneTable, StaticTable};
-use super::quantity::{Positive, Quantity, Ratio, Time};
+use super::file::{
+    ArcLengthTable, CrossingName, DynamicTable, EventTable, ModesTable, SceneTable, StaticTable,
+};
+use super::quantity::{Length, Positive, Quantity, Ratio, Time};
 use super::to_basis::Size;
 use super::value::{Count, Located};
 
@@ -27,7 +31,7 @@ pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<A
     let table = file.analysis.get();
     match (&table.statics, &table.dynamic, &table.buckling, &table.modal) {
         (Some(table), None, None, None) => Ok(Analysis::Static(statics(table, model)?)),
-        (None, Some(table), None, None) => Ok(Analysis::Dynamic(dynamic(table)?)),
+        (None, Some(table), None, None) => Ok(Analysis::Dynamic(dynamic(table, model)?)),
         (None, None, Some(table), None) => Ok(Analysis::Buckling { count: modes(table, size)? }),
         (None, None, None, Some(table)) => Ok(Analysis::Modal { count: modes(table, size)? }),
         (None, None, None, None) => {
@@ -88,21 +92,7 @@ fn arc_length(located: &Located<ArcLengthTable>, model: &Model) -> Result<ArcLen
     }
     let until_probe = table.until_probe.as_ref().map(|located| {
         let target = located.get();
-        let name = target.probe.get();
-        if !model.probes.iter().any(|probe| probe.name == *name) {
-            let names: Vec<String> = model.probes.iter().map(|probe| probe.name.clone()).collect();
-            return Err(Fault::new(target.probe.span(), format!("there is no probe named `{name}`"))
-                .help(choices("probes of this scene", name, &names)));
-        }
-        let (axis, value) = match (&target.x, &target.y) {
-            (Some(x), None) => (0, x.si),
-            (None, Some(y)) => (1, y.si),
-            _ => {
-                return Err(Fault::new(located.span(), "`until_probe` needs either `x` or `y`")
-                    .help("such as `until_probe = { probe = \"tip\", y = -0.5 }`"));
-            }
-        };
-        Ok(ProbeTarget { probe: name.clone(), axis, value })
+        probe_target(&target.probe, target.x, target.y, model)
     });
     Ok(ArcLength {
         until_load: table.until_load.map(|v| v.si),
@@ -115,7 +105,42 @@ fn arc_length(located: &Located<ArcLengthTable>, model: &Model) -> Result<ArcLen
     })
 }
 
-fn dynamic(located: &Located<DynamicTable>) -> Result<Dynamic, Fault> {
+fn probe_target(
+    probe: &Located<String>,
+    x: Option<Quantity<Length>>,
+    y: Option<Quantity<Length>>,
+    model: &Model,
+) -> Result<ProbeTarget, Fault> {
+    let name = probe.get();
+    if !model.probes.iter().any(|probe| probe.name == *name) {
+        let names: Vec<String> = model.probes.iter().map(|probe| probe.name.clone()).collect();
+        return Err(Fault::new(probe.span(), format!("there is no probe named `{name}`")).help(choices(
+            "probes of this scene",
+            name,
+            &names,
+        )));
+    }
+    let (axis, value) = match (x, y) {
+        (Some(x), None) => (0, x.si),
+        (None, Some(y)) => (1, y.si),
+        _ => {
+            return Err(Fault::new(probe.span(), "a probe's target needs either `x` or `y`")
+                .help(format!("such as `probe = \"{name}\", y = -0.5`")));
+        }
+    };
+    Ok(ProbeTarget { probe: name.clone(), axis, value })
+}
+
+fn event(table: &EventTable, model: &Model) -> Result<Event, Fault> {
+    let crossing = match table.crossing {
+        CrossingName::Any => Crossing::Any,
+        CrossingName::Rising => Crossing::Rising,
+        CrossingName::Falling => Crossing::Falling,
+    };
+    Ok(Event { target: probe_target(&table.probe, table.x, table.y, model)?, crossing, stop: table.stop })
+}
+
+fn dynamic(located: &Located<DynamicTable>, model: &Model) -> Result<Dynamic, Fault> {
     let table = located.get();
     let duration = table.duration.si;
     let output_every = match &table.output_every {
@@ -140,10 +165,10 @@ fn dynamic(located: &Located<DynamicTable>) -> Result<Dynamic, Fault> {
         None => duration / DYNAMIC_RECORDS,
     };
     const ONE: &str = "give one of `[analysis.dynamic.generalized_alpha]`, `[analysis.dynamic.gauss]`, \
-                       `[analysis.dynamic.radau]`, or none for Gauss collocation with its default accuracy";
-    let integrator = match (&table.generalized_alpha, &table.gauss, &table.radau) {
-        (None, None, None) => INTEGRATOR,
-        (Some(alpha), None, None) => {
+                       `[analysis.dynamic.radau]`, `[analysis.dynamic.explicit]`, or none for Gauss collocation with its default accuracy";
+    let integrator = match (&table.generalized_alpha, &table.gauss, &table.radau, &table.explicit) {
+        (None, None, None, None) => INTEGRATOR,
+        (Some(alpha), None, None, None) => {
             let t = alpha.get();
             let spectral_radius = match &t.spectral_radius {
                 Some(radius) if !(0.0..=1.0).contains(&radius.get().si) => {
@@ -159,19 +184,38 @@ fn dynamic(located: &Located<DynamicTable>) -> Result<Dynamic, Fault> {
             let step = step_control(alpha, &t.step, &t.tolerance, duration)?;
             Integrator::GeneralizedAlpha { step, spectral_radius }
         }
-        (None, Some(gauss), None) => {
+        (None, Some(gauss), None, None) => {
             let t = gauss.get();
             let step = step_control(gauss, &t.step, &t.tolerance, duration)?;
             Integrator::Gauss { stages: stages(&t.stages)?, step }
         }
-        (None, None, Some(radau)) => {
+        (None, None, Some(radau), None) => {
             let t = radau.get();
             let step = step_control(radau, &t.step, &t.tolerance, duration)?;
             Integrator::Radau { stages: stages(&t.stages)?, step }
         }
+        (None, None, None, Some(explicit)) => {
+            let t = explicit.get();
+            let step = step_control(explicit, &t.step, &t.tolerance, duration)?;
+            let order = match &t.order {
+                None => 4,
+                Some(order) => match order.get().0 {
+                    n @ (2 | 4) => n as usize,
+                    n => {
+                        return Err(Fault::new(
+                            order.span(),
+                            format!("found an explicit method of order {n}"),
+                        )
+                        .help("2 and 4 are legal"));
+                    }
+                },
+            };
+            Integrator::Explicit { order, step }
+        }
         _ => return Err(Fault::new(located.span(), "more than one integrator").help(ONE)),
     };
-    Ok(Dynamic { duration, output_every, integrator })
+    let events = table.event.iter().map(|table| event(table, model)).collect::<Result<_, _>>()?;
+    Ok(Dynamic { duration, output_every, integrator, events })
 }
 
 fn stages<const MIN: u64>(count: &Option<Located<Count<MIN>>>) -> Result<usize, Fault> {

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::centreline::Curve;
 use crate::model::{
-    Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Load, Model, Place, Probe, Section,
-    StrainMeasure, Support,
+    Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, InitialVelocity, Load, Model, Place,
+    Probe, Section, StrainMeasure, Support,
 };
 
 use super::diagnose::choices;
@@ -48,6 +48,7 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
     }
     held::check_duplicates(file, &model)?;
     loads(file, &built, &mut model)?;
+    initial_velocities(file, &built, &mut model)?;
     probes(file, &built, &mut model)?;
     let analysis = to_analysis::analysis(file, &model, size)?;
     check_needs(file, &model, &built, &analysis)?;
@@ -298,6 +299,23 @@ fn loads(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fa
     }
     if let Some(gravity) = &file.effect.gravity {
         model.loads.push(Load::Gravity { acceleration: gravity.get().acceleration.si });
+    }
+    Ok(())
+}
+
+fn initial_velocities(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {
+    for velocity in &file.initial_velocity {
+        if velocity.value.is_none() && velocity.rotation.is_none() {
+            return Err(Fault::new(velocity.beam.span(), "this initial velocity is nothing").help(
+                "give `value = [\"1 m/s\", 0]`, `rotation = \"2 rad/s\"` with `about = [0, 0]`, or both",
+            ));
+        }
+        model.initial_velocities.push(InitialVelocity {
+            beam: beam_index(&velocity.beam, built)?,
+            translation: velocity.value.map_or([0.0; 2], |value| value.si),
+            rotation: velocity.rotation.map_or(0.0, |rotation| rotation.si),
+            center: velocity.about.map_or([0.0; 2], |about| about.si),
+        });
     }
     Ok(())
 }

@@ -14,17 +14,7 @@ const ROUND_OFFS: f64 = 100.0;
 /// the reciprocal of round-off.
 const PENALTY: f64 = 1e4;
 
-/// The inertia of a time step, in which an integrator makes the acceleration a linear function of the unknown positions,
-/// q̈ = c q + e.
-#[derive(Clone, Debug, Default)]
-pub struct Inertia {
-    /// c \[1/s²\].
-    pub coefficient: f64,
-    /// e, one per coordinate.
-    pub offset: Vec<f64>,
-}
-
-/// Residual, tangent and its factorisation at one load factor, or in one time step. Unknowns are the system's coordinates followed by the
+/// Residual, tangent and its factorisation at one load factor. Unknowns are the system's coordinates followed by the
 /// scaled multipliers.
 pub struct Equilibrium<'a> {
     system: &'a System,
@@ -34,10 +24,6 @@ pub struct Equilibrium<'a> {
     workspace: Workspace,
     force: Vec<f64>,
     held_rate: Vec<f64>,
-    mass: Option<Matrix>,
-    /// How the acceleration follows from the unknowns, where there is motion.
-    pub inertia: Inertia,
-    acceleration: Vec<f64>,
     /// Counts so far.
     pub statistics: Statistics,
 }
@@ -54,27 +40,8 @@ impl<'a> Equilibrium<'a> {
             workspace: Workspace::default(),
             force: vec![0.0; n],
             held_rate: vec![0.0; n],
-            mass: None,
-            inertia: Inertia::default(),
-            acceleration: Vec::new(),
             statistics: Statistics::default(),
         }
-    }
-
-    /// The equations of motion of `system`, which must have been built with inertia.
-    pub fn in_motion(system: &'a System) -> Self {
-        let zero = vec![0.0; system.coordinates()];
-        Self {
-            mass: Some(system.mass_matrix()),
-            inertia: Inertia { coefficient: 0.0, offset: zero.clone() },
-            acceleration: zero,
-            ..Self::new(system)
-        }
-    }
-
-    /// The mass matrix, if there is motion.
-    pub fn mass(&self) -> Option<&Matrix> {
-        self.mass.as_ref()
     }
 
     /// The system whose equations these are.
@@ -94,48 +61,13 @@ impl<'a> Equilibrium<'a> {
         x
     }
 
-    /// Adds Bᵀμ to the force, turns it into the supports' frames as `−R` and appends `−g`; returns the scaled residual.
-    fn finish_residual(&mut self, load: f64, x: &[f64], negative: &mut [f64]) -> f64 {
-        let system = self.system;
-        let n = system.coordinates();
-        let scale_of = |force: &[f64]| {
-            force.chunks_exact(4).fold(0.0_f64, |m, f| {
-                m.max(f[0].abs()).max(f[1].abs()).max((f[2].abs()).max(f[3].abs()) / system.length())
-            })
-        };
-        let mut scale = scale_of(&self.force);
-        if let Some(mass) = &self.mass {
-            for ((a, q), e) in self.acceleration.iter_mut().zip(x).zip(&self.inertia.offset) {
-                *a = self.inertia.coefficient.mul_add(*q, *e);
-            }
-            mass.multiply_add(1.0, &self.acceleration, &mut self.force);
-        }
-        for (r, constraint) in system.constraints().iter().enumerate() {
-            let unit = constraint.scale(system.stiffness(), system.length());
-            let mu = x[n + r] * unit;
-            for (i, value) in constraint.gradient(load) {
-                scale = scale.max((mu * value).abs() * if i % 4 < 2 { 1.0 } else { 1.0 / system.length() });
-                self.force[i] += mu * value;
-            }
-            // Linear in q: Newton's method satisfies it to round-off at once.
-            negative[n + r] = -unit * constraint.value(load, &x[..n]);
-        }
-        for (negative, force) in negative.iter_mut().zip(&self.force) {
-            *negative = -force;
-        }
-        system.supports().to_frames(load, &mut negative[..n]);
-        let floor = ROUND_OFFS / RESIDUAL_TOLERANCE * system.round_off();
-        let residual = scale_of(&negative[..n]);
-        if residual == 0.0 { 0.0 } else { residual / (scale + floor) }
-    }
-
     /// Writes −R(x) to `negative` and returns the scaled residual: its largest component against the largest force on
     /// a coordinate (reactions included) plus the round-off of the internal forces.
     pub fn residual(&mut self, load: f64, x: &[f64], negative: &mut [f64]) -> f64 {
         let n = self.system.coordinates();
         self.statistics.residual_evaluations += 1;
         self.system.force(load, &x[..n], &mut self.force);
-        self.finish_residual(load, x, negative)
+        balance(self.system, load, x, &mut self.force, None, negative)
     }
 
     /// The same as [`Self::residual`]; also factorises the tangent at `x`, and with `rate` writes the right-hand side
@@ -158,10 +90,7 @@ impl<'a> Equilibrium<'a> {
         self.statistics.factorizations += 1;
         let (q, before) = (&x[..n], &before[..n]);
         system.force_and_tangent(load, q, before, &mut self.force, &mut self.tangent, &mut self.workspace);
-        let residual = self.finish_residual(load, x, negative);
-        if let Some(mass) = &self.mass {
-            self.tangent.add(self.inertia.coefficient, mass);
-        }
+        let residual = balance(self.system, load, x, &mut self.force, None, negative);
         system.supports().turn_matrix(load, &mut self.tangent);
         if let Some(rate) = rate {
             self.rate_right_hand_side(load, x, rate);
@@ -217,17 +146,7 @@ impl<'a> Equilibrium<'a> {
 
     /// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not count.
     pub fn size(&self, increment: &[f64]) -> f64 {
-        let n = self.system.coordinates();
-        let inverse = 1.0 / self.system.length();
-        let mut largest = 0.0_f64;
-        for d in increment[..n].chunks_exact(4) {
-            let size = (d[0].abs().max(d[1].abs()) * inverse).max(d[2].abs().max(d[3].abs()));
-            // `max` would drop a NaN.
-            if size > largest || size.is_nan() {
-                largest = size;
-            }
-        }
-        largest
+        size(self.system, increment)
     }
 
     /// Number of unstable directions at the last linearised state: negative eigenvalues of the tangent restricted to
@@ -253,6 +172,59 @@ impl<'a> Equilibrium<'a> {
     pub fn factor(&self) -> Option<&Factor> {
         self.factor.as_ref()
     }
+}
+
+/// Adds Bᵀμ to the force, turns it into the supports' frames as `−R` and appends `−g`; returns the scaled residual.
+/// `inertia` is added to the force, but does not count in the scale.
+pub(super) fn balance(
+    system: &System,
+    load: f64,
+    x: &[f64],
+    force: &mut [f64],
+    inertia: Option<&[f64]>,
+    negative: &mut [f64],
+) -> f64 {
+    let n = system.coordinates();
+    let scale_of = |force: &[f64]| {
+        force.chunks_exact(4).fold(0.0_f64, |m, f| {
+            m.max(f[0].abs()).max(f[1].abs()).max((f[2].abs()).max(f[3].abs()) / system.length())
+        })
+    };
+    let mut scale = scale_of(force);
+    if let Some(inertia) = inertia {
+        force.iter_mut().zip(inertia).for_each(|(f, inertia)| *f += inertia);
+    }
+    for (r, constraint) in system.constraints().iter().enumerate() {
+        let unit = constraint.scale(system.stiffness(), system.length());
+        let mu = x[n + r] * unit;
+        for (i, value) in constraint.gradient(load) {
+            scale = scale.max((mu * value).abs() * if i % 4 < 2 { 1.0 } else { 1.0 / system.length() });
+            force[i] += mu * value;
+        }
+        // Linear in q: Newton's method satisfies it to round-off at once.
+        negative[n + r] = -unit * constraint.value(load, &x[..n]);
+    }
+    for (negative, force) in negative.iter_mut().zip(&*force) {
+        *negative = -force;
+    }
+    system.supports().to_frames(load, &mut negative[..n]);
+    let floor = ROUND_OFFS / RESIDUAL_TOLERANCE * system.round_off();
+    let residual = scale_of(&negative[..n]);
+    if residual == 0.0 { 0.0 } else { residual / (scale + floor) }
+}
+
+/// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not count.
+pub(super) fn size(system: &System, increment: &[f64]) -> f64 {
+    let inverse = 1.0 / system.length();
+    let mut largest = 0.0_f64;
+    for d in increment[..system.coordinates()].chunks_exact(4) {
+        let size = (d[0].abs().max(d[1].abs()) * inverse).max(d[2].abs().max(d[3].abs()));
+        // `max` would drop a NaN.
+        if size > largest || size.is_nan() {
+            largest = size;
+        }
+    }
+    largest
 }
 
 /// Equilibrium at a given load factor.

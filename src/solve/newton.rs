@@ -36,7 +36,7 @@ pub trait Equations {
 pub struct Settings {
     /// Largest error of the solution in the norm of the increments.
     pub tolerance: f64,
-    /// Largest scaled residual.
+    /// Largest scaled residual; infinite: the increments alone decide.
     pub residual_tolerance: f64,
     /// Give up after this many iterations.
     pub max_iterations: usize,
@@ -75,6 +75,12 @@ pub enum Failure {
     /// A force or an increment overflowed or is not a number.
     #[error("a force or an increment is not finite")]
     NotFinite,
+    /// A step beyond the limit of stability of an explicit method.
+    #[error("an explicit step is stable up to {limit:.2e} s in this scene")]
+    Unstable {
+        /// Longest stable step \[s\].
+        limit: f64,
+    },
     /// Converged, but so far from the prediction that it may be another equilibrium than the one that continues the path.
     #[error("the solution lies {turn:.2} rad from the prediction, perhaps on another branch")]
     OtherBranch {
@@ -131,7 +137,9 @@ pub fn solve(
         equations.apply(&increment, x);
         let remaining = size * contraction * contraction;
         if (remaining <= settings.tolerance || stalled)
-            && (size <= 1e-3 * settings.tolerance || equations.residual(x) <= settings.residual_tolerance)
+            && (size <= 1e-3 * settings.tolerance
+                || settings.residual_tolerance == f64::INFINITY
+                || equations.residual(x) <= settings.residual_tolerance)
         {
             return Ok(());
         }

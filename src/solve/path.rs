@@ -189,7 +189,7 @@ impl<'e, 'a> Path<'e, 'a> {
                 load: point.load,
                 step: 0.0,
                 failure: singular.into(),
-                at: self.place(singular.row),
+                at: self.equilibrium.system().place_of(singular.row),
             },
         )?;
         self.equilibrium.solve(point.load, &mut rate, true);
@@ -341,20 +341,7 @@ impl<'e, 'a> Path<'e, 'a> {
             .enumerate()
             .fold((0, 0.0), |worst, (i, d)| if d > worst.1 || d.is_nan() { (i, d) } else { worst })
             .0;
-        self.place(4 * node)
-    }
-
-    /// Beam and arc length to which an unknown belongs.
-    fn place(&self, unknown: usize) -> (usize, f64) {
-        let node = unknown / 4;
-        let beams = self.equilibrium.system().beams();
-        beams
-            .iter()
-            .enumerate()
-            .rev()
-            .find(|(_, part)| part.first_node <= node)
-            .and_then(|(i, part)| Some((i, *part.basis.nodes().get(node - part.first_node)?)))
-            .unwrap_or((0, 0.0))
+        self.equilibrium.system().place_of(4 * node)
     }
 
     /// The equilibrium at load factor `load`, starting from the state between the last two points nearest to it; the

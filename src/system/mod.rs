@@ -144,6 +144,8 @@ pub struct System {
     blocks: usize,
     internal: Vec<Box<dyn Effect>>,
     loads: Vec<Box<dyn Effect>>,
+    /// The sum of all loads that are the same in every state.
+    constant_load: Vec<f64>,
     inertia: Vec<Box<dyn Effect>>,
     supports: Supports,
     constraints: Vec<Constraint>,
@@ -200,6 +202,7 @@ impl System {
             blocks,
             internal: Vec::new(),
             loads: Vec::new(),
+            constant_load: Vec::new(),
             inertia: Vec::new(),
             supports: Supports::default(),
             constraints: Vec::new(),
@@ -210,6 +213,10 @@ impl System {
             lowest_vibration: lowest_vibration_scale(model, length),
         };
         effects::add(&mut system, model, needs)?;
+        system.constant_load = vec![0.0; system.coordinates()];
+        for effect in system.loads.iter().filter(|effect| effect.is_constant()) {
+            effect.add_force(1.0, &system.reference, &mut system.constant_load);
+        }
         system.add_supports(&model.supports)?;
         Ok(system)
     }
@@ -220,6 +227,16 @@ impl System {
     /// [`SystemError`] naming `what`, if the place is off the beam.
     pub fn arc_length(&self, what: &'static str, at: Place) -> Result<f64, SystemError> {
         self.part(what, at).map(|(_, s)| s)
+    }
+
+    /// Beam and arc length \[m\] of the node to which an unknown belongs; of the first node for a multiplier.
+    pub fn place_of(&self, unknown: usize) -> (usize, f64) {
+        let node = unknown / 4;
+        let beams = self.beams.iter().enumerate().rev();
+        beams
+            .filter(|(_, part)| part.first_node <= node)
+            .find_map(|(i, part)| Some((i, *part.basis.nodes().get(node - part.first_node)?)))
+            .unwrap_or((0, 0.0))
     }
 
     fn part(&self, what: &'static str, at: Place) -> Result<(&BeamPart, f64), SystemError> {
@@ -389,9 +406,34 @@ impl System {
 
     /// `f += factor · f_load(q)`.
     pub fn add_loads(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        for effect in &self.loads {
+        self.add_constant_load(factor, f);
+        for effect in self.varying_loads() {
             effect.add_force(factor, q, f);
         }
+    }
+
+    fn add_constant_load(&self, factor: f64, f: &mut [f64]) {
+        for (f, load) in f.iter_mut().zip(&self.constant_load) {
+            *f += factor * load;
+        }
+    }
+
+    fn varying_loads(&self) -> impl Iterator<Item = &dyn Effect> {
+        self.loads.iter().map(|effect| &**effect).filter(|effect| !effect.is_constant())
+    }
+
+    /// Whether a load does work that no potential counts.
+    pub fn has_work(&self) -> bool {
+        self.loads.iter().any(|effect| !effect.is_conservative())
+    }
+
+    /// Power \[W\] of the loads without potential in the state (q, v); `scratch` is overwritten.
+    pub fn power(&self, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
+        scratch.fill(0.0);
+        for effect in self.loads.iter().filter(|effect| !effect.is_conservative()) {
+            effect.add_force(-1.0, q, scratch);
+        }
+        scratch.iter().zip(v).map(|(f, v)| f * v).sum()
     }
 
     /// The same force as [`Self::force`], and its derivative by q; stress resultants in the tangent are extrapolated
@@ -410,7 +452,8 @@ impl System {
         for effect in &self.internal {
             effect.add_force_and_tangent(1.0, q, before, f, k, workspace);
         }
-        for effect in &self.loads {
+        self.add_constant_load(load, f);
+        for effect in self.varying_loads() {
             effect.add_force_and_tangent(load, q, before, f, k, workspace);
         }
     }
@@ -452,6 +495,7 @@ impl System {
             bend: sum(&self.internal, Kind::Bend, q),
             kinetic: velocity.map_or(0.0, |v| self.inertia.iter().map(|e| e.energy(v)).sum()),
             potential: load * self.loads.iter().map(|e| e.energy(q)).sum::<f64>(),
+            work: 0.0,
         }
     }
 }

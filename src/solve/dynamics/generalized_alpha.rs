@@ -1,4 +1,4 @@
-//! The generalised-α method (Chung, Hulbert, *J. Appl. Mech.* 60, 1993, 371–375) with a fixed step.
+//! The generalised-α method (Chung, Hulbert, *J. Appl. Mech.* 60, 1993, 371–375).
 //!
 //! Second order; the spectral radius ρ∞ ∈ [0, 1] sets how fast the highest frequencies die out: 1 is the trapezoidal rule,
 //! 0 kills them in one step. Equilibrium holds at the end of each step, and an algorithmic acceleration a carries the
@@ -9,117 +9,264 @@
 //! (1 − α_m) a₁ + α_m a₀ = (1 − α_f) q̈₁ + α_f q̈₀
 //! α_m = (2ρ∞ − 1)/(ρ∞ + 1)   α_f = ρ∞/(ρ∞ + 1)   γ = ½ − α_m + α_f   β = ¼ (1 − α_m + α_f)²
 //! ```
+//!
+//! # Error of a step
+//! a lies (α_m − α_f) h away from q̈ in time, so that the position errs by h³ q⃛ (β + (α_m − α_f)/2 − 1/6) in a step. With
+//! h q⃛ ≈ q̈₁ − q̈₀ that is known at no cost; multiplied by (K + cM)⁻¹ cM it leaves out what lies above the step's own
+//! frequency and would not be followed anyway.
 
-use super::{Solution, State, Stuck, consistent_acceleration};
-use crate::solve::equilibrium::{AtLoad, Equilibrium};
-use crate::solve::newton::{self, Failure, Iterations, Settings};
-use crate::system::System;
-use crate::trajectory::{Statistics, StepRecord};
+use super::State;
+use super::method::Method;
+use super::motion::Motion;
+use crate::linear::{Factor, Singular};
+use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
+use crate::trajectory::Statistics;
 
-/// What is to be integrated, and how.
+/// Newton's increments at which a step of given length is solved: far below the error of a second-order step.
+const TOLERANCE: f64 = 1e-9;
+/// The same as a part of the error that a step may make.
+const TOLERANCE_OF_ERROR: f64 = 0.02;
+
+/// The numbers of the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Task {
-    /// Simulated time \[s\].
-    pub duration: f64,
-    /// Time between recorded states \[s\].
-    pub output_every: f64,
-    /// The step \[s\]; the last one is shortened to end in time.
-    pub step: f64,
-    /// ρ∞.
-    pub spectral_radius: f64,
+struct Coefficients {
+    alpha_m: f64,
+    alpha_f: f64,
+    beta: f64,
+    gamma: f64,
 }
 
-/// Newton's increments at which a step is solved: far below the error of a second-order step.
-const TOLERANCE: f64 = 1e-10;
-
-/// Integrates from the stress-free state at rest. `observe` is called with (time, step, counts) after every step and ends
-/// the integration by returning false.
-pub fn solve(
-    system: &System,
-    task: &Task,
-    observe: &mut dyn FnMut(f64, f64, &Statistics) -> bool,
-) -> Solution {
-    let mut equilibrium = Equilibrium::in_motion(system);
-    let mut solution = Solution::default();
-    if let Err(stuck) = integrate(&mut equilibrium, task, &mut solution, observe) {
-        solution.stuck = Some(stuck);
+impl Coefficients {
+    fn new(rho: f64) -> Self {
+        let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
+        let (gamma, beta) = (0.5 - alpha_m + alpha_f, 0.25 * (1.0 - alpha_m + alpha_f).powi(2));
+        Self { alpha_m, alpha_f, beta, gamma }
     }
-    solution.statistics = equilibrium.statistics;
-    solution
 }
 
-fn integrate(
-    equilibrium: &mut Equilibrium<'_>,
-    task: &Task,
-    solution: &mut Solution,
-    observe: &mut dyn FnMut(f64, f64, &Statistics) -> bool,
-) -> Result<(), Stuck> {
-    let system = equilibrium.system();
-    let n = system.coordinates();
-    let rho = task.spectral_radius;
-    let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
-    let (gamma, beta) = (0.5 - alpha_m + alpha_f, 0.25 * (1.0 - alpha_m + alpha_f).powi(2));
-    let mut x = equilibrium.start();
-    system.supports().impose(1.0, &mut x[..n]);
-    let mut state = State { time: 0.0, q: x[..n].to_vec(), v: vec![0.0; n] };
-    let failed = |state: &State, step, failure: Failure| Stuck { time: state.time, step, failure };
-    let mut physical = consistent_acceleration(equilibrium, &state.q)
-        .map_err(|singular| failed(&state, 0.0, singular.into()))?;
-    let mut algorithmic = physical.clone();
-    solution.states.push(state.clone());
-    let settings = Settings { tolerance: TOLERANCE, ..Settings::default() };
-    let steps = (task.duration / task.step * (1.0 - 1e-12)).ceil().max(1.0) as u64;
-    let mut next_output = 1_u64;
-    for i in 1..=steps {
-        let end = if i == steps { task.duration } else { task.step * i as f64 };
-        let h = end - state.time;
+/// q̈ and a, and the multipliers that go with them.
+#[derive(Clone, Debug)]
+struct Accelerations {
+    physical: Vec<f64>,
+    algorithmic: Vec<f64>,
+    multipliers: Vec<f64>,
+}
+
+/// The method with its memory.
+pub struct GeneralizedAlpha<'a> {
+    motion: Motion<'a>,
+    coefficients: Coefficients,
+    last: Accelerations,
+    trial: Accelerations,
+    /// a of the step before the last, and the last step: from them the next a is extrapolated.
+    before: Option<(Vec<f64>, f64)>,
+    trial_step: f64,
+    x: Vec<f64>,
+    start: Vec<f64>,
+    offset: Vec<f64>,
+    acceleration: Vec<f64>,
+    increment: Vec<f64>,
+    factor: Option<Factor>,
+}
+
+impl<'a> GeneralizedAlpha<'a> {
+    /// The method with spectral radius `rho`.
+    pub fn new(motion: Motion<'a>, rho: f64) -> Self {
+        let (n, unknowns) = (motion.coordinates(), motion.unknowns());
+        let last = Accelerations {
+            physical: vec![0.0; n],
+            algorithmic: vec![0.0; n],
+            multipliers: vec![0.0; unknowns - n],
+        };
+        Self {
+            motion,
+            coefficients: Coefficients::new(rho),
+            trial: last.clone(),
+            last,
+            before: None,
+            trial_step: 0.0,
+            x: vec![0.0; unknowns],
+            start: vec![0.0; unknowns],
+            offset: vec![0.0; n],
+            acceleration: vec![0.0; n],
+            increment: vec![0.0; unknowns],
+            factor: None,
+        }
+    }
+
+    /// The local error of the position, filtered by the step's own matrix.
+    fn error(&mut self, h: f64, c: f64) -> f64 {
+        let Coefficients { alpha_m, alpha_f, beta, .. } = self.coefficients;
+        let n = self.motion.coordinates();
+        let constant = h * h * (beta + 0.5 * (alpha_m - alpha_f) - 1.0 / 6.0).abs();
+        let mut change: Vec<f64> =
+            self.trial.physical.iter().zip(&self.last.physical).map(|(b, a)| constant * (b - a)).collect();
+        self.motion.to_frames(&mut change);
+        let mut error = vec![0.0; self.motion.unknowns()];
+        self.motion.multiply_free_mass(c, &change, &mut error);
+        if let Some(factor) = &self.factor {
+            factor.solve(&mut error);
+        }
+        self.motion.size(&error[..n])
+    }
+}
+
+/// Equilibrium at the end of a step, with q̈ = c q + e.
+struct AtEnd<'s, 'a> {
+    motion: &'s mut Motion<'a>,
+    c: f64,
+    offset: &'s [f64],
+    acceleration: &'s mut [f64],
+    last_increment: &'s mut [f64],
+    factor: &'s mut Option<Factor>,
+}
+
+impl AtEnd<'_, '_> {
+    fn accelerate(&mut self, x: &[f64]) {
+        for ((a, q), e) in self.acceleration.iter_mut().zip(x).zip(self.offset) {
+            *a = self.c.mul_add(*q, *e);
+        }
+    }
+}
+
+impl Equations for AtEnd<'_, '_> {
+    fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular> {
+        self.motion.statistics.newton_iterations += 1;
+        self.accelerate(x);
+        let residual = self.motion.linearize(x, before, self.acceleration, increment);
+        let factor = self.motion.factorize(self.c, self.factor.take())?;
+        factor.solve(increment);
+        *self.factor = Some(factor);
+        self.motion.from_frames(increment);
+        self.last_increment.copy_from_slice(increment);
+        Ok(residual)
+    }
+
+    fn residual(&mut self, x: &[f64]) -> f64 {
+        self.accelerate(x);
+        let mut negative = vec![0.0; x.len()];
+        self.motion.residual(x, self.acceleration, &mut negative)
+    }
+
+    fn size(&self, increment: &[f64]) -> f64 {
+        self.motion.size(increment)
+    }
+}
+
+impl Method for GeneralizedAlpha<'_> {
+    fn order(&self) -> f64 {
+        2.0
+    }
+
+    fn start(&mut self, state: &State) -> Vec<f64> {
+        self.motion.acceleration(&state.q, &mut self.last.physical);
+        self.last.algorithmic.copy_from_slice(&self.last.physical);
+        self.before = None;
+        self.last.physical.clone()
+    }
+
+    fn attempt(
+        &mut self,
+        from: &State,
+        h: f64,
+        accuracy: Option<f64>,
+        to: &mut State,
+        record: &mut Iterations,
+    ) -> Result<f64, Failure> {
+        let Coefficients { alpha_m, alpha_f, beta, gamma } = self.coefficients;
+        let n = self.motion.coordinates();
         // q̈ = c q + e from the three formulas above.
         let a_per_q = 1.0 / (beta * h * h);
         let c = (1.0 - alpha_m) / (1.0 - alpha_f) * a_per_q;
-        let before = x.clone();
-        let explicit: Vec<f64> =
-            (0..n).map(|i| state.q[i] + h * (state.v[i] + h * (0.5 - beta) * algorithmic[i])).collect();
-        equilibrium.inertia.coefficient = c;
+        let Accelerations { physical, algorithmic, multipliers } = &self.last;
         for i in 0..n {
-            equilibrium.inertia.offset[i] =
-                (alpha_m * algorithmic[i] - alpha_f * physical[i]) / (1.0 - alpha_f) - c * explicit[i];
-            x[i] = explicit[i] + h * h * beta * algorithmic[i];
+            let explicit = from.q[i] + h * (from.v[i] + h * (0.5 - beta) * algorithmic[i]);
+            self.offset[i] =
+                (alpha_m * algorithmic[i] - alpha_f * physical[i]) / (1.0 - alpha_f) - c * explicit;
+            let predicted = match &self.before {
+                Some((before, step)) => algorithmic[i] + h / step * (algorithmic[i] - before[i]),
+                None => algorithmic[i],
+            };
+            to.q[i] = explicit;
+            self.x[i] = explicit + h * h * beta * predicted;
         }
-        system.supports().impose(1.0, &mut x[..n]);
-        let mut record = Iterations::default();
-        let mut equations = AtLoad::new(equilibrium, 1.0);
-        let result = newton::solve(&mut equations, &mut x, &before, &settings, &mut record);
-        solution.history.push(StepRecord {
-            parameter: end,
-            step: h,
-            accepted: result.is_ok(),
-            increments: record.increments,
-            residuals: record.residuals,
-        });
-        result.map_err(|failure| failed(&state, h, failure))?;
-        let mut new = State { time: end, q: x[..n].to_vec(), v: vec![0.0; n] };
+        self.x[n..].copy_from_slice(multipliers);
+        self.start[..n].copy_from_slice(&from.q);
+        self.start[n..].copy_from_slice(multipliers);
+        self.motion.impose(&mut self.x);
+        let settings = Settings {
+            tolerance: accuracy.map_or(TOLERANCE, |allowed| TOLERANCE_OF_ERROR * allowed),
+            // The tangent is exact, and inertia makes it well conditioned: the increments tell all.
+            residual_tolerance: f64::INFINITY,
+            ..Settings::default()
+        };
+        let mut equations = AtEnd {
+            motion: &mut self.motion,
+            c,
+            offset: &self.offset,
+            acceleration: &mut self.acceleration,
+            last_increment: &mut self.increment,
+            factor: &mut self.factor,
+        };
+        newton::solve(&mut equations, &mut self.x, &self.start, &settings, record)?;
+        self.trial_step = h;
         for i in 0..n {
-            let a = (x[i] - explicit[i]) * a_per_q;
-            new.v[i] = state.v[i] + h * ((1.0 - gamma) * algorithmic[i] + gamma * a);
-            physical[i] = equilibrium.inertia.coefficient * x[i] + equilibrium.inertia.offset[i];
-            algorithmic[i] = a;
+            let a = (self.x[i] - to.q[i]) * a_per_q;
+            to.q[i] = self.x[i];
+            to.v[i] = from.v[i] + h * ((1.0 - gamma) * algorithmic[i] + gamma * a);
+            self.trial.physical[i] = c * self.x[i] + self.offset[i];
+            self.trial.algorithmic[i] = a;
         }
-        equilibrium.statistics.steps += 1;
-        // Round-off of the times must not lose a record.
-        let slack = 1e-9 * task.step;
-        while next_output as f64 * task.output_every <= end + slack {
-            let time = next_output as f64 * task.output_every;
-            let at_end = (time - end).abs() <= slack;
-            solution.states.push(if at_end { new.clone() } else { state.between(&new, time) });
-            next_output += 1;
-        }
-        if i == steps && solution.states.last().is_none_or(|last| last.time < end - slack) {
-            solution.states.push(new.clone());
-        }
-        state = new;
-        if !observe(state.time, h, &equilibrium.statistics) {
-            return Ok(());
-        }
+        self.trial.multipliers.copy_from_slice(&self.x[n..]);
+        Ok(if accuracy.is_some() { self.error(h, c) } else { 0.0 })
     }
-    Ok(())
+
+    fn accept(&mut self) {
+        let mut oldest = self.before.take().map_or_else(Vec::new, |(a, _)| a);
+        oldest.clone_from(&self.last.algorithmic);
+        self.before = Some((oldest, self.trial_step));
+        std::mem::swap(&mut self.last, &mut self.trial);
+    }
+
+    fn end_accelerations(&mut self, _: &State, _: &State) -> Option<[Vec<f64>; 2]> {
+        None
+    }
+
+    fn last_increment(&self) -> &[f64] {
+        &self.increment
+    }
+
+    fn statistics(&mut self) -> &mut Statistics {
+        &mut self.motion.statistics
+    }
+
+    fn memory(&self) -> Vec<Vec<f64>> {
+        let Accelerations { physical, algorithmic, multipliers } = self.last.clone();
+        let mut memory = vec![physical, algorithmic, multipliers];
+        if let Some((before, step)) = &self.before {
+            memory.extend([before.clone(), vec![*step]]);
+        }
+        memory
+    }
+
+    fn restore(&mut self, mut memory: Vec<Vec<f64>>) -> bool {
+        let n = self.motion.coordinates();
+        let multipliers = self.motion.unknowns() - n;
+        let lengths: Vec<usize> = memory.iter().map(Vec::len).collect();
+        self.before = match lengths[..] {
+            [a, b, c] if [a, b, c] == [n, n, multipliers] => None,
+            [a, b, c, d, 1] if [a, b, c, d] == [n, n, multipliers, n] => {
+                let step = memory.pop().map_or(0.0, |step| step[0]);
+                memory.pop().map(|before| (before, step))
+            }
+            _ => return false,
+        };
+        let mut next = memory.into_iter();
+        if let (Some(physical), Some(algorithmic), Some(multipliers)) =
+            (next.next(), next.next(), next.next())
+        {
+            self.last = Accelerations { physical, algorithmic, multipliers };
+        }
+        true
+    }
 }

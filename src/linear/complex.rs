@@ -1,0 +1,200 @@
+//! Factorisation of K + ζ M for a complex number ζ and real K and M: the matrices into which the stages of a collocation
+//! method fall apart.
+//!
+//! K and M are symmetric there, so K + ζ M is complex *symmetric* (not Hermitian) and has L D Lᵀ. It exists without
+//! pivoting: with M positive definite and Im ζ ≠ 0, x*(K + ζM)x has an imaginary part different from zero for every x, hence no
+//! leading minor vanishes (George, Ikramov, Kucherov, *SIAM J. Matrix Anal. Appl.* 21, 2000, 377–387).
+//! Real and imaginary parts are kept apart, so that all inner loops are real multiply–adds over contiguous rows: four times
+//! as many as [`super::symmetric`] has, in the same order. Unsymmetric and bordered matrices go to faer's sparse LU.
+
+use super::bordered::{BorderRow, Bordered};
+use super::fma::fma;
+use super::symmetric::SymmetricBand;
+use super::{Matrix, Singular};
+use faer::c64;
+
+/// A factorised K + ζ M.
+#[derive(Clone, Debug)]
+pub enum ComplexFactor {
+    /// L D Lᵀ of a symmetric band.
+    Ldl(ComplexLdl),
+    /// Sparse LU of an unsymmetric or bordered band.
+    Sparse(Box<Bordered<c64>>),
+}
+
+impl ComplexFactor {
+    /// Factorises `k` + ζ `m`, bordered by constraint rows if there are any, in the memory of an earlier factorisation of the
+    /// same pattern.
+    ///
+    /// # Errors
+    /// [`Singular`] where the matrix has no inverse to round-off.
+    pub fn again(
+        earlier: Option<Self>,
+        k: &Matrix,
+        m: &Matrix,
+        zeta: c64,
+        border: &[BorderRow],
+    ) -> Result<Self, Singular> {
+        if let (Matrix::Symmetric(k), Matrix::Symmetric(m), true) = (k, m, border.is_empty()) {
+            let mut ldl = match earlier {
+                Some(Self::Ldl(ldl)) => ldl,
+                _ => ComplexLdl::zeros(k),
+            };
+            ldl.factorize(k, m, zeta)?;
+            return Ok(Self::Ldl(ldl));
+        }
+        let earlier = match earlier {
+            Some(Self::Sparse(earlier)) => Some(*earlier),
+            _ => None,
+        };
+        let entry = |i, j| c64::new(k.get(i, j) + zeta.re * m.get(i, j), zeta.im * m.get(i, j));
+        Ok(Self::Sparse(Box::new(Bordered::from_entries(k, entry, border, earlier)?)))
+    }
+
+    /// Solves in place; `re` and `im` hold the multipliers' parts last.
+    pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
+        match self {
+            Self::Ldl(ldl) => ldl.solve(re, im),
+            Self::Sparse(sparse) => {
+                let mut b: Vec<c64> = re.iter().zip(&*im).map(|(re, im)| c64::new(*re, *im)).collect();
+                sparse.solve(&mut b);
+                for ((re, im), b) in re.iter_mut().zip(im).zip(b) {
+                    (*re, *im) = (b.re, b.im);
+                }
+            }
+        }
+    }
+}
+
+/// L D Lᵀ of a complex symmetric band. The rows hold D Lᵀ.
+#[derive(Clone, Debug)]
+pub struct ComplexLdl {
+    nodes: usize,
+    stride: usize,
+    re: Vec<f64>,
+    im: Vec<f64>,
+    /// 1/d.
+    reciprocal: Vec<c64>,
+}
+
+impl ComplexLdl {
+    fn zeros(pattern: &SymmetricBand) -> Self {
+        let (size, stride) = (pattern.size(), pattern.stride());
+        Self {
+            nodes: size / 4,
+            stride,
+            re: vec![0.0; size * stride],
+            im: vec![0.0; size * stride],
+            reciprocal: vec![c64::new(0.0, 0.0); size],
+        }
+    }
+
+    fn factorize(&mut self, k: &SymmetricBand, m: &SymmetricBand, zeta: c64) -> Result<(), Singular> {
+        let parts = self.re.iter_mut().zip(&mut self.im);
+        for ((re, im), (k, m)) in parts.zip(k.data().iter().zip(m.data())) {
+            *re = fma(zeta.re, *m, *k);
+            *im = zeta.im * m;
+        }
+        match self.stride {
+            8 => self.eliminate::<8>(),
+            24 => self.eliminate::<24>(),
+            _ => self.eliminate::<0>(),
+        }
+    }
+
+    fn eliminate<const STRIDE: usize>(&mut self) -> Result<(), Singular> {
+        let stride = if STRIDE == 0 { self.stride } else { STRIDE };
+        for node in 0..self.nodes {
+            let (panel_re, later_re) = self.re[node * 4 * stride..].split_at_mut(4 * stride);
+            let (panel_im, later_im) = self.im[node * 4 * stride..].split_at_mut(4 * stride);
+            let mut reciprocal = [c64::new(0.0, 0.0); 4];
+            for r in 0..4 {
+                let (done_re, rest_re) = panel_re.split_at_mut((r + 1) * stride);
+                let (done_im, rest_im) = panel_im.split_at_mut((r + 1) * stride);
+                let (row_re, row_im) = (&done_re[r * stride..], &done_im[r * stride..]);
+                let size = row_re[r] * row_re[r] + row_im[r] * row_im[r];
+                // Written so that a NaN fails too.
+                if !(size > 0.0 && size.is_finite()) {
+                    return Err(Singular { row: 4 * node + r });
+                }
+                reciprocal[r] = c64::new(row_re[r] / size, -row_im[r] / size);
+                let below = rest_re.chunks_exact_mut(stride).zip(rest_im.chunks_exact_mut(stride));
+                for (below, (target_re, target_im)) in below.enumerate() {
+                    let c = r + 1 + below;
+                    let l = -c64::new(row_re[c], row_im[c]) * reciprocal[r];
+                    let target = target_re.iter_mut().zip(target_im);
+                    for ((t_re, t_im), (s_re, s_im)) in target.zip(row_re.iter().zip(row_im)) {
+                        *t_re = fma(-l.im, *s_im, fma(l.re, *s_re, *t_re));
+                        *t_im = fma(l.im, *s_re, fma(l.re, *s_im, *t_im));
+                    }
+                }
+            }
+            self.reciprocal[4 * node..4 * node + 4].copy_from_slice(&reciprocal);
+            let reach = (stride / 4 - 1).min(self.nodes - 1 - node);
+            let panels = later_re.chunks_exact_mut(4 * stride).zip(later_im.chunks_exact_mut(4 * stride));
+            for (ahead, (target_re, target_im)) in panels.take(reach).enumerate() {
+                let from = 4 * (ahead + 1);
+                let length = stride - from;
+                let rows = target_re.chunks_exact_mut(stride).zip(target_im.chunks_exact_mut(stride));
+                for (r, (target_re, target_im)) in rows.enumerate() {
+                    // One source row at a time: eight streams at once would not fit the registers.
+                    for (k, reciprocal) in reciprocal.iter().enumerate() {
+                        let (source_re, source_im) = (&panel_re[k * stride..], &panel_im[k * stride..]);
+                        let l = -c64::new(source_re[from + r], source_im[from + r]) * *reciprocal;
+                        let target = target_re[..length].iter_mut().zip(&mut target_im[..length]);
+                        let source = source_re[from..stride].iter().zip(&source_im[from..stride]);
+                        for ((t_re, t_im), (s_re, s_im)) in target.zip(source) {
+                            *t_re = fma(-l.im, *s_im, fma(l.re, *s_re, *t_re));
+                            *t_im = fma(l.im, *s_re, fma(l.re, *s_im, *t_im));
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves A x = b in place.
+    pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
+        match self.stride {
+            8 => self.substitute::<8>(re, im),
+            24 => self.substitute::<24>(re, im),
+            _ => self.substitute::<0>(re, im),
+        }
+    }
+
+    fn substitute<const STRIDE: usize>(&self, re: &mut [f64], im: &mut [f64]) {
+        let stride = if STRIDE == 0 { self.stride } else { STRIDE };
+        let n = 4 * self.nodes;
+        let row = |i: usize, from: usize, length: usize| {
+            let start = i * stride + from;
+            (&self.re[start..start + length], &self.im[start..start + length])
+        };
+        for i in 0..n {
+            let start = 4 * (i / 4);
+            let length = (start + stride).min(n) - (i + 1);
+            let (row_re, row_im) = row(i, i + 1 - start, length);
+            let z = c64::new(re[i], im[i]) * self.reciprocal[i];
+            let target = re[i + 1..].iter_mut().zip(&mut im[i + 1..]);
+            for ((t_re, t_im), (s_re, s_im)) in target.zip(row_re.iter().zip(row_im)) {
+                *t_re = fma(z.im, *s_im, fma(-z.re, *s_re, *t_re));
+                *t_im = fma(-z.im, *s_re, fma(-z.re, *s_im, *t_im));
+            }
+            (re[i], im[i]) = (z.re, z.im);
+        }
+        for i in (0..n).rev() {
+            let start = 4 * (i / 4);
+            let length = (start + stride).min(n) - (i + 1);
+            let (row_re, row_im) = row(i, i + 1 - start, length);
+            let (mut sum_re, mut sum_im) = (0.0, 0.0);
+            let known = re[i + 1..].iter().zip(&im[i + 1..]);
+            for ((x_re, x_im), (s_re, s_im)) in known.zip(row_re.iter().zip(row_im)) {
+                sum_re = fma(-x_im, *s_im, fma(*x_re, *s_re, sum_re));
+                sum_im = fma(*x_im, *s_re, fma(*x_re, *s_im, sum_im));
+            }
+            let x = c64::new(sum_re, sum_im) * self.reciprocal[i];
+            re[i] -= x.re;
+            im[i] -= x.im;
+        }
+    }
+}

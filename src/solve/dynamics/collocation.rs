@@ -1,0 +1,409 @@
+//! Collocation by Gauss' and Radau's methods for M q̈ + f(q) = 0.
+//!
+//! Applied to (q, v), the stages are Q_i = q₀ + c_i h v₀ + Y_i with Y = h² A² Q̈, so that with the displacements Y as unknowns
+//!
+//! ```text
+//! h⁻² Σ_j (A⁻²)_ij M Y_j + f(q₀ + c_i h v₀ + Y_i) = 0
+//! q₁ = q₀ + h v₀ + bᵀA⁻¹ Y,   v₁ = v₀ + h⁻¹ bᵀA⁻² Y
+//! ```
+//!
+//! Newton's method with one tangent K for all stages turns, by A⁻¹ = T Λ T⁻¹, into one system (ζ²/h² M + K) w = r for each
+//! eigenvalue ζ of A⁻¹: a real one and a complex one for three stages, both as banded as K is (Butcher, *BIT* 16, 1976, 237–240; Bickart). Its
+//! convergence is linear, at a rate that the change of K within the step decides.
+//!
+//! # Error of a step
+//! The polynomial of the stage accelerations is compared with the acceleration at the start, where it has no node. Its defect
+//! δ = q̈(t₀) − Σ ℓ_j(0) Q̈_j = O(hˢ), applied through the step's own matrix, e = (γ²/h² M + K)⁻¹ M δ = O(hˢ⁺²), does not see
+//! what oscillates too fast to be followed (Hairer & Wanner do the same for Radau IIA). The step itself is of higher order: its error is
+//! modelled as e to the power that makes it O(h^{p+1}).
+
+use super::State;
+use super::method::Method;
+use super::motion::Motion;
+use super::tableau::{Block, Tableau};
+use crate::linear::complex::ComplexFactor;
+use crate::linear::{Factor, Singular};
+use crate::solve::newton::{Failure, Iterations};
+use crate::trajectory::Statistics;
+
+/// Newton's increments at which a step of given length is solved: what is left of the stages' error is near round-off.
+const TOLERANCE: f64 = 1e-11;
+/// The same as a part of the error that a step may make.
+const TOLERANCE_OF_ERROR: f64 = 0.02;
+/// Increments that no longer shrink count as converged below this size: what is left is round-off.
+const ROUND_OFF: f64 = 1e-8;
+/// Most iterations of a step.
+const ITERATIONS: usize = 25;
+/// Iterations that shrink the increments by less than this ask for a new tangent, once a step.
+const SLOW: f64 = 0.4;
+
+/// A factorised ζ²/h² M + K.
+enum BlockFactor {
+    Real(Factor),
+    Complex(ComplexFactor),
+}
+
+/// The method with its memory.
+pub struct Collocation<'a> {
+    motion: Motion<'a>,
+    tableau: Tableau,
+    factors: Vec<BlockFactor>,
+    /// Y_i and the multipliers, stage after stage.
+    displacements: Vec<Vec<f64>>,
+    /// Q̈_i of the last accepted step, and its length.
+    accelerations: Vec<Vec<f64>>,
+    last_step: f64,
+    trial_step: f64,
+    /// Convergence rate of the last step's iteration.
+    rate: f64,
+    stage: Vec<f64>,
+    acceleration: Vec<f64>,
+    residuals: Vec<Vec<f64>>,
+    transformed: Vec<Vec<f64>>,
+    increment: Vec<f64>,
+    /// Per stage and node: cosine and sine of the angle by which it is turned from where the tangent was taken.
+    turns: Vec<Vec<[f64; 2]>>,
+}
+
+impl<'a> Collocation<'a> {
+    /// The method of a tableau.
+    pub fn new(motion: Motion<'a>, tableau: Tableau) -> Self {
+        let (n, unknowns, s) = (motion.coordinates(), motion.unknowns(), tableau.stages());
+        let stages = vec![vec![0.0; unknowns]; s];
+        Self {
+            motion,
+            factors: Vec::new(),
+            displacements: stages.clone(),
+            accelerations: vec![vec![0.0; n]; s],
+            last_step: 0.0,
+            trial_step: 0.0,
+            rate: 1.0,
+            stage: vec![0.0; unknowns],
+            acceleration: vec![0.0; n],
+            residuals: stages.clone(),
+            transformed: stages,
+            increment: vec![0.0; unknowns],
+            turns: vec![vec![[1.0, 0.0]; n / 4]; tableau.stages()],
+            tableau,
+        }
+    }
+
+    /// Y_i from the polynomial of the last step's accelerations, continued.
+    fn predict(&mut self, h: f64) {
+        let s = self.tableau.stages();
+        let n = self.motion.coordinates();
+        let ratio = if self.last_step > 0.0 { h / self.last_step } else { 0.0 };
+        let shift = if self.last_step > 0.0 { 1.0 } else { 0.0 };
+        let continued: Vec<Vec<f64>> =
+            self.tableau.nodes.iter().map(|c| self.tableau.lagrange(shift + ratio * c)).collect();
+        for i in 0..s {
+            let weights: Vec<f64> = (0..s)
+                .map(|k| {
+                    (0..s).map(|j| self.tableau.a_squared[(i, j)] * continued[j][k]).sum::<f64>() * h * h
+                })
+                .collect();
+            let target = &mut self.displacements[i][..n];
+            target.fill(0.0);
+            for (weight, acceleration) in weights.iter().zip(&self.accelerations) {
+                target.iter_mut().zip(acceleration).for_each(|(y, a)| *y += weight * a);
+            }
+        }
+    }
+
+    /// Q_i.
+    fn stage(&mut self, i: usize, from: &State, h: f64) {
+        let n = self.motion.coordinates();
+        let ch = self.tableau.nodes[i] * h;
+        let known = from.q.iter().zip(&from.v).zip(&self.displacements[i]);
+        for (x, ((q, v), y)) in self.stage.iter_mut().zip(known) {
+            *x = q + (ch * v + y);
+        }
+        self.stage[n..].copy_from_slice(&self.displacements[i][n..]);
+    }
+
+    /// Q̈_i = h⁻² Σ_j (A⁻²)_ij Y_j.
+    fn accelerate(&mut self, i: usize, h: f64) {
+        combine(
+            &mut self.acceleration,
+            (0..self.tableau.stages()).map(|j| self.tableau.inverse_squared[(i, j)] / (h * h)),
+            &self.displacements,
+        );
+    }
+
+    /// Factorises the transformed systems with the tangent at the mean of the stages.
+    fn linearize(&mut self, from: &State, h: f64) -> Result<(), Singular> {
+        let s = self.tableau.stages();
+        // At the converged state, whose axial force is right: that of a predicted one is not, with a large EA.
+        self.motion.tangent_at(&from.q);
+        for i in 0..s {
+            self.stage(i, from, h);
+            let nodes = self.stage.chunks_exact(4).zip(from.q.chunks_exact(4));
+            for (turn, (x, start)) in self.turns[i].iter_mut().zip(nodes) {
+                let (cosine, sine) = (x[2] * start[2] + x[3] * start[3], x[3] * start[2] - x[2] * start[3]);
+                let size = cosine.hypot(sine);
+                *turn = if size > 0.0 { [cosine / size, sine / size] } else { [1.0, 0.0] };
+            }
+        }
+        let mut earlier = std::mem::take(&mut self.factors).into_iter();
+        for block in &self.tableau.blocks {
+            let factor = match (block, earlier.next()) {
+                (Block::Real { gamma, .. }, earlier) => {
+                    let earlier =
+                        if let Some(BlockFactor::Real(factor)) = earlier { Some(factor) } else { None };
+                    BlockFactor::Real(self.motion.factorize((gamma / h).powi(2), earlier)?)
+                }
+                (Block::Complex { zeta, .. }, earlier) => {
+                    let earlier =
+                        if let Some(BlockFactor::Complex(factor)) = earlier { Some(factor) } else { None };
+                    BlockFactor::Complex(self.motion.factorize_complex((zeta / h).powi(2), earlier)?)
+                }
+            };
+            self.factors.push(factor);
+        }
+        Ok(())
+    }
+
+    /// One iteration; returns the scaled increment and residual.
+    fn iterate(&mut self, from: &State, h: f64) -> (f64, f64) {
+        let s = self.tableau.stages();
+        let mut residual = 0.0_f64;
+        for i in 0..s {
+            self.stage(i, from, h);
+            self.accelerate(i, h);
+            let scaled = self.motion.residual(&self.stage, &self.acceleration, &mut self.residuals[i]);
+            residual = if scaled.is_nan() { scaled } else { residual.max(scaled) };
+            turn(&mut self.residuals[i], &self.turns[i], -1.0);
+        }
+        for k in 0..s {
+            let row = (0..s).map(|i| self.tableau.inverse_transformation[(k, i)]);
+            combine(&mut self.transformed[k], row, &self.residuals);
+        }
+        for (block, factor) in self.tableau.blocks.iter().zip(&self.factors) {
+            match (block, factor) {
+                (Block::Real { row, .. }, BlockFactor::Real(factor)) => {
+                    factor.solve(&mut self.transformed[*row])
+                }
+                (Block::Complex { row, .. }, BlockFactor::Complex(factor)) => {
+                    let (re, im) = self.transformed.split_at_mut(row + 1);
+                    factor.solve(&mut re[*row], &mut im[0]);
+                }
+                _ => {}
+            }
+        }
+        let mut size = 0.0_f64;
+        for i in 0..s {
+            let row = (0..s).map(|k| self.tableau.transformation[(i, k)]);
+            combine(&mut self.increment, row, &self.transformed);
+            turn(&mut self.increment, &self.turns[i], 1.0);
+            self.motion.from_frames(&mut self.increment);
+            let this = self.motion.size(&self.increment);
+            size = if this.is_nan() { this } else { size.max(this) };
+            self.displacements[i].iter_mut().zip(&self.increment).for_each(|(y, d)| *y += d);
+        }
+        self.motion.statistics.newton_iterations += 1;
+        (size, residual)
+    }
+
+    fn solve_stages(
+        &mut self,
+        from: &State,
+        h: f64,
+        tolerance: f64,
+        record: &mut Iterations,
+    ) -> Result<(), Failure> {
+        self.linearize(from, h)?;
+        let mut fresh = false;
+        // Sizes of the last two increments with the present tangent; rates alternate, and two together tell more than one.
+        let mut last = [0.0_f64; 2];
+        // The rate of the last step tells how far the first increment is from the solution.
+        let mut rate = self.rate.clamp(0.01, 1.0);
+        for iteration in 0..ITERATIONS {
+            let (size, residual) = self.iterate(from, h);
+            record.increments.push(size);
+            record.residuals.push(residual);
+            if !(size.is_finite() && residual.is_finite()) {
+                return Err(Failure::NotFinite);
+            }
+            if last[1] > 0.0 {
+                rate = if last[0] > 0.0 { (size / last[0]).sqrt() } else { size / last[1] };
+            }
+            let stalled = last[1] > 0.0 && rate > 0.5 && size <= ROUND_OFF;
+            if stalled || (rate < 1.0 && size * rate / (1.0 - rate) <= tolerance) {
+                self.rate = rate;
+                return Ok(());
+            }
+            let left = (ITERATIONS - 1 - iteration) as i32;
+            let hopeless = rate >= 0.95 || size * rate.powi(left) / (1.0 - rate) > tolerance;
+            let known = last[0] > 0.0 && iteration >= 4;
+            if known && hopeless && fresh {
+                return Err(Failure::Diverging { last: size });
+            }
+            if known && (rate > SLOW || hopeless) && !fresh {
+                fresh = true;
+                self.linearize(from, h)?;
+                last = [0.0; 2];
+            } else {
+                last = [last[1], size];
+            }
+        }
+        Err(Failure::TooSlow { iterations: ITERATIONS, last: last[1] })
+    }
+
+    /// The defect of the polynomial of accelerations at `x` (0: start, 1: end of the step), where the coordinates are `q`, through the
+    /// step's own matrix: (ζ²/h² M + K)⁻¹ M (q̈ − Σ ℓ_j(x) Q̈_j), in fixed axes. Also the polynomial there, and ζ²/h² where it is real.
+    fn defect(&mut self, x: f64, q: &[f64]) -> (Vec<f64>, f64) {
+        let n = self.motion.coordinates();
+        let h = self.trial_step;
+        self.polynomial(x);
+        self.stage[..n].copy_from_slice(q);
+        self.stage[n..].fill(0.0);
+        // −M Σ ℓ_j(x) Q̈_j − f(q) is M times the defect but for the forces of supports and constraints, which the solution removes.
+        let mut e = vec![0.0; self.motion.unknowns()];
+        self.motion.residual(&self.stage, &self.acceleration, &mut e);
+        e[n..].fill(0.0);
+        let mut factor = 0.0;
+        for (block, matrix) in self.tableau.blocks.iter().zip(&self.factors) {
+            match (block, matrix) {
+                (Block::Real { gamma, .. }, BlockFactor::Real(matrix)) => {
+                    matrix.solve(&mut e);
+                    factor = (gamma / h).powi(2);
+                    break;
+                }
+                (_, BlockFactor::Complex(matrix)) if self.tableau.stages() == 2 => {
+                    matrix.solve(&mut e, &mut vec![0.0; self.motion.unknowns()]);
+                }
+                _ => {}
+            }
+        }
+        self.motion.from_frames(&mut e);
+        e.truncate(n);
+        (e, factor)
+    }
+
+    /// Σ ℓ_j(x) Q̈_j of the last attempt.
+    fn polynomial(&mut self, x: f64) {
+        let s = self.tableau.stages();
+        let at = self.tableau.lagrange(x);
+        let weights = (0..s).map(|j| {
+            (0..s).map(|i| at[i] * self.tableau.inverse_squared[(i, j)]).sum::<f64>() / self.trial_step.powi(2)
+        });
+        combine(&mut self.acceleration, weights, &self.displacements);
+    }
+
+    /// q̈ at an end of the step without what oscillates faster than the step can follow: that part, however small its amplitude, would
+    /// dominate an interpolation by accelerations.
+    fn smooth_acceleration(&mut self, x: f64, q: &[f64]) -> Vec<f64> {
+        let (defect, factor) = self.defect(x, q);
+        self.acceleration.iter().zip(defect).map(|(a, d)| a + factor * d).collect()
+    }
+}
+
+/// Turns the pairs of every node by its angle, or back.
+fn turn(v: &mut [f64], turns: &[[f64; 2]], sign: f64) {
+    for (v, [cosine, sine]) in v.chunks_exact_mut(4).zip(turns) {
+        let sine = sign * sine;
+        (v[0], v[1]) = (cosine * v[0] - sine * v[1], cosine * v[1] + sine * v[0]);
+        (v[2], v[3]) = (cosine * v[2] - sine * v[3], cosine * v[3] + sine * v[2]);
+    }
+}
+
+/// `target = Σ weight · vector`.
+fn combine(target: &mut [f64], weights: impl Iterator<Item = f64>, vectors: &[Vec<f64>]) {
+    target.fill(0.0);
+    for (weight, vector) in weights.zip(vectors) {
+        target.iter_mut().zip(vector).for_each(|(t, v)| *t += weight * v);
+    }
+}
+
+impl Method for Collocation<'_> {
+    fn order(&self) -> f64 {
+        self.tableau.order
+    }
+
+    fn start(&mut self, state: &State) -> Vec<f64> {
+        // Constant accelerations, until there is a step to continue.
+        let mut acceleration = vec![0.0; state.q.len()];
+        self.motion.acceleration(&state.q, &mut acceleration);
+        self.accelerations.iter_mut().for_each(|a| a.copy_from_slice(&acceleration));
+        (self.last_step, self.rate) = (0.0, 1.0);
+        acceleration
+    }
+
+    fn attempt(
+        &mut self,
+        from: &State,
+        h: f64,
+        accuracy: Option<f64>,
+        to: &mut State,
+        record: &mut Iterations,
+    ) -> Result<f64, Failure> {
+        self.predict(h);
+        let tolerance = accuracy.map_or(TOLERANCE, |allowed| (TOLERANCE_OF_ERROR * allowed).clamp(TOLERANCE, 1e-7));
+        self.solve_stages(from, h, tolerance, record)?;
+        self.trial_step = h;
+        let s = self.tableau.stages();
+        for (i, (q, v)) in to.q.iter_mut().zip(&mut to.v).enumerate() {
+            let (mut position, mut velocity) = (0.0, 0.0);
+            for j in 0..s {
+                let y = self.displacements[j][i];
+                position += self.tableau.position_weights[j] * y;
+                velocity += self.tableau.velocity_weights[j] * y;
+            }
+            *q = from.q[i] + (h * from.v[i] + position);
+            *v = from.v[i] + velocity / h;
+        }
+        let Some(_) = accuracy else { return Ok(0.0) };
+        let exponent = (self.tableau.order + 1.0) / (s as f64 + 2.0);
+        let (defect, _) = self.defect(0.0, &from.q);
+        Ok(self.motion.size(&defect).powf(exponent))
+    }
+
+    fn accept(&mut self) {
+        let h = self.trial_step;
+        for i in 0..self.tableau.stages() {
+            self.accelerate(i, h);
+            self.accelerations[i].copy_from_slice(&self.acceleration);
+        }
+        self.last_step = h;
+    }
+
+    fn end_accelerations(&mut self, from: &State, to: &State) -> Option<[Vec<f64>; 2]> {
+        // Two stages need no accelerations, and have no real eigenvalue.
+        if self.tableau.stages() < 3 {
+            return None;
+        }
+        Some([self.smooth_acceleration(0.0, &from.q), self.smooth_acceleration(1.0, &to.q)])
+    }
+
+    fn last_increment(&self) -> &[f64] {
+        &self.increment
+    }
+
+    fn statistics(&mut self) -> &mut Statistics {
+        &mut self.motion.statistics
+    }
+
+    fn memory(&self) -> Vec<Vec<f64>> {
+        let n = self.motion.coordinates();
+        let mut memory = vec![vec![self.last_step, self.rate]];
+        memory.extend(self.accelerations.iter().cloned());
+        memory.extend(self.displacements.iter().map(|y| y[n..].to_vec()));
+        memory
+    }
+
+    fn restore(&mut self, memory: Vec<Vec<f64>>) -> bool {
+        let n = self.motion.coordinates();
+        let s = self.tableau.stages();
+        let multipliers = self.motion.unknowns() - n;
+        let expected: Vec<usize> = std::iter::once(2).chain(vec![n; s]).chain(vec![multipliers; s]).collect();
+        if memory.iter().map(Vec::len).ne(expected) {
+            return false;
+        }
+        (self.last_step, self.rate) = (memory[0][0], memory[0][1]);
+        for i in 0..s {
+            self.accelerations[i].copy_from_slice(&memory[1 + i]);
+            self.displacements[i][n..].copy_from_slice(&memory[1 + s + i]);
+        }
+        true
+    }
+}

@@ -1,0 +1,421 @@
+//! The driver of all methods: chooses steps, records states, locates events, keeps what a restart needs.
+//!
+//! # Steps that meet a stated accuracy
+//! The tolerance is the sum, over the whole duration, of the local errors that are allowed, in beam lengths: a step of length h
+//! may err by tolerance · h / duration. With an estimate of order p + 1 the step for a wanted error follows; it is chosen by the
+//! proportional–integral rule of Gustafsson (*ACM Trans. Math. Softw.* 20, 1994, 496–517).
+
+use super::collocation::Collocation;
+use super::explicit::Explicit;
+use super::generalized_alpha::GeneralizedAlpha;
+use super::method::Method;
+use super::motion::Motion;
+use super::tableau::Tableau;
+use super::{Checkpoint, Solution, State, Stuck};
+use crate::linear::Singular;
+use crate::model::{Crossing, Integrator, StepControl};
+use crate::solve::newton::{Failure, Iterations};
+use crate::system::{System, View};
+use crate::trajectory::{Statistics, StepRecord};
+
+/// What is to be integrated, and how.
+pub struct Task<'t> {
+    /// Time at which it ends \[s\].
+    pub duration: f64,
+    /// Time between recorded states \[s\].
+    pub output_every: f64,
+    /// The method.
+    pub integrator: Integrator,
+    /// Where it starts.
+    pub start: Checkpoint,
+    /// What to watch for.
+    pub watches: &'t [Watch],
+}
+
+/// A coordinate of a point of a beam that may cross a value.
+pub struct Watch {
+    /// The point.
+    pub view: View,
+    /// 0 for x, 1 for y.
+    pub axis: usize,
+    /// The value \[m\].
+    pub value: f64,
+    /// Which way it is crossed.
+    pub crossing: Crossing,
+    /// Whether the motion ends there.
+    pub stop: bool,
+}
+
+/// Part of the tolerance that a step may err by: measured, so that the errors of a run come to about the tolerance.
+const STEP_PART: f64 = 0.3;
+/// Part of the wanted step that is taken, so that few are rejected.
+const SAFETY: f64 = 0.9;
+/// Steps grow and shrink at most by these factors.
+const LIMITS: (f64, f64) = (0.2, 4.0);
+/// After an iteration that did not converge.
+const SHRINK: f64 = 0.3;
+/// Smallest step, relative to the duration.
+const SMALLEST_STEP: f64 = 1e-12;
+/// Iterations beyond which a step does not grow: the next tangent would be worse.
+const MANY_ITERATIONS: usize = 10;
+/// Attempted steps that are kept for the reader.
+const HISTORY: usize = 20_000;
+/// Time by which a record or an end may miss a step's end, relative to the step.
+const SLACK: f64 = 1e-9;
+
+/// Integrates `task`. `observe` is called with (time, next step, counts) after every step and ends the integration by
+/// returning false.
+pub fn solve(
+    system: &System,
+    task: &Task<'_>,
+    observe: &mut dyn FnMut(f64, f64, &Statistics) -> bool,
+) -> Solution {
+    let mut solution = Solution::default();
+    let method = match method(system, task.integrator) {
+        Ok(method) => method,
+        Err(singular) => {
+            let (time, at) = (task.start.state.time, system.place_of(singular.row));
+            solution.stuck = Some(Stuck { time, step: 0.0, failure: singular.into(), at });
+            return solution;
+        }
+    };
+    let mut driver = Driver::new(system, task, method, solution);
+    driver.run(observe);
+    driver.finish()
+}
+
+fn method<'a>(system: &'a System, integrator: Integrator) -> Result<Box<dyn Method + 'a>, Singular> {
+    let motion = Motion::new(system)?;
+    Ok(match integrator {
+        Integrator::GeneralizedAlpha { spectral_radius, .. } => {
+            Box::new(GeneralizedAlpha::new(motion, spectral_radius))
+        }
+        Integrator::Gauss { stages, .. } => Box::new(Collocation::new(motion, Tableau::gauss(stages))),
+        Integrator::Radau { stages, .. } => Box::new(Collocation::new(motion, Tableau::radau(stages))),
+        Integrator::Explicit { order, .. } => Box::new(Explicit::new(motion, order)),
+    })
+}
+
+struct Driver<'t, 'a> {
+    system: &'a System,
+    task: &'t Task<'t>,
+    method: Box<dyn Method + 'a>,
+    solution: Solution,
+    control: StepControl,
+    state: State,
+    /// The next step \[s\].
+    step: f64,
+    origin: (f64, u64),
+    next_record: u64,
+    last_ratio: f64,
+    rejected: bool,
+    stride: usize,
+}
+
+impl<'t, 'a> Driver<'t, 'a> {
+    fn new(
+        system: &'a System,
+        task: &'t Task<'t>,
+        mut method: Box<dyn Method + 'a>,
+        mut solution: Solution,
+    ) -> Self {
+        let Checkpoint { state, method: name, memory, step, origin } = task.start.clone();
+        let control = task.integrator.step_control();
+        let acceleration = method.start(&state);
+        let continued = name == task.integrator.to_string() && method.restore(memory);
+        let (step, origin) = match control {
+            _ if continued => (step, origin),
+            StepControl::Fixed(step) => (step, (state.time, 0)),
+            StepControl::Tolerance(tolerance) => {
+                (first_step(system, task, &*method, [&state.v, &acceleration], tolerance), (state.time, 0))
+            }
+        };
+        let next_record = (state.time / task.output_every + 1.0 + SLACK).floor() as u64;
+        solution.states.push(state.clone());
+        Self {
+            system,
+            task,
+            method,
+            solution,
+            control,
+            state,
+            step,
+            origin,
+            next_record,
+            last_ratio: 1.0,
+            rejected: false,
+            stride: 1,
+        }
+    }
+
+    fn run(&mut self, observe: &mut dyn FnMut(f64, f64, &Statistics) -> bool) {
+        let mut new = self.state.clone();
+        while self.task.duration - self.state.time > SMALLEST_STEP * self.task.duration {
+            match self.advance(&mut new) {
+                Err(stuck) => {
+                    self.solution.stuck = Some(stuck);
+                    return;
+                }
+                Ok(()) => {
+                    let ended = self.look(&mut new);
+                    self.method.accept();
+                    std::mem::swap(&mut self.state, &mut new);
+                    if ended {
+                        return;
+                    }
+                    if !observe(self.state.time, self.step, self.method.statistics()) {
+                        self.solution.interrupted = self.task.duration > self.state.time;
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    fn finish(mut self) -> Solution {
+        let last = self.solution.states.last().map_or(f64::NEG_INFINITY, |state| state.time);
+        if self.state.time > last + SLACK * self.step {
+            self.solution.states.push(self.state.clone());
+        }
+        self.solution.statistics = *self.method.statistics();
+        self.solution.checkpoint = Some(Checkpoint {
+            state: self.state,
+            method: self.task.integrator.to_string(),
+            memory: self.method.memory(),
+            step: self.step,
+            origin: self.origin,
+        });
+        self.solution
+    }
+
+    /// Takes one step, smaller as often as needed, to `new`.
+    fn advance(&mut self, new: &mut State) -> Result<(), Stuck> {
+        loop {
+            let left = self.task.duration - self.state.time;
+            let (end, h) = match self.control {
+                StepControl::Fixed(step) => {
+                    let end = self.origin.0 + step * (self.origin.1 + 1) as f64;
+                    // No sliver is left before the end.
+                    let end = if end > self.task.duration - SLACK * step { self.task.duration } else { end };
+                    (end, end - self.state.time)
+                }
+                StepControl::Tolerance(_) if self.step >= left => (self.task.duration, left),
+                StepControl::Tolerance(_) => {
+                    // The last two steps share what is left.
+                    let h = self.step.min(0.5 * left.max(self.step));
+                    (self.state.time + h, h)
+                }
+            };
+            let accuracy = match self.control {
+                StepControl::Fixed(_) => None,
+                StepControl::Tolerance(tolerance) => Some(STEP_PART * tolerance),
+            };
+            let mut record = Iterations::default();
+            let result = self.method.attempt(&self.state, h, accuracy, new, &mut record);
+            let iterations = record.increments.len();
+            let ratio = match (&result, accuracy) {
+                (Ok(error), Some(accuracy)) => error / accuracy,
+                _ => 0.0,
+            };
+            let accepted = result.is_ok() && ratio <= 1.0;
+            self.remember(StepRecord {
+                parameter: end,
+                step: h,
+                accepted,
+                increments: record.increments,
+                residuals: record.residuals,
+            });
+            let power = 1.0 / self.method.order();
+            if accepted {
+                self.method.statistics().steps += 1;
+                self.origin.1 += 1;
+                new.time = end;
+                new.work = self.state.work;
+                if accuracy.is_some() {
+                    let ratio = ratio.max(1e-10);
+                    let mut factor = SAFETY * ratio.powf(-0.7 * power) * self.last_ratio.powf(0.4 * power);
+                    if self.rejected || iterations > MANY_ITERATIONS {
+                        factor = factor.min(1.0);
+                    }
+                    // A step that was cut at the end says nothing about the next.
+                    let step = self.step.max(h) * factor.clamp(LIMITS.0, LIMITS.1);
+                    self.step = step.min(self.method.longest_step());
+                    (self.last_ratio, self.rejected) = (ratio, false);
+                }
+                return Ok(());
+            }
+            let stuck = |method: &dyn Method, failure| {
+                let at = self.system.place_of(worst(method.last_increment()));
+                Stuck { time: self.state.time, step: h, failure, at }
+            };
+            self.method.statistics().rejected_steps += 1;
+            match (result, accuracy) {
+                (Err(failure), None) => return Err(stuck(&*self.method, failure)),
+                (Err(failure), Some(_)) => {
+                    self.step = h * SHRINK;
+                    if self.step < SMALLEST_STEP * self.task.duration {
+                        return Err(stuck(&*self.method, failure));
+                    }
+                }
+                (Ok(_), _) => {
+                    self.step = h * (SAFETY * ratio.powf(-power)).clamp(LIMITS.0, SAFETY);
+                    if !(self.step >= SMALLEST_STEP * self.task.duration) {
+                        return Err(stuck(&*self.method, Failure::NotFinite));
+                    }
+                }
+            }
+            self.rejected = true;
+        }
+    }
+
+    /// Records and events of the step from the last state to `new`, which an event may cut short; true where the motion ends.
+    fn look(&mut self, new: &mut State) -> bool {
+        let slack = SLACK * (new.time - self.state.time);
+        let crossed = (0..self.task.watches.len()).any(|w| self.crosses(w, &self.state, new));
+        let due = self.next_record as f64 * self.task.output_every < new.time - slack;
+        if !(crossed || due || self.system.has_work()) {
+            self.record_until(new, None);
+            return false;
+        }
+        let accelerations = self.method.end_accelerations(&self.state, new);
+        let pair = accelerations.as_ref().map(|[a, b]| [&a[..], &b[..]]);
+        let stop = self.locate(new, pair);
+        if let Some(state) = stop {
+            self.record_until(&state, pair);
+            *new = state;
+            return true;
+        }
+        new.work = self.work(new, new.time, pair);
+        self.record_until(new, pair);
+        false
+    }
+
+    fn record_until(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) {
+        let slack = SLACK * (new.time - self.state.time);
+        loop {
+            let time = self.next_record as f64 * self.task.output_every;
+            if time > new.time + slack || time > self.task.duration + slack {
+                return;
+            }
+            let state = if (time - new.time).abs() <= slack {
+                new.clone()
+            } else {
+                self.between(new, time, accelerations)
+            };
+            self.solution.states.push(state);
+            self.next_record += 1;
+        }
+    }
+
+    fn between(&self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> State {
+        let mut state = self.state.between(new, time, accelerations);
+        state.work = self.work(new, time, accelerations);
+        state
+    }
+
+    /// Work of the loads without potential until `time` in the step to `new`, by three Gauss points.
+    fn work(&self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> f64 {
+        if !self.system.has_work() {
+            return self.state.work;
+        }
+        let h = time - self.state.time;
+        let mut scratch = vec![0.0; new.q.len()];
+        let offset = 0.6_f64.sqrt();
+        let points = [(-offset, 5.0), (0.0, 8.0), (offset, 5.0)];
+        let sum: f64 = points
+            .iter()
+            .map(|(x, weight)| {
+                let state = self.state.between(new, self.state.time + 0.5 * h * (1.0 + x), accelerations);
+                weight * self.system.power(&state.q, &state.v, &mut scratch)
+            })
+            .sum();
+        self.state.work + h * sum / 18.0
+    }
+
+    fn crosses(&self, watch: usize, a: &State, b: &State) -> bool {
+        let watch = &self.task.watches[watch];
+        let distance = |state: &State| watch.view.fields(&state.q).position[watch.axis] - watch.value;
+        let (before, after) = (distance(a), distance(b));
+        let rising = before < 0.0 && after >= 0.0;
+        let falling = before > 0.0 && after <= 0.0;
+        match watch.crossing {
+            Crossing::Rising => rising,
+            Crossing::Falling => falling,
+            Crossing::Any => rising || falling,
+        }
+    }
+
+    /// Locates the events of the step to `new`; returns the state of the first that ends the motion.
+    fn locate(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) -> Option<State> {
+        let mut found: Vec<(usize, State)> = (0..self.task.watches.len())
+            .filter(|w| self.crosses(*w, &self.state, new))
+            .map(|w| (w, self.crossing(w, new, accelerations)))
+            .collect();
+        found.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
+        for (watch, state) in found {
+            let stop = self.task.watches[watch].stop;
+            self.solution.events.push((watch, state.clone()));
+            if stop {
+                return Some(state);
+            }
+        }
+        None
+    }
+
+    /// The state at which a watch crosses its value: bisection of the interpolated motion, to the last bit but a few of the step.
+    fn crossing(&self, watch: usize, new: &State, accelerations: Option<[&[f64]; 2]>) -> State {
+        let (mut before, mut after) = (self.state.time, new.time);
+        for _ in 0..50 {
+            let middle = 0.5 * (before + after);
+            let state = self.state.between(new, middle, accelerations);
+            if self.crosses(watch, &self.state, &state) {
+                after = middle;
+            } else {
+                before = middle;
+            }
+        }
+        self.between(new, after, accelerations)
+    }
+
+    /// Keeps every second record of the past where there are too many; rejected ones stay.
+    fn remember(&mut self, record: StepRecord) {
+        let steps = self.method.statistics().steps;
+        if record.accepted && !steps.is_multiple_of(self.stride) {
+            return;
+        }
+        self.solution.history.push(record);
+        if self.solution.history.len() > HISTORY {
+            self.stride *= 2;
+            let mut keep = false;
+            self.solution.history.retain(|record| {
+                keep = !keep;
+                keep || !record.accepted
+            });
+        }
+    }
+}
+
+/// A step in which the fastest node moves by a part of a beam length that suits the tolerance.
+fn first_step(
+    system: &System,
+    task: &Task<'_>,
+    method: &dyn Method,
+    [velocity, acceleration]: [&[f64]; 2],
+    tolerance: f64,
+) -> f64 {
+    let largest = |v: &[f64]| {
+        v.chunks_exact(4)
+            .fold(0.0_f64, |m, v| m.max(v[0].hypot(v[1]) / system.length()).max(v[2].hypot(v[3])))
+    };
+    let part = 0.3 * tolerance.powf(1.0 / (method.order() + 1.0));
+    let by_speed = part / largest(velocity);
+    let by_acceleration = (2.0 * part / largest(acceleration)).sqrt();
+    let remaining = 0.01 * (task.duration - task.start.state.time);
+    by_speed.min(by_acceleration).min(remaining).min(method.longest_step())
+}
+
+/// The unknown that changed most.
+fn worst(increment: &[f64]) -> usize {
+    let sizes = increment.iter().map(|d| d.abs()).enumerate();
+    sizes.fold((0, 0.0), |worst, (i, d)| if d > worst.1 || d.is_nan() { (i, d) } else { worst }).0
+}

@@ -1,0 +1,53 @@
+//! What a method of time integration is, for the driver that takes its steps.
+
+use super::State;
+use crate::solve::newton::{Failure, Iterations};
+use crate::trajectory::Statistics;
+
+/// A method of time integration. It keeps what it carries from step to step (accelerations, last stages).
+pub trait Method {
+    /// Order p: the local error is of the order p + 1.
+    fn order(&self) -> f64;
+
+    /// Prepares the first step from `state`; returns q̈ there.
+    fn start(&mut self, state: &State) -> Vec<f64>;
+
+    /// Tries a step of length `h` from `from` and writes the state that it leads to. `accuracy` is the error that the step
+    /// may make, relative to the beam length, where the caller controls it; the method then returns an estimate of it, and
+    /// otherwise zero.
+    ///
+    /// # Errors
+    /// [`Failure`] where the equations of the step could not be solved; `record` says how the iteration went.
+    fn attempt(
+        &mut self,
+        from: &State,
+        h: f64,
+        accuracy: Option<f64>,
+        to: &mut State,
+        record: &mut Iterations,
+    ) -> Result<f64, Failure>;
+
+    /// The longest step that is stable \[s\].
+    fn longest_step(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Takes over what the last attempt found.
+    fn accept(&mut self);
+
+    /// The accelerations at both ends of the last attempt by which it is to be interpolated; none where positions and velocities
+    /// alone match the order of the method.
+    fn end_accelerations(&mut self, from: &State, to: &State) -> Option<[Vec<f64>; 2]>;
+
+    /// The last Newton increment, by which the place of a failure is told.
+    fn last_increment(&self) -> &[f64];
+
+    /// Counts so far.
+    fn statistics(&mut self) -> &mut Statistics;
+
+    /// What is carried from step to step, for a restart that continues bit for bit.
+    fn memory(&self) -> Vec<Vec<f64>>;
+
+    /// Restores what [`Self::memory`] gave; false where it does not fit.
+    fn restore(&mut self, memory: Vec<Vec<f64>>) -> bool;
+}

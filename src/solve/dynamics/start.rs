@@ -1,0 +1,73 @@
+//! Where a motion starts: at rest, or with the velocities of rigid bodies.
+
+use super::{Checkpoint, State};
+use crate::linear::Singular;
+use crate::model::InitialVelocity;
+use crate::solve::dynamics::motion::Motion;
+use crate::system::System;
+
+/// Difference between given and admissible velocities, relative to the largest, that counts as round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Why a motion cannot start so.
+#[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
+pub enum StartError {
+    /// A support does not allow the velocity.
+    #[error(
+        "the initial velocity moves what a support holds: near s = {s:.6} m of beam `{beam}` the supports change it by {change:.3e} m/s"
+    )]
+    #[diagnostic(help(
+        "let the velocity vanish where the beam is held, such as by a rotation about a hinge: `rotation = \"2 rad/s\"`, `about = [0, 0]`"
+    ))]
+    Held {
+        /// The beam.
+        beam: String,
+        /// Where \[m\].
+        s: f64,
+        /// By how much the supports change the velocity \[m/s\].
+        change: f64,
+    },
+    /// A coordinate has no mass.
+    #[error(transparent)]
+    Singular(#[from] Singular),
+}
+
+/// The stress-free state with the given velocities.
+///
+/// # Errors
+/// [`StartError::Held`] where supports do not allow them.
+pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Checkpoint, StartError> {
+    let mut state = State::at_rest(system.reference());
+    system.supports().impose(1.0, &mut state.q);
+    if velocities.is_empty() {
+        return Ok(Checkpoint { state, ..Checkpoint::default() });
+    }
+    for velocity in velocities {
+        let Some(part) = system.beams().get(velocity.beam) else { continue };
+        let first = 4 * part.first_node;
+        let range = first..first + 4 * part.basis.nodes().len();
+        let ([vx, vy], [cx, cy], w) = (velocity.translation, velocity.center, velocity.rotation);
+        for (q, v) in state.q[range.clone()].chunks_exact(4).zip(state.v[range].chunks_exact_mut(4)) {
+            v[0] += vx - w * (q[1] - cy);
+            v[1] += vy + w * (q[0] - cx);
+            v[2] -= w * q[3];
+            v[3] += w * q[2];
+        }
+    }
+    let admissible = Motion::new(system)?.admissible_velocity(&state.v);
+    let largest = state.v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let change = |(i, (a, b)): (usize, (&f64, &f64))| (i, (a - b).abs());
+    let (worst, change) = state
+        .v
+        .iter()
+        .zip(&admissible)
+        .enumerate()
+        .map(change)
+        .fold((0, 0.0), |w, c| if c.1 > w.1 { c } else { w });
+    if change > ROUND_OFF * largest {
+        let (beam, s) = system.place_of(worst);
+        return Err(StartError::Held { beam: system.beams()[beam].name.clone(), s, change });
+    }
+    state.v = admissible;
+    Ok(Checkpoint { state, ..Checkpoint::default() })
+}

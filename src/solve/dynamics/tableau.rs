@@ -1,0 +1,194 @@
+//! The coefficients of collocation methods, and the transformation that takes their stage systems apart.
+//!
+//! A method with the nodes c_i integrates ẏ = F(y) by the polynomial that satisfies the equation at the nodes:
+//!
+//! ```text
+//! a_ij = ∫₀^{c_i} ℓ_j dτ,   b_j = ∫₀¹ ℓ_j dτ,   ℓ_j the Lagrange polynomials of the nodes
+//! ```
+//!
+//! Gauss: the zeros of the Legendre polynomial shifted to [0, 1], order 2s, symplectic and symmetric. Radau IIA: the zeros of
+//! d^{s−1}/dx^{s−1} (x^{s−1} (x − 1)^s), order 2s − 1, c_s = 1, damps what is infinitely stiff in one step
+//! (Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, IV.5, IV.8).
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// A part of the transformed stage system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Block {
+    /// A real eigenvalue of A⁻¹, in row `row`.
+    Real {
+        /// The eigenvalue.
+        gamma: f64,
+        /// Its row.
+        row: usize,
+    },
+    /// A pair ζ, ζ̄ of eigenvalues, in rows `row` and `row + 1`: (w₁ + i w₂) ↦ ζ (w₁ + i w₂).
+    Complex {
+        /// ζ.
+        zeta: Complex<f64>,
+        /// The first of its two rows.
+        row: usize,
+    },
+}
+
+/// Nodes, weights and transformations of a collocation method.
+#[derive(Clone, Debug)]
+pub struct Tableau {
+    /// c.
+    pub nodes: Vec<f64>,
+    /// p.
+    pub order: f64,
+    /// A.
+    pub a: DMatrix<f64>,
+    /// A².
+    pub a_squared: DMatrix<f64>,
+    /// A⁻².
+    pub inverse_squared: DMatrix<f64>,
+    /// bᵀ A⁻¹: weights of the stage displacements in the position at the end.
+    pub position_weights: Vec<f64>,
+    /// bᵀ A⁻²: their weights in h times the velocity at the end.
+    pub velocity_weights: Vec<f64>,
+    /// T of A⁻¹ = T Λ T⁻¹.
+    pub transformation: DMatrix<f64>,
+    /// T⁻¹.
+    pub inverse_transformation: DMatrix<f64>,
+    /// The diagonal blocks of Λ.
+    pub blocks: Vec<Block>,
+}
+
+impl Tableau {
+    /// Gauss' method with 1, 2 or 3 stages.
+    pub fn gauss(stages: usize) -> Self {
+        let nodes = match stages {
+            1 => vec![0.5],
+            2 => vec![0.5 - 3.0_f64.sqrt() / 6.0, 0.5 + 3.0_f64.sqrt() / 6.0],
+            _ => vec![0.5 - 15.0_f64.sqrt() / 10.0, 0.5, 0.5 + 15.0_f64.sqrt() / 10.0],
+        };
+        let order = 2.0 * nodes.len() as f64;
+        Self::new(nodes, order)
+    }
+
+    /// Radau's method IIA with 2 or 3 stages.
+    pub fn radau(stages: usize) -> Self {
+        let nodes = match stages {
+            2 => vec![1.0 / 3.0, 1.0],
+            _ => vec![(4.0 - 6.0_f64.sqrt()) / 10.0, (4.0 + 6.0_f64.sqrt()) / 10.0, 1.0],
+        };
+        let order = 2.0 * nodes.len() as f64 - 1.0;
+        Self::new(nodes, order)
+    }
+
+    fn new(nodes: Vec<f64>, order: f64) -> Self {
+        let s = nodes.len();
+        // With V_ij = c_i^j: ∫₀^{c_i} x^j = c_i^{j+1}/(j + 1), so A = C V⁻¹ and bᵀ = (1, 1/2, …) V⁻¹.
+        let powers = DMatrix::from_fn(s, s, |i, j| nodes[i].powi(j as i32));
+        let inverse_powers = invert(&powers);
+        let integrals = DMatrix::from_fn(s, s, |i, j| nodes[i].powi(j as i32 + 1) / (j + 1) as f64);
+        let a = integrals * &inverse_powers;
+        let b = DVector::from_fn(s, |j, _| 1.0 / (j + 1) as f64).transpose() * &inverse_powers;
+        let inverse = invert(&a);
+        let inverse_squared = &inverse * &inverse;
+        let (transformation, blocks) = diagonalise(&inverse);
+        Self {
+            order,
+            a_squared: &a * &a,
+            position_weights: (&b * &inverse).iter().copied().collect(),
+            velocity_weights: (&b * &inverse_squared).iter().copied().collect(),
+            inverse_transformation: invert(&transformation),
+            transformation,
+            inverse_squared,
+            blocks,
+            a,
+            nodes,
+        }
+    }
+
+    /// Number of stages.
+    pub fn stages(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// ℓ_j(x).
+    pub fn lagrange(&self, x: f64) -> Vec<f64> {
+        lagrange(&self.nodes, x)
+    }
+}
+
+fn lagrange(nodes: &[f64], x: f64) -> Vec<f64> {
+    let factor = |j: usize, k: usize| (x - nodes[k]) / (nodes[j] - nodes[k]);
+    (0..nodes.len()).map(|j| (0..nodes.len()).filter(|k| *k != j).map(|k| factor(j, k)).product()).collect()
+}
+
+/// Of the matrices of this module, which are fixed and regular; a failure shows as NaN in the first test.
+fn invert(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    matrix.clone().try_inverse().unwrap_or_else(|| matrix.map(|_| f64::NAN))
+}
+
+/// Columns u of a real eigenvector, (p, q) of a pair p + iq, and the blocks in that order.
+fn diagonalise(matrix: &DMatrix<f64>) -> (DMatrix<f64>, Vec<Block>) {
+    let s = matrix.nrows();
+    let mut columns = Vec::new();
+    let mut blocks = Vec::new();
+    for value in matrix.complex_eigenvalues().iter() {
+        let row = columns.len();
+        if value.im.abs() <= 1e-9 * value.norm() {
+            columns.push(eigenvector(matrix, Complex::new(value.re, 0.0)).map(|v| v.re));
+            blocks.push(Block::Real { gamma: value.re, row });
+        } else if value.im < 0.0 {
+            // W (p + iq) = (α − iβ)(p + iq) makes W [p q] = [p q] [α −β; β α], which maps w₁ + i w₂ by α + iβ.
+            let vector = eigenvector(matrix, *value);
+            columns.push(vector.map(|v| v.re));
+            columns.push(vector.map(|v| v.im));
+            blocks.push(Block::Complex { zeta: value.conj(), row });
+        }
+    }
+    (DMatrix::from_fn(s, s, |i, j| columns.get(j).map_or(f64::NAN, |c| c[i])), blocks)
+}
+
+/// The eigenvector whose last component is 1.
+fn eigenvector(matrix: &DMatrix<f64>, value: Complex<f64>) -> DVector<Complex<f64>> {
+    let s = matrix.nrows();
+    let entry = |i: usize, j: usize| {
+        Complex::new(matrix[(i, j)], 0.0) - if i == j { value } else { Complex::default() }
+    };
+    let left = DMatrix::from_fn(s - 1, s - 1, entry);
+    let right = DVector::from_fn(s - 1, |i, _| -entry(i, s - 1));
+    let rest = left.lu().solve(&right).unwrap_or(right);
+    DVector::from_fn(s, |i, _| if i + 1 == s { Complex::new(1.0, 0.0) } else { rest[i] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_up_to_the_order_are_integrated_exactly_and_the_blocks_are_those_of_the_inverse() {
+        for tableau in
+            [Tableau::gauss(1), Tableau::gauss(2), Tableau::gauss(3), Tableau::radau(2), Tableau::radau(3)]
+        {
+            let s = tableau.stages();
+            let inverse = invert(&tableau.a);
+            let b: Vec<f64> = (0..s)
+                .map(|j| (0..s).map(|i| tableau.position_weights[i] * tableau.a[(i, j)]).sum())
+                .collect();
+            for degree in 0..tableau.order as i32 {
+                let sum: f64 = b.iter().zip(&tableau.nodes).map(|(b, c)| b * c.powi(degree)).sum();
+                assert!((sum - 1.0 / f64::from(degree + 1)).abs() < 1e-14, "{s} stages, degree {degree}");
+            }
+            let mut lambda = DMatrix::zeros(s, s);
+            for block in &tableau.blocks {
+                match *block {
+                    Block::Real { gamma, row } => lambda[(row, row)] = gamma,
+                    Block::Complex { zeta, row } => {
+                        lambda[(row, row)] = zeta.re;
+                        lambda[(row + 1, row + 1)] = zeta.re;
+                        lambda[(row, row + 1)] = -zeta.im;
+                        lambda[(row + 1, row)] = zeta.im;
+                    }
+                }
+            }
+            let again = &tableau.transformation * lambda * &tableau.inverse_transformation;
+            assert!((again - inverse).amax() < 1e-12, "{s} stages");
+        }
+    }
+}
