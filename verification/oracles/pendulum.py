@@ -39,7 +39,8 @@ class Mesh:
         self.index = np.arange(degree + 1)[:, None] + self.stride * np.arange(elements)
         x, h = Polynomial([0, 1]), self.size
         bubbles = [x ** (k + 2) * (1 - x) ** 2 for k in range(degree - 3)]
-        self.functions = [1 - 3 * x**2 + 2 * x**3, h * x * (1 - x) ** 2, *bubbles, 3 * x**2 - 2 * x**3, h * x**2 * (x - 1)]
+        left, right = [1 - 3 * x**2 + 2 * x**3, h * x * (1 - x) ** 2], [3 * x**2 - 2 * x**3, h * x**2 * (x - 1)]
+        self.functions = [*left, *bubbles, *right]
 
     def rows(self, places, derivative=0):
         """An element's functions, derived by s, at some places in it (from 0 to 1): one place per row."""
@@ -146,7 +147,7 @@ class Pendulum:
 
         start, clock = self.mesh.linear(0, 1), time.perf_counter()
         state = np.concatenate([start, 0 * start]).view(float)
-        # Stability limits the step, not accuracy: a hundredth of these tolerances moves the tip by less than 1e-9 m.
+        # Stability limits the step, not accuracy: a hundredth of these tolerances moves the tip by 3e-9 m.
         # Much closer to that limit one step in four would be tried in vain.
         solver = DOP853(rate, 0, state, times[-1], max_step=3.5 / self.highest_frequency(), rtol=1e-7, atol=1e-9)
         states = []
@@ -196,10 +197,7 @@ def show(header, rows):
 
 
 def soft():
-    """Tip of the soft pendulum; error: how far a coarser mesh is from it.
-
-    48 elements, in two minutes more, move it by half of that or less.
-    """
+    """Tip of the soft pendulum; error: how far a coarser mesh is from it (48 elements, in two minutes more, half as far)."""
     rows = []
     for strain in ("engineering", "green"):
         coarse, fine = (Pendulum(Mesh(elements), SOFT, strain).tips() for elements in (24, 32))
@@ -229,7 +227,8 @@ def shape():
 def energies():
     """Energies of the soft pendulum every 50 ms."""
     pendulum, times = Pendulum(Mesh(24), SOFT), [k / 20 for k in range(51)]
-    show("t,kinetic,stretch,bend,potential", [(t, *pendulum.energies(*s)) for t, s in zip(times, pendulum.motion(times))])
+    rows = [(t, *pendulum.energies(*state)) for t, state in zip(times, pendulum.motion(times))]
+    show("t,kinetic,stretch,bend,potential", rows)
 
 
 def stiff():
@@ -237,8 +236,8 @@ def stiff():
 
     Axial waves would force the explicit method to steps of 1e-5 s, though the beam stretches by a few 1e-6 only. As long as
     they are much faster than bending, the tip is linear in the axial compliance 1/EA: it is computed with a 16th of EA, and
-    led back to the whole of it along the line through a 16th and a 32nd, found with a coarser mesh. On twelve spans of
-    degree 5 this line misses a run with the whole EA by 3e-8 m.
+    led back to the whole of it along the line through a 16th and a 32nd, found with a coarser mesh. For
+    twelve elements of degree 5 this line missed a run with the whole EA by 3e-8 m.
     """
 
     def softened(count, factor):
