@@ -147,11 +147,11 @@ fn tables_read_back_to_the_same_bits() {
         );
     }
     let (header, rows) = table(&directory.path().join("energy.csv"));
-    assert_eq!(header, ["time", "stretch", "bend", "kinetic", "potential", "total"]);
+    assert_eq!(header, ["time", "stretch", "bend", "kinetic", "potential", "work", "total"]);
     for (i, (row, e)) in rows.iter().zip(&t.energy).enumerate() {
         assert_eq!(
             bits(row),
-            bits_of(&[t.parameter[i], e.stretch, e.bend, e.kinetic, e.potential, e.total()])
+            bits_of(&[t.parameter[i], e.stretch, e.bend, e.kinetic, e.potential, e.work, e.total()])
         );
     }
     let (header, rows) = table(&directory.path().join("shape.csv"));
