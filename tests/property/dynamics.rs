@@ -231,6 +231,20 @@ fn the_energy_of_a_hinged_beam_errs_by_the_order_of_the_method() {
     }
 }
 
+/// The trapezoidal rule is not symplectic, but conjugate to the midpoint rule: its energy wavers and does not drift. 100 s are 40,000
+/// steps and some 60 swings.
+#[test]
+fn the_energy_of_the_trapezoidal_rule_is_bounded_for_long_times() {
+    let system = system(Discretization::Ancf { nodes: Nodes::Uniform(4) }, vec![hinge(0.0)]);
+    let (trapezoidal, _) = methods()[0];
+    let wavering = |duration| {
+        let (drift, kinetic) = energies(&system, &moved(&system, duration, trapezoidal, 2.5e-3));
+        drift / kinetic
+    };
+    let (short, long) = (wavering(10.0), wavering(100.0));
+    assert!(long < 0.02 && long < 4.0 * short, "{short} in 10 s, {long} in 100 s");
+}
+
 /// Moments and follower forces have no potential; what they do is work, and the balance closes.
 #[test]
 fn the_work_of_loads_without_potential_closes_the_balance() {
@@ -335,7 +349,7 @@ proptest! {
     }
 }
 
-/// The stated accuracy is what comes out, within an order of magnitude, and a tighter one costs more.
+/// The stated accuracy of positions is what comes out, and a tighter one costs more.
 #[test]
 fn steps_meet_the_stated_accuracy() {
     let [ancf, _] = either();
@@ -346,8 +360,9 @@ fn steps_meet_the_stated_accuracy() {
         for tolerance in [1e-3, 1e-5] {
             let integrator = with_step(integrator, StepControl::Tolerance(tolerance));
             let solution = finished(solve(&system, &task(&system, 0.3, integrator), &mut |_, _, _| true));
-            let error = distance(&last(&solution).q, &last(&reference).q);
-            assert!(error < 30.0 * tolerance, "{integrator}: error {error}");
+            let pairs = last(&solution).q.chunks_exact(4).zip(last(&reference).q.chunks_exact(4));
+            let error = pairs.fold(0.0_f64, |m, (a, b)| m.max((a[0] - b[0]).hypot(a[1] - b[1])));
+            assert!(error < 3.0 * tolerance * LENGTH, "{integrator}: error {error} m");
             assert!(solution.statistics.steps > work, "{integrator}: {} steps", solution.statistics.steps);
             work = solution.statistics.steps;
         }

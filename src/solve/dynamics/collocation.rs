@@ -11,6 +11,13 @@
 //! eigenvalue ζ of A⁻¹: a real one and a complex one for three stages, both as banded as K is (Butcher, *BIT* 16, 1976, 237–240; Bickart). Its
 //! convergence is linear, at a rate that the change of K within the step decides.
 //!
+//! # The tangent turns with the nodes
+//! What changes K most is the beam's rotation. The tangent is taken at the start of the step, where the axial force is right (at a
+//! predicted state a large EA makes it meaningless), and each stage's residual is turned, node by node, from the stage's orientation into
+//! that of the start, and its increment back: K is then wrong only by the change of stress and shape. On the soft pendulum
+//! (20 nodes, 4 ms) that takes a third fewer iterations than the tangent at the mean of the stages, and converges where that does
+//! not (5 ms). Anderson's acceleration on top of it saved another tenth of the iterations and no failure, and was left out.
+//!
 //! # Error of a step
 //! The polynomial of the stage accelerations is compared with the acceleration at the start, where it has no node. Its defect
 //! δ = q̈(t₀) − Σ ℓ_j(0) Q̈_j = O(hˢ), applied through the step's own matrix, e = (γ²/h² M + K)⁻¹ M δ = O(hˢ⁺²), does not see
@@ -29,7 +36,7 @@ use crate::trajectory::Statistics;
 /// Error of the stages of a step of given length, relative to the displacement in the step: the velocity takes the same relative error.
 const TOLERANCE: f64 = 1e-11;
 /// The same as a part of the error that a step may make.
-const TOLERANCE_OF_ERROR: f64 = 0.02;
+const TOLERANCE_OF_ERROR: f64 = 0.3;
 /// Largest error of the stages: what is left of it excites high frequencies, which are not damped.
 const LARGEST_TOLERANCE: f64 = 1e-7;
 /// Increments that no longer shrink count as converged below this size: what is left is round-off.
@@ -380,7 +387,7 @@ impl Method for Collocation<'_> {
         let Some(_) = accuracy else { return Ok(0.0) };
         let exponent = (self.tableau.order + 1.0) / (s as f64 + 2.0);
         let (defect, _) = self.defect(0.0, &from.q);
-        Ok(self.motion.size(&defect).powf(exponent))
+        Ok(self.motion.distance(&defect).powf(exponent))
     }
 
     fn accept(&mut self) {

@@ -99,7 +99,6 @@ impl<'a> GeneralizedAlpha<'a> {
     /// The local error of the position, filtered by the step's own matrix.
     fn error(&mut self, h: f64, c: f64) -> f64 {
         let Coefficients { alpha_m, alpha_f, beta, .. } = self.coefficients;
-        let n = self.motion.coordinates();
         let constant = h * h * (beta + 0.5 * (alpha_m - alpha_f) - 1.0 / 6.0).abs();
         let mut change: Vec<f64> =
             self.trial.physical.iter().zip(&self.last.physical).map(|(b, a)| constant * (b - a)).collect();
@@ -109,7 +108,7 @@ impl<'a> GeneralizedAlpha<'a> {
         if let Some(factor) = &self.factor {
             factor.solve(&mut error);
         }
-        self.motion.size(&error[..n])
+        self.motion.distance(&error)
     }
 }
 

@@ -201,6 +201,13 @@ impl<'a> Motion<'a> {
         self.system.supports().impose(LOAD, &mut q[..n]);
     }
 
+    /// Root mean square over the nodes of the change of their positions, in beam lengths.
+    pub fn distance(&self, change: &[f64]) -> f64 {
+        let n = self.coordinates();
+        let sum: f64 = change[..n].chunks_exact(4).map(|d| d[0] * d[0] + d[1] * d[1]).sum();
+        (sum / (n / 4) as f64).sqrt() / self.system.length()
+    }
+
     /// Largest nodal change: positions in beam lengths, gradients as they are.
     pub fn size(&self, increment: &[f64]) -> f64 {
         equilibrium::size(self.system, increment)
