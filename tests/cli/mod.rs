@@ -3,4 +3,5 @@
 mod commands;
 mod interrupt;
 mod messages;
+mod motion;
 mod output;
