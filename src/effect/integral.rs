@@ -71,15 +71,19 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     #[inline(always)]
     fn fields<const W: usize>(&self, rows: &[f64], q: &[f64]) -> Gradient<M> {
         let width = self.width::<W>();
-        std::array::from_fn(|m| {
-            let row = &rows[m * width..(m + 1) * width];
-            let (mut x, mut y) = (0.0, 0.0);
-            for (n, q) in row.iter().zip(q[..2 * width].chunks_exact(2)) {
-                x = fma(*n, q[0], x);
-                y = fma(*n, q[1], y);
+        let mut fields = [Vector2::zeros(); M];
+        for (field, row) in fields.iter_mut().zip(rows.chunks_exact(width)) {
+            // Two functions at a time in the four lanes of a register.
+            let mut sum = [0.0; 4];
+            for (n, q) in row.chunks_exact(2).zip(q[..2 * width].chunks_exact(4)) {
+                let n = [n[0], n[0], n[1], n[1]];
+                for lane in 0..4 {
+                    sum[lane] = fma(n[lane], q[lane], sum[lane]);
+                }
             }
-            Vector2::new(x, y)
-        })
+            *field = Vector2::new(sum[0] + sum[2], sum[1] + sum[3]);
+        }
+        fields
     }
 
     #[inline(always)]
@@ -87,9 +91,13 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         let width = self.width::<W>();
         for (m, g) in gradient.iter().enumerate() {
             let (gx, gy) = (weight * g.x, weight * g.y);
-            for (n, f) in rows[m * width..(m + 1) * width].iter().zip(f[..2 * width].chunks_exact_mut(2)) {
-                f[0] = fma(*n, gx, f[0]);
-                f[1] = fma(*n, gy, f[1]);
+            let g = [gx, gy, gx, gy];
+            let row = &rows[m * width..(m + 1) * width];
+            for (n, f) in row.chunks_exact(2).zip(f[..2 * width].chunks_exact_mut(4)) {
+                let n = [n[0], n[0], n[1], n[1]];
+                for lane in 0..4 {
+                    f[lane] = fma(n[lane], g[lane], f[lane]);
+                }
             }
         }
     }

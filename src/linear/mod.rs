@@ -210,7 +210,7 @@ impl Factor {
     pub fn again(earlier: Option<Self>, matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
         match (earlier, matrix) {
             (Some(Self::Ldl(mut ldl)), Matrix::Symmetric(symmetric)) if border.is_empty() => {
-                match ldl.refactorize(symmetric) {
+                match ldl.refactorize(symmetric, None) {
                     Ok(()) => Ok(Self::Ldl(ldl)),
                     Err(_) => Self::new(matrix, border),
                 }
@@ -220,6 +220,31 @@ impl Factor {
             }
             _ => Self::new(matrix, border),
         }
+    }
+
+    /// Factorises `matrix` + c `mass`, bordered by constraint rows if there are any, reusing an earlier factorisation of the same
+    /// pattern.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn shifted(
+        earlier: Option<Self>,
+        matrix: &Matrix,
+        (c, mass): (f64, &Matrix),
+        border: &[BorderRow],
+    ) -> Result<Self, Singular> {
+        let earlier = match (earlier, matrix, mass) {
+            (Some(Self::Ldl(mut ldl)), Matrix::Symmetric(k), Matrix::Symmetric(m)) if border.is_empty() => {
+                if ldl.refactorize(k, Some((c, m))).is_ok() {
+                    return Ok(Self::Ldl(ldl));
+                }
+                None
+            }
+            (earlier, ..) => earlier,
+        };
+        let mut sum = matrix.clone();
+        sum.add(c, mass);
+        Self::again(earlier, &sum, border)
     }
 
     /// Solves A x = b in place; `b` holds the multipliers' part last.

@@ -95,19 +95,36 @@ impl SymmetricBand {
 
     /// `y += factor · A x`.
     pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
-        let (n, stride) = (self.size(), self.stride());
-        for i in 0..n {
-            let start = 4 * (i / 4);
-            let end = (start + stride).min(n);
-            let row = &self.data[i * stride..(i + 1) * stride];
-            let xi = factor * x[i];
-            let mut sum = row[i - start] * x[i];
-            for j in i + 1..end {
-                let a = row[j - start];
-                sum = fma(a, x[j], sum);
-                y[j] = fma(a, xi, y[j]);
+        let stride = self.stride();
+        for (node, panel) in self.data.chunks_exact(4 * stride).enumerate() {
+            let first = 4 * node;
+            let (x_here, x_later) = x[first..].split_at(4);
+            let (y_here, y_later) = y[first..].split_at_mut(4);
+            let scaled: [f64; 4] = std::array::from_fn(|r| factor * x_here[r]);
+            // The block to the right of the diagonal's, and its transpose: one pass over it, four columns at a time.
+            let mut sums = [[0.0; 4]; 4];
+            for (b, (x, y)) in
+                x_later.chunks_exact(4).zip(y_later.chunks_exact_mut(4)).take(self.blocks - 1).enumerate()
+            {
+                for r in 0..4 {
+                    let from = r * stride + 4 * (b + 1);
+                    let row = &panel[from..from + 4];
+                    for c in 0..4 {
+                        y[c] = fma(row[c], scaled[r], y[c]);
+                        sums[r][c] = fma(row[c], x[c], sums[r][c]);
+                    }
+                }
             }
-            y[i] = fma(factor, sum, y[i]);
+            for r in 0..4 {
+                let row = &panel[r * stride..];
+                let mut sum = (sums[r][0] + sums[r][2]) + (sums[r][1] + sums[r][3]);
+                sum = fma(row[r], x_here[r], sum);
+                for c in r + 1..4 {
+                    sum = fma(row[c], x_here[c], sum);
+                    y_here[c] = fma(row[c], scaled[r], y_here[c]);
+                }
+                y_here[r] = fma(factor, sum, y_here[r]);
+            }
         }
     }
 
@@ -140,36 +157,50 @@ impl Ldl {
     /// # Errors
     /// [`Singular`] where a pivot vanishes against the diagonal entry it came from, or is not finite.
     pub fn new(matrix: &SymmetricBand) -> Result<Self, Singular> {
-        let reciprocal = vec![0.0; matrix.size()];
-        let mut ldl = Self { rows: matrix.clone(), reciprocal, negative: 0 };
-        ldl.factorize(matrix)?;
+        let mut ldl = Self { rows: matrix.clone(), reciprocal: vec![0.0; matrix.size()], negative: 0 };
+        ldl.factorize()?;
         Ok(ldl)
     }
 
-    /// Factorises a matrix of the same pattern in the memory of this one.
+    /// Factorises `matrix`, plus c M where `shift` is (c, M), in the memory of this factorisation of the same pattern.
     ///
     /// # Errors
     /// As [`Self::new`]; the factorisation is then unusable.
-    pub fn refactorize(&mut self, matrix: &SymmetricBand) -> Result<(), Singular> {
+    pub fn refactorize(
+        &mut self,
+        matrix: &SymmetricBand,
+        shift: Option<(f64, &SymmetricBand)>,
+    ) -> Result<(), Singular> {
         if self.rows.data.len() != matrix.data.len() || self.rows.blocks != matrix.blocks {
-            *self = Self::new(matrix)?;
-            return Ok(());
+            *self = Self { rows: matrix.clone(), reciprocal: vec![0.0; matrix.size()], negative: 0 };
         }
-        self.rows.data.copy_from_slice(&matrix.data);
-        self.factorize(matrix)
+        match shift {
+            None => self.rows.data.copy_from_slice(&matrix.data),
+            // One pass over memory instead of three.
+            Some((c, m)) => {
+                let sources = matrix.data.iter().zip(&m.data);
+                self.rows.data.iter_mut().zip(sources).for_each(|(row, (k, m))| *row = fma(c, *m, *k));
+            }
+        }
+        self.factorize()
     }
 
-    fn factorize(&mut self, original: &SymmetricBand) -> Result<(), Singular> {
+    fn factorize(&mut self) -> Result<(), Singular> {
+        // Until its pivot is known, the place of a reciprocal holds the size of the diagonal entry.
+        let stride = self.rows.stride();
+        for (i, scale) in self.reciprocal.iter_mut().enumerate() {
+            *scale = self.rows.data[i * stride + i % 4].abs();
+        }
         match self.rows.blocks {
-            2 => self.eliminate::<8>(original),
-            4 => self.eliminate::<16>(original),
-            6 => self.eliminate::<24>(original),
-            _ => self.eliminate::<0>(original),
+            2 => self.eliminate::<8>(),
+            4 => self.eliminate::<16>(),
+            6 => self.eliminate::<24>(),
+            _ => self.eliminate::<0>(),
         }
     }
 
     /// `STRIDE` is the panel's row length where it is known at compile time, 0 otherwise.
-    fn eliminate<const STRIDE: usize>(&mut self, original: &SymmetricBand) -> Result<(), Singular> {
+    fn eliminate<const STRIDE: usize>(&mut self) -> Result<(), Singular> {
         let stride = if STRIDE == 0 { self.rows.stride() } else { STRIDE };
         let nodes = self.rows.nodes;
         self.negative = 0;
@@ -181,7 +212,7 @@ impl Ldl {
                 let row = &done[r * stride..];
                 let pivot = row[r];
                 let i = 4 * node + r;
-                let scale = original.data[i * stride + r].abs();
+                let scale = self.reciprocal[i];
                 // Written so that a NaN fails too.
                 if !(pivot.abs() > SMALLEST_PIVOT * scale && pivot.is_finite()) {
                     return Err(Singular { row: i });

@@ -146,7 +146,7 @@ fn factorisations(c: &mut Criterion) {
         let mut ldl = Ldl::new(symmetric).expect("definite");
         let mut sparse = Bordered::new(&k, &[], None).ok();
         group.bench_function(BenchmarkId::new("banded-ldl", name), |b| {
-            b.iter(|| ldl.refactorize(symmetric).expect("definite"));
+            b.iter(|| ldl.refactorize(symmetric, None).expect("definite"));
         });
         group.bench_function(BenchmarkId::new("banded-lu", name), |b| {
             b.iter(|| BandLu::new(&band).expect("regular"));

@@ -31,7 +31,6 @@ pub struct Motion<'a> {
     border: Vec<BorderRow>,
     /// Of the elastic forces and loads, in the supports' frames, held coordinates eliminated.
     tangent: Matrix,
-    shifted: Option<Matrix>,
     workspace: Workspace,
     force: Vec<f64>,
     inertia: Vec<f64>,
@@ -62,7 +61,6 @@ impl<'a> Motion<'a> {
             mass_factor,
             border,
             tangent: system.matrix(),
-            shifted: None,
             workspace: Workspace::default(),
             force: vec![0.0; n],
             inertia: vec![0.0; n],
@@ -153,15 +151,7 @@ impl<'a> Motion<'a> {
     /// [`Singular`] where it has no inverse.
     pub fn factorize(&mut self, c: f64, earlier: Option<Factor>) -> Result<Factor, Singular> {
         self.statistics.factorizations += 1;
-        let shifted = match &mut self.shifted {
-            Some(shifted) => {
-                shifted.clone_from(&self.tangent);
-                shifted
-            }
-            none => none.insert(self.tangent.clone()),
-        };
-        shifted.add(c, &self.free_mass);
-        Factor::again(earlier, shifted, &self.border)
+        Factor::shifted(earlier, &self.tangent, (c, &self.free_mass), &self.border)
     }
 
     /// Factorises K + ζ M with the last tangent K.
