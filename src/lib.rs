@@ -9,7 +9,7 @@
 //! ```text
 //! scene.toml ─parse─► Scene ─► Model ─build─► System ─solve─► Trajectory ─► csv · json · vtu · svg · html
 //!   text           checked,   continuous,   tables, effects,   states at
-//!                  spans      SI            constraints        chosen loads
+//!                  spans      SI            constraints        chosen loads, times
 //! ```
 //!
 //! # Where things are
@@ -20,9 +20,10 @@
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | [`model`] |
 //! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives | [`basis`], [`linear`] |
 //! | [`system`] | coordinates, supports, constraints, sums over effects, inventory | the above |
-//! | [`linear`] | block-banded LDLᵀ, banded LU, bordered sparse LU | – |
-//! | [`solve`] | Newton, path following, buckling, vibrations | [`system`], [`linear`] |
+//! | [`linear`] | block-banded LDLᵀ, real and complex; banded LU, bordered sparse LU | – |
+//! | [`solve`] | Newton, path following, buckling, vibrations, motion | [`system`], [`linear`] |
 //! | [`run`](mod@run), [`trajectory`] | one model, one analysis; what it leaves | [`solve`] |
+//! | [`restart`] | a saved state, from which a motion goes on | [`solve`] |
 //! | [`output`] | files, plots, the report page | [`trajectory`] |
 //!
 //! # The beam

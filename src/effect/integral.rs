@@ -17,8 +17,12 @@
 //! (0.34 µs with 10 000, 0.46 µs with 100 000, where the matrices leave the caches): 0.19 µs are spent here, 0.04 µs in the
 //! LDLᵀ, the rest in the substitutions and the supports. The tiles' 528 multiply–adds would take 0.02 µs at the machine's
 //! peak: what bounds this loop are the short dependent sums of the local fields and the divisions of the curvature, not
-//! the tiles. Summing the fields of two functions at a time in independent registers was tried: 20 % slower with 4
-//! functions, no gain with 12.
+//! the tiles. Fields are summed two functions at a time, x and y of both in the four lanes of a register; without a closure around the
+//! loop, which the compiler does not inline. With 12 functions that halves the instructions of a force, with 4 it changes
+//! nothing.
+//!
+//! Gauss collocation on 20 RPIM nodes (5 ms, 9.4 iterations a step) takes 184 µs a step, 39 000 instructions an iteration of three
+//! stages: a third are forces, a quarter the complex factorisation and substitution, a tenth the products with the mass matrix.
 
 use super::{Density, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;

@@ -1,6 +1,7 @@
 //! Vibrations and critical loads, as a trajectory shows them.
 
-use super::{Control, Look, Observer, Progress, RunError};
+use super::look::Look;
+use super::{Control, Observer, Progress, RunError};
 use crate::model::{About, Static};
 use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};

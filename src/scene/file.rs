@@ -5,12 +5,16 @@
 
 use std::collections::BTreeMap;
 
+mod analysis;
+
+pub use analysis::*;
+
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::quantity::{
     Acceleration, Angle, AngularVelocity, Area, BendingStiffness, Density, Force, ForcePerLength, Length,
-    MassPerLength, Moment, Positive, Quantity, Ratio, SecondMoment, Stress, Time, Velocity,
+    MassPerLength, Moment, Positive, Quantity, Ratio, SecondMoment, Stress, Velocity,
 };
 use super::value::{At, Count, Located, NodeList, Vector};
 
@@ -351,22 +355,6 @@ pub struct ProbeTable {
     pub at: Located<At>,
 }
 
-/// What to compute.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
-pub struct AnalysisTable {
-    /// Equilibrium under the full loads.
-    #[serde(rename = "static")]
-    pub statics: Option<StaticTable>,
-    /// Motion in time.
-    pub dynamic: Option<Located<DynamicTable>>,
-    /// Critical load factors.
-    pub buckling: Option<ModesTable>,
-    /// Natural frequencies.
-    pub modal: Option<ModalTable>,
-}
-
 /// The velocity of a beam as a rigid body; several of one beam add up.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -379,168 +367,6 @@ pub struct InitialVelocityTable {
     pub rotation: Option<Quantity<AngularVelocity>>,
     /// The point about which the beam turns; the origin when left out.
     pub about: Option<Vector<Length>>,
-}
-
-/// Settings of a static analysis; every one may be left out.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StaticTable {
-    /// Record the state at this many equal parts of the load.
-    pub steps: Option<Located<Count<1>>>,
-    /// Relative accuracy of every equilibrium.
-    pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
-    /// Follow the path by arc length, through limit points.
-    pub arc_length: Option<Located<ArcLengthTable>>,
-}
-
-/// Arc-length continuation; at least one of the `until` keys or `max_points` ends it.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ArcLengthTable {
-    /// Stop when the load factor first reaches this value.
-    pub until_load: Option<Quantity<Ratio>>,
-    /// Stop after this many points on the path; 1000 when left out.
-    pub max_points: Option<Located<Count<1>>>,
-    /// Longest step, as a fraction of the beam's length.
-    pub max_step: Option<Quantity<Ratio, Positive>>,
-    /// Stop when a probe's coordinate reaches a value.
-    pub until_probe: Option<Located<UntilProbeTable>>,
-}
-
-/// A value of a probe's coordinate: `x` or `y`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [{ "required": ["x"] }, { "required": ["y"] }]))]
-pub struct UntilProbeTable {
-    /// Name of the probe.
-    pub probe: Located<String>,
-    /// Value of its x.
-    pub x: Option<Quantity<Length>>,
-    /// Value of its y.
-    pub y: Option<Quantity<Length>>,
-}
-
-/// Motion in time; at most one integrator.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DynamicTable {
-    /// Simulated time.
-    pub duration: Quantity<Time, Positive>,
-    /// Time between records; a two-hundredth of the duration when left out.
-    pub output_every: Option<Located<Quantity<Time, Positive>>>,
-    /// Chung and Hulbert's generalised-α method.
-    pub generalized_alpha: Option<Located<GeneralizedAlphaTable>>,
-    /// Gauss collocation: symplectic, of order 2, 4 or 6.
-    pub gauss: Option<Located<GaussTable>>,
-    /// Radau IIA collocation: for stiff motion, of order 3 or 5.
-    pub radau: Option<Located<RadauTable>>,
-    /// Probes' coordinates that cross a value.
-    #[serde(default)]
-    pub event: Vec<EventTable>,
-}
-
-/// A probe's coordinate crosses a value, `x` or `y`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [{ "required": ["x"] }, { "required": ["y"] }]))]
-pub struct EventTable {
-    /// Name of the probe.
-    pub probe: Located<String>,
-    /// Value of its x.
-    pub x: Option<Quantity<Length>>,
-    /// Value of its y.
-    pub y: Option<Quantity<Length>>,
-    /// Which way; either when left out.
-    #[serde(default)]
-    pub crossing: CrossingName,
-    /// Whether the motion ends there.
-    #[serde(default)]
-    pub stop: bool,
-}
-
-/// The way in which a value is crossed.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum CrossingName {
-    /// Either way.
-    #[default]
-    Any,
-    /// From below.
-    Rising,
-    /// From above.
-    Falling,
-}
-
-/// Generalised-α; `step` or `tolerance`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [{ "required": ["step"] }, { "required": ["tolerance"] }]))]
-pub struct GeneralizedAlphaTable {
-    /// Fixed step.
-    pub step: Option<Located<Quantity<Time, Positive>>>,
-    /// Relative accuracy that chooses the steps.
-    pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
-    /// Spectral radius at infinite frequency, from 0 to 1; 0.9 when left out.
-    #[schemars(range(min = 0, max = 1))]
-    pub spectral_radius: Option<Located<Quantity<Ratio>>>,
-}
-
-/// Gauss collocation; `step` or `tolerance`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [{ "required": ["step"] }, { "required": ["tolerance"] }]))]
-pub struct GaussTable {
-    /// 1, 2 or 3; 3 when left out.
-    #[schemars(range(max = 3))]
-    pub stages: Option<Located<Count<1>>>,
-    /// Fixed step.
-    pub step: Option<Located<Quantity<Time, Positive>>>,
-    /// Relative accuracy that chooses the steps.
-    pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
-}
-
-/// Radau IIA collocation; `step` or `tolerance`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [{ "required": ["step"] }, { "required": ["tolerance"] }]))]
-pub struct RadauTable {
-    /// 2 or 3; 3 when left out.
-    #[schemars(range(max = 3))]
-    pub stages: Option<Located<Count<2>>>,
-    /// Fixed step.
-    pub step: Option<Located<Quantity<Time, Positive>>>,
-    /// Relative accuracy that chooses the steps.
-    pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
-}
-
-/// Critical loads, the lowest first.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ModesTable {
-    /// How many.
-    pub count: Located<Count<1>>,
-}
-
-/// Natural frequencies, the lowest first.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ModalTable {
-    /// How many; motions that nothing resists count too, with 0 Hz.
-    pub count: Located<Count<1>>,
-    /// The state about which the beams vibrate.
-    #[serde(default)]
-    pub about: AboutName,
-}
-
-/// The state about which vibrations are small.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum AboutName {
-    /// The stress-free one, without loads.
-    #[default]
-    Reference,
-    /// The equilibrium under all loads and prescribed displacements, found first.
-    Equilibrium,
 }
 
 /// Files beyond those that are always written.

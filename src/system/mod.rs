@@ -13,15 +13,17 @@
 
 pub mod constraints;
 mod effects;
+mod error;
 mod inventory;
 pub mod supports;
 mod view;
 
+pub use error::SystemError;
 pub use inventory::{EffectEntry, Inventory};
 pub use view::View;
 
-use crate::basis::{Basis, BasisError};
-use crate::centreline::{Curve, CurveError};
+use crate::basis::Basis;
+use crate::centreline::Curve;
 use crate::effect::{Effect, Kind, Workspace};
 use crate::linear::Matrix;
 use crate::linear::bordered::BorderRow;
@@ -35,83 +37,6 @@ use supports::{Held, Hold, Ramp, Supports};
 pub struct Needs {
     /// Whether inertia takes part.
     pub inertia: bool,
-}
-
-/// Why a model could not be turned into equations.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum SystemError {
-    /// There is nothing to compute.
-    #[error("the model has no beam")]
-    #[diagnostic(help("add at least one beam with a geometry, a section and a basis"))]
-    NoBeam,
-    /// Something refers to a beam that does not exist.
-    #[error("{what} refers to beam number {beam}, but the model has {count}")]
-    NoSuchBeam {
-        /// What refers to it.
-        what: &'static str,
-        /// The index given.
-        beam: usize,
-        /// Number of beams.
-        count: usize,
-    },
-    /// A place is not on its beam.
-    #[error("{what} stands at s = {s} m, but beam `{beam}` runs from 0 to {length} m")]
-    OffBeam {
-        /// What stands there.
-        what: &'static str,
-        /// The beam's name.
-        beam: String,
-        /// Arc length asked for \[m\].
-        s: f64,
-        /// The beam's length \[m\].
-        length: f64,
-    },
-    /// A quantity is needed that the model does not give.
-    #[error("beam `{beam}` has no {quantity}, which {needed_by} needs")]
-    #[diagnostic(help("give the beam this quantity, or leave out what needs it"))]
-    Missing {
-        /// The beam's name.
-        beam: String,
-        /// The quantity.
-        quantity: &'static str,
-        /// What needs it.
-        needed_by: &'static str,
-    },
-    /// Two supports hold the same coordinate.
-    #[error("two supports hold the {what} of beam `{beam}` at s = {s} m")]
-    #[diagnostic(help("join them into one support"))]
-    HeldTwice {
-        /// What is held.
-        what: &'static str,
-        /// The beam's name.
-        beam: String,
-        /// Where \[m\].
-        s: f64,
-    },
-    /// The shape functions could not be built.
-    #[error("beam `{beam}`: {source}")]
-    Basis {
-        /// The beam's name.
-        beam: String,
-        /// Why.
-        #[source]
-        source: Box<BasisError>,
-    },
-    /// The centreline is not a curve.
-    #[error("beam `{beam}`: {source}")]
-    Curve {
-        /// The beam's name.
-        beam: String,
-        /// Why.
-        #[source]
-        source: CurveError,
-    },
-}
-
-impl SystemError {
-    pub(crate) fn basis(beam: &str, source: BasisError) -> Self {
-        Self::Basis { beam: beam.to_owned(), source: Box::new(source) }
-    }
 }
 
 /// Distance beyond an end, per length, that counts as round-off.

@@ -213,10 +213,10 @@ impl Method for GeneralizedAlpha<'_> {
         };
         newton::solve(&mut equations, &mut self.x, &self.start, &settings, record)?;
         self.trial_step = h;
-        for i in 0..n {
+        for (i, before) in algorithmic.iter().enumerate() {
             let a = (self.x[i] - to.q[i]) * a_per_q;
             to.q[i] = self.x[i];
-            to.v[i] = from.v[i] + h * ((1.0 - gamma) * algorithmic[i] + gamma * a);
+            to.v[i] = from.v[i] + h * ((1.0 - gamma) * before + gamma * a);
             self.trial.physical[i] = c * self.x[i] + self.offset[i];
             self.trial.algorithmic[i] = a;
         }

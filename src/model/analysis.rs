@@ -1,0 +1,171 @@
+//! What is to be computed, and how.
+
+use std::fmt;
+
+/// What is to be computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Analysis {
+    /// Equilibrium under the full loads.
+    Static(Static),
+    /// Motion in time.
+    Dynamic(Dynamic),
+    /// Load factors at which the straight path becomes unstable.
+    Buckling {
+        /// How many.
+        count: usize,
+    },
+    /// Natural frequencies and mode shapes.
+    Modal {
+        /// How many, motions without resistance (0 Hz) included.
+        count: usize,
+        /// About which state.
+        about: About,
+    },
+}
+
+/// The state about which vibrations are small.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum About {
+    /// The stress-free one, without loads.
+    #[default]
+    Reference,
+    /// The equilibrium under all loads and prescribed displacements.
+    Equilibrium,
+}
+
+/// Settings of a static analysis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Static {
+    /// Load factors at which states are recorded: this many equal parts. `None`: chosen by the solver.
+    pub steps: Option<usize>,
+    /// Relative accuracy of every equilibrium, in increments per length. `None`: the solver's default.
+    pub tolerance: Option<f64>,
+    /// Follow the path by arc length, through limit points.
+    pub arc_length: Option<ArcLength>,
+}
+
+/// Settings of arc-length continuation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArcLength {
+    /// Stop when the load factor first reaches this value.
+    pub until_load: Option<f64>,
+    /// Stop after this many points on the path.
+    pub max_points: usize,
+    /// Longest step along the path, as a fraction of the beam's length.
+    pub max_step: Option<f64>,
+    /// Stop when a probe's coordinate reaches a value.
+    pub until_probe: Option<ProbeTarget>,
+}
+
+/// A value of a probe's coordinate that ends a path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbeTarget {
+    /// Name of the probe.
+    pub probe: String,
+    /// 0 for x, 1 for y.
+    pub axis: usize,
+    /// \[m\].
+    pub value: f64,
+}
+
+/// Settings of a dynamic analysis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dynamic {
+    /// Simulated time \[s\].
+    pub duration: f64,
+    /// Time between records \[s\].
+    pub output_every: f64,
+    /// How time advances.
+    pub integrator: Integrator,
+    /// What to watch for.
+    pub events: Vec<Event>,
+}
+
+/// A probe's coordinate crosses a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// Which, and which value.
+    pub target: ProbeTarget,
+    /// Which way.
+    pub crossing: Crossing,
+    /// Whether the motion ends there.
+    pub stop: bool,
+}
+
+/// The way in which a value is crossed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Crossing {
+    /// Either way.
+    #[default]
+    Any,
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
+}
+
+/// A method of time integration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integrator {
+    /// Chung and Hulbert's generalised-α method.
+    GeneralizedAlpha {
+        /// How steps are chosen.
+        step: StepControl,
+        /// Spectral radius at infinite frequency, from 0 to 1.
+        spectral_radius: f64,
+    },
+    /// Gauss collocation, of order 2 `stages`.
+    Gauss {
+        /// 1, 2 or 3.
+        stages: usize,
+        /// How steps are chosen.
+        step: StepControl,
+    },
+    /// Radau IIA collocation, of order 2 `stages` − 1.
+    Radau {
+        /// 2 or 3.
+        stages: usize,
+        /// How steps are chosen.
+        step: StepControl,
+    },
+}
+
+impl Integrator {
+    /// How steps are chosen.
+    pub fn step_control(&self) -> StepControl {
+        match *self {
+            Self::GeneralizedAlpha { step, .. } | Self::Gauss { step, .. } | Self::Radau { step, .. } => step,
+        }
+    }
+}
+
+impl fmt::Display for StepControl {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fixed(step) => write!(f, "step {step} s"),
+            Self::Tolerance(tolerance) => write!(f, "tolerance {tolerance:e}"),
+        }
+    }
+}
+
+impl fmt::Display for Integrator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let step = self.step_control();
+        match self {
+            Self::GeneralizedAlpha { spectral_radius, .. } => {
+                write!(f, "generalised-α (ρ∞ = {spectral_radius}), {step}")
+            }
+            Self::Gauss { stages, .. } => write!(f, "Gauss collocation ({stages} stages), {step}"),
+            Self::Radau { stages, .. } => write!(f, "Radau IIA collocation ({stages} stages), {step}"),
+        }
+    }
+}
+
+/// How the steps of an integrator are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepControl {
+    /// All alike \[s\].
+    Fixed(f64),
+    /// As long as this relative accuracy allows.
+    Tolerance(f64),
+}

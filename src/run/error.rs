@@ -1,0 +1,108 @@
+//! Why there is no result.
+
+use crate::restart::RestartError;
+use crate::solve::dynamics::start::StartError;
+use crate::system::SystemError;
+use crate::trajectory::Trajectory;
+
+/// Why there is no result.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum RunError {
+    /// The model cannot be turned into equations.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    System(#[from] SystemError),
+    /// No equilibrium was found beyond some load factor.
+    #[error(
+        "no equilibrium beyond load factor {load:.6}: {cause}; smallest step tried {step:.1e}, worst at s = {s:.4} m of beam `{beam}`"
+    )]
+    #[diagnostic(help("{advice}"))]
+    NoEquilibrium {
+        /// Load factor of the last equilibrium.
+        load: f64,
+        /// Smallest step tried.
+        step: f64,
+        /// What went wrong.
+        cause: String,
+        /// The beam on which the iteration went worst.
+        beam: String,
+        /// Where on it \[m\].
+        s: f64,
+        /// What to try.
+        advice: String,
+        /// What was computed until then.
+        partial: Box<Trajectory>,
+    },
+    /// A setting refers to a probe that does not exist.
+    #[error("there is no probe `{probe}`; the probes are: {known}")]
+    NoSuchProbe {
+        /// The name given.
+        probe: String,
+        /// The names that exist.
+        known: String,
+    },
+    /// An eigenvalue problem could not be solved.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Eigen(#[from] crate::solve::eigen::EigenError),
+    /// A time step could not be taken.
+    #[error(
+        "no step of {step:.1e} s beyond t = {time:.6} s: {cause}; the last iterate changed most at s = {s:.4} m of beam `{beam}`"
+    )]
+    #[diagnostic(help("{advice}"))]
+    NoStep {
+        /// Time of the last state \[s\].
+        time: f64,
+        /// The step \[s\].
+        step: f64,
+        /// What went wrong.
+        cause: String,
+        /// The beam on which the iteration went worst.
+        beam: String,
+        /// Where on it \[m\].
+        s: f64,
+        /// What to try.
+        advice: String,
+        /// What was computed until then.
+        partial: Box<Trajectory>,
+    },
+    /// The motion cannot start as the scene says.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Start(#[from] StartError),
+    /// A saved state cannot be used.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Restart(#[from] RestartError),
+    /// The scene is legal, but this version cannot compute it.
+    #[error("{what} is not available in this version")]
+    #[diagnostic(help("{instead}"))]
+    Unavailable {
+        /// What the scene asks for.
+        what: &'static str,
+        /// What to use.
+        instead: &'static str,
+    },
+}
+
+impl RunError {
+    /// 2 where the input is at fault, 1 where the computation failed.
+    pub fn exit_status(&self) -> u8 {
+        match self {
+            Self::System(_)
+            | Self::NoSuchProbe { .. }
+            | Self::Start(_)
+            | Self::Restart(_)
+            | Self::Unavailable { .. } => 2,
+            Self::NoEquilibrium { .. } | Self::NoStep { .. } | Self::Eigen(_) => 1,
+        }
+    }
+
+    /// What was computed before the failure.
+    pub fn partial(&mut self) -> Option<&mut Trajectory> {
+        match self {
+            Self::NoEquilibrium { partial, .. } | Self::NoStep { partial, .. } => Some(partial),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,317 @@
+//! Looking at the states of a system: probes, shapes, frames, and the trajectories made of them.
+
+use super::RunError;
+use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
+use crate::restart::SavedState;
+use crate::solve::dynamics;
+use crate::solve::path::Stuck;
+use crate::solve::statics::Solution;
+use crate::system::{System, SystemError, View};
+use crate::trajectory::{AnalysisKind, Energy, Event, Frame, ProbeSample, ProbeSeries, Shape, Trajectory};
+use std::f64::consts::TAU;
+
+/// Points at which shapes are sampled.
+const SHAPE_POINTS: usize = 201;
+/// Points of a beam in a frame of the animation.
+const FRAME_POINTS: usize = 101;
+/// Frames kept for the animation.
+const FRAMES: usize = 400;
+
+/// Everything needed to look at states of one system.
+pub(super) struct Look<'a> {
+    model: &'a Model,
+    pub(super) system: &'a System,
+    shapes: Vec<View>,
+    frames: Vec<View>,
+    probes: Vec<Watched>,
+}
+
+/// A probe with the rows that see its point.
+struct Watched {
+    name: String,
+    view: View,
+    measure: StrainMeasure,
+    /// ε of the stress-free state there.
+    reference_strain: f64,
+}
+
+fn evenly(length: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|i| length * i as f64 / (count - 1) as f64).collect()
+}
+
+impl<'a> Look<'a> {
+    pub(super) fn new(model: &'a Model, system: &'a System) -> Result<Self, RunError> {
+        let view = |beam: usize, s: &[f64]| {
+            let part = &system.beams()[beam];
+            View::points(&part.basis, part.offset(), s).map_err(|e| SystemError::basis(&part.name, e))
+        };
+        let sampled = |count: usize| -> Result<Vec<View>, SystemError> {
+            (0..system.beams().len())
+                .map(|beam| view(beam, &evenly(system.beams()[beam].basis.length(), count)))
+                .collect()
+        };
+        let probes = model
+            .probes
+            .iter()
+            .map(|probe| {
+                let beam = probe.at.beam;
+                let s = system.arc_length("a probe", probe.at)?;
+                let (view, measure) = (view(beam, &[s])?, model.beams[beam].strain);
+                let reference_strain = if system.beams()[beam].straight {
+                    0.0
+                } else {
+                    view.fields(system.reference()).strain(measure)
+                };
+                Ok(Watched { name: probe.name.clone(), view, measure, reference_strain })
+            })
+            .collect::<Result<_, SystemError>>()?;
+        Ok(Self { model, system, shapes: sampled(SHAPE_POINTS)?, frames: sampled(FRAME_POINTS)?, probes })
+    }
+
+    /// The probe at which a path is to end, as (view, axis, value).
+    pub(super) fn end_of_path(&self, arc: &ArcLength) -> Result<Option<(View, usize, f64)>, RunError> {
+        let Some(target) = &arc.until_probe else { return Ok(None) };
+        Ok(Some((self.view_of(target)?, target.axis, target.value)))
+    }
+
+    fn view_of(&self, target: &ProbeTarget) -> Result<View, RunError> {
+        let found = self.probes.iter().find(|probe| probe.name == target.probe);
+        let probe = found.ok_or_else(|| RunError::NoSuchProbe {
+            probe: target.probe.clone(),
+            known: self.probes.iter().map(|probe| probe.name.as_str()).collect::<Vec<_>>().join(", "),
+        })?;
+        Ok(probe.view.clone())
+    }
+
+    /// The events of a motion, each with the view of its probe.
+    pub(super) fn watches(&self, settings: &Dynamic) -> Result<Vec<dynamics::Watch>, RunError> {
+        let watch = |event: &crate::model::Event| {
+            let view = self.view_of(&event.target)?;
+            let (axis, value) = (event.target.axis, event.target.value);
+            Ok(dynamics::Watch { view, axis, value, crossing: event.crossing, stop: event.stop })
+        };
+        settings.events.iter().map(watch).collect()
+    }
+
+    pub(super) fn empty(&self, analysis: AnalysisKind) -> Trajectory {
+        let reference = self.system.reference();
+        Trajectory {
+            title: self.model.title.clone(),
+            analysis,
+            complete: true,
+            degrees_of_freedom: self.system.degrees_of_freedom(),
+            settings: self.settings(),
+            undeformed: self.shape(reference),
+            last: self.shape(reference),
+            probes: self
+                .probes
+                .iter()
+                .map(|probe| ProbeSeries { name: probe.name.clone(), samples: vec![] })
+                .collect(),
+            ..Trajectory::default()
+        }
+    }
+
+    fn settings(&self) -> Vec<(String, String)> {
+        let mut settings = Vec::new();
+        for (beam, part) in self.model.beams.iter().zip(self.system.beams()) {
+            let name = &beam.name;
+            settings.push((
+                format!("beam {name}"),
+                format!("{} m, {}", part.basis.length(), beam.discretization),
+            ));
+            settings.push((
+                format!("beam {name}, strain"),
+                format!(
+                    "{}; Gauss points {} (stretch), {} (bend) a cell",
+                    beam.strain, beam.gauss_points.stretch, beam.gauss_points.bend
+                ),
+            ));
+        }
+        let inventory = self.system.inventory();
+        let mut kinds: Vec<_> = inventory.effects.iter().map(|e| e.kind.name()).collect();
+        kinds.dedup();
+        settings.push(("effects".into(), kinds.join(", ")));
+        settings.push(("linear solver".into(), inventory.solver.into()));
+        settings
+    }
+
+    pub(super) fn shape(&self, q: &[f64]) -> Vec<Shape> {
+        let beams = self.model.beams.iter().zip(self.system.beams()).zip(&self.shapes);
+        beams
+            .map(|((beam, part), view)| {
+                let mut shape = Shape { beam: beam.name.clone(), s: view.s().to_vec(), ..Shape::default() };
+                let mut angle = None;
+                for fields in view.all(q) {
+                    shape.x.push(fields.position[0]);
+                    shape.y.push(fields.position[1]);
+                    let unfolded = unfold(fields.angle(), angle);
+                    angle = Some(unfolded);
+                    shape.angle.push(unfolded);
+                    shape.strain.push(fields.strain(beam.strain));
+                    shape.curvature.push(fields.curvature());
+                }
+                let first = 4 * part.first_node;
+                let nodes = q[first..first + 4 * part.basis.nodes().len()].chunks_exact(4);
+                shape.nodes = nodes.map(|n| [n[0], n[1]]).collect();
+                // A curved beam is free of stress with the strain that its interpolated shape has.
+                if !part.straight {
+                    let reference = view.all(self.system.reference());
+                    for (strain, reference) in shape.strain.iter_mut().zip(reference) {
+                        *strain -= reference.strain(beam.strain);
+                    }
+                }
+                shape
+            })
+            .collect()
+    }
+
+    pub(super) fn frame(&self, parameter: f64, q: &[f64]) -> Frame {
+        let beams = self.frames.iter().map(|view| view.all(q).map(|f| f.position).collect()).collect();
+        Frame { parameter, beams }
+    }
+
+    pub(super) fn record(
+        &self,
+        trajectory: &mut Trajectory,
+        parameter: f64,
+        q: &[f64],
+        velocity: Option<&[f64]>,
+        energy: Energy,
+    ) {
+        trajectory.parameter.push(parameter);
+        trajectory.energy.push(energy);
+        for (Watched { view, measure, reference_strain, .. }, series) in
+            self.probes.iter().zip(&mut trajectory.probes)
+        {
+            let fields = view.fields(q);
+            let angle = unfold(fields.angle(), series.samples.last().map(|s| s.angle));
+            series.samples.push(ProbeSample {
+                x: fields.position[0],
+                y: fields.position[1],
+                angle,
+                curvature: fields.curvature(),
+                strain: fields.strain(*measure) - reference_strain,
+                vx: velocity.map(|v| view.velocity(v)[0]),
+                vy: velocity.map(|v| view.velocity(v)[1]),
+            });
+        }
+    }
+
+    pub(super) fn statics(&self, solution: &Solution) -> Trajectory {
+        let mut trajectory = self.empty(AnalysisKind::Static);
+        let every = solution.states.len().div_ceil(FRAMES).max(1);
+        for (i, (load, q)) in solution.states.iter().enumerate() {
+            self.record(&mut trajectory, *load, q, None, self.system.energy(*load, q, None));
+            if i % every == 0 || i + 1 == solution.states.len() {
+                trajectory.frames.push(self.frame(*load, q));
+            }
+        }
+        if let Some((_, q)) = solution.states.last() {
+            trajectory.last = self.shape(q);
+        }
+        trajectory.history = solution.history.clone();
+        trajectory.statistics = solution.statistics;
+        for event in &solution.events {
+            let (change, advice) = if event.after > event.before {
+                ("loses", "beyond it the equilibrium found is unstable: a bifurcation or a limit point")
+            } else {
+                ("regains", "the path is back on a more stable branch")
+            };
+            trajectory.warnings.push(format!(
+                "the tangent {change} definiteness at load factor {:.6}: {} unstable direction{} before, {} after; {advice}",
+                event.load,
+                event.before,
+                if event.before == 1 { "" } else { "s" },
+                event.after,
+            ));
+        }
+        trajectory
+    }
+
+    pub(super) fn stuck(&self, stuck: &Stuck, solution: &Solution) -> RunError {
+        let (beam, s) = stuck.at;
+        let advice = if stuck.step == 0.0 {
+            "the undeformed structure can move without resistance: add a support, or give the beam a bending stiffness"
+        } else {
+            "near a limit point the load cannot grow: follow the path with `arc_length` in [analysis.static]; \
+             if the shape is folded there, use more nodes or smaller loads"
+        };
+        RunError::NoEquilibrium {
+            load: stuck.load,
+            step: stuck.step,
+            cause: stuck.failure.to_string(),
+            beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
+            s,
+            advice: advice.into(),
+            partial: Box::new(Trajectory { complete: false, ..self.statics(solution) }),
+        }
+    }
+
+    pub(super) fn dynamics(&self, settings: &Dynamic, solution: dynamics::Solution) -> Trajectory {
+        let mut trajectory = self.empty(AnalysisKind::Dynamic);
+        trajectory.settings.push(("integrator".into(), settings.integrator.to_string()));
+        let every = solution.states.len().div_ceil(FRAMES).max(1);
+        for (i, state) in solution.states.iter().enumerate() {
+            let (q, v) = (&state.q[..], Some(&state.v[..]));
+            let energy = Energy { work: state.work, ..self.system.energy(1.0, q, v) };
+            self.record(&mut trajectory, state.time, q, v, energy);
+            if i % every == 0 || i + 1 == solution.states.len() {
+                trajectory.frames.push(self.frame(state.time, q));
+            }
+        }
+        if let Some(state) = solution.states.last() {
+            trajectory.last = self.shape(&state.q);
+        }
+        for (watch, state) in &solution.events {
+            let ProbeTarget { probe, axis, value } = settings.events[*watch].target.clone();
+            trajectory.events.push(Event { time: state.time, probe, axis: ["x", "y"][axis].into(), value });
+        }
+        let divided = solution.statistics.rejected_steps;
+        if divided > 0 && matches!(settings.integrator.step_control(), StepControl::Fixed(_)) {
+            let smallest = solution.history.iter().map(|r| r.step).fold(f64::INFINITY, f64::min);
+            trajectory.warnings.push(format!(
+                "the step was divided {divided} time{}, down to {smallest:.1e} s, because its equations could not be solved: \
+                 give `tolerance` instead of `step`, or a smaller `step`",
+                if divided == 1 { "" } else { "s" }
+            ));
+        }
+        trajectory.history = solution.history;
+        trajectory.statistics = solution.statistics;
+        trajectory.saved = solution.checkpoint.map(|checkpoint| SavedState::new(self.system, checkpoint));
+        trajectory
+    }
+
+    pub(super) fn lost(
+        &self,
+        settings: &Dynamic,
+        stuck: &dynamics::Stuck,
+        solution: dynamics::Solution,
+    ) -> RunError {
+        let (beam, s) = stuck.at;
+        let advice = match settings.integrator.step_control() {
+            StepControl::Fixed(_) => {
+                "give `tolerance` instead of `step`, so that steps are as short as the motion needs them; a smaller `step`; \
+                 or more nodes where the beam bends most"
+            }
+            StepControl::Tolerance(_) => {
+                "the motion has no continuation that the beam model can follow: look at the states until here, and use more \
+                 nodes or softer loads if the beam folds"
+            }
+        };
+        RunError::NoStep {
+            time: stuck.time,
+            step: stuck.step,
+            cause: stuck.failure.to_string(),
+            beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
+            s,
+            advice: advice.into(),
+            partial: Box::new(Trajectory { complete: false, ..self.dynamics(settings, solution) }),
+        }
+    }
+}
+
+/// The representative of an angle nearest to the one before.
+fn unfold(angle: f64, before: Option<f64>) -> f64 {
+    before.map_or(angle, |before| angle + TAU * ((before - angle) / TAU).round())
+}
