@@ -1,5 +1,6 @@
 //! Factorisations against each other: banded LDLᵀ, banded LU, faer's sparse LU, faer's dense LU.
 
+use ancf::linear::complex::ComplexFactor;
 use ancf::linear::{Factor, Matrix, band::BandLu, bordered::Bordered, symmetric::Ldl};
 use faer::linalg::solvers::Solve;
 use proptest::prelude::*;
@@ -36,8 +37,83 @@ fn agree(a: &[f64], b: &[f64], tolerance: f64) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// A row within the first support.
+fn row(n: usize) -> Vec<(usize, f64)> {
+    vec![(0, 1.0), (n.min(4) - 1, -0.5)]
+}
+
 proptest! {
     #![proptest_config(super::cases(64))]
+
+    /// K + ζ M of a collocation method's stages, banded, without symmetry, and bordered: what comes out is put back into the equations.
+    #[test]
+    fn complex_systems_are_solved(
+        nodes in 1..12_usize, blocks in 1..7_usize, numbers in numbers(),
+        re in -30.0..30.0_f64, im in 5.0..40.0_f64, general: bool, bordered: bool,
+    ) {
+        let k = symmetric(nodes, blocks, &numbers, 3.0);
+        let m = symmetric(nodes, blocks, &numbers[3..], 20.0);
+        let zeta = faer::c64::new(re, im);
+        let n = k.size();
+        let k = match &k {
+            Matrix::Symmetric(k) if general => Matrix::General(k.to_band()),
+            _ => k,
+        };
+        let border = if bordered { vec![row(n)] } else { vec![] };
+        let size = n + border.len();
+        let b: Vec<f64> = numbers.iter().cycle().take(2 * size).copied().collect();
+        let (mut x_re, mut x_im) = (b[..size].to_vec(), b[size..].to_vec());
+        // Twice: the second factorisation reuses the memory of the first.
+        let first = ComplexFactor::again(None, &k, &m, zeta.conj(), &border).expect("regular");
+        let factor = ComplexFactor::again(Some(first), &k, &m, zeta, &border).expect("regular");
+        factor.solve(&mut x_re, &mut x_im);
+        let (mut back_re, mut back_im) = (vec![0.0; size], vec![0.0; size]);
+        k.multiply_add(1.0, &x_re[..n], &mut back_re[..n]);
+        k.multiply_add(1.0, &x_im[..n], &mut back_im[..n]);
+        m.multiply_add(re, &x_re[..n], &mut back_re[..n]);
+        m.multiply_add(-im, &x_im[..n], &mut back_re[..n]);
+        m.multiply_add(re, &x_im[..n], &mut back_im[..n]);
+        m.multiply_add(im, &x_re[..n], &mut back_im[..n]);
+        for (r, row) in border.iter().enumerate() {
+            for &(i, value) in row {
+                for (back, x) in [(&mut back_re, &x_re), (&mut back_im, &x_im)] {
+                    back[i] += value * x[n + r];
+                    back[n + r] += value * x[i];
+                }
+            }
+        }
+        agree(&back_re, &b[..size], 1e-9)?;
+        agree(&back_im, &b[size..], 1e-9)?;
+    }
+
+    /// K + c M in one pass is the sum factorised.
+    #[test]
+    fn shifted_systems_are_solved(
+        nodes in 1..12_usize, blocks in 1..7_usize, numbers in numbers(), c in 0.0..5.0_f64,
+    ) {
+        let (k, m) = (symmetric(nodes, blocks, &numbers, 30.0), symmetric(nodes, blocks, &numbers[5..], 30.0));
+        let mut sum = k.clone();
+        sum.add(c, &m);
+        let b: Vec<f64> = numbers.iter().cycle().take(k.size()).copied().collect();
+        let (mut x, mut y) = (b.clone(), b);
+        Factor::new(&sum, &[]).expect("definite").solve(&mut x);
+        let earlier = Factor::new(&k, &[]).expect("definite");
+        Factor::shifted(Some(earlier), &k, (c, &m), &[]).expect("definite").solve(&mut y);
+        prop_assert_eq!(x, y);
+    }
+
+    #[test]
+    fn products_take_every_entry(nodes in 1..12_usize, blocks in 1..7_usize, numbers in numbers()) {
+        let matrix = symmetric(nodes, blocks, &numbers, 0.0);
+        let n = matrix.size();
+        let x: Vec<f64> = numbers.iter().cycle().take(n).copied().collect();
+        let mut y = x.clone();
+        matrix.multiply_add(-0.7, &x, &mut y);
+        for i in 0..n {
+            let sum: f64 = (0..n).map(|j| matrix.get(i, j) * x[j]).sum();
+            prop_assert!((y[i] - x[i] + 0.7 * sum).abs() < 1e-12, "row {}", i);
+        }
+    }
 
     #[test]
     fn all_factorisations_solve_alike(nodes in 1..12_usize, blocks in 1..7_usize, numbers in numbers()) {
