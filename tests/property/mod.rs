@@ -1,5 +1,6 @@
 //! What must hold at every state: derivatives, invariances, exactness.
 
+mod agreement;
 mod basis;
 mod derivatives;
 mod dynamics;
