@@ -3,6 +3,7 @@
 
 use ancf::run::{Control, inspect, run};
 use ancf::scene::Scene;
+use ancf::trajectory::Trajectory;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -41,17 +42,18 @@ fn regress_inventories() {
     snapshot("inventories", &text);
 }
 
-/// Counts, not clocks. They depend on decisions of the step control alone, which round-off hardly ever turns.
+/// Counts, not clocks, which depend on decisions of the step control alone, and round-off hardly ever turns those; and what the
+/// runs find, to ten digits.
 #[test]
-fn regress_statistics() {
-    let mut text = String::new();
+fn regress_statistics_and_results() {
+    let (mut counts, mut results) = (String::new(), String::new());
     for (name, path) in scenes() {
         let scene = Scene::load(&path, &[]).expect("a case's scene is legal");
         let trajectory = run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
         let trajectory = trajectory.expect("a case's scene can be solved");
         let s = trajectory.statistics;
         writeln!(
-            text,
+            counts,
             "{name}: {} unknowns, {} steps, {} rejected, {} Newton iterations, {} residuals, {} tangents, {} factorisations, {} warnings",
             trajectory.degrees_of_freedom,
             s.steps,
@@ -63,6 +65,67 @@ fn regress_statistics() {
             trajectory.warnings.len(),
         )
         .expect("text takes text");
+        results.push_str(&found(&name, &trajectory));
     }
-    snapshot("statistics", &text);
+    snapshot("statistics", &counts);
+    let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots/results.snap");
+    let stored = std::fs::read_to_string(stored).unwrap_or_default();
+    // After the header, which ends with the second line of dashes.
+    let stored = stored.splitn(3, "---\n").nth(2).unwrap_or_default();
+    if !agree(stored, &results) {
+        snapshot("results", &results);
+    }
+}
+
+/// Last positions of the probes, energies, frequencies, critical loads.
+fn found(name: &str, trajectory: &Trajectory) -> String {
+    let mut lines = vec![name.to_owned()];
+    let mut line = |what: &str, numbers: &[f64]| {
+        let numbers: Vec<String> = numbers.iter().map(|v| format!("{v:.9e}")).collect();
+        lines.push(format!("  {what} {}", numbers.join(" ")));
+    };
+    for probe in &trajectory.probes {
+        if let Some(last) = probe.samples.last() {
+            line(&probe.name, &[last.x, last.y]);
+        }
+    }
+    if let Some(e) = trajectory.energy.last() {
+        line("energy", &[e.stretch, e.bend, e.kinetic, e.potential]);
+    }
+    for (what, numbers) in [("frequencies", &trajectory.frequencies), ("loads", &trajectory.load_factors)] {
+        if !numbers.is_empty() {
+            line(what, numbers);
+        }
+    }
+    lines.join("\n") + "\n\n"
+}
+
+/// Another machine rounds otherwise; a motion of thousands of steps carries that to so many parts of the largest number in a line.
+const ROUND_OFF: f64 = 1e-8;
+
+fn agree(stored: &str, now: &str) -> bool {
+    let lines = |text: &str| text.trim().lines().map(str::to_owned).collect::<Vec<_>>();
+    let (stored, now) = (lines(stored), lines(now));
+    stored.len() == now.len()
+        && stored.iter().zip(&now).all(|(stored, now)| {
+            let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+            let (stored, now) = (words(stored), words(now));
+            let number = |word: &String| word.parse::<f64>().ok();
+            let scale = stored.iter().filter_map(number).fold(0.0_f64, |m, v| m.max(v.abs()));
+            stored.len() == now.len()
+                && stored.iter().zip(&now).all(|(a, b)| match (number(a), number(b)) {
+                    (Some(a), Some(b)) => (a - b).abs() <= ROUND_OFF * scale,
+                    _ => a == b,
+                })
+        })
+}
+
+#[test]
+fn the_comparison_of_results_sees_a_lost_digit() {
+    let stored = "scene\n  tip 1.234567890e0 -2.000000000e-3\n";
+    assert!(agree(stored, "scene\n  tip 1.234567891e0 -2.000000001e-3\n"));
+    assert!(!agree(stored, "scene\n  tip 1.234567990e0 -2.000000000e-3\n"));
+    assert!(!agree(stored, "scene\n  tip 1.234567890e0 -2.000100000e-3\n"));
+    assert!(!agree(stored, "scene\n  end 1.234567890e0 -2.000000000e-3\n"));
+    assert!(!agree(stored, "scene\n"));
 }
