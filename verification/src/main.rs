@@ -1,17 +1,14 @@
 //! `verify`: makes the reference data of the verification cases, and reports how the solver compares with it.
 
 mod freeze;
-mod python;
 mod report;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use ancf_check::Suite;
+use ancf_verification::Failure;
 use clap::{Parser, Subcommand};
-
-/// What ends a command.
-type Failure = Box<dyn std::error::Error>;
 
 /// Verification of ancf against closed forms, publications and other codes.
 #[derive(Parser)]

@@ -9,7 +9,7 @@
 //! class = "closed-form"                 # closed-form | published | code | integrator | refinement
 //! title = "Elastica by shooting, 30 digits"
 //! citation = "Bisshopp & Drucker 1945"
-//! script = "static_beam.py"             # in verification/oracles/; or transcribed = "file.csv" there
+//! script = "static_beam.py"             # in verification/oracles/; or transcribed = "file.csv" there; or peer = "exudyn"
 //! arguments = ["tip-load"]
 //! note = "What a reader of the numbers must know."
 //!
@@ -28,6 +28,9 @@
 //! allowed = 1e-8
 //! why = "What limits the agreement."
 //! ```
+//!
+//! An oracle `peer = "exudyn"` with `run = "loads"` is what Exudyn makes of the runs of that family; its columns are their
+//! variables, then `probe`, `parameter` (load factor or time), `x`, `y`, or in a modal analysis `mode`, `frequency`.
 //!
 //! `{name}` stands for the value that the member of the family has for this variable; values may contain
 //! further ones. With `along = "s"` the rows that `where` leaves form a curve over that column. With
@@ -123,8 +126,20 @@ pub struct Oracle {
     pub scenes: Vec<String>,
     /// A table in `verification/oracles/` typed from the literature.
     pub transcribed: Option<String>,
+    /// Another code that solves the same scenes.
+    pub peer: Option<Peer>,
+    /// The family whose runs the peer solves; may be left out where there is only one.
+    pub run: Option<String>,
     /// What a reader of the numbers must know.
     pub note: Option<String>,
+}
+
+/// Another code that is asked about our scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Peer {
+    /// Exudyn, whose ANCFCable2D is the element of our ANCF with engineering strain.
+    Exudyn,
 }
 
 /// A family of runs: one scene under the product of some axes.
@@ -394,8 +409,13 @@ impl Case {
             return Err("a case needs at least one [[check]]".to_owned());
         }
         for (name, oracle) in &self.text.oracle {
-            if oracle.script.is_some() == oracle.transcribed.is_some() {
-                return Err(format!("[oracle.{name}] needs `script` or `transcribed`, one of both"));
+            let sources = [oracle.script.is_some(), oracle.transcribed.is_some(), oracle.peer.is_some()];
+            if sources.iter().filter(|given| **given).count() != 1 {
+                return Err(format!("[oracle.{name}] needs `script`, `transcribed` or `peer`, one of them"));
+            }
+            if oracle.peer.is_some() {
+                self.family(oracle.run.as_deref())
+                    .map_err(|message| format!("[oracle.{name}]: {message}"))?;
             }
         }
         for (k, check) in self.text.check.iter().enumerate() {
