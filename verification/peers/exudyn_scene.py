@@ -4,7 +4,9 @@ The description is what `verification/src/peers/describe.rs` writes: nodes with 
 supports and loads at nodes, and one analysis. Nothing is decided here that is not in it, except how Exudyn is told.
 
 - A support is one linear constraint on the four coordinates [x, y, x', y'] of a node, so that the direction of a
-  gradient can be held at any inclination of the beam: n . r' = 0 with n across the beam.
+  gradient can be held at any inclination of the beam: n . r' = 0 with n across the beam. The constraint is on the
+  coordinates themselves, reference included, although those of Exudyn's nodes are counted from the reference.
+- A follower's components are along and across the tangent; ours are those of the fixed frame in the undeformed state.
 - A moment acts through the node's orientation, atan2(y', x'), as ours does.
 - Loads grow with the load factor, in statics only.
 - Exudyn starts with loose tolerances of Newton's method; here the residual is absolute and small.
@@ -44,7 +46,7 @@ class Cables:
         for support in given["supports"]:
             self.add_support(**support)
         for force in given["forces"]:
-            self.add_load(item.Force, force, [*force["value"], 0], bodyFixed=force["follower"])
+            self.add_force(force)
         for moment in given["moments"]:
             self.add_load(item.Torque, moment, [0, 0, moment["value"]])
 
@@ -80,6 +82,8 @@ class Cables:
             rows.append([0, 0, -tangent[1], tangent[0]])
         if rotation == "gradient":
             rows += [[0, 0, 1, 0], [0, 0, 0, 1]]
+        rows = np.array(rows, float)
+        place = [*self.given["beams"][beam]["nodes"][node], *tangent]
         mbs = self.mbs
         ground = mbs.AddNode(item.NodePointGround())
         markers = [
@@ -90,10 +94,17 @@ class Cables:
             item.ObjectConnectorCoordinateVector(
                 markerNumbers=markers,
                 scalingMarker0=np.zeros((len(rows), 0)),
-                scalingMarker1=np.array(rows, float),
-                offset=np.zeros(len(rows)),
+                scalingMarker1=rows,
+                offset=rows @ place,
             )
         )
+
+    def add_force(self, force):
+        along, across = self.given["beams"][force["beam"]]["tangent"]
+        x, y = force["value"]
+        if force["follower"]:
+            x, y = along * x + across * y, along * y - across * x
+        self.add_load(item.Force, force, [x, y, 0], bodyFixed=force["follower"])
 
     def add_load(self, kind, load, vector, **options):
         marker = self.mbs.AddMarker(item.MarkerNodeRigid(nodeNumber=self.nodes[load["beam"]][load["node"]]))

@@ -2,13 +2,13 @@
 
 use crate::{both, distance};
 
-/// A cantilever from the origin at an angle, with one load at its end.
-fn cantilever(end: [f64; 2], elements: usize, points: [usize; 2], clamp: &str, load: &str) -> String {
-    let ([x, y], [stretch, bend]) = (end, points);
+/// A cantilever of length 1 m along some direction, with one load at its end.
+fn cantilever(along: [f64; 2], elements: usize, points: [usize; 2], clamp: &str, load: &str) -> String {
+    let (x, y, [stretch, bend]) = (0.3 + along[0], -0.2 + along[1], points);
     format!(
         r#"
 [beam.arm]
-start = [0.0, 0.0]
+start = [0.3, -0.2]
 end = [{x:?}, {y:?}]
 axial_stiffness = 1e4
 bending_stiffness = 2.0
