@@ -140,6 +140,8 @@ pub struct Oracle {
 pub enum Peer {
     /// Exudyn, whose ANCFCable2D is the element of our ANCF with engineering strain.
     Exudyn,
+    /// scikit-fem's Hermite elements: what our beam becomes as deflections become small.
+    ScikitFem,
 }
 
 /// A family of runs: one scene under the product of some axes.

@@ -3,6 +3,7 @@
 //! [`describe`](mod@describe) says a scene in plain words; `verification/peers/exudyn_scene.py` says these to Exudyn, whose ANCFCable2D
 //! is the element of our ANCF with engineering strain: same coordinates, same strain and curvature, same Gauss points.
 //! Where mesh, Gauss points and (in dynamics) method and step are the same, so are the numbers.
+//! `scikit_fem_scene.py` makes of the same words the linear beam, which ours becomes as deflections become small.
 
 pub mod describe;
 mod table;
@@ -19,8 +20,6 @@ use crate::bridge::Script;
 
 pub use table::{scenes, table};
 
-static EXUDYN: Script = Script::new("exudyn_scene");
-
 /// What a peer found.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Answer {
@@ -28,9 +27,9 @@ pub struct Answer {
     pub parameter: Vec<f64>,
     /// Per probe of the scene its places.
     pub probes: Vec<Track>,
-    /// Per record, computed from the coordinates.
+    /// Per record, computed from the coordinates; none from scikit-fem.
     pub energy: Vec<Energy>,
-    /// Per beam and node of the last record: \[x, y, x', y'\].
+    /// Per beam and node of the last record: \[x, y, x', y'\]; none from scikit-fem.
     pub nodes: Vec<Vec<[f64; 4]>>,
     /// Natural frequencies \[Hz\], ascending.
     pub frequencies: Vec<f64>,
@@ -60,25 +59,33 @@ pub struct Energy {
     pub weight: f64,
 }
 
+/// A peer's name for the reader, its package, and its script.
+fn about(peer: Peer) -> (&'static str, &'static str, &'static Script) {
+    static EXUDYN: Script = Script::new("exudyn_scene");
+    static SCIKIT_FEM: Script = Script::new("scikit_fem_scene");
+    match peer {
+        Peer::Exudyn => ("Exudyn", "exudyn", &EXUDYN),
+        Peer::ScikitFem => ("scikit-fem", "scikit-fem", &SCIKIT_FEM),
+    }
+}
+
 /// What a peer makes of a scene.
 ///
 /// # Errors
 /// What of the scene has no counterpart, a Python that cannot be had, and what the peer raises.
 pub fn ask(peer: Peer, scene: &Scene) -> Result<Answer, Failure> {
-    let Peer::Exudyn = peer;
+    let (name, _, script) = about(peer);
     let description = describe::describe(scene.model(), scene.analysis())
-        .map_err(|message| format!("{}: Exudyn has {message}", scene.name()))?;
-    EXUDYN.ask(&description).map_err(|error| format!("{}: Exudyn: {error}", scene.name()).into())
+        .map_err(|message| format!("{}: {name} has {message}", scene.name()))?;
+    script.ask(&description).map_err(|error| format!("{}: {name}: {error}", scene.name()).into())
 }
 
 /// The script that tells a peer about scenes.
 pub fn script(suite: &Suite, peer: Peer) -> PathBuf {
-    let Peer::Exudyn = peer;
-    EXUDYN.path(suite)
+    about(peer).2.path(suite)
 }
 
 /// The Python package that a peer is.
 pub fn package(peer: Peer) -> &'static str {
-    let Peer::Exudyn = peer;
-    "exudyn"
+    about(peer).1
 }

@@ -1,5 +1,7 @@
 //! Equilibria of a cantilever: the same elements, so the same tips to the accuracy of Newton's method.
 
+use ancf_check::case::Peer;
+
 use crate::{both, distance};
 
 /// A cantilever of length 1 m along some direction, with one load at its end.
@@ -35,7 +37,7 @@ at = "end"
 
 /// Tips and energies agree to 1e-8 of the length and of the energy.
 fn agree(name: &str, text: &str) {
-    let (ours, theirs) = both(text);
+    let (ours, theirs) = both(Peer::Exudyn, text);
     let (tip, other) = (ours.probes[0].samples.last().unwrap(), &theirs.probes[0]);
     let (a, b) = ([tip.x, tip.y], [*other.x.last().unwrap(), *other.y.last().unwrap()]);
     let (mine, its) = (ours.energy.last().unwrap(), theirs.energy.last().unwrap());

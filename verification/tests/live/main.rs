@@ -6,24 +6,25 @@ mod exudyn_dynamics;
 mod exudyn_frequencies;
 mod exudyn_statics;
 mod frozen;
+mod scikit_fem;
 
 use ancf::run::{Control, run};
-use ancf::scene::Scene;
 use ancf::trajectory::Trajectory;
 use ancf_check::case::Peer;
 use ancf_verification::peers::{Answer, ask};
 
-/// The scene under some overrides by both: ours and Exudyn's.
-fn both(text: &str) -> (Trajectory, Answer) {
+/// A scene by both: ours and the peer.
+fn both(peer: Peer, text: &str) -> (Trajectory, Answer) {
     let scene = ancf::scene::parse("live.toml", text).unwrap_or_else(|e| panic!("{e}"));
-    (ours(&scene), ask(Peer::Exudyn, &scene).unwrap_or_else(|e| panic!("{e}")))
+    (ours(text), ask(peer, &scene).unwrap_or_else(|e| panic!("{e}")))
 }
 
-fn ours(scene: &Scene) -> Trajectory {
+fn ours(text: &str) -> Trajectory {
+    let scene = ancf::scene::parse("live.toml", text).unwrap_or_else(|e| panic!("{e}"));
     run(scene.model(), scene.analysis(), &mut |_| Control::Continue).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Where our only probe and Exudyn's are, record by record: (parameter, ours, theirs).
+/// Where our only probe and theirs are, record by record: (parameter, ours, theirs).
 fn tips(ours: &Trajectory, theirs: &Answer) -> Vec<(f64, [f64; 2], [f64; 2])> {
     let (a, b) = (&ours.probes[0].samples, &theirs.probes[0]);
     assert_eq!(ours.parameter.len(), theirs.parameter.len(), "{:?}", theirs.parameter);
