@@ -1,5 +1,6 @@
 //! `verify`: makes the reference data of the verification cases, and reports how the solver compares with it.
 
+mod beside;
 mod freeze;
 mod report;
 
@@ -39,6 +40,11 @@ enum Command {
         /// Cases; all if none is named
         cases: Vec<String>,
     },
+    /// Solve the scenes of some cases by Exudyn too, and print both tips side by side
+    Peers {
+        /// Cases; those with reference data by a peer if none is named
+        cases: Vec<String>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -46,6 +52,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Report { out, against, cases } => report::write(&suite, &out, against.as_deref(), &cases),
         Command::Freeze { check, cases } => freeze::freeze(&suite, &cases, check),
+        Command::Peers { cases } => beside::print(&suite, &cases),
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,
