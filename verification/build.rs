@@ -9,14 +9,14 @@ fn main() {
 
     // A linker's complaint about a missing -lpython names no remedy.
     let (folder, name) = (python.lib_dir().unwrap_or_default(), python.lib_name().unwrap_or_default());
-    let shared = cfg!(not(target_os = "linux"))
-        || folder.is_empty()
-        || Path::new(folder).join(format!("lib{name}.so")).exists();
-    if !shared {
+    let library = Path::new(folder).join(format!("lib{name}.so"));
+    if cfg!(target_os = "linux") && !library.exists() {
         println!(
-            "cargo::error=the verification suite embeds Python {}, but there is no lib{name}.so in {folder}; install \
-             what developers need (Debian: apt install python3-dev python3-venv)",
-            python.version()
+            "cargo::error=the verification suite embeds Python {}, but there is no {}; install what developers need \
+             (Debian: apt install python3-dev python3-venv), or name another interpreter that has its shared library \
+             in the environment variable PYO3_PYTHON",
+            python.version(),
+            library.display(),
         );
     }
     println!("cargo::rustc-env=ANCF_PYTHON={}", python.executable().unwrap_or("python3"));

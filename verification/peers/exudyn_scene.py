@@ -53,8 +53,10 @@ class Cables:
     def add_beam(self, beam):
         mbs = self.mbs
         nodes = [
-            mbs.AddNode(item.NodePoint2DSlope1(referenceCoordinates=[*position, *beam["tangent"]]))
-            for position in beam["nodes"]
+            mbs.AddNode(
+                item.NodePoint2DSlope1(referenceCoordinates=[*position, *beam["tangent"]], initialVelocities=velocity)
+            )
+            for position, velocity in zip(beam["nodes"], beam["velocities"])
         ]
         for a, b, length in zip(nodes, nodes[1:], beam["lengths"]):
             cable = mbs.AddObject(

@@ -22,6 +22,8 @@ class Beam:
         (self.beam,) = given["beams"]
         if self.beam["tangent"] != [1, 0]:
             raise ValueError("the beam must be along x")
+        if np.any(self.beam["velocities"]):
+            raise ValueError("the beam must start at rest")
         self.places = np.array(self.beam["nodes"])
         basis = skfem.Basis(skfem.MeshLine(self.places[:, 0]), skfem.ElementLineHermite(), intorder=6)
         # deflection and slope of every node, from left to right

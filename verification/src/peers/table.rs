@@ -15,15 +15,12 @@ fn runs(case: &Case, oracle: &Oracle) -> Result<Vec<Member>, Failure> {
     Ok(members(&family)?)
 }
 
-/// The scene files that the oracle's numbers are made from.
+/// The scene file of each of the oracle's runs.
 ///
 /// # Errors
 /// Where the family is none.
 pub fn scenes(case: &Case, oracle: &Oracle) -> Result<Vec<PathBuf>, Failure> {
-    let mut scenes: Vec<_> =
-        runs(case, oracle)?.into_iter().map(|member| case.folder.join(member.scene)).collect();
-    scenes.dedup();
-    Ok(scenes)
+    Ok(runs(case, oracle)?.into_iter().map(|member| case.folder.join(member.scene)).collect())
 }
 
 /// The table: the variables of each run, then probes over load factors or times, or frequencies.

@@ -1,6 +1,7 @@
 //! Pendulums that fall: the same elements, method and step, so the same motion.
 
 use ancf_check::case::Peer;
+use ancf_verification::peers::ask;
 
 use crate::{both, distance, ours, tips};
 
@@ -94,4 +95,86 @@ fn exudyn_errs_by_its_step_with_order_2() {
     println!("errors {errors:?} m, orders {orders:?}");
     assert!(orders.iter().all(|order| (order - 2.0).abs() < 0.05), "{errors:?} m, orders {orders:?}");
     assert!(errors[2] < 5e-6 * 1.8, "{errors:?} m");
+}
+
+/// Steps of 10 ms are far too long for 120 soft elements, and Exudyn gives up: an error, after which it can be asked again.
+#[test]
+fn exudyn_that_gives_up_is_an_error() {
+    let text = pendulum(SOFT, 120, &generalized_alpha(1e-2, 1.0)).replace("duration = 0.5", "duration = 2.5");
+    let scene = ancf::scene::parse("live.toml", &text).expect("a legal scene");
+    let error = ask(Peer::Exudyn, &scene).expect_err("no motion").to_string();
+    assert!(error.starts_with("live.toml: Exudyn: SolveDynamic terminated"), "{error}");
+    both(Peer::Exudyn, &pendulum(SOFT, 2, &generalized_alpha(1e-2, 1.0)));
+}
+
+/// Two beams, one flying and spinning freely, one along y that is hit at its end by a follower: ours and Exudyn's together.
+#[test]
+fn exudyn_lets_beams_fly_alike() {
+    let text = r#"
+[beam.free]
+start = [0.2, 0.1]
+end = [0.8, 0.9]
+axial_stiffness = 5e2
+bending_stiffness = 0.2
+mass_per_length = 0.3
+strain = "engineering"
+basis.ancf = { elements = 5, gauss_points = { stretch = 4, bend = 2 } }
+
+[beam.held]
+start = [0.0, 0.0]
+end = [0.0, 1.0]
+axial_stiffness = 5e2
+bending_stiffness = 0.2
+mass_per_length = 0.3
+strain = "engineering"
+basis.ancf = { nodes = [0.0, 0.1, 0.35, 0.6, 1.0], gauss_points = { stretch = 5, bend = 3 } }
+
+[[support]]
+beam = "held"
+at = "start"
+fix = ["x", "y", "gradient"]
+
+[[initial_velocity]]
+beam = "free"
+translation = [1.0, 2.0]
+rotation = 3.0
+center = [0.5, 0.5]
+
+[[effect.force]]
+beam = "held"
+at = "end"
+value = [0.3, 0.1]
+follower = true
+
+[[effect.force]]
+beam = "free"
+at = "start"
+value = [0.0, 0.5]
+
+[[probe]]
+name = "tip"
+beam = "free"
+at = "end"
+
+[[probe]]
+name = "held"
+beam = "held"
+at = "end"
+
+[analysis.dynamic]
+duration = 0.5
+output_every = 0.1
+generalized_alpha = { step = 1e-3, spectral_radius = 0.9 }
+"#;
+    let (ours, theirs) = both(Peer::Exudyn, text);
+    for (a, b) in ours.probes.iter().zip(&theirs.probes) {
+        let places = a.samples.iter().zip(b.x.iter().zip(&b.y));
+        let apart = places.map(|(p, (x, y))| (p.x - x).hypot(p.y - y)).fold(0.0, f64::max);
+        println!("{}: {apart:.1e} m apart", a.name);
+        assert!(apart < 1e-8, "{}: {apart} m apart", a.name);
+    }
+    for (a, b) in ours.energy.iter().zip(&theirs.energy) {
+        let parts = [(a.stretch, b.stretch), (a.bend, b.bend), (a.kinetic, b.kinetic)];
+        assert!(parts.iter().all(|(a, b)| (a - b).abs() < 1e-6), "{a:?} {b:?}");
+    }
 }

@@ -43,6 +43,9 @@ fn agree(name: &str, text: &str) {
     let (mine, its) = (ours.energy.last().unwrap(), theirs.energy.last().unwrap());
     println!("{name}: tip {a:?}, apart {:.1e}; energy apart {:.1e}", distance(a, b), mine.bend - its.bend);
     assert!(distance(a, b) < 1e-8, "{name}: ours {a:?}, Exudyn {b:?}");
+    for (a, [x, y, ..]) in ours.last[0].nodes.iter().zip(&theirs.nodes[0]) {
+        assert!(distance(*a, [*x, *y]) < 1e-8, "{name}: a node, ours {a:?}, Exudyn [{x}, {y}]");
+    }
     let energy = mine.bend + mine.stretch;
     assert!((mine.bend - its.bend).abs() < 1e-8 * energy, "{name}: {mine:?} {its:?}");
     assert!((mine.stretch - its.stretch).abs() < 1e-8 * energy, "{name}: {mine:?} {its:?}");
