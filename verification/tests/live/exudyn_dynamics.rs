@@ -136,9 +136,9 @@ fix = ["x", "y", "gradient"]
 
 [[initial_velocity]]
 beam = "free"
-translation = [1.0, 2.0]
+value = [1.0, 2.0]
 rotation = 3.0
-center = [0.5, 0.5]
+about = [0.5, 0.5]
 
 [[effect.force]]
 beam = "held"
