@@ -38,9 +38,9 @@ class Cables:
 
     def __init__(self, given):
         self.given = given
-        container = exu.SystemContainer()
-        self.container, self.mbs = container, container.AddSystem()
-        self.nodes, self.elements = [], []
+        self.container = exu.SystemContainer()  # kept, for the system lives in it
+        self.mbs = self.container.AddSystem()
+        self.nodes = []
         for beam in given["beams"]:
             self.add_beam(beam)
         for support in given["supports"]:
@@ -132,8 +132,8 @@ class Cables:
         return beams[0][0, :, 0], [beam[:, :, 1:].transpose(1, 0, 2) for beam in beams]
 
     def solve(self):
-        """Load factors or times, and per beam the changes of the coordinates and their rates [record, node, coordinate]."""
-        (kind, question), = self.given["analysis"].items()
+        """Load factors or times, and per beam the coordinates' changes and rates [record, node, coordinate]."""
+        ((kind, question),) = self.given["analysis"].items()
         kinds = exu.OutputVariableType
         places, rates = self.watch(kinds.Coordinates), self.watch(kinds.Coordinates_t)
         self.mbs.Assemble()
@@ -179,32 +179,31 @@ def quiet():
     return settings
 
 
-def rows(length, places, order):
-    """Hermite's cubics on an element, derived `order` times by arc length: one place from 0 to 1 per row."""
+def field(element, length, points, order):
+    """Weights, and a field derived `order` times by arc length, at Gauss points of an element with these coordinates."""
+    places, weights = np.polynomial.legendre.leggauss(points)
     x, h = np.polynomial.Polynomial([0, 1]), length
-    functions = [1 - 3 * x**2 + 2 * x**3, h * x * (1 - x) ** 2, 3 * x**2 - 2 * x**3, h * x**2 * (x - 1)]
-    return np.array([(f.deriv(order) if order else f)(places) for f in functions]).T / h**order
+    hermite = [1 - 3 * x**2 + 2 * x**3, h * x * (1 - x) ** 2, 3 * x**2 - 2 * x**3, h * x**2 * (x - 1)]
+    rows = np.array([(f.deriv(order) if order else f)((places + 1) / 2) for f in hermite]).T / h**order
+    return weights * length / 2, rows @ element.reshape(4, 2)
 
 
-def energies(beam, gravity, q, change, rate):
+def energies(beam, gravity, place, change, rate):
     """Stretch, bend, kinetic energy and that of the weight, from the coordinates [node, coordinate]."""
     totals = np.zeros(4)
     stretch_points, bend_points = beam["gauss_points"]
     for k, length in enumerate(beam["lengths"]):
-        def at(points, order, state):
-            places, weights = np.polynomial.legendre.leggauss(points)
-            local = state[k : k + 2].reshape(4, 2)
-            return weights * length / 2, rows(length, (places + 1) / 2, order) @ local
-
-        weights, slope = at(stretch_points, 1, q)
+        q, u, v = (state[k : k + 2] for state in (place, change, rate))
+        weights, slope = field(q, length, stretch_points, 1)
         totals[0] += beam["axial_stiffness"] / 2 * weights @ (np.hypot(*slope.T) - 1) ** 2
-        weights, slope = at(bend_points, 1, q)
-        second = at(bend_points, 2, q)[1]
+        weights, slope = field(q, length, bend_points, 1)
+        _, second = field(q, length, bend_points, 2)
         cross = slope[:, 0] * second[:, 1] - slope[:, 1] * second[:, 0]
         totals[1] += beam["bending_stiffness"] / 2 * weights @ (cross / (slope**2).sum(axis=1)) ** 2
-        weights, velocity = at(4, 0, rate)
+        weights, velocity = field(v, length, 4, 0)
         totals[2] += beam["mass_per_length"] / 2 * weights @ (velocity**2).sum(axis=1)
-        totals[3] -= beam["mass_per_length"] * weights @ (at(4, 0, change)[1] @ gravity)
+        weights, displacement = field(u, length, 4, 0)
+        totals[3] -= beam["mass_per_length"] * weights @ (displacement @ gravity)
     return totals
 
 

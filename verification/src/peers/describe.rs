@@ -206,12 +206,12 @@ fn question(analysis: &Analysis) -> Result<Question, String> {
                     none(&format!("{name} = {time} s, which is no multiple of the step {step} s"))
                 })
             };
-            Ok(Question::Dynamic {
-                steps: whole(settings.duration, "duration")?,
-                step,
-                every: whole(settings.output_every, "output_every")?,
-                spectral_radius,
-            })
+            let (steps, every) =
+                (whole(settings.duration, "duration")?, whole(settings.output_every, "output_every")?);
+            if steps % every != 0 {
+                return Err(none("a duration that is no multiple of output_every"));
+            }
+            Ok(Question::Dynamic { steps, step, every, spectral_radius })
         }
         Analysis::Modal { count, about: About::Reference } => Ok(Question::Modal { count: *count }),
         Analysis::Modal { .. } => Err(none("vibrations about an equilibrium")),
