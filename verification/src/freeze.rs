@@ -7,21 +7,23 @@ use ancf_check::reference::{Provenance, Table, provenance_path, sha256};
 use ancf_check::{Case, Suite};
 use indexmap::IndexMap;
 
-use crate::python::Python;
-use crate::{Failure, chosen};
+use ancf_verification::python::Python;
+use ancf_verification::{Failure, bridge, peers};
+
+use crate::chosen;
 
 /// Makes the tables of all oracles of some cases. With `check` nothing is written, and the answer is whether the
 /// tables are byte by byte what is there.
 pub fn freeze(suite: &Suite, cases: &[String], check: bool) -> Result<bool, Failure> {
     let names = chosen(suite, cases)?;
-    let python = Python::prepare(suite)?;
+    let python = bridge::environment()?;
     let mut same = true;
     for name in names {
         let case = suite.case(&name)?;
         for (key, oracle) in &case.text.oracle {
             eprint!("{name}/{key} … ");
             let (table, provenance) =
-                make(suite, &case, key, oracle, &python).map_err(|e| format!("{name}/{key}: {e}"))?;
+                make(suite, &case, key, oracle, python).map_err(|e| format!("{name}/{key}: {e}"))?;
             let path = suite.table_path(&name, key);
             let known = Table::read(&path).ok();
             let agrees = std::fs::read_to_string(&path).is_ok_and(|old| old == table);
@@ -54,8 +56,8 @@ fn make(
         inputs.insert(suite.short(path), sha256(&bytes));
         Ok(())
     };
-    let (table, tool, command) = match (&oracle.script, &oracle.transcribed) {
-        (Some(script), _) => {
+    let (table, tool, command) = match (&oracle.script, &oracle.transcribed, oracle.peer) {
+        (Some(script), ..) => {
             let path = suite.oracles_folder().join(script);
             note(&path)?;
             let mut arguments = oracle.arguments.clone();
@@ -72,15 +74,25 @@ fn make(
                 .chain(oracle.scenes.iter().map(|s| format!("verification/cases/{}/{s}", case.name)))
                 .collect();
             let command = format!("python3 verification/oracles/{script} {}", shown.join(" "));
-            (table, python.facts.tool.clone(), command.trim_end().to_owned())
+            let peers = std::fs::read_to_string(suite.peers_folder().join("requirements.txt"))?;
+            let own = |package: &str| !peers.lines().any(|line| line.starts_with(&format!("{package}==")));
+            (table, python.facts.tool(own), command.trim_end().to_owned())
         }
-        (None, Some(file)) => {
+        (None, Some(file), _) => {
             let path = suite.oracles_folder().join(file);
             note(&path)?;
             let table = std::fs::read_to_string(&path)?;
             (table, "typed from the publication".to_owned(), format!("cp verification/oracles/{file} …"))
         }
-        (None, None) => return Err("it has neither `script` nor `transcribed`".into()),
+        (None, None, Some(peer)) => {
+            note(&peers::script(suite, peer))?;
+            for scene in peers::scenes(case, oracle)? {
+                note(&scene)?;
+            }
+            let command = format!("verify freeze {}", case.name);
+            (peers::table(case, oracle, peer)?, python.facts.tool(|p| p == peers::package(peer)), command)
+        }
+        (None, None, None) => return Err("it has none of `script`, `transcribed`, `peer`".into()),
     };
     let provenance = Provenance {
         oracle: key.to_owned(),

@@ -1,17 +1,15 @@
 //! `verify`: makes the reference data of the verification cases, and reports how the solver compares with it.
 
+mod beside;
 mod freeze;
-mod python;
 mod report;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use ancf_check::Suite;
+use ancf_verification::Failure;
 use clap::{Parser, Subcommand};
-
-/// What ends a command.
-type Failure = Box<dyn std::error::Error>;
 
 /// Verification of ancf against closed forms, publications and other codes.
 #[derive(Parser)]
@@ -42,6 +40,11 @@ enum Command {
         /// Cases; all if none is named
         cases: Vec<String>,
     },
+    /// Solve the scenes of some cases by Exudyn too, and print both tips side by side
+    Peers {
+        /// Cases; those with reference data by a peer if none is named
+        cases: Vec<String>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Report { out, against, cases } => report::write(&suite, &out, against.as_deref(), &cases),
         Command::Freeze { check, cases } => freeze::freeze(&suite, &cases, check),
+        Command::Peers { cases } => beside::print(&suite, &cases),
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,

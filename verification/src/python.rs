@@ -1,12 +1,20 @@
-//! The Python that runs oracle scripts: a virtual environment of its own with pinned packages.
+//! The Python of the verification suite: a virtual environment of its own with pinned packages.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use ancf_check::{Suite, reference::sha256};
+use indexmap::IndexMap;
 use serde::Deserialize;
 
 use crate::Failure;
+
+/// The interpreter that this program is linked to. Another one's environment would have packages for another version.
+const INTERPRETER: &str = env!("ANCF_PYTHON");
+
+/// What to install where something is missing.
+const REMEDY: &str = "The verification suite needs Python 3 with its venv module and its shared library (Debian: apt install \
+                      python3 python3-venv python3-dev), and once a connection to the package index.";
 
 /// A virtual environment under `target/`, made on first use.
 pub struct Python {
@@ -22,47 +30,73 @@ pub struct Facts {
     pub date: String,
     /// Machine and system.
     pub platform: String,
-    /// Interpreter and packages with their versions.
-    pub tool: String,
+    /// Version of the interpreter.
+    pub python: String,
+    /// Where its packages are.
+    pub site_packages: String,
+    /// Versions of the pinned packages.
+    pub packages: IndexMap<String, String>,
+}
+
+impl Facts {
+    /// The interpreter and those of the packages that `uses` admits, with their versions.
+    pub fn tool(&self, uses: impl Fn(&str) -> bool) -> String {
+        let packages = self.packages.iter().filter(|(name, _)| uses(name));
+        let packages = packages.map(|(name, version)| format!(", {name} {version}"));
+        format!("Python {}{}", self.python, packages.collect::<String>())
+    }
 }
 
 const FACTS: &str = r#"
-import datetime, importlib.metadata, json, platform, sys
-packages = [line.split("==")[0].strip() for line in open(sys.argv[1]) if "==" in line]
-tool = [f"Python {platform.python_version()}"] + [f"{p} {importlib.metadata.version(p)}" for p in packages]
+import datetime, importlib.metadata, json, platform, sys, sysconfig
+lines = [line for path in sys.argv[1:] for line in open(path)]
 print(json.dumps({
     "date": datetime.date.today().isoformat(),
     "platform": f"{platform.system()} {platform.machine()}, {' '.join(platform.libc_ver())}".strip(", "),
-    "tool": ", ".join(tool),
+    "python": platform.python_version(),
+    "site_packages": sysconfig.get_path("platlib"),
+    "packages": {p: importlib.metadata.version(p) for p in (l.split("==")[0].strip() for l in lines if "==" in l)},
 }))
 "#;
 
 impl Python {
-    /// The environment with the packages of `verification/oracles/requirements.txt`; installs them where they are
-    /// not there or no longer the same.
+    /// The environment with the packages that `requirements.txt` of the oracles and of the peers pin; installs them
+    /// where they are not there or no longer the same.
+    ///
+    /// # Errors
+    /// Where the interpreter, its venv module or a package is missing.
     pub fn prepare(suite: &Suite) -> Result<Self, Failure> {
-        let requirements = suite.oracles_folder().join("requirements.txt");
-        let wanted =
-            sha256(&std::fs::read(&requirements).map_err(|e| format!("{}: {e}", requirements.display()))?);
+        let requirements =
+            [suite.oracles_folder(), suite.peers_folder()].map(|folder| folder.join("requirements.txt"));
+        let mut wanted = INTERPRETER.as_bytes().to_vec();
+        for path in &requirements {
+            wanted.extend(std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?);
+        }
+        let wanted = sha256(&wanted);
         let folder = suite.root.join("target").join("verification").join("python");
         let program = folder.join("bin").join("python3");
         let stamp = folder.join("requirements.sha256");
         if std::fs::read_to_string(&stamp).ok().as_deref() != Some(wanted.as_str()) {
             eprintln!("making a Python environment in {} …", folder.display());
-            run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder)).map_err(|error| {
-                format!("{error}\nThe oracles need python3 with its venv module (Debian: apt install python3-venv).")
-            })?;
-            run(Command::new(&program)
-                .args(["-m", "pip", "install", "--quiet", "--requirement"])
-                .arg(&requirements))?;
+            let mut install = Command::new(&program);
+            install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+            for path in &requirements {
+                install.arg("--requirement").arg(path);
+            }
+            run(Command::new(INTERPRETER).args(["-m", "venv", "--clear"]).arg(&folder))
+                .and_then(|_| run(&mut install))
+                .map_err(|error| format!("{error}\n{REMEDY}"))?;
             std::fs::write(&stamp, wanted).map_err(|e| format!("{}: {e}", stamp.display()))?;
         }
-        let output = run(Command::new(&program).args(["-c", FACTS]).arg(&requirements))?;
+        let output = run(Command::new(&program).args(["-c", FACTS]).args(&requirements))?;
         let facts = serde_json::from_slice(&output.stdout)?;
         Ok(Self { program, facts })
     }
 
     /// What a script prints. Its own messages go to the terminal.
+    ///
+    /// # Errors
+    /// Where it cannot be started or fails.
     pub fn run(&self, script: &Path, arguments: &[String]) -> Result<String, Failure> {
         let mut command = Command::new(&self.program);
         command.arg(script).args(arguments).stderr(Stdio::inherit());

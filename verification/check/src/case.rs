@@ -9,7 +9,7 @@
 //! class = "closed-form"                 # closed-form | published | code | integrator | refinement
 //! title = "Elastica by shooting, 30 digits"
 //! citation = "Bisshopp & Drucker 1945"
-//! script = "static_beam.py"             # in verification/oracles/; or transcribed = "file.csv" there
+//! script = "static_beam.py"             # in verification/oracles/; or transcribed = "file.csv" there; or peer = "exudyn"
 //! arguments = ["tip-load"]
 //! note = "What a reader of the numbers must know."
 //!
@@ -29,6 +29,8 @@
 //! why = "What limits the agreement."
 //! ```
 //!
+//! An oracle `peer = "exudyn"` is what Exudyn makes of a family, `run = "loads"`; its columns are the family's variables,
+//! then `probe`, `parameter` (load factor or time), `x`, `y`, or in a modal analysis `mode`, `frequency`.
 //! `{name}` stands for the value that the member of the family has for this variable; values may contain
 //! further ones. With `along = "s"` the rows that `where` leaves form a curve over that column. With
 //! `order = { against = "elements", expected = 4, within = 0.3 }` the observed order of the error is a further number that must hold.
@@ -39,6 +41,8 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use crate::{Error, Result};
+
+pub use crate::figure::{Curve, Figure, Line};
 
 /// One case, as its file says, with the place of the file.
 #[derive(Clone, Debug)]
@@ -123,8 +127,22 @@ pub struct Oracle {
     pub scenes: Vec<String>,
     /// A table in `verification/oracles/` typed from the literature.
     pub transcribed: Option<String>,
+    /// Another code that solves the same scenes.
+    pub peer: Option<Peer>,
+    /// The family that the peer solves; may be left out where there is only one.
+    pub run: Option<String>,
     /// What a reader of the numbers must know.
     pub note: Option<String>,
+}
+
+/// Another code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Peer {
+    /// Exudyn, whose ANCFCable2D is the element of our ANCF with engineering strain.
+    Exudyn,
+    /// scikit-fem's Hermite elements: what our beam becomes as deflections become small.
+    ScikitFem,
 }
 
 /// A family of runs: one scene under the product of some axes.
@@ -297,69 +315,6 @@ pub struct Order {
     pub within: f64,
 }
 
-/// A drawing in the report.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Figure {
-    /// Heading.
-    pub title: String,
-    /// What to see in it.
-    #[serde(default)]
-    pub caption: String,
-    /// Label of the horizontal axis.
-    pub x: String,
-    /// Label of the vertical axis.
-    pub y: String,
-    /// True aspect ratio.
-    #[serde(default)]
-    pub equal: bool,
-    /// Logarithmic axes.
-    #[serde(default)]
-    pub logarithmic: bool,
-    /// What is drawn.
-    pub curve: Vec<Curve>,
-}
-
-/// One curve for each member of a family that `only` leaves, from the run or, with `oracle`, from the reference.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Curve {
-    /// Name in the legend; none for the 2nd and further curves of one kind.
-    pub label: Option<String>,
-    /// Name of the family.
-    pub run: Option<String>,
-    /// Members of the family.
-    #[serde(default)]
-    pub only: IndexMap<String, Scalar>,
-    /// Draw the reference in place of the run.
-    pub oracle: Option<String>,
-    /// Rows of the reference.
-    #[serde(default, rename = "where")]
-    pub rows: IndexMap<String, Scalar>,
-    /// Quantity or column on the horizontal axis.
-    pub x: String,
-    /// Quantity or column on the vertical axis.
-    pub y: String,
-    /// Appearance.
-    #[serde(default)]
-    pub line: Line,
-    /// Number of the colour; default: one after the other.
-    pub color: Option<usize>,
-}
-
-/// Appearance of a curve.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Line {
-    /// A line.
-    #[default]
-    Solid,
-    /// A dashed line, as references have it.
-    Dashed,
-    /// Marks only.
-    Points,
-}
-
 impl Case {
     /// Reads `folder/case.toml`.
     pub fn read(folder: &Path) -> Result<Self> {
@@ -394,8 +349,13 @@ impl Case {
             return Err("a case needs at least one [[check]]".to_owned());
         }
         for (name, oracle) in &self.text.oracle {
-            if oracle.script.is_some() == oracle.transcribed.is_some() {
-                return Err(format!("[oracle.{name}] needs `script` or `transcribed`, one of both"));
+            let sources = [oracle.script.is_some(), oracle.transcribed.is_some(), oracle.peer.is_some()];
+            if sources.iter().filter(|given| **given).count() != 1 {
+                return Err(format!("[oracle.{name}] needs `script`, `transcribed` or `peer`, one of them"));
+            }
+            if oracle.peer.is_some() {
+                self.family(oracle.run.as_deref())
+                    .map_err(|message| format!("[oracle.{name}]: {message}"))?;
             }
         }
         for (k, check) in self.text.check.iter().enumerate() {

@@ -28,6 +28,7 @@ pub mod case;
 pub mod compare;
 pub mod execute;
 pub mod family;
+mod figure;
 pub mod interpolation;
 pub mod quantity;
 pub mod reference;

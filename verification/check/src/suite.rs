@@ -28,6 +28,11 @@ impl Suite {
         self.root.join("verification").join("oracles")
     }
 
+    /// `verification/peers`: the scripts that tell another code about a scene.
+    pub fn peers_folder(&self) -> PathBuf {
+        self.root.join("verification").join("peers")
+    }
+
     /// `reference_data`.
     pub fn reference_folder(&self) -> PathBuf {
         self.root.join("reference_data")

@@ -1,0 +1,69 @@
+//! What `case.toml` says of a drawing in the report.
+
+use indexmap::IndexMap;
+use serde::Deserialize;
+
+use crate::case::Scalar;
+
+/// A drawing in the report.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Figure {
+    /// Heading.
+    pub title: String,
+    /// What to see in it.
+    #[serde(default)]
+    pub caption: String,
+    /// Label of the horizontal axis.
+    pub x: String,
+    /// Label of the vertical axis.
+    pub y: String,
+    /// True aspect ratio.
+    #[serde(default)]
+    pub equal: bool,
+    /// Logarithmic axes.
+    #[serde(default)]
+    pub logarithmic: bool,
+    /// What is drawn.
+    pub curve: Vec<Curve>,
+}
+
+/// One curve for each member of a family that `only` leaves, from the run or, with `oracle`, from the reference.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Curve {
+    /// Name in the legend; none for the 2nd and further curves of one kind.
+    pub label: Option<String>,
+    /// Name of the family.
+    pub run: Option<String>,
+    /// Members of the family.
+    #[serde(default)]
+    pub only: IndexMap<String, Scalar>,
+    /// Draw the reference in place of the run.
+    pub oracle: Option<String>,
+    /// Rows of the reference.
+    #[serde(default, rename = "where")]
+    pub rows: IndexMap<String, Scalar>,
+    /// Quantity or column on the horizontal axis.
+    pub x: String,
+    /// Quantity or column on the vertical axis.
+    pub y: String,
+    /// Appearance.
+    #[serde(default)]
+    pub line: Line,
+    /// Number of the colour; default: one after the other.
+    pub color: Option<usize>,
+}
+
+/// Appearance of a curve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Line {
+    /// A line.
+    #[default]
+    Solid,
+    /// A dashed line, as references have it.
+    Dashed,
+    /// Marks only.
+    Points,
+}

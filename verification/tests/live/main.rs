@@ -1,0 +1,37 @@
+//! The solver beside other codes that run in this process, on the same scenes, meshes, Gauss points and steps.
+//!
+//! Every test needs the bridge to Python. Where it cannot be had the tests fail; nothing is skipped.
+
+mod exudyn_dynamics;
+mod exudyn_frequencies;
+mod exudyn_statics;
+mod frozen;
+mod scikit_fem;
+
+use ancf::run::{Control, run};
+use ancf::trajectory::Trajectory;
+use ancf_check::case::Peer;
+use ancf_verification::peers::{Answer, ask};
+
+/// A scene by both: ours and the peer.
+fn both(peer: Peer, text: &str) -> (Trajectory, Answer) {
+    let scene = ancf::scene::parse("live.toml", text).unwrap_or_else(|e| panic!("{e}"));
+    (ours(text), ask(peer, &scene).unwrap_or_else(|e| panic!("{e}")))
+}
+
+fn ours(text: &str) -> Trajectory {
+    let scene = ancf::scene::parse("live.toml", text).unwrap_or_else(|e| panic!("{e}"));
+    run(scene.model(), scene.analysis(), &mut |_| Control::Continue).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Where our only probe and theirs are, record by record: (parameter, ours, theirs).
+fn tips(ours: &Trajectory, theirs: &Answer) -> Vec<(f64, [f64; 2], [f64; 2])> {
+    let (a, b) = (&ours.probes[0].samples, &theirs.probes[0]);
+    assert_eq!(ours.parameter.len(), theirs.parameter.len(), "{:?}", theirs.parameter);
+    let places = a.iter().zip(b.x.iter().zip(&b.y));
+    ours.parameter.iter().zip(places).map(|(t, (p, (x, y)))| (*t, [p.x, p.y], [*x, *y])).collect()
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
