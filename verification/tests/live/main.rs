@@ -4,6 +4,7 @@
 
 mod exudyn_dynamics;
 mod exudyn_frequencies;
+mod exudyn_random;
 mod exudyn_statics;
 mod frozen;
 mod scikit_fem;
