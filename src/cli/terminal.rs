@@ -1,10 +1,11 @@
 //! What people see on standard error: progress, a table of results, warnings, errors.
 
+use std::cell::Cell;
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write as _};
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use ancf::model::Analysis;
 use ancf::run::Progress;
@@ -59,7 +60,12 @@ pub struct ProgressLine {
     bar: ProgressBar,
     unit: &'static str,
     name: &'static str,
+    /// When the line was last brought up to date: steps may take less time than their text.
+    shown: Cell<Instant>,
 }
+
+/// Time between two states of the line.
+const TICK: Duration = Duration::from_millis(50);
 
 /// Parts of the bar.
 const PARTS: u64 = 1000;
@@ -78,14 +84,15 @@ impl ProgressLine {
             Analysis::Dynamic(_) => ("t", " s"),
             _ => ("load", ""),
         };
-        Self { bar, unit, name }
+        Self { bar, unit, name, shown: Cell::new(Instant::now()) }
     }
 
     /// Brings the line up to date.
     pub fn show(&self, now: &Progress) {
-        if self.bar.is_hidden() {
+        if self.bar.is_hidden() || self.shown.get().elapsed() < TICK {
             return;
         }
+        self.shown.set(Instant::now());
         let done = (now.parameter / now.target).clamp(0.0, 1.0);
         // A path may turn back, and a target may be zero: then the bar stays where it was.
         if done.is_finite() {

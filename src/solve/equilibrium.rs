@@ -168,9 +168,11 @@ pub(super) fn balance(
     negative: &mut [f64],
 ) -> f64 {
     let n = system.coordinates();
+    let inverse = 1.0 / system.length();
     let scale_of = |force: &[f64]| {
-        force.chunks_exact(4).fold(0.0_f64, |m, f| {
-            m.max(f[0].abs()).max(f[1].abs()).max((f[2].abs()).max(f[3].abs()) / system.length())
+        force.chunks_exact(4).fold(0.0, |m, f| {
+            let [a, b, c, d] = [f[0], f[1], inverse * f[2], inverse * f[3]].map(f64::abs);
+            larger(larger(m, a), larger(b, larger(c, d)))
         })
     };
     let mut scale = scale_of(force);
@@ -199,15 +201,15 @@ pub(super) fn balance(
 /// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not count.
 pub(super) fn size(system: &System, increment: &[f64]) -> f64 {
     let inverse = 1.0 / system.length();
-    let mut largest = 0.0_f64;
-    for d in increment[..system.coordinates()].chunks_exact(4) {
-        let size = (d[0].abs().max(d[1].abs()) * inverse).max(d[2].abs().max(d[3].abs()));
-        // `max` would drop a NaN.
-        if size > largest || size.is_nan() {
-            largest = size;
-        }
-    }
-    largest
+    increment[..system.coordinates()].chunks_exact(4).fold(0.0, |m, d| {
+        let [a, b, c, d] = [inverse * d[0], inverse * d[1], d[2], d[3]].map(f64::abs);
+        larger(larger(m, a), larger(b, larger(c, d)))
+    })
+}
+
+/// The larger of two sizes. `f64::max` would drop a NaN.
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
 }
 
 /// Equilibrium at a given load factor.

@@ -96,3 +96,15 @@ fn a_step_that_cannot_be_solved_is_divided() {
     let drift = summary(folder.path(), "out")["energy"]["drift"].as_f64().expect("a number");
     assert!(drift < 1.0, "the energy stays bounded: {drift}");
 }
+
+/// No step is short enough for a weight that overflows: the message says when and where, and nothing is left behind.
+#[test]
+fn a_motion_that_cannot_start_says_when_and_where() {
+    let folder = folder(&PENDULUM.replace("-9.81", "-1e305"));
+    let output = ancf(folder.path(), &["run", "scene.toml", "-o", "out"]);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    for part in ["t = 0.000000 s", "is not finite", "of beam `arm`", "tolerance"] {
+        assert!(stderr(&output).contains(part), "{part} in {}", stderr(&output));
+    }
+    assert!(!folder.path().join("out").exists(), "nothing was computed");
+}

@@ -135,6 +135,10 @@ impl Equations for AtEnd<'_, '_> {
         self.motion.statistics.newton_iterations += 1;
         self.accelerate(x);
         let residual = self.motion.linearize(x, before, self.acceleration, increment);
+        if !residual.is_finite() {
+            // What overflows has no pivots either, but that is not why.
+            return Ok(residual);
+        }
         let factor = self.motion.factorize(self.c, self.factor.take())?;
         factor.solve(increment);
         *self.factor = Some(factor);

@@ -131,6 +131,10 @@ impl<'t, 'a> Driver<'t, 'a> {
         let Checkpoint { state, method: name, memory, step, last_ratio, origin } = task.start.clone();
         let control = task.integrator.step_control();
         let acceleration = method.start(&state);
+        if let Some(unknown) = acceleration.iter().position(|a| !a.is_finite()) {
+            let at = system.place_of(unknown);
+            solution.stuck = Some(Stuck { time: state.time, step: 0.0, failure: Failure::NotFinite, at });
+        }
         let continued = name == task.integrator.to_string() && method.restore(memory);
         let (step, origin) = match control {
             _ if continued => (step, origin),
@@ -159,12 +163,11 @@ impl<'t, 'a> Driver<'t, 'a> {
 
     fn run(&mut self, observe: &mut dyn FnMut(f64, f64, &Statistics) -> bool) {
         let mut new = self.state.clone();
-        while self.task.duration - self.state.time > SMALLEST_STEP * self.task.duration {
+        while self.solution.stuck.is_none()
+            && self.task.duration - self.state.time > SMALLEST_STEP * self.task.duration
+        {
             match self.advance(&mut new) {
-                Err(stuck) => {
-                    self.solution.stuck = Some(stuck);
-                    return;
-                }
+                Err(stuck) => self.solution.stuck = Some(stuck),
                 Ok(()) => {
                     let ended = self.look(&mut new);
                     self.method.accept();
