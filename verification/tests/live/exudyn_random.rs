@@ -42,8 +42,8 @@ fn exudyn_and_both_discretisations_agree_on_random_scenes() {
         let length = 10.0_f64.powf(next());
         let bending = 10.0_f64.powf(3.0 * next());
         let axial = 10.0_f64.powf(4.5 + 1.5 * next()) * bending / length.powi(2);
-        let (x, y) = ((3.0 * next()).sin_cos()).into();
-        let (x, y): (f64, f64) = (length * x, length * y);
+        let (x, y) = (3.0 * next()).sin_cos();
+        let (x, y) = (length * x, length * y);
         let size = x.hypot(y);
         let strength = 0.3 * next();
         let unit = bending / length.powi(2);
