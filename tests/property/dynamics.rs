@@ -416,6 +416,10 @@ fn events_are_located_to_the_accuracy_of_the_motion() {
             let numbers: Vec<usize> = solution.events.iter().map(|(watch, _)| *watch).collect();
             assert_eq!(numbers, [1, 2], "the rising one does not happen");
             assert!((last(&solution).time - time).abs() < 1e-9, "{} instead of {time}", last(&solution).time);
+            // What a method remembers belongs to the end of the step, not to the event within it.
+            let checkpoint = solution.checkpoint.expect("a checkpoint");
+            assert!(checkpoint.memory.is_empty() && checkpoint.method.is_empty());
+            assert_eq!(checkpoint.state.time, solution.states[solution.states.len() - 1].time);
         }
     }
 }

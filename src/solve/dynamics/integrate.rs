@@ -118,6 +118,8 @@ struct Driver<'t, 'a> {
     next_record: u64,
     last_ratio: f64,
     rejected: bool,
+    /// Whether an event ended the motion within a step, whose end is what the method remembers.
+    cut: bool,
     stride: usize,
 }
 
@@ -157,6 +159,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             next_record,
             last_ratio: if continued { last_ratio } else { 1.0 },
             rejected: false,
+            cut: false,
             stride: 1,
         }
     }
@@ -169,13 +172,10 @@ impl<'t, 'a> Driver<'t, 'a> {
             match self.advance(&mut new) {
                 Err(stuck) => self.solution.stuck = Some(stuck),
                 Ok(()) => {
-                    let ended = self.look(&mut new);
+                    self.cut = self.look(&mut new);
                     self.method.accept();
                     std::mem::swap(&mut self.state, &mut new);
-                    if ended {
-                        return;
-                    }
-                    if !observe(self.state.time, self.step, self.method.statistics()) {
+                    if self.cut || !observe(self.state.time, self.step, self.method.statistics()) {
                         return;
                     }
                 }
@@ -189,13 +189,17 @@ impl<'t, 'a> Driver<'t, 'a> {
             self.solution.states.push(self.state.clone());
         }
         self.solution.statistics = *self.method.statistics();
-        self.solution.checkpoint = Some(Checkpoint {
-            state: self.state,
-            method: self.task.integrator.to_string(),
-            memory: self.method.memory(),
-            step: self.step,
-            last_ratio: self.last_ratio,
-            origin: self.origin,
+        self.solution.checkpoint = Some(if self.cut {
+            Checkpoint { state: self.state, ..Checkpoint::default() }
+        } else {
+            Checkpoint {
+                state: self.state,
+                method: self.task.integrator.to_string(),
+                memory: self.method.memory(),
+                step: self.step,
+                last_ratio: self.last_ratio,
+                origin: self.origin,
+            }
         });
         self.solution
     }
@@ -223,7 +227,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                 increments: record.increments,
                 residuals: record.residuals,
             });
-            let power = 1.0 / self.method.order();
+            let power = 1.0 / (self.method.order() + 1.0);
             if accepted {
                 self.method.statistics().steps += 1;
                 new.time = end;
