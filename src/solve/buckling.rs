@@ -40,7 +40,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let mut equilibrium = Equilibrium::new(system);
     let x = equilibrium.start();
     let (mut negative, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    equilibrium.linearize(0.0, &x, &x, &mut negative, Some(&mut rate))?;
+    equilibrium.linearize(0.0, &x, &x, &mut negative, &mut rate)?;
     equilibrium.solve(0.0, &mut rate, true);
     let size = equilibrium.size(&rate);
     if size == 0.0 {

@@ -66,7 +66,7 @@ impl<'a> Equilibrium<'a> {
         balance(self.system, load, x, &mut self.force, None, negative)
     }
 
-    /// The same as [`Self::residual`]; also factorises the tangent at `x`, and with `rate` writes the right-hand side
+    /// The same as [`Self::residual`]; also factorises the tangent at `x`, and to `rate` writes the right-hand side
     /// of the path's tangent dx/dλ there.
     ///
     /// # Errors
@@ -77,7 +77,7 @@ impl<'a> Equilibrium<'a> {
         x: &[f64],
         before: &[f64],
         negative: &mut [f64],
-        rate: Option<&mut [f64]>,
+        rate: &mut [f64],
     ) -> Result<f64, Singular> {
         let system = self.system;
         let n = system.coordinates();
@@ -88,9 +88,7 @@ impl<'a> Equilibrium<'a> {
         system.force_and_tangent(load, q, before, &mut self.force, &mut self.tangent, &mut self.workspace);
         let residual = balance(self.system, load, x, &mut self.force, None, negative);
         system.supports().turn_matrix(load, &mut self.tangent);
-        if let Some(rate) = rate {
-            self.rate_right_hand_side(load, x, rate);
-        }
+        self.rate_right_hand_side(load, x, rate);
         system.supports().eliminate(load, &mut self.tangent);
         self.border = system.border(load);
         self.factor = Some(Factor::again(self.factor.take(), &self.tangent, &self.border)?);
@@ -219,20 +217,29 @@ pub struct AtLoad<'e, 'a> {
     /// λ.
     pub load: f64,
     scratch: Vec<f64>,
+    rate: Vec<f64>,
 }
 
 impl<'e, 'a> AtLoad<'e, 'a> {
     /// The equations at load factor `load`.
     pub fn new(equilibrium: &'e mut Equilibrium<'a>, load: f64) -> Self {
         let scratch = vec![0.0; equilibrium.unknowns()];
-        Self { equilibrium, load, scratch }
+        let rate = scratch.clone();
+        Self { equilibrium, load, scratch, rate }
+    }
+
+    /// The path's tangent (dx/dλ, 1) at the last linearised state.
+    pub fn rate(mut self) -> Vec<f64> {
+        self.equilibrium.solve(self.load, &mut self.rate, true);
+        self.rate.push(1.0);
+        self.rate
     }
 }
 
 impl Equations for AtLoad<'_, '_> {
     fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular> {
         self.equilibrium.statistics.newton_iterations += 1;
-        let residual = self.equilibrium.linearize(self.load, x, before, increment, None)?;
+        let residual = self.equilibrium.linearize(self.load, x, before, increment, &mut self.rate)?;
         self.equilibrium.solve(self.load, increment, false);
         Ok(residual)
     }
@@ -256,13 +263,21 @@ pub struct AcrossPath<'e, 'a> {
     /// τ, one longer than x; already weighted, so that its dot product with a change is that change along the path.
     pub normal: Vec<f64>,
     rate: Vec<f64>,
+    scratch: Vec<f64>,
 }
 
 impl<'e, 'a> AcrossPath<'e, 'a> {
     /// `normal` as in [`Self::normal`].
     pub fn new(equilibrium: &'e mut Equilibrium<'a>, normal: Vec<f64>) -> Self {
         let rate = vec![0.0; equilibrium.unknowns()];
-        Self { equilibrium, normal, rate }
+        let scratch = rate.clone();
+        Self { equilibrium, normal, rate, scratch }
+    }
+
+    /// The direction (dx/dλ, 1) of the path at the last linearised state.
+    pub fn rate(mut self) -> Vec<f64> {
+        self.rate.push(1.0);
+        self.rate
     }
 }
 
@@ -271,13 +286,8 @@ impl Equations for AcrossPath<'_, '_> {
         let n = self.equilibrium.unknowns();
         let load = x[n];
         self.equilibrium.statistics.newton_iterations += 1;
-        let residual = self.equilibrium.linearize(
-            load,
-            &x[..n],
-            &before[..n],
-            &mut increment[..n],
-            Some(&mut self.rate),
-        )?;
+        let residual =
+            self.equilibrium.linearize(load, &x[..n], &before[..n], &mut increment[..n], &mut self.rate)?;
         self.equilibrium.solve(load, &mut increment[..n], false);
         self.equilibrium.solve(load, &mut self.rate, true);
         let along = |v: &[f64]| -> f64 { v.iter().zip(&self.normal).map(|(v, n)| v * n).sum() };
@@ -291,7 +301,7 @@ impl Equations for AcrossPath<'_, '_> {
 
     fn residual(&mut self, x: &[f64]) -> f64 {
         let n = self.equilibrium.unknowns();
-        self.equilibrium.residual(x[n], &x[..n], &mut self.rate)
+        self.equilibrium.residual(x[n], &x[..n], &mut self.scratch)
     }
 
     fn size(&self, increment: &[f64]) -> f64 {

@@ -38,6 +38,8 @@ pub struct Settings {
     pub tolerance: f64,
     /// Largest scaled residual; infinite: the increments alone decide.
     pub residual_tolerance: f64,
+    /// Largest last increment: how far the last tangent may be from that of the solution.
+    pub last_increment: f64,
     /// Give up after this many iterations.
     pub max_iterations: usize,
 }
@@ -47,7 +49,12 @@ pub const RESIDUAL_TOLERANCE: f64 = 1e-6;
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-10, residual_tolerance: RESIDUAL_TOLERANCE, max_iterations: 16 }
+        Self {
+            tolerance: 1e-10,
+            residual_tolerance: RESIDUAL_TOLERANCE,
+            last_increment: f64::INFINITY,
+            max_iterations: 16,
+        }
     }
 }
 
@@ -130,7 +137,7 @@ pub fn solve(
         before.copy_from_slice(x);
         equations.apply(&increment, x);
         let remaining = size * contraction * contraction;
-        if (remaining <= settings.tolerance || stalled)
+        if ((remaining <= settings.tolerance && size <= settings.last_increment) || stalled)
             && (size <= 1e-3 * settings.tolerance
                 || settings.residual_tolerance == f64::INFINITY
                 || equations.residual(x) <= settings.residual_tolerance)

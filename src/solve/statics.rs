@@ -7,6 +7,11 @@ use crate::model::{ArcLength, Static};
 use crate::system::{System, View};
 use crate::trajectory::{Statistics, StepRecord};
 
+/// By how much the state at which stability and the path's tangent are judged may miss the equilibrium, in beam lengths. Far from
+/// it, that of Newton's last iterate carries the stress of a state not yet converged, which in a slender beam is enough to
+/// change the signs.
+const LAST_INCREMENT: f64 = 1e-6;
+
 /// What a static analysis found.
 #[derive(Clone, Debug, Default)]
 pub struct Solution {
@@ -65,7 +70,7 @@ pub fn solve(
 }
 
 fn newton_settings(settings: &Static) -> Settings {
-    let mut newton = Settings::default();
+    let mut newton = Settings { last_increment: LAST_INCREMENT, ..Settings::default() };
     if let Some(tolerance) = settings.tolerance {
         newton.tolerance = tolerance;
     }

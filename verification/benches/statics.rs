@@ -77,10 +77,11 @@ fn newton_iteration(c: &mut Criterion) {
         let mut equilibrium = Equilibrium::new(&system);
         let x = equilibrium.start();
         let mut increment = vec![0.0; x.len()];
+        let mut rate = increment.clone();
         group.throughput(Throughput::Elements(cells as u64));
         group.bench_function(BenchmarkId::new(name, cells), |b| {
             b.iter(|| {
-                equilibrium.linearize(0.1, &x, &x, &mut increment, None).expect("a stable cantilever");
+                equilibrium.linearize(0.1, &x, &x, &mut increment, &mut rate).expect("a stable cantilever");
                 equilibrium.solve(0.1, &mut increment, false);
                 black_box(&increment);
             });
