@@ -1,7 +1,22 @@
 //! The report: every case run today, beside its references.
 
+//!
+//! | module | subject |
+//! |---|---|
+//! | `page` | the list of pages, and the one file that holds them |
+//! | `overview`, `case`, `mutants` | a kind of page each: what its template shows, made from what was found |
+//! | `check`, `figure`, `number` | parts of a case's page |
+//! | `before` | an earlier report, to compare with |
+//!
+//! A further kind of page is a module with a template that returns a [`Page`], and a line in [`pages`].
+
 mod before;
+mod case;
+mod check;
 mod figure;
+mod mutants;
+mod number;
+mod overview;
 mod page;
 
 use std::path::Path;
@@ -14,6 +29,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use self::before::Before;
+use self::page::{Made, Page, document};
+use crate::mutants::Record;
 use crate::{Failure, chosen};
 
 /// A case as it came out.
@@ -58,12 +75,11 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
     let passed =
         problems.is_empty() && entries.iter().all(|e| e.examined.as_ref().is_ok_and(Examined::passed));
 
-    let date = now();
-    let machine = machine();
+    let made = Made { date: now(), machine: machine() };
     let json = Json {
         version: env!("CARGO_PKG_VERSION"),
-        date: &date,
-        machine: &machine,
+        date: &made.date,
+        machine: &made.machine,
         passed,
         problems: &problems,
         cases: entries
@@ -80,7 +96,7 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
             .collect(),
     };
     std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
-    let html = page::render(suite, &entries, &problems, before.as_ref(), &date, &machine)?;
+    let html = document(&made, &pages(suite, &entries, &problems, before.as_ref())?)?;
     for (name, text) in [("report.json", serde_json::to_string_pretty(&json)?), ("index.html", html)] {
         let path = out.join(name);
         std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -122,6 +138,22 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
         out.join("index.html").display()
     );
     Ok(passed && !lost)
+}
+
+/// All pages in the order of reading.
+fn pages(
+    suite: &Suite,
+    entries: &[Entry],
+    problems: &[String],
+    before: Option<&Before>,
+) -> Result<Vec<Page>, Failure> {
+    let mut pages = vec![overview::page(entries, problems, before)?];
+    for entry in entries {
+        pages.push(case::page(suite, entry)?);
+    }
+    let record = Record::path(suite);
+    pages.push(mutants::page(Record::read(&record)?.as_ref(), Path::new(&suite.short(&record)))?);
+    Ok(pages)
 }
 
 /// Runs cases on all cores; cases are independent of each other.
