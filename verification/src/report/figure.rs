@@ -24,6 +24,8 @@ const INK: usize = PALETTE.len() - 1;
 const WIDTH: u32 = 540;
 const HEIGHT: u32 = 290;
 const HIGHEST: u32 = 460;
+/// More marks than this hide each other.
+const MARKS: usize = 30;
 /// Below this a difference is round-off, of which a drawing shows nothing.
 const ROUND_OFF: f64 = 1e-13;
 
@@ -40,7 +42,11 @@ pub fn of_check(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Ve
     if check.order.is_some() {
         return convergence(examined, check, outcomes).into_iter().collect();
     }
-    overlay(examined, check, outcomes).into_iter().chain(difference(check, outcomes)).collect()
+    let (mut overlay, difference) = (overlay(examined, check, outcomes), difference(check, outcomes));
+    if let (Some(overlay), None) = (&mut overlay, &difference) {
+        overlay.caption.push_str(" They differ by round-off.");
+    }
+    overlay.into_iter().chain(difference).collect()
 }
 
 /// Axes, and room for the legend above them.
@@ -147,7 +153,10 @@ fn overlay(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Option<
             let theirs: Vec<f64> = worst.reference.iter().filter_map(|p| p.get(k).copied()).collect();
             series.push(Series::line(format!("{quantity}, ours"), points(&abscissa, &ours), colour(k)));
             let reference = points(&worst.abscissa, &theirs);
-            series.push(Series::new("reference", reference, Mark::Circles, colour(k)));
+            let stride = reference.len().div_ceil(MARKS);
+            let reference = reference.into_iter().step_by(stride).collect();
+            let label = if k == 0 { "reference" } else { "" };
+            series.push(Series::new(label, reference, Mark::Circles, colour(k)));
             names.push(quantity);
         }
         let y = Axis::linear(names.join(", "));
@@ -161,7 +170,7 @@ fn overlay(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Option<
     };
     Some(FigureView {
         title: "Ours upon the reference".into(),
-        caption: format!("Line: ours; circles: the reference, where it has values.{which}"),
+        caption: format!("Lines: ours; circles of their colour: the reference.{which}"),
         drawing,
     })
 }
@@ -206,11 +215,12 @@ fn convergence(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Opt
     logarithmic("Convergence", caption, Axis::log(order.against.as_str()), series)
 }
 
-/// A line with a mark at every point; each further one in the next colour.
+/// A line with a mark at every point, unless there are too many; each further one in the next colour.
 fn marked(series: &mut Vec<Series>, label: &str, points: Points) {
     let colour = colour(series.len() / 2 % INK);
-    series.push(Series::line(label, points.clone(), colour).size(1.2));
-    series.push(Series::points("", points, colour));
+    let marks = if points.len() <= MARKS { points.clone() } else { Points::new() };
+    series.push(Series::line(label, points, colour).size(1.4));
+    series.push(Series::points("", marks, colour));
 }
 
 fn logarithmic(title: &str, caption: String, x: Axis, series: Vec<Series>) -> Option<FigureView> {

@@ -29,7 +29,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use self::before::Before;
-use self::page::{Made, Page, document};
+use self::overview::Made;
+use self::page::{Page, document};
 use crate::mutants::Record;
 use crate::{Failure, chosen};
 
@@ -96,7 +97,7 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
             .collect(),
     };
     std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
-    let html = document(&made, &pages(suite, &entries, &problems, before.as_ref())?)?;
+    let html = document(&pages(suite, &made, &entries, &problems, before.as_ref())?)?;
     for (name, text) in [("report.json", serde_json::to_string_pretty(&json)?), ("index.html", html)] {
         let path = out.join(name);
         std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -143,11 +144,12 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
 /// All pages in the order of reading.
 fn pages(
     suite: &Suite,
+    made: &Made,
     entries: &[Entry],
     problems: &[String],
     before: Option<&Before>,
 ) -> Result<Vec<Page>, Failure> {
-    let mut pages = vec![overview::page(entries, problems, before)?];
+    let mut pages = vec![overview::page(made, entries, problems, before)?];
     for entry in entries {
         pages.push(case::page(suite, entry)?);
     }
@@ -201,4 +203,61 @@ fn machine() -> String {
         std::env::consts::OS,
         std::env::consts::ARCH
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two cases run as ever, one that compares curves, and one that cannot be run.
+    fn file() -> String {
+        let suite = Suite::here();
+        let mut entries = run_all(&suite, &["distributed-load".to_owned(), "euler-column".to_owned()]);
+        let error = ancf_check::Error::Check {
+            case: "broken".into(),
+            check: "1".into(),
+            message: "expected <a>, found <b>".into(),
+        };
+        entries.push(Entry { name: "broken".into(), examined: Err(error), took: Duration::ZERO });
+        let made = Made { date: "2026-01-02 03:04 UTC".into(), machine: "a machine".into() };
+        document(&pages(&suite, &made, &entries, &[], None).expect("pages")).expect("a file")
+    }
+
+    fn between<'a>(text: &'a str, start: &str, end: &str) -> Vec<&'a str> {
+        text.split(start).skip(1).filter_map(|rest| rest.split(end).next()).collect()
+    }
+
+    #[test]
+    fn the_file_needs_no_other_and_its_links_lead_somewhere() {
+        let file = file();
+        let links = between(&file, "href=\"", "\"");
+        assert!(links.contains(&"#euler-column"));
+        for link in links {
+            let id = link.strip_prefix('#').unwrap_or_else(|| panic!("{link} leads out of the file"));
+            assert!(file.contains(&format!("id=\"{id}\"")), "{link} leads nowhere");
+        }
+        for foreign in ["<script", "<link", "<img", "src=", "url(", "@import"] {
+            assert!(!file.contains(foreign), "{foreign}");
+        }
+    }
+
+    #[test]
+    fn a_case_of_curves_shows_ours_upon_the_reference_their_difference_and_where_it_comes_from() {
+        let file = file();
+        let page = between(&file, "<section class=\"page\" id=\"distributed-load\">", "</section>");
+        for text in ["<pre>", "Ours upon the reference.", "Difference.", "tolerance", "citation", "SHA-256"] {
+            assert!(page.iter().any(|page| page.contains(text)), "`{text}` is missing");
+        }
+        assert!(
+            page.iter().all(|page| page.matches("<svg").count() >= 3 && !page.contains("nothing to draw"))
+        );
+    }
+
+    #[test]
+    fn a_case_that_cannot_be_examined_says_why_and_fails() {
+        let file = file();
+        assert!(file.contains("expected &#60;a&#62;, found &#60;b&#62;"));
+        let overview = between(&file, "id=\"overview\">", "</h1>");
+        assert!(overview.iter().all(|heading| heading.contains("fail")) && overview.len() == 1);
+    }
 }

@@ -13,6 +13,8 @@ use crate::Failure;
 #[derive(Template)]
 #[template(path = "overview.html")]
 struct Body<'a> {
+    version: &'static str,
+    made: &'a Made,
     problems: &'a [String],
     passed: usize,
     failed: usize,
@@ -21,6 +23,14 @@ struct Body<'a> {
     /// Day of the report that this one is compared with.
     before: Option<&'a str>,
     cases: Vec<Line<'a>>,
+}
+
+/// When and where the report was made.
+pub struct Made {
+    /// Day and time.
+    pub date: String,
+    /// Processor and system.
+    pub machine: String,
 }
 
 /// A case.
@@ -47,11 +57,18 @@ struct Worst {
 }
 
 /// The overview of all cases and of what is wrong with files.
-pub fn page(entries: &[Entry], problems: &[String], before: Option<&Before>) -> Result<Page, Failure> {
+pub fn page(
+    made: &Made,
+    entries: &[Entry],
+    problems: &[String],
+    before: Option<&Before>,
+) -> Result<Page, Failure> {
     let outcomes = || entries.iter().filter_map(|e| e.examined.as_ref().ok()).flat_map(|e| &e.outcomes);
     let failed = outcomes().filter(|o| !o.verdict.passed()).count()
         + entries.iter().filter(|e| e.examined.is_err()).count();
     let body = Body {
+        version: env!("CARGO_PKG_VERSION"),
+        made,
         problems,
         passed: outcomes().filter(|o| o.verdict.passed()).count(),
         failed,

@@ -23,20 +23,10 @@ pub struct Page {
     pub body: String,
 }
 
-/// When and where the report was made.
-pub struct Made {
-    /// Day and time.
-    pub date: String,
-    /// Processor and system.
-    pub machine: String,
-}
-
 #[derive(Template)]
 #[template(path = "report.html")]
 struct Document<'a> {
-    version: &'static str,
     style: &'static str,
-    made: &'a Made,
     pages: &'a [Page],
 }
 
@@ -51,7 +41,7 @@ impl Document<'_> {
 ///
 /// # Errors
 /// Where two pages have the same id, or there is no page.
-pub fn document(made: &Made, pages: &[Page]) -> Result<String, Failure> {
+pub fn document(pages: &[Page]) -> Result<String, Failure> {
     let mut ids = HashSet::new();
     if let Some(twice) = pages.iter().find(|page| !ids.insert(page.id.as_str())) {
         return Err(format!(
@@ -64,5 +54,51 @@ pub fn document(made: &Made, pages: &[Page]) -> Result<String, Failure> {
         return Err("a report needs a page".into());
     }
     let style = include_str!("../../templates/report.css");
-    Ok(Document { version: env!("CARGO_PKG_VERSION"), style, made, pages }.render()?)
+    Ok(Document { style, pages }.render()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn page(id: &str, listed: bool) -> Page {
+        let title = id.to_uppercase();
+        Page {
+            id: id.into(),
+            title,
+            pass: (id == "case").then_some(false),
+            listed,
+            body: "<p>text</p>".into(),
+        }
+    }
+
+    #[test]
+    fn pages_lead_to_their_neighbours_and_the_top_to_those_listed() {
+        let file = document(&[page("first", true), page("case", false), page("last", true)]).expect("a file");
+        let (top, sections) = file.split_once("<section").expect("pages");
+        assert!(
+            top.contains("href=\"#first\"")
+                && top.contains("href=\"#last\"")
+                && !top.contains("href=\"#case\"")
+        );
+        let section = |k: usize| sections.split("<section").nth(k).expect("as many sections as pages");
+        assert!(
+            section(1).contains("id=\"case\"")
+                && section(1).contains("<p>text</p>")
+                && section(1).contains("fail")
+        );
+        assert!(
+            section(1).contains("<a href=\"#first\">← FIRST</a>")
+                && section(1).contains("<a href=\"#last\">LAST →</a>")
+        );
+        assert!(!section(0).contains('←') && !section(2).contains('→'));
+    }
+
+    #[test]
+    fn two_pages_of_one_name_are_refused() {
+        let told =
+            document(&[page("overview", true), page("overview", false)]).expect_err("ambiguous").to_string();
+        assert!(told.contains("`overview`"));
+        assert!(document(&[]).is_err());
+    }
 }
