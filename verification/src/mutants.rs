@@ -214,6 +214,8 @@ fn without_place(name: &str) -> String {
 struct Outcomes {
     outcomes: Vec<Outcome>,
     start_time: String,
+    /// None as long as it runs.
+    end_time: Option<String>,
     cargo_mutants_version: String,
 }
 
@@ -281,6 +283,9 @@ pub fn record(
         .iter()
         .map(|path| json(&if path.is_dir() { path.join("outcomes.json") } else { path.clone() }))
         .collect::<Result<Vec<Outcomes>, _>>()?;
+    for (path, _) in outcomes.iter().zip(&runs).filter(|(_, run)| run.end_time.is_none()) {
+        eprintln!("{} has not come to its end: what it tried so far is no even sample", path.display());
+    }
     let mut record = Record::join(&known, &runs, &before)?;
     record.commit = commit.map_or_else(|| head(suite), Ok)?;
     command.clone_into(&mut record.command);

@@ -22,7 +22,7 @@ type Points = Vec<[f64; 2]>;
 const INK: usize = PALETTE.len() - 1;
 /// Size of a drawing without its legend, and the largest height of one in true proportion \[px\].
 const WIDTH: u32 = 540;
-const HEIGHT: u32 = 290;
+const HEIGHT: u32 = 310;
 const HIGHEST: u32 = 460;
 /// More marks than this hide each other.
 const MARKS: usize = 30;
@@ -68,33 +68,48 @@ fn colour(number: usize) -> Colour {
     PALETTE[number.min(INK)]
 }
 
-/// Series of a figure, with the number of their colour: curves of one name have one colour and are named once.
-struct Traces(Vec<(usize, String, Series)>);
+/// The colour of the series with this number, and its opacity: paler once all colours are in use.
+fn appearance(number: usize) -> (Colour, f64) {
+    (colour(number % INK), if number < INK { 1.0 } else { 0.45 })
+}
+
+/// Series of a figure with their names: curves of one name have one colour and are in the legend once.
+#[derive(Default)]
+struct Traces {
+    named: Vec<(String, Series)>,
+    /// Colours given one after the other.
+    given: usize,
+}
 
 impl Traces {
     /// `color`: the one that the case asks for.
     fn add(&mut self, label: String, points: Points, line: Line, color: Option<usize>) {
-        let same = self.0.iter().find(|(_, name, _)| *name == label);
-        let next = || self.0.iter().map(|(number, ..)| number + 1).max().unwrap_or(0) % INK;
-        let number = color.unwrap_or_else(|| same.map_or_else(next, |(number, ..)| *number));
+        let same = self.named.iter().find(|(name, _)| *name == label);
+        let (colour, opacity) = match (color, same) {
+            (Some(number), _) => (colour(number), 1.0),
+            (None, Some((_, series))) => (series.colour, series.opacity),
+            (None, None) => {
+                self.given += 1;
+                appearance(self.given - 1)
+            }
+        };
         let mark = match line {
             Line::Solid => Mark::Line,
             Line::Dashed => Mark::Dashed,
             Line::Points => Mark::Circles,
         };
-        let named = self.0.iter().any(|(n, name, s)| *name == label && *n == number && s.mark == mark);
-        let shown = if named { "" } else { label.as_str() };
-        let series = Series::new(shown, points, mark, colour(number));
-        self.0.push((number, label, series));
+        let shown = self.named.iter().any(|(name, s)| *name == label && s.colour == colour && s.mark == mark);
+        let series = Series::new(if shown { "" } else { &label }, points, mark, colour).opacity(opacity);
+        self.named.push((label, series));
     }
 
     fn series(self) -> Vec<Series> {
-        self.0.into_iter().map(|(.., series)| series).collect()
+        self.named.into_iter().map(|(_, series)| series).collect()
     }
 }
 
 fn curves(examined: &Examined, curves: &[Curve]) -> Result<Vec<Series>, String> {
-    let mut traces = Traces(Vec::new());
+    let mut traces = Traces::default();
     for curve in curves {
         let reference = |rows: &[(String, Scalar)]| -> Result<Option<Points>, String> {
             let Some(oracle) = &curve.oracle else { return Ok(None) };
@@ -217,10 +232,10 @@ fn convergence(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Opt
 
 /// A line with a mark at every point, unless there are too many; each further one in the next colour.
 fn marked(series: &mut Vec<Series>, label: &str, points: Points) {
-    let colour = colour(series.len() / 2 % INK);
+    let (colour, opacity) = appearance(series.len() / 2);
     let marks = if points.len() <= MARKS { points.clone() } else { Points::new() };
-    series.push(Series::line(label, points, colour).size(1.4));
-    series.push(Series::points("", marks, colour));
+    series.push(Series::line(label, points, colour).size(1.4).opacity(opacity));
+    series.push(Series::points("", marks, colour).opacity(opacity));
 }
 
 fn logarithmic(title: &str, caption: String, x: Axis, series: Vec<Series>) -> Option<FigureView> {
