@@ -128,8 +128,12 @@ fn grid(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Option<Gri
 
 fn line(outcome: &Outcome, check: &Check) -> LineView {
     let fine = check.last_digit.or(outcome.verdict.allowed).unwrap_or(outcome.error).max(1e-15) / 10.0;
-    let scaled = if check.per.is_some() { fine * largest(&outcome.reference).max(1e-300) } else { fine };
-    let resolution = if outcome.is_rate() { 1e-3 } else { scaled };
+    let scale = match check.per {
+        None => 1.0,
+        Some(Per::Number(scale)) => scale,
+        Some(Per::Word(_)) => largest(&outcome.reference).max(1e-300),
+    };
+    let resolution = if outcome.is_rate() { 1e-3 } else { fine * scale };
     let text = |points: &[Vec<f64>]| match points {
         [point] if outcome.abscissa.is_empty() => {
             point.iter().map(|v| at_resolution(*v, resolution)).collect::<Vec<_>>().join(", ")

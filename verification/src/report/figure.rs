@@ -98,7 +98,7 @@ impl Traces {
             Line::Dashed => Mark::Dashed,
             Line::Points => Mark::Circles,
         };
-        let shown = self.named.iter().any(|(name, s)| *name == label && s.colour == colour && s.mark == mark);
+        let shown = self.named.iter().any(|(name, s)| *name == label && s.mark == mark);
         let series = Series::new(if shown { "" } else { &label }, points, mark, colour).opacity(opacity);
         self.named.push((label, series));
     }
@@ -125,9 +125,10 @@ fn curves(examined: &Examined, curves: &[Curve]) -> Result<Vec<Series>, String> 
         }
         let (_, runs) = examined.runs(curve.run.as_deref())?;
         for run in runs.iter().filter(|run| run.member.is(&curve.only)) {
-            let label = match &curve.label {
-                Some(label) => run.member.fill(label)?,
-                None => run.label.clone(),
+            let label = match (&curve.label, &curve.oracle) {
+                (Some(label), _) => run.member.fill(label)?,
+                (None, Some(_)) => "reference".to_owned(),
+                (None, None) => run.label.clone(),
             };
             let points = match reference(&filled(&curve.rows, run)?)? {
                 Some(points) => points,

@@ -6,7 +6,7 @@ use ancf_check::Outcome;
 pub fn at_resolution(value: f64, resolution: f64) -> String {
     let decimals = (-resolution.log10()).ceil();
     if value.abs() >= 1e7 || !(0.0..=16.0).contains(&decimals) {
-        return format!("{value:.12e}");
+        return format!("{value:.12e}").replace('-', "−");
     }
     let text = format!("{value:.*}", decimals as usize);
     if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {

@@ -3,7 +3,9 @@
 //! A mutant is one small fault put into the sources. It is *caught* where a test fails or does not come to its end, *missed*
 //! where all tests pass, *unviable* where it does not compile.
 
-use std::collections::{HashMap, HashSet};
+mod reasons;
+
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -13,10 +15,9 @@ use indexmap::IndexMap;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+pub use self::reasons::Survivor;
+use self::reasons::{UNEXPLAINED, explain, without_place};
 use crate::freeze::store;
-
-/// What stands where nobody has written a reason yet.
-const UNEXPLAINED: &str = "to be explained";
 
 /// `verification/mutants.toml`.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -76,23 +77,6 @@ impl Counts {
             Summary::Unviable => self.unviable += 1,
             Summary::MissedMutant => self.missed += 1,
         }
-    }
-}
-
-/// A missed mutant.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct Survivor {
-    /// File, place and change, in the tool's words.
-    pub mutant: String,
-    /// Why no test need catch it, or why none does.
-    pub reason: String,
-}
-
-impl Survivor {
-    /// Whether somebody has written why.
-    pub fn explained(&self) -> bool {
-        self.reason != UNEXPLAINED
     }
 }
 
@@ -160,52 +144,6 @@ impl Record {
             folder,
             survivor: explain(&missed, reasons),
         })
-    }
-}
-
-/// Survivors with the reasons that were written for the same ones before. Lines move, so places do not count; where one text
-/// stands for several places, these are taken in their order as long as there are as many, otherwise by their lines.
-fn explain(missed: &[&str], before: &[Survivor]) -> Vec<Survivor> {
-    let mut old: HashMap<String, Vec<&Survivor>> = HashMap::new();
-    for survivor in before {
-        old.entry(without_place(&survivor.mutant)).or_default().push(survivor);
-    }
-    let mut number: HashMap<String, usize> = HashMap::new();
-    for name in missed {
-        *number.entry(without_place(name)).or_default() += 1;
-    }
-    let mut seen: HashMap<String, usize> = HashMap::new();
-    let reason = |name: &str| -> Option<String> {
-        let text = without_place(name);
-        let same = old.get(&text)?;
-        let turn = seen.entry(text.clone()).or_default();
-        *turn += 1;
-        let found = if number.get(&text) == Some(&same.len()) {
-            same.get(*turn - 1)
-        } else {
-            same.iter().find(|s| s.mutant == name).or_else(|| {
-                let first = same.first()?;
-                same.iter().all(|s| s.reason == first.reason).then_some(first)
-            })
-        };
-        found.map(|survivor| survivor.reason.clone())
-    };
-    let reasons: Vec<Option<String>> = missed.iter().copied().map(reason).collect();
-    missed
-        .iter()
-        .zip(reasons)
-        .map(|(name, reason)| Survivor {
-            mutant: (*name).to_owned(),
-            reason: reason.unwrap_or_else(|| UNEXPLAINED.to_owned()),
-        })
-        .collect()
-}
-
-/// `src/a.rs:12:7: replace …` without `:12:7`.
-fn without_place(name: &str) -> String {
-    match name.split_once(": ") {
-        Some((place, change)) => format!("{}: {change}", place.split(':').next().unwrap_or(place)),
-        None => name.to_owned(),
     }
 }
 
@@ -351,10 +289,6 @@ mod tests {
         serde_json::from_str(&json).expect("the format of outcomes.json")
     }
 
-    fn survivor(mutant: &str, reason: &str) -> Survivor {
-        Survivor { mutant: mutant.to_owned(), reason: reason.to_owned() }
-    }
-
     const A: &str = "src/solve/step/size.rs:3:5: replace < with <= in grow";
     const B: &str = "src/basis/ancf.rs:9:1: replace - with + in row";
     const C: &str = "src/basis/ancf.rs:9:9: replace - with / in row";
@@ -373,7 +307,7 @@ mod tests {
         assert_eq!(record.total.score(), Some(2.0 / 3.0));
         assert_eq!(record.folder.keys().collect::<Vec<_>>(), ["src/basis", "src/solve"]);
         assert_eq!((record.folder["src/basis"].exist, record.folder["src/solve"].timed_out), (4, 1));
-        assert_eq!(record.survivor, [survivor(C, UNEXPLAINED)]);
+        assert_eq!(record.survivor, [Survivor { mutant: C.to_owned(), reason: UNEXPLAINED.to_owned() }]);
         // What is written reads back.
         let text = toml::to_string(&record).expect("serialisable");
         assert_eq!(toml::from_str::<Record>(&text).expect("the same format"), record);
@@ -387,27 +321,5 @@ mod tests {
         };
         assert!(told(&[(B, "CaughtMutant")]).contains(B));
         assert!(told(&[(A, "Failure")]).contains("Failure"));
-    }
-
-    #[test]
-    fn reasons_stay_when_lines_move() {
-        let moved = "src/basis/ancf.rs:90:4: replace - with + in row";
-        let kept = explain(&[moved, A], &[survivor(B, "y is 1 − x"), survivor(C, "another")]);
-        assert_eq!(kept, [survivor(moved, "y is 1 − x"), survivor(A, UNEXPLAINED)]);
-    }
-
-    #[test]
-    fn one_text_at_several_places_keeps_a_reason_each() {
-        let at = |line: u32| format!("src/basis/ancf.rs:{line}:1: replace - with + in row");
-        let before = [survivor(&at(10), "first"), survivor(&at(20), "second")];
-        let reasons = |lines: &[u32]| {
-            let names: Vec<String> = lines.iter().map(|&l| at(l)).collect();
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            explain(&names, &before).into_iter().map(|s| s.reason).collect::<Vec<_>>()
-        };
-        assert_eq!(reasons(&[11, 21]), ["first", "second"]);
-        // Caught at one of the places: the line tells which is left, and where it does not, nobody guesses.
-        assert_eq!(reasons(&[20]), ["second"]);
-        assert_eq!(reasons(&[25]), [UNEXPLAINED]);
     }
 }
