@@ -121,7 +121,7 @@ fn says_the_same(old: &Provenance, new: &Provenance) -> bool {
 }
 
 /// Writes a file so that it is there whole or not at all.
-fn store(path: &Path, text: &str) -> Result<(), Failure> {
+pub fn store(path: &Path, text: &str) -> Result<(), Failure> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }

@@ -2,6 +2,7 @@
 
 mod beside;
 mod freeze;
+mod mutants;
 mod report;
 
 use std::path::PathBuf;
@@ -45,6 +46,21 @@ enum Command {
         /// Cases; those with reference data by a peer if none is named
         cases: Vec<String>,
     },
+    /// Record what cargo-mutants found in verification/mutants.toml, with the reasons already written there
+    Mutants {
+        /// All mutants that there are: what `cargo mutants --list --json` prints
+        #[arg(long, value_name = "JSON")]
+        of: PathBuf,
+        /// What repeats the run
+        #[arg(long, default_value = ".ci/mutants")]
+        command: String,
+        /// The sources that were tried; HEAD if not given
+        #[arg(long)]
+        commit: Option<String>,
+        /// Folders mutants.out, or their files outcomes.json
+        #[arg(required = true)]
+        outcomes: Vec<PathBuf>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -53,6 +69,9 @@ fn main() -> ExitCode {
         Command::Report { out, against, cases } => report::write(&suite, &out, against.as_deref(), &cases),
         Command::Freeze { check, cases } => freeze::freeze(&suite, &cases, check),
         Command::Peers { cases } => beside::print(&suite, &cases),
+        Command::Mutants { of, command, commit, outcomes } => {
+            mutants::record(&suite, &of, &outcomes, &command, commit)
+        }
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,

@@ -1,210 +1,258 @@
-//! Drawings of the report, as SVG.
+//! Drawings of a case page: the figures that `case.toml` asks for, and for every check along a curve our curve upon the
+//! reference and their difference.
 
-use plotters::prelude::*;
-use plotters::style::RGBColor;
+use ancf::output::plot::{Axis, Chart, Colour, Mark, PALETTE, Series};
+use ancf_check::case::{Check, Curve, Figure, Line, Scalar};
+use ancf_check::compare::filled;
+use ancf_check::execute::Run;
+use ancf_check::quantity::values;
+use ancf_check::{Examined, Outcome};
 
-use ancf_check::case::Line;
-
-use crate::Failure;
-
-/// One curve of a drawing.
-pub struct Trace {
-    /// Name in the legend.
-    pub label: String,
-    /// Points.
-    pub points: Vec<(f64, f64)>,
-    /// Appearance.
-    pub line: Line,
-    /// Number of the colour.
-    pub color: usize,
+/// A drawing and the words below it.
+pub struct FigureView {
+    pub title: String,
+    pub caption: String,
+    /// `<svg>…</svg>`, or why there is none.
+    pub drawing: Result<String, String>,
 }
 
-/// A drawing with its legend.
-pub struct Drawing {
-    /// `<svg>…</svg>`.
-    pub svg: String,
-    /// Colour, whether dashed or dotted, and name.
-    pub legend: Vec<Entry>,
+type Points = Vec<[f64; 2]>;
+
+/// The last colour, for references.
+const INK: usize = PALETTE.len() - 1;
+/// Size of a drawing without its legend, and the largest height of one in true proportion \[px\].
+const WIDTH: u32 = 540;
+const HEIGHT: u32 = 310;
+const HIGHEST: u32 = 460;
+/// More marks than this hide each other.
+const MARKS: usize = 30;
+/// Below this a difference is round-off, of which a drawing shows nothing.
+const ROUND_OFF: f64 = 1e-13;
+
+/// A figure that `case.toml` asks for.
+pub fn of_case(examined: &Examined, figure: &Figure) -> FigureView {
+    let axis = |label: &str| if figure.logarithmic { Axis::log(label) } else { Axis::linear(label) };
+    let drawing = curves(examined, &figure.curve)
+        .and_then(|series| draw(axis(&figure.x), axis(&figure.y), figure.equal, series));
+    FigureView { title: figure.title.clone(), caption: figure.caption.clone(), drawing }
 }
 
-/// A line of a legend.
-pub struct Entry {
-    /// `#rrggbb`.
-    pub color: String,
-    /// Dash pattern of the sample, as in SVG.
-    pub dash: &'static str,
-    /// Name.
-    pub label: String,
+/// What a check shows of itself: errors over the variable of an order; or along a curve, ours upon the reference, and the error.
+pub fn of_check(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Vec<FigureView> {
+    if check.order.is_some() {
+        return convergence(examined, check, outcomes).into_iter().collect();
+    }
+    let (mut overlay, difference) = (overlay(examined, check, outcomes), difference(check, outcomes));
+    if let (Some(overlay), None) = (&mut overlay, &difference) {
+        overlay.caption.push_str(" They differ by round-off.");
+    }
+    overlay.into_iter().chain(difference).collect()
 }
 
-/// What a drawing looks like.
-pub struct Frame<'a> {
-    /// Label of the horizontal axis.
-    pub x: &'a str,
-    /// Label of the vertical axis.
-    pub y: &'a str,
-    /// True aspect ratio.
-    pub equal: bool,
-    /// Logarithmic horizontal, vertical axis.
-    pub logarithmic: (bool, bool),
-}
-
-const PALETTE: [RGBColor; 8] = [
-    RGBColor(31, 95, 191),
-    RGBColor(209, 73, 31),
-    RGBColor(30, 138, 90),
-    RGBColor(138, 79, 191),
-    RGBColor(184, 134, 11),
-    RGBColor(15, 138, 157),
-    RGBColor(194, 53, 127),
-    RGBColor(40, 40, 40),
-];
-
-const WIDTH: f64 = 540.0;
-/// What axes and labels take of the width and of the height.
-const BORDER: (f64, f64) = (86.0, 62.0);
-/// The library rounds to whole pixels; it draws this many times larger, and the page shows it at its size.
-const FINE: u32 = 8;
-
-/// Draws curves. Points that cannot be drawn (not finite, or not positive on a logarithmic axis) are left out.
-pub fn draw(frame: &Frame, traces: &[Trace]) -> Result<Drawing, Failure> {
-    let map = |v: f64, logarithmic: bool| if logarithmic { v.log10() } else { v };
-    let drawn: Vec<Vec<(f64, f64)>> = traces
-        .iter()
-        .map(|t| {
-            let mapped =
-                t.points.iter().map(|&(x, y)| (map(x, frame.logarithmic.0), map(y, frame.logarithmic.1)));
-            mapped.filter(|(x, y)| x.is_finite() && y.is_finite()).collect()
-        })
-        .collect();
-    let all = || drawn.iter().flatten();
-    if all().next().is_none() {
+/// Axes, and room for the legend above them.
+fn draw(x: Axis, y: Axis, equal: bool, series: Vec<Series>) -> Result<String, String> {
+    if series.iter().flat_map(|s| &s.points).all(|p| p.iter().any(|v| !v.is_finite())) {
         return Err("there is nothing to draw".into());
     }
-    let mut xs = range(all().map(|p| p.0));
-    let mut ys = range(all().map(|p| p.1));
-    let inner = WIDTH - BORDER.0;
-    let mut height = 270.0;
-    if frame.equal {
-        let natural = inner * (ys.1 - ys.0) / (xs.1 - xs.0);
-        height = natural.clamp(120.0, 440.0);
-        let wanted = height / inner;
-        if (ys.1 - ys.0) / (xs.1 - xs.0) > wanted {
-            widen(&mut xs, (ys.1 - ys.0) / wanted);
-        } else {
-            widen(&mut ys, (xs.1 - xs.0) * wanted);
-        }
-    }
-    let size = (WIDTH as u32 * FINE, (height + BORDER.1) as u32 * FINE);
+    /// Sample, gaps and width of a letter in a legend, and height of its lines \[px\].
+    const LEGEND: [usize; 3] = [44, 7, 20];
+    let named = series.iter().filter(|s| !s.label.is_empty());
+    let long: usize = named.map(|s| LEGEND[0] + LEGEND[1] * s.label.chars().count()).sum();
+    let legend = u32::try_from(long / (WIDTH as usize - 120) * LEGEND[2]).map_err(|e| e.to_string())?;
+    let chart = Chart::new("", x, y).sized(WIDTH, HEIGHT + legend);
+    let chart = if equal { chart.equal_aspect(HIGHEST + legend) } else { chart };
+    series.into_iter().fold(chart, Chart::with).svg().map_err(|e| e.to_string())
+}
 
-    let mut svg = String::new();
-    {
-        let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-        let mut chart = ChartBuilder::on(&root)
-            .margin(8 * FINE)
-            .x_label_area_size(46 * FINE)
-            .y_label_area_size(70 * FINE)
-            .build_cartesian_2d(xs.0..xs.1, ys.0..ys.1)?;
-        let text = ("sans-serif", 13 * FINE).into_font().color(&RGBColor(60, 60, 60));
-        let horizontal = |v: &f64| tick(*v, xs.1 - xs.0, frame.logarithmic.0);
-        let vertical = |v: &f64| tick(*v, ys.1 - ys.0, frame.logarithmic.1);
-        chart
-            .configure_mesh()
-            .x_desc(frame.x)
-            .y_desc(frame.y)
-            .x_labels(9)
-            .y_labels(if height < 200.0 { 5 } else { 8 })
-            .x_label_formatter(&horizontal)
-            .y_label_formatter(&vertical)
-            .label_style(text.clone())
-            .axis_desc_style(text)
-            .axis_style(RGBColor(120, 120, 120).stroke_width(FINE))
-            .set_all_tick_mark_size(5 * FINE)
-            .bold_line_style(RGBColor(225, 225, 225).stroke_width(FINE))
-            .light_line_style(WHITE)
-            .draw()?;
-        for (trace, points) in traces.iter().zip(&drawn) {
-            let color = color(trace.color);
-            match trace.line {
-                Line::Solid => {
-                    chart
-                        .draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2 * FINE)))?;
-                }
-                Line::Dashed => {
-                    chart.draw_series(DashedLineSeries::new(
-                        points.iter().copied(),
-                        6 * FINE,
-                        5 * FINE,
-                        color.stroke_width(3 * FINE / 2),
-                    ))?;
-                }
-                Line::Points => {
-                    chart.draw_series(
-                        points.iter().map(|&p| Circle::new(p, 3 * FINE, color.stroke_width(FINE))),
-                    )?;
-                }
+fn colour(number: usize) -> Colour {
+    PALETTE[number.min(INK)]
+}
+
+/// The colour of the series with this number, and its opacity: paler once all colours are in use.
+fn appearance(number: usize) -> (Colour, f64) {
+    (colour(number % INK), if number < INK { 1.0 } else { 0.45 })
+}
+
+/// Series of a figure with their names: curves of one name have one colour and are in the legend once.
+#[derive(Default)]
+struct Traces {
+    named: Vec<(String, Series)>,
+    /// Colours given one after the other.
+    given: usize,
+}
+
+impl Traces {
+    /// `color`: the one that the case asks for.
+    fn add(&mut self, label: String, points: Points, line: Line, color: Option<usize>) {
+        let same = self.named.iter().find(|(name, _)| *name == label);
+        let (colour, opacity) = match (color, same) {
+            (Some(number), _) => (colour(number), 1.0),
+            (None, Some((_, series))) => (series.colour, series.opacity),
+            (None, None) => {
+                self.given += 1;
+                appearance(self.given - 1)
             }
-        }
-        root.present()?;
-    }
-    let mut legend: Vec<Entry> = Vec::new();
-    for trace in traces {
-        let RGBColor(r, g, b) = color(trace.color);
-        let entry = Entry {
-            color: format!("#{r:02x}{g:02x}{b:02x}"),
-            dash: match trace.line {
-                Line::Solid => "none",
-                Line::Dashed => "5 4",
-                Line::Points => "2 4",
-            },
-            label: trace.label.clone(),
         };
-        if !legend.iter().any(|e| e.label == entry.label && e.color == entry.color) {
-            legend.push(entry);
+        let mark = match line {
+            Line::Solid => Mark::Line,
+            Line::Dashed => Mark::Dashed,
+            Line::Points => Mark::Circles,
+        };
+        let shown = self.named.iter().any(|(name, s)| *name == label && s.mark == mark);
+        let series = Series::new(if shown { "" } else { &label }, points, mark, colour).opacity(opacity);
+        self.named.push((label, series));
+    }
+
+    fn series(self) -> Vec<Series> {
+        self.named.into_iter().map(|(_, series)| series).collect()
+    }
+}
+
+fn curves(examined: &Examined, curves: &[Curve]) -> Result<Vec<Series>, String> {
+    let mut traces = Traces::default();
+    for curve in curves {
+        let reference = |rows: &[(String, Scalar)]| -> Result<Option<Points>, String> {
+            let Some(oracle) = &curve.oracle else { return Ok(None) };
+            let table = examined.tables.get(oracle).ok_or_else(|| format!("no table of `{oracle}`"))?;
+            let rows = table.matching(rows)?;
+            Ok(Some(points(&table.numbers(&curve.x, &rows)?, &table.numbers(&curve.y, &rows)?)))
+        };
+        if curve.oracle.is_some() && curve.run.is_none() {
+            let rows: Vec<_> = curve.rows.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
+            let label = curve.label.clone().unwrap_or_else(|| "reference".to_owned());
+            traces.add(label, reference(&rows)?.unwrap_or_default(), curve.line, curve.color);
+            continue;
+        }
+        let (_, runs) = examined.runs(curve.run.as_deref())?;
+        for run in runs.iter().filter(|run| run.member.is(&curve.only)) {
+            let label = match (&curve.label, &curve.oracle) {
+                (Some(label), _) => run.member.fill(label)?,
+                (None, Some(_)) => "reference".to_owned(),
+                (None, None) => run.label.clone(),
+            };
+            let points = match reference(&filled(&curve.rows, run)?)? {
+                Some(points) => points,
+                None => points(&recorded(&curve.x, run)?.1, &recorded(&curve.y, run)?.1),
+            };
+            traces.add(label, points, curve.line, curve.color);
         }
     }
-    Ok(Drawing { svg, legend })
+    Ok(traces.series())
 }
 
-fn color(number: usize) -> RGBColor {
-    PALETTE.get(number % PALETTE.len()).copied().unwrap_or(BLACK)
+fn points(x: &[f64], y: &[f64]) -> Points {
+    x.iter().zip(y).map(|(&x, &y)| [x, y]).collect()
 }
 
-/// Smallest and largest value with some room on both sides.
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-    let room = if high - low > 1e-9 * high.abs().max(low.abs()) {
-        0.05 * (high - low)
-    } else {
-        0.05 * high.abs().max(1e-12)
+/// Abscissae and values of a curve that a run left.
+fn recorded(quantity: &str, run: &Run) -> Result<(Vec<f64>, Vec<f64>), String> {
+    let found = values(quantity, &run.result)?;
+    let (abscissa, list) = found.curve().ok_or_else(|| format!("`{quantity}` is one number, no curve"))?;
+    Ok((abscissa.to_vec(), list.to_vec()))
+}
+
+/// Of the run with the largest error, ours as a line and the reference as circles.
+fn overlay(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Option<FigureView> {
+    let curves = outcomes.iter().filter(|o| !o.abscissa.is_empty());
+    let worst = curves.max_by(|a, b| a.error.total_cmp(&b.error))?;
+    let several = outcomes.iter().filter(|o| !o.abscissa.is_empty()).count() > 1;
+    let mut names = Vec::new();
+    let drawing = || -> Result<String, String> {
+        let (_, runs) = examined.runs(check.run.as_deref())?;
+        let run = worst.run.and_then(|k| runs.get(k)).ok_or("a curve needs its run")?;
+        let over = check.abscissa.as_ref().map(|quantity| recorded(quantity, run)).transpose()?;
+        let mut series = Vec::new();
+        for (k, quantity) in check.quantity.all().iter().enumerate() {
+            let quantity = run.member.fill(quantity)?;
+            let (abscissa, ours) = recorded(&quantity, run)?;
+            let abscissa = over.as_ref().map_or(abscissa, |(_, values)| values.clone());
+            let theirs: Vec<f64> = worst.reference.iter().filter_map(|p| p.get(k).copied()).collect();
+            series.push(Series::line(format!("{quantity}, ours"), points(&abscissa, &ours), colour(k)));
+            let reference = points(&worst.abscissa, &theirs);
+            let stride = reference.len().div_ceil(MARKS);
+            let reference = reference.into_iter().step_by(stride).collect();
+            let label = if k == 0 { "reference" } else { "" };
+            series.push(Series::new(label, reference, Mark::Circles, colour(k)));
+            names.push(quantity);
+        }
+        let y = Axis::linear(names.join(", "));
+        draw(Axis::linear(along(check)), y, false, series)
     };
-    (low - room, high + room)
+    let drawing = { drawing }();
+    let which = if several {
+        format!(" Of all runs the one with the largest error: {}.", worst.label)
+    } else {
+        String::new()
+    };
+    Some(FigureView {
+        title: "Ours upon the reference".into(),
+        caption: format!("Lines: ours; circles of their colour: the reference.{which}"),
+        drawing,
+    })
 }
 
-fn widen(range: &mut (f64, f64), to: f64) {
-    let more = (to - (range.1 - range.0)) / 2.0;
-    *range = (range.0 - more, range.1 + more);
-}
-
-/// Text of a tick. Logarithmic axes name whole decades alone.
-fn tick(value: f64, span: f64, logarithmic: bool) -> String {
-    if logarithmic {
-        let decade = value.round();
-        if (value - decade).abs() < 1e-6 {
-            return format!("1e{decade}");
-        }
-        // an axis shorter than a decade needs its numbers all the same
-        let number = 10f64.powf(value);
-        return match (span < 1.5, (0.1..1000.0).contains(&number)) {
-            (false, _) => String::new(),
-            (true, true) => format!("{number:.1}"),
-            (true, false) => format!("{number:.1e}"),
+/// Distance of ours from the reference along the curve.
+fn difference(check: &Check, outcomes: &[&Outcome]) -> Option<FigureView> {
+    let mut series: Vec<Series> = Vec::new();
+    for outcome in outcomes.iter().filter(|o| !o.abscissa.is_empty()) {
+        let distance = |(a, b): (&Vec<f64>, &Vec<f64>)| {
+            a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
         };
+        let errors: Vec<f64> = outcome.ours.iter().zip(&outcome.reference).map(distance).collect();
+        marked(&mut series, &outcome.label, points(&outcome.abscissa, &errors));
     }
-    let value = if value.abs() < 1e-9 * span { 0.0 } else { value };
-    if !(1e-3..=1e5).contains(&span) {
-        return format!("{value:.1e}");
+    logarithmic(
+        "Difference",
+        format!("Distance of ours from the reference along {}.", along(check)),
+        Axis::linear(along(check)),
+        series,
+    )
+}
+
+/// Errors of a family of runs over what its order is measured against.
+fn convergence(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Option<FigureView> {
+    let order = check.order.as_ref()?;
+    let (_, runs) = examined.runs(check.run.as_deref()).ok()?;
+    let mut groups: Vec<(String, Points)> = Vec::new();
+    for outcome in outcomes.iter().filter(|o| !o.is_rate()) {
+        let member = &runs.get(outcome.run?)?.member;
+        let Some(n) = member.variables.get(&order.against).and_then(|n| n.parse().ok()) else { continue };
+        let label = member.label_without(&order.against);
+        match groups.iter_mut().find(|(name, _)| *name == label) {
+            Some((_, points)) => points.push([n, outcome.error]),
+            None => groups.push((label, vec![[n, outcome.error]])),
+        }
     }
-    let decimals = (1.0 - span.log10()).ceil().clamp(0.0, 6.0) as usize;
-    format!("{value:.decimals$}")
+    let mut series = Vec::new();
+    for (label, points) in groups {
+        marked(&mut series, &label, points);
+    }
+    let caption = format!("Error over {}; the observed order is minus the slope.", order.against);
+    logarithmic("Convergence", caption, Axis::log(order.against.as_str()), series)
+}
+
+/// A line with a mark at every point, unless there are too many; each further one in the next colour.
+fn marked(series: &mut Vec<Series>, label: &str, points: Points) {
+    let (colour, opacity) = appearance(series.len() / 2);
+    let marks = if points.len() <= MARKS { points.clone() } else { Points::new() };
+    series.push(Series::line(label, points, colour).size(1.4).opacity(opacity));
+    series.push(Series::points("", marks, colour).opacity(opacity));
+}
+
+fn logarithmic(title: &str, caption: String, x: Axis, series: Vec<Series>) -> Option<FigureView> {
+    let largest = series.iter().flat_map(|s| &s.points).map(|p| p[1]).fold(0.0, f64::max);
+    (largest >= ROUND_OFF).then(|| FigureView {
+        title: title.to_owned(),
+        caption,
+        drawing: draw(x, Axis::log("difference"), false, series),
+    })
+}
+
+/// The abscissa of a curve, with its unit.
+fn along(check: &Check) -> &str {
+    match check.along.as_deref() {
+        None | Some("s") => "s [m]",
+        Some("t") => "t [s]",
+        Some(other) => other,
+    }
 }

@@ -1,7 +1,22 @@
 //! The report: every case run today, beside its references.
 
+//!
+//! | module | subject |
+//! |---|---|
+//! | `page` | the list of pages, and the one file that holds them |
+//! | `overview`, `case`, `mutants` | a kind of page each: what its template shows, made from what was found |
+//! | `check`, `figure`, `number` | parts of a case's page |
+//! | `before` | an earlier report, to compare with |
+//!
+//! A further kind of page is a module with a template that returns a [`Page`], and a line in [`pages`].
+
 mod before;
+mod case;
+mod check;
 mod figure;
+mod mutants;
+mod number;
+mod overview;
 mod page;
 
 use std::path::Path;
@@ -14,6 +29,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use self::before::Before;
+use self::overview::Made;
+use self::page::{Page, document};
+use crate::mutants::Record;
 use crate::{Failure, chosen};
 
 /// A case as it came out.
@@ -58,12 +76,11 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
     let passed =
         problems.is_empty() && entries.iter().all(|e| e.examined.as_ref().is_ok_and(Examined::passed));
 
-    let date = now();
-    let machine = machine();
+    let made = Made { date: now(), machine: machine() };
     let json = Json {
         version: env!("CARGO_PKG_VERSION"),
-        date: &date,
-        machine: &machine,
+        date: &made.date,
+        machine: &made.machine,
         passed,
         problems: &problems,
         cases: entries
@@ -80,7 +97,7 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
             .collect(),
     };
     std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
-    let html = page::render(suite, &entries, &problems, before.as_ref(), &date, &machine)?;
+    let html = document(&pages(suite, &made, &entries, &problems, before.as_ref())?)?;
     for (name, text) in [("report.json", serde_json::to_string_pretty(&json)?), ("index.html", html)] {
         let path = out.join(name);
         std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -122,6 +139,23 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
         out.join("index.html").display()
     );
     Ok(passed && !lost)
+}
+
+/// All pages in the order of reading.
+fn pages(
+    suite: &Suite,
+    made: &Made,
+    entries: &[Entry],
+    problems: &[String],
+    before: Option<&Before>,
+) -> Result<Vec<Page>, Failure> {
+    let mut pages = vec![overview::page(made, entries, problems, before)?];
+    for entry in entries {
+        pages.push(case::page(suite, entry)?);
+    }
+    let record = Record::path(suite);
+    pages.push(mutants::page(Record::read(&record)?.as_ref(), Path::new(&suite.short(&record)))?);
+    Ok(pages)
 }
 
 /// Runs cases on all cores; cases are independent of each other.
@@ -169,4 +203,61 @@ fn machine() -> String {
         std::env::consts::OS,
         std::env::consts::ARCH
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two cases run as ever, one that compares curves, and one that cannot be run.
+    fn file() -> String {
+        let suite = Suite::here();
+        let mut entries = run_all(&suite, &["distributed-load".to_owned(), "euler-column".to_owned()]);
+        let error = ancf_check::Error::Check {
+            case: "broken".into(),
+            check: "1".into(),
+            message: "expected <a>, found <b>".into(),
+        };
+        entries.push(Entry { name: "broken".into(), examined: Err(error), took: Duration::ZERO });
+        let made = Made { date: "2026-01-02 03:04 UTC".into(), machine: "a machine".into() };
+        document(&pages(&suite, &made, &entries, &[], None).expect("pages")).expect("a file")
+    }
+
+    fn between<'a>(text: &'a str, start: &str, end: &str) -> Vec<&'a str> {
+        text.split(start).skip(1).filter_map(|rest| rest.split(end).next()).collect()
+    }
+
+    #[test]
+    fn the_file_needs_no_other_and_its_links_lead_somewhere() {
+        let file = file();
+        let links = between(&file, "href=\"", "\"");
+        assert!(links.contains(&"#euler-column"));
+        for link in links {
+            let id = link.strip_prefix('#').unwrap_or_else(|| panic!("{link} leads out of the file"));
+            assert!(file.contains(&format!("id=\"{id}\"")), "{link} leads nowhere");
+        }
+        for foreign in ["<script", "<link", "<img", "src=", "url(", "@import"] {
+            assert!(!file.contains(foreign), "{foreign}");
+        }
+    }
+
+    #[test]
+    fn a_case_of_curves_shows_ours_upon_the_reference_their_difference_and_where_it_comes_from() {
+        let file = file();
+        let page = between(&file, "<section class=\"page\" id=\"distributed-load\">", "</section>");
+        for text in ["<pre>", "Ours upon the reference.", "Difference.", "tolerance", "citation", "SHA-256"] {
+            assert!(page.iter().any(|page| page.contains(text)), "`{text}` is missing");
+        }
+        assert!(
+            page.iter().all(|page| page.matches("<svg").count() >= 3 && !page.contains("nothing to draw"))
+        );
+    }
+
+    #[test]
+    fn a_case_that_cannot_be_examined_says_why_and_fails() {
+        let file = file();
+        assert!(file.contains("expected &#60;a&#62;, found &#60;b&#62;"));
+        let overview = between(&file, "id=\"overview\">", "</h1>");
+        assert!(overview.iter().all(|heading| heading.contains("fail")) && overview.len() == 1);
+    }
 }
