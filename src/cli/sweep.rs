@@ -12,13 +12,17 @@ use super::failure::Failure;
 use super::terminal::{self, SweepLine};
 use super::{Overrides, default_directory, interrupt};
 
+/// What follows the options in `ancf sweep --help`.
+const NOTES: &str = "\
+All combinations are checked before the first one is run. A run that fails is recorded with its message and ends nothing. \
+Called again with the same arguments, a sweep that was interrupted or killed goes on where it was.
+
+Exit status: 0 every run is recorded, solved or not; 1 the sweep was interrupted or could not be written, or runs are \
+missing from a merge; 2 the input is wrong, or DIR holds another sweep.";
+
 /// Many runs of one scene.
-///
-/// All combinations are checked before the first one is run. Runs that fail are recorded with their message and end nothing:
-/// the exit status is 0 when every run is recorded, solved or not; 1 when the sweep was interrupted, could not be written,
-/// or runs are missing from a merge; 2 when the input is wrong or DIR holds another sweep. Called again with the same
-/// arguments, a sweep that was interrupted or killed goes on where it was.
 #[derive(Debug, Args)]
+#[command(after_help = NOTES)]
 pub struct SweepArguments {
     /// The scene file (TOML)
     #[arg(required_unless_present = "merge")]
@@ -43,7 +47,8 @@ pub struct SweepArguments {
     #[command(flatten)]
     overrides: Overrides,
     /// Join the shards in DIR to DIR/sweep.csv, and see that no run is missing
-    #[arg(long, value_name = "DIR", exclusive = true)]
+    #[arg(long, value_name = "DIR",
+        conflicts_with_all = ["scene", "vary", "list", "output", "shard", "threads", "set"])]
     merge: Option<PathBuf>,
     /// Print warnings and errors only
     #[arg(short, long)]
@@ -53,7 +58,7 @@ pub struct SweepArguments {
 /// Runs the command.
 pub fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
     if let Some(directory) = &arguments.merge {
-        return merge(directory, false);
+        return merge(directory, arguments.quiet);
     }
     // The parser asks for a scene where nothing is merged.
     let scene = arguments.scene.as_deref().unwrap_or(Path::new(""));

@@ -149,7 +149,7 @@ impl Finished {
     pub fn read(directory: &Path, runs: usize) -> Result<Self, SweepError> {
         let (mut files, mut places) = (Vec::new(), vec![None; runs]);
         for (index, path) in paths(directory)?.into_iter().enumerate() {
-            let scan = || -> io::Result<File> {
+            let mut scan = || -> io::Result<File> {
                 let mut reader = BufReader::new(File::open(&path)?);
                 let (mut line, mut start) = (Vec::new(), 0);
                 while reader.read_until(b'\n', &mut line)? > 0 {
@@ -164,7 +164,6 @@ impl Finished {
                 }
                 Ok(reader.into_inner())
             };
-            let mut scan = scan;
             files.push(scan().map_err(|source| SweepError::Journal { path: path.clone(), source })?);
         }
         Ok(Self { directory: directory.to_owned(), files, places })
@@ -212,7 +211,7 @@ mod tests {
     fn a_journal_cut_anywhere_keeps_its_complete_records() {
         let folder = tempfile::tempdir().unwrap();
         let mut journal = Journal::open(folder.path(), Shard::WHOLE).unwrap();
-        [2, 1, 3].map(|run| journal.append(&record(run)).unwrap());
+        [2, 1, 3].into_iter().try_for_each(|run| journal.append(&record(run))).unwrap();
         drop(journal);
         let path = folder.path().join("journal-1-of-1.jsonl");
         let whole = fs::read(&path).unwrap();

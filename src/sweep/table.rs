@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::io::{self, Write};
 
-use super::journal::Record;
 use super::Grid;
+use super::journal::Record;
 
 /// Keys of a summary that are no results of a run.
 const LEFT_OUT: [&str; 3] = ["title.", "version.", "seconds."];
