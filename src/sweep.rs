@@ -46,9 +46,8 @@ pub use manifest::MANIFEST;
 pub use shard::Shard;
 
 use crate::output::{Stage, Summary};
-use crate::run::{self, Control, RunError};
+use crate::run::{self, Control};
 use crate::scene::Scene;
-use crate::trajectory::Trajectory;
 use journal::{Finished, Journal, Record};
 use manifest::Manifest;
 use table::{Columns, Table};
@@ -141,36 +140,20 @@ impl Sweep {
     /// Computes one run.
     fn record(&self, run: usize) -> Record {
         let start = Instant::now();
-        let (outcome, message, summary) = match self.solve(run) {
-            Ok(trajectory) => (Outcome::Solved, None, Some(trajectory)),
-            Err(Unsolved { outcome, message, partial }) => (outcome, Some(message), partial),
+        let (outcome, message, trajectory) = match self.scene.with(&self.grid.overrides(run)) {
+            Ok(scene) => match run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue) {
+                Ok(trajectory) => (Outcome::Solved, None, Some(trajectory)),
+                Err(mut error) => {
+                    let refused = error.exit_status() == 2;
+                    let outcome = if refused { Outcome::Refused } else { Outcome::Failed };
+                    (outcome, Some(error.to_string()), error.take_partial())
+                }
+            },
+            Err(error) => (Outcome::Refused, Some(error.to_string()), None),
         };
         // A summary always has a JSON form.
-        let summary = summary.and_then(|trajectory| Tree::of(&Summary::of(&trajectory)).ok());
+        let summary = trajectory.and_then(|trajectory| Tree::of(&Summary::of(&trajectory)).ok());
         Record { run, outcome, message, seconds: start.elapsed().as_secs_f64(), summary }
-    }
-
-    fn solve(&self, run: usize) -> Result<Trajectory, Unsolved> {
-        let scene = self.scene.with(&self.grid.overrides(run)).map_err(|error| Unsolved {
-            outcome: Outcome::Refused,
-            message: error.to_string(),
-            partial: None,
-        })?;
-        run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue).map_err(Unsolved::from)
-    }
-}
-
-/// A run that did not come to its end.
-struct Unsolved {
-    outcome: Outcome,
-    message: String,
-    partial: Option<Trajectory>,
-}
-
-impl From<RunError> for Unsolved {
-    fn from(mut error: RunError) -> Self {
-        let outcome = if error.exit_status() == 2 { Outcome::Refused } else { Outcome::Failed };
-        Self { outcome, message: error.to_string(), partial: error.take_partial() }
     }
 }
 
