@@ -7,6 +7,7 @@
 mod destination;
 mod failure;
 mod interrupt;
+mod sweep;
 mod terminal;
 
 use std::io::{self, Write};
@@ -45,6 +46,8 @@ enum Command {
     Check(CheckArguments),
     /// Print what would be built for a scene: effects, tables, unknowns, bandwidth, memory
     Inspect(InspectArguments),
+    /// Run a scene many times over a grid or list of values, in parallel and resumable, into one table
+    Sweep(sweep::SweepArguments),
     /// Print the JSON schema of scene files
     Schema,
 }
@@ -105,6 +108,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => solve(&arguments).map_err(|failure| vec![failure]),
         Command::Check(arguments) => check(&arguments),
         Command::Inspect(arguments) => inspect(&arguments).map_err(|failure| vec![failure]),
+        Command::Sweep(arguments) => sweep::sweep(&arguments).map_err(|failure| vec![failure]),
         Command::Schema => print_json(&scene::schema()).map_err(|failure| vec![failure]),
     };
     let failures = done.err().unwrap_or_default();
@@ -120,7 +124,7 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
     let scene = load(&arguments.scene, &arguments.overrides)?;
     let saved = arguments.from.as_deref().map(SavedState::load).transpose();
     let saved = saved.map_err(|error| Failure::run(scene.name(), error.into()))?;
-    let interrupted = interrupt::listen();
+    let interrupted = interrupt::listen("the run ends after this step");
     let destination = match &arguments.output {
         Some(directory) => Destination::prepare(directory)?,
         None => Destination::prepare(&default_directory(&arguments.scene))?,
@@ -138,12 +142,9 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
             let (scene, results) = (scene.name().to_owned(), destination.path().to_owned());
             (trajectory, Some(Failure::Interrupted { scene, results }))
         }
-        Err(mut error) => match error.partial().map(std::mem::take) {
-            // The state at which everything starts is no result.
-            Some(partial) if partial.parameter.len() > 1 => {
-                (partial, Some(Failure::run(scene.name(), error)))
-            }
-            _ => return Err(Failure::run(scene.name(), error)),
+        Err(mut error) => match error.take_partial() {
+            Some(partial) => (partial, Some(Failure::run(scene.name(), error))),
+            None => return Err(Failure::run(scene.name(), error)),
         },
     };
     terminal::warnings(&trajectory);

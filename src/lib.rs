@@ -25,6 +25,7 @@
 //! | [`run`](mod@run), [`trajectory`] | one model, one analysis; what it leaves | [`solve`] |
 //! | [`restart`] | a saved state, from which a motion goes on | [`solve`] |
 //! | [`output`] | files, plots, the report page | [`trajectory`] |
+//! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`] |
 //!
 //! # The beam
 //! | symbol | formula | unit |
@@ -47,7 +48,7 @@
 //! - An effect never sees a node number, a step size or another effect.
 //! - No solver matches on a discretisation or on an effect.
 //! - A discretisation is asked for shape functions only while a system is built or a state looked at.
-//! - Only the command line prints. No module starts a thread. The crate never links Python.
+//! - Only the command line prints. Only [`sweep`] starts threads, and computes each run on one. The crate never links Python.
 //! - Where a model does not name an effect there is no object, no table, no matrix and no instruction for it;
 //!   [`system::System::inventory`] says what was built.
 //!
@@ -107,5 +108,6 @@ pub mod restart;
 pub mod run;
 pub mod scene;
 pub mod solve;
+pub mod sweep;
 pub mod system;
 pub mod trajectory;

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use ancf::output::OutputError;
 use ancf::run::RunError;
 use ancf::scene::SceneError;
+use ancf::sweep::SweepError;
 use miette::Diagnostic;
 
 /// Why a command did not do its work.
@@ -21,6 +22,8 @@ pub enum Failure {
         /// Why.
         error: Box<RunError>,
     },
+    /// A sweep could not be done.
+    Sweep(SweepError),
     /// It was interrupted.
     Interrupted {
         /// The scene file.
@@ -52,6 +55,7 @@ impl Failure {
         match self {
             Self::Scene(_) | Self::Directory { .. } => 2,
             Self::Run { error, .. } => error.exit_status(),
+            Self::Sweep(error) => error.exit_status(),
             Self::Interrupted { .. } | Self::Output(_) | Self::Print(_) => 1,
         }
     }
@@ -60,8 +64,19 @@ impl Failure {
         match self {
             Self::Scene(error) => Some(error),
             Self::Run { error, .. } => Some(error.as_ref()),
+            Self::Sweep(error) => Some(error),
             Self::Output(error) => Some(error),
             Self::Interrupted { .. } | Self::Directory { .. } | Self::Print(_) => None,
+        }
+    }
+}
+
+impl From<SweepError> for Failure {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::Scene(error) => Self::Scene(error),
+            SweepError::Output(error) => Self::Output(error),
+            error => Self::Sweep(error),
         }
     }
 }
@@ -71,6 +86,7 @@ impl fmt::Display for Failure {
         match self {
             Self::Scene(error) => error.brief().fmt(f),
             Self::Run { scene, error } => write!(f, "{scene}: {error}"),
+            Self::Sweep(error) => error.fmt(f),
             Self::Interrupted { scene, results } => {
                 write!(f, "{scene}: interrupted; what was computed until then is in {}", results.display())
             }
@@ -88,6 +104,7 @@ impl std::error::Error for Failure {
         match self {
             Self::Output(error) => error.source(),
             Self::Run { error, .. } => error.source(),
+            Self::Sweep(error) => error.source(),
             _ => None,
         }
     }

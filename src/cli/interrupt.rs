@@ -1,4 +1,4 @@
-//! Ctrl-C: once to end a run after its current step, twice to end the program.
+//! Ctrl-C: once to end after the step, or the runs, in progress; twice to end the program.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,15 +8,15 @@ use super::terminal;
 /// What shells report of a program that SIGINT ended.
 const INTERRUPTED: i32 = 130;
 
-/// Whether the user wants the run to end, from now on.
-pub fn listen() -> Arc<AtomicBool> {
+/// Whether the user wants to end, from now on; `then` says what happens at the first Ctrl-C.
+pub fn listen(then: &'static str) -> Arc<AtomicBool> {
     let wanted = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&wanted);
     let handler = move || {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(INTERRUPTED);
         }
-        terminal::note("interrupted: the run ends after this step; press Ctrl-C again to end it at once");
+        terminal::note(&format!("interrupted: {then}; press Ctrl-C again to end it at once"));
     };
     // Without a handler Ctrl-C ends the program at once, which is no reason not to run.
     let _ = ctrlc::set_handler(handler);

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use ancf::model::Analysis;
 use ancf::run::Progress;
+use ancf::sweep;
 use ancf::trajectory::{AnalysisKind, ProbeSample, Trajectory};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
@@ -73,13 +74,7 @@ const PARTS: u64 = 1000;
 impl ProgressLine {
     /// A line for this analysis.
     pub fn new(analysis: &Analysis, quiet: bool) -> Self {
-        let target =
-            if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr_with_hz(10) };
-        let bar = ProgressBar::with_draw_target(Some(PARTS), target);
-        if let Ok(style) = ProgressStyle::with_template("[{bar:30}] {msg} · {elapsed_precise}, {eta} left") {
-            bar.set_style(style.progress_chars("█▌ "));
-        }
-        bar.enable_steady_tick(Duration::from_millis(200));
+        let bar = bar(PARTS, quiet);
         let (name, unit) = match analysis {
             Analysis::Dynamic(_) => ("t", " s"),
             _ => ("load", ""),
@@ -108,6 +103,46 @@ impl ProgressLine {
     /// Removes the line.
     pub fn clear(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+fn bar(length: u64, quiet: bool) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr_with_hz(10) };
+    let bar = ProgressBar::with_draw_target(Some(length), target);
+    if let Ok(style) = ProgressStyle::with_template("[{bar:30}] {msg} · {elapsed_precise}, {eta} left") {
+        bar.set_style(style.progress_chars("█▌ "));
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+/// The progress of a sweep; silent where standard error is no terminal.
+pub struct SweepLine(ProgressBar);
+
+impl SweepLine {
+    /// A line for a sweep.
+    pub fn new(quiet: bool) -> Self {
+        Self(bar(0, quiet))
+    }
+
+    /// Brings the line up to date. The first call says what was there before.
+    pub fn show(&self, now: &sweep::Progress) {
+        let Self(bar) = self;
+        if bar.length() == Some(0) {
+            bar.set_length(now.runs as u64);
+            bar.set_position(now.finished as u64);
+            // The time left follows from the runs of this call alone.
+            bar.reset_eta();
+        }
+        bar.set_position(now.finished as u64);
+        let unsolved =
+            if now.unsolved > 0 { format!(", {} not solved", now.unsolved) } else { String::new() };
+        bar.set_message(format!("{} of {} runs{unsolved}", now.finished, now.runs));
+    }
+
+    /// Removes the line.
+    pub fn clear(&self) {
+        self.0.finish_and_clear();
     }
 }
 

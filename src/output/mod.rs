@@ -32,7 +32,8 @@ pub use error::OutputError;
 pub use summary::{EnergySummary, Summary};
 
 use crate::trajectory::{AnalysisKind, Trajectory};
-use stage::Stage;
+pub(crate) use stage::Stage;
+pub(crate) use tables::exact;
 
 /// Which of the larger files to write.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use super::error::OutputError;
 /// Files written under temporary names beside their final ones, waiting to be renamed.
 ///
 /// Dropped before [`Stage::commit`], it removes the files and those directories that it made.
-pub(super) struct Stage {
+pub(crate) struct Stage {
     directory: PathBuf,
     /// Directories that did not exist before, outermost first.
     made: Vec<PathBuf>,
@@ -24,7 +24,7 @@ pub(super) struct Stage {
 
 impl Stage {
     /// Makes `directory` where it is missing.
-    pub(super) fn new(directory: &Path) -> Result<Self, OutputError> {
+    pub(crate) fn new(directory: &Path) -> Result<Self, OutputError> {
         let mut stage = Self {
             directory: directory.to_owned(),
             made: Vec::new(),
@@ -48,7 +48,7 @@ impl Stage {
     }
 
     /// Writes one file under a temporary name. `name` is relative to the directory, its parts separated by `/`.
-    pub(super) fn add(
+    pub(crate) fn add(
         &mut self,
         name: &str,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -83,7 +83,7 @@ impl Stage {
     }
 
     /// Gives every file its final name, in the order in which they were added.
-    pub(super) fn commit(mut self) -> Result<(), OutputError> {
+    pub(crate) fn commit(mut self) -> Result<(), OutputError> {
         for (temporary, path) in std::mem::take(&mut self.waiting) {
             temporary
                 .persist(&path)

@@ -15,7 +15,7 @@ pub(super) fn parameter_name(analysis: AnalysisKind) -> &'static str {
 }
 
 /// 17 significant digits.
-fn exact(value: f64) -> String {
+pub(crate) fn exact(value: f64) -> String {
     format!("{value:.16e}")
 }
 

@@ -98,6 +98,11 @@ impl RunError {
         }
     }
 
+    /// What was computed before the failure, if it is more than the state at which everything starts.
+    pub fn take_partial(&mut self) -> Option<Trajectory> {
+        self.partial().filter(|partial| partial.parameter.len() > 1).map(std::mem::take)
+    }
+
     /// What was computed before the failure.
     pub fn partial(&mut self) -> Option<&mut Trajectory> {
         match self {

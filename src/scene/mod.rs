@@ -32,6 +32,8 @@ use crate::model::{Analysis, Model};
 use error::Fault;
 use overrides::Overridden;
 
+pub(crate) use unit::split_number;
+
 pub use error::{Brief, Invalid, SceneError};
 pub use schema::schema;
 pub use to_analysis::{
@@ -98,6 +100,14 @@ impl Scene {
         let text = overridden.text();
         let (model, analysis, output) = tables(text).map_err(|fault| overridden.blame(fault))?;
         Ok(Self { name: name.to_owned(), text: text.to_owned(), model, analysis, output })
+    }
+
+    /// This scene with further `overrides`, of the form that [`load`](Self::load) takes.
+    ///
+    /// # Errors
+    /// Where an override has no place in the scene, or what comes of it is not legal.
+    pub fn with(&self, overrides: &[String]) -> Result<Self, SceneError> {
+        Self::read(&self.name, &self.text, overrides)
     }
 
     /// The continuous problem, in SI.

@@ -17,15 +17,22 @@ fn summary(folder: &Path) -> serde_json::Value {
 /// Runs `scene.toml` and sends SIGINT, `times` times, once its directory has been made: the program listens by then.
 #[cfg(unix)]
 fn interrupted(folder: &Path, times: usize) -> Output {
+    let arguments = ["run", "scene.toml", "--json"];
+    interrupted_once(|| folder.join("out/scene").is_dir(), folder, &arguments, times)
+}
+
+/// The same for any command, once it is `ready`.
+#[cfg(unix)]
+fn interrupted_once(ready: impl Fn() -> bool, folder: &Path, arguments: &[&str], times: usize) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_ancf"))
         .current_dir(folder)
-        .args(["run", "scene.toml", "--json"])
+        .args(arguments)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program starts");
     let start = Instant::now();
-    while !folder.join("out/scene").is_dir() && start.elapsed() < Duration::from_secs(60) {
+    while !ready() && start.elapsed() < Duration::from_secs(60) {
         sleep(Duration::from_millis(10));
     }
     for _ in 0..times {
@@ -92,6 +99,37 @@ fn a_second_interrupt_ends_the_program_at_once() {
     let output = interrupted(folder.path(), 2);
     assert_eq!(status(&output), 130, "{}", stderr(&output));
     assert!(!folder.path().join("out/scene/summary.json").exists());
+}
+
+/// The runs in progress are finished and recorded, and the next call goes on after them.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_sweep_goes_on_where_it_was() {
+    let folder = folder(ROLL_UP);
+    let sweep =
+        ["sweep", "scene.toml", "--vary", "effect.moment.0.value=0:1:20000", "-o", "s", "--threads", "2"];
+    let journal = folder.path().join("s/journal-1-of-1.jsonl");
+    let longer = |than: usize| fs::metadata(&journal).is_ok_and(|data| data.len() > than as u64);
+    let output = interrupted_once(|| longer(0), folder.path(), &sweep, 1);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    let first = fs::read_to_string(&journal).expect("a journal");
+    let finished = first.lines().count();
+    assert!(first.ends_with('\n') && (1..20000).contains(&finished), "{finished}");
+    for part in [
+        "interrupted: the sweep ends after the runs in progress; press Ctrl-C again".to_owned(),
+        format!("error: interrupted; {finished} of 20000 runs are finished and recorded in s"),
+        "call the same command again to go on".to_owned(),
+    ] {
+        assert!(stderr(&output).contains(&part), "{part} in {}", stderr(&output));
+    }
+    assert_eq!(entries(&folder.path().join("s")), ["journal-1-of-1.jsonl", "sweep.json"]);
+    interrupted_once(|| longer(first.len()), folder.path(), &sweep, 1);
+    let second = fs::read_to_string(&journal).expect("a journal");
+    assert!(second.starts_with(&first) && second.len() > first.len());
+    let run = |line: &str| serde_json::from_str::<serde_json::Value>(line).expect("a record")["run"].as_u64();
+    let mut runs: Vec<_> = second.lines().map(run).collect();
+    runs.sort_unstable();
+    assert!(runs.windows(2).all(|pair| pair[0] < pair[1]), "no run twice");
 }
 
 /// No equilibrium follows beyond a limit point.

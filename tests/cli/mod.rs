@@ -5,3 +5,4 @@ mod interrupt;
 mod messages;
 mod motion;
 mod output;
+mod sweep;

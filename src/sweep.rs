@@ -1,0 +1,264 @@
+//! Many runs of one scene: over a grid or a list of values, on several threads and in several processes.
+//!
+//! ```text
+//! directory ─┬─ sweep.json            which sweep this is: scene's hash, overrides, axes, version
+//!            ├─ journal-1-of-3.jsonl  finished runs of the first of three parts, one line each
+//!            ├─ journal-2-of-3.jsonl  …
+//!            └─ sweep.csv             all runs, one row each, when none is missing
+//! ```
+//!
+//! The unit of work is a run: it is computed by one thread from start to end, its row is appended to the journal, and
+//! its states are let go. So a sweep may be killed at any moment and called again, on as many threads as there are, in
+//! as many processes as there are shards: no finished run is repeated, and every column of the table but `seconds` is the
+//! same to the last bit.
+//!
+//! # The table
+//! | column | holds |
+//! |---|---|
+//! | `run` | its number, from 1; the last axis changes fastest |
+//! | the paths varied | what they were set to, as it was written |
+//! | `outcome` | `solved`; `failed`: the computation found no way on; `refused`: its equations cannot be built |
+//! | `message` | why it was not solved |
+//! | `probes.tip.x`, `energy.bend`, `statistics.steps`, `frequencies.1`, … | what [`Summary`] says, by its names; entries of lists from 1; empty where a run has no such value. Of a run that failed, as far as it came |
+//! | `seconds` | wall time |
+
+mod axis;
+mod error;
+mod grid;
+mod journal;
+mod manifest;
+mod shard;
+mod table;
+mod tree;
+
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use rayon::ThreadPool;
+use rayon::prelude::*;
+
+pub use axis::{Axis, MAX_VALUES};
+pub use error::SweepError;
+pub use grid::{Grid, MAX_RUNS};
+pub use journal::Outcome;
+pub use manifest::MANIFEST;
+pub use shard::Shard;
+
+use crate::output::{Stage, Summary};
+use crate::run::{self, Control};
+use crate::scene::Scene;
+use journal::{Finished, Journal, Record};
+use manifest::Manifest;
+use table::{Columns, Table};
+use tree::Tree;
+
+/// Name of the table in the directory of the sweep.
+pub const TABLE: &str = "sweep.csv";
+
+/// How far a part of a sweep is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Runs finished, now or before.
+    pub finished: usize,
+    /// Runs of this part.
+    pub runs: usize,
+    /// Those that have not been solved, of the ones that finished now.
+    pub unsolved: usize,
+}
+
+/// Called at the start and after every run, by one thread at a time.
+pub type Observer<'o> = &'o mut (dyn FnMut(&Progress) -> Control + Send);
+
+/// A sweep all of whose scenes are legal.
+#[derive(Debug)]
+pub struct Sweep {
+    scene: Scene,
+    grid: Grid,
+    manifest: Manifest,
+    pool: ThreadPool,
+}
+
+impl Sweep {
+    /// A sweep of the scene file at `scene`, with the overrides `set` in all runs and the product of `axes` over them, on
+    /// `threads` threads (0: one per core). Reads the scene of every run.
+    ///
+    /// # Errors
+    /// [`SweepError`] where the axes make no grid, or the scene of a run is not legal (that of the first such run).
+    pub fn new(scene: &Path, set: &[String], axes: Vec<Axis>, threads: usize) -> Result<Self, SweepError> {
+        let grid = Grid::new(axes)?;
+        let scene = Scene::load(scene, set)?;
+        let manifest = Manifest::new(&scene, set, &grid);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let illegal = |run: usize| scene.with(&grid.overrides(run)).err();
+        let first = pool.install(|| (1..=grid.runs()).into_par_iter().find_map_first(illegal));
+        match first {
+            Some(error) => Err(error.into()),
+            None => Ok(Self { scene, grid, manifest, pool }),
+        }
+    }
+
+    /// The runs.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Computes the runs of `shard` that no journal in `directory`, which must exist, has yet.
+    ///
+    /// # Errors
+    /// [`SweepError`] where the directory holds another sweep, a journal cannot be written, or `observer` stopped it: then
+    /// the runs in progress are finished and recorded first.
+    pub fn run(&self, directory: &Path, shard: Shard, observer: Observer<'_>) -> Result<(), SweepError> {
+        self.manifest.claim(directory)?;
+        // Opened before the journals are read: what another process of this part finished until now is among them.
+        let journal = Journal::open(directory, shard)?;
+        let finished = Finished::read(directory, self.grid.runs())?;
+        let (before, left): (Vec<usize>, Vec<usize>) =
+            shard.runs(self.grid.runs()).partition(|run| finished.has(*run));
+        let progress = Progress { finished: before.len(), runs: before.len() + left.len(), unsolved: 0 };
+        drop((finished, before));
+        let stopped = observer(&progress) == Control::Stop;
+        let desk = Mutex::new(Desk { journal, progress, observer, stopped });
+        let lock = || desk.lock().unwrap_or_else(PoisonError::into_inner);
+        // A queue: runs differ in length, and who is free takes the next one.
+        self.pool.install(|| {
+            left.into_iter().par_bridge().try_for_each(|run| {
+                if lock().stopped {
+                    return Ok(());
+                }
+                let record = self.record(run);
+                lock().enter(&record)
+            })
+        })?;
+        let Progress { finished, runs, .. } = lock().progress;
+        if finished < runs {
+            return Err(SweepError::Interrupted { directory: directory.to_owned(), finished, runs });
+        }
+        Ok(())
+    }
+
+    /// Computes one run.
+    fn record(&self, run: usize) -> Record {
+        let start = Instant::now();
+        let (outcome, message, trajectory) = match self.scene.with(&self.grid.overrides(run)) {
+            Ok(scene) => match run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue) {
+                Ok(trajectory) => (Outcome::Solved, None, Some(trajectory)),
+                Err(mut error) => {
+                    let refused = error.exit_status() == 2;
+                    let outcome = if refused { Outcome::Refused } else { Outcome::Failed };
+                    (outcome, Some(error.to_string()), error.take_partial())
+                }
+            },
+            Err(error) => (Outcome::Refused, Some(error.to_string()), None),
+        };
+        // A summary always has a JSON form.
+        let summary = trajectory.and_then(|trajectory| Tree::of(&Summary::of(&trajectory)).ok());
+        Record { run, outcome, message, seconds: start.elapsed().as_secs_f64(), summary }
+    }
+}
+
+/// Where the threads bring their finished runs.
+struct Desk<'o> {
+    journal: Journal,
+    progress: Progress,
+    observer: Observer<'o>,
+    /// No further run is to begin.
+    stopped: bool,
+}
+
+impl Desk<'_> {
+    fn enter(&mut self, record: &Record) -> Result<(), SweepError> {
+        if let Err(error) = self.journal.append(record) {
+            self.stopped = true;
+            return Err(error);
+        }
+        self.progress.finished += 1;
+        self.progress.unsolved += usize::from(record.outcome != Outcome::Solved);
+        self.stopped |= (self.observer)(&self.progress) == Control::Stop;
+        Ok(())
+    }
+}
+
+/// A complete sweep.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Merged {
+    /// The table.
+    pub table: PathBuf,
+    /// Number of runs.
+    pub runs: usize,
+    /// The numbers of those that failed or were refused.
+    pub unsolved: Vec<usize>,
+}
+
+/// Joins the journals in `directory` to one table, `sweep.csv` there.
+///
+/// # Errors
+/// [`SweepError::Missing`] where a run is not finished, and where a file cannot be read or written; then a table that was
+/// there before stays as it is.
+pub fn merge(directory: &Path) -> Result<Merged, SweepError> {
+    let manifest = Manifest::read(directory)?.ok_or_else(|| SweepError::Manifest {
+        path: directory.join(MANIFEST),
+        reason: "there is none".into(),
+    })?;
+    let grid = manifest.grid()?;
+    let finished = Finished::read(directory, grid.runs())?;
+    let missing = finished.missing();
+    if !missing.is_empty() {
+        return Err(SweepError::Missing {
+            directory: directory.to_owned(),
+            count: missing.len(),
+            runs: grid.runs(),
+            missing: numbers(&missing),
+        });
+    }
+    let (mut columns, mut unsolved) = (Columns::default(), Vec::new());
+    for record in finished.records() {
+        let record = record?;
+        columns.add(&record);
+        if record.outcome != Outcome::Solved {
+            unsolved.push(record.run);
+        }
+    }
+    let table = directory.join(TABLE);
+    let mut stage = Stage::new(directory)?;
+    stage.add(TABLE, |out| {
+        let mut rows = Table::new(out, &grid, &columns)?;
+        for record in finished.records() {
+            rows.row(&record.map_err(std::io::Error::other)?)?;
+        }
+        rows.finish()
+    })?;
+    stage.commit()?;
+    Ok(Merged { table, runs: grid.runs(), unsolved })
+}
+
+/// Ascending numbers as people write them: `1–4, 7, 9`; only the first of very many.
+pub fn numbers(ascending: &[usize]) -> String {
+    const SHOWN: usize = 20;
+    let parts: Vec<String> = ascending
+        .chunk_by(|a, b| a + 1 == *b)
+        .take(SHOWN + 1)
+        .map(|part| match part {
+            [first, .., last] => format!("{first}–{last}"),
+            [only] => only.to_string(),
+            [] => String::new(),
+        })
+        .collect();
+    match parts.get(..SHOWN) {
+        Some(shown) if parts.len() > SHOWN => format!("{}, …", shown.join(", ")),
+        _ => parts.join(", "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(numbers(&[]), "");
+        assert_eq!(numbers(&[1, 2, 3, 5, 8, 9]), "1–3, 5, 8–9");
+        let odd: Vec<usize> = (0..100).map(|i| 2 * i + 1).collect();
+        assert!(numbers(&odd).ends_with("37, 39, …"), "{}", numbers(&odd));
+    }
+}

@@ -1,0 +1,247 @@
+//! Finished runs, one line each, only ever appended to.
+//!
+//! A record counts when its line is complete and legal; whatever else a process that was killed has left is passed over.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::tree::Tree;
+use super::{Shard, SweepError};
+
+const PREFIX: &str = "journal-";
+const SUFFIX: &str = ".jsonl";
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// It came to its end.
+    Solved,
+    /// The computation failed.
+    Failed,
+    /// The equations could not be built or started: the input is at fault.
+    Refused,
+}
+
+impl Outcome {
+    /// As the table writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Solved => "solved",
+            Self::Failed => "failed",
+            Self::Refused => "refused",
+        }
+    }
+}
+
+/// A finished run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Record {
+    /// Its number, from 1.
+    pub run: usize,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Why it did not come to its end.
+    pub message: Option<String>,
+    /// Wall time \[s\].
+    pub seconds: f64,
+    /// Its summary, as far as it came.
+    pub summary: Option<Tree>,
+}
+
+/// The journals in `directory`, in the order of their names.
+pub(super) fn paths(directory: &Path) -> Result<Vec<PathBuf>, SweepError> {
+    let wrong = |source: io::Error| SweepError::Journal { path: directory.to_owned(), source };
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(directory).map_err(wrong)? {
+        let entry = entry.map_err(wrong)?;
+        let name = entry.file_name();
+        if name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX)) {
+            paths.push(entry.path());
+        }
+    }
+    paths.sort_unstable();
+    Ok(paths)
+}
+
+/// The journal of one part, open for one process.
+pub(super) struct Journal {
+    path: PathBuf,
+    file: File,
+    /// Bytes of complete lines.
+    length: u64,
+}
+
+impl Journal {
+    /// Opens the journal of `shard`, and removes a torn line at its end.
+    ///
+    /// # Errors
+    /// [`SweepError::Busy`] while another process has it open.
+    pub fn open(directory: &Path, shard: Shard) -> Result<Self, SweepError> {
+        let path = directory.join(format!("{PREFIX}{}-of-{}{SUFFIX}", shard.index(), shard.count()));
+        let wrong = |source: io::Error| SweepError::Journal { path: path.clone(), source };
+        let mut file = OpenOptions::new().read(true).append(true).create(true).open(&path).map_err(wrong)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(SweepError::Busy { path }),
+            // Some network file systems have no locks; two processes of one part then only waste time.
+            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
+            Err(TryLockError::Error(error)) => return Err(wrong(error)),
+        }
+        let length = complete(&mut file).map_err(wrong)?;
+        file.set_len(length).map_err(wrong)?;
+        Ok(Self { path, file, length })
+    }
+
+    /// Appends a record. What a failing write leaves is removed, so that the next one begins a line.
+    pub fn append(&mut self, record: &Record) -> Result<(), SweepError> {
+        let write = |file: &mut File| -> io::Result<usize> {
+            let mut line = serde_json::to_vec(record)?;
+            line.push(b'\n');
+            file.write_all(&line)?;
+            Ok(line.len())
+        };
+        match write(&mut self.file) {
+            Ok(written) => {
+                self.length += written as u64;
+                Ok(())
+            }
+            Err(source) => {
+                // If this fails too, the next process that opens the journal does it.
+                let _ = self.file.set_len(self.length);
+                Err(SweepError::Journal { path: self.path.clone(), source })
+            }
+        }
+    }
+}
+
+/// Bytes up to the last line end.
+fn complete(file: &mut File) -> io::Result<u64> {
+    const BLOCK: u64 = 1 << 16;
+    let mut end = file.seek(SeekFrom::End(0))?;
+    let mut block = Vec::new();
+    while end > 0 {
+        let start = end.saturating_sub(BLOCK);
+        file.seek(SeekFrom::Start(start))?;
+        block.clear();
+        file.take(end - start).read_to_end(&mut block)?;
+        if let Some(at) = block.iter().rposition(|byte| *byte == b'\n') {
+            return Ok(start + at as u64 + 1);
+        }
+        end = start;
+    }
+    Ok(0)
+}
+
+/// All journals of a directory: where the record of each run is.
+pub(super) struct Finished {
+    directory: PathBuf,
+    files: Vec<File>,
+    /// Per run: file, first byte, bytes.
+    places: Vec<Option<(usize, u64, usize)>>,
+}
+
+impl Finished {
+    /// Looks through the journals of a sweep of so many `runs`.
+    pub fn read(directory: &Path, runs: usize) -> Result<Self, SweepError> {
+        let (mut files, mut places) = (Vec::new(), vec![None; runs]);
+        for (index, path) in paths(directory)?.into_iter().enumerate() {
+            let mut scan = || -> io::Result<File> {
+                let mut reader = BufReader::new(File::open(&path)?);
+                let (mut line, mut start) = (Vec::new(), 0);
+                while reader.read_until(b'\n', &mut line)? > 0 {
+                    let record = serde_json::from_slice::<Record>(&line);
+                    let place = record.ok().and_then(|record| places.get_mut(record.run.checked_sub(1)?));
+                    if let (Some(place), true) = (place, line.ends_with(b"\n")) {
+                        // A run that two processes computed has the same results in both.
+                        place.get_or_insert((index, start, line.len()));
+                    }
+                    start += line.len() as u64;
+                    line.clear();
+                }
+                Ok(reader.into_inner())
+            };
+            files.push(scan().map_err(|source| SweepError::Journal { path: path.clone(), source })?);
+        }
+        Ok(Self { directory: directory.to_owned(), files, places })
+    }
+
+    /// Whether `run` (from 1) is finished.
+    pub fn has(&self, run: usize) -> bool {
+        self.places.get(run - 1).is_some_and(Option::is_some)
+    }
+
+    /// The numbers of the runs that are not finished, ascending.
+    pub fn missing(&self) -> Vec<usize> {
+        (1..=self.places.len()).filter(|run| !self.has(*run)).collect()
+    }
+
+    /// The records of the finished runs, in the order of their numbers, read one by one.
+    pub fn records(&self) -> impl Iterator<Item = Result<Record, SweepError>> {
+        self.places.iter().flatten().map(|(file, start, length)| {
+            let read = || -> io::Result<Record> {
+                let mut file = &self.files[*file];
+                let mut line = vec![0; *length];
+                file.seek(SeekFrom::Start(*start))?;
+                file.read_exact(&mut line)?;
+                Ok(serde_json::from_slice(&line)?)
+            };
+            read().map_err(|source| SweepError::Journal { path: self.directory.clone(), source })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(run: usize) -> Record {
+        let summary = Tree::of(&vec![0.1, f64::MIN_POSITIVE, run as f64]).unwrap();
+        Record { run, outcome: Outcome::Solved, message: None, seconds: 1e-3, summary: Some(summary) }
+    }
+
+    fn records(folder: &Path, runs: usize) -> Vec<Record> {
+        Finished::read(folder, runs).unwrap().records().collect::<Result<_, _>>().unwrap()
+    }
+
+    #[test]
+    fn a_journal_cut_anywhere_keeps_its_complete_records() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut journal = Journal::open(folder.path(), Shard::WHOLE).unwrap();
+        [2, 1, 3].into_iter().try_for_each(|run| journal.append(&record(run))).unwrap();
+        drop(journal);
+        let path = folder.path().join("journal-1-of-1.jsonl");
+        let whole = fs::read(&path).unwrap();
+        for length in 0..=whole.len() {
+            fs::write(&path, &whole[..length]).unwrap();
+            let complete = whole[..length].iter().filter(|byte| **byte == b'\n').count();
+            assert_eq!(records(folder.path(), 3).len(), complete);
+            let mut journal = Journal::open(folder.path(), Shard::WHOLE).unwrap();
+            journal.append(&record(4)).unwrap();
+            let found = records(folder.path(), 4);
+            assert_eq!(found.len(), complete + 1);
+            assert!(found.iter().all(|found| *found == record(found.run)));
+        }
+    }
+
+    #[test]
+    fn what_is_no_record_is_passed_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let line = |run| serde_json::to_string(&record(run)).unwrap();
+        let text = format!("{}\nnonsense\n\0\0\0\n{}\n{}\n{}\n", line(1), line(0), line(9), line(2));
+        fs::write(folder.path().join("journal-1-of-2.jsonl"), text).unwrap();
+        assert_eq!(records(folder.path(), 3), [record(1), record(2)]);
+        assert_eq!(Finished::read(folder.path(), 3).unwrap().missing(), [3]);
+    }
+
+    #[test]
+    fn one_process_has_a_part() {
+        let folder = tempfile::tempdir().unwrap();
+        let _first = Journal::open(folder.path(), Shard::WHOLE).unwrap();
+        assert!(matches!(Journal::open(folder.path(), Shard::WHOLE), Err(SweepError::Busy { .. })));
+        assert!(Journal::open(folder.path(), "1/2".parse().unwrap()).is_ok());
+    }
+}
