@@ -88,6 +88,12 @@ pub enum Failure {
         /// Largest turn of a node between prediction and solution \[rad\].
         turn: f64,
     },
+    /// A step of a motion gains energy that no load puts in.
+    #[error("the step would gain energy, {:.1} % of the kinetic", 100.0 * gain)]
+    Gain {
+        /// Energy gained, relative to the kinetic energy.
+        gain: f64,
+    },
     /// The limit of iterations was reached.
     #[error(
         "no convergence within {iterations} iterations (the last increment is {last:.1e} of a beam length)"

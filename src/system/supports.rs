@@ -104,6 +104,12 @@ impl Supports {
         })
     }
 
+    /// Nodes of which one component of the position is held and the other free.
+    pub fn half_held(&self) -> impl Iterator<Item = usize> + '_ {
+        let half = |held: &&Held| matches!(held.hold, Hold::Position([a, b]) if a.is_some() != b.is_some());
+        self.held.iter().filter(half).map(|held| held.pair / 2)
+    }
+
     /// Number of coordinates that are eliminated.
     pub fn count(&self) -> usize {
         self.eliminated().count()

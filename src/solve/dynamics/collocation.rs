@@ -13,8 +13,7 @@
 //!
 //! # The tangent turns with the nodes
 //! What changes K most is the beam's rotation. The tangent is taken at the start of the step, where the axial force is right (at a
-//! predicted state a large EA makes it meaningless), and each stage's residual is turned, node by node, from the stage's orientation into
-//! that of the start, and its increment back: K is then wrong only by the change of stress and shape. On the soft pendulum
+//! predicted state a large EA makes it meaningless), and turned with the nodes to each stage ([`super::turns`]). On the soft pendulum
 //! (20 nodes, 4 ms) that takes a third fewer iterations than the tangent at the mean of the stages, and converges where that does
 //! not (5 ms). Anderson's acceleration on top of it saved another tenth of the iterations and no failure, and was left out.
 //!
@@ -28,6 +27,7 @@ use super::State;
 use super::method::Method;
 use super::motion::Motion;
 use super::tableau::{Block, Tableau};
+use super::turns::Turns;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::{Factor, Singular};
 use crate::solve::newton::{Failure, Iterations};
@@ -70,8 +70,8 @@ pub struct Collocation<'a> {
     residuals: Vec<Vec<f64>>,
     transformed: Vec<Vec<f64>>,
     increment: Vec<f64>,
-    /// Per stage and node: cosine and sine of the angle by which it is turned from where the tangent was taken.
-    turns: Vec<Vec<[f64; 2]>>,
+    /// Per stage: from where the tangent was taken.
+    turns: Vec<Turns>,
 }
 
 impl<'a> Collocation<'a> {
@@ -80,7 +80,6 @@ impl<'a> Collocation<'a> {
         let (n, unknowns, s) = (motion.coordinates(), motion.unknowns(), tableau.stages());
         let stages = vec![vec![0.0; unknowns]; s];
         Self {
-            motion,
             factors: Vec::new(),
             displacements: stages.clone(),
             accelerations: vec![vec![0.0; n]; s],
@@ -92,7 +91,8 @@ impl<'a> Collocation<'a> {
             residuals: stages.clone(),
             transformed: stages,
             increment: vec![0.0; unknowns],
-            turns: vec![vec![[1.0, 0.0]; n / 4]; tableau.stages()],
+            turns: vec![motion.turns(); s],
+            motion,
             tableau,
         }
     }
@@ -153,12 +153,7 @@ impl<'a> Collocation<'a> {
         self.motion.tangent_at(at);
         for i in 0..s {
             self.stage(i, from, h);
-            let nodes = self.stage.chunks_exact(4).zip(at.chunks_exact(4));
-            for (turn, (x, start)) in self.turns[i].iter_mut().zip(nodes) {
-                let (cosine, sine) = (x[2] * start[2] + x[3] * start[3], x[3] * start[2] - x[2] * start[3]);
-                let size = cosine.hypot(sine);
-                *turn = if size > 0.0 { [cosine / size, sine / size] } else { [1.0, 0.0] };
-            }
+            self.turns[i].measure(at, &self.stage[..at.len()]);
         }
         let mut earlier = std::mem::take(&mut self.factors).into_iter();
         for block in &self.tableau.blocks {
@@ -192,14 +187,14 @@ impl<'a> Collocation<'a> {
 
     /// One iteration; returns the scaled increment and residual.
     fn iterate(&mut self, from: &State, h: f64) -> (f64, f64) {
-        let s = self.tableau.stages();
+        let (s, n) = (self.tableau.stages(), self.motion.coordinates());
         let mut residual = 0.0_f64;
         for i in 0..s {
             self.stage(i, from, h);
             self.accelerate(i, h);
             let scaled = self.motion.residual(&self.stage, &self.acceleration, &mut self.residuals[i]);
             residual = if scaled.is_nan() { scaled } else { residual.max(scaled) };
-            turn(&mut self.residuals[i], &self.turns[i], -1.0);
+            self.turns[i].back(&mut self.residuals[i][..n]);
         }
         for k in 0..s {
             let row = (0..s).map(|i| self.tableau.inverse_transformation[(k, i)]);
@@ -221,7 +216,7 @@ impl<'a> Collocation<'a> {
         for i in 0..s {
             let row = (0..s).map(|k| self.tableau.transformation[(i, k)]);
             combine(&mut self.increment, row, &self.transformed);
-            turn(&mut self.increment, &self.turns[i], 1.0);
+            self.turns[i].forth(&mut self.increment[..n]);
             self.motion.from_frames(&mut self.increment);
             let this = self.motion.size(&self.increment);
             size = if this.is_nan() { this } else { size.max(this) };
@@ -325,15 +320,6 @@ impl<'a> Collocation<'a> {
     fn smooth_acceleration(&mut self, x: f64, q: &[f64]) -> Vec<f64> {
         let (defect, factor) = self.defect(x, q);
         self.acceleration.iter().zip(defect).map(|(a, d)| a + factor * d).collect()
-    }
-}
-
-/// Turns the pairs of every node by its angle, or back.
-fn turn(v: &mut [f64], turns: &[[f64; 2]], sign: f64) {
-    for (v, [cosine, sine]) in v.chunks_exact_mut(4).zip(turns) {
-        let sine = sign * sine;
-        (v[0], v[1]) = (cosine * v[0] - sine * v[1], cosine * v[1] + sine * v[0]);
-        (v[2], v[3]) = (cosine * v[2] - sine * v[3], cosine * v[3] + sine * v[2]);
     }
 }
 

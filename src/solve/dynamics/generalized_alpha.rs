@@ -14,10 +14,16 @@
 //! a lies (α_m − α_f) h away from q̈ in time, so that the position errs by h³ q⃛ (β + (α_m − α_f)/2 − 1/6) in a step. With
 //! h q⃛ ≈ q̈₁ − q̈₀ that is known at no cost; multiplied by (K + cM)⁻¹ cM it leaves out what lies above the step's own
 //! frequency and would not be followed anyway.
+//!
+//! # A tangent for many steps
+//! The tangent is kept, turned with the nodes ([`super::turns`]), as long as the increments shrink at least by [`KEEP`] an iteration; then it is
+//! taken anew at the last equilibrium. A residual costs a third of a tangent with its factorisation and substitution. Where that
+//! iteration does not converge, Newton's method with a tangent at every iterate solves the step.
 
 use super::State;
 use super::method::Method;
 use super::motion::Motion;
+use super::turns::Turns;
 use crate::linear::{Factor, Singular};
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
 use crate::trajectory::Statistics;
@@ -28,6 +34,17 @@ const TOLERANCE: f64 = 1e-9;
 const RELATIVE_TOLERANCE: f64 = 1e-6;
 /// The same as a part of the error that a step may make.
 const TOLERANCE_OF_ERROR: f64 = 0.02;
+
+/// Rate of convergence beyond which the next step takes a new tangent.
+const KEEP: f64 = 0.1;
+/// Rate of convergence beyond which the present step does.
+const SLOW: f64 = 0.5;
+/// Largest correction of a predicted state with a kept tangent.
+const LARGEST_CORRECTION: f64 = 0.05;
+/// Relative change of the step's length that is none.
+const ROUND_OFF: f64 = 1e-6;
+/// Most iterations with a kept tangent.
+const ITERATIONS: usize = 12;
 
 /// The numbers of the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +86,19 @@ pub struct GeneralizedAlpha<'a> {
     acceleration: Vec<f64>,
     increment: Vec<f64>,
     factor: Option<Factor>,
+    kept: Option<Kept>,
+    turns: Turns,
+}
+
+/// The tangent that the factorisation holds.
+#[derive(Clone, Debug)]
+struct Kept {
+    /// Where it was taken.
+    at: Vec<f64>,
+    /// Of K + cM; 0 before it is factorised.
+    c: f64,
+    /// How much increments shrink an iteration.
+    rate: f64,
 }
 
 impl<'a> GeneralizedAlpha<'a> {
@@ -81,6 +111,7 @@ impl<'a> GeneralizedAlpha<'a> {
             multipliers: vec![0.0; unknowns - n],
         };
         Self {
+            turns: motion.turns(),
             motion,
             coefficients: Coefficients::new(rho),
             trial: last.clone(),
@@ -93,7 +124,114 @@ impl<'a> GeneralizedAlpha<'a> {
             acceleration: vec![0.0; n],
             increment: vec![0.0; unknowns],
             factor: None,
+            kept: None,
         }
+    }
+
+    /// Takes the tangent at `at`.
+    fn keep(&mut self, at: &[f64], rate: f64) {
+        self.motion.tangent_at(at);
+        self.kept = Some(Kept { at: at.to_vec(), c: 0.0, rate });
+    }
+
+    /// Factorises K + cM, unless that is what is there but for the round-off of the step's length.
+    fn factorize(&mut self, c: f64) -> Result<(), Singular> {
+        if let Some(kept) = &mut self.kept
+            && (kept.c - c).abs() > ROUND_OFF * c
+        {
+            self.factor = Some(self.motion.factorize(c, self.factor.take())?);
+            kept.c = c;
+        }
+        Ok(())
+    }
+
+    /// Solves for `x` with the kept tangent; false where that fails, `x` is then as it was.
+    fn solve_with_kept(
+        &mut self,
+        from: &State,
+        c: f64,
+        tolerance: f64,
+        record: &mut Iterations,
+    ) -> Result<bool, Singular> {
+        let predicted = self.x.clone();
+        let mut fresh = self.kept.as_ref().is_none_or(|kept| kept.rate > KEEP);
+        if fresh {
+            self.keep(&from.q, 1.0);
+        }
+        let n = self.motion.coordinates();
+        loop {
+            self.factorize(c)?;
+            let Some(kept) = &self.kept else { return Ok(false) };
+            let mut rate = kept.rate;
+            self.turns.measure(&kept.at, &self.x[..n]);
+            let mut last = 0.0;
+            for _ in 0..ITERATIONS {
+                for ((a, q), e) in self.acceleration.iter_mut().zip(&self.x).zip(&self.offset) {
+                    *a = c.mul_add(*q, *e);
+                }
+                let residual = self.motion.residual(&self.x, &self.acceleration, &mut self.increment);
+                self.turns.back(&mut self.increment[..n]);
+                if let Some(factor) = &self.factor {
+                    factor.solve(&mut self.increment);
+                }
+                self.turns.forth(&mut self.increment[..n]);
+                self.motion.from_frames(&mut self.increment);
+                let size = self.motion.size(&self.increment);
+                self.motion.statistics.newton_iterations += 1;
+                record.residuals.push(residual);
+                record.increments.push(size);
+                // Far from the solution there may be another one, and Newton's method finds the nearer of them. Also true for a NaN.
+                if !(size <= LARGEST_CORRECTION && residual.is_finite()) {
+                    break;
+                }
+                self.x.iter_mut().zip(&self.increment).for_each(|(x, d)| *x += d);
+                if last > 0.0 {
+                    rate = size / last;
+                }
+                if rate < 1.0 && size * rate / (1.0 - rate) <= tolerance {
+                    if let Some(kept) = &mut self.kept {
+                        kept.rate = rate;
+                    }
+                    return Ok(true);
+                }
+                if last > 0.0 && rate > SLOW {
+                    break;
+                }
+                last = size;
+            }
+            self.x.copy_from_slice(&predicted);
+            if fresh {
+                self.kept = None;
+                return Ok(false);
+            }
+            self.keep(&from.q, 1.0);
+            fresh = true;
+        }
+    }
+
+    fn solve(
+        &mut self,
+        from: &State,
+        c: f64,
+        settings: &Settings,
+        record: &mut Iterations,
+    ) -> Result<(), Failure> {
+        if self.solve_with_kept(from, c, settings.tolerance, record)? {
+            return Ok(());
+        }
+        let mut equations = AtEnd {
+            motion: &mut self.motion,
+            c,
+            offset: &self.offset,
+            acceleration: &mut self.acceleration,
+            last_increment: &mut self.increment,
+            factor: &mut self.factor,
+        };
+        self.kept = None;
+        newton::solve(&mut equations, &mut self.x, &self.start, settings, record)?;
+        let n = self.motion.coordinates();
+        self.turns.measure(&self.x[..n], &self.x[..n]);
+        Ok(())
     }
 
     /// The local error of the position, filtered by the step's own matrix.
@@ -105,9 +243,12 @@ impl<'a> GeneralizedAlpha<'a> {
         self.motion.to_frames(&mut change);
         let mut error = vec![0.0; self.motion.unknowns()];
         self.motion.multiply_free_mass(c, &change, &mut error);
+        let n = change.len();
+        self.turns.back(&mut error[..n]);
         if let Some(factor) = &self.factor {
             factor.solve(&mut error);
         }
+        self.turns.forth(&mut error[..n]);
         self.motion.distance(&error)
     }
 }
@@ -207,16 +348,9 @@ impl Method for GeneralizedAlpha<'_> {
             residual_tolerance: f64::INFINITY,
             ..Settings::default()
         };
-        let mut equations = AtEnd {
-            motion: &mut self.motion,
-            c,
-            offset: &self.offset,
-            acceleration: &mut self.acceleration,
-            last_increment: &mut self.increment,
-            factor: &mut self.factor,
-        };
-        newton::solve(&mut equations, &mut self.x, &self.start, &settings, record)?;
+        self.solve(from, c, &settings, record)?;
         self.trial_step = h;
+        let Accelerations { algorithmic, .. } = &self.last;
         for (i, before) in algorithmic.iter().enumerate() {
             let a = (self.x[i] - to.q[i]) * a_per_q;
             to.q[i] = self.x[i];
@@ -249,30 +383,29 @@ impl Method for GeneralizedAlpha<'_> {
 
     fn memory(&self) -> Vec<Vec<f64>> {
         let Accelerations { physical, algorithmic, multipliers } = self.last.clone();
-        let mut memory = vec![physical, algorithmic, multipliers];
-        if let Some((before, step)) = &self.before {
-            memory.extend([before.clone(), vec![*step]]);
-        }
-        memory
+        let (before, step) = self.before.clone().unwrap_or_default();
+        let kept =
+            self.kept.as_ref().map_or((Vec::new(), 0.0, 0.0), |kept| (kept.at.clone(), kept.c, kept.rate));
+        vec![physical, algorithmic, multipliers, before, kept.0, vec![step, kept.1, kept.2]]
     }
 
-    fn restore(&mut self, mut memory: Vec<Vec<f64>>) -> bool {
+    fn restore(&mut self, memory: Vec<Vec<f64>>) -> bool {
         let n = self.motion.coordinates();
-        let multipliers = self.motion.unknowns() - n;
-        let lengths: Vec<usize> = memory.iter().map(Vec::len).collect();
-        self.before = match lengths[..] {
-            [a, b, c] if [a, b, c] == [n, n, multipliers] => None,
-            [a, b, c, d, 1] if [a, b, c, d] == [n, n, multipliers, n] => {
-                let step = memory.pop().map_or(0.0, |step| step[0]);
-                memory.pop().map(|before| (before, step))
-            }
-            _ => return false,
+        let Ok([physical, algorithmic, multipliers, before, at, numbers]) = <[Vec<f64>; 6]>::try_from(memory)
+        else {
+            return false;
         };
-        let mut next = memory.into_iter();
-        if let (Some(physical), Some(algorithmic), Some(multipliers)) =
-            (next.next(), next.next(), next.next())
-        {
-            self.last = Accelerations { physical, algorithmic, multipliers };
+        let fits = |v: &[f64]| v.is_empty() || v.len() == n;
+        let required = [physical.len(), algorithmic.len(), multipliers.len(), numbers.len()];
+        if required != [n, n, self.motion.unknowns() - n, 3] || !fits(&before) || !fits(&at) {
+            return false;
+        }
+        let [step, c, rate] = [numbers[0], numbers[1], numbers[2]];
+        self.last = Accelerations { physical, algorithmic, multipliers };
+        self.before = (!before.is_empty()).then_some((before, step));
+        if !at.is_empty() {
+            self.keep(&at, rate);
+            return c == 0.0 || self.factorize(c).is_ok();
         }
         true
     }

@@ -11,7 +11,8 @@
 //!
 //! # Steps of fixed length
 //! Where the equations of a step cannot be solved, that step is divided, which the counts of rejected steps and a warning tell; all others
-//! keep their length and their places.
+//! keep their length and their places. The equations of a step in which nodes turn far have several solutions, and the trapezoidal
+//! rule pumps energy into a stiff beam there; so a step that turns a node by more than [`COARSE_TURN`] is divided too if it gains energy.
 
 use super::collocation::Collocation;
 use super::generalized_alpha::GeneralizedAlpha;
@@ -66,6 +67,10 @@ const SHRINK: f64 = 0.3;
 const SMALLEST_STEP: f64 = 1e-12;
 /// Smallest part of a step of fixed length into which it is divided where its equations cannot be solved.
 const SMALLEST_PART: f64 = 1e-3;
+/// Turn of a node beyond which a step of fixed length is asked what it does to the energy \[rad\].
+const COARSE_TURN: f64 = 0.1;
+/// Energy that such a step may gain, relative to the kinetic energy.
+const LARGEST_GAIN: f64 = 1e-3;
 /// Iterations beyond which a step does not grow: the next tangent would be worse.
 const MANY_ITERATIONS: usize = 10;
 /// Attempted steps that are kept for the reader.
@@ -214,6 +219,10 @@ impl<'t, 'a> Driver<'t, 'a> {
             };
             let mut record = Iterations::default();
             let result = self.method.attempt(&self.state, h, accuracy, new, &mut record);
+            let result = match accuracy {
+                None => result.and_then(|error| self.without_gain(new, end).map(|()| error)),
+                Some(_) => result,
+            };
             let iterations = record.increments.len();
             let ratio = match (&result, accuracy) {
                 (Ok(error), Some(accuracy)) => error / accuracy,
@@ -274,6 +283,22 @@ impl<'t, 'a> Driver<'t, 'a> {
             }
             self.rejected = true;
         }
+    }
+
+    /// Refuses a coarse step to `new`, at time `end`, that gains energy.
+    fn without_gain(&self, new: &State, end: f64) -> Result<(), Failure> {
+        let nodes = new.q.chunks_exact(4).zip(self.state.q.chunks_exact(4));
+        let turn = nodes.fold(0.0_f64, |turn, (a, b)| turn.max((a[2] - b[2]).hypot(a[3] - b[3])));
+        if turn <= COARSE_TURN {
+            return Ok(());
+        }
+        let energy = |state: &State| self.system.energy(1.0, &state.q, Some(&state.v));
+        let (before, after) = (energy(&self.state), energy(new));
+        let step = State { time: end, ..new.clone() };
+        let work = self.work(&step, end, None) - self.state.work;
+        let gain = (after.total() - before.total() - work) / before.kinetic.max(after.kinetic);
+        // Also refuses a NaN.
+        if gain <= LARGEST_GAIN { Ok(()) } else { Err(Failure::Gain { gain }) }
     }
 
     /// Where the present step of fixed length ends.

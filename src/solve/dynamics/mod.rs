@@ -27,6 +27,7 @@ pub mod method;
 pub mod motion;
 pub mod start;
 pub mod tableau;
+mod turns;
 
 use super::newton::Failure;
 use crate::trajectory::{Statistics, StepRecord};

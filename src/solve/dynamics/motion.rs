@@ -9,6 +9,7 @@
 //! Constraints between nodes are linear in q with constant rows, so that a method which satisfies them in its stages integrates
 //! an ordinary differential equation on the subspace g(q) = 0, with all of its order.
 
+use super::turns::Turns;
 use crate::effect::Workspace;
 use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
@@ -72,6 +73,11 @@ impl<'a> Motion<'a> {
     /// The system that moves.
     pub fn system(&self) -> &'a System {
         self.system
+    }
+
+    /// Turns of the nodes, for a tangent that turns with them.
+    pub fn turns(&self) -> Turns {
+        Turns::new(self.coordinates() / 4, self.system.supports().half_held().collect())
     }
 
     /// Number of coordinates.
