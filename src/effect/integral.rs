@@ -120,16 +120,54 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         sum
     }
 
-    fn force_of<const W: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        let width = self.width::<W>();
+    fn force_any(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+        let width = self.table.width;
         for (cell, entry) in self.table.cells.iter().enumerate() {
             let (weights, rows) = self.table.block(*entry);
             let first = 2 * (self.offset + entry.first as usize);
             let (q, f) = (&q[first..first + 2 * width], &mut f[first..first + 2 * width]);
             for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
-                let z = self.fields::<W>(rows, q);
+                let z = self.fields::<0>(rows, q);
                 let gradient = self.density.gradient(cell * weights.len() + p, &z);
-                self.add_gradient::<W>(factor * weight, rows, &gradient, f);
+                self.add_gradient::<0>(factor * weight, rows, &gradient, f);
+            }
+        }
+    }
+
+    fn force_within<const W: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+        for (cell, entry) in self.table.cells.iter().enumerate() {
+            let (weights, rows) = self.table.block(*entry);
+            let first = 2 * (self.offset + entry.first as usize);
+            let (q, f) = (&q[first..first + 2 * W], &mut f[first..first + 2 * W]);
+            // Both stay in registers while the points go by.
+            let mut here = [[0.0; 2]; W];
+            let mut sums = [[0.0; 2]; W];
+            here.copy_from_slice(&q.as_chunks().0[..W]);
+            for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * W)).enumerate() {
+                let point = cell * weights.len() + p;
+                let weight = factor * weight;
+                let rows = &rows.as_chunks::<W>().0[..M];
+                let mut z = [Vector2::zeros(); M];
+                for (z, row) in z.iter_mut().zip(rows) {
+                    let mut sum = [0.0; 2];
+                    for a in 0..W {
+                        sum[0] = fma(row[a], here[a][0], sum[0]);
+                        sum[1] = fma(row[a], here[a][1], sum[1]);
+                    }
+                    *z = Vector2::new(sum[0], sum[1]);
+                }
+                let gradient = self.density.gradient(point, &z);
+                for (g, row) in gradient.iter().zip(rows) {
+                    let g = [weight * g.x, weight * g.y];
+                    for a in 0..W {
+                        sums[a][0] = fma(row[a], g[0], sums[a][0]);
+                        sums[a][1] = fma(row[a], g[1], sums[a][1]);
+                    }
+                }
+            }
+            for (f, sum) in f.as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
+                f[0] += sum[0];
+                f[1] += sum[1];
             }
         }
     }
@@ -301,7 +339,12 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
     }
 
     fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        with_width!(self.force_of(factor, q, f));
+        match self.table.width {
+            4 => self.force_within::<4>(factor, q, f),
+            8 => self.force_within::<8>(factor, q, f),
+            12 => self.force_within::<12>(factor, q, f),
+            _ => self.force_any(factor, q, f),
+        }
     }
 
     fn add_force_and_tangent(

@@ -97,6 +97,7 @@ impl ComplexLdl {
         }
         match self.stride {
             8 => self.eliminate::<8>(),
+            16 => self.eliminate::<16>(),
             24 => self.eliminate::<24>(),
             _ => self.eliminate::<0>(),
         }
@@ -157,14 +158,71 @@ impl ComplexLdl {
     /// Solves A x = b in place.
     pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
         match self.stride {
-            8 => self.substitute::<8>(re, im),
-            24 => self.substitute::<24>(re, im),
-            _ => self.substitute::<0>(re, im),
+            8 => self.substitute_window::<8>(re, im),
+            16 => self.substitute_window::<16>(re, im),
+            24 => self.substitute_window::<24>(re, im),
+            _ => self.substitute(re, im),
         }
     }
 
-    fn substitute<const STRIDE: usize>(&self, re: &mut [f64], im: &mut [f64]) {
-        let stride = if STRIDE == 0 { self.stride } else { STRIDE };
+    /// As [`super::symmetric::Ldl`] does it, with a window for each part.
+    fn substitute_window<const STRIDE: usize>(&self, re: &mut [f64], im: &mut [f64]) {
+        let panels_re = self.re.as_chunks::<STRIDE>().0.as_chunks::<4>().0;
+        let panels_im = self.im.as_chunks::<STRIDE>().0.as_chunks::<4>().0;
+        let ahead = STRIDE - 4;
+        let (mut w_re, mut w_im) = ([0.0; STRIDE], [0.0; STRIDE]);
+        let loaded = re.len().min(STRIDE);
+        w_re[..loaded].copy_from_slice(&re[..loaded]);
+        w_im[..loaded].copy_from_slice(&im[..loaded]);
+        for (node, (u_re, u_im)) in panels_re.iter().zip(panels_im).enumerate() {
+            for r in 0..4 {
+                let z = c64::new(w_re[r], w_im[r]) * self.reciprocal[4 * node + r];
+                // The second range has the length of whole registers.
+                for range in [r + 1..4, 4..STRIDE] {
+                    for c in range {
+                        w_re[c] = fma(z.im, u_im[r][c], fma(-z.re, u_re[r][c], w_re[c]));
+                        w_im[c] = fma(-z.im, u_re[r][c], fma(-z.re, u_im[r][c], w_im[c]));
+                    }
+                }
+                (re[4 * node + r], im[4 * node + r]) = (z.re, z.im);
+            }
+            for (window, b) in [(&mut w_re, &*re), (&mut w_im, &*im)] {
+                window.copy_within(4.., 0);
+                match b.get(4 * node + STRIDE..4 * node + STRIDE + 4) {
+                    Some(values) => window[ahead..].copy_from_slice(values),
+                    None => window[ahead..].fill(0.0),
+                }
+            }
+        }
+        w_re.fill(0.0);
+        w_im.fill(0.0);
+        for (node, (u_re, u_im)) in panels_re.iter().zip(panels_im).enumerate().rev() {
+            w_re.copy_within(..ahead, 4);
+            w_im.copy_within(..ahead, 4);
+            for r in (0..4).rev() {
+                let (mut lanes_re, mut lanes_im) = ([0.0; 4], [0.0; 4]);
+                for c in (4..STRIDE).step_by(4) {
+                    for lane in 0..4 {
+                        let (a_re, a_im) = (u_re[r][c + lane], u_im[r][c + lane]);
+                        let (x_re, x_im) = (w_re[c + lane], w_im[c + lane]);
+                        lanes_re[lane] = fma(-x_im, a_im, fma(x_re, a_re, lanes_re[lane]));
+                        lanes_im[lane] = fma(x_im, a_re, fma(x_re, a_im, lanes_im[lane]));
+                    }
+                }
+                let sum = |lanes: [f64; 4]| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+                let mut sum = c64::new(sum(lanes_re), sum(lanes_im));
+                for c in r + 1..4 {
+                    sum += c64::new(u_re[r][c], u_im[r][c]) * c64::new(w_re[c], w_im[c]);
+                }
+                let x = c64::new(re[4 * node + r], im[4 * node + r]) - sum * self.reciprocal[4 * node + r];
+                (w_re[r], w_im[r]) = (x.re, x.im);
+                (re[4 * node + r], im[4 * node + r]) = (x.re, x.im);
+            }
+        }
+    }
+
+    fn substitute(&self, re: &mut [f64], im: &mut [f64]) {
+        let stride = self.stride;
         let n = 4 * self.nodes;
         let row = |i: usize, from: usize, length: usize| {
             let start = i * stride + from;

@@ -95,6 +95,55 @@ impl SymmetricBand {
 
     /// `y += factor · A x`.
     pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        match self.blocks {
+            2 => self.multiply_add_window::<8>(factor, x, y),
+            4 => self.multiply_add_window::<16>(factor, x, y),
+            6 => self.multiply_add_window::<24>(factor, x, y),
+            _ => self.multiply_add_any(factor, x, y),
+        }
+    }
+
+    /// With the `STRIDE` numbers of x and y that a panel touches in windows of registers.
+    fn multiply_add_window<const STRIDE: usize>(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        let panels = self.data.as_chunks::<STRIDE>().0.as_chunks::<4>().0;
+        let ahead = STRIDE - 4;
+        let (mut ours, mut sums) = ([0.0; STRIDE], [0.0; STRIDE]);
+        let loaded = x.len().min(STRIDE);
+        ours[..loaded].copy_from_slice(&x[..loaded]);
+        for (node, panel) in panels.iter().enumerate() {
+            for r in 0..4 {
+                let scaled = ours[r];
+                let mut lanes = [0.0; 4];
+                for c in (4..STRIDE).step_by(4) {
+                    for lane in 0..4 {
+                        let entry = panel[r][c + lane];
+                        sums[c + lane] = fma(entry, scaled, sums[c + lane]);
+                        lanes[lane] = fma(entry, ours[c + lane], lanes[lane]);
+                    }
+                }
+                let mut sum = (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]);
+                sum = fma(panel[r][r], scaled, sum);
+                for c in r + 1..4 {
+                    sum = fma(panel[r][c], ours[c], sum);
+                    sums[c] = fma(panel[r][c], scaled, sums[c]);
+                }
+                sums[r] += sum;
+            }
+            for (y, sum) in y[4 * node..4 * node + 4].iter_mut().zip(&sums) {
+                *y = fma(factor, *sum, *y);
+            }
+            sums.copy_within(4.., 0);
+            sums[ahead..].fill(0.0);
+            ours.copy_within(4.., 0);
+            let next = 4 * node + STRIDE;
+            match x.get(next..next + 4) {
+                Some(values) => ours[ahead..].copy_from_slice(values),
+                None => ours[ahead..].fill(0.0),
+            }
+        }
+    }
+
+    fn multiply_add_any(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         let stride = self.stride();
         for (node, panel) in self.data.chunks_exact(4 * stride).enumerate() {
             let first = 4 * node;
@@ -254,14 +303,63 @@ impl Ldl {
     /// Solves A x = b in place.
     pub fn solve(&self, b: &mut [f64]) {
         match self.rows.blocks {
-            2 => self.substitute::<8>(b),
-            6 => self.substitute::<24>(b),
-            _ => self.substitute::<0>(b),
+            2 => self.substitute_window::<8>(b),
+            4 => self.substitute_window::<16>(b),
+            6 => self.substitute_window::<24>(b),
+            _ => self.substitute(b),
         }
     }
 
-    fn substitute<const STRIDE: usize>(&self, b: &mut [f64]) {
-        let stride = if STRIDE == 0 { self.rows.stride() } else { STRIDE };
+    /// Forward and backward substitution with the `STRIDE` numbers that a panel touches in a window of registers. What
+    /// reaches beyond the last unknown is multiplied by zeros.
+    fn substitute_window<const STRIDE: usize>(&self, b: &mut [f64]) {
+        let (panels, _) = self.rows.data.as_chunks::<STRIDE>();
+        let (panels, _) = panels.as_chunks::<4>();
+        let (reciprocals, _) = self.reciprocal.as_chunks::<4>();
+        let ahead = STRIDE - 4;
+        let mut window = [0.0; STRIDE];
+        let loaded = b.len().min(STRIDE);
+        window[..loaded].copy_from_slice(&b[..loaded]);
+        for (node, (panel, reciprocal)) in panels.iter().zip(reciprocals).enumerate() {
+            for r in 0..4 {
+                let z = window[r] * reciprocal[r];
+                for c in r + 1..4 {
+                    window[c] = fma(-z, panel[r][c], window[c]);
+                }
+                for c in 4..STRIDE {
+                    window[c] = fma(-z, panel[r][c], window[c]);
+                }
+                b[4 * node + r] = z;
+            }
+            window.copy_within(4.., 0);
+            let next = 4 * node + STRIDE;
+            match b.get(next..next + 4) {
+                Some(values) => window[ahead..].copy_from_slice(values),
+                None => window[ahead..].fill(0.0),
+            }
+        }
+        window.fill(0.0);
+        for (node, (panel, reciprocal)) in panels.iter().zip(reciprocals).enumerate().rev() {
+            window.copy_within(..ahead, 4);
+            for r in (0..4).rev() {
+                let mut lanes = [0.0; 4];
+                for c in (4..STRIDE).step_by(4) {
+                    for lane in 0..4 {
+                        lanes[lane] = fma(panel[r][c + lane], window[c + lane], lanes[lane]);
+                    }
+                }
+                let mut sum = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+                for c in r + 1..4 {
+                    sum = fma(panel[r][c], window[c], sum);
+                }
+                let x = fma(-sum, reciprocal[r], b[4 * node + r]);
+                (window[r], b[4 * node + r]) = (x, x);
+            }
+        }
+    }
+
+    fn substitute(&self, b: &mut [f64]) {
+        let stride = self.rows.stride();
         let n = self.rows.size();
         for i in 0..n {
             let start = 4 * (i / 4);
