@@ -29,14 +29,14 @@ use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
 use crate::trajectory::Statistics;
 
 /// Error of the position in a step of given length: far below that of a second-order step.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-11;
 /// The same relative to the displacement in the step, which counts where steps are very short: the velocity takes the same relative error.
-const RELATIVE_TOLERANCE: f64 = 1e-6;
+const RELATIVE_TOLERANCE: f64 = 1e-8;
 /// The same as a part of the error that a step may make.
 const TOLERANCE_OF_ERROR: f64 = 0.02;
 
 /// Rate of convergence beyond which the next step takes a new tangent.
-const KEEP: f64 = 0.1;
+const KEEP: f64 = 0.006;
 /// Rate of convergence beyond which the present step does.
 const SLOW: f64 = 0.5;
 /// Largest correction of a predicted state with a kept tangent.
