@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 
 /// Points at which shapes are sampled.
 const SHAPE_POINTS: usize = 201;
-/// Points of a beam in a frame of the animation.
-const FRAME_POINTS: usize = 101;
+/// Every so many of them are in a frame of the animation.
+const FRAME_STRIDE: usize = 2;
 /// Frames kept for the animation.
 const FRAMES: usize = 400;
 
@@ -22,7 +22,6 @@ pub(super) struct Look<'a> {
     model: &'a Model,
     pub(super) system: &'a System,
     shapes: Vec<View>,
-    frames: Vec<View>,
     probes: Vec<Watched>,
 }
 
@@ -45,11 +44,9 @@ impl<'a> Look<'a> {
             let part = &system.beams()[beam];
             View::points(&part.basis, part.offset(), s).map_err(|e| SystemError::basis(&part.name, e))
         };
-        let sampled = |count: usize| -> Result<Vec<View>, SystemError> {
-            (0..system.beams().len())
-                .map(|beam| view(beam, &evenly(system.beams()[beam].basis.length(), count)))
-                .collect()
-        };
+        let shapes = (0..system.beams().len())
+            .map(|beam| view(beam, &evenly(system.beams()[beam].basis.length(), SHAPE_POINTS)))
+            .collect::<Result<_, SystemError>>()?;
         let probes = model
             .probes
             .iter()
@@ -65,7 +62,7 @@ impl<'a> Look<'a> {
                 Ok(Watched { name: probe.name.clone(), view, measure, reference_strain })
             })
             .collect::<Result<_, SystemError>>()?;
-        Ok(Self { model, system, shapes: sampled(SHAPE_POINTS)?, frames: sampled(FRAME_POINTS)?, probes })
+        Ok(Self { model, system, shapes, probes })
     }
 
     /// The probe at which a path is to end, as (view, axis, value).
@@ -167,7 +164,7 @@ impl<'a> Look<'a> {
     }
 
     pub(super) fn frame(&self, parameter: f64, q: &[f64]) -> Frame {
-        let beams = self.frames.iter().map(|view| view.all(q).map(|f| f.position).collect()).collect();
+        let beams = self.shapes.iter().map(|view| view.positions(FRAME_STRIDE, q).collect()).collect();
         Frame { parameter, beams }
     }
 

@@ -70,6 +70,11 @@ impl View {
         (0..self.table.s.len()).map(move |point| self.fields_at(point, q))
     }
 
+    /// Positions of every `stride`-th point \[m\].
+    pub fn positions<'a>(&'a self, stride: usize, q: &'a [f64]) -> impl Iterator<Item = [f64; 2]> + 'a {
+        (0..self.table.s.len()).step_by(stride).map(move |point| self.combine(point, 0, q))
+    }
+
     fn fields_at(&self, point: usize, q: &[f64]) -> Fields {
         let [position, gradient, second] = [0, 1, 2].map(|row| self.combine(point, row, q));
         Fields { position, gradient, second }
