@@ -63,7 +63,7 @@ impl<'a> Equilibrium<'a> {
         let n = self.system.coordinates();
         self.statistics.residual_evaluations += 1;
         self.system.force(load, &x[..n], &mut self.force);
-        balance(self.system, load, x, &mut self.force, None, negative)
+        balance(self.system, load, x, &mut self.force, |_| (), negative)
     }
 
     /// The same as [`Self::residual`]; also factorises the tangent at `x`, and to `rate` writes the right-hand side
@@ -86,7 +86,7 @@ impl<'a> Equilibrium<'a> {
         self.statistics.factorizations += 1;
         let (q, before) = (&x[..n], &before[..n]);
         system.force_and_tangent(load, q, before, &mut self.force, &mut self.tangent, &mut self.workspace);
-        let residual = balance(self.system, load, x, &mut self.force, None, negative);
+        let residual = balance(self.system, load, x, &mut self.force, |_| (), negative);
         system.supports().turn_matrix(load, &mut self.tangent);
         self.rate_right_hand_side(load, x, rate);
         system.supports().eliminate(load, &mut self.tangent);
@@ -156,27 +156,23 @@ impl<'a> Equilibrium<'a> {
 }
 
 /// Adds Bᵀμ to the force, turns it into the supports' frames as `−R` and appends `−g`; returns the scaled residual.
-/// `inertia` is added to the force, but does not count in the scale.
+/// `add_inertia` adds to the force what does not count in the scale.
 pub(super) fn balance(
     system: &System,
     load: f64,
     x: &[f64],
     force: &mut [f64],
-    inertia: Option<&[f64]>,
+    add_inertia: impl FnOnce(&mut [f64]),
     negative: &mut [f64],
 ) -> f64 {
     let n = system.coordinates();
     let inverse = 1.0 / system.length();
-    let scale_of = |force: &[f64]| {
-        force.chunks_exact(4).fold(0.0, |m, f| {
-            let [a, b, c, d] = [f[0], f[1], inverse * f[2], inverse * f[3]].map(f64::abs);
-            larger(larger(m, a), larger(b, larger(c, d)))
-        })
+    let size_of = |f: &[f64; 4]| {
+        let [a, b, c, d] = [f[0], f[1], inverse * f[2], inverse * f[3]].map(f64::abs);
+        larger(larger(a, b), larger(c, d))
     };
-    let mut scale = scale_of(force);
-    if let Some(inertia) = inertia {
-        force.iter_mut().zip(inertia).for_each(|(f, inertia)| *f += inertia);
-    }
+    let mut scale = force.as_chunks().0.iter().fold(0.0, |m, f| larger(m, size_of(f)));
+    add_inertia(force);
     for (r, constraint) in system.constraints().iter().enumerate() {
         let unit = constraint.scale(system.stiffness(), system.length());
         let mu = x[n + r] * unit;
@@ -187,12 +183,13 @@ pub(super) fn balance(
         // Linear in q: Newton's method satisfies it to round-off at once.
         negative[n + r] = -unit * constraint.value(load, &x[..n]);
     }
-    for (negative, force) in negative.iter_mut().zip(&*force) {
-        *negative = -force;
+    system.supports().to_frames(load, force);
+    let mut residual = 0.0;
+    for (negative, force) in negative.as_chunks_mut::<4>().0.iter_mut().zip(force.as_chunks::<4>().0) {
+        *negative = force.map(|f| -f);
+        residual = larger(residual, size_of(force));
     }
-    system.supports().to_frames(load, &mut negative[..n]);
     let floor = ROUND_OFFS / RESIDUAL_TOLERANCE * system.round_off();
-    let residual = scale_of(&negative[..n]);
     if residual == 0.0 { 0.0 } else { residual / (scale + floor) }
 }
 

@@ -34,7 +34,6 @@ pub struct Motion<'a> {
     tangent: Matrix,
     workspace: Workspace,
     force: Vec<f64>,
-    inertia: Vec<f64>,
     scratch: Vec<f64>,
     /// Counts so far.
     pub statistics: Statistics,
@@ -64,7 +63,6 @@ impl<'a> Motion<'a> {
             tangent: system.matrix(),
             workspace: Workspace::default(),
             force: vec![0.0; n],
-            inertia: vec![0.0; n],
             scratch: vec![0.0; n + system.multipliers()],
             statistics: Statistics { factorizations: 1, ..Statistics::default() },
         })
@@ -146,9 +144,8 @@ impl<'a> Motion<'a> {
     }
 
     fn finish(&mut self, x: &[f64], a: &[f64], negative: &mut [f64]) -> f64 {
-        self.inertia.fill(0.0);
-        self.mass.multiply_add(1.0, a, &mut self.inertia);
-        balance(self.system, LOAD, x, &mut self.force, Some(&self.inertia), negative)
+        let add_inertia = |force: &mut [f64]| self.mass.multiply_add(1.0, a, force);
+        balance(self.system, LOAD, x, &mut self.force, add_inertia, negative)
     }
 
     /// Factorises K + c M with the last tangent K.
