@@ -4,7 +4,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `page` | the list of pages, and the one file that holds them |
-//! | `overview`, `case`, `mutants` | a kind of page each: what its template shows, made from what was found |
+//! | `overview`, `case`, `work`, `mutants` | a kind of page each: what its template shows, made from what was found |
 //! | `check`, `figure`, `number` | parts of a case's page |
 //! | `before` | an earlier report, to compare with |
 //!
@@ -18,6 +18,7 @@ mod mutants;
 mod number;
 mod overview;
 mod page;
+mod work;
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -153,6 +154,7 @@ fn pages(
     for entry in entries {
         pages.push(case::page(suite, entry)?);
     }
+    pages.extend(work::pages(suite, &suite.root.join(crate::cost::FOLDER))?);
     let record = Record::path(suite);
     pages.push(mutants::page(Record::read(&record)?.as_ref(), Path::new(&suite.short(&record)))?);
     Ok(pages)
@@ -187,11 +189,13 @@ fn run_all(suite: &Suite, names: &[String]) -> Vec<Entry> {
     entries
 }
 
-fn now() -> String {
+/// Day and time.
+pub fn now() -> String {
     jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC").to_string()
 }
 
-fn machine() -> String {
+/// Processor, cores and system.
+pub fn machine() -> String {
     let cpu = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
         let line = text.lines().find(|l| l.starts_with("model name"))?;
         Some(line.split_once(':')?.1.trim().to_owned())
