@@ -22,7 +22,8 @@ pub fn print(suite: &Suite, names: &[String], quick: bool, out: &Path) -> Result
     if let Some(unknown) = names.iter().find(|name| !all.contains(name)) {
         return Err(format!("there is no problem `{unknown}`; there are: {}", all.join(", ")).into());
     }
-    let tools = bridge::environment()?.facts.tool(|package| package == "exudyn");
+    let tools =
+        bridge::environment()?.facts.tool(|package| ["exudyn", "scikit-fem", "scipy"].contains(&package));
     std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
     if cfg!(debug_assertions) {
         eprintln!(

@@ -121,7 +121,7 @@ fn claim(claim: &Verdict) -> ClaimView<'_> {
         Some(false) => ("missed", " bad"),
         None => ("undecided", " mark"),
     };
-    let sides = [("ours", &claim.ours), ("Exudyn", &claim.theirs)].map(|(code, cheapest)| {
+    let sides = [("ours", &claim.ours), ("theirs", &claim.theirs)].map(|(code, cheapest)| {
         let (setting, error, seconds) = match cheapest {
             Some(c) => (c.setting.clone(), c.error.map(short).unwrap_or_else(|| "–".into()), time(c.seconds)),
             None => ("no setting that was run is good enough".to_owned(), "–".into(), "–".into()),

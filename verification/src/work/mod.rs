@@ -10,7 +10,7 @@
 
 mod claim;
 mod diagram;
-mod exudyn;
+mod peer;
 mod problem;
 mod results;
 
@@ -33,6 +33,7 @@ use ancf_check::{Suite, case::Check};
 use indexmap::IndexMap;
 
 use crate::Failure;
+use crate::bridge::Script;
 
 /// Times that every setting takes its turn, unless it is slow.
 const ROUNDS: usize = 3;
@@ -174,6 +175,8 @@ impl Task<'_> {
     }
 
     fn run(&mut self, repeat: usize) -> Result<Trajectory, String> {
+        static EXUDYN: Script = Script::new("exudyn_work");
+        static SCIKIT_FEM: Script = Script::new("scikit_fem_work");
         match self.method.code {
             Code::Ours => {
                 let mut last = Err("it was not run".to_owned());
@@ -187,13 +190,16 @@ impl Task<'_> {
                 }
                 last
             }
-            Code::Exudyn => {
-                let (seconds, trajectory) =
-                    exudyn::solve(&self.scene, &self.settings, repeat).map_err(|e| e.to_string())?;
-                self.seconds.extend(seconds);
-                Ok(trajectory)
-            }
+            Code::Exudyn => self.ask(&EXUDYN, repeat),
+            Code::ScikitFem => self.ask(&SCIKIT_FEM, repeat),
         }
+    }
+
+    fn ask(&mut self, script: &Script, repeat: usize) -> Result<Trajectory, String> {
+        let timed = peer::solve(script, &self.scene, &self.settings, repeat).map_err(|e| e.to_string())?;
+        self.seconds.extend(timed.seconds);
+        self.build.extend(timed.build);
+        Ok(timed.trajectory)
     }
 
     /// What the setting is worth.
@@ -225,7 +231,7 @@ impl Task<'_> {
             setting: run.label,
             error,
             seconds: Spread::of(&self.seconds),
-            build: ours.then(|| Spread::of(&self.build)),
+            build: (!self.build.is_empty()).then(|| Spread::of(&self.build)),
             degrees_of_freedom: ours.then_some(unknowns),
             steps: statistics.steps.max(statistics.load_steps),
             newton_iterations: statistics.newton_iterations,

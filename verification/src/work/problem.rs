@@ -14,7 +14,7 @@
 //! why = "How good the reference is."
 //!
 //! [method.ancf]                           # a family of runs; methods of one label are one line of the diagram
-//! code = "ours"                           # or "exudyn"
+//! code = "ours"                           # or "exudyn", "scikit-fem"
 //! label = "ANCF"
 //! set = ["beam.cantilever.basis.ancf.elements={elements}"]
 //! over.mesh.elements = [4, 8, 16]
@@ -22,7 +22,7 @@
 //! [method.exudyn]
 //! code = "exudyn"
 //! label = "Exudyn"
-//! settings = { newton = "{newton}" }      # see peers/exudyn_work.py
+//! settings = { newton = "{newton}" }      # see peers/exudyn_work.py, peers/scikit_fem_work.py
 //! slow = true                             # left out by --quick, and run once
 //! over.newton.newton = ["full", "modified"]
 //!
@@ -79,6 +79,8 @@ pub enum Code {
     Ours,
     /// Exudyn's ANCFCable2D.
     Exudyn,
+    /// scikit-fem's Hermite elements, for small deflections.
+    ScikitFem,
 }
 
 impl Code {
@@ -87,6 +89,7 @@ impl Code {
         match self {
             Self::Ours => "ours",
             Self::Exudyn => "Exudyn",
+            Self::ScikitFem => "scikit-fem",
         }
     }
 }

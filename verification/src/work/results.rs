@@ -64,7 +64,7 @@ pub struct Point {
     pub error: IndexMap<String, f64>,
     /// Of the solution alone \[s\].
     pub seconds: Spread,
-    /// Of what goes before it: shape functions, tables, patterns \[s\]; ours only.
+    /// Of what goes before it: shape functions, tables, patterns \[s\]; none of Exudyn.
     pub build: Option<Spread>,
     /// Unknowns; ours only.
     pub degrees_of_freedom: Option<usize>,

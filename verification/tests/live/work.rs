@@ -91,7 +91,8 @@ fn one_norm_judges_both_codes_and_the_same_elements_have_the_same_error() {
     let order = (error("ours", "elements = 8") / error("ours", "elements = 16")).log2();
     assert!((3.0..5.0).contains(&order), "cubic elements: order 4, found {order}");
     // Other points of integration, another error: the setting has reached Exudyn.
-    assert!(error("lobatto", "") < 0.5 * error("ours", "elements = 16"));
+    let (full, other) = (error("ours", "elements = 16"), error("lobatto", ""));
+    assert!((full - other).abs() > 0.1 * full, "{full:e}, {other:e}");
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Exudyn, timed: the same description as in the comparison of numbers, with settings of its own, and what it finds in the form in
-//! which ours leaves it, so that one norm judges both.
+//! Other codes, timed: the same description as in the comparison of numbers, with settings of their own, and what they find in the
+//! form in which ours leaves it, so that one norm judges all.
 
 use std::f64::consts::TAU;
 
@@ -25,9 +25,12 @@ struct Question<'a> {
     repeat: usize,
 }
 
-#[derive(Deserialize)]
+/// What a code does not know or was not asked for is empty.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 struct Answer {
     seconds: Vec<f64>,
+    build: Vec<f64>,
     steps: usize,
     newton_iterations: usize,
     jacobians: usize,
@@ -36,25 +39,36 @@ struct Answer {
     probes: Vec<Track>,
     /// Per beam and node of the last state: \[x, y, x', y'\].
     nodes: Vec<Vec<[f64; 4]>>,
+    frequencies: Vec<f64>,
 }
 
-/// Solves a scene `repeat` times: seconds of each, and the result of the last.
+/// Times of the repetitions \[s\], and the result of the last.
+pub struct Timed {
+    /// Of the solution alone.
+    pub seconds: Vec<f64>,
+    /// Of what goes before it; empty where it is not known.
+    pub build: Vec<f64>,
+    /// What was found.
+    pub trajectory: Trajectory,
+}
+
+/// Solves a scene `repeat` times.
 ///
 /// # Errors
-/// What of the scene has no counterpart, a Python that cannot be had, and what Exudyn raises.
+/// What of the scene has no counterpart, a Python that cannot be had, and what the other code raises.
 pub fn solve(
+    script: &Script,
     scene: &Scene,
     settings: &IndexMap<String, String>,
     repeat: usize,
-) -> Result<(Vec<f64>, Trajectory), Failure> {
-    static SCRIPT: Script = Script::new("exudyn_work");
+) -> Result<Timed, Failure> {
     let description = describe(scene.model(), scene.analysis())?;
-    let answer: Answer = SCRIPT.ask(&Question { description, settings, repeat })?;
+    let answer: Answer = script.ask(&Question { description, settings, repeat })?;
     let trajectory = trajectory(scene.model(), &answer)?;
-    Ok((answer.seconds, trajectory))
+    Ok(Timed { seconds: answer.seconds, build: answer.build, trajectory })
 }
 
-/// What Exudyn found, as ours would leave it: records of the probes, and the last shapes.
+/// What was found, as ours would leave it: records of the probes, the last shapes, frequencies.
 fn trajectory(model: &Model, answer: &Answer) -> Result<Trajectory, Failure> {
     let samples = |track: &Track| {
         let places = track.x.iter().zip(&track.y);
@@ -89,6 +103,7 @@ fn trajectory(model: &Model, answer: &Answer) -> Result<Trajectory, Failure> {
                 Ok(shape)
             })
             .collect::<Result<_, Failure>>()?,
+        frequencies: answer.frequencies.clone(),
         statistics: Statistics {
             steps: answer.steps,
             rejected_steps: answer.rejected_steps,
