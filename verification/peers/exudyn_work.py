@@ -9,11 +9,14 @@ method iterates and when it is content, and which linear solver is used.
 """
 
 import json
+import os
 import sys
 import time
 from pathlib import Path
 
-import numpy as np
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read once, while NumPy is imported
+
+import numpy as np  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent))
 import exudyn_scene as scene  # noqa: E402

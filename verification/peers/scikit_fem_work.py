@@ -6,14 +6,17 @@ Timed is that call; assembling is the build.
 """
 
 import json
+import os
 import sys
 import time
 from pathlib import Path
 
-import numpy as np
-import scipy.linalg
-import scipy.sparse
-import scipy.sparse.linalg
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read once, while NumPy is imported
+
+import numpy as np  # noqa: E402
+import scipy.linalg  # noqa: E402
+import scipy.sparse  # noqa: E402
+import scipy.sparse.linalg  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent))
 import scikit_fem_scene as scene  # noqa: E402

@@ -96,11 +96,32 @@ fn setting(cheapest: &Cheapest) -> String {
     format!("{}{error}, {}", cheapest.setting, time(cheapest.seconds))
 }
 
-/// A time with its unit.
+/// A time with three digits and its unit.
 pub fn time(seconds: f64) -> String {
-    match seconds {
-        s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
-        s if s < 1.0 => format!("{:.3} ms", s * 1e3),
-        s => format!("{s:.2} s"),
+    let (value, unit) = match seconds {
+        s if s < 1e-3 => (s * 1e6, "µs"),
+        s if s < 1.0 => (s * 1e3, "ms"),
+        s => (s, "s"),
+    };
+    let decimals = if value < 9.995 { 2 } else { usize::from(value < 99.95) };
+    format!("{value:.decimals$} {unit}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::time;
+
+    #[test]
+    fn times_have_three_digits() {
+        let cases = [
+            (2.5e-4, "250 µs"),
+            (9.996e-6, "10.0 µs"),
+            (0.0571, "57.1 ms"),
+            (16.34, "16.3 s"),
+            (1.0, "1.00 s"),
+        ];
+        for (seconds, text) in cases {
+            assert_eq!(time(seconds), text);
+        }
     }
 }

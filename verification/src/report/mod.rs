@@ -98,7 +98,8 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
             .collect(),
     };
     std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
-    let html = document(&pages(suite, &made, &entries, &problems, before.as_ref())?)?;
+    let measured = suite.root.join(crate::cost::FOLDER);
+    let html = document(&pages(suite, &made, &entries, &problems, before.as_ref(), &measured)?)?;
     for (name, text) in [("report.json", serde_json::to_string_pretty(&json)?), ("index.html", html)] {
         let path = out.join(name);
         std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -142,19 +143,20 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
     Ok(passed && !lost)
 }
 
-/// All pages in the order of reading.
+/// All pages in the order of reading; `measured` is the folder of `verify work-precision`.
 fn pages(
     suite: &Suite,
     made: &Made,
     entries: &[Entry],
     problems: &[String],
     before: Option<&Before>,
+    measured: &Path,
 ) -> Result<Vec<Page>, Failure> {
     let mut pages = vec![overview::page(made, entries, problems, before)?];
     for entry in entries {
         pages.push(case::page(suite, entry)?);
     }
-    pages.extend(work::pages(suite, &suite.root.join(crate::cost::FOLDER))?);
+    pages.extend(work::pages(suite, measured)?);
     let record = Record::path(suite);
     pages.push(mutants::page(Record::read(&record)?.as_ref(), Path::new(&suite.short(&record)))?);
     Ok(pages)
@@ -224,7 +226,8 @@ mod tests {
         };
         entries.push(Entry { name: "broken".into(), examined: Err(error), took: Duration::ZERO });
         let made = Made { date: "2026-01-02 03:04 UTC".into(), machine: "a machine".into() };
-        document(&pages(&suite, &made, &entries, &[], None).expect("pages")).expect("a file")
+        document(&pages(&suite, &made, &entries, &[], None, Path::new("nowhere")).expect("pages"))
+            .expect("a file")
     }
 
     fn between<'a>(text: &'a str, start: &str, end: &str) -> Vec<&'a str> {

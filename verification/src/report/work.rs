@@ -1,4 +1,4 @@
-//! Pages of what accuracy costs, from the newest measurement.
+//! What accuracy costs, from the newest measurement: a page of all claims, and one per problem.
 
 use std::path::Path;
 
@@ -43,34 +43,40 @@ struct Line<'a> {
 }
 
 #[derive(Template)]
-#[template(path = "work_missing.html")]
-struct Missing<'a> {
-    names: &'a [String],
+#[template(path = "work_overview.html")]
+struct Overview<'a> {
+    problems: Vec<(&'a Results, Vec<ClaimView<'a>>)>,
+    /// Names of problems that were not measured, or why their results cannot be read.
+    missing: Vec<String>,
 }
 
-/// One page per problem that was measured; where none was, one that says how to.
+/// A page of all claims, and one per problem that was measured. Where none was, the first says how to.
 pub fn pages(suite: &Suite, folder: &Path) -> Result<Vec<Page>, Failure> {
-    let names = work::names(suite)?;
-    let (mut pages, mut missing) = (Vec::new(), Vec::new());
-    for name in names {
-        match Results::read(folder, &name)? {
-            Some(results) => pages.push(page(&results, pages.is_empty())?),
-            None => missing.push(name),
+    let (mut measured, mut missing) = (Vec::new(), Vec::new());
+    for name in work::names(suite)? {
+        match Results::read(folder, &name) {
+            Ok(Some(results)) => measured.push(results),
+            Ok(None) => missing.push(name),
+            Err(error) => missing.push(error.to_string()),
         }
     }
-    if !missing.is_empty() {
-        pages.push(Page {
-            id: "cost-not-measured".into(),
-            title: "What accuracy costs: not measured".into(),
-            pass: None,
-            listed: pages.is_empty(),
-            body: Missing { names: &missing }.render()?,
-        });
-    }
-    Ok(pages)
+    let mut claims = measured.iter().flat_map(|results| &results.claims).peekable();
+    let overview = Page {
+        id: "what-accuracy-costs".into(),
+        title: "What accuracy costs".into(),
+        pass: claims.peek().is_some().then(|| claims.all(|claim| claim.met == Some(true))),
+        listed: true,
+        body: Overview {
+            problems: measured.iter().map(|r| (r, r.claims.iter().map(claim).collect())).collect(),
+            missing,
+        }
+        .render()?,
+    };
+    let pages = measured.iter().map(page).collect::<Result<Vec<_>, _>>()?;
+    Ok([overview].into_iter().chain(pages).collect())
 }
 
-fn page(results: &Results, first: bool) -> Result<Page, Failure> {
+fn page(results: &Results) -> Result<Page, Failure> {
     let norms: Vec<&str> = results.norm.keys().map(String::as_str).collect();
     let kept = kept(results);
     let body = Body {
@@ -93,10 +99,10 @@ fn page(results: &Results, first: bool) -> Result<Page, Failure> {
     };
     Ok(Page {
         id: format!("cost-{}", results.name),
-        title: if first { format!("What accuracy costs: {}", results.title) } else { results.title.clone() },
+        title: results.title.clone(),
         pass: (!results.claims.is_empty())
             .then(|| results.claims.iter().all(|claim| claim.met == Some(true))),
-        listed: first,
+        listed: false,
         body: body.render()?,
     })
 }
@@ -145,5 +151,106 @@ fn line<'a>(point: &'a Point, norms: &[&str]) -> Line<'a> {
             "once".into()
         },
         build: point.build.map_or_else(|| "–".to_owned(), |b| time(b.median)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ancf_verification::work::{Cheapest, LeftOut, Spread};
+
+    fn point(code: Code, error: f64, seconds: f64) -> Point {
+        Point {
+            code,
+            method: "m".into(),
+            line: if code == Code::Ours { "RPIM" } else { "Exudyn" }.into(),
+            setting: format!("nodes = {seconds}"),
+            error: [("tip".to_owned(), error)].into(),
+            seconds: Spread::of(&[seconds]),
+            build: None,
+            degrees_of_freedom: None,
+            steps: 1,
+            newton_iterations: 1,
+            tangent_evaluations: 1,
+            factorizations: 1,
+        }
+    }
+
+    fn results() -> Results {
+        let found = |seconds| Some(Cheapest { setting: "RPIM".into(), error: Some(1e-4), seconds });
+        Results {
+            name: "half-circle".into(),
+            title: "Half circle".into(),
+            about: "Bent.".into(),
+            date: "2026-01-02".into(),
+            machine: "a machine".into(),
+            tools: "Exudyn 1".into(),
+            quick: true,
+            norm: [(
+                "tip".to_owned(),
+                Norm {
+                    title: "tip [m]".into(),
+                    reference: "arc".into(),
+                    class: "closed form".into(),
+                    why: "Exact.".into(),
+                },
+            )]
+            .into(),
+            points: vec![
+                point(Code::Ours, 1e-4, 0.25),
+                point(Code::Ours, 1e-3, 0.75),
+                point(Code::Exudyn, 1e-4, 2.5),
+            ],
+            claims: vec![Verdict {
+                limit: Some(("tip".into(), 1e-3)),
+                times: Some(30.0),
+                within: None,
+                ours: found(0.25),
+                theirs: found(2.5),
+                ratio: Some(10.0),
+                met: Some(false),
+            }],
+            left_out: vec![LeftOut { what: "explicit".into(), why: "wrong < right".into() }],
+        }
+    }
+
+    #[test]
+    fn a_page_shows_diagram_claims_settings_and_what_is_missing() {
+        let page = page(&results()).expect("a page");
+        assert_eq!(page.pass, Some(false));
+        for text in [
+            "<svg",
+            "30 × faster",
+            "10.0 × faster",
+            "missed",
+            "2.50 s",
+            "--quick",
+            "closed form",
+            "wrong &#60; right",
+        ] {
+            assert!(page.body.contains(text), "`{text}` is missing in {}", page.body);
+        }
+        assert!(
+            page.body.contains("nodes = 0.25") && !page.body.contains("nodes = 0.75"),
+            "beaten: csv only"
+        );
+        assert!(page.body.contains("1 further setting"));
+    }
+
+    #[test]
+    fn what_is_not_measured_says_how_and_what_is_stands_in_the_overview() {
+        let suite = Suite::here();
+        let none = pages(&suite, Path::new("nowhere")).expect("pages");
+        assert!(none.len() == 1 && none[0].pass.is_none() && none[0].body.contains("work-precision</code>"));
+        let folder = tempfile::tempdir().expect("a folder");
+        results().write(folder.path()).unwrap_or_else(|e| panic!("{e}"));
+        std::fs::write(folder.path().join("roll-up.json"), "{}").expect("a file of another version");
+        let some = pages(&suite, folder.path()).expect("pages");
+        assert_eq!(
+            some.iter().map(|p| p.id.as_str()).collect::<Vec<_>>(),
+            ["what-accuracy-costs", "cost-half-circle"]
+        );
+        assert!(some[0].body.contains("#cost-half-circle") && some[0].body.contains("measure it again"));
+        assert_eq!(some[0].pass, Some(false));
     }
 }

@@ -40,7 +40,7 @@ const ROUNDS: usize = 3;
 /// In one turn a setting runs until this time is over \[s\] …
 const TURN: f64 = 0.02;
 /// … but not more often than this.
-const OFTEN: f64 = 20.0;
+const OFTEN: f64 = 7.0;
 
 /// One setting, and what its runs have left so far.
 struct Task<'a> {
@@ -110,10 +110,10 @@ pub fn measure(
     }
     let mut points = Vec::new();
     for task in tasks {
-        let what = format!("{}: {}", task.method.label, task.member.label());
+        let (line, setting) = (task.method.label.as_str(), task.member.label());
         match task.point(&problem.norm, &tables) {
             Ok(point) => points.push(point),
-            Err(why) => left_out.push(LeftOut { what, why }),
+            Err(why) => leave_out(&mut left_out, line, &setting, why),
         }
     }
     let norm = problem.norm.iter().map(|(key, check)| {
@@ -150,6 +150,15 @@ fn tables(suite: &Suite, problem: &Problem) -> Result<IndexMap<String, Table>, F
             Ok((name.clone(), suite.table(case, oracle)?))
         })
         .collect()
+}
+
+/// Notes a setting that failed, in one entry with those of its line that failed alike.
+fn leave_out(list: &mut Vec<LeftOut>, line: &str, setting: &str, why: String) {
+    let first = format!("{line}: ");
+    match list.iter_mut().find(|entry| entry.why == why && entry.what.starts_with(&first)) {
+        Some(entry) => entry.what.push_str(&format!("; {setting}")),
+        None => list.push(LeftOut { what: format!("{first}{setting}"), why }),
+    }
 }
 
 /// Numbers of the settings in the order in which they run: ours and theirs in turn as long as there are both.
@@ -244,6 +253,16 @@ impl Task<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_failed_alike_is_one_entry() {
+        let mut list = Vec::new();
+        for (line, setting, why) in [("A", "1", "x"), ("A", "2", "x"), ("A", "3", "y"), ("B", "1", "x")] {
+            leave_out(&mut list, line, setting, why.to_owned());
+        }
+        let what: Vec<_> = list.iter().map(|entry| entry.what.as_str()).collect();
+        assert_eq!(what, ["A: 1; 2", "A: 3", "B: 1"]);
+    }
 
     #[test]
     fn ours_and_theirs_take_turns() {
