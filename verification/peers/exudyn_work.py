@@ -27,37 +27,44 @@ exu, item = scene.exu, scene.item
 QUADRATURE = {"5/3": 0, "4/2": 1, "Lobatto": 2}
 
 
-def settings_of(given, chosen):
-    """Exudyn's settings for an analysis; what is not chosen is as in the comparison of numbers."""
+# Name of a setting -> where it goes in Exudyn's settings of the solver, and what its text means
+NEWTON = {
+    "newton": ("useModifiedNewton", lambda text: {"full": False, "modified": True}[text]),
+    "residual_mode": ("residualMode", int),
+    "relative": ("relativeTolerance", float),
+    "absolute": ("absoluteTolerance", float),
+}
+LINEAR = {
+    "linear_solver": ("solverType", lambda text: getattr(exu.LinearSolverType, text)),
+    "reuse_pattern": ("reuseAnalyzedPattern", lambda text: bool(int(text))),
+}
+
+
+def solver_for(analysis, chosen):
+    """Exudyn's solver and its settings for an analysis; what is not chosen is as in the comparison of numbers."""
     settings = scene.quiet()
-    settings.solution.sensors.active = "dynamic" in given["analysis"]
-    ((kind, question),) = given["analysis"].items()
-    solver = settings.staticSolver if kind == "static" else settings.timeIntegration
-    solver.adaptiveStep = False
+    ((kind, question),) = analysis.items()
     if kind == "static":
-        solver.numberOfLoadSteps = question["steps"]
+        solver, own = exu.MainSolverStatic(), settings.staticSolver
+        own.numberOfLoadSteps = question["steps"]
+        settings.solution.sensors.active = False
     else:
-        solver.numberOfSteps, solver.endTime = question["steps"], question["steps"] * question["step"]
+        solver, own = exu.MainSolverImplicitSecondOrder(), settings.timeIntegration
+        own.numberOfSteps, own.endTime = question["steps"], question["steps"] * question["step"]
         settings.solution.sensors.writePeriod = question["every"] * question["step"]
-        solver.generalizedAlpha.spectralRadius = question["spectral_radius"]
-    for name, value in chosen.items():
-        if name == "newton":
-            solver.newton.useModifiedNewton = {"full": False, "modified": True}[value]
-        elif name == "residual_mode":
-            solver.newton.residualMode = int(value)
-        elif name == "relative":
-            solver.newton.relativeTolerance = float(value)
-        elif name == "absolute":
-            solver.newton.absoluteTolerance = float(value)
-        elif name == "linear_solver":
-            settings.linearSolver.solverType = getattr(exu.LinearSolverType, value)
-        elif name == "reuse_pattern":
-            settings.linearSolver.reuseAnalyzedPattern = bool(value)
-        elif name == "adaptive":
-            solver.adaptiveStep = bool(value)
-        elif name != "quadrature":
+        own.generalizedAlpha.spectralRadius = question["spectral_radius"]
+        # what exu.SolveDynamic does for TrapezoidalIndex2
+        trapezoidal = question["spectral_radius"] == 1
+        own.generalizedAlpha.useIndex2Constraints = own.generalizedAlpha.useNewmark = trapezoidal
+    own.adaptiveStep = False
+    for name, text in chosen.items():
+        for known, place in ((NEWTON, own.newton), (LINEAR, settings.linearSolver)):
+            if name in known:
+                attribute, meaning = known[name]
+                setattr(place, attribute, meaning(text))
+        if name not in {*NEWTON, *LINEAR, "quadrature"}:
             raise ValueError(f"no setting of Exudyn is called `{name}` here")
-    return settings
+    return solver, settings
 
 
 def solve(given, chosen):
@@ -69,52 +76,34 @@ def solve(given, chosen):
             if mbs.GetObject(number)["objectType"] == "ANCFCable2D":
                 mbs.SetObjectParameter(number, "useReducedOrderIntegration", QUADRATURE[chosen["quadrature"]])
     dynamic = "dynamic" in given["analysis"]
-    coordinates = exu.OutputVariableType.Coordinates
-    watched = [cables.nodes[probe["beam"]][probe["node"]] for probe in given["probes"]]
-    sensors = [
-        mbs.AddSensor(
-            item.SensorNode(nodeNumber=node, outputVariableType=coordinates, storeInternal=True, writeToFile=False)
-        )
-        for node in watched
-        if dynamic
-    ]
+    kind = exu.OutputVariableType.Coordinates
+    options = {"outputVariableType": kind, "storeInternal": True, "writeToFile": False}
+    places = [(probe["beam"], probe["node"]) for probe in given["probes"]]
+    watched = [cables.nodes[beam][node] for beam, node in places if dynamic]
+    sensors = [mbs.AddSensor(item.SensorNode(nodeNumber=node, **options)) for node in watched]
     mbs.Assemble()
-    settings = settings_of(given, chosen)
-    if not dynamic:
-        solver = exu.MainSolverStatic()
-    elif given["analysis"]["dynamic"]["spectral_radius"] == 1:
-        solver = exu.MainSolverImplicitSecondOrder()
-        exu_type = exu.DynamicSolverType.TrapezoidalIndex2
-    else:
-        solver = exu.MainSolverImplicitSecondOrder()
-        exu_type = exu.DynamicSolverType.GeneralizedAlpha
-    if dynamic:
-        settings.timeIntegration.solverType = exu_type
-        alpha = settings.timeIntegration.generalizedAlpha
-        trapezoidal = exu_type == exu.DynamicSolverType.TrapezoidalIndex2
-        alpha.useIndex2Constraints = alpha.useNewmark = trapezoidal
+    solver, settings = solver_for(given["analysis"], chosen)
+
     start = time.perf_counter()
     done = solver.SolveSystem(mbs, settings)
     seconds = time.perf_counter() - start
     if not done:
         raise RuntimeError("the solver gave up")
+
     counts = {
-        "steps": solver.it.currentStepIndex,
+        "steps": solver.it.currentStepIndex - 1,
         "newton_iterations": solver.it.newtonStepsCount,
         "jacobians": solver.it.newtonJacobiCount,
         "rejected_steps": solver.it.rejectedModifiedNewtonSteps,
     }
-    beams = [np.array([mbs.GetNodeOutput(node, coordinates) for node in nodes]) for nodes in cables.nodes]
     starts = [np.array([[*place, *beam["tangent"]] for place in beam["nodes"]]) for beam in given["beams"]]
-    last = [start + change for start, change in zip(starts, beams)]
-    parameter, tracks = [1.0], [[last[probe["beam"]][probe["node"]][:2]] for probe in given["probes"]]
-    if dynamic:
-        stored = [mbs.GetSensorStoredData(sensor) for sensor in sensors]
-        parameter = list(stored[0][:, 0]) if stored else []
-        tracks = [
-            starts[probe["beam"]][probe["node"]][:2] + rows[:, 1:3] for probe, rows in zip(given["probes"], stored)
-        ]
-    return seconds, counts, parameter, tracks, [beam.tolist() for beam in last]
+    changes = [np.array([mbs.GetNodeOutput(node, kind) for node in nodes]) for nodes in cables.nodes]
+    last = [start + change for start, change in zip(starts, changes)]
+    if not dynamic:
+        return seconds, counts, [1.0], [[last[beam][node]] for beam, node in places], last
+    stored = [mbs.GetSensorStoredData(sensor) for sensor in sensors]
+    times = list(stored[0][:, 0]) if stored else []
+    return seconds, counts, times, [starts[b][n] + rows[:, 1:] for (b, n), rows in zip(places, stored)], last
 
 
 def answer(text):
@@ -122,10 +111,15 @@ def answer(text):
     question = json.loads(text)
     given = question["description"]
     runs = [solve(given, question["settings"]) for _ in range(question["repeat"])]
-    _, counts, parameter, tracks, nodes = runs[-1]
-    probes = [
-        {"name": probe["name"], "x": [float(p[0]) for p in track], "y": [float(p[1]) for p in track]}
-        for probe, track in zip(given["probes"], tracks)
-    ]
-    found = {"seconds": [run[0] for run in runs], **counts, "parameter": [float(t) for t in parameter]}
-    return json.dumps({**found, "probes": probes, "nodes": nodes}, allow_nan=False)
+    _, counts, times, tracks, nodes = runs[-1]
+    found = {
+        "seconds": [run[0] for run in runs],
+        **counts,
+        "parameter": [float(t) for t in times],
+        "probes": [
+            {"name": probe["name"], "x": [float(p[0]) for p in track], "y": [float(p[1]) for p in track]}
+            for probe, track in zip(given["probes"], tracks)
+        ],
+        "nodes": [beam.tolist() for beam in nodes],
+    }
+    return json.dumps(found, allow_nan=False)
