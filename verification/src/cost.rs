@@ -7,7 +7,7 @@ use ancf_verification::work::{self, Cheapest, Made, Results, Verdict};
 use ancf_verification::{Failure, bridge};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::report::{machine, now};
+use crate::report::{machine, now, short};
 
 /// Where results are written, and where the report looks for them, from the root of the repository.
 pub const FOLDER: &str = "target/verification/work-precision";
@@ -61,7 +61,7 @@ fn told(results: &Results) -> String {
             Some(false) => "MISSED",
             None => "undecided",
         };
-        lines.push(format!("  {} · {}: {met}", wanted(claim), found(claim)));
+        lines.push(format!("  {} · {}: {met}", wanted(claim).join(", "), found(claim).join(", ")));
         for (code, cheapest) in [("ours", &claim.ours), ("theirs", &claim.theirs)] {
             lines.push(format!(
                 "    {code}: {}",
@@ -75,24 +75,23 @@ fn told(results: &Results) -> String {
 }
 
 /// What a claim asks for, in words.
-pub fn wanted(claim: &Verdict) -> String {
-    let mut parts = Vec::new();
-    parts.extend(claim.limit.as_ref().map(|(norm, error)| format!("{norm} to {error:.1e}")));
-    parts.extend(claim.times.map(|times| format!("{times} × faster")));
-    parts.extend(claim.within.map(|seconds| format!("within {}", time(seconds))));
-    parts.join(", ")
+pub fn wanted(claim: &Verdict) -> Vec<String> {
+    let limit = claim.limit.as_ref().map(|(norm, error)| format!("{norm} to {}", short(*error)));
+    let times = claim.times.map(|times| format!("{times} × faster"));
+    let within = claim.within.map(|seconds| format!("within {}", time(seconds)));
+    [limit, times, within].into_iter().flatten().collect()
 }
 
 /// What was found, in words.
-pub fn found(claim: &Verdict) -> String {
+pub fn found(claim: &Verdict) -> Vec<String> {
     let ratio = claim.ratio.map(|ratio| format!("{ratio:.1} × faster"));
     let alone = claim.ours.as_ref().map(|ours| time(ours.seconds));
     let both: Vec<_> = ratio.into_iter().chain(alone).collect();
-    if both.is_empty() { "nothing".to_owned() } else { both.join(", ") }
+    if both.is_empty() { vec!["nothing".to_owned()] } else { both }
 }
 
 fn setting(cheapest: &Cheapest) -> String {
-    let error = cheapest.error.map(|error| format!(", error {error:.1e}")).unwrap_or_default();
+    let error = cheapest.error.map(|error| format!(", error {}", short(error))).unwrap_or_default();
     format!("{}{error}, {}", cheapest.setting, time(cheapest.seconds))
 }
 

@@ -30,6 +30,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use self::before::Before;
+pub use self::number::short;
 use self::overview::Made;
 use self::page::{Page, document};
 use crate::mutants::Record;

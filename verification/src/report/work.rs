@@ -24,8 +24,8 @@ struct Body<'a> {
 }
 
 struct ClaimView<'a> {
-    wanted: String,
-    found: String,
+    wanted: Vec<String>,
+    found: Vec<String>,
     verdict: &'static str,
     badge: &'static str,
     /// Per code its name, setting, error, time.
