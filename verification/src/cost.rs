@@ -62,7 +62,7 @@ fn told(results: &Results) -> String {
             None => "undecided",
         };
         lines.push(format!("  {} · {}: {met}", wanted(claim).join(", "), found(claim).join(", ")));
-        for (code, cheapest) in [("ours", &claim.ours), ("theirs", &claim.theirs)] {
+        for (code, cheapest) in [("ours", &claim.ours), ("against", &claim.theirs)] {
             lines.push(format!(
                 "    {code}: {}",
                 cheapest.as_ref().map_or("none is good enough".into(), setting)

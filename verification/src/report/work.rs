@@ -127,7 +127,7 @@ fn claim(claim: &Verdict) -> ClaimView<'_> {
         Some(false) => ("missed", " bad"),
         None => ("undecided", " mark"),
     };
-    let sides = [("ours", &claim.ours), ("theirs", &claim.theirs)].map(|(code, cheapest)| {
+    let sides = [("ours", &claim.ours), ("against", &claim.theirs)].map(|(code, cheapest)| {
         let (setting, error, seconds) = match cheapest {
             Some(c) => (c.setting.clone(), c.error.map(short).unwrap_or_else(|| "–".into()), time(c.seconds)),
             None => ("no setting that was run is good enough".to_owned(), "–".into(), "–".into()),
@@ -202,6 +202,7 @@ mod tests {
                 point(Code::Exudyn, 1e-4, 2.5),
             ],
             claims: vec![Verdict {
+                says: "So it is.".into(),
                 limit: Some(("tip".into(), 1e-3)),
                 times: Some(30.0),
                 within: None,
@@ -220,6 +221,7 @@ mod tests {
         assert_eq!(page.pass, Some(false));
         for text in [
             "<svg",
+            "So it is.",
             "30 × faster",
             "10.0 × faster",
             "missed",

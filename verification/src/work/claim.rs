@@ -8,6 +8,8 @@ use super::results::Point;
 /// A claim as it came out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
+    /// What it means, for the reader.
+    pub says: String,
     /// The name of the norm, and the largest error; none: any error.
     pub limit: Option<(String, f64)>,
     /// How many times faster ours is to be.
@@ -16,11 +18,11 @@ pub struct Verdict {
     pub within: Option<f64>,
     /// Our cheapest setting that keeps the limit.
     pub ours: Option<Cheapest>,
-    /// The other code's.
+    /// That of the other code, or of those of our methods that it is compared with.
     pub theirs: Option<Cheapest>,
     /// Their time by ours.
     pub ratio: Option<f64>,
-    /// Whether the claim holds; none where no setting of the other code that was run is good enough.
+    /// Whether the claim holds; none where no setting that ours is compared with was run and is good enough.
     pub met: Option<bool>,
 }
 
@@ -64,7 +66,7 @@ pub fn judge(claim: &Claim, points: &[Point]) -> Verdict {
     let borrowed = limit.as_ref().map(|(norm, error)| (norm.as_str(), *error));
     let of = |ours: bool, names: &[String]| {
         let takes_part = |point: &&Point| {
-            (point.code == Code::Ours) == ours && (names.is_empty() || names.contains(&point.method))
+            if names.is_empty() { (point.code == Code::Ours) == ours } else { names.contains(&point.method) }
         };
         let found = cheapest(points.iter().filter(takes_part), borrowed)?;
         Some(Cheapest {
@@ -83,7 +85,16 @@ pub fn judge(claim: &Claim, points: &[Point]) -> Verdict {
         (_, Some(_), None) => None,
         (_, None, _) => Some(true),
     };
-    Verdict { limit, times: claim.times, within, ours, theirs, ratio, met }
+    Verdict {
+        says: claim.says.trim().to_owned(),
+        limit,
+        times: claim.times,
+        within,
+        ours,
+        theirs,
+        ratio,
+        met,
+    }
 }
 
 #[cfg(test)]
@@ -121,7 +132,7 @@ mod tests {
 
     fn claim(error: f64, times: Option<f64>, within_ms: Option<f64>) -> Claim {
         let norm = Some("tip".to_owned());
-        Claim { norm, error: Some(error), ours: vec![], than: vec![], times, within_ms }
+        Claim { says: String::new(), norm, error: Some(error), ours: vec![], than: vec![], times, within_ms }
     }
 
     #[test]
@@ -151,6 +162,8 @@ mod tests {
         assert_eq!(judge(&claim(1e-3, Some(20.0), None), &points).met, Some(false));
         let only = Claim { than: vec!["x".into()], ..claim(1e-3, Some(20.0), None) };
         assert_eq!(judge(&only, &points).ratio, Some(20.0));
+        let own = Claim { ours: vec!["a".into()], than: vec!["b".into()], ..claim(1e-3, Some(1.0), None) };
+        assert_eq!(judge(&own, &points).ratio, Some(1.0), "two methods of ours");
         assert_eq!(judge(&claim(5e-4, Some(1.0), None), &points).met, None, "nothing to compare with");
         assert_eq!(judge(&claim(1e-9, Some(1.0), None), &points).met, Some(false), "ours is not good enough");
         assert_eq!(judge(&claim(1e-3, None, Some(2000.0)), &points).met, Some(true));

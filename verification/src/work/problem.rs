@@ -31,6 +31,7 @@
 //! error = 1e-4                            # the cheapest setting of either code with at most this error; none: the cheapest
 //! times = 30.0                            # so many times faster than the other code, and (or)
 //! within-ms = 0.25                        # in no more than this
+//! ours = ["ancf"]                         # the methods that are meant; with `than` those they are compared with, perhaps ours too
 //!
 //! [[left-out]]
 //! what = "Explicit solvers"
@@ -127,6 +128,9 @@ fn scene_toml() -> String {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Claim {
+    /// What it means, for the reader.
+    #[serde(default)]
+    pub says: String,
     /// Name of the norm; none: any error will do.
     pub norm: Option<String>,
     /// Largest error in that norm.
@@ -134,7 +138,7 @@ pub struct Claim {
     /// Our methods that take part; none named: all.
     #[serde(default)]
     pub ours: Vec<String>,
-    /// Methods of other codes that take part; none named: all.
+    /// Methods that these are compared with, perhaps ours; none named: all of other codes.
     #[serde(default)]
     pub than: Vec<String>,
     /// How many times faster than the cheapest of `than`.
@@ -205,14 +209,14 @@ impl Problem {
             if claim.times.is_none() && claim.within_ms.is_none() {
                 return at("one of `times` and `within-ms` is needed".to_owned());
             }
-            for (names, ours) in [(&claim.ours, true), (&claim.than, false)] {
-                let fits = |name: &&String| {
-                    self.method.get(*name).is_none_or(|method| (method.code == Code::Ours) != ours)
-                };
-                if let Some(name) = names.iter().find(fits) {
-                    let whose = if ours { "of ours" } else { "of another code" };
-                    return at(format!("`{name}` is no method {whose}"));
-                }
+            let is_ours =
+                |name: &String| self.method.get(name).is_some_and(|method| method.code == Code::Ours);
+            if let Some(name) = claim.ours.iter().find(|name| !is_ours(name)) {
+                return at(format!("`{name}` is no method of ours"));
+            }
+            let unknown = |name: &&String| !self.method.contains_key(*name) || claim.ours.contains(name);
+            if let Some(name) = claim.than.iter().find(unknown) {
+                return at(format!("`{name}` is no method besides those of `ours`"));
             }
         }
         Ok(())
@@ -288,7 +292,11 @@ times = 2.0
             ("error = 1e-3", "", "`norm` and `error` belong together"),
             ("norm = \"tip\"", "norm = \"top\"", "there is no [norm.top]"),
             ("times = 2.0", "", "one of `times` and `within-ms`"),
-            ("times = 2.0", "times = 2.0\nthan = [\"a\"]", "`a` is no method of another code"),
+            (
+                "times = 2.0",
+                "times = 2.0\nours = [\"a\"]\nthan = [\"a\"]",
+                "`a` is no method besides those of `ours`",
+            ),
             ("times = 2.0", "times = 2.0\nours = [\"c\"]", "`c` is no method of ours"),
             ("tip-load/shooting", "shooting", "<case>/<oracle>"),
             ("title = \"tip\"", "", "needs a `title`"),
