@@ -10,6 +10,7 @@
 //! | [`python`] | the environment with pinned packages under `target/`, and scripts as processes |
 //! | [`bridge`] | the same Python inside this process: scripts loaded once, JSON in, JSON out |
 //! | [`peers`] | a scene in the words of another code, and its answer |
+//! | [`work`] | what accuracy costs, ours and another code's |
 //!
 //! Nothing outside this package links Python. Where Python or a package is missing, whatever asks for it fails and says
 //! what to install; nothing is skipped.
@@ -19,6 +20,7 @@
 pub mod bridge;
 pub mod peers;
 pub mod python;
+pub mod work;
 
 /// What ends a command.
 pub type Failure = Box<dyn std::error::Error>;

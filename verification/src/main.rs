@@ -1,6 +1,7 @@
 //! `verify`: makes the reference data of the verification cases, and reports how the solver compares with it.
 
 mod beside;
+mod cost;
 mod freeze;
 mod mutants;
 mod report;
@@ -46,6 +47,18 @@ enum Command {
         /// Cases; those with reference data by a peer if none is named
         cases: Vec<String>,
     },
+    /// Measure what accuracy costs, ours and Exudyn's in turn, and write tables and diagrams; exit status 1 if a claim about
+    /// time does not hold. For numbers that count: a release build, and a machine that does nothing else
+    WorkPrecision {
+        /// Leave out the slow settings of other codes
+        #[arg(long)]
+        quick: bool,
+        /// Folder of the results; the report shows those in the default one
+        #[arg(short, long, default_value = cost::FOLDER)]
+        out: PathBuf,
+        /// Problems, files of verification/work-precision; all if none is named
+        problems: Vec<String>,
+    },
     /// Record what cargo-mutants found in verification/mutants.toml, with the reasons already written there
     Mutants {
         /// All mutants that there are: what `cargo mutants --list --json` prints
@@ -69,6 +82,7 @@ fn main() -> ExitCode {
         Command::Report { out, against, cases } => report::write(&suite, &out, against.as_deref(), &cases),
         Command::Freeze { check, cases } => freeze::freeze(&suite, &cases, check),
         Command::Peers { cases } => beside::print(&suite, &cases),
+        Command::WorkPrecision { quick, out, problems } => cost::print(&suite, &problems, quick, &out),
         Command::Mutants { of, command, commit, outcomes } => {
             mutants::record(&suite, &of, &outcomes, &command, commit)
         }

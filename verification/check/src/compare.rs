@@ -1,10 +1,12 @@
 //! Compares what runs left with references, check by check.
 
+use indexmap::IndexMap;
 use serde::Serialize;
 
 use crate::case::{Check, Class, Norm, Order, Per, Scalar};
 use crate::execute::{Examined, Run};
 use crate::quantity::values;
+use crate::reference::Table;
 use crate::{Error, Result};
 
 /// One compared number, curve or rate.
@@ -132,8 +134,8 @@ fn one(examined: &Examined, number: usize, check: &Check) -> std::result::Result
     let (_, runs) = examined.runs(check.run.as_deref())?;
     let mut outcomes = Vec::new();
     for (index, run) in runs.iter().enumerate().filter(|(_, run)| run.member.is(&check.only)) {
-        let outcome =
-            member(examined, number, check, index, run).map_err(|e| format!("[{}] {e}", run.label))?;
+        let outcome = member(&examined.tables, number, check, index, run)
+            .map_err(|e| format!("[{}] {e}", run.label))?;
         outcomes.push(outcome);
     }
     if outcomes.is_empty() {
@@ -149,8 +151,15 @@ fn one(examined: &Examined, number: usize, check: &Check) -> std::result::Result
     Ok(outcomes)
 }
 
-fn member(
-    examined: &Examined,
+/// Compares what one run left with what the check asks for.
+///
+/// `number` and `index` are those of the check in its case and of the run in its family; `tables` are references by the names
+/// under which checks know them.
+///
+/// # Errors
+/// Where the check asks for what is not there.
+pub fn member(
+    tables: &IndexMap<String, Table>,
     number: usize,
     check: &Check,
     index: usize,
@@ -198,7 +207,7 @@ fn member(
             outcome.ours.push(ours);
         }
         Some(oracle) => {
-            let table = examined.tables.get(oracle).ok_or_else(|| format!("no table of `{oracle}`"))?;
+            let table = tables.get(oracle).ok_or_else(|| format!("no table of `{oracle}`"))?;
             outcome.class = Some(table.provenance.class);
             let wanted = filled(&check.rows, run)?;
             let rows = table.matching(&wanted)?;
@@ -272,7 +281,7 @@ fn member(
 
 /// The values by which rows of a reference are picked.
 pub fn filled(
-    rows: &indexmap::IndexMap<String, Scalar>,
+    rows: &IndexMap<String, Scalar>,
     run: &Run,
 ) -> std::result::Result<Vec<(String, Scalar)>, String> {
     rows.iter().map(|(k, v)| Ok((k.clone(), Scalar::Text(run.member.fill(&v.to_string())?)))).collect()

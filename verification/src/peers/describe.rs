@@ -152,7 +152,8 @@ fn none(what: &str) -> String {
     format!("no counterpart for {what}")
 }
 
-fn basis(beam: &Beam) -> Result<Basis, String> {
+/// The nodes and shape functions of a beam that can be said.
+pub(crate) fn basis(beam: &Beam) -> Result<Basis, String> {
     if !matches!(beam.discretization, Discretization::Ancf { .. }) {
         return Err(none(&format!("the discretisation of beam `{}`: {}", beam.name, beam.discretization)));
     }

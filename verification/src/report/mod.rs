@@ -4,7 +4,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `page` | the list of pages, and the one file that holds them |
-//! | `overview`, `case`, `mutants` | a kind of page each: what its template shows, made from what was found |
+//! | `overview`, `case`, `work`, `mutants` | a kind of page each: what its template shows, made from what was found |
 //! | `check`, `figure`, `number` | parts of a case's page |
 //! | `before` | an earlier report, to compare with |
 //!
@@ -18,6 +18,7 @@ mod mutants;
 mod number;
 mod overview;
 mod page;
+mod work;
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -29,6 +30,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use self::before::Before;
+pub use self::number::short;
 use self::overview::Made;
 use self::page::{Page, document};
 use crate::mutants::Record;
@@ -97,7 +99,8 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
             .collect(),
     };
     std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
-    let html = document(&pages(suite, &made, &entries, &problems, before.as_ref())?)?;
+    let measured = suite.root.join(crate::cost::FOLDER);
+    let html = document(&pages(suite, &made, &entries, &problems, before.as_ref(), &measured)?)?;
     for (name, text) in [("report.json", serde_json::to_string_pretty(&json)?), ("index.html", html)] {
         let path = out.join(name);
         std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -141,18 +144,20 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
     Ok(passed && !lost)
 }
 
-/// All pages in the order of reading.
+/// All pages in the order of reading; `measured` is the folder of `verify work-precision`.
 fn pages(
     suite: &Suite,
     made: &Made,
     entries: &[Entry],
     problems: &[String],
     before: Option<&Before>,
+    measured: &Path,
 ) -> Result<Vec<Page>, Failure> {
     let mut pages = vec![overview::page(made, entries, problems, before)?];
     for entry in entries {
         pages.push(case::page(suite, entry)?);
     }
+    pages.extend(work::pages(suite, measured)?);
     let record = Record::path(suite);
     pages.push(mutants::page(Record::read(&record)?.as_ref(), Path::new(&suite.short(&record)))?);
     Ok(pages)
@@ -187,11 +192,13 @@ fn run_all(suite: &Suite, names: &[String]) -> Vec<Entry> {
     entries
 }
 
-fn now() -> String {
+/// Day and time.
+pub fn now() -> String {
     jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC").to_string()
 }
 
-fn machine() -> String {
+/// Processor, cores and system.
+pub fn machine() -> String {
     let cpu = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
         let line = text.lines().find(|l| l.starts_with("model name"))?;
         Some(line.split_once(':')?.1.trim().to_owned())
@@ -220,7 +227,8 @@ mod tests {
         };
         entries.push(Entry { name: "broken".into(), examined: Err(error), took: Duration::ZERO });
         let made = Made { date: "2026-01-02 03:04 UTC".into(), machine: "a machine".into() };
-        document(&pages(&suite, &made, &entries, &[], None).expect("pages")).expect("a file")
+        document(&pages(&suite, &made, &entries, &[], None, Path::new("nowhere")).expect("pages"))
+            .expect("a file")
     }
 
     fn between<'a>(text: &'a str, start: &str, end: &str) -> Vec<&'a str> {

@@ -1,0 +1,117 @@
+//! Other codes, timed: the same description as in the comparison of numbers, with settings of their own, and what they find in the
+//! form in which ours leaves it, so that one norm judges all.
+
+use std::f64::consts::TAU;
+
+use ancf::model::Model;
+use ancf::scene::Scene;
+use ancf::system::View;
+use ancf::trajectory::{ProbeSample, ProbeSeries, Shape, Statistics, Trajectory};
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+use crate::Failure;
+use crate::bridge::Script;
+use crate::peers::Track;
+use crate::peers::describe::{Description, basis, describe};
+
+/// Points at which shapes are sampled, as ours are.
+const SHAPE_POINTS: usize = 201;
+
+#[derive(Serialize)]
+struct Question<'a> {
+    description: Description,
+    settings: &'a IndexMap<String, String>,
+    repeat: usize,
+}
+
+/// What a code does not know or was not asked for is empty.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Answer {
+    seconds: Vec<f64>,
+    build: Vec<f64>,
+    steps: usize,
+    newton_iterations: usize,
+    jacobians: usize,
+    rejected_steps: usize,
+    parameter: Vec<f64>,
+    probes: Vec<Track>,
+    /// Per beam and node of the last state: \[x, y, x', y'\].
+    nodes: Vec<Vec<[f64; 4]>>,
+    frequencies: Vec<f64>,
+}
+
+/// Times of the repetitions \[s\], and the result of the last.
+pub struct Timed {
+    /// Of the solution alone.
+    pub seconds: Vec<f64>,
+    /// Of what goes before it; empty where it is not known.
+    pub build: Vec<f64>,
+    /// What was found.
+    pub trajectory: Trajectory,
+}
+
+/// Solves a scene `repeat` times.
+///
+/// # Errors
+/// What of the scene has no counterpart, a Python that cannot be had, and what the other code raises.
+pub fn solve(
+    script: &Script,
+    scene: &Scene,
+    settings: &IndexMap<String, String>,
+    repeat: usize,
+) -> Result<Timed, Failure> {
+    let description = describe(scene.model(), scene.analysis())?;
+    let answer: Answer = script.ask(&Question { description, settings, repeat })?;
+    let trajectory = trajectory(scene.model(), &answer)?;
+    Ok(Timed { seconds: answer.seconds, build: answer.build, trajectory })
+}
+
+/// What was found, as ours would leave it: records of the probes, the last shapes, frequencies.
+fn trajectory(model: &Model, answer: &Answer) -> Result<Trajectory, Failure> {
+    let samples = |track: &Track| {
+        let places = track.x.iter().zip(&track.y);
+        places.map(|(&x, &y)| ProbeSample { x, y, ..ProbeSample::default() }).collect()
+    };
+    Ok(Trajectory {
+        complete: true,
+        parameter: answer.parameter.clone(),
+        probes: answer
+            .probes
+            .iter()
+            .map(|track| ProbeSeries { name: track.name.clone(), samples: samples(track) })
+            .collect(),
+        last: model
+            .beams
+            .iter()
+            .zip(&answer.nodes)
+            .map(|(beam, nodes)| {
+                let basis = basis(beam)?;
+                let evenly = |k: usize| basis.length() * k as f64 / (SHAPE_POINTS - 1) as f64;
+                let view = View::points(&basis, 0, &(0..SHAPE_POINTS).map(evenly).collect::<Vec<_>>())?;
+                let mut shape = Shape { beam: beam.name.clone(), s: view.s().to_vec(), ..Shape::default() };
+                for fields in view.all(nodes.as_flattened()) {
+                    shape.x.push(fields.position[0]);
+                    shape.y.push(fields.position[1]);
+                    let (angle, before) = (fields.angle(), shape.angle.last().copied().unwrap_or(0.0));
+                    shape.angle.push(angle + TAU * ((before - angle) / TAU).round());
+                    shape.strain.push(fields.strain(beam.strain));
+                    shape.curvature.push(fields.curvature());
+                }
+                shape.nodes = nodes.iter().map(|[x, y, ..]| [*x, *y]).collect();
+                Ok(shape)
+            })
+            .collect::<Result<_, Failure>>()?,
+        frequencies: answer.frequencies.clone(),
+        statistics: Statistics {
+            steps: answer.steps,
+            rejected_steps: answer.rejected_steps,
+            newton_iterations: answer.newton_iterations,
+            tangent_evaluations: answer.jacobians,
+            factorizations: answer.jacobians,
+            ..Statistics::default()
+        },
+        ..Trajectory::default()
+    })
+}

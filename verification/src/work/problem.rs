@@ -1,0 +1,336 @@
+//! The format of `verification/work-precision/<name>.toml`: what is solved, how it is judged, by which methods, and what is claimed.
+//!
+//! ```toml
+//! title = "Half circle by an end moment"
+//! about = "What is solved, for a reader who has not seen the scene."
+//! case = "roll-up-convergence"            # whose scene is solved
+//! set = ["effect.moment.0.value=1.0"]     # overrides for all methods
+//!
+//! [norm.tip]                              # an error: a check as in case.toml, of a reference of any case
+//! title = "distance of the tip [m]"
+//! quantity = ["probe.tip.x", "probe.tip.y"]
+//! oracle = "roll-up-convergence/circle"
+//! where = { quarters = 2, s = 1.8 }
+//! why = "How good the reference is."
+//!
+//! [method.ancf]                           # a family of runs; methods of one label are one line of the diagram
+//! code = "ours"                           # or "exudyn", "scikit-fem"
+//! label = "ANCF"
+//! set = ["beam.cantilever.basis.ancf.elements={elements}"]
+//! over.mesh.elements = [4, 8, 16]
+//!
+//! [method.exudyn]
+//! code = "exudyn"
+//! label = "Exudyn"
+//! settings = { newton = "{newton}" }      # see peers/exudyn_work.py, peers/scikit_fem_work.py
+//! slow = true                             # left out by --quick, and run once
+//! over.newton.newton = ["full", "modified"]
+//!
+//! [[claim]]
+//! norm = "tip"
+//! error = 1e-4                            # the cheapest setting of either code with at most this error; none: the cheapest
+//! times = 30.0                            # so many times faster than the other code, and (or)
+//! within-ms = 0.25                        # in no more than this
+//! ours = ["ancf"]                         # the methods that are meant; with `than` those they are compared with, perhaps ours too
+//!
+//! [[left-out]]
+//! what = "Explicit solvers"
+//! why = "…"
+//! ```
+
+use std::path::Path;
+
+use ancf_check::Suite;
+use ancf_check::case::{Check, Family, Scalar};
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+use crate::Failure;
+
+/// One problem, as its file says.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Problem {
+    /// A few words.
+    pub title: String,
+    /// What is solved.
+    pub about: String,
+    /// The case whose scenes are solved.
+    pub case: String,
+    /// Overrides for all methods.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// Errors, by name. Their oracles are `<case>/<oracle>`.
+    pub norm: IndexMap<String, Check>,
+    /// Methods, by name.
+    pub method: IndexMap<String, Method>,
+    /// What shall hold.
+    #[serde(default)]
+    pub claim: Vec<Claim>,
+    /// What is not in the diagram though a reader may look for it.
+    #[serde(default)]
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A program that solves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Code {
+    /// This one.
+    Ours,
+    /// Exudyn's ANCFCable2D.
+    Exudyn,
+    /// scikit-fem's Hermite elements, for small deflections.
+    ScikitFem,
+}
+
+impl Code {
+    /// Its name for the reader.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ours => "ours",
+            Self::Exudyn => "Exudyn",
+            Self::ScikitFem => "scikit-fem",
+        }
+    }
+}
+
+/// A family of runs by one code.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Method {
+    /// The code.
+    pub code: Code,
+    /// Name of its line in the diagram.
+    pub label: String,
+    /// File in the case's folder.
+    #[serde(default = "scene_toml")]
+    pub scene: String,
+    /// Overrides, after those of the problem.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// What another code is told besides the scene; `{variables}` are filled in.
+    #[serde(default)]
+    pub settings: IndexMap<String, Scalar>,
+    /// Left out of quick measurements, and run once.
+    #[serde(default)]
+    pub slow: bool,
+    /// Axes: variable → values.
+    #[serde(default)]
+    pub over: IndexMap<String, IndexMap<String, Vec<Scalar>>>,
+}
+
+fn scene_toml() -> String {
+    "scene.toml".to_owned()
+}
+
+/// A bound on time.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Claim {
+    /// What it means, for the reader.
+    #[serde(default)]
+    pub says: String,
+    /// Name of the norm; none: any error will do.
+    pub norm: Option<String>,
+    /// Largest error in that norm.
+    pub error: Option<f64>,
+    /// Our methods that take part; none named: all.
+    #[serde(default)]
+    pub ours: Vec<String>,
+    /// Methods that these are compared with, perhaps ours; none named: all of other codes.
+    #[serde(default)]
+    pub than: Vec<String>,
+    /// How many times faster than the cheapest of `than`.
+    pub times: Option<f64>,
+    /// Longest solve time of our cheapest \[ms\].
+    pub within_ms: Option<f64>,
+}
+
+/// Something that is not measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeftOut {
+    /// What.
+    pub what: String,
+    /// Why.
+    pub why: String,
+}
+
+impl Method {
+    /// The same as a family of a case, `first` being overrides that go before its own.
+    pub fn family(&self, first: &[String]) -> Family {
+        Family {
+            scene: self.scene.clone(),
+            set: first.iter().chain(&self.set).cloned().collect(),
+            interpolate: false,
+            over: self.over.clone(),
+        }
+    }
+}
+
+impl Problem {
+    /// Reads a problem.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, is no such file, or contradicts itself.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        Self::parse(&text).map_err(|e| format!("{}: {e}", path.display()).into())
+    }
+
+    /// A problem from the text of its file.
+    ///
+    /// # Errors
+    /// Where it is none or contradicts itself.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let problem: Self = toml::from_str(text).map_err(|e| e.to_string())?;
+        problem.validate()?;
+        Ok(problem)
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        for (name, norm) in &self.norm {
+            if norm.title.is_none() {
+                return Err(format!("[norm.{name}] needs a `title`: the label of the diagram's axis"));
+            }
+            if norm.oracle.as_ref().is_none_or(|oracle| !oracle.contains('/')) {
+                return Err(format!("[norm.{name}] needs `oracle = \"<case>/<oracle>\"`"));
+            }
+        }
+        for (k, claim) in self.claim.iter().enumerate() {
+            let at = |message: String| Err(format!("[[claim]] {}: {message}", k + 1));
+            if claim.norm.is_some() != claim.error.is_some() {
+                return at("`norm` and `error` belong together".to_owned());
+            }
+            if let Some(norm) = claim.norm.as_ref().filter(|norm| !self.norm.contains_key(*norm)) {
+                return at(format!("there is no [norm.{norm}]"));
+            }
+            if claim.times.is_none() && claim.within_ms.is_none() {
+                return at("one of `times` and `within-ms` is needed".to_owned());
+            }
+            let is_ours =
+                |name: &String| self.method.get(name).is_some_and(|method| method.code == Code::Ours);
+            if let Some(name) = claim.ours.iter().find(|name| !is_ours(name)) {
+                return at(format!("`{name}` is no method of ours"));
+            }
+            let unknown = |name: &&String| !self.method.contains_key(*name) || claim.ours.contains(name);
+            if let Some(name) = claim.than.iter().find(unknown) {
+                return at(format!("`{name}` is no method besides those of `ours`"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Names of the problems, in alphabetical order.
+///
+/// # Errors
+/// Where their folder cannot be read.
+pub fn names(suite: &Suite) -> Result<Vec<String>, Failure> {
+    let folder = suite.root.join("verification").join("work-precision");
+    let failed = |e: std::io::Error| format!("{}: {e}", folder.display());
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(&folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            names.extend(path.file_stem().map(|name| name.to_string_lossy().into_owned()));
+        }
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// Reads the problem of this name.
+///
+/// # Errors
+/// As [`Problem::read`].
+pub fn problem(suite: &Suite, name: &str) -> Result<Problem, Failure> {
+    Problem::read(&suite.root.join("verification").join("work-precision").join(format!("{name}.toml")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ancf_check::family::members;
+
+    const TEXT: &str = r#"
+title = "t"
+about = "a"
+case = "tip-load"
+[norm.tip]
+title = "tip"
+quantity = "probe.tip.x"
+oracle = "tip-load/shooting"
+why = "w"
+[method.a]
+code = "ours"
+label = "A"
+set = ["n={n}"]
+over.mesh.n = [1, 2]
+[method.b]
+code = "exudyn"
+label = "B"
+slow = true
+[[claim]]
+norm = "tip"
+error = 1e-3
+times = 2.0
+"#;
+
+    #[test]
+    fn a_method_is_a_family_with_the_overrides_of_the_problem_first() {
+        let problem = Problem::parse(TEXT).expect("a problem");
+        let members = members(&problem.method["a"].family(&["x=1".to_owned()])).expect("members");
+        assert_eq!(members[1].set, ["x=1", "n=2"]);
+        assert!(problem.method["b"].slow && !problem.method["a"].slow);
+    }
+
+    #[test]
+    fn contradictions_are_named() {
+        let cases = [
+            ("error = 1e-3", "", "`norm` and `error` belong together"),
+            ("norm = \"tip\"", "norm = \"top\"", "there is no [norm.top]"),
+            ("times = 2.0", "", "one of `times` and `within-ms`"),
+            (
+                "times = 2.0",
+                "times = 2.0\nours = [\"a\"]\nthan = [\"a\"]",
+                "`a` is no method besides those of `ours`",
+            ),
+            ("times = 2.0", "times = 2.0\nours = [\"c\"]", "`c` is no method of ours"),
+            ("tip-load/shooting", "shooting", "<case>/<oracle>"),
+            ("title = \"tip\"", "", "needs a `title`"),
+            ("slow = true", "fast = true", "unknown field `fast`"),
+        ];
+        for (old, new, message) in cases {
+            assert!(TEXT.contains(old), "{old}");
+            let error = Problem::parse(&TEXT.replace(old, new)).expect_err(message);
+            assert!(error.contains(message), "{error}");
+        }
+    }
+
+    #[test]
+    fn all_problems_can_be_read_and_their_scenes_are_legal() {
+        let suite = Suite::here();
+        let names = names(&suite).expect("problems");
+        assert!(!names.is_empty());
+        for name in names {
+            let problem = problem(&suite, &name).expect("a problem");
+            for norm in problem.norm.values() {
+                let (case, oracle) = norm.oracle.as_ref().and_then(|o| o.split_once('/')).expect("checked");
+                suite.table(case, oracle).expect("a reference");
+            }
+            for (key, method) in &problem.method {
+                for member in members(&method.family(&problem.set)).expect("members") {
+                    let path = suite.cases_folder().join(&problem.case).join(&member.scene);
+                    let scene = ancf::scene::Scene::load(&path, &member.set)
+                        .unwrap_or_else(|e| panic!("{name}, {key}, {}: {e}", member.label()));
+                    if method.code != Code::Ours {
+                        crate::peers::describe::describe(scene.model(), scene.analysis())
+                            .unwrap_or_else(|e| panic!("{name}, {key}, {}: {e}", member.label()));
+                    }
+                }
+            }
+        }
+    }
+}
