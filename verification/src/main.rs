@@ -3,6 +3,7 @@
 mod beside;
 mod cost;
 mod freeze;
+mod instructions;
 mod mutants;
 mod report;
 
@@ -59,6 +60,15 @@ enum Command {
         /// Problems, files of verification/work-precision; all if none is named
         problems: Vec<String>,
     },
+    /// Count the instructions of some runs with valgrind, keep them for the report, and compare them with another build's or the last
+    /// time's; exit status 1 if a count grew by more than 1 %
+    Instructions {
+        /// The program of another build
+        #[arg(long, value_name = "PROGRAM")]
+        against: Option<PathBuf>,
+        /// The program `ancf`, with symbols
+        program: PathBuf,
+    },
     /// Record what cargo-mutants found in verification/mutants.toml, with the reasons already written there
     Mutants {
         /// All mutants that there are: what `cargo mutants --list --json` prints
@@ -83,6 +93,9 @@ fn main() -> ExitCode {
         Command::Freeze { check, cases } => freeze::freeze(&suite, &cases, check),
         Command::Peers { cases } => beside::print(&suite, &cases),
         Command::WorkPrecision { quick, out, problems } => cost::print(&suite, &problems, quick, &out),
+        Command::Instructions { against, program } => {
+            instructions::print(&suite, &program, against.as_deref())
+        }
         Command::Mutants { of, command, commit, outcomes } => {
             mutants::record(&suite, &of, &outcomes, &command, commit)
         }

@@ -14,6 +14,7 @@ mod before;
 mod case;
 mod check;
 mod figure;
+mod instructions;
 mod mutants;
 mod number;
 mod overview;
@@ -158,6 +159,7 @@ fn pages(
         pages.push(case::page(suite, entry)?);
     }
     pages.extend(work::pages(suite, measured)?);
+    pages.push(instructions::page(&suite.root.join(crate::instructions::HISTORY))?);
     let record = Record::path(suite);
     pages.push(mutants::page(Record::read(&record)?.as_ref(), Path::new(&suite.short(&record)))?);
     Ok(pages)
