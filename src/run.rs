@@ -85,6 +85,8 @@ pub fn run_from(
     let look = Look::new(model, &system)?;
     let build = start.elapsed().as_secs_f64();
     let start = Instant::now();
+    // Solving only, where what is looked at afterwards takes its own time.
+    let mut solved = None;
     let (mut stopped, follows_path) = (false, follows_path(analysis));
     let observer = &mut |progress: &Progress| {
         let control = observer(progress);
@@ -104,6 +106,7 @@ pub fn run_from(
                 Some(arc) => Some(Target { arc, probe: look.end_of_path(arc)? }),
             };
             let solution = statics::solve(&system, settings, target.as_ref(), report);
+            solved = Some(start.elapsed());
             match &solution.stuck {
                 None => Ok(look.statics(&solution)),
                 Some(stuck) => Err(look.stuck(stuck, &solution)),
@@ -126,6 +129,7 @@ pub fn run_from(
                     == Control::Continue
             };
             let solution = dynamics::solve(&system, &task, report);
+            solved = Some(start.elapsed());
             match &solution.stuck {
                 None => Ok(look.dynamics(settings, solution)),
                 Some(stuck) => Err(look.lost(settings, &stuck.clone(), solution)),
@@ -138,7 +142,10 @@ pub fn run_from(
     };
     if let Some(trajectory) = left {
         trajectory.complete &= !stopped;
-        trajectory.seconds.solve = start.elapsed().as_secs_f64();
+        let all = start.elapsed();
+        let solved = solved.unwrap_or(all);
+        trajectory.seconds.solve = solved.as_secs_f64();
+        trajectory.seconds.write = (all - solved).as_secs_f64();
         trajectory.seconds.build = build;
     }
     outcome

@@ -202,6 +202,6 @@ pub struct Seconds {
     pub build: f64,
     /// The solution itself.
     pub solve: f64,
-    /// Files, so far as written when the summary is.
+    /// Looking at the states (probes, shapes, frames), and files so far as written when the summary is.
     pub write: f64,
 }

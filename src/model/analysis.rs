@@ -113,6 +113,8 @@ pub enum Integrator {
         step: StepControl,
         /// Spectral radius at infinite frequency, from 0 to 1.
         spectral_radius: f64,
+        /// Error of positions, in beam lengths, that the iteration of a step of fixed length may leave.
+        newton_tolerance: f64,
     },
     /// Gauss collocation, of order 2 `stages`.
     Gauss {
@@ -131,6 +133,9 @@ pub enum Integrator {
 }
 
 impl Integrator {
+    /// Newton tolerance of generalised-α where nothing is said: a thousand steps then add up to less than 1e-8.
+    pub const NEWTON_TOLERANCE: f64 = 1e-11;
+
     /// How steps are chosen.
     pub fn step_control(&self) -> StepControl {
         match *self {

@@ -73,7 +73,7 @@ const NAMES: [&str; 23] = [
 ];
 
 /// Writes the results into `directory`, which is made where it is missing, and returns what `summary.json` says.
-/// Sets `trajectory.seconds.write` to the time taken until the summary was written.
+/// Adds the time taken until the summary was written to `trajectory.seconds.write`.
 ///
 /// # Errors
 /// [`OutputError`] where the trajectory contradicts itself, or a file cannot be written: then no file has a new
@@ -121,7 +121,7 @@ pub fn write(
         stage.add(&format!("{}.svg", figure.name), |out| out.write_all(figure.svg.as_bytes()))?;
     }
     stage.add("report.html", |out| out.write_all(page.as_bytes()))?;
-    trajectory.seconds.write = start.elapsed().as_secs_f64();
+    trajectory.seconds.write += start.elapsed().as_secs_f64();
     let summary = Summary::of(trajectory);
     stage.add("summary.json", |out| out.write_all(summary.to_json()?.as_bytes()))?;
     // Only beside a summary are these names surely those of an older run.

@@ -188,7 +188,16 @@ fn dynamic(located: &Located<DynamicTable>, model: &Model) -> Result<Dynamic, Fa
                 None => SPECTRAL_RADIUS,
             };
             let step = step_control(alpha, &t.step, &t.tolerance, duration)?;
-            Integrator::GeneralizedAlpha { step, spectral_radius }
+            let newton_tolerance = match (&t.newton_tolerance, step) {
+                (None, _) => Integrator::NEWTON_TOLERANCE,
+                (Some(tolerance), StepControl::Fixed(_)) => tolerance.get().si,
+                (Some(tolerance), StepControl::Tolerance(_)) => {
+                    let found = "found `newton_tolerance` beside `tolerance`";
+                    let help = "with `tolerance` the iteration is as accurate as the steps; `newton_tolerance` goes with `step`";
+                    return Err(Fault::new(tolerance.span(), found).help(help));
+                }
+            };
+            Integrator::GeneralizedAlpha { step, spectral_radius, newton_tolerance }
         }
         (None, Some(gauss), None) => {
             let t = gauss.get();

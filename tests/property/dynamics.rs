@@ -13,15 +13,16 @@ use proptest::prelude::*;
 const LENGTH: f64 = 1.2;
 const GRAVITY: [f64; 2] = [1.5, -9.0];
 
-const ALPHA: Integrator =
-    Integrator::GeneralizedAlpha { step: StepControl::Fixed(0.0), spectral_radius: 0.8 };
+const fn alpha(step: StepControl, spectral_radius: f64) -> Integrator {
+    Integrator::GeneralizedAlpha { step, spectral_radius, newton_tolerance: Integrator::NEWTON_TOLERANCE }
+}
+
+const ALPHA: Integrator = alpha(StepControl::Fixed(0.0), 0.8);
 const GAUSS: Integrator = Integrator::Gauss { stages: 3, step: StepControl::Fixed(0.0) };
 
 fn with_step(integrator: Integrator, step: StepControl) -> Integrator {
     match integrator {
-        Integrator::GeneralizedAlpha { spectral_radius, .. } => {
-            Integrator::GeneralizedAlpha { step, spectral_radius }
-        }
+        Integrator::GeneralizedAlpha { spectral_radius, .. } => alpha(step, spectral_radius),
         Integrator::Gauss { stages, .. } => Integrator::Gauss { stages, step },
         Integrator::Radau { stages, .. } => Integrator::Radau { stages, step },
     }
@@ -31,7 +32,7 @@ fn with_step(integrator: Integrator, step: StepControl) -> Integrator {
 fn methods() -> [(Integrator, f64); 7] {
     let step = StepControl::Fixed(0.0);
     [
-        (Integrator::GeneralizedAlpha { step, spectral_radius: 1.0 }, 2.0),
+        (alpha(step, 1.0), 2.0),
         (ALPHA, 2.0),
         (Integrator::Gauss { stages: 1, step }, 2.0),
         (Integrator::Gauss { stages: 2, step }, 4.0),

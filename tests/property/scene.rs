@@ -249,7 +249,14 @@ fn numbers_arrive_in_si() {
 #[test]
 fn integrators_arrive() {
     for (name, integrator) in [
-        (4, Integrator::GeneralizedAlpha { step: StepControl::Fixed(0.001), spectral_radius: 0.9 }),
+        (
+            4,
+            Integrator::GeneralizedAlpha {
+                step: StepControl::Fixed(0.001),
+                spectral_radius: 0.9,
+                newton_tolerance: Integrator::NEWTON_TOLERANCE,
+            },
+        ),
         (3, Integrator::Gauss { stages: 3, step: StepControl::Tolerance(1e-5) }),
     ] {
         let scene = scene::parse("pendulum", SCENES[name].1).unwrap();

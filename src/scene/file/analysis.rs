@@ -124,6 +124,8 @@ pub struct GeneralizedAlphaTable {
     /// Spectral radius at infinite frequency, from 0 to 1; 0.9 when left out.
     #[schemars(range(min = 0, max = 1))]
     pub spectral_radius: Option<Located<Quantity<Ratio>>>,
+    /// With `step`: error of positions, in beam lengths, that the iteration of a step may leave; 1e-11 when left out.
+    pub newton_tolerance: Option<Located<Quantity<Ratio, Positive>>>,
 }
 
 /// Gauss collocation; `step` or `tolerance`.

@@ -28,10 +28,9 @@ use crate::linear::{Factor, Singular};
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
 use crate::trajectory::Statistics;
 
-/// Error of the position in a step of given length: far below that of a second-order step.
-const TOLERANCE: f64 = 1e-11;
-/// The same relative to the displacement in the step, which counts where steps are very short: the velocity takes the same relative error.
-const RELATIVE_TOLERANCE: f64 = 1e-8;
+/// Newton tolerance relative to the displacement in the step and to the absolute tolerance: it counts where steps are very short, for the
+/// velocity takes the same relative error.
+const RELATIVE_TOLERANCE: f64 = 1e3;
 /// The same as a part of the error that a step may make.
 const TOLERANCE_OF_ERROR: f64 = 0.02;
 
@@ -75,6 +74,7 @@ struct Accelerations {
 pub struct GeneralizedAlpha<'a> {
     motion: Motion<'a>,
     coefficients: Coefficients,
+    newton_tolerance: f64,
     last: Accelerations,
     trial: Accelerations,
     /// a of the step before the last, and the last step: from them the next a is extrapolated.
@@ -102,8 +102,8 @@ struct Kept {
 }
 
 impl<'a> GeneralizedAlpha<'a> {
-    /// The method with spectral radius `rho`.
-    pub fn new(motion: Motion<'a>, rho: f64) -> Self {
+    /// The method with spectral radius `rho`; the iteration of a step of fixed length may leave an error of `newton_tolerance` beam lengths.
+    pub fn new(motion: Motion<'a>, rho: f64, newton_tolerance: f64) -> Self {
         let (n, unknowns) = (motion.coordinates(), motion.unknowns());
         let last = Accelerations {
             physical: vec![0.0; n],
@@ -114,6 +114,7 @@ impl<'a> GeneralizedAlpha<'a> {
             turns: motion.turns(),
             motion,
             coefficients: Coefficients::new(rho),
+            newton_tolerance,
             trial: last.clone(),
             last,
             before: None,
@@ -341,7 +342,7 @@ impl Method for GeneralizedAlpha<'_> {
         self.start[n..].copy_from_slice(multipliers);
         self.motion.impose(&mut self.x);
         let moved: Vec<f64> = self.x.iter().zip(&self.start).map(|(x, start)| x - start).collect();
-        let tight = TOLERANCE.min(RELATIVE_TOLERANCE * self.motion.size(&moved));
+        let tight = self.newton_tolerance * (RELATIVE_TOLERANCE * self.motion.size(&moved)).min(1.0);
         let settings = Settings {
             tolerance: accuracy.map_or(tight, |allowed| (TOLERANCE_OF_ERROR * allowed).max(tight)),
             // The tangent is exact, and inertia makes it well conditioned: the increments tell all.

@@ -102,8 +102,8 @@ pub fn solve(
 fn method<'a>(system: &'a System, integrator: Integrator) -> Result<Box<dyn Method + 'a>, Singular> {
     let motion = Motion::new(system)?;
     Ok(match integrator {
-        Integrator::GeneralizedAlpha { spectral_radius, .. } => {
-            Box::new(GeneralizedAlpha::new(motion, spectral_radius))
+        Integrator::GeneralizedAlpha { spectral_radius, newton_tolerance, .. } => {
+            Box::new(GeneralizedAlpha::new(motion, spectral_radius, newton_tolerance))
         }
         Integrator::Gauss { stages, .. } => Box::new(Collocation::new(motion, Tableau::gauss(stages))),
         Integrator::Radau { stages, .. } => Box::new(Collocation::new(motion, Tableau::radau(stages))),

@@ -192,7 +192,7 @@ fn question(analysis: &Analysis) -> Result<Question, String> {
         Analysis::Static(settings) if settings.arc_length.is_some() => Err(none("arc-length continuation")),
         Analysis::Static(settings) => Ok(Question::Static { steps: settings.steps.unwrap_or(LOAD_STEPS) }),
         Analysis::Dynamic(settings) => {
-            let Integrator::GeneralizedAlpha { step: StepControl::Fixed(step), spectral_radius } =
+            let Integrator::GeneralizedAlpha { step: StepControl::Fixed(step), spectral_radius, .. } =
                 settings.integrator
             else {
                 return Err(none(&format!("the integrator {}", settings.integrator)));
