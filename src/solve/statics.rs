@@ -73,6 +73,7 @@ fn newton_settings(settings: &Static) -> Settings {
     let mut newton = Settings { last_increment: LAST_INCREMENT, ..Settings::default() };
     if let Some(tolerance) = settings.tolerance {
         newton.tolerance = tolerance;
+        newton.last_increment = LAST_INCREMENT.max(tolerance);
     }
     newton
 }
