@@ -6,6 +6,7 @@ mod freeze;
 mod instructions;
 mod mutants;
 mod report;
+mod scaling;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -60,6 +61,8 @@ enum Command {
         /// Problems, files of verification/work-precision; all if none is named
         problems: Vec<String>,
     },
+    /// Measure what a time step costs per element, and the memory it takes, from 100 to 100,000 elements
+    Scaling,
     /// Count the instructions of some runs with valgrind, keep them for the report, and compare them with another build's or the last
     /// time's; exit status 1 if a count grew by more than 1 %
     Instructions {
@@ -93,6 +96,7 @@ fn main() -> ExitCode {
         Command::Freeze { check, cases } => freeze::freeze(&suite, &cases, check),
         Command::Peers { cases } => beside::print(&suite, &cases),
         Command::WorkPrecision { quick, out, problems } => cost::print(&suite, &problems, quick, &out),
+        Command::Scaling => scaling::print(&suite),
         Command::Instructions { against, program } => {
             instructions::print(&suite, &program, against.as_deref())
         }

@@ -19,6 +19,7 @@ mod mutants;
 mod number;
 mod overview;
 mod page;
+mod scaling;
 mod work;
 
 use std::path::Path;
@@ -159,6 +160,7 @@ fn pages(
         pages.push(case::page(suite, entry)?);
     }
     pages.extend(work::pages(suite, measured)?);
+    pages.push(scaling::page(&suite.root.join(crate::scaling::FILE))?);
     pages.push(instructions::page(&suite.root.join(crate::instructions::HISTORY))?);
     let record = Record::path(suite);
     pages.push(mutants::page(Record::read(&record)?.as_ref(), Path::new(&suite.short(&record)))?);

@@ -1,0 +1,60 @@
+//! The page of time and memory over the number of elements.
+
+use std::path::Path;
+
+use ancf::output::plot::{Axis, Chart, Mark, PALETTE, Series};
+use askama::Template;
+
+use super::page::Page;
+use crate::Failure;
+use crate::scaling::{Scaling, read};
+
+/// Growth of the cost per element that is wanted at most, from the fewest elements to the most.
+const WANTED: f64 = 1.5;
+
+#[derive(Template)]
+#[template(path = "scaling.html")]
+struct Body<'a> {
+    measured: Option<&'a Scaling>,
+    /// Elements, time, memory, iterations.
+    rows: Vec<[String; 4]>,
+    growth: String,
+    wanted: f64,
+    drawing: Result<String, String>,
+}
+
+/// What a step costs per element.
+pub fn page(file: &Path) -> Result<Page, Failure> {
+    let measured = read(file)?;
+    let rows = measured.as_ref().map_or(&[][..], |m| &m.rows);
+    let growth = rows.first().zip(rows.last()).map(|(first, last)| last.seconds / first.seconds);
+    let points = rows.iter().map(|row| [row.elements as f64, 1e6 * row.seconds]).collect();
+    let highest = rows.iter().fold(0.0_f64, |m, row| m.max(1.2e6 * row.seconds));
+    let axes = (Axis::log("elements"), Axis::linear("µs per element and step").range(0.0, highest));
+    let line = Series::new("", points, Mark::Line, PALETTE[0]);
+    let drawing = Chart::new("", axes.0, axes.1).sized(560, 280).with(line).svg().map_err(|e| e.to_string());
+    Ok(Page {
+        id: "scaling".into(),
+        title: "Many elements".into(),
+        pass: growth.map(|growth| growth <= WANTED),
+        listed: true,
+        body: Body {
+            measured: measured.as_ref(),
+            rows: rows
+                .iter()
+                .map(|row| {
+                    [
+                        row.elements.to_string(),
+                        format!("{:.3}", 1e6 * row.seconds),
+                        row.megabytes.map_or("–".to_owned(), |m| format!("{m:.0}")),
+                        format!("{:.1}", row.iterations),
+                    ]
+                })
+                .collect(),
+            growth: growth.map_or("–".to_owned(), |g| format!("{g:.2}")),
+            wanted: WANTED,
+            drawing,
+        }
+        .render()?,
+    })
+}

@@ -1,0 +1,111 @@
+//! `verify scaling`: what a time step costs per element as elements become many, and the memory that it takes.
+
+use std::path::Path;
+use std::time::Duration;
+
+use ancf::model::{Centreline, Discretization, Nodes};
+use ancf::run::{Control, run};
+use ancf::scene::Scene;
+use ancf_check::Suite;
+use serde::{Deserialize, Serialize};
+
+use crate::Failure;
+use crate::report::{machine, now};
+
+/// Where the results are written, and where the report looks for them, from the root of the repository.
+pub const FILE: &str = "target/verification/scaling.json";
+
+/// Elements of 6 cm, hanging from one end.
+const ELEMENTS: [usize; 4] = [100, 1_000, 10_000, 100_000];
+/// Steps of 1 ms, and how often they are repeated until this much time has gone.
+const STEPS: usize = 10;
+const LEAST: Duration = Duration::from_secs(1);
+
+/// One day's measurement.
+#[derive(Deserialize, Serialize)]
+pub struct Scaling {
+    /// When.
+    pub date: String,
+    /// On what.
+    pub machine: String,
+    /// From few elements to many.
+    pub rows: Vec<Row>,
+}
+
+/// A number of elements.
+#[derive(Deserialize, Serialize)]
+pub struct Row {
+    /// How many.
+    pub elements: usize,
+    /// Shortest time of a step, per element \[s\].
+    pub seconds: f64,
+    /// Peak memory of the process above that before the run \[MB\], where the system tells.
+    pub megabytes: Option<f64>,
+    /// Iterations a step.
+    pub iterations: f64,
+}
+
+/// Measures, prints and writes.
+pub fn print(suite: &Suite) -> Result<bool, Failure> {
+    let scene = suite.root.join("verification/cases/soft-pendulum/scene.toml");
+    let set = [
+        "beam.arm.basis={ancf={elements=30}}".to_owned(),
+        format!(
+            "analysis.dynamic={{duration=\"{STEPS} ms\", output_every=\"{STEPS} ms\", \
+             generalized_alpha={{step=\"1 ms\", spectral_radius=1.0}}}}"
+        ),
+    ];
+    let scene = Scene::load(&scene, &set).map_err(|e| e.to_string())?;
+    let mut result = Scaling { date: now(), machine: machine(), rows: Vec::new() };
+    eprintln!("{:>9} {:>16} {:>8} {:>17}", "elements", "µs/element/step", "MB", "iterations a step");
+    for elements in ELEMENTS {
+        let mut model = scene.model().clone();
+        model.beams[0].centreline = Centreline::Line { start: [0.0; 2], end: [0.06 * elements as f64, 0.0] };
+        model.beams[0].discretization = Discretization::Ancf { nodes: Nodes::Uniform(elements + 1) };
+        model.probes.clear();
+        let before = peak(true);
+        let (mut shortest, mut all, mut iterations) = (f64::INFINITY, 0.0, 0);
+        while all < LEAST.as_secs_f64() {
+            let trajectory =
+                run(&model, scene.analysis(), &mut |_| Control::Continue).map_err(|e| e.to_string())?;
+            shortest = shortest.min(trajectory.seconds.solve);
+            all += trajectory.seconds.solve;
+            iterations = trajectory.statistics.newton_iterations;
+        }
+        let row = Row {
+            elements,
+            seconds: shortest / (elements * STEPS) as f64,
+            megabytes: before.zip(peak(false)).map(|(before, peak)| peak - before),
+            iterations: iterations as f64 / STEPS as f64,
+        };
+        let megabytes = row.megabytes.map_or("–".to_owned(), |m| format!("{m:.0}"));
+        eprintln!("{elements:>9} {:>16.3} {megabytes:>8} {:>17.1}", 1e6 * row.seconds, row.iterations);
+        result.rows.push(row);
+    }
+    let file = suite.root.join(FILE);
+    if let Some(folder) = file.parent() {
+        std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    }
+    std::fs::write(&file, serde_json::to_string_pretty(&result)?)
+        .map_err(|e| format!("{}: {e}", file.display()))?;
+    Ok(true)
+}
+
+/// What was last measured, if anything.
+pub fn read(file: &Path) -> Result<Option<Scaling>, Failure> {
+    if !file.exists() {
+        return Ok(None);
+    }
+    let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
+    Ok(Some(serde_json::from_str(&text).map_err(|e| format!("{}: {e}", file.display()))?))
+}
+
+/// Peak resident memory \[MB\] where the system tells; with `reset` that of now, from which it counts anew.
+fn peak(reset: bool) -> Option<f64> {
+    if reset {
+        std::fs::write("/proc/self/clear_refs", "5").ok()?;
+    }
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? / 1024.0)
+}
