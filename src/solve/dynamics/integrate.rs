@@ -288,8 +288,8 @@ impl<'t, 'a> Driver<'t, 'a> {
     /// Refuses a coarse step to `new`, at time `end`, that gains energy.
     fn without_gain(&self, new: &State, end: f64) -> Result<(), Failure> {
         let nodes = new.q.chunks_exact(4).zip(self.state.q.chunks_exact(4));
-        let turn = nodes.fold(0.0_f64, |turn, (a, b)| turn.max((a[2] - b[2]).hypot(a[3] - b[3])));
-        if turn <= COARSE_TURN {
+        let square = nodes.fold(0.0_f64, |m, (a, b)| m.max((a[2] - b[2]).powi(2) + (a[3] - b[3]).powi(2)));
+        if square.sqrt() <= COARSE_TURN {
             return Ok(());
         }
         let energy = |state: &State| self.system.energy(1.0, &state.q, Some(&state.v));
