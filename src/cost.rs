@@ -170,11 +170,10 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
     run::inspect(scene.model(), analysis)?;
     let model = &watched(scene.model());
     let desk = Desk { model, analysis, start: Instant::now(), budget, watcher };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
-    let reference = reference::make(&desk, &pool, target, FOR_REFERENCE * budget)?;
+    let reference = reference::make(&desk, target, FOR_REFERENCE * budget)?;
     let uncertainty = reference.uncertainty.error;
     let least = uncertainty.max(LEAST * target);
-    let mut bench = Measuring { desk, reference: &reference };
+    let mut bench = Measuring { desk, reference: &reference, begun: 0 };
     let task = Task { model, analysis, target, least, deadline: budget };
     let Climbed { rungs, left_out, interrupted } = ladder::climb(&task, &mut bench);
     let points = rung::points(&rungs, least);
@@ -205,4 +204,43 @@ fn watched(model: &Model) -> Model {
         }
     }
     model
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    const ROLL_UP: &str = include_str!("../tests/scenes/roll-up-ancf.toml");
+
+    fn scene() -> Scene {
+        crate::scene::parse("roll-up", ROLL_UP).unwrap()
+    }
+
+    #[test]
+    fn what_was_measured_before_an_interruption_is_kept() {
+        let asked = AtomicUsize::new(0);
+        let watcher = |progress: &Progress<'_>| {
+            let measuring = progress.doing.starts_with(bench::MEASURING);
+            if measuring && asked.fetch_add(1, Ordering::Relaxed) > 500 {
+                Control::Stop
+            } else {
+                Control::Continue
+            }
+        };
+        let study = study(&scene(), Options { target: 1e-3, ..Options::default() }, &watcher).unwrap();
+        assert!(!study.complete && !study.rungs.is_empty());
+        assert!(study.warnings()[0].contains("interrupted"), "{:?}", study.warnings());
+        let at_once = super::study(&scene(), Options::default(), &|_| Control::Stop);
+        assert!(matches!(at_once, Err(CostError::Interrupted)), "{at_once:?}");
+    }
+
+    #[test]
+    fn without_probes_ends_and_middles_are_watched() {
+        let scene = scene();
+        let bare = Model { probes: vec![], ..scene.model().clone() };
+        let places: Vec<f64> = watched(&bare).probes.iter().map(|probe| probe.at.s).collect();
+        assert_eq!(places, [0.0, 0.9, 1.8]);
+        assert_eq!(&watched(scene.model()), scene.model());
+    }
 }

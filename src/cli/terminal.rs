@@ -179,7 +179,10 @@ pub fn costs(report: &Report<'_>, directory: &Path) {
 }
 
 /// A setting is close to the front where nothing with its error takes less than this part of its time.
-const CLOSE: f64 = 0.6;
+const CLOSE: f64 = 0.8;
+
+/// Settings left out for one reason that are named on the terminal.
+const NAMED: usize = 3;
 
 fn cost_table(report: &Report<'_>, directory: &Path) -> String {
     let error = |rung: &ReportedRung| rung.measured.deviation.error;
@@ -235,14 +238,24 @@ fn cost_table(report: &Report<'_>, directory: &Path) -> String {
         text,
         "\n• nothing is better in time and error; ► the cheapest that meets the target {:e}\n\
          error: {}; uncertainty of the reference {:.1e}: {one}; against {other}\n\
-         {} settings measured, {} left out: {}",
+         {} settings measured; details and plots: {}",
         report.target,
         report.error,
         report.uncertainty.error,
         report.rungs.len(),
-        report.left_out.len(),
         directory.join("cost.html").display(),
     );
+    let mut reasons: Vec<&str> = report.left_out.iter().map(|left| left.why.as_str()).collect();
+    reasons.dedup();
+    for why in reasons.iter().enumerate().filter(|(i, why)| !reasons[..*i].contains(why)).map(|(_, why)| why)
+    {
+        let what: Vec<&str> =
+            report.left_out.iter().filter(|left| left.why == *why).map(|left| left.what.as_str()).collect();
+        let more = what.len().saturating_sub(NAMED);
+        let names = what[..what.len() - more].join("; ");
+        let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+        let _ = write!(text, "\nleft out, because {why}: {names}{more}");
+    }
     if let Some(lines) = report.lines {
         let _ = write!(
             text,

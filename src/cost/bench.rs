@@ -12,6 +12,9 @@ const LONG_ENOUGH: f64 = 0.05;
 /// … up to so many runs.
 const MOST_RUNS: usize = 5;
 
+/// What is told while a setting is measured, with its number.
+pub(super) const MEASURING: &str = "setting";
+
 /// Why a setting was not measured.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Miss {
@@ -54,7 +57,11 @@ impl Desk<'_> {
     /// Runs a setting once, called `doing`, until `deadline` \[s\] at most.
     pub fn run(&self, setting: &Setting, doing: &str, deadline: f64) -> Result<Trajectory, Miss> {
         let (model, analysis) = setting.apply(self.model, self.analysis);
-        let mut miss = None;
+        // Some analyses are over before anybody is asked.
+        let mut miss = (self.tell(doing) == Control::Stop).then_some(Miss::Interrupted);
+        if let Some(miss) = miss {
+            return Err(miss);
+        }
         let observer = &mut |_: &run::Progress| {
             if self.tell(doing) == Control::Stop {
                 miss = Some(Miss::Interrupted);
@@ -77,6 +84,8 @@ impl Desk<'_> {
 pub(super) struct Measuring<'a> {
     pub desk: Desk<'a>,
     pub reference: &'a Reference,
+    /// Settings begun so far.
+    pub begun: usize,
 }
 
 impl Bench for Measuring<'_> {
@@ -85,9 +94,11 @@ impl Bench for Measuring<'_> {
     }
 
     fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Miss> {
+        self.begun += 1;
         let (desk, mut seconds) = (&self.desk, Vec::with_capacity(MOST_RUNS));
+        let doing = format!("{MEASURING} {}", self.begun);
         loop {
-            let trajectory = desk.run(setting, "measuring", deadline)?;
+            let trajectory = desk.run(setting, &doing, deadline)?;
             seconds.push(trajectory.seconds.build + trajectory.seconds.solve);
             if seconds.len() < MOST_RUNS && seconds.iter().sum::<f64>() < LONG_ENOUGH {
                 continue;

@@ -7,7 +7,8 @@
 use serde::Serialize;
 
 use super::bench::{Bench, Miss};
-use super::rung::{Rung, front, points};
+use super::deviation::Deviation;
+use super::rung::{Measured, Rung, front, points};
 use super::setting::{Family, Setting, Solver, cells};
 use crate::model::{Analysis, Integrator, Model, StepControl};
 use crate::scene::SPECTRAL_RADIUS;
@@ -82,12 +83,14 @@ fn accurate(task: &Task<'_>) -> Solver {
     }
 }
 
-/// A number that people would write, and a legal tolerance.
+/// A legal tolerance.
 fn tolerance(value: f64) -> f64 {
-    let decade = 10_f64.powi(value.log10().floor() as i32);
-    let short: Option<f64> =
-        format!("{:.2e}", (value / decade * 100.0).round() / 100.0 * decade).parse().ok();
-    short.unwrap_or(value).clamp(1e-13, 0.1)
+    short(value).clamp(1e-13, 0.1)
+}
+
+/// The number rounded to two significant digits, as people would write it.
+fn short(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 /// A family on its way up.
@@ -146,7 +149,7 @@ fn meshes(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Opt
         for mut climber in climbers {
             let from = format!("{}, {cells} cells and more", climber.family);
             if bench.now() + RESERVE * climber.predict(cells) >= deadline {
-                climbed.leave(from, "no time left in the budget");
+                climbed.leave(from, "no time is left in the budget");
                 continue;
             }
             let setting = Setting { beams: climber.family.beams(task.model, cells), solver };
@@ -163,7 +166,7 @@ fn meshes(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Opt
                     if let Some(better) = dominated.filter(|_| climber.dominated >= PATIENCE) {
                         let better = &climbed.rungs[better];
                         let why = format!(
-                            "{}, {} cells has a {FAR}th of the error in a {FAR}th of the time",
+                            "{}, {} cells err {FAR} times less in {FAR} times less time",
                             better.family, better.cells
                         );
                         climbed.leave(format!("{}, more than {cells} cells", climber.family), why);
@@ -196,7 +199,7 @@ fn scene_solver(analysis: &Analysis) -> Solver {
 
 fn reason(miss: Miss) -> String {
     match miss {
-        Miss::Failed(why) => format!("failed: {why}"),
+        Miss::Failed(why) => format!("it failed: {why}"),
         Miss::TooSlow => "it took longer than the budget allows".into(),
         Miss::Interrupted => "interrupted".into(),
     }
@@ -223,9 +226,9 @@ fn other_solvers(task: &Task<'_>, mean_step: f64) -> Vec<Vec<Solver>> {
             };
             let alpha = |step| Integrator::GeneralizedAlpha { step, spectral_radius: SPECTRAL_RADIUS };
             let fixed = |division: f64| {
-                // A whole number of equal steps between records.
-                let records = (settings.output_every / mean_step * division).ceil().max(1.0);
-                Solver::Integrator(alpha(StepControl::Fixed(settings.output_every / records)))
+                Solver::Integrator(alpha(StepControl::Fixed(
+                    short(mean_step / division).min(settings.duration),
+                )))
             };
             vec![
                 by_tolerance(&|step| Integrator::Gauss { stages: 3, step }, &[10.0, 1.0, 0.01]),
@@ -253,13 +256,14 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
                 // Second-order methods pay most for a digit: ten times the accuracy, or a quarter of the step.
                 let predicted = before.map_or(measured.seconds, |[seconds, _]| 4.0 * seconds);
                 if bench.now() + RESERVE * predicted >= task.deadline {
-                    climbed.leave(what, "no time left in the budget");
+                    climbed.leave(what, "no time is left in the budget");
                     break;
                 }
                 let setting = Setting { beams: setting.beams.clone(), solver };
                 match attempt(bench, climbed, (family, cells), setting, task.deadline)? {
                     Ok(index) => {
-                        let Deviated { seconds, error } = Deviated::of(&climbed.rungs[index]);
+                        let Measured { seconds, deviation: Deviation { error, .. }, .. } =
+                            climbed.rungs[index].measured;
                         // The mesh decides, no longer the solver: what follows only costs more.
                         let settled = before.is_some_and(|[_, last]| error > 0.9 * last);
                         if settled || error <= task.least {
@@ -279,17 +283,6 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
         }
     }
     Some(())
-}
-
-struct Deviated {
-    seconds: f64,
-    error: f64,
-}
-
-impl Deviated {
-    fn of(rung: &Rung) -> Self {
-        Self { seconds: rung.measured.seconds, error: rung.measured.deviation.error }
-    }
 }
 
 /// Rungs of the front whose discretisation is worth another solver: the cheapest that meets the target, and others evenly
@@ -322,8 +315,6 @@ fn picks(rungs: &[Rung], task: &Task<'_>) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cost::deviation::Deviation;
-    use crate::cost::rung::Measured;
     use crate::model::{Discretization, Dynamic, Static};
     use crate::scene::{INTEGRATOR, parse};
 
@@ -423,7 +414,7 @@ mod tests {
             same.map(|r| r.cells).max().unwrap()
         };
         assert_eq!((most(false), most(true)), (6, 192));
-        assert!(climbed.left_out[0].why.contains("a 4th of the error"), "{:?}", climbed.left_out[0]);
+        assert!(climbed.left_out[0].why.contains("4 times less"), "{:?}", climbed.left_out[0]);
     }
 
     #[test]

@@ -15,6 +15,7 @@ use std::path::Path;
 use askama::Template;
 use serde::Serialize;
 
+use super::rung::front;
 use super::{Deviation, Family, LeftOut, Measured, Rung, Solver, Study};
 use crate::model::Integrator;
 use crate::output::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, Series, human};
@@ -207,7 +208,8 @@ fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
     ] {
         chart = chart.with(Series::dashed(label, ends.map(|x| [x, level]).into(), colour));
     }
-    let front = study.front.iter().map(|&i| point(&study.rungs[i])).collect();
+    let all: Vec<[f64; 2]> = study.rungs.iter().map(point).collect();
+    let front = front(&all).into_iter().map(|i| all[i]).collect();
     chart = chart.with(Series::line("front", front, GREY).size(7.0).opacity(0.35));
     for (kind, colour) in KINDS {
         let mut label = kind;
@@ -242,7 +244,7 @@ fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
     if let Some(best) = &study.best {
         let best = of(vec![&study.rungs[best.rung]]);
         chart = chart
-            .with(Series::new("cheapest that meets the target", best, Mark::Circles, PALETTE[1]).size(8.0));
+            .with(Series::new("cheapest that meets the target", best, Mark::Circles, PALETTE[1]).size(6.5));
     }
     chart
 }

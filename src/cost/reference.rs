@@ -1,8 +1,6 @@
 //! What errors are measured against: two runs that share neither the discretisation nor, in motion, the integrator, made
 //! finer until they agree.
 
-use rayon::ThreadPool;
-
 use super::bench::{Desk, Miss};
 use super::{CostError, Deviation, Family, Setting, Solver};
 use crate::model::{Analysis, Integrator, StepControl};
@@ -53,12 +51,9 @@ fn pair(desk: &Desk<'_>, level: u32, target: f64) -> [(Family, usize, Setting); 
 }
 
 /// Refines until two runs agree well below `target`, or the time `deadline` \[s\] is near.
-pub(super) fn make(
-    desk: &Desk<'_>,
-    pool: &ThreadPool,
-    target: f64,
-    deadline: f64,
-) -> Result<Reference, CostError> {
+pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Reference, CostError> {
+    // Gone before the ladder, whose runs are alone.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
     let start = desk.now();
     let mut best: Option<Reference> = None;
     let mut reason = String::new();

@@ -197,7 +197,7 @@ impl Setting {
         match self.solver {
             Solver::Scene => {}
             Solver::Tolerance(tolerance) => {
-                tables.push(format!("[analysis.static]\ntolerance = {tolerance:?}\n"));
+                tables.push(format!("[analysis.static]\ntolerance = {tolerance:e}\n"));
             }
             Solver::Integrator(integrator) => tables.push(method(&integrator)),
         }
@@ -262,7 +262,7 @@ fn method(integrator: &Integrator) -> String {
     };
     let control = match integrator.step_control() {
         StepControl::Fixed(step) => format!("step = {step:?}"),
-        StepControl::Tolerance(tolerance) => format!("tolerance = {tolerance:?}"),
+        StepControl::Tolerance(tolerance) => format!("tolerance = {tolerance:e}"),
     };
     format!("[analysis.dynamic.{name}]\n{first}{control}\n")
 }
