@@ -413,7 +413,7 @@ mod tests {
             let same = climbed.rungs.iter().filter(|r| matches!(r.family, Family::Rpim { .. }) == meshfree);
             same.map(|r| r.cells).max().unwrap()
         };
-        assert_eq!((most(false), most(true)), (6, 192));
+        assert_eq!((most(false), most(true)), (8, 192));
         assert!(climbed.left_out[0].why.contains("4 times less"), "{:?}", climbed.left_out[0]);
     }
 
