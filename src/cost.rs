@@ -11,7 +11,7 @@
 //! | error, which the target refers to | [`Deviation::error`]: positions of the probes in beam lengths (without probes: of both ends and the middle of every beam); frequencies or load factors, relative |
 //! | curvature, energy | [`Deviation`] |
 //! | seconds | to build and to solve, nothing else running; the median of up to five runs where they are short |
-//! | work | tangent evaluations and factorisations |
+//! | work | tangent evaluations and factorisations, for the plot times the unknowns |
 //!
 //! # The reference
 //! A meshfree run and one of cable elements (in motion by another integrator, too) are refined together until they differ
@@ -121,6 +121,11 @@ impl Study {
         self.reference.uncertainty.error <= 0.1 * self.options.target * (1.0 + 1e-12)
     }
 
+    /// Errors below this are not told apart: nobody knows which is smaller, or needs to.
+    fn least(&self) -> f64 {
+        least(self.options.target, &self.reference)
+    }
+
     /// What the reader should know.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
@@ -172,7 +177,7 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
     let desk = Desk { model, analysis, start: Instant::now(), budget, watcher };
     let reference = reference::make(&desk, target, FOR_REFERENCE * budget)?;
     let uncertainty = reference.uncertainty.error;
-    let least = uncertainty.max(LEAST * target);
+    let least = least(target, &reference);
     let mut bench = Measuring { desk, reference: &reference, begun: 0 };
     let task = Task { model, analysis, target, least, deadline: budget };
     let Climbed { rungs, left_out, interrupted } = ladder::climb(&task, &mut bench);
@@ -188,6 +193,10 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
     let front = rung::front(&points);
     let seconds = desk.now();
     Ok(Study { options, reference, rungs, front, best, left_out, complete: !interrupted, seconds })
+}
+
+fn least(target: f64, reference: &Reference) -> f64 {
+    reference.uncertainty.error.max(LEAST * target)
 }
 
 /// The model with something to look at: without probes, both ends and the middle of every beam.

@@ -7,7 +7,7 @@ use std::io::{self, IsTerminal, Write as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ancf::cost::{self, Report, ReportedRung};
+use ancf::cost::{self, LeftOut, Report, ReportedRung};
 use ancf::model::Analysis;
 use ancf::output::plot::human;
 use ancf::run::Progress;
@@ -237,22 +237,29 @@ fn cost_table(report: &Report<'_>, directory: &Path) -> String {
     let _ = write!(
         text,
         "\n• nothing is better in time and error; ► the cheapest that meets the target {:e}\n\
-         error: {}; uncertainty of the reference {:.1e}: {one}; against {other}\n\
+         error: {}; work: tangent evaluations and factorisations\n\
+         reference: {one}\n\
+         against: {other}\n\
+         uncertainty of the reference: {:.1e}, of its curvature {}, of its energy {}\n\
          {} settings measured; details and plots: {}",
         report.target,
         report.error,
         report.uncertainty.error,
+        optional(report.uncertainty.curvature),
+        optional(report.uncertainty.energy),
         report.rungs.len(),
         directory.join("cost.html").display(),
     );
-    let mut reasons: Vec<&str> = report.left_out.iter().map(|left| left.why.as_str()).collect();
-    reasons.dedup();
-    for why in reasons.iter().enumerate().filter(|(i, why)| !reasons[..*i].contains(why)).map(|(_, why)| why)
-    {
-        let what: Vec<&str> =
-            report.left_out.iter().filter(|left| left.why == *why).map(|left| left.what.as_str()).collect();
-        let more = what.len().saturating_sub(NAMED);
-        let names = what[..what.len() - more].join("; ");
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for LeftOut { what, why } in report.left_out {
+        match reasons.iter_mut().find(|(reason, _)| reason == why) {
+            Some((_, settings)) => settings.push(what),
+            None => reasons.push((why, vec![what])),
+        }
+    }
+    for (why, settings) in reasons {
+        let more = settings.len().saturating_sub(NAMED);
+        let names = settings[..settings.len() - more].join("; ");
         let more = if more > 0 { format!("; and {more} more") } else { String::new() };
         let _ = write!(text, "\nleft out, because {why}: {names}{more}");
     }

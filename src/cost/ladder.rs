@@ -262,8 +262,14 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
                 let setting = Setting { beams: setting.beams.clone(), solver };
                 match attempt(bench, climbed, (family, cells), setting, task.deadline)? {
                     Ok(index) => {
-                        let Measured { seconds, deviation: Deviation { error, .. }, .. } =
+                        let Measured { seconds, statistics, deviation: Deviation { error, .. }, .. } =
                             climbed.rungs[index].measured;
+                        if statistics == measured.statistics && error == measured.deviation.error {
+                            // Otherwise the noise of the clock would choose between two names of one thing.
+                            climbed.rungs.truncate(index);
+                            climbed.leave(what, "it takes the very steps that are taken without it");
+                            break;
+                        }
                         // The mesh decides, no longer the solver: what follows only costs more.
                         let settled = before.is_some_and(|[_, last]| error > 0.9 * last);
                         if settled || error <= task.least {

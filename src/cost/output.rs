@@ -119,7 +119,8 @@ pub fn write(directory: &Path, study: &Study) -> Result<(), OutputError> {
     };
     let error = report.error;
     let by_time = draw(time, &chart(study, "time to build and solve [s]", |m| m.seconds))?;
-    let by_work = draw(work, &chart(study, "tangent evaluations and factorisations", |m| m.work() as f64))?;
+    let by_work =
+        draw(work, &chart(study, "(tangent evaluations + factorisations) × unknowns", Measured::sized_work))?;
     let marks = "Dots on lines: meshes of one discretisation with an accurate solver; circles: other tolerances and Radau; \
                  crosses: generalised-α; grey: what no other setting beats; dashed: the target, and the uncertainty of the \
                  reference, below which errors are only known to be no more than that.";
@@ -209,7 +210,9 @@ fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
         chart = chart.with(Series::dashed(label, ends.map(|x| [x, level]).into(), colour));
     }
     let all: Vec<[f64; 2]> = study.rungs.iter().map(point).collect();
-    let front = front(&all).into_iter().map(|i| all[i]).collect();
+    let distinct_errors: Vec<[f64; 2]> =
+        all.iter().map(|[cost, error]| [*cost, error.max(study.least())]).collect();
+    let front = front(&distinct_errors).into_iter().map(|i| all[i]).collect();
     chart = chart.with(Series::line("front", front, GREY).size(7.0).opacity(0.35));
     for (kind, colour) in KINDS {
         let mut label = kind;

@@ -39,6 +39,11 @@ impl Measured {
     pub fn work(&self) -> usize {
         self.statistics.tangent_evaluations + self.statistics.factorizations
     }
+
+    /// The same times the unknowns, to which the cost of either is proportional: a cost that no clock enters.
+    pub fn sized_work(&self) -> f64 {
+        self.work() as f64 * self.degrees_of_freedom as f64
+    }
 }
 
 /// Indices of the points (cost, error) that no other one beats in both, by ascending cost. Of equal ones the first.
