@@ -7,8 +7,7 @@
 use serde::Serialize;
 
 use super::bench::{Bench, Miss};
-use super::deviation::Deviation;
-use super::rung::{Measured, Rung, front, points};
+use super::rung::{Rung, front, points};
 use super::setting::{Family, Setting, Solver, cells};
 use crate::model::{Analysis, Integrator, Model, StepControl};
 use crate::scene::SPECTRAL_RADIUS;
@@ -262,12 +261,12 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
                 let setting = Setting { beams: setting.beams.clone(), solver };
                 match attempt(bench, climbed, (family, cells), setting, task.deadline)? {
                     Ok(index) => {
-                        let Measured { seconds, statistics, deviation: Deviation { error, .. }, .. } =
-                            climbed.rungs[index].measured;
-                        if statistics == measured.statistics && error == measured.deviation.error {
+                        let found = climbed.rungs[index].measured;
+                        let (seconds, error) = (found.seconds, found.deviation.error);
+                        if found.work() == measured.work() && same(error, measured.deviation.error) {
                             // Otherwise the noise of the clock would choose between two names of one thing.
                             climbed.rungs.truncate(index);
-                            climbed.leave(what, "it takes the very steps that are taken without it");
+                            climbed.leave(what, "it comes to the same by the same work as without it");
                             break;
                         }
                         // The mesh decides, no longer the solver: what follows only costs more.
@@ -289,6 +288,11 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
         }
     }
     Some(())
+}
+
+/// Whether nobody would tell two errors apart.
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-3 * a.max(b)
 }
 
 /// Rungs of the front whose discretisation is worth another solver: the cheapest that meets the target, and others evenly
@@ -321,6 +325,7 @@ fn picks(rungs: &[Rung], task: &Task<'_>) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cost::{Deviation, Measured};
     use crate::model::{Discretization, Dynamic, Static};
     use crate::scene::{INTEGRATOR, parse};
 
