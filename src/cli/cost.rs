@@ -1,5 +1,7 @@
 //! `ancf cost`: what accuracy costs in time.
 
+mod table;
+
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -80,7 +82,7 @@ pub fn cost(arguments: &CostArguments) -> Result<(), Failure> {
         terminal::note(&format!("warning: {warning}"));
     }
     if !arguments.quiet {
-        terminal::costs(&report, &results);
+        terminal::note(&table::table(&report, &results));
     }
     if arguments.json {
         print_json(&report)?;
