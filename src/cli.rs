@@ -4,6 +4,7 @@
 //! errors go to standard error. Exit status: 0 done, 1 the computation or the writing of its results failed or was
 //! interrupted (what was computed until then is written, marked as incomplete), 2 the input is wrong.
 
+mod cost;
 mod destination;
 mod failure;
 mod interrupt;
@@ -48,6 +49,8 @@ enum Command {
     Inspect(InspectArguments),
     /// Run a scene many times over a grid or list of values, in parallel and resumable, into one table
     Sweep(sweep::SweepArguments),
+    /// Measure what accuracy costs in time, on a ladder of discretisations, meshes and integrators
+    Cost(cost::CostArguments),
     /// Print the JSON schema of scene files
     Schema,
 }
@@ -109,6 +112,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check(&arguments),
         Command::Inspect(arguments) => inspect(&arguments).map_err(|failure| vec![failure]),
         Command::Sweep(arguments) => sweep::sweep(&arguments).map_err(|failure| vec![failure]),
+        Command::Cost(arguments) => cost::cost(&arguments).map_err(|failure| vec![failure]),
         Command::Schema => print_json(&scene::schema()).map_err(|failure| vec![failure]),
     };
     let failures = done.err().unwrap_or_default();

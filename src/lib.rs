@@ -26,6 +26,7 @@
 //! | [`restart`] | a saved state, from which a motion goes on | [`solve`] |
 //! | [`output`] | files, plots, the report page | [`trajectory`] |
 //! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`] |
+//! | [`cost`] | what accuracy costs in time: a ladder of settings against a reference | [`scene`], [`run`](mod@run), [`output`] |
 //!
 //! # The beam
 //! | symbol | formula | unit |
@@ -48,7 +49,7 @@
 //! - An effect never sees a node number, a step size or another effect.
 //! - No solver matches on a discretisation or on an effect.
 //! - A discretisation is asked for shape functions only while a system is built or a state looked at.
-//! - Only the command line prints. Only [`sweep`] starts threads, and computes each run on one. The crate never links Python.
+//! - Only the command line prints. Only [`sweep`] and [`cost`] start threads, and compute each run on one. The crate never links Python.
 //! - Where a model does not name an effect there is no object, no table, no matrix and no instruction for it;
 //!   [`system::System::inventory`] says what was built.
 //!
@@ -100,6 +101,7 @@
 
 pub mod basis;
 pub mod centreline;
+pub mod cost;
 pub mod effect;
 pub mod linear;
 pub mod model;

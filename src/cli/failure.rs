@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
+use ancf::cost::CostError;
 use ancf::output::OutputError;
 use ancf::run::RunError;
 use ancf::scene::SceneError;
@@ -24,6 +25,13 @@ pub enum Failure {
     },
     /// A sweep could not be done.
     Sweep(SweepError),
+    /// The cost of a scene could not be found out.
+    Cost {
+        /// The scene file.
+        scene: String,
+        /// Why.
+        error: Box<CostError>,
+    },
     /// It was interrupted.
     Interrupted {
         /// The scene file.
@@ -50,12 +58,18 @@ impl Failure {
         Self::Run { scene: name.to_owned(), error: Box::new(error) }
     }
 
+    /// A failure to find out what the scene called `name` costs.
+    pub fn cost(name: &str, error: CostError) -> Self {
+        Self::Cost { scene: name.to_owned(), error: Box::new(error) }
+    }
+
     /// 2 where the input is at fault, 1 where the computation or its environment is.
     pub fn exit_status(&self) -> u8 {
         match self {
             Self::Scene(_) | Self::Directory { .. } => 2,
             Self::Run { error, .. } => error.exit_status(),
             Self::Sweep(error) => error.exit_status(),
+            Self::Cost { error, .. } => error.exit_status(),
             Self::Interrupted { .. } | Self::Output(_) | Self::Print(_) => 1,
         }
     }
@@ -65,6 +79,7 @@ impl Failure {
             Self::Scene(error) => Some(error),
             Self::Run { error, .. } => Some(error.as_ref()),
             Self::Sweep(error) => Some(error),
+            Self::Cost { error, .. } => Some(error.as_ref()),
             Self::Output(error) => Some(error),
             Self::Interrupted { .. } | Self::Directory { .. } | Self::Print(_) => None,
         }
@@ -87,6 +102,7 @@ impl fmt::Display for Failure {
             Self::Scene(error) => error.brief().fmt(f),
             Self::Run { scene, error } => write!(f, "{scene}: {error}"),
             Self::Sweep(error) => error.fmt(f),
+            Self::Cost { scene, error } => write!(f, "{scene}: {error}"),
             Self::Interrupted { scene, results } => {
                 write!(f, "{scene}: interrupted; what was computed until then is in {}", results.display())
             }
@@ -105,6 +121,7 @@ impl std::error::Error for Failure {
             Self::Output(error) => error.source(),
             Self::Run { error, .. } => error.source(),
             Self::Sweep(error) => error.source(),
+            Self::Cost { error, .. } => error.source(),
             _ => None,
         }
     }

@@ -7,7 +7,9 @@ use std::io::{self, IsTerminal, Write as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use ancf::cost;
 use ancf::model::Analysis;
+use ancf::output::plot::human;
 use ancf::run::Progress;
 use ancf::sweep;
 use ancf::trajectory::{AnalysisKind, ProbeSample, Trajectory};
@@ -138,6 +140,30 @@ impl SweepLine {
         let unsolved =
             if now.unsolved > 0 { format!(", {} not solved", now.unsolved) } else { String::new() };
         bar.set_message(format!("{} of {} runs{unsolved}", now.finished, now.runs));
+    }
+
+    /// Removes the line.
+    pub fn clear(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// The progress of a study of costs; silent where standard error is no terminal.
+pub struct CostLine(ProgressBar);
+
+impl CostLine {
+    /// A line for a study.
+    pub fn new(quiet: bool) -> Self {
+        Self(bar(PARTS, quiet))
+    }
+
+    /// Brings the line up to date. The bar is the budget, of which a study may leave some.
+    pub fn show(&self, now: &cost::Progress<'_>) {
+        let Self(bar) = self;
+        if !bar.is_hidden() {
+            bar.set_position((now.spent / now.budget * PARTS as f64) as u64);
+            bar.set_message(format!("{}, budget {} s", now.doing, human(now.budget, 3)));
+        }
     }
 
     /// Removes the line.

@@ -13,6 +13,7 @@ mod diagnose;
 mod error;
 mod file;
 mod held;
+mod merge;
 mod overrides;
 mod quantity;
 mod schema;
@@ -164,6 +165,14 @@ impl Scene {
 /// ```
 pub fn parse(name: &str, text: &str) -> Result<Scene, SceneError> {
     Scene::read(name, text, &[])
+}
+
+/// Reads a positive time such as `"60 s"` or `"2 min"` \[s\].
+///
+/// # Errors
+/// What was found and what is legal, in one sentence.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    quantity::Quantity::<quantity::Time, quantity::Positive>::parse(text).map(|time| time.si)
 }
 
 fn tables(text: &str) -> Result<(Model, Analysis, Output), Fault> {

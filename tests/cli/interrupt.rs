@@ -179,3 +179,14 @@ steps = 1
     assert_eq!(status(&output), 0, "{}", stderr(&output));
     assert_eq!(summary(folder.path())["complete"], true);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_study_interrupted_before_it_has_a_reference_leaves_nothing() {
+    let folder = folder(PENDULUM);
+    let arguments = ["cost", "scene.toml", "--target", "1e-11", "--budget", "5 min"];
+    let output = interrupted_once(|| folder.path().join("out/scene").is_dir(), folder.path(), &arguments, 1);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    assert!(stderr(&output).contains("interrupted before anything was measured"), "{}", stderr(&output));
+    assert_eq!(entries(folder.path()), ["scene.toml"]);
+}

@@ -1,6 +1,7 @@
 //! The program as its users meet it: commands, exit statuses, messages, files.
 
 mod commands;
+mod cost;
 mod interrupt;
 mod messages;
 mod motion;

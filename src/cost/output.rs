@@ -1,0 +1,350 @@
+//! What a study leaves: tables, plots, a page, and the scene with the cheapest setting.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `cost.csv` | one row a setting: what it is, its errors, seconds, counts; whether it is on the front and meets the target |
+//! | `cost.svg`, `cost-work.svg` | error against wall time, and against tangents and factorisations |
+//! | `cost.html` | all of it, with what was left out |
+//! | `cost.json` | [`Report`] |
+//! | `best.toml` | the scene with the cheapest setting that meets the target; absent where there is none |
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use askama::Template;
+use serde::Serialize;
+
+use super::rung::front;
+use super::{Deviation, Family, LeftOut, Measured, Rung, Solver, Study};
+use crate::model::Integrator;
+use crate::output::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, Series, human};
+use crate::output::{OutputError, Stage, exact};
+
+/// What `cost.json` holds.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report<'a> {
+    /// The scene's title.
+    pub title: &'a str,
+    /// Version of this library.
+    pub version: &'static str,
+    /// Whether the study came to its end.
+    pub complete: bool,
+    /// Wanted error.
+    pub target: f64,
+    /// What the error is, with its unit.
+    pub error: &'static str,
+    /// Time that everything might take \[s\].
+    pub budget: f64,
+    /// The two runs that agree.
+    pub reference: &'a [String; 2],
+    /// By how much they differ.
+    pub uncertainty: Deviation,
+    /// All settings measured.
+    pub rungs: Vec<ReportedRung>,
+    /// Index of the cheapest rung that meets the target.
+    pub best: Option<usize>,
+    /// Tables of a scene that ask for it.
+    pub lines: Option<&'a str>,
+    /// What was not tried, and why.
+    pub left_out: &'a [LeftOut],
+    /// What the reader should know.
+    pub warnings: Vec<String>,
+}
+
+/// A rung in words and numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct ReportedRung {
+    /// The discretisation.
+    pub discretization: String,
+    /// Cells of the beam with the most.
+    pub cells: usize,
+    /// How equations are solved.
+    pub solver: String,
+    /// Cost and error.
+    #[serde(flatten)]
+    pub measured: Measured,
+    /// Its error is below the uncertainty of the reference.
+    pub below_uncertainty: bool,
+    /// No other one beats it in time and error.
+    pub front: bool,
+    /// Its error plus the uncertainty of the reference is within the target.
+    pub meets_target: bool,
+}
+
+impl Study {
+    /// The study in words and numbers.
+    pub fn report(&self) -> Report<'_> {
+        let uncertainty = self.reference.uncertainty;
+        let target = self.options.target;
+        let rung = |(index, rung): (usize, &Rung)| ReportedRung {
+            discretization: rung.family.to_string(),
+            cells: rung.cells,
+            solver: rung.setting.solver.to_string(),
+            measured: rung.measured,
+            below_uncertainty: rung.measured.deviation.error < uncertainty.error,
+            front: self.front.contains(&index),
+            meets_target: rung.measured.deviation.error <= target - uncertainty.error,
+        };
+        Report {
+            title: &self.reference.trajectory.title,
+            version: env!("CARGO_PKG_VERSION"),
+            complete: self.complete,
+            target,
+            error: Deviation::name(self.reference.trajectory.analysis),
+            budget: self.options.budget.as_secs_f64(),
+            reference: &self.reference.pair,
+            uncertainty,
+            rungs: self.rungs.iter().enumerate().map(rung).collect(),
+            best: self.best.as_ref().map(|best| best.rung),
+            lines: self.best.as_ref().map(|best| best.lines.as_str()),
+            left_out: &self.left_out,
+            warnings: self.warnings(),
+        }
+    }
+}
+
+/// Names of the files.
+const FILES: [&str; 6] = ["cost.csv", "cost.svg", "cost-work.svg", "cost.html", "best.toml", "cost.json"];
+
+/// Writes the files of a study into `directory`, all or none.
+///
+/// # Errors
+/// [`OutputError`] where a file cannot be drawn or written.
+pub fn write(directory: &Path, study: &Study) -> Result<(), OutputError> {
+    let [csv, time, work, page, best, json] = FILES;
+    let report = study.report();
+    let draw = |name: &str, chart: &Chart| {
+        chart.svg().map_err(|source| OutputError::Plot { name: name.to_owned(), source })
+    };
+    let error = report.error;
+    let by_time = draw(time, &chart(study, "time to build and solve [s]", |m| m.seconds))?;
+    let by_work =
+        draw(work, &chart(study, "(tangent evaluations + factorisations) × unknowns", Measured::sized_work))?;
+    let marks = "Dots on lines: meshes of one discretisation with an accurate solver; circles: other tolerances and Radau; \
+                 crosses: generalised-α; grey: what no other setting beats; dashed: the target, and the uncertainty of the \
+                 reference, below which errors are only known to be no more than that.";
+    let figures = [
+        (by_time.as_str(), format!("The {error} against wall time. {marks}")),
+        (by_work.as_str(), format!("The {error} against work.")),
+    ];
+    let html = html(study, &report, &figures)?;
+    let mut stage = Stage::new(directory)?;
+    stage.add(csv, |out| table(&report, out))?;
+    stage.add(time, |out| out.write_all(by_time.as_bytes()))?;
+    stage.add(work, |out| out.write_all(by_work.as_bytes()))?;
+    stage.add(page, |out| out.write_all(html.as_bytes()))?;
+    if let Some(found) = &study.best {
+        stage.add(best, |out| out.write_all(found.scene.text().as_bytes()))?;
+    }
+    stage.add(json, |out| {
+        serde_json::to_writer_pretty(&mut *out, &report)?;
+        out.write_all(b"\n")
+    })?;
+    stage.commit()?;
+    if study.best.is_none() {
+        // That of an older study would be taken for this one's. Missing, most often.
+        let _ = fs::remove_file(directory.join(best));
+    }
+    Ok(())
+}
+
+fn table(report: &Report<'_>, out: &mut dyn io::Write) -> io::Result<()> {
+    let mut rows = csv::Writer::from_writer(out);
+    rows.write_record([
+        "discretization",
+        "cells",
+        "solver",
+        "degrees_of_freedom",
+        "error",
+        "below_uncertainty",
+        "curvature_error",
+        "energy_error",
+        "seconds",
+        "runs",
+        "tangent_evaluations",
+        "factorizations",
+        "residual_evaluations",
+        "newton_iterations",
+        "steps",
+        "front",
+        "meets_target",
+    ])?;
+    for rung in &report.rungs {
+        let Measured { degrees_of_freedom, seconds, runs, statistics, deviation } = rung.measured;
+        let optional = |value: Option<f64>| value.map(exact).unwrap_or_default();
+        rows.write_record([
+            rung.discretization.clone(),
+            rung.cells.to_string(),
+            rung.solver.clone(),
+            degrees_of_freedom.to_string(),
+            exact(deviation.error),
+            rung.below_uncertainty.to_string(),
+            optional(deviation.curvature),
+            optional(deviation.energy),
+            exact(seconds),
+            runs.to_string(),
+            statistics.tangent_evaluations.to_string(),
+            statistics.factorizations.to_string(),
+            statistics.residual_evaluations.to_string(),
+            statistics.newton_iterations.to_string(),
+            (statistics.steps.max(statistics.load_steps)).to_string(),
+            rung.front.to_string(),
+            rung.meets_target.to_string(),
+        ])?;
+    }
+    rows.flush()
+}
+
+/// Error against some cost, both logarithmic.
+fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
+    let point = |rung: &Rung| [cost(&rung.measured), rung.measured.deviation.error];
+    let name = Deviation::name(study.reference.trajectory.analysis);
+    let mut chart = Chart::new("", Axis::log(axis), Axis::log(name)).sized(900, 560);
+    let costs = || study.rungs.iter().map(|rung| cost(&rung.measured)).filter(|c| *c > 0.0);
+    let ends = [costs().fold(f64::INFINITY, f64::min), costs().fold(0.0, f64::max)];
+    for (label, level, colour) in [
+        ("target", study.options.target, PALETTE[6]),
+        ("uncertainty of the reference", study.reference.uncertainty.error, GREY),
+    ] {
+        chart = chart.with(Series::dashed(label, ends.map(|x| [x, level]).into(), colour));
+    }
+    let all: Vec<[f64; 2]> = study.rungs.iter().map(point).collect();
+    let distinct_errors: Vec<[f64; 2]> =
+        all.iter().map(|[cost, error]| [*cost, error.max(study.least())]).collect();
+    let front = front(&distinct_errors).into_iter().map(|i| all[i]).collect();
+    chart = chart.with(Series::line("front", front, GREY).size(7.0).opacity(0.35));
+    for (kind, colour) in KINDS {
+        let mut label = kind;
+        let families = distinct(study.rungs.iter().map(|r| r.family).filter(|f| f.kind() == kind));
+        for family in families {
+            // The first solver of a family is that with which its meshes were compared.
+            let own = || study.rungs.iter().filter(move |r| r.family == family);
+            let Some(first) = own().next().map(|rung| rung.setting.solver) else { continue };
+            let (mut line, mut circles, mut crosses) = (vec![], vec![], vec![]);
+            for rung in own() {
+                let alpha =
+                    matches!(rung.setting.solver, Solver::Integrator(Integrator::GeneralizedAlpha { .. }));
+                match rung.setting.solver {
+                    solver if solver == first => line.push(point(rung)),
+                    _ if alpha => crosses.push(point(rung)),
+                    _ => circles.push(point(rung)),
+                }
+            }
+            chart = chart
+                .with(Series::line(label, line.clone(), colour).size(1.1).opacity(0.7))
+                .with(Series::points("", line, colour))
+                .with(Series::new("", circles, Mark::Circles, colour))
+                .with(Series::new("", crosses, Mark::Crosses, colour));
+            label = "";
+        }
+    }
+    let of = |rungs: Vec<&Rung>| rungs.into_iter().map(point).collect::<Vec<_>>();
+    let scene = of(study.rungs.iter().filter(|r| r.family == Family::Scene).collect());
+    if !scene.is_empty() {
+        chart = chart.with(Series::points("the scene as it is", scene, PALETTE[6]).size(4.5));
+    }
+    if let Some(best) = &study.best {
+        let best = of(vec![&study.rungs[best.rung]]);
+        chart = chart
+            .with(Series::new("cheapest that meets the target", best, Mark::Circles, PALETTE[1]).size(6.5));
+    }
+    chart
+}
+
+/// Kinds of discretisations with their colours.
+const KINDS: [(&str, Colour); 5] = [
+    ("ANCF, 5/3 points", PALETTE[1]),
+    ("ANCF, 4/2 points", PALETTE[4]),
+    ("RPIM, 1 neighbour", PALETTE[2]),
+    ("RPIM, 2 neighbours", PALETTE[0]),
+    ("RPIM, 3 neighbours", PALETTE[3]),
+];
+
+fn distinct(families: impl Iterator<Item = Family>) -> Vec<Family> {
+    let mut distinct = Vec::new();
+    for family in families {
+        if !distinct.contains(&family) {
+            distinct.push(family);
+        }
+    }
+    distinct
+}
+
+#[derive(Template)]
+#[template(path = "cost.html", config = "src/output/askama.toml")]
+struct Page<'a> {
+    title: &'a str,
+    version: &'a str,
+    style: &'static str,
+    target: String,
+    error_name: &'a str,
+    seconds: String,
+    warnings: &'a [String],
+    lines: &'a str,
+    figures: &'a [(&'a str, String)],
+    header: [&'static str; 9],
+    rows: Vec<(bool, [String; 9])>,
+    reference: Vec<(&'static str, String)>,
+    left_out: &'a [LeftOut],
+}
+
+fn html(study: &Study, report: &Report<'_>, figures: &[(&str, String)]) -> Result<String, OutputError> {
+    let uncertainty = report.uncertainty;
+    let mut order: Vec<&ReportedRung> = report.rungs.iter().collect();
+    order.sort_by(|a, b| a.measured.seconds.total_cmp(&b.measured.seconds));
+    let optional = |value: Option<f64>| value.map_or("–".into(), |v| human(v, 2));
+    let row = |rung: &ReportedRung| {
+        let Measured { degrees_of_freedom, seconds, statistics, deviation, .. } = rung.measured;
+        let cells = [
+            rung.discretization.clone(),
+            rung.cells.to_string(),
+            rung.solver.clone(),
+            degrees_of_freedom.to_string(),
+            if rung.below_uncertainty {
+                format!("below the reference's {}", human(uncertainty.error, 2))
+            } else {
+                human(deviation.error, 2)
+            },
+            optional(deviation.curvature),
+            optional(deviation.energy),
+            human(1e3 * seconds, 3),
+            format!("{}, {}", statistics.tangent_evaluations, statistics.factorizations),
+        ];
+        (rung.front, cells)
+    };
+    let [first, second] = report.reference;
+    let page = Page {
+        title: if report.title.trim().is_empty() { "Scene" } else { report.title },
+        version: report.version,
+        style: include_str!("../output/templates/report.css"),
+        target: human(report.target, 3),
+        error_name: report.error,
+        seconds: human(study.seconds, 3),
+        warnings: &report.warnings,
+        lines: report.lines.unwrap_or_default(),
+        figures,
+        header: [
+            "discretisation",
+            "cells",
+            "solver",
+            "unknowns",
+            "error",
+            "curvature",
+            "energy",
+            "time [ms]",
+            "tangents, factorisations",
+        ],
+        rows: order.into_iter().map(row).collect(),
+        reference: vec![
+            ("one run", first.clone()),
+            ("the other", second.clone()),
+            ("they differ by", human(uncertainty.error, 2)),
+            ("their curvatures by", optional(uncertainty.curvature)),
+            ("their energies by", optional(uncertainty.energy)),
+            ("time to make it", format!("{} s", human(study.reference.seconds, 3))),
+        ],
+        left_out: report.left_out,
+    };
+    page.render().map_err(|source| OutputError::Report { source })
+}

@@ -1,0 +1,91 @@
+//! What was measured, and which of it counts.
+
+use serde::Serialize;
+
+use super::deviation::Deviation;
+use super::setting::{Family, Setting};
+use crate::trajectory::Statistics;
+
+/// A setting with what it cost and how far it was off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rung {
+    /// The kind of discretisation.
+    pub family: Family,
+    /// Cells of the beam that has most of them.
+    pub cells: usize,
+    /// Everything that was varied.
+    pub setting: Setting,
+    /// What was measured.
+    pub measured: Measured,
+}
+
+/// Cost and error of a setting.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Measured {
+    /// Unknowns after supports are eliminated, plus multipliers.
+    pub degrees_of_freedom: usize,
+    /// Wall time to build and to solve, median of the runs \[s\].
+    pub seconds: f64,
+    /// How often it was run.
+    pub runs: usize,
+    /// Counts.
+    pub statistics: Statistics,
+    /// Its errors.
+    pub deviation: Deviation,
+}
+
+impl Measured {
+    /// Tangent evaluations and factorisations.
+    pub fn work(&self) -> usize {
+        self.statistics.tangent_evaluations + self.statistics.factorizations
+    }
+
+    /// The same times the unknowns, to which the cost of either is proportional: a cost that no clock enters.
+    pub fn sized_work(&self) -> f64 {
+        self.work() as f64 * self.degrees_of_freedom as f64
+    }
+}
+
+/// Indices of the points (cost, error) that no other one beats in both, by ascending cost. Of equal ones the first.
+pub(super) fn front(points: &[[f64; 2]]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| points[a][0].total_cmp(&points[b][0]).then(points[a][1].total_cmp(&points[b][1])));
+    let mut least = f64::INFINITY;
+    order.retain(|&i| {
+        let better = points[i][1] < least;
+        least = least.min(points[i][1]);
+        better
+    });
+    order
+}
+
+/// Index of the cheapest of the points (cost, error) whose error is at most `target`.
+pub(super) fn cheapest(points: &[[f64; 2]], target: f64) -> Option<usize> {
+    let meets = (0..points.len()).filter(|&i| points[i][1] <= target);
+    meets.min_by(|&a, &b| points[a][0].total_cmp(&points[b][0]))
+}
+
+/// (seconds, error) of every rung; an error below `least` counts as `least`, for nobody can tell them apart.
+pub(super) fn points(rungs: &[Rung], least: f64) -> Vec<[f64; 2]> {
+    rungs.iter().map(|rung| [rung.measured.seconds, rung.measured.deviation.error.max(least)]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        let points = [[3.0, 1e-4], [1.0, 1e-2], [2.0, 2e-2], [4.0, 1e-4], [5.0, 1e-6], [1.0, 1e-1]];
+        assert_eq!(front(&points), [1, 0, 4]);
+        assert_eq!(front(&[]), [0_usize; 0]);
+    }
+
+    #[test]
+    fn the_cheapest_meets_the_target() {
+        let points = [[3.0, 1e-4], [1.0, 1e-2], [2.0, 9e-5], [9.0, 1e-9]];
+        assert_eq!(cheapest(&points, 1e-4), Some(2));
+        assert_eq!(cheapest(&points, 1e-2), Some(1));
+        assert_eq!(cheapest(&points, 1e-10), None);
+    }
+}

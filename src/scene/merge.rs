@@ -1,0 +1,118 @@
+//! Tables put into a scene in place of its own.
+
+use toml_edit::{DocumentMut, Item, TableLike};
+
+use super::Scene;
+use super::error::{Fault, SceneError};
+
+/// Kinds of which an analysis of motion has at most one.
+const INTEGRATORS: [&str; 3] = ["generalized_alpha", "gauss", "radau"];
+
+impl Scene {
+    /// This scene with what `lines`, a TOML text, say in place of what it says itself: a `basis` replaces the whole basis
+    /// of its beam, and an integrator the integrator; other keys are set one by one. Comments elsewhere stay.
+    ///
+    /// # Errors
+    /// Where `lines` are not TOML, or what comes of it is not a legal scene.
+    pub fn merged(&self, lines: &str) -> Result<Self, SceneError> {
+        let document = |name: &str, text: &str| {
+            text.parse::<DocumentMut>()
+                .map_err(|error| Fault::new(error.span().unwrap_or(0..0), error.message()).at(name, text))
+        };
+        let lines = document("lines to merge", lines)?;
+        let mut scene = document(&self.name, &self.text)?;
+        merge(scene.as_table_mut(), lines.as_table(), &mut Vec::new());
+        Self::read(&self.name, &scene.to_string(), &[])
+    }
+}
+
+fn merge(into: &mut dyn TableLike, from: &dyn TableLike, path: &mut Vec<String>) {
+    for (key, item) in from.iter() {
+        path.push(key.to_owned());
+        let path_now: Vec<&str> = path.iter().map(String::as_str).collect();
+        let whole = match path_now.as_slice() {
+            ["beam", _, "basis"] => true,
+            ["analysis", "dynamic", key] if INTEGRATORS.contains(key) => {
+                for integrator in INTEGRATORS {
+                    into.remove(integrator);
+                }
+                true
+            }
+            _ => false,
+        };
+        let old = into.get_mut(key).and_then(Item::as_table_like_mut).filter(|_| !whole);
+        match (old, item.as_table_like()) {
+            (Some(old), Some(new)) => merge(old, new, path),
+            _ => {
+                let mut item = item.clone();
+                unplace(&mut item);
+                into.remove(key);
+                into.insert(key, item);
+            }
+        }
+        path.pop();
+    }
+}
+
+/// Tables go where their parent is, not where they were in another text.
+fn unplace(item: &mut Item) {
+    if let Item::Table(table) = item {
+        table.set_position(None);
+        table.iter_mut().for_each(|(_, item)| unplace(item));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::parse;
+
+    const LINES: &str = "[beam.arm.basis.rpim]\nnodes = 9\n\n[analysis.dynamic.radau]\ntolerance = 1e-4\n";
+
+    fn scene(beam: &str, dynamic: &str) -> String {
+        format!(
+            "{beam}\n[effect.gravity]\nacceleration = [0, -9.81] # down\n[[support]]\nbeam = \"arm\"\nat = \"start\"\n\
+             fix = [\"x\", \"y\"]\n{dynamic}"
+        )
+    }
+
+    #[test]
+    fn tables_are_replaced_however_they_are_written() {
+        let section =
+            "axial_stiffness = 1e4\nbending_stiffness = 1\nmass_per_length = 1\nstart = [0, 0]\nend = [1, 0]";
+        let beams = [
+            format!("[beam.arm]\n{section}\nbasis.ancf.elements = 4"),
+            format!("[beam.arm]\n{section}\n[beam.arm.basis.ancf]\nelements = 4"),
+            format!("[beam.arm]\n{section}\n[beam.arm.basis]\nrpim = {{ nodes = 5, neighbours = 3 }}"),
+            format!("[beam]\narm = {{ {}, basis.ancf.elements = 4 }}", section.replace('\n', ", ")),
+        ];
+        let motions = [
+            "[analysis.dynamic]\nduration = 1\n",
+            "[analysis.dynamic]\nduration = 1\ngauss = { step = 0.01 }\n",
+            "[analysis.dynamic]\nduration = 1\n[analysis.dynamic.generalized_alpha]\nstep = 0.01\n",
+            "[analysis]\ndynamic = { duration = 1, radau.stages = 2, radau.step = 0.1 }\n",
+        ];
+        let expected = parse("expected", &scene(&beams[0], motions[0])).unwrap();
+        let expected = expected
+            .with(&[
+                "beam.arm.basis={ rpim = { nodes = 9 } }".to_owned(),
+                "analysis.dynamic.radau.tolerance=1e-4".to_owned(),
+            ])
+            .unwrap();
+        for beam in &beams {
+            for motion in motions {
+                let scene = parse("scene", &scene(beam, motion)).unwrap();
+                let merged = scene.merged(LINES).unwrap();
+                assert_eq!(merged.model(), expected.model(), "{}", merged.text());
+                assert_eq!(merged.analysis(), expected.analysis(), "{}", merged.text());
+                assert!(merged.text().contains("# down"), "{}", merged.text());
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_scene_is_refused() {
+        let scene = parse("scene", &scene("[beam.arm]\nstart = [0, 0]\nend = [1, 0]\naxial_stiffness = 1\nbending_stiffness = 1\nmass_per_length = 1\nbasis.ancf.elements = 4", "[analysis.dynamic]\nduration = 1\n")).unwrap();
+        assert!(scene.merged("[beam.arm.basis.rpim]\nnodes = 1\n").is_err());
+        assert!(scene.merged("[beam").is_err());
+    }
+}

@@ -1,0 +1,114 @@
+//! What accuracy costs: settings are measured against a reference, and the cheapest one that is good enough is a scene.
+
+use super::commands::{ROLL_UP, ancf, entries, folder, status, stderr};
+use std::fs;
+
+const MODAL: &str = include_str!("../scenes/modal.toml");
+const FILES: [&str; 6] = ["best.toml", "cost-work.svg", "cost.csv", "cost.html", "cost.json", "cost.svg"];
+
+#[test]
+fn errors_fall_with_the_mesh_and_the_cheapest_setting_is_a_scene() {
+    let folder = folder(ROLL_UP);
+    let folder = folder.path();
+    let output = ancf(folder, &["cost", "scene.toml", "--target", "1e-3", "--budget", "30 s", "--json"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    assert_eq!(entries(&folder.join("out/scene")), FILES);
+    let text = stderr(&output);
+    for part in
+        ["Roll-up, ANCF, 4 nodes", "uncertainty of the reference", "best.toml", "[beam.cantilever.basis."]
+    {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let printed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let uncertainty = printed["uncertainty"]["error"].as_f64().unwrap();
+    assert!(uncertainty > 0.0 && uncertainty <= 1e-4, "{uncertainty}");
+
+    // Cable elements of fourth order, 4 to 16 of them.
+    let mut rows = csv::Reader::from_path(folder.join("out/scene/cost.csv")).unwrap();
+    let column = |rows: &mut csv::Reader<fs::File>, name: &str| {
+        rows.headers().unwrap().iter().position(|header| header == name).unwrap()
+    };
+    let [kind, cells, solver, error, curvature, energy] =
+        ["discretization", "cells", "solver", "error", "curvature_error", "energy_error"]
+            .map(|n| column(&mut rows, n));
+    let rows: Vec<csv::StringRecord> = rows.records().map(Result::unwrap).collect();
+    let of = |count: &str, column: usize| {
+        let row = rows.iter().find(|row| {
+            &row[kind] == "ANCF, 4/2 points" && &row[cells] == count && &row[solver] == "as the scene is"
+        });
+        row.unwrap()[column].parse::<f64>().unwrap()
+    };
+    for column in [error, curvature, energy] {
+        let errors = ["4", "8", "16"].map(|count| of(count, column));
+        assert!(errors[0] > 2.0 * errors[1] && errors[1] > 2.0 * errors[2], "{errors:?}");
+    }
+
+    let best = ["out/scene/best.toml"];
+    assert_eq!(status(&ancf(folder, &["check", best[0]])), 0);
+    let solved = ancf(folder, &["run", best[0], "--json", "--quiet"]);
+    let solved: serde_json::Value = serde_json::from_slice(&solved.stdout).unwrap();
+    let [x, y] = ["/probes/tip/x", "/probes/tip/y"].map(|at| solved.pointer(at).unwrap().as_f64().unwrap());
+    // The exact tip of a full circle, but for the stretch of the beam, is at the clamp.
+    assert!(x.hypot(y) < 2e-3 * 1.8, "{x} {y}");
+    // What is pasted is what is in the scene.
+    let (lines, scene) =
+        (printed["lines"].as_str().unwrap(), fs::read_to_string(folder.join(best[0])).unwrap());
+    assert!(lines.lines().all(|line| scene.contains(line)), "{lines}\n{scene}");
+}
+
+#[test]
+fn frequencies_have_a_price_too() {
+    let folder = folder(MODAL);
+    let arguments =
+        ["cost", "scene.toml", "--target", "1e-3", "--budget", "20s", "-o", "modal", "--quiet", "--json"];
+    let output = ancf(folder.path(), &arguments);
+    assert_eq!((status(&output), stderr(&output).as_str()), (0, ""));
+    let printed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(printed["error"], "relative error of frequencies");
+    let best = &printed["rungs"][printed["best"].as_u64().unwrap() as usize];
+    assert!(best["deviation"]["error"].as_f64().unwrap() <= 1e-3);
+    assert_eq!(status(&ancf(folder.path(), &["check", "modal/best.toml"])), 0);
+}
+
+#[test]
+fn a_reference_that_is_not_good_enough_is_not_hidden() {
+    let folder = folder(ROLL_UP);
+    fs::create_dir(folder.path().join("costs")).unwrap();
+    fs::write(folder.path().join("costs/best.toml"), "# of an older study").unwrap();
+    let output =
+        ancf(folder.path(), &["cost", "scene.toml", "--target", "1e-12", "--budget", "4s", "-o", "costs"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    assert!(stderr(&output).contains("warning: the reference is not good enough"), "{}", stderr(&output));
+    assert_eq!(entries(&folder.path().join("costs")), FILES[1..]);
+}
+
+#[test]
+fn what_cannot_be_asked_for_ends_with_2_and_leaves_nothing() {
+    let folder = folder(ROLL_UP);
+    for (option, value, expected) in [
+        ("--target", "0", "target error 0e0"),
+        ("--target", "2", "target error 2e0"),
+        ("--target", "NaN", "target error NaN"),
+        ("--target", "small", "invalid value 'small'"),
+        ("--budget", "60", "no unit"),
+        ("--budget", "2 m", "dimension"),
+        ("--budget", "-3s", "positive time"),
+        ("--budget", "1 us", "budget of"),
+        ("--set", "analysis.static.arc_length.max_points=20", "number of points"),
+    ] {
+        let output = ancf(folder.path(), &["cost", "scene.toml", &format!("{option}={value}")]);
+        assert_eq!(status(&output), 2, "{option} {value}");
+        assert!(stderr(&output).contains(expected), "{option} {value}: {}", stderr(&output));
+        assert_eq!(entries(folder.path()), ["scene.toml"]);
+    }
+}
+
+#[test]
+fn a_scene_that_cannot_be_solved_has_no_reference() {
+    // A moment that rolls the beam up into millions of turns.
+    let folder = folder(&ROLL_UP.replace("312.885175 ", "1e9 "));
+    let output = ancf(folder.path(), &["cost", "scene.toml", "--budget", "1s"]);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    assert!(stderr(&output).contains("no reference could be made"), "{}", stderr(&output));
+    assert_eq!(entries(folder.path()), ["scene.toml"]);
+}
