@@ -223,7 +223,15 @@ fn other_solvers(task: &Task<'_>, mean_step: f64) -> Vec<Vec<Solver>> {
                 };
                 parts.iter().map(solver).collect::<Vec<_>>()
             };
-            let alpha = |step| Integrator::GeneralizedAlpha { step, spectral_radius: SPECTRAL_RADIUS };
+            let alpha = |step| {
+                let newton_tolerance = match step {
+                    StepControl::Fixed(_) => {
+                        tolerance(1e-3 * task.target).clamp(Integrator::NEWTON_TOLERANCE, 1e-8)
+                    }
+                    StepControl::Tolerance(_) => Integrator::NEWTON_TOLERANCE,
+                };
+                Integrator::GeneralizedAlpha { step, spectral_radius: SPECTRAL_RADIUS, newton_tolerance }
+            };
             let fixed = |division: f64| {
                 Solver::Integrator(alpha(StepControl::Fixed(
                     short(mean_step / division).min(settings.duration),

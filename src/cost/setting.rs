@@ -251,11 +251,15 @@ fn basis(path: &str, discretization: &Discretization, points: GaussPoints) -> St
 
 fn method(integrator: &Integrator) -> String {
     let (name, first) = match integrator {
-        Integrator::GeneralizedAlpha { spectral_radius, .. } if *spectral_radius == SPECTRAL_RADIUS => {
-            ("generalized_alpha", String::new())
-        }
-        Integrator::GeneralizedAlpha { spectral_radius, .. } => {
-            ("generalized_alpha", format!("spectral_radius = {spectral_radius:?}\n"))
+        Integrator::GeneralizedAlpha { spectral_radius, newton_tolerance, .. } => {
+            let mut lines = String::new();
+            if *spectral_radius != SPECTRAL_RADIUS {
+                lines += &format!("spectral_radius = {spectral_radius:?}\n");
+            }
+            if *newton_tolerance != Integrator::NEWTON_TOLERANCE {
+                lines += &format!("newton_tolerance = {newton_tolerance:e}\n");
+            }
+            ("generalized_alpha", lines)
         }
         Integrator::Gauss { stages, .. } => ("gauss", format!("stages = {stages}\n")),
         Integrator::Radau { stages, .. } => ("radau", format!("stages = {stages}\n")),
@@ -309,8 +313,12 @@ mod tests {
         let integrators = [
             Integrator::Gauss { stages: 2, step: tolerance },
             Integrator::Radau { stages: 3, step },
-            Integrator::GeneralizedAlpha { step, spectral_radius: SPECTRAL_RADIUS },
-            Integrator::GeneralizedAlpha { step: tolerance, spectral_radius: 1.0 },
+            Integrator::GeneralizedAlpha { step, spectral_radius: SPECTRAL_RADIUS, newton_tolerance: 2e-9 },
+            Integrator::GeneralizedAlpha {
+                step: tolerance,
+                spectral_radius: 1.0,
+                newton_tolerance: Integrator::NEWTON_TOLERANCE,
+            },
         ];
         let mut solvers: Vec<_> = integrators.map(|i| (&motion, Solver::Integrator(i))).into();
         solvers.extend([(&still, Solver::Scene), (&still, Solver::Tolerance(2e-7))]);
