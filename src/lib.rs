@@ -75,7 +75,7 @@
 //!         side_condition: SideCondition::Plus,
 //!         neighbours: 2,
 //!     },
-//!     gauss_points: GaussPoints { stretch: 4, bend: 4 },
+//!     gauss_points: GaussPoints { stretch: 4, bend: 4, lobatto: false },
 //! };
 //! let model = Model {
 //!     beams: vec![beam],

@@ -160,13 +160,15 @@ pub enum SideCondition {
     Minus,
 }
 
-/// Gauss points in a cell, by energy.
+/// Quadrature points in a cell, by energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GaussPoints {
     /// For ½ EA ε².
     pub stretch: usize,
     /// For ½ EI κ².
     pub bend: usize,
+    /// Whether those for ½ EA ε² are Lobatto's, which share the cell's ends, and not Gauss'.
+    pub lobatto: bool,
 }
 
 /// A point of a beam.

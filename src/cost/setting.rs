@@ -35,7 +35,7 @@ impl Family {
     /// Cable elements with the points that integrate Green's strain exactly.
     pub const FULL: Self = Self::Ancf(ANCF_GAUSS_POINTS);
     /// Cable elements with fewer points, which let membrane locking go.
-    pub const REDUCED: Self = Self::Ancf(GaussPoints { stretch: 4, bend: 2 });
+    pub const REDUCED: Self = Self::Ancf(GaussPoints { stretch: 4, bend: 2, lobatto: false });
 
     /// Radial point interpolation as scenes have it where they say no more, but for the Gauss points.
     pub fn usual(points: usize) -> Self {
@@ -78,7 +78,7 @@ impl Family {
                         side_condition: RPIM_SIDE_CONDITION,
                         neighbours,
                     };
-                    (discretization, GaussPoints { stretch: points, bend: points })
+                    (discretization, GaussPoints { stretch: points, bend: points, lobatto: false })
                 }
             }
         };
@@ -243,8 +243,9 @@ fn basis(path: &str, discretization: &Discretization, points: GaussPoints) -> St
         }
     }
     if points != default_points {
-        let GaussPoints { stretch, bend } = points;
-        let _ = writeln!(text, "gauss_points = {{ stretch = {stretch}, bend = {bend} }}");
+        let GaussPoints { stretch, bend, lobatto } = points;
+        let rule = if lobatto { ", stretch_rule = \"lobatto\"" } else { "" };
+        let _ = writeln!(text, "gauss_points = {{ stretch = {stretch}, bend = {bend}{rule} }}");
     }
     text
 }

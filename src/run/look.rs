@@ -120,8 +120,11 @@ impl<'a> Look<'a> {
             settings.push((
                 format!("beam {name}, strain"),
                 format!(
-                    "{}; Gauss points {} (stretch), {} (bend) a cell",
-                    beam.strain, beam.gauss_points.stretch, beam.gauss_points.bend
+                    "{}; {} points {} (stretch), Gauss points {} (bend) a cell",
+                    beam.strain,
+                    if beam.gauss_points.lobatto { "Lobatto" } else { "Gauss" },
+                    beam.gauss_points.stretch,
+                    beam.gauss_points.bend
                 ),
             ));
         }

@@ -184,6 +184,19 @@ pub struct GaussPointsTable {
     pub stretch: Located<Count<1>>,
     /// For the bending energy.
     pub bend: Located<Count<1>>,
+    /// Rule of the points for stretching; Gauss' when left out.
+    pub stretch_rule: Option<Located<RuleName>>,
+}
+
+/// A family of quadrature rules.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RuleName {
+    /// Interior points, exact up to degree 2n − 1.
+    #[default]
+    Gauss,
+    /// Both ends of a cell are among the points, exact up to degree 2n − 3.
+    Lobatto,
 }
 
 /// Radial function of the distance d, in units of the average spacing.

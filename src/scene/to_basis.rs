@@ -4,13 +4,13 @@ use crate::model::{Discretization, GaussPoints, Kernel, Nodes, SideCondition};
 
 use super::error::Fault;
 use super::file::{
-    AncfTable, BasisTable, GaussPointsTable, KernelTable, RpimTable, SideConditionName, SpacingName,
+    AncfTable, BasisTable, GaussPointsTable, KernelTable, RpimTable, RuleName, SideConditionName, SpacingName,
 };
 use super::value::{Located, NodeList};
 
 /// Gauss points of ANCF elements unless the scene says otherwise: five integrate the square of Green's strain, a
 /// polynomial of degree 8, exactly; three serve for bending.
-pub const ANCF_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 5, bend: 3 };
+pub const ANCF_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 5, bend: 3, lobatto: false };
 /// Radial function of RPIM unless the scene says otherwise.
 ///
 /// Distance of the tip from the exact place, per length, uniform nodes, q = 1.03, m = 2, four Gauss points a cell:
@@ -33,7 +33,7 @@ pub const RPIM_SIDE_CONDITION: SideCondition = SideCondition::Plus;
 pub const RPIM_NEIGHBOURS: usize = 2;
 /// Gauss points of RPIM cells unless the scene says otherwise: five and eight give the same error for even nodes and a
 /// larger one on coarse meshes under a tip load; three double it.
-pub const RPIM_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 4, bend: 4 };
+pub const RPIM_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 4, bend: 4, lobatto: false };
 
 /// Most nodes of a scene.
 pub const MAX_NODES: f64 = 1e7;
@@ -214,7 +214,16 @@ fn gauss_points(table: Option<&GaussPointsTable>, default: GaussPoints) -> Resul
                 .help(format!("from 1 to {MAX_GAUSS_POINTS} are legal")));
         }
     }
-    Ok(GaussPoints { stretch: to_usize(table.stretch.get().0), bend: to_usize(table.bend.get().0) })
+    let rule = table.stretch_rule.as_ref().map(|rule| *rule.get()).unwrap_or_default();
+    if rule == RuleName::Lobatto && table.stretch.get().0 < 2 {
+        return Err(Fault::new(table.stretch.span(), "found 1 point by Lobatto's rule")
+            .help("it has both ends of a cell among its points: give 2 or more"));
+    }
+    Ok(GaussPoints {
+        stretch: to_usize(table.stretch.get().0),
+        bend: to_usize(table.bend.get().0),
+        lobatto: rule == RuleName::Lobatto,
+    })
 }
 
 fn counted(count: u64, spacing: Option<&Located<SpacingName>>) -> Nodes {

@@ -6,7 +6,7 @@ use crate::effect::{
     Bend, DeadForce, Density, Effect, Engineering, FollowerForce, Green, Inertia, Integral, Kind, Moment,
     Stretch,
 };
-use crate::model::{Beam, Load, Model, Place, StrainMeasure};
+use crate::model::{Beam, GaussPoints, Load, Model, Place, StrainMeasure};
 use nalgebra::Vector2;
 
 /// The fields of the reference state at all points of a table: one `[z_0, z_1, …]` a point.
@@ -69,7 +69,9 @@ pub(super) fn add(system: &mut System, model: &Model, needs: Needs) -> Result<()
         // Only a curved beam keeps its reference strains.
         let straight = builder.part.straight;
         if let Some(ea) = beam.section.axial_stiffness {
-            let table = basis.table(Quadrature::Gauss(beam.gauss_points.stretch), &[1]);
+            let GaussPoints { stretch, lobatto, .. } = beam.gauss_points;
+            let rule = if lobatto { Quadrature::Lobatto(stretch) } else { Quadrature::Gauss(stretch) };
+            let table = basis.table(rule, &[1]);
             let gradients = |z: Vec<[Vector2<f64>; 1]>| -> Vec<_> {
                 if straight { Vec::new() } else { z.into_iter().map(|[r]| r).collect() }
             };

@@ -68,7 +68,7 @@ impl Problem {
     }
 
     fn ancf(&self) -> (Discretization, GaussPoints) {
-        (Discretization::Ancf { nodes: self.nodes(4) }, GaussPoints { stretch: 4, bend: 2 })
+        (Discretization::Ancf { nodes: self.nodes(4) }, GaussPoints { stretch: 4, bend: 2, lobatto: false })
     }
 
     fn rpim(&self) -> (Discretization, GaussPoints) {
@@ -81,7 +81,7 @@ impl Problem {
             side_condition: SideCondition::Plus,
             neighbours: 2,
         };
-        (rpim, GaussPoints { stretch: 4, bend: 4 })
+        (rpim, GaussPoints { stretch: 4, bend: 4, lobatto: false })
     }
 
     fn rotate(&self, [x, y]: [f64; 2]) -> [f64; 2] {

@@ -324,10 +324,39 @@ fn hopeless_choices_are_refused_with_their_reason() {
         (Kernel::Multiquadric { q: 1.03, shape: f64::NAN }, "shape"),
         (Kernel::ThinPlateSpline { exponent: 3.0 }, "exponent"),
         (Kernel::Wendland { radius: 0.5 }, "radius"),
+        // Just not beyond the next node.
+        (Kernel::Wendland { radius: 1.0 }, "radius"),
     ] {
         match with(kernel, 2, 2) {
             Err(BasisError::KernelParameter { parameter: found, .. }) => assert_eq!(found, parameter),
             other => panic!("{kernel:?}: {other:?}"),
         }
     }
+}
+
+/// What decides is the widest support, which stands in the middle of the beam, and not those clipped at its ends.
+#[test]
+fn a_support_that_is_too_wide_is_refused_wherever_it_stands() {
+    let nodes: Vec<f64> = (0..81).map(f64::from).collect();
+    let kernel = Kernel::Multiquadric { q: 1.03, shape: 3.3 };
+    let found = Basis::new(&rpim(nodes, kernel, SideCondition::Plus, 32), 80.0);
+    assert!(
+        matches!(found, Err(BasisError::SupportTooWide { nodes: 66, .. })),
+        "{:?}",
+        found.map(|basis| basis.width())
+    );
+}
+
+/// cond(G) is about 1e5 for a shape of 1 and 1e10 for 4, of a support of six nodes.
+#[test]
+fn the_condition_number_is_told() {
+    let condition = |shape| {
+        let nodes: Vec<f64> = (0..9).map(f64::from).collect();
+        let kernel = Kernel::Multiquadric { q: 1.03, shape };
+        let basis = Basis::new(&rpim(nodes, kernel, SideCondition::Plus, 2), 8.0).expect("a basis");
+        basis.defects().condition_log10
+    };
+    let (one, four) = (condition(1.0), condition(4.0));
+    assert!((3.5..7.5).contains(&one), "shape 1: {one}");
+    assert!((8.5..13.5).contains(&four), "shape 4: {four}");
 }

@@ -55,7 +55,7 @@ fn model(discretization: Discretization, supports: Vec<Support>) -> Model {
             },
             strain: StrainMeasure::Engineering,
             discretization,
-            gauss_points: GaussPoints { stretch: 4, bend: 4 },
+            gauss_points: GaussPoints { stretch: 4, bend: 4, lobatto: false },
         }],
         supports,
         loads: vec![Load::Gravity { acceleration: GRAVITY }],

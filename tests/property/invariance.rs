@@ -97,7 +97,7 @@ fn cantilever(metre: f64, newton: f64, angle: f64, discretization: Discretizatio
             },
             strain: StrainMeasure::Engineering,
             discretization,
-            gauss_points: ancf::model::GaussPoints { stretch: 4, bend: 4 },
+            gauss_points: ancf::model::GaussPoints { stretch: 4, bend: 4, lobatto: false },
         }],
         supports: vec![clamp()],
         loads: vec![Load::Force {

@@ -43,7 +43,7 @@ fn beam(discretization: Discretization, angle: f64) -> Beam {
         },
         strain: StrainMeasure::Engineering,
         discretization,
-        gauss_points: GaussPoints { stretch: 5, bend: 4 },
+        gauss_points: GaussPoints { stretch: 5, bend: 4, lobatto: false },
     }
 }
 

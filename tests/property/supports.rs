@@ -24,7 +24,7 @@ fn model(discretization: Discretization, angle: f64, supports: Vec<Support>) -> 
             },
             strain: StrainMeasure::Engineering,
             discretization,
-            gauss_points: GaussPoints { stretch: 4, bend: 4 },
+            gauss_points: GaussPoints { stretch: 4, bend: 4, lobatto: false },
         }],
         supports,
         loads: vec![Load::Force { at: Place { beam: 0, s: LENGTH }, value: [0.2, 0.3], follower: false }],
@@ -190,4 +190,24 @@ fn stopping_ends_the_analysis() {
         solution.states.iter().map(|(load, _)| *load).collect::<Vec<_>>()
     };
     assert_eq!(recorded(4), [0.0, 0.25, 0.5, 0.75, 1.0]);
+}
+
+/// What one support holds of a node and another holds of it too add up; the same component twice is a contradiction.
+#[test]
+fn supports_at_one_node_add_up() {
+    let support =
+        |x: bool, y: bool| Support { fix: Fixed { x, y, ..Fixed::default() }, ..Support::default() };
+    let tip = |supports: Vec<Support>| {
+        let far = Support { at: Place { beam: 0, s: LENGTH }, ..support(false, true) };
+        let discretization = Discretization::Ancf { nodes: Nodes::Uniform(7) };
+        let mut model = model(discretization, 0.3, [supports, vec![far]].concat());
+        model.loads[0] =
+            Load::Force { at: Place { beam: 0, s: 0.5 * LENGTH }, value: [0.2, 0.3], follower: false };
+        let analysis = Analysis::Static(Static::default());
+        run(&model, &analysis, &mut |_| Control::Continue).map(|t| t.probes[1].samples.clone())
+    };
+    let together = tip(vec![support(true, true)]).expect("a pinned beam");
+    let apart = tip(vec![support(true, false), support(false, true)]).expect("the same");
+    assert_eq!(together.last(), apart.last());
+    assert!(tip(vec![support(true, true), support(false, true)]).is_err(), "y is held twice");
 }

@@ -63,8 +63,8 @@ fn system(discretization: Discretization, gauss_points: GaussPoints) -> System {
 /// Assembly of force and tangent, factorisation, solution.
 fn newton_iteration(c: &mut Criterion) {
     let mut group = c.benchmark_group("newton-iteration");
-    let full = GaussPoints { stretch: 5, bend: 3 };
-    let four = GaussPoints { stretch: 4, bend: 4 };
+    let full = GaussPoints { stretch: 5, bend: 3, lobatto: false };
+    let four = GaussPoints { stretch: 4, bend: 4, lobatto: false };
     let uniform = |cells: usize| Discretization::Ancf { nodes: Nodes::Uniform(cells + 1) };
     let cases = [
         ("ancf-5-3", 1_000, uniform(1_000), full),
@@ -94,10 +94,17 @@ fn newton_iteration(c: &mut Criterion) {
 fn roll_up(c: &mut Criterion) {
     let ancf = Discretization::Ancf { nodes: Nodes::Uniform(10) };
     let cases = [
-        ("ancf-9-elements-5-3", cantilever(ancf, GaussPoints { stretch: 5, bend: 3 }, std::f64::consts::TAU)),
+        (
+            "ancf-9-elements-5-3",
+            cantilever(ancf, GaussPoints { stretch: 5, bend: 3, lobatto: false }, std::f64::consts::TAU),
+        ),
         (
             "rpim-10-nodes-4-4",
-            cantilever(rpim(Nodes::Uniform(10)), GaussPoints { stretch: 4, bend: 4 }, std::f64::consts::TAU),
+            cantilever(
+                rpim(Nodes::Uniform(10)),
+                GaussPoints { stretch: 4, bend: 4, lobatto: false },
+                std::f64::consts::TAU,
+            ),
         ),
     ];
     for (name, model) in cases {
@@ -136,7 +143,7 @@ fn factorisations(c: &mut Criterion) {
     let ancf = Discretization::Ancf { nodes: Nodes::Uniform(1_001) };
     let cases = [("ancf", ancf), ("rpim", rpim(Nodes::Uniform(1_001)))];
     for (name, discretization) in cases {
-        let system = system(discretization, GaussPoints { stretch: 4, bend: 4 });
+        let system = system(discretization, GaussPoints { stretch: 4, bend: 4, lobatto: false });
         let n = system.coordinates();
         let mut k = system.matrix();
         let q = system.reference();

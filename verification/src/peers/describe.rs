@@ -170,7 +170,7 @@ fn cable(beam: &Beam, basis: &Basis) -> Result<Cable, String> {
         return Err(of_beam(&format!("the strain measure `{}` (only `engineering`)", beam.strain)));
     }
     let points = [beam.gauss_points.stretch, beam.gauss_points.bend];
-    if ![[5, 3], [4, 2]].contains(&points) {
+    if beam.gauss_points.lobatto || ![[5, 3], [4, 2]].contains(&points) {
         return Err(of_beam(&format!("the Gauss points {}/{} (only 5/3 and 4/2)", points[0], points[1])));
     }
     let length = basis.length();
