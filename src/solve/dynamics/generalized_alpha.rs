@@ -16,7 +16,7 @@
 //! frequency and would not be followed anyway.
 //!
 //! # A tangent for many steps
-//! The tangent is kept, turned with the nodes ([`super::turns`]), as long as the increments shrink at least by [`KEEP`] an iteration; then it is
+//! The tangent is kept, turned with the nodes ([`super::turns`]), as long as the increments shrink to 0.6 % and less from one iteration to the next; then it is
 //! taken anew at the last equilibrium. A residual costs a third of a tangent with its factorisation and substitution. Where that
 //! iteration does not converge, Newton's method with a tangent at every iterate solves the step.
 

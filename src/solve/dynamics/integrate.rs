@@ -12,7 +12,7 @@
 //! # Steps of fixed length
 //! Where the equations of a step cannot be solved, that step is divided, which the counts of rejected steps and a warning tell; all others
 //! keep their length and their places. The equations of a step in which nodes turn far have several solutions, and the trapezoidal
-//! rule pumps energy into a stiff beam there; so a step that turns a node by more than [`COARSE_TURN`] is divided too if it gains energy.
+//! rule pumps energy into a stiff beam there; so a step that turns a node by more than 0.1 rad is divided too if it gains energy.
 
 use super::collocation::Collocation;
 use super::generalized_alpha::GeneralizedAlpha;

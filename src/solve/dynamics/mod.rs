@@ -27,7 +27,7 @@ pub mod method;
 pub mod motion;
 pub mod start;
 pub mod tableau;
-mod turns;
+pub mod turns;
 
 use super::newton::Failure;
 use crate::trajectory::{Statistics, StepRecord};
