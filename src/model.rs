@@ -4,10 +4,16 @@
 //! a program that uses the library can fill one directly.
 
 mod analysis;
+mod joint;
+mod law;
 
 pub use analysis::*;
+pub use joint::Joint;
+pub use law::{Law, Table};
 
+use crate::system::assembly::Part;
 use std::fmt;
+use std::sync::Arc;
 
 /// A complete mechanical model.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,8 +24,12 @@ pub struct Model {
     pub beams: Vec<Beam>,
     /// What is held, and what is moved by prescription.
     pub supports: Vec<Support>,
+    /// How beams are joined.
+    pub joints: Vec<Joint>,
     /// What acts on the beams besides their own elasticity and inertia.
     pub loads: Vec<Load>,
+    /// What else takes part: damping, springs, masses, ….
+    pub parts: Vec<Arc<dyn Part>>,
     /// How the beams move at the start of a motion; at rest where nothing is said.
     pub initial_velocities: Vec<InitialVelocity>,
     /// Where to watch.
@@ -187,8 +197,11 @@ pub struct Support {
     pub at: Place,
     /// What is held.
     pub fix: Fixed,
-    /// By how much the held quantities move until the load factor is 1: x \[m\], y \[m\], angle \[rad\].
+    /// By how much the held quantities move until the load factor is 1: x \[m\], y \[m\], angle \[rad\]; in a motion, what `law` is
+    /// multiplied by.
     pub displacement: Displacement,
+    /// How the displacement follows time; needed in a motion, and only there.
+    pub law: Option<Law>,
 }
 
 impl Default for Place {
@@ -264,6 +277,13 @@ pub enum Load {
     Gravity {
         /// \[m/s²\].
         acceleration: [f64; 2],
+    },
+    /// A load that a law of time multiplies; in a motion only. Other loads act in full from the start.
+    InTime {
+        /// What acts.
+        load: Box<Load>,
+        /// By what factor.
+        law: Law,
     },
 }
 

@@ -6,7 +6,7 @@ mod modes;
 
 pub use error::RunError;
 
-use crate::model::{Analysis, Displacement, Dynamic, Model};
+use crate::model::{Analysis, Dynamic, Model};
 use crate::restart::{RestartError, SavedState};
 use crate::solve::dynamics::start;
 use crate::solve::statics::{self, Target};
@@ -42,7 +42,8 @@ pub enum Control {
 pub type Observer<'o> = &'o mut dyn FnMut(&Progress) -> Control;
 
 fn needs(analysis: &Analysis) -> Needs {
-    Needs { inertia: matches!(analysis, Analysis::Modal { .. } | Analysis::Dynamic(_)) }
+    let motion = matches!(analysis, Analysis::Dynamic(_));
+    Needs { inertia: motion || matches!(analysis, Analysis::Modal { .. }), motion }
 }
 
 /// Builds the model's equations and lists them.
@@ -162,12 +163,6 @@ fn beginning(
     system: &System,
     saved: Option<&SavedState>,
 ) -> Result<dynamics::Checkpoint, RunError> {
-    if model.supports.iter().any(|support| support.displacement != Displacement::default()) {
-        return Err(RunError::Unavailable {
-            what: "prescribed motion of a support in a dynamic analysis",
-            instead: "hold the support without `move`, or use a static analysis",
-        });
-    }
     match saved {
         None => Ok(start::from_rest(system, &model.initial_velocities)?),
         Some(saved) if saved.time() >= settings.duration => {

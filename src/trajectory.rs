@@ -109,12 +109,14 @@ pub struct Energy {
     pub potential: f64,
     /// Work that loads without a potential (moments, follower forces) have done since the start of a motion.
     pub work: f64,
+    /// Energy that damping has taken since the start of a motion.
+    pub lost: f64,
 }
 
 impl Energy {
-    /// Sum of all parts, less the work put in: constant as long as nothing is lost.
+    /// Sum of all parts, less the work put in and with what was lost: constant.
     pub fn total(&self) -> f64 {
-        self.stretch + self.bend + self.kinetic + self.potential - self.work
+        self.stretch + self.bend + self.kinetic + self.potential - self.work + self.lost
     }
 }
 

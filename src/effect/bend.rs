@@ -46,7 +46,7 @@ impl Bend {
 
 /// κ, ∂κ/∂r', ∂κ/∂r'' and 1/|r'|².
 #[inline(always)]
-fn first_derivatives(z: &Gradient<2>) -> (f64, Gradient<2>, f64) {
+pub(super) fn first_derivatives(z: &Gradient<2>) -> (f64, Gradient<2>, f64) {
     let inverse = 1.0 / z[0].norm_squared();
     let kappa = (z[0].x * z[1].y - z[0].y * z[1].x) * inverse;
     let by_first = (quarter_turn(&z[1]) + z[0] * (2.0 * kappa)) * -inverse;

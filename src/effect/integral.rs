@@ -45,12 +45,12 @@ pub struct Workspace {
 /// A density, the shape functions at its quadrature points, and the place of its beam among the coordinates.
 #[derive(Clone, Debug)]
 pub struct Integral<D, const M: usize> {
-    kind: Kind,
-    beam: usize,
+    pub(super) kind: Kind,
+    pub(super) beam: usize,
     /// First coefficient of the beam; coefficient c has the coordinates 2c and 2c + 1.
     offset: usize,
     table: BasisTable,
-    density: D,
+    pub(super) density: D,
 }
 
 /// `f(const width, arguments…)`, the width a compile-time constant for the common tables and 0 for all others.
@@ -174,6 +174,28 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             for (f, sum) in f.as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
                 f[0] += sum[0];
                 f[1] += sum[1];
+            }
+        }
+    }
+
+    /// `f += ∫ Σ_m N⁽ᵒᵐ⁾ g_m(z, ż) ds` with the fields of `q` and `v`.
+    pub(super) fn force_of_pairs(
+        &self,
+        q: &[f64],
+        v: &[f64],
+        f: &mut [f64],
+        force: impl Fn(usize, &Gradient<M>, &Gradient<M>) -> Gradient<M>,
+    ) {
+        let width = self.table.width;
+        for (cell, entry) in self.table.cells.iter().enumerate() {
+            let (weights, rows) = self.table.block(*entry);
+            let first = 2 * (self.offset + entry.first as usize);
+            let range = first..first + 2 * width;
+            let (q, v, f) = (&q[range.clone()], &v[range.clone()], &mut f[range]);
+            for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
+                let (z, rate) = (self.fields::<0>(rows, q), self.fields::<0>(rows, v));
+                let gradient = force(cell * weights.len() + p, &z, &rate);
+                self.add_gradient::<0>(*weight, rows, &gradient, f);
             }
         }
     }

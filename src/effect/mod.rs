@@ -24,12 +24,16 @@
 //! ordinary tangent.
 
 mod bend;
+mod damping;
+mod dissipation;
 mod inertia;
 mod integral;
 mod load;
 mod stretch;
 
 pub use bend::{Bend, curvature};
+pub use damping::{BendDamping, MassDamping, StretchDamping};
+pub use dissipation::{Damping, Dissipation, Rayleigh};
 pub use inertia::Inertia;
 pub use integral::{Integral, Workspace};
 pub use load::{DeadForce, FollowerForce, Moment};
@@ -91,11 +95,13 @@ pub enum Kind {
     Moment,
     /// Force per length.
     DistributedForce,
+    /// Damping of a beam's motion and deformation.
+    Damping,
 }
 
 impl Kind {
     /// All kinds that exist.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Stretch,
         Self::Bend,
         Self::Inertia,
@@ -103,6 +109,7 @@ impl Kind {
         Self::Force,
         Self::Moment,
         Self::DistributedForce,
+        Self::Damping,
     ];
 
     /// The name used in scenes and inventories.
@@ -115,6 +122,7 @@ impl Kind {
             Self::Force => "force",
             Self::Moment => "moment",
             Self::DistributedForce => "distributed_force",
+            Self::Damping => "damping",
         }
     }
 }

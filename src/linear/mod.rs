@@ -274,6 +274,14 @@ impl Factor {
         if matches!(matrix, Matrix::General(_)) {
             return None;
         }
+        // What ties beams to each other lies outside the band.
+        let within = |row: &BorderRow| match (row.first(), row.last()) {
+            (Some((first, _)), Some((last, _))) => matrix.columns(*first).contains(last),
+            _ => true,
+        };
+        if !border.iter().all(within) {
+            return None;
+        }
         // A penalty on the constraints leaves the allowed motions' inertia and makes all others positive. It is measured
         // against the stiffness of the coordinate that the row holds most firmly, whatever the units.
         let mut penalised = matrix.clone();

@@ -254,7 +254,8 @@ impl<'a> Look<'a> {
         let every = solution.states.len().div_ceil(FRAMES).max(1);
         for (i, state) in solution.states.iter().enumerate() {
             let (q, v) = (&state.q[..], Some(&state.v[..]));
-            let energy = Energy { work: state.work, ..self.system.energy(1.0, q, v) };
+            let energy = self.system.energy(state.time, q, v);
+            let energy = Energy { work: state.work, lost: state.lost, ..energy };
             self.record(&mut trajectory, state.time, q, v, energy);
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(state.time, q));

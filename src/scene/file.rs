@@ -6,8 +6,10 @@
 use std::collections::BTreeMap;
 
 mod analysis;
+mod law;
 
 pub use analysis::*;
+pub use law::*;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -259,9 +261,9 @@ pub struct SupportTable {
     /// What is held.
     #[schemars(length(min = 1))]
     pub fix: Located<Vec<Located<FixName>>>,
-    /// By how much held quantities move until the load is full.
+    /// By how much held quantities move: until the load is full, or by a law of time.
     #[serde(rename = "move")]
-    pub displacement: Option<MoveTable>,
+    pub displacement: Option<Located<MoveTable>>,
 }
 
 /// What a support can hold.
@@ -288,6 +290,10 @@ pub struct MoveTable {
     pub y: Option<Located<Quantity<Length>>>,
     /// Rotation, counter-clockwise.
     pub angle: Option<Located<Quantity<Angle>>>,
+    /// In a motion: the law of time by which all three are multiplied.
+    pub in_time: Option<Located<LawTable>>,
+    /// In a motion, in place of `angle` and `in_time`: the hub is brought to a speed.
+    pub spin_up: Option<Located<SpinUpTable>>,
 }
 
 /// What acts on the beams.
@@ -317,6 +323,8 @@ pub struct ForceTable {
     /// Turns with the section.
     #[serde(default)]
     pub follower: bool,
+    /// In a motion: the law of time that multiplies it.
+    pub in_time: Option<Located<LawTable>>,
 }
 
 /// A concentrated moment.
@@ -333,6 +341,8 @@ pub struct MomentTable {
     #[serde(default)]
     #[expect(dead_code, reason = "legal, and without effect")]
     pub follower: bool,
+    /// In a motion: the law of time that multiplies it.
+    pub in_time: Option<Located<LawTable>>,
 }
 
 /// A force per reference length along a whole beam.
@@ -346,6 +356,8 @@ pub struct DistributedForceTable {
     /// Turns with the section.
     #[serde(default)]
     pub follower: bool,
+    /// In a motion: the law of time that multiplies it.
+    pub in_time: Option<Located<LawTable>>,
 }
 
 /// Weight of every beam.
@@ -354,6 +366,8 @@ pub struct DistributedForceTable {
 pub struct GravityTable {
     /// Such as [0.0, −9.81].
     pub acceleration: Vector<Acceleration>,
+    /// In a motion: the law of time that multiplies it.
+    pub in_time: Option<Located<LawTable>>,
 }
 
 /// A point that is watched.

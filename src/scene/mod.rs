@@ -19,6 +19,7 @@ mod quantity;
 mod schema;
 mod to_analysis;
 mod to_basis;
+mod to_law;
 mod to_model;
 mod unit;
 mod value;

@@ -67,6 +67,8 @@ measures! {
     Velocity: "velocity", "m/s", "2 m/s", Dimension::new(1, 0, -1);
     /// Angular velocity \[rad/s\].
     AngularVelocity: "angular velocity", "rad/s", "90 deg/s", Dimension { metre: 0, kilogram: 0, second: -1, radian: 1 };
+    /// Cycles per second \[Hz\].
+    Frequency: "frequency", "Hz", "2 Hz", Dimension::new(0, 0, -1);
     /// A pure number.
     Ratio: "number", "", "0.5", Dimension::new(0, 0, 0);
 }

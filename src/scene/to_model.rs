@@ -4,16 +4,16 @@ use std::ops::Range;
 
 use crate::centreline::Curve;
 use crate::model::{
-    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, InitialVelocity, Load, Model,
+    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, InitialVelocity, Law, Load, Model,
     Place, Probe, Section, StrainMeasure, Support,
 };
 
 use super::diagnose::choices;
 use super::error::Fault;
-use super::file::{BeamTable, FixName, SceneTable, StrainName, SupportTable};
+use super::file::{BeamTable, FixName, LawTable, MoveTable, SceneTable, StrainName, SupportTable};
 use super::to_basis::{self, Size};
 use super::value::{At, Located};
-use super::{held, to_analysis};
+use super::{held, to_analysis, to_law};
 
 /// A beam with what the checks of other tables need to know of it.
 pub(super) struct Built {
@@ -263,47 +263,81 @@ fn support(table: &Located<SupportTable>, built: &[Built]) -> Result<Support, Fa
             ));
         }
     }
+    let (displacement, law) = match &t.displacement {
+        None => (Displacement::default(), None),
+        Some(by) => prescribed(by, fix)?,
+    };
+    Ok(Support { at, fix, displacement, law })
+}
+
+/// By how much a support moves, and how in time.
+fn prescribed(by: &Located<MoveTable>, fix: Fixed) -> Result<(Displacement, Option<Law>), Fault> {
+    let check = |key: &str, fixed: bool, span: Range<usize>| {
+        if fixed {
+            return Ok(());
+        }
+        let needed = if matches!(key, "angle" | "spin_up") { "\"angle\" or \"gradient\"" } else { key };
+        Err(Fault::new(span, format!("`move.{key}` of a quantity that this support does not fix"))
+            .help(format!("add {needed} to `fix`, or leave `move.{key}` out")))
+    };
     let mut displacement = Displacement::default();
-    if let Some(by) = &t.displacement {
-        let check = |key: &str, fixed: bool, span: Range<usize>| {
-            if fixed {
-                return Ok(());
-            }
-            let needed = if key == "angle" { "\"angle\" or \"gradient\"" } else { key };
-            Err(Fault::new(span, format!("`move.{key}` of a quantity that this support does not fix"))
-                .help(format!("add {needed} to `fix`, or leave `move.{key}` out")))
-        };
-        if let Some(x) = &by.x {
-            check("x", fix.x, x.span())?;
-            displacement.x = x.get().si;
-        }
-        if let Some(y) = &by.y {
-            check("y", fix.y, y.span())?;
-            displacement.y = y.get().si;
-        }
-        if let Some(angle) = &by.angle {
-            check("angle", fix.rotation != FixedRotation::Free, angle.span())?;
-            displacement.angle = angle.get().si;
-        }
+    let MoveTable { x, y, angle, in_time, spin_up } = by.get();
+    if let Some(x) = x {
+        check("x", fix.x, x.span())?;
+        displacement.x = x.get().si;
     }
-    Ok(Support { at, fix, displacement })
+    if let Some(y) = y {
+        check("y", fix.y, y.span())?;
+        displacement.y = y.get().si;
+    }
+    if let Some(angle) = angle {
+        check("angle", fix.rotation != FixedRotation::Free, angle.span())?;
+        displacement.angle = angle.get().si;
+    }
+    if let Some(hub) = spin_up {
+        check("spin_up", fix.rotation != FixedRotation::Free, hub.span())?;
+        if in_time.is_some() || x.is_some() || y.is_some() || angle.is_some() {
+            return Err(Fault::new(hub.span(), "`spin_up` moves the angle alone, by a law of its own")
+                .help("keep `spin_up`, or `x`, `y`, `angle` with `in_time`"));
+        }
+        let (speed, duration) = (hub.get().speed.si, hub.get().duration.si);
+        displacement.angle = 1.0;
+        return Ok((displacement, Some(Law::SpinUp { speed, duration })));
+    }
+    let law = in_time.as_ref().map(to_law::law).transpose()?;
+    if law.is_some() && displacement == Displacement::default() {
+        return Err(Fault::new(by.span(), "this law of time moves nothing").help(
+            "say by how much: `move = { x = \"1 cm\", in_time = { harmonic = { frequency = \"2 Hz\" } } }`",
+        ));
+    }
+    Ok((displacement, law))
 }
 
 fn loads(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {
-    for force in &file.effect.force {
+    let effects = &file.effect;
+    let mut add = |load: Load, in_time: &Option<Located<LawTable>>| -> Result<(), Fault> {
+        model.loads.push(match in_time {
+            None => load,
+            Some(table) => Load::InTime { load: Box::new(load), law: to_law::law(table)? },
+        });
+        Ok(())
+    };
+    for force in &effects.force {
         let at = place(&force.beam, &force.at, built)?;
-        model.loads.push(Load::Force { at, value: force.value.si, follower: force.follower });
+        add(Load::Force { at, value: force.value.si, follower: force.follower }, &force.in_time)?;
     }
-    for moment in &file.effect.moment {
+    for moment in &effects.moment {
         let at = place(&moment.beam, &moment.at, built)?;
-        model.loads.push(Load::Moment { at, value: moment.value.si });
+        add(Load::Moment { at, value: moment.value.si }, &moment.in_time)?;
     }
-    for force in &file.effect.distributed_force {
+    for force in &effects.distributed_force {
         let beam = beam_index(&force.beam, built)?;
-        model.loads.push(Load::DistributedForce { beam, value: force.value.si, follower: force.follower });
+        let load = Load::DistributedForce { beam, value: force.value.si, follower: force.follower };
+        add(load, &force.in_time)?;
     }
-    if let Some(gravity) = &file.effect.gravity {
-        model.loads.push(Load::Gravity { acceleration: gravity.get().acceleration.si });
+    if let Some(gravity) = &effects.gravity {
+        let acceleration = gravity.get().acceleration.si;
+        add(Load::Gravity { acceleration }, &gravity.get().in_time)?;
     }
     Ok(())
 }

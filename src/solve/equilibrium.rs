@@ -101,7 +101,7 @@ impl<'a> Equilibrium<'a> {
         let n = system.coordinates();
         let q = &x[..n];
         rate.fill(0.0);
-        system.add_loads(-1.0, q, &mut rate[..n]);
+        system.add_load_rate(-1.0, q, &mut rate[..n]);
         for (r, constraint) in system.constraints().iter().enumerate() {
             let unit = constraint.scale(system.stiffness(), system.length());
             rate[n + r] = -unit * constraint.rate(load, q);

@@ -1,10 +1,10 @@
-//! Supports between nodes, as linear constraint rows with Lagrange multipliers.
+//! Supports between nodes and joints, as linear constraint rows with Lagrange multipliers.
 //!
 //! At an arc length between nodes a support holds a combination of coordinates, g = n(λ)·Σ_a N_a q_a − c(λ) = 0, with the
 //! rows N of r or of r' there: a component of the position, a component of the gradient, or, for a held direction θ, the
-//! gradient's component across it, n = (−sin θ, cos θ).
+//! gradient's component across it, n = (−sin θ, cos θ). A joint ties the fields of two points, each with a normal of its own.
 
-use super::supports::Ramp;
+use super::course::Course;
 use crate::basis::BasisTable;
 
 /// What a row holds.
@@ -15,7 +15,7 @@ pub enum Row {
         /// 0 for x, 1 for y.
         axis: usize,
         /// Its value.
-        value: Ramp,
+        value: Course,
     },
     /// Component `axis` of the gradient, R(φ) r'₀.
     Gradient {
@@ -24,19 +24,42 @@ pub enum Row {
         /// r'₀.
         reference: [f64; 2],
         /// φ \[rad\].
-        rotation: Ramp,
+        rotation: Course,
     },
     /// The direction of the gradient \[rad\].
-    Direction(Ramp),
+    Direction(Course),
+    /// Σ n·r⁽ᵒ⁾ over several points.
+    Joint {
+        /// Derivative order of r: 0 or 1.
+        order: usize,
+        /// n of each point.
+        normals: Vec<[f64; 2]>,
+        /// What the sum is.
+        value: f64,
+    },
+}
+
+/// The shape functions of a field at one point.
+#[derive(Clone, Debug)]
+struct Field {
+    /// First coordinate that the shape functions touch.
+    first: usize,
+    /// N of r or r'.
+    shape: Vec<f64>,
+}
+
+impl Field {
+    /// `table` holds one point with one row; `offset` is the beam's first coefficient.
+    fn new(table: &BasisTable, offset: usize) -> Self {
+        let (_, shape) = table.block(table.cells[0]);
+        Self { first: 2 * (offset + table.cells[0].first as usize), shape: shape.to_vec() }
+    }
 }
 
 /// One constraint.
 #[derive(Clone, Debug)]
 pub struct Constraint {
-    /// First coordinate that the shape functions touch.
-    first: usize,
-    /// N of r or r' at the support.
-    shape: Vec<f64>,
+    fields: Vec<Field>,
     row: Row,
 }
 
@@ -44,11 +67,36 @@ impl Constraint {
     /// `table` holds one point with the single row that `row` needs (order 0 for a position, 1 otherwise); `offset` is the
     /// beam's first coefficient.
     pub fn new(table: &BasisTable, offset: usize, row: Row) -> Self {
-        let (_, shape) = table.block(table.cells[0]);
-        Self { first: 2 * (offset + table.cells[0].first as usize), shape: shape.to_vec(), row }
+        Self { fields: vec![Field::new(table, offset)], row }
     }
 
-    /// n, c and their derivatives by λ.
+    /// Σ n·r⁽ᵒ⁾ = 0 over the points of several tables of one row, each with the first coefficient of its beam.
+    pub fn joint<'t>(
+        points: impl Iterator<Item = (&'t BasisTable, usize)>,
+        order: usize,
+        normals: Vec<[f64; 2]>,
+    ) -> Self {
+        let fields = points.map(|(table, offset)| Field::new(table, offset)).collect();
+        Self { fields, row: Row::Joint { order, normals, value: 0.0 } }
+    }
+
+    /// Sets what the sum of a joint is.
+    pub fn hold(&mut self, held: f64) {
+        if let Row::Joint { value, .. } = &mut self.row {
+            *value += held;
+        }
+    }
+
+    /// The same with the sum zero.
+    #[must_use]
+    pub fn closed(mut self) -> Self {
+        if let Row::Joint { value, .. } = &mut self.row {
+            *value = 0.0;
+        }
+        self
+    }
+
+    /// n, c and their derivatives by λ; of a joint without the normals.
     fn normal(&self, load: f64) -> ([f64; 2], f64, [f64; 2], f64) {
         let axis = |a: usize| [f64::from(a == 0), f64::from(a == 1)];
         match &self.row {
@@ -63,42 +111,60 @@ impl Constraint {
                 let (sine, cosine) = angle.at(load).sin_cos();
                 ([-sine, cosine], 0.0, [-cosine * angle.change, -sine * angle.change], 0.0)
             }
+            Row::Joint { value, .. } => ([0.0; 2], *value, [0.0; 2], 0.0),
         }
     }
 
-    fn combine(&self, n: [f64; 2], q: &[f64]) -> f64 {
-        self.shape
-            .iter()
-            .zip(q[self.first..].chunks_exact(2))
-            .map(|(shape, q)| shape * (n[0] * q[0] + n[1] * q[1]))
-            .sum()
+    /// The normal of field `k`, that of all fields being `n` for what is no joint.
+    fn normal_of(&self, k: usize, n: [f64; 2]) -> [f64; 2] {
+        match &self.row {
+            Row::Joint { normals, .. } => normals.get(k).copied().unwrap_or(n),
+            _ => n,
+        }
+    }
+
+    fn combine(&self, n: impl Fn(usize) -> [f64; 2], q: &[f64]) -> f64 {
+        let fields = self.fields.iter().enumerate().map(|(k, field)| {
+            let n = n(k);
+            let terms = field.shape.iter().zip(q[field.first..].chunks_exact(2));
+            terms.map(|(shape, q)| shape * (n[0] * q[0] + n[1] * q[1])).sum::<f64>()
+        });
+        fields.sum()
     }
 
     /// The number by which the row is multiplied so that its entries compare with those of the tangent: EA/L \[N/m\] for
     /// a position, EA L \[N m\] for a gradient.
     pub fn scale(&self, stiffness: f64, length: f64) -> f64 {
         match self.row {
-            Row::Position { .. } => stiffness / length,
-            Row::Gradient { .. } | Row::Direction(_) => stiffness * length,
+            Row::Position { .. } | Row::Joint { order: 0, .. } => stiffness / length,
+            Row::Gradient { .. } | Row::Direction(_) | Row::Joint { .. } => stiffness * length,
         }
     }
 
     /// g(q, λ).
     pub fn value(&self, load: f64, q: &[f64]) -> f64 {
         let (n, c, _, _) = self.normal(load);
-        self.combine(n, q) - c
+        self.combine(|k| self.normal_of(k, n), q) - c
     }
 
     /// ∂g/∂λ.
     pub fn rate(&self, load: f64, q: &[f64]) -> f64 {
-        let (_, _, n, c) = self.normal(load);
-        self.combine(n, q) - c
+        match &self.row {
+            Row::Joint { .. } => 0.0,
+            _ => {
+                let (_, _, n, c) = self.normal(load);
+                self.combine(|_| n, q) - c
+            }
+        }
     }
 
-    /// (coordinate, ∂g/∂q) in rising order.
+    /// (coordinate, ∂g/∂q).
     pub fn gradient(&self, load: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (n, _, _, _) = self.normal(load);
-        let entries = self.shape.iter().enumerate();
-        entries.flat_map(move |(a, shape)| (0..2).map(move |d| (self.first + 2 * a + d, n[d] * shape)))
+        self.fields.iter().enumerate().flat_map(move |(k, field)| {
+            let n = self.normal_of(k, n);
+            let entries = field.shape.iter().enumerate();
+            entries.flat_map(move |(a, shape)| (0..2).map(move |d| (field.first + 2 * a + d, n[d] * shape)))
+        })
     }
 }

@@ -1,167 +1,116 @@
-//! Which effects a model names, and their tables. The one place that turns a model's words into densities.
+//! The beams' own elasticity and inertia, and the loads: which densities a model's words stand for.
 
-use super::{BeamPart, Needs, System, SystemError};
-use crate::basis::{Basis, BasisError, BasisTable, Quadrature};
-use crate::effect::{
-    Bend, DeadForce, Density, Effect, Engineering, FollowerForce, Green, Inertia, Integral, Kind, Moment,
-    Stretch,
-};
-use crate::model::{Beam, GaussPoints, Load, Model, Place, StrainMeasure};
+use super::SystemError;
+use super::assembly::{Assembly, Extent};
+use crate::basis::Quadrature;
+use crate::effect::{Bend, DeadForce, Engineering, FollowerForce, Green, Inertia, Kind, Moment, Stretch};
+use crate::model::{Beam, GaussPoints, Law, Load, StrainMeasure};
 use nalgebra::Vector2;
-
-/// The fields of the reference state at all points of a table: one `[z_0, z_1, …]` a point.
-fn reference_fields<const M: usize>(table: &BasisTable, offset: usize, q: &[f64]) -> Vec<[Vector2<f64>; M]> {
-    let width = table.width;
-    let mut fields = Vec::with_capacity(table.s.len());
-    for entry in &table.cells {
-        let (_, rows) = table.block(*entry);
-        let q = &q[2 * (offset + entry.first as usize)..];
-        for rows in rows.chunks_exact(M * width) {
-            fields.push(std::array::from_fn(|m| {
-                let row = &rows[m * width..(m + 1) * width];
-                row.iter()
-                    .zip(q.chunks_exact(2))
-                    .fold(Vector2::zeros(), |sum, (n, q)| sum + Vector2::new(q[0], q[1]) * *n)
-            }));
-        }
-    }
-    fields
-}
-
-/// Gauss points that integrate products of two shape functions: exact for the cable element's mass matrix (degree 6).
-fn mass_points(beam: &Beam) -> usize {
-    beam.gauss_points.stretch.max(beam.gauss_points.bend).max(4)
-}
-
-struct Builder<'a> {
-    index: usize,
-    part: &'a BeamPart,
-    reference: &'a [f64],
-}
-
-impl Builder<'_> {
-    fn integral<D: Density<M> + 'static, const M: usize>(
-        &self,
-        kind: Kind,
-        table: Result<BasisTable, BasisError>,
-        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
-    ) -> Result<Box<dyn Effect>, SystemError> {
-        let table = table.map_err(|e| SystemError::basis(&self.part.name, e))?;
-        let fields = reference_fields::<M>(&table, self.part.offset(), self.reference);
-        let density = density(fields);
-        Ok(Box::new(Integral::new(kind, self.index, self.part.offset(), table, density)))
-    }
-
-    fn basis(&self) -> &Basis {
-        &self.part.basis
-    }
-}
 
 fn missing(beam: &Beam, quantity: &'static str, needed_by: &'static str) -> SystemError {
     SystemError::Missing { beam: beam.name.clone(), quantity, needed_by }
 }
 
-pub(super) fn add(system: &mut System, model: &Model, needs: Needs) -> Result<(), SystemError> {
-    let (mut internal, mut loads, mut inertia) = (Vec::new(), Vec::new(), Vec::new());
+/// Adds what the model names.
+pub(super) fn add(assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    let model = assembly.model();
     for (index, beam) in model.beams.iter().enumerate() {
-        let builder = Builder { index, part: &system.beams[index], reference: &system.reference };
-        let basis = builder.basis();
-        // Only a curved beam keeps its reference strains.
-        let straight = builder.part.straight;
-        if let Some(ea) = beam.section.axial_stiffness {
-            let GaussPoints { stretch, lobatto, .. } = beam.gauss_points;
-            let rule = if lobatto { Quadrature::Lobatto(stretch) } else { Quadrature::Gauss(stretch) };
-            let table = basis.table(rule, &[1]);
-            let gradients = |z: Vec<[Vector2<f64>; 1]>| -> Vec<_> {
-                if straight { Vec::new() } else { z.into_iter().map(|[r]| r).collect() }
-            };
-            internal.push(match beam.strain {
-                StrainMeasure::Green => {
-                    builder.integral(Kind::Stretch, table, |z| Stretch::<Green>::new(ea, &gradients(z)))
-                }
-                StrainMeasure::Engineering => {
-                    builder.integral(Kind::Stretch, table, |z| Stretch::<Engineering>::new(ea, &gradients(z)))
-                }
-            }?);
-        }
-        if let Some(ei) = beam.section.bending_stiffness {
-            let table = basis.table(Quadrature::Gauss(beam.gauss_points.bend), &[1, 2]);
-            internal.push(
-                builder.integral(Kind::Bend, table, |z| Bend::new(ei, if straight { &[] } else { &z }))?,
-            );
-        }
-        if needs.inertia {
-            let mass_per_length =
-                beam.section.mass_per_length.ok_or_else(|| missing(beam, "mass per length", "inertia"))?;
-            let table = basis.table(Quadrature::Gauss(mass_points(beam)), &[0]);
-            inertia
-                .push(builder.integral(Kind::Inertia, table, |_: Vec<[_; 1]>| Inertia { mass_per_length })?);
-        }
+        add_beam(assembly, index, beam)?;
     }
     for load in &model.loads {
-        match *load {
-            Load::Gravity { acceleration } => {
-                let mut any = false;
-                for (index, beam) in model.beams.iter().enumerate() {
-                    let Some(mass) = beam.section.mass_per_length else { continue };
-                    any = true;
-                    let builder = Builder { index, part: &system.beams[index], reference: &system.reference };
-                    let table = builder.basis().table(Quadrature::Gauss(mass_points(beam)), &[0]);
-                    loads.push(builder.integral(Kind::Gravity, table, |z| {
-                        DeadForce::new(acceleration.map(|g| mass * g), z.into_iter().map(|[r]| r).collect())
-                    })?);
-                }
-                if !any {
-                    return Err(missing(&model.beams[0], "mass per length", "gravity"));
-                }
-            }
-            Load::Force { at, value, follower } => {
-                let (builder, basis, s) = place(system, "a force", at)?;
-                loads.push(force(&builder, Kind::Force, follower, value, |orders| {
-                    basis.points(&[s], orders)
-                })?);
-            }
-            Load::DistributedForce { beam, value, follower } => {
-                let (builder, basis, _) = place(system, "a distributed force", Place { beam, s: 0.0 })?;
-                let rule = Quadrature::Gauss(mass_points(&model.beams[beam]));
-                loads.push(force(&builder, Kind::DistributedForce, follower, value, |orders| {
-                    basis.table(rule, orders)
-                })?);
-            }
-            Load::Moment { at, value } => {
-                let (builder, basis, s) = place(system, "a moment", at)?;
-                let table = basis.points(&[s], &[1]);
-                loads.push(builder.integral(Kind::Moment, table, |_: Vec<[_; 1]>| Moment { moment: value })?);
-            }
-        }
+        add_load(assembly, load, None)?;
     }
-    (system.internal, system.loads, system.inertia) = (internal, loads, inertia);
+    model.parts.iter().try_for_each(|part| part.add_to(assembly))
+}
+
+fn add_beam(assembly: &mut Assembly<'_>, index: usize, beam: &Beam) -> Result<(), SystemError> {
+    // Only a curved beam keeps its reference strains.
+    let straight = assembly.discretised(index).straight;
+    if let Some(ea) = beam.section.axial_stiffness {
+        let GaussPoints { stretch, lobatto, .. } = beam.gauss_points;
+        let rule = if lobatto { Quadrature::Lobatto(stretch) } else { Quadrature::Gauss(stretch) };
+        let gradients = |z: Vec<[Vector2<f64>; 1]>| -> Vec<_> {
+            if straight { Vec::new() } else { z.into_iter().map(|[r]| r).collect() }
+        };
+        let extent = Extent::Beam(index, rule);
+        match beam.strain {
+            StrainMeasure::Green => {
+                assembly.elastic(Kind::Stretch, extent, |z| Stretch::<Green>::new(ea, &gradients(z)))
+            }
+            StrainMeasure::Engineering => {
+                assembly.elastic(Kind::Stretch, extent, |z| Stretch::<Engineering>::new(ea, &gradients(z)))
+            }
+        }?;
+    }
+    if let Some(ei) = beam.section.bending_stiffness {
+        let extent = Extent::Beam(index, Quadrature::Gauss(beam.gauss_points.bend));
+        assembly.elastic(Kind::Bend, extent, |z| Bend::new(ei, if straight { &[] } else { &z }))?;
+    }
+    if assembly.needs().inertia {
+        let mass_per_length =
+            beam.section.mass_per_length.ok_or_else(|| missing(beam, "mass per length", "inertia"))?;
+        let extent = Extent::Beam(index, assembly.mass_rule(index));
+        assembly.inertia(Kind::Inertia, extent, Inertia { mass_per_length })?;
+    }
     Ok(())
 }
 
-fn place<'a>(
-    system: &'a System,
-    what: &'static str,
-    at: Place,
-) -> Result<(Builder<'a>, &'a Basis, f64), SystemError> {
-    let (part, s) = system.part(what, at)?;
-    Ok((Builder { index: at.beam, part, reference: &system.reference }, &part.basis, s))
+fn add_load(assembly: &mut Assembly<'_>, load: &Load, law: Option<&Law>) -> Result<(), SystemError> {
+    match load {
+        Load::InTime { load, law } => add_load(assembly, load, Some(law)),
+        Load::Gravity { acceleration } => {
+            let model = assembly.model();
+            let mut any = false;
+            for (index, beam) in model.beams.iter().enumerate() {
+                let Some(mass) = beam.section.mass_per_length else { continue };
+                any = true;
+                let extent = Extent::Beam(index, assembly.mass_rule(index));
+                dead_force(assembly, Kind::Gravity, extent, acceleration.map(|g| mass * g), law)?;
+            }
+            match (any, model.beams.first()) {
+                (false, Some(first)) => Err(missing(first, "mass per length", "gravity")),
+                _ => Ok(()),
+            }
+        }
+        Load::Force { at, value, follower } => {
+            force(assembly, Kind::Force, Extent::Point(*at), *value, *follower, law)
+        }
+        Load::DistributedForce { beam, value, follower } => {
+            assembly.beam("a distributed force", *beam)?;
+            let extent = Extent::Beam(*beam, assembly.mass_rule(*beam));
+            force(assembly, Kind::DistributedForce, extent, *value, *follower, law)
+        }
+        Load::Moment { at, value } => {
+            let moment = |_: Vec<[Vector2<f64>; 1]>| Moment { moment: *value };
+            assembly.load(Kind::Moment, Extent::Point(*at), law, moment)
+        }
+    }
+}
+
+fn dead_force(
+    assembly: &mut Assembly<'_>,
+    kind: Kind,
+    extent: Extent,
+    value: [f64; 2],
+    law: Option<&Law>,
+) -> Result<(), SystemError> {
+    assembly.load(kind, extent, law, |z: Vec<[Vector2<f64>; 1]>| {
+        DeadForce::new(value, z.into_iter().map(|[r]| r).collect())
+    })
 }
 
 fn force(
-    builder: &Builder<'_>,
+    assembly: &mut Assembly<'_>,
     kind: Kind,
-    follower: bool,
+    extent: Extent,
     value: [f64; 2],
-    table: impl Fn(&[usize]) -> Result<BasisTable, BasisError>,
-) -> Result<Box<dyn Effect>, SystemError> {
-    if follower {
-        builder.integral(kind, table(&[0, 1]), |z: Vec<[Vector2<f64>; 2]>| {
-            FollowerForce::new(value, &z.into_iter().map(|[_, r]| r).collect::<Vec<_>>())
-        })
-    } else {
-        builder.integral(kind, table(&[0]), |z: Vec<[Vector2<f64>; 1]>| {
-            DeadForce::new(value, z.into_iter().map(|[r]| r).collect())
-        })
+    follower: bool,
+    law: Option<&Law>,
+) -> Result<(), SystemError> {
+    if !follower {
+        return dead_force(assembly, kind, extent, value, law);
     }
+    assembly.load(kind, extent, law, |z: Vec<[Vector2<f64>; 2]>| {
+        FollowerForce::new(value, &z.into_iter().map(|[_, r]| r).collect::<Vec<_>>())
+    })
 }

@@ -54,6 +54,52 @@ pub enum SystemError {
         /// Where \[m\].
         s: f64,
     },
+    /// A support moves in a motion, and does not say how in time.
+    #[error(
+        "the support of beam `{beam}` at s = {s} m moves by a stated amount, but does not say how in time"
+    )]
+    #[diagnostic(help(
+        "give a law, such as `move = {{ x = \"1 cm\", in_time = {{ ramp = {{ duration = \"1 s\" }} }} }}`, or leave `move` out"
+    ))]
+    NoLaw {
+        /// The beam's name.
+        beam: String,
+        /// Where \[m\].
+        s: f64,
+    },
+    /// Something follows time in an analysis that has none.
+    #[error("{what} follows a law of time, which this analysis does not have")]
+    #[diagnostic(help("leave `in_time` out, or use [analysis.dynamic]"))]
+    NoTime {
+        /// What follows it.
+        what: &'static str,
+    },
+    /// Two points of a joint are not one.
+    #[error(
+        "a joint ties s = {first_s} m of beam `{first}` to s = {second_s} m of beam `{second}`, but these points are {gap:.3e} m apart"
+    )]
+    #[diagnostic(help("let the stress-free shapes of the beams meet where they are joined"))]
+    Apart {
+        /// The first beam's name.
+        first: String,
+        /// Where \[m\].
+        first_s: f64,
+        /// The second beam's name.
+        second: String,
+        /// Where \[m\].
+        second_s: f64,
+        /// Their distance \[m\].
+        gap: f64,
+    },
+    /// A support between nodes moves with time.
+    #[error("the support of beam `{beam}` at s = {s} m moves with time and lies between two nodes")]
+    #[diagnostic(help("put a node there: `nodes` of the beam's basis may be a list of arc lengths"))]
+    MovesBetweenNodes {
+        /// The beam's name.
+        beam: String,
+        /// Where \[m\].
+        s: f64,
+    },
     /// The shape functions could not be built.
     #[error("beam `{beam}`: {source}")]
     Basis {

@@ -67,9 +67,12 @@ impl System {
     /// Lists what was built.
     pub fn inventory(&self) -> Inventory {
         let mut entries: BTreeMap<(usize, Kind), (usize, usize)> = BTreeMap::new();
-        for effect in self.internal.iter().chain(&self.inertia).chain(&self.loads) {
-            let (points, bytes) = effect.size();
-            let entry = entries.entry((effect.beam(), effect.kind())).or_default();
+        let loads = self.loads.iter().map(|load| &load.effect);
+        let effects = self.internal.iter().chain(&self.inertia).chain(loads);
+        let effects = effects.map(|effect| (effect.beam(), effect.kind(), effect.size()));
+        let damping = self.damping.iter().map(|damping| (damping.beam(), damping.kind(), damping.size()));
+        for (beam, kind, (points, bytes)) in effects.chain(damping) {
+            let entry = entries.entry((beam, kind)).or_default();
             entry.0 += points;
             entry.1 += bytes;
         }

@@ -2,8 +2,8 @@
 //!
 //! # Coordinates
 //! Node after node, beam after beam, four each: `[x, y, x', y']`, positions in metres, gradients without unit. What a
-//! support holds stays in this vector and is eliminated in place ([`supports`]); supports between nodes add one Lagrange
-//! multiplier a row ([`constraints`]).
+//! support holds stays in this vector and is eliminated in place ([`supports`]); supports between nodes and joints add one Lagrange
+//! multiplier a row ([`constraints`], [`joint`]).
 //!
 //! # Equations of statics
 //! ```text
@@ -11,10 +11,14 @@
 //! ```
 //! with the load factor λ ∈ [0, 1]. Loads count as densities of negative work, hence the plus sign.
 
+pub mod assembly;
 pub mod constraints;
+pub mod course;
 mod effects;
 mod error;
+mod hold;
 mod inventory;
+pub mod joint;
 pub mod supports;
 mod view;
 
@@ -24,19 +28,29 @@ pub use view::View;
 
 use crate::basis::Basis;
 use crate::centreline::Curve;
-use crate::effect::{Effect, Kind, Workspace};
+use crate::effect::{Damping, Effect, Kind, Workspace};
 use crate::linear::Matrix;
 use crate::linear::bordered::BorderRow;
-use crate::model::{Centreline, Discretization, FixedRotation, Model, Place, Support};
+use crate::model::{Centreline, Discretization, Model, Place};
 use crate::trajectory::Energy;
-use constraints::{Constraint, Row};
-use supports::{Held, Hold, Ramp, Supports};
+use constraints::Constraint;
+use course::Amplitude;
+use supports::Supports;
 
 /// What an analysis asks of the system; nothing else is built.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Needs {
     /// Whether inertia takes part.
     pub inertia: bool,
+    /// Whether loads and supports follow time, and damping takes part; otherwise loads and prescribed displacements follow the load factor.
+    pub motion: bool,
+}
+
+/// A load with its amplitude.
+struct Acting {
+    effect: Box<dyn Effect>,
+    /// None: that of all loads without a law of their own.
+    amplitude: Option<Amplitude>,
 }
 
 /// Distance beyond an end, per length, that counts as round-off.
@@ -60,6 +74,20 @@ impl BeamPart {
     pub fn offset(&self) -> usize {
         2 * self.first_node
     }
+
+    /// The arc length `s`, where `what` stands; round-off beyond an end is cut off.
+    ///
+    /// # Errors
+    /// [`SystemError::OffBeam`].
+    pub fn arc_length(&self, what: &'static str, s: f64) -> Result<f64, SystemError> {
+        let length = self.basis.length();
+        // A length computed elsewhere may differ by round-off.
+        if s >= -PLACE_ROUND_OFF * length && s <= (1.0 + PLACE_ROUND_OFF) * length {
+            Ok(s.clamp(0.0, length))
+        } else {
+            Err(SystemError::OffBeam { what, beam: self.name.clone(), s, length })
+        }
+    }
 }
 
 /// Equations of a model.
@@ -68,10 +96,13 @@ pub struct System {
     nodes: usize,
     blocks: usize,
     internal: Vec<Box<dyn Effect>>,
-    loads: Vec<Box<dyn Effect>>,
-    /// The sum of all loads that are the same in every state.
+    loads: Vec<Acting>,
+    /// Of all loads without a law of their own.
+    amplitude: Amplitude,
+    /// The sum of those of them that are the same in every state.
     constant_load: Vec<f64>,
     inertia: Vec<Box<dyn Effect>>,
+    damping: Vec<Box<dyn Damping>>,
     supports: Supports,
     constraints: Vec<Constraint>,
     reference: Vec<f64>,
@@ -127,8 +158,10 @@ impl System {
             blocks,
             internal: Vec::new(),
             loads: Vec::new(),
+            amplitude: if needs.motion { Amplitude::Full } else { Amplitude::Proportional },
             constant_load: Vec::new(),
             inertia: Vec::new(),
+            damping: Vec::new(),
             supports: Supports::default(),
             constraints: Vec::new(),
             reference,
@@ -137,12 +170,17 @@ impl System {
             round_off,
             lowest_vibration: lowest_vibration_scale(model, length),
         };
-        effects::add(&mut system, model, needs)?;
+        let mut assembly = assembly::Assembly::new(model, &system.beams, &system.reference, needs);
+        effects::add(&mut assembly)?;
+        let assembly::Assembly { internal, loads, inertia, damping, .. } = assembly;
+        (system.internal, system.loads, system.inertia, system.damping) = (internal, loads, inertia, damping);
         system.constant_load = vec![0.0; system.coordinates()];
-        for effect in system.loads.iter().filter(|effect| effect.is_constant()) {
-            effect.add_force(1.0, &system.reference, &mut system.constant_load);
+        for load in system.loads.iter().filter(|load| load.is_summed()) {
+            load.effect.add_force(1.0, &system.reference, &mut system.constant_load);
         }
-        system.add_supports(&model.supports)?;
+        (system.supports, system.constraints) = hold::hold(&system, &model.supports, needs)?;
+        let joints = joint::rows(&system, &model.joints)?;
+        system.constraints.extend(joints);
         Ok(system)
     }
 
@@ -165,92 +203,17 @@ impl System {
     }
 
     fn part(&self, what: &'static str, at: Place) -> Result<(&BeamPart, f64), SystemError> {
-        let part = self.beams.get(at.beam).ok_or(SystemError::NoSuchBeam {
-            what,
-            beam: at.beam,
-            count: self.beams.len(),
-        })?;
-        let length = part.basis.length();
-        // A length computed elsewhere may differ by round-off.
-        if at.s >= -PLACE_ROUND_OFF * length && at.s <= (1.0 + PLACE_ROUND_OFF) * length {
-            Ok((part, at.s.clamp(0.0, length)))
-        } else {
-            Err(SystemError::OffBeam { what, beam: part.name.clone(), s: at.s, length })
-        }
+        let none = SystemError::NoSuchBeam { what, beam: at.beam, count: self.beams.len() };
+        let part = self.beams.get(at.beam).ok_or(none)?;
+        Ok((part, part.arc_length(what, at.s)?))
     }
 
-    fn add_supports(&mut self, supports: &[Support]) -> Result<(), SystemError> {
-        let mut held: Vec<Held> = Vec::new();
-        let mut constraints = Vec::new();
-        for support in supports {
-            let (part, s) = self.part("a support", support.at)?;
-            let in_basis = |e| SystemError::basis(&part.name, e);
-            let fields =
-                View::point(&part.basis, part.offset(), s).map_err(in_basis)?.fields(&self.reference);
-            let (position, gradient) = (fields.position, fields.gradient);
-            let angle = Ramp { start: gradient[1].atan2(gradient[0]), change: support.displacement.angle };
-            let rotation = Ramp { start: 0.0, change: support.displacement.angle };
-            let motion = [support.displacement.x, support.displacement.y];
-            let fixed = [support.fix.x, support.fix.y];
-            let components: [Option<Ramp>; 2] = std::array::from_fn(|axis| {
-                fixed[axis].then_some(Ramp { start: position[axis], change: motion[axis] })
-            });
-            if let Some(node) = part.basis.node_at(s) {
-                let pair = 2 * (part.first_node + node);
-                let mut add = |pair: usize, hold: Hold| match held.iter_mut().find(|h| h.pair == pair) {
-                    None => {
-                        held.push(Held { pair, hold });
-                        Ok(())
-                    }
-                    Some(Held { hold: Hold::Position(there), .. }) => match hold {
-                        Hold::Position(new) if (0..2).all(|a| there[a].is_none() || new[a].is_none()) => {
-                            *there = std::array::from_fn(|a| there[a].or(new[a]));
-                            Ok(())
-                        }
-                        _ => Err("position"),
-                    },
-                    Some(_) => Err("rotation"),
-                };
-                let position = if components.iter().any(Option::is_some) {
-                    add(pair, Hold::Position(components))
-                } else {
-                    Ok(())
-                };
-                position
-                    .and_then(|()| match support.fix.rotation {
-                        FixedRotation::Free => Ok(()),
-                        FixedRotation::Angle => add(pair + 1, Hold::Direction(angle)),
-                        FixedRotation::Gradient => {
-                            add(pair + 1, Hold::Gradient { reference: gradient, rotation })
-                        }
-                    })
-                    .map_err(|what| SystemError::HeldTwice {
-                        what,
-                        beam: part.name.clone(),
-                        s: support.at.s,
-                    })?;
-            } else {
-                let mut rows: Vec<(usize, Row)> = components
-                    .iter()
-                    .enumerate()
-                    .filter_map(|(axis, c)| c.map(|value| (0, Row::Position { axis, value })))
-                    .collect();
-                match support.fix.rotation {
-                    FixedRotation::Free => {}
-                    FixedRotation::Angle => rows.push((1, Row::Direction(angle))),
-                    FixedRotation::Gradient => rows.extend(
-                        (0..2).map(|axis| (1, Row::Gradient { axis, reference: gradient, rotation })),
-                    ),
-                }
-                for (order, row) in rows {
-                    let table = part.basis.points(&[s], &[order]).map_err(in_basis)?;
-                    constraints.push(Constraint::new(&table, part.offset(), row));
-                }
-            }
-        }
-        self.supports = Supports::new(held);
-        self.constraints = constraints;
-        Ok(())
+    /// The gradient of the stress-free shape at a place.
+    fn gradient_of(&self, at: Place) -> Result<[f64; 2], SystemError> {
+        let (part, s) = self.part("a joint", at)?;
+        let view =
+            View::point(&part.basis, part.offset(), s).map_err(|e| SystemError::basis(&part.name, e))?;
+        Ok(view.fields(&self.reference).gradient)
     }
 
     /// The beams' parts.
@@ -312,14 +275,15 @@ impl System {
         held
     }
 
-    /// The supports that are constraint rows.
+    /// The supports and joints that are constraint rows.
     pub fn constraints(&self) -> &[Constraint] {
         &self.constraints
     }
 
     /// Whether tangents are symmetric.
     pub fn is_symmetric(&self) -> bool {
-        self.internal.iter().chain(&self.loads).all(|effect| effect.is_symmetric())
+        let loads = self.loads.iter().map(|load| &load.effect);
+        self.internal.iter().chain(loads).all(|effect| effect.is_symmetric())
     }
 
     /// A zero tangent of the right pattern.
@@ -327,20 +291,23 @@ impl System {
         Matrix::zeros(self.nodes, self.blocks, self.is_symmetric())
     }
 
-    /// `f = f_int(q) + λ f_load(q)`.
-    pub fn force(&self, load: f64, q: &[f64], f: &mut [f64]) {
+    /// `f = f_int(q) + f_load(q)` at load factor or time `parameter`.
+    pub fn force(&self, parameter: f64, q: &[f64], f: &mut [f64]) {
         f.fill(0.0);
         for effect in &self.internal {
             effect.add_force(1.0, q, f);
         }
-        self.add_loads(load, q, f);
+        self.add_constant_load(self.amplitude.at(parameter), f);
+        for (effect, amplitude) in self.varying_loads(parameter) {
+            effect.add_force(amplitude, q, f);
+        }
     }
 
-    /// `f += factor · f_load(q)`.
-    pub fn add_loads(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+    /// `f += factor · ∂f/∂λ` of loads in proportion to the load factor.
+    pub fn add_load_rate(&self, factor: f64, q: &[f64], f: &mut [f64]) {
         self.add_constant_load(factor, f);
-        for effect in self.varying_loads() {
-            effect.add_force(factor, q, f);
+        for (effect, one) in self.varying_loads(1.0) {
+            effect.add_force(factor * one, q, f);
         }
     }
 
@@ -350,29 +317,78 @@ impl System {
         }
     }
 
-    fn varying_loads(&self) -> impl Iterator<Item = &dyn Effect> {
-        self.loads.iter().map(|effect| &**effect).filter(|effect| !effect.is_constant())
+    /// Loads that are not part of the constant sum, with their factors.
+    fn varying_loads(&self, parameter: f64) -> impl Iterator<Item = (&dyn Effect, f64)> {
+        let loads = self.loads.iter().filter(|load| !load.is_summed());
+        loads.map(move |load| (&*load.effect, self.amplitude_of(load).at(parameter)))
+    }
+
+    fn amplitude_of<'a>(&'a self, load: &'a Acting) -> &'a Amplitude {
+        load.amplitude.as_ref().unwrap_or(&self.amplitude)
     }
 
     /// Whether a load does work that no potential counts.
     pub fn has_work(&self) -> bool {
-        self.loads.iter().any(|effect| !effect.is_conservative())
+        self.loads.iter().any(|load| !load.has_potential())
     }
 
-    /// Power \[W\] of the loads without potential in the state (q, v); `scratch` is overwritten.
-    pub fn power(&self, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
+    /// Whether forces depend on velocities.
+    pub fn is_damped(&self) -> bool {
+        !self.damping.is_empty()
+    }
+
+    /// Power \[W\] at time `parameter` of the loads without potential in the state (q, v); `scratch` is overwritten.
+    pub fn power(&self, parameter: f64, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
         scratch.fill(0.0);
-        for effect in self.loads.iter().filter(|effect| !effect.is_conservative()) {
-            effect.add_force(-1.0, q, scratch);
+        for load in self.loads.iter().filter(|load| !load.has_potential()) {
+            load.effect.add_force(-self.amplitude_of(load).at(parameter), q, scratch);
         }
         scratch.iter().zip(v).map(|(f, v)| f * v).sum()
+    }
+
+    /// `f += ` the forces that depend on velocities.
+    pub fn add_damping(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
+        for damping in &self.damping {
+            damping.add_force(q, v, f);
+        }
+    }
+
+    /// `f += ` the forces that depend on velocities, `d = ` their derivative by the velocities.
+    pub fn damping_matrix(
+        &self,
+        q: &[f64],
+        v: &[f64],
+        f: &mut [f64],
+        d: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
+        d.clear();
+        for damping in &self.damping {
+            damping.add_matrix(q, v, f, d, workspace);
+        }
+    }
+
+    /// Power \[W\] that damping takes in the state (q, v); `scratch` is overwritten.
+    pub fn lost_power(&self, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
+        scratch.fill(0.0);
+        self.add_damping(q, v, scratch);
+        scratch.iter().zip(v).map(|(f, v)| f * v).sum()
+    }
+
+    /// Times at which a load or the motion of a support is not smooth, in no order.
+    pub fn kinks(&self) -> Vec<f64> {
+        let laws = self.loads.iter().filter_map(|load| match &load.amplitude {
+            Some(Amplitude::Law(law)) => Some(law.kinks()),
+            _ => None,
+        });
+        laws.flatten().chain(self.supports.kinks()).collect()
     }
 
     /// The same force as [`Self::force`], and its derivative by q; stress resultants in the tangent are extrapolated
     /// from the iterate `before` (see [`crate::effect`]).
     pub fn force_and_tangent(
         &self,
-        load: f64,
+        parameter: f64,
         q: &[f64],
         before: &[f64],
         f: &mut [f64],
@@ -384,20 +400,20 @@ impl System {
         for effect in &self.internal {
             effect.add_force_and_tangent(1.0, q, before, f, k, workspace);
         }
-        self.add_constant_load(load, f);
-        for effect in self.varying_loads() {
-            effect.add_force_and_tangent(load, q, before, f, k, workspace);
+        self.add_constant_load(self.amplitude.at(parameter), f);
+        for (effect, amplitude) in self.varying_loads(parameter) {
+            effect.add_force_and_tangent(amplitude, q, before, f, k, workspace);
         }
     }
 
     /// `f = K v` with the tangent of [`Self::force_and_tangent`] at `q`, but to many more digits where the mesh is fine.
-    pub fn tangent_product(&self, load: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
+    pub fn tangent_product(&self, parameter: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
         for effect in &self.internal {
             effect.add_tangent_product(1.0, q, v, f);
         }
-        for effect in self.loads.iter().filter(|_| load != 0.0) {
-            effect.add_tangent_product(load, q, v, f);
+        for (effect, amplitude) in self.varying_loads(parameter).filter(|(_, amplitude)| *amplitude != 0.0) {
+            effect.add_tangent_product(amplitude, q, v, f);
         }
     }
 
@@ -412,7 +428,7 @@ impl System {
     }
 
     fn sum_of_tangents(&self, effects: &[Box<dyn Effect>], q: &[f64]) -> Matrix {
-        let mut sum = Matrix::zeros(self.nodes, self.blocks, true);
+        let mut sum = self.damping_pattern();
         let mut force = vec![0.0; self.coordinates()];
         let mut workspace = Workspace::default();
         for effect in effects {
@@ -436,18 +452,54 @@ impl System {
         rows.collect()
     }
 
-    /// Energies at load factor `load`; `velocity` where there is motion.
-    pub fn energy(&self, load: f64, q: &[f64], velocity: Option<&[f64]>) -> Energy {
+    /// Writes −∂g/∂q·v, scaled, which is what the rates of unknowns must make up for where supports have the rates `v`.
+    pub fn constraint_rates(&self, parameter: f64, v: &[f64], rates: &mut [f64]) {
+        for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
+            let scale = constraint.scale(self.stiffness, self.length);
+            *rate = -scale * constraint.gradient(parameter).map(|(i, value)| value * v[i]).sum::<f64>();
+        }
+    }
+
+    /// `f += Bᵀ μ` with the scaled multipliers μ.
+    pub fn add_constraint_forces(&self, parameter: f64, multipliers: &[f64], f: &mut [f64]) {
+        for (mu, constraint) in multipliers.iter().zip(&self.constraints) {
+            let mu = mu * constraint.scale(self.stiffness, self.length);
+            constraint.gradient(parameter).for_each(|(i, value)| f[i] += mu * value);
+        }
+    }
+
+    /// A zero matrix for [`Self::damping_matrix`].
+    pub fn damping_pattern(&self) -> Matrix {
+        Matrix::zeros(self.nodes, self.blocks, true)
+    }
+
+    /// Energies at load factor or time `parameter`; `velocity` where there is motion.
+    pub fn energy(&self, parameter: f64, q: &[f64], velocity: Option<&[f64]>) -> Energy {
         let sum = |effects: &[Box<dyn Effect>], kind: Kind, q: &[f64]| -> f64 {
             effects.iter().filter(|e| e.kind() == kind).map(|e| e.energy(q)).sum()
         };
+        let with_potential = self.loads.iter().filter(|load| load.has_potential());
+        let potential = with_potential.map(|load| load.effect.energy(q)).sum::<f64>();
         Energy {
             stretch: sum(&self.internal, Kind::Stretch, q),
             bend: sum(&self.internal, Kind::Bend, q),
             kinetic: velocity.map_or(0.0, |v| self.inertia.iter().map(|e| e.energy(v)).sum()),
-            potential: load * self.loads.iter().map(|e| e.energy(q)).sum::<f64>(),
+            potential: self.amplitude.at(parameter) * potential,
             work: 0.0,
+            lost: 0.0,
         }
+    }
+}
+
+impl Acting {
+    /// Whether it is part of the sum of loads that are the same in every state.
+    fn is_summed(&self) -> bool {
+        self.amplitude.is_none() && self.effect.is_constant()
+    }
+
+    /// Whether its work is the difference of a potential: of a load that follows time it is not.
+    fn has_potential(&self) -> bool {
+        self.amplitude.is_none() && self.effect.is_conservative()
     }
 }
 

@@ -9,38 +9,23 @@
 //! - a held direction θ lets (x', y') = a (cos θ, sin θ) with a free: in the frame turned by θ the second component is
 //!   fixed to zero.
 
+use super::course::Course;
 use crate::linear::Matrix;
-
-/// A quantity that grows with the load factor: start + λ · change.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ramp {
-    /// Value at λ = 0.
-    pub start: f64,
-    /// Difference between λ = 1 and λ = 0.
-    pub change: f64,
-}
-
-impl Ramp {
-    /// The value at load factor `load`.
-    pub fn at(self, load: f64) -> f64 {
-        self.change.mul_add(load, self.start)
-    }
-}
 
 /// What is held of a pair of coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Hold {
     /// One or both components of a position.
-    Position([Option<Ramp>; 2]),
+    Position([Option<Course>; 2]),
     /// Both components of a gradient, turned by an angle.
     Gradient {
         /// r'₀.
         reference: [f64; 2],
         /// The angle by which it is turned \[rad\].
-        rotation: Ramp,
+        rotation: Course,
     },
     /// The direction of a gradient \[rad\].
-    Direction(Ramp),
+    Direction(Course),
 }
 
 /// A pair of coordinates, 2·pair and 2·pair + 1, of which something is held.
@@ -53,10 +38,23 @@ pub struct Held {
 }
 
 impl Held {
+    fn courses(&self) -> impl Iterator<Item = &Course> {
+        let all: [Option<&Course>; 2] = match &self.hold {
+            Hold::Position(components) => components.each_ref().map(Option::as_ref),
+            Hold::Gradient { rotation: course, .. } | Hold::Direction(course) => [Some(course), None],
+        };
+        all.into_iter().flatten()
+    }
+
+    /// Whether its frame turns with time.
+    fn turns(&self) -> bool {
+        matches!(&self.hold, Hold::Direction(angle) if angle.moves_in_time())
+    }
+
     /// Cosine and sine of the frame's angle, and which components are fixed in that frame.
     fn frame(&self, load: f64) -> ([f64; 2], [bool; 2]) {
         match &self.hold {
-            Hold::Position(components) => ([1.0, 0.0], components.map(|c| c.is_some())),
+            Hold::Position(components) => ([1.0, 0.0], components.each_ref().map(Option::is_some)),
             Hold::Gradient { .. } => ([1.0, 0.0], [true, true]),
             Hold::Direction(angle) => {
                 let (sine, cosine) = angle.at(load).sin_cos();
@@ -68,7 +66,9 @@ impl Held {
     /// ∂/∂λ of the fixed components, in the frame.
     fn rate(&self, load: f64, q: &[f64]) -> [f64; 2] {
         match &self.hold {
-            Hold::Position(components) => components.map(|c| c.map_or(0.0, |ramp| ramp.change)),
+            Hold::Position(components) => {
+                components.each_ref().map(|c| c.as_ref().map_or(0.0, |course| course.change))
+            }
             Hold::Gradient { reference: [x, y], rotation } => {
                 let (sine, cosine) = rotation.at(load).sin_cos();
                 let (x, y) = (cosine * x - sine * y, sine * x + cosine * y);
@@ -85,8 +85,19 @@ pub struct Supports {
     held: Vec<Held>,
 }
 
+/// Values of a pair of coordinates, their velocities and accelerations.
+type PairMotion = [[f64; 2]; 3];
+
 fn rotate([cosine, sine]: [f64; 2], pair: &mut [f64]) {
     (pair[0], pair[1]) = (cosine * pair[0] + sine * pair[1], cosine * pair[1] - sine * pair[0]);
+}
+
+fn clear(pair: &mut [f64], which: [bool; 2]) {
+    for (value, which) in pair.iter_mut().zip(which) {
+        if which {
+            *value = 0.0;
+        }
+    }
 }
 
 impl Supports {
@@ -106,7 +117,7 @@ impl Supports {
 
     /// Nodes of which one component of the position is held and the other free.
     pub fn half_held(&self) -> impl Iterator<Item = usize> + '_ {
-        let half = |held: &&Held| matches!(held.hold, Hold::Position([a, b]) if a.is_some() != b.is_some());
+        let half = |held: &&Held| matches!(&held.hold, Hold::Position([a, b]) if a.is_some() != b.is_some());
         self.held.iter().filter(half).map(|held| held.pair / 2)
     }
 
@@ -118,36 +129,13 @@ impl Supports {
     /// Sets the held coordinates of `q` to their values at load factor `load`.
     pub fn impose(&self, load: f64, q: &mut [f64]) {
         for held in &self.held {
-            let pair = &mut q[2 * held.pair..2 * held.pair + 2];
-            match &held.hold {
-                Hold::Position(components) => {
-                    for (value, component) in pair.iter_mut().zip(components) {
-                        if let Some(ramp) = component {
-                            *value = ramp.at(load);
-                        }
-                    }
-                }
-                Hold::Gradient { reference: [x, y], rotation } => {
-                    let (sine, cosine) = rotation.at(load).sin_cos();
-                    pair[0] = cosine * x - sine * y;
-                    pair[1] = sine * x + cosine * y;
-                }
-                Hold::Direction(angle) => {
-                    let length = pair[0].hypot(pair[1]);
-                    let (sine, cosine) = angle.at(load).sin_cos();
-                    pair[0] = length * cosine;
-                    pair[1] = length * sine;
-                }
-            }
+            held.impose(load, &mut q[2 * held.pair..2 * held.pair + 2]);
         }
     }
 
     /// Whether anything moves by prescription.
     pub fn moves(&self) -> bool {
-        self.held.iter().any(|held| match &held.hold {
-            Hold::Position(c) => c.iter().flatten().any(|ramp| ramp.change != 0.0),
-            Hold::Gradient { rotation: ramp, .. } | Hold::Direction(ramp) => ramp.change != 0.0,
-        })
+        self.held.iter().flat_map(Held::courses).any(Course::moves)
     }
 
     /// Turns a vector of forces or increments into the frames of the supports and clears what is held.
@@ -156,17 +144,14 @@ impl Supports {
             let (frame, fixed) = held.frame(load);
             let pair = &mut v[2 * held.pair..2 * held.pair + 2];
             rotate(frame, pair);
-            for (value, fixed) in pair.iter_mut().zip(fixed) {
-                if fixed {
-                    *value = 0.0;
-                }
-            }
+            clear(pair, fixed);
         }
     }
 
-    /// Turns increments back from the frames of the supports.
+    /// Turns increments back from the frames of the supports, except where these turn with time: there the unknowns of a motion are
+    /// components in the frame.
     pub fn from_frames(&self, load: f64, v: &mut [f64]) {
-        for held in &self.held {
+        for held in self.held.iter().filter(|held| !held.turns()) {
             let ([cosine, sine], _) = held.frame(load);
             rotate([cosine, -sine], &mut v[2 * held.pair..2 * held.pair + 2]);
         }
@@ -214,5 +199,170 @@ impl Supports {
                 }
             }
         }
+    }
+
+    /// Whether anything moves by a law of time.
+    pub fn moves_in_time(&self) -> bool {
+        self.held.iter().flat_map(Held::courses).any(Course::moves_in_time)
+    }
+
+    /// Whether a held direction turns by a law of time.
+    pub fn turn_in_time(&self) -> bool {
+        self.held.iter().any(Held::turns)
+    }
+
+    /// Whether coordinate `i` belongs to a pair of which something is held, and nothing moves.
+    pub fn holds_still(&self, i: usize) -> bool {
+        self.held.iter().any(|held| held.pair == i / 2 && !held.courses().any(Course::moves_in_time))
+    }
+
+    /// Times at which a law of motion is not smooth.
+    pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
+        self.held
+            .iter()
+            .flat_map(Held::courses)
+            .filter_map(|course| course.law.as_ref())
+            .flat_map(|law| law.kinks())
+    }
+
+    /// Turns changes of a motion's unknowns into the frames of the supports and clears what is held.
+    pub fn unknowns_to_frames(&self, v: &mut [f64]) {
+        for held in &self.held {
+            let (frame, fixed) = held.frame(0.0);
+            let pair = &mut v[2 * held.pair..2 * held.pair + 2];
+            if !held.turns() {
+                rotate(frame, pair);
+            }
+            clear(pair, fixed);
+        }
+    }
+
+    /// Turns a vector back from all frames.
+    pub fn to_fixed_axes(&self, time: f64, v: &mut [f64]) {
+        for held in &self.held {
+            let ([cosine, sine], _) = held.frame(time);
+            rotate([cosine, -sine], &mut v[2 * held.pair..2 * held.pair + 2]);
+        }
+    }
+
+    /// Sets a motion's unknowns where they are held.
+    pub fn impose_unknowns(&self, time: f64, x: &mut [f64]) {
+        for held in &self.held {
+            let pair = &mut x[2 * held.pair..2 * held.pair + 2];
+            if held.turns() { pair[1] = 0.0 } else { held.impose(time, pair) }
+        }
+    }
+
+    /// Writes the velocities that supports prescribe in the state `q`, zero for all that is free.
+    pub fn prescribed_velocity(&self, time: f64, q: &[f64], velocity: &mut [f64]) {
+        velocity.fill(0.0);
+        for held in &self.held {
+            let at = 2 * held.pair;
+            let length = if held.turns() { q[at].hypot(q[at + 1]) } else { 0.0 };
+            let [_, v, _] = held.carried(time, [[length, 0.0], [0.0; 2], [0.0; 2]]);
+            velocity[at..at + 2].copy_from_slice(&v);
+        }
+    }
+
+    /// Clears all forces but those on held components, in fixed axes.
+    pub fn keep_held(&self, time: f64, force: &mut [f64]) {
+        let mut kept = vec![0.0; force.len()];
+        for held in &self.held {
+            let ([cosine, sine], fixed) = held.frame(time);
+            let range = 2 * held.pair..2 * held.pair + 2;
+            let mut pair = [force[range.start], force[range.start + 1]];
+            rotate([cosine, sine], &mut pair);
+            clear(&mut pair, fixed.map(|fixed| !fixed));
+            rotate([cosine, -sine], &mut pair);
+            kept[range].copy_from_slice(&pair);
+        }
+        force.copy_from_slice(&kept);
+    }
+
+    /// Positions, velocities and accelerations in fixed axes from the unknowns of a motion: what a support moves receives its prescribed
+    /// values, and along a direction that turns with θ(t),
+    ///
+    /// ```text
+    /// r' = y e,   ṙ' = ẏ e + y θ̇ n,   r̈' = (ÿ − y θ̇²) e + (2 ẏ θ̇ + y θ̈) n,   e = (cos θ, sin θ), n = (−sin θ, cos θ).
+    /// ```
+    pub fn carry(&self, time: f64, [q, v, a]: [&mut [f64]; 3]) {
+        for held in &self.held {
+            let range = 2 * held.pair..2 * held.pair + 2;
+            let pair = |x: &[f64]| [x[range.start], x[range.start + 1]];
+            let moved = held.carried(time, [pair(q), pair(v), pair(a)]);
+            for (x, moved) in [&mut *q, &mut *v, &mut *a].into_iter().zip(moved) {
+                x[range.clone()].copy_from_slice(&moved);
+            }
+        }
+    }
+
+    /// The unknowns of a motion from positions and velocities in fixed axes: the inverse of [`Self::carry`].
+    pub fn uncarry(&self, time: f64, q: &mut [f64], v: &mut [f64]) {
+        for held in self.held.iter().filter(|held| held.turns()) {
+            let (frame, _) = held.frame(time);
+            for x in [&mut *q, &mut *v] {
+                let pair = &mut x[2 * held.pair..2 * held.pair + 2];
+                rotate(frame, pair);
+                pair[1] = 0.0;
+            }
+        }
+    }
+}
+
+impl Held {
+    fn impose(&self, load: f64, pair: &mut [f64]) {
+        match &self.hold {
+            Hold::Position(components) => {
+                for (value, component) in pair.iter_mut().zip(components) {
+                    if let Some(course) = component {
+                        *value = course.at(load);
+                    }
+                }
+            }
+            Hold::Gradient { reference: [x, y], rotation } => {
+                let (sine, cosine) = rotation.at(load).sin_cos();
+                pair[0] = cosine * x - sine * y;
+                pair[1] = sine * x + cosine * y;
+            }
+            Hold::Direction(angle) => {
+                let length = pair[0].hypot(pair[1]);
+                let (sine, cosine) = angle.at(load).sin_cos();
+                pair[0] = length * cosine;
+                pair[1] = length * sine;
+            }
+        }
+    }
+
+    fn carried(&self, time: f64, [mut q, mut v, mut a]: PairMotion) -> PairMotion {
+        match &self.hold {
+            Hold::Position(components) => {
+                for (i, component) in components.iter().enumerate() {
+                    if let Some(course) = component {
+                        [q[i], v[i], a[i]] = course.prescribed(time);
+                    }
+                }
+            }
+            Hold::Gradient { reference: [x, y], rotation } => {
+                let [angle, rate, second] = rotation.prescribed(time);
+                let (sine, cosine) = angle.sin_cos();
+                let r = [cosine * x - sine * y, sine * x + cosine * y];
+                q = r;
+                v = [-r[1] * rate, r[0] * rate];
+                a = [-r[1] * second - r[0] * rate * rate, r[0] * second - r[1] * rate * rate];
+            }
+            Hold::Direction(angle) if self.turns() => {
+                let [angle, rate, second] = angle.prescribed(time);
+                let (sine, cosine) = angle.sin_cos();
+                let turned = |along: f64, across: f64| {
+                    [along * cosine - across * sine, along * sine + across * cosine]
+                };
+                let (y, dy, ddy) = (q[0], v[0], a[0]);
+                q = turned(y, 0.0);
+                v = turned(dy, y * rate);
+                a = turned(ddy - y * rate * rate, 2.0 * dy * rate + y * second);
+            }
+            Hold::Direction(_) => {}
+        }
+        [q, v, a]
     }
 }

@@ -64,6 +64,7 @@ fn motion(records: u32) -> Trajectory {
                 kinetic: time(i),
                 potential: -0.999 * time(i),
                 work: 0.0,
+                lost: 0.0,
             })
             .collect(),
         frames: (0..records).map(|i| frame(time(i), time(i), 1)).collect(),

@@ -141,7 +141,7 @@ fn with_load(beam: &Beam, load: Load) -> System {
         ..beam.clone()
     };
     let model = Model { beams: vec![elastic_free], supports: vec![], loads: vec![load], ..Model::default() };
-    System::build(&model, Needs { inertia: false }).expect("a legal system")
+    System::build(&model, Needs { inertia: false, motion: false }).expect("a legal system")
 }
 
 /// Compares a load's force and tangent with dual numbers.
@@ -245,7 +245,7 @@ proptest! {
     fn potential_of_dead_loads_is_their_negative_work(beam in beam(), noise in noise(), fx in -5.0..5.0) {
         let load = Load::Force { at: Place { beam: 0, s: 0.0 }, value: [fx, 2.0], follower: false };
         let model = Model { beams: vec![beam], supports: vec![clamp()], loads: vec![load], ..Model::default() };
-        let system = System::build(&model, Needs { inertia: false }).expect("a legal system");
+        let system = System::build(&model, Needs { inertia: false, motion: false }).expect("a legal system");
         let q = perturbed(&system, 0.3, &noise);
         let (dx, dy) = (q[0] - system.reference()[0], q[1] - system.reference()[1]);
         let work = fx * dx + 2.0 * dy;

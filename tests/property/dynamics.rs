@@ -72,7 +72,7 @@ fn hinge(s: f64) -> Support {
 }
 
 fn build(model: &Model) -> System {
-    System::build(model, Needs { inertia: true }).expect("a legal model")
+    System::build(model, Needs { inertia: true, motion: true }).expect("a legal model")
 }
 
 fn system(discretization: Discretization, supports: Vec<Support>) -> System {
@@ -456,9 +456,9 @@ fn velocities_against_supports_are_refused() {
     assert!(error.to_string().contains("beam `arm`"), "{error}");
 }
 
-/// What is not simulated is refused, not ignored: here a support that would have to move.
+/// A support that moves must say how in time.
 #[test]
-fn prescribed_motion_is_refused() {
+fn prescribed_motion_needs_a_law_of_time() {
     use ancf::model::{Analysis, Displacement, Dynamic};
     let [ancf, _] = either();
     let mut model = model(ancf, vec![hinge(0.0)]);
@@ -466,8 +466,7 @@ fn prescribed_motion_is_refused() {
     let integrator = with_step(ALPHA, StepControl::Fixed(1e-3));
     let analysis =
         Analysis::Dynamic(Dynamic { duration: 0.1, output_every: 0.1, integrator, events: vec![] });
-    let error =
-        ancf::run::run(&model, &analysis, &mut |_| ancf::run::Control::Continue).expect_err("not available");
+    let error = ancf::run::run(&model, &analysis, &mut |_| ancf::run::Control::Continue).expect_err("no law");
     assert_eq!(error.exit_status(), 2);
-    assert!(error.to_string().contains("prescribed motion"), "{error}");
+    assert!(error.to_string().contains("does not say how in time"), "{error}");
 }

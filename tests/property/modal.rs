@@ -69,7 +69,7 @@ fn frequencies(model: &Model, count: usize, about: About) -> Vec<f64> {
 }
 
 fn system(model: &Model) -> System {
-    System::build(model, Needs { inertia: true }).expect("a legal model")
+    System::build(model, Needs { inertia: true, motion: false }).expect("a legal model")
 }
 
 fn close(a: &[f64], b: &[f64], tolerance: f64) -> bool {

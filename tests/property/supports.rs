@@ -74,9 +74,10 @@ proptest! {
             at: Place { beam: 0, s },
             fix: Fixed { x, y, rotation },
             displacement: Displacement { x: lift, y: -lift, angle: 0.5 * turn },
+            law: None,
         };
         let model = model(discretization, angle, vec![start.clone(), second.clone()]);
-        let system = System::build(&model, Needs { inertia: false }).expect("a legal model");
+        let system = System::build(&model, Needs { inertia: false, motion: false }).expect("a legal model");
         let between = system.multipliers();
         let rows = usize::from(x) + usize::from(y) + match rotation {
             FixedRotation::Free => 0,
@@ -122,7 +123,7 @@ fn a_bifurcation_is_reported_with_its_load() {
         value: [-2.0 * critical, 0.0],
         follower: false,
     }];
-    let system = System::build(&column, Needs { inertia: false }).expect("a legal model");
+    let system = System::build(&column, Needs { inertia: false, motion: false }).expect("a legal model");
     let solution = ancf::solve::statics::solve(&system, &Static::default(), None, &mut |_, _, _| true);
     let [event] = solution.events[..] else { panic!("one loss of definiteness, not {:?}", solution.events) };
     assert_eq!((event.before, event.after), (0, 1));
@@ -162,7 +163,7 @@ fn stability_between_constraint_rows_does_not_depend_on_units() {
             value: [-2.0 * critical, 0.0],
             follower: false,
         }];
-        let system = System::build(&column, Needs { inertia: false }).expect("a legal model");
+        let system = System::build(&column, Needs { inertia: false, motion: false }).expect("a legal model");
         assert_eq!(system.multipliers(), 1, "the middle lies between nodes");
         let solution = ancf::solve::statics::solve(&system, &Static::default(), None, &mut |_, _, _| true);
         let first = solution.events.first().expect("the column passes its critical load");
@@ -175,7 +176,7 @@ fn stability_between_constraint_rows_does_not_depend_on_units() {
 #[test]
 fn stopping_ends_the_analysis() {
     let model = model(Discretization::Ancf { nodes: Nodes::Uniform(7) }, 0.0, vec![clamp()]);
-    let system = System::build(&model, Needs { inertia: false }).expect("a legal model");
+    let system = System::build(&model, Needs { inertia: false, motion: false }).expect("a legal model");
     let settings = Static { steps: Some(8), ..Static::default() };
     let mut calls = 0;
     let solution = ancf::solve::statics::solve(&system, &settings, None, &mut |_, _, _| {

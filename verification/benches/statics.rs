@@ -56,7 +56,7 @@ fn cantilever(discretization: Discretization, gauss_points: GaussPoints, angle: 
 }
 
 fn system(discretization: Discretization, gauss_points: GaussPoints) -> System {
-    System::build(&cantilever(discretization, gauss_points, 1.0), Needs { inertia: false })
+    System::build(&cantilever(discretization, gauss_points, 1.0), Needs { inertia: false, motion: false })
         .expect("a legal model")
 }
 

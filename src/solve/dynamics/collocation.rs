@@ -25,7 +25,7 @@
 
 use super::State;
 use super::method::Method;
-use super::motion::Motion;
+use super::motion::{Motion, Rates};
 use super::tableau::{Block, Tableau};
 use super::turns::Turns;
 use crate::linear::complex::ComplexFactor;
@@ -67,6 +67,7 @@ pub struct Collocation<'a> {
     rate: f64,
     stage: Vec<f64>,
     acceleration: Vec<f64>,
+    velocity: Vec<f64>,
     residuals: Vec<Vec<f64>>,
     transformed: Vec<Vec<f64>>,
     increment: Vec<f64>,
@@ -88,6 +89,7 @@ impl<'a> Collocation<'a> {
             rate: 1.0,
             stage: vec![0.0; unknowns],
             acceleration: vec![0.0; n],
+            velocity: vec![0.0; n],
             residuals: stages.clone(),
             transformed: stages,
             increment: vec![0.0; unknowns],
@@ -138,6 +140,15 @@ impl<'a> Collocation<'a> {
         self.stage[n..].copy_from_slice(&self.displacements[i][n..]);
     }
 
+    /// Q̇_i = v₀ + h⁻¹ Σ_j (A⁻¹)_ij Y_j, where forces depend on it.
+    fn velocity(&mut self, i: usize, from: &State, h: f64) {
+        if self.motion.is_damped() {
+            let weights = (0..self.tableau.stages()).map(|j| self.tableau.inverse[(i, j)] / h);
+            combine(&mut self.velocity, weights, &self.displacements);
+            self.velocity.iter_mut().zip(&from.v).for_each(|(v, start)| *v += start);
+        }
+    }
+
     /// Q̈_i = h⁻² Σ_j (A⁻²)_ij Y_j.
     fn accelerate(&mut self, i: usize, h: f64) {
         combine(
@@ -148,12 +159,12 @@ impl<'a> Collocation<'a> {
     }
 
     /// Factorises the transformed systems with the tangent at `at`, turned with each node to where it is in each stage.
-    fn linearize(&mut self, at: &[f64], from: &State, h: f64) -> Result<(), Singular> {
+    fn linearize(&mut self, at: &State, from: &State, h: f64) -> Result<(), Singular> {
         let s = self.tableau.stages();
-        self.motion.tangent_at(at);
+        self.motion.tangent_at(at)?;
         for i in 0..s {
             self.stage(i, from, h);
-            self.turns[i].measure(at, &self.stage[..at.len()]);
+            self.turns[i].measure(&at.q, &self.stage[..at.q.len()]);
         }
         let mut earlier = std::mem::take(&mut self.factors).into_iter();
         for block in &self.tableau.blocks {
@@ -161,12 +172,12 @@ impl<'a> Collocation<'a> {
                 (Block::Real { gamma, .. }, earlier) => {
                     let earlier =
                         if let Some(BlockFactor::Real(factor)) = earlier { Some(factor) } else { None };
-                    BlockFactor::Real(self.motion.factorize((gamma / h).powi(2), earlier)?)
+                    BlockFactor::Real(self.motion.factorize((gamma / h).powi(2), gamma / h, earlier)?)
                 }
                 (Block::Complex { zeta, .. }, earlier) => {
                     let earlier =
                         if let Some(BlockFactor::Complex(factor)) = earlier { Some(factor) } else { None };
-                    BlockFactor::Complex(self.motion.factorize_complex((zeta / h).powi(2), earlier)?)
+                    BlockFactor::Complex(self.motion.factorize_complex(zeta / h, earlier)?)
                 }
             };
             self.factors.push(factor);
@@ -175,14 +186,14 @@ impl<'a> Collocation<'a> {
     }
 
     /// The mean of the stages.
-    fn mean(&mut self, from: &State, h: f64) -> Vec<f64> {
+    fn mean(&mut self, from: &State, h: f64) -> State {
         let s = self.tableau.stages();
         let mut mean = vec![0.0; from.q.len()];
         for i in 0..s {
             self.stage(i, from, h);
             mean.iter_mut().zip(&self.stage).for_each(|(mean, x)| *mean += x / s as f64);
         }
-        mean
+        State { time: from.time + 0.5 * h, q: mean, v: from.v.clone(), ..State::default() }
     }
 
     /// One iteration; returns the scaled increment and residual.
@@ -192,7 +203,10 @@ impl<'a> Collocation<'a> {
         for i in 0..s {
             self.stage(i, from, h);
             self.accelerate(i, h);
-            let scaled = self.motion.residual(&self.stage, &self.acceleration, &mut self.residuals[i]);
+            self.velocity(i, from, h);
+            let time = from.time + self.tableau.nodes[i] * h;
+            let rates = Rates { time, v: &self.velocity, a: &self.acceleration };
+            let scaled = self.motion.residual(&self.stage, rates, &mut self.residuals[i]);
             residual = if scaled.is_nan() { scaled } else { residual.max(scaled) };
             self.turns[i].back(&mut self.residuals[i][..n]);
         }
@@ -234,7 +248,7 @@ impl<'a> Collocation<'a> {
         record: &mut Iterations,
     ) -> Result<(), Failure> {
         // At the converged state, whose axial force is right: that of a predicted one is not, with a large EA.
-        self.linearize(&from.q, from, h)?;
+        self.linearize(from, from, h)?;
         let mut fresh = false;
         // Sizes of the last two increments with the present tangent; rates alternate, and two together tell more than one.
         let mut last = [0.0_f64; 2];
@@ -275,15 +289,16 @@ impl<'a> Collocation<'a> {
 
     /// The defect of the polynomial of accelerations at `x` (0: start, 1: end of the step), where the coordinates are `q`, through the
     /// step's own matrix: (ζ²/h² M + K)⁻¹ M (q̈ − Σ ℓ_j(x) Q̈_j), in fixed axes. Also the polynomial there, and ζ²/h² where it is real.
-    fn defect(&mut self, x: f64, q: &[f64]) -> (Vec<f64>, f64) {
+    fn defect(&mut self, x: f64, state: &State) -> (Vec<f64>, f64) {
         let n = self.motion.coordinates();
         let h = self.trial_step;
         self.polynomial(x);
-        self.stage[..n].copy_from_slice(q);
+        self.stage[..n].copy_from_slice(&state.q);
         self.stage[n..].fill(0.0);
         // −M Σ ℓ_j(x) Q̈_j − f(q) is M times the defect but for the forces of supports and constraints, which the solution removes.
         let mut e = vec![0.0; self.motion.unknowns()];
-        self.motion.residual(&self.stage, &self.acceleration, &mut e);
+        let rates = Rates { time: state.time, v: &state.v, a: &self.acceleration };
+        self.motion.residual(&self.stage, rates, &mut e);
         e[n..].fill(0.0);
         let mut factor = 0.0;
         for (block, matrix) in self.tableau.blocks.iter().zip(&self.factors) {
@@ -317,8 +332,9 @@ impl<'a> Collocation<'a> {
 
     /// q̈ at an end of the step without what oscillates faster than the step can follow: that part, however small its amplitude, would
     /// dominate an interpolation by accelerations.
-    fn smooth_acceleration(&mut self, x: f64, q: &[f64]) -> Vec<f64> {
-        let (defect, factor) = self.defect(x, q);
+    fn smooth_acceleration(&mut self, x: f64, state: &State) -> Vec<f64> {
+        let state = &self.motion.unknowns_of(state);
+        let (defect, factor) = self.defect(x, state);
         self.acceleration.iter().zip(defect).map(|(a, d)| a + factor * d).collect()
     }
 }
@@ -336,13 +352,14 @@ impl Method for Collocation<'_> {
         self.tableau.order
     }
 
-    fn start(&mut self, state: &State) -> Vec<f64> {
+    fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
         // Constant accelerations, until there is a step to continue.
         let mut acceleration = vec![0.0; state.q.len()];
-        self.motion.acceleration(&state.q, &mut acceleration);
+        let unknowns = self.motion.unknowns_of(state);
+        self.motion.acceleration(&unknowns, &mut acceleration)?;
         self.accelerations.iter_mut().for_each(|a| a.copy_from_slice(&acceleration));
         (self.last_step, self.rate) = (0.0, 1.0);
-        acceleration
+        Ok(acceleration)
     }
 
     fn attempt(
@@ -353,6 +370,8 @@ impl Method for Collocation<'_> {
         to: &mut State,
         record: &mut Iterations,
     ) -> Result<f64, Failure> {
+        let start = self.motion.unknowns_of(from);
+        let from = &*start;
         self.predict(h);
         let tight = TOLERANCE * self.displacement(from, h);
         let tolerance = accuracy
@@ -370,9 +389,11 @@ impl Method for Collocation<'_> {
             *q = from.q[i] + (h * from.v[i] + position);
             *v = from.v[i] + velocity / h;
         }
+        to.time = from.time + h;
+        self.motion.carry(to);
         let Some(_) = accuracy else { return Ok(0.0) };
         let exponent = (self.tableau.order + 1.0) / (s as f64 + 2.0);
-        let (defect, _) = self.defect(0.0, &from.q);
+        let (defect, _) = self.defect(0.0, from);
         Ok(self.motion.distance(&defect).powf(exponent))
     }
 
@@ -390,7 +411,12 @@ impl Method for Collocation<'_> {
         if self.tableau.stages() < 3 {
             return None;
         }
-        Some([self.smooth_acceleration(0.0, &from.q), self.smooth_acceleration(1.0, &to.q)])
+        let (start, end) = (self.smooth_acceleration(0.0, from), self.smooth_acceleration(1.0, to));
+        Some([self.motion.carried_acceleration(from, start), self.motion.carried_acceleration(to, end)])
+    }
+
+    fn support_power(&mut self, state: &State) -> f64 {
+        self.motion.support_power(state).unwrap_or(f64::NAN)
     }
 
     fn last_increment(&self) -> &[f64] {

@@ -22,7 +22,7 @@
 
 use super::State;
 use super::method::Method;
-use super::motion::Motion;
+use super::motion::{Motion, Rates};
 use super::turns::Turns;
 use crate::linear::{Factor, Singular};
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
@@ -70,6 +70,33 @@ struct Accelerations {
     multipliers: Vec<f64>,
 }
 
+/// The formulas of a step, solved for the rates at its end: q̈ = c q + e, q̇ = d q + o.
+#[derive(Clone, Debug, Default)]
+struct Rule {
+    time: f64,
+    c: f64,
+    d: f64,
+    e: Vec<f64>,
+    o: Vec<f64>,
+    acceleration: Vec<f64>,
+    velocity: Vec<f64>,
+}
+
+impl Rule {
+    /// The rates at the unknowns `x`; velocities only where forces depend on them.
+    fn at(&mut self, x: &[f64], damped: bool) -> Rates<'_> {
+        for ((a, q), e) in self.acceleration.iter_mut().zip(x).zip(&self.e) {
+            *a = self.c.mul_add(*q, *e);
+        }
+        if damped {
+            for ((v, q), o) in self.velocity.iter_mut().zip(x).zip(&self.o) {
+                *v = self.d.mul_add(*q, *o);
+            }
+        }
+        Rates { time: self.time, v: &self.velocity, a: &self.acceleration }
+    }
+}
+
 /// The method with its memory.
 pub struct GeneralizedAlpha<'a> {
     motion: Motion<'a>,
@@ -82,8 +109,7 @@ pub struct GeneralizedAlpha<'a> {
     trial_step: f64,
     x: Vec<f64>,
     start: Vec<f64>,
-    offset: Vec<f64>,
-    acceleration: Vec<f64>,
+    rule: Rule,
     increment: Vec<f64>,
     factor: Option<Factor>,
     kept: Option<Kept>,
@@ -94,7 +120,7 @@ pub struct GeneralizedAlpha<'a> {
 #[derive(Clone, Debug)]
 struct Kept {
     /// Where it was taken.
-    at: Vec<f64>,
+    at: State,
     /// Of K + cM; 0 before it is factorised.
     c: f64,
     /// How much increments shrink an iteration.
@@ -121,8 +147,13 @@ impl<'a> GeneralizedAlpha<'a> {
             trial_step: 0.0,
             x: vec![0.0; unknowns],
             start: vec![0.0; unknowns],
-            offset: vec![0.0; n],
-            acceleration: vec![0.0; n],
+            rule: Rule {
+                e: vec![0.0; n],
+                o: vec![0.0; n],
+                acceleration: vec![0.0; n],
+                velocity: vec![0.0; n],
+                ..Rule::default()
+            },
             increment: vec![0.0; unknowns],
             factor: None,
             kept: None,
@@ -130,17 +161,18 @@ impl<'a> GeneralizedAlpha<'a> {
     }
 
     /// Takes the tangent at `at`.
-    fn keep(&mut self, at: &[f64], rate: f64) {
-        self.motion.tangent_at(at);
-        self.kept = Some(Kept { at: at.to_vec(), c: 0.0, rate });
+    fn keep(&mut self, at: &State, rate: f64) -> Result<(), Singular> {
+        self.motion.tangent_at(at)?;
+        self.kept = Some(Kept { at: at.clone(), c: 0.0, rate });
+        Ok(())
     }
 
-    /// Factorises K + cM, unless that is what is there but for the round-off of the step's length.
-    fn factorize(&mut self, c: f64) -> Result<(), Singular> {
+    /// Factorises K + dD + cM, unless that is what is there but for the round-off of the step's length.
+    fn factorize(&mut self, c: f64, d: f64) -> Result<(), Singular> {
         if let Some(kept) = &mut self.kept
             && (kept.c - c).abs() > ROUND_OFF * c
         {
-            self.factor = Some(self.motion.factorize(c, self.factor.take())?);
+            self.factor = Some(self.motion.factorize(c, d, self.factor.take())?);
             kept.c = c;
         }
         Ok(())
@@ -150,27 +182,25 @@ impl<'a> GeneralizedAlpha<'a> {
     fn solve_with_kept(
         &mut self,
         from: &State,
-        c: f64,
         tolerance: f64,
         record: &mut Iterations,
     ) -> Result<bool, Singular> {
         let predicted = self.x.clone();
         let mut fresh = self.kept.as_ref().is_none_or(|kept| kept.rate > KEEP);
         if fresh {
-            self.keep(&from.q, 1.0);
+            self.keep(from, 1.0)?;
         }
-        let n = self.motion.coordinates();
+        let (n, damped) = (self.motion.coordinates(), self.motion.is_damped());
+        let (c, d) = (self.rule.c, self.rule.d);
         loop {
-            self.factorize(c)?;
+            self.factorize(c, d)?;
             let Some(kept) = &self.kept else { return Ok(false) };
             let mut rate = kept.rate;
-            self.turns.measure(&kept.at, &self.x[..n]);
+            self.turns.measure(&kept.at.q, &self.x[..n]);
             let mut last = 0.0;
             for _ in 0..ITERATIONS {
-                for ((a, q), e) in self.acceleration.iter_mut().zip(&self.x).zip(&self.offset) {
-                    *a = c.mul_add(*q, *e);
-                }
-                let residual = self.motion.residual(&self.x, &self.acceleration, &mut self.increment);
+                let rates = self.rule.at(&self.x, damped);
+                let residual = self.motion.residual(&self.x, rates, &mut self.increment);
                 self.turns.back(&mut self.increment[..n]);
                 if let Some(factor) = &self.factor {
                     factor.solve(&mut self.increment);
@@ -205,26 +235,18 @@ impl<'a> GeneralizedAlpha<'a> {
                 self.kept = None;
                 return Ok(false);
             }
-            self.keep(&from.q, 1.0);
+            self.keep(from, 1.0)?;
             fresh = true;
         }
     }
 
-    fn solve(
-        &mut self,
-        from: &State,
-        c: f64,
-        settings: &Settings,
-        record: &mut Iterations,
-    ) -> Result<(), Failure> {
-        if self.solve_with_kept(from, c, settings.tolerance, record)? {
+    fn solve(&mut self, from: &State, settings: &Settings, record: &mut Iterations) -> Result<(), Failure> {
+        if self.solve_with_kept(from, settings.tolerance, record)? {
             return Ok(());
         }
         let mut equations = AtEnd {
             motion: &mut self.motion,
-            c,
-            offset: &self.offset,
-            acceleration: &mut self.acceleration,
+            rule: &mut self.rule,
             last_increment: &mut self.increment,
             factor: &mut self.factor,
         };
@@ -254,34 +276,24 @@ impl<'a> GeneralizedAlpha<'a> {
     }
 }
 
-/// Equilibrium at the end of a step, with q̈ = c q + e.
+/// Equilibrium at the end of a step.
 struct AtEnd<'s, 'a> {
     motion: &'s mut Motion<'a>,
-    c: f64,
-    offset: &'s [f64],
-    acceleration: &'s mut [f64],
+    rule: &'s mut Rule,
     last_increment: &'s mut [f64],
     factor: &'s mut Option<Factor>,
-}
-
-impl AtEnd<'_, '_> {
-    fn accelerate(&mut self, x: &[f64]) {
-        for ((a, q), e) in self.acceleration.iter_mut().zip(x).zip(self.offset) {
-            *a = self.c.mul_add(*q, *e);
-        }
-    }
 }
 
 impl Equations for AtEnd<'_, '_> {
     fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular> {
         self.motion.statistics.newton_iterations += 1;
-        self.accelerate(x);
-        let residual = self.motion.linearize(x, before, self.acceleration, increment);
+        let rates = self.rule.at(x, self.motion.is_damped());
+        let residual = self.motion.linearize(x, before, rates, increment);
         if !residual.is_finite() {
             // What overflows has no pivots either, but that is not why.
             return Ok(residual);
         }
-        let factor = self.motion.factorize(self.c, self.factor.take())?;
+        let factor = self.motion.factorize(self.rule.c, self.rule.d, self.factor.take())?;
         factor.solve(increment);
         *self.factor = Some(factor);
         self.motion.from_frames(increment);
@@ -290,9 +302,9 @@ impl Equations for AtEnd<'_, '_> {
     }
 
     fn residual(&mut self, x: &[f64]) -> f64 {
-        self.accelerate(x);
         let mut negative = vec![0.0; x.len()];
-        self.motion.residual(x, self.acceleration, &mut negative)
+        let rates = self.rule.at(x, self.motion.is_damped());
+        self.motion.residual(x, rates, &mut negative)
     }
 
     fn size(&self, increment: &[f64]) -> f64 {
@@ -305,11 +317,12 @@ impl Method for GeneralizedAlpha<'_> {
         2.0
     }
 
-    fn start(&mut self, state: &State) -> Vec<f64> {
-        self.motion.acceleration(&state.q, &mut self.last.physical);
+    fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
+        let unknowns = self.motion.unknowns_of(state);
+        self.motion.acceleration(&unknowns, &mut self.last.physical)?;
         self.last.algorithmic.copy_from_slice(&self.last.physical);
         self.before = None;
-        self.last.physical.clone()
+        Ok(self.last.physical.clone())
     }
 
     fn attempt(
@@ -322,14 +335,22 @@ impl Method for GeneralizedAlpha<'_> {
     ) -> Result<f64, Failure> {
         let Coefficients { alpha_m, alpha_f, beta, gamma } = self.coefficients;
         let n = self.motion.coordinates();
-        // q̈ = c q + e from the three formulas above.
+        let (start, end) = (self.motion.unknowns_of(from), from.time + h);
+        let from = &*start;
+        // q̈ = c q + e and q̇ = d q + o from the three formulas above.
         let a_per_q = 1.0 / (beta * h * h);
         let c = (1.0 - alpha_m) / (1.0 - alpha_f) * a_per_q;
+        let d = gamma * h * a_per_q;
+        (self.rule.time, self.rule.c, self.rule.d) = (end, c, d);
+        let damped = self.motion.is_damped();
         let Accelerations { physical, algorithmic, multipliers } = &self.last;
         for i in 0..n {
             let explicit = from.q[i] + h * (from.v[i] + h * (0.5 - beta) * algorithmic[i]);
-            self.offset[i] =
+            self.rule.e[i] =
                 (alpha_m * algorithmic[i] - alpha_f * physical[i]) / (1.0 - alpha_f) - c * explicit;
+            if damped {
+                self.rule.o[i] = from.v[i] + h * (1.0 - gamma) * algorithmic[i] - d * explicit;
+            }
             let predicted = match &self.before {
                 Some((before, step)) => algorithmic[i] + h / step * (algorithmic[i] - before[i]),
                 None => algorithmic[i],
@@ -340,7 +361,7 @@ impl Method for GeneralizedAlpha<'_> {
         self.x[n..].copy_from_slice(multipliers);
         self.start[..n].copy_from_slice(&from.q);
         self.start[n..].copy_from_slice(multipliers);
-        self.motion.impose(&mut self.x);
+        self.motion.impose(end, &mut self.x);
         let moved: Vec<f64> = self.x.iter().zip(&self.start).map(|(x, start)| x - start).collect();
         let tight = self.newton_tolerance * (RELATIVE_TOLERANCE * self.motion.size(&moved)).min(1.0);
         let settings = Settings {
@@ -349,17 +370,19 @@ impl Method for GeneralizedAlpha<'_> {
             residual_tolerance: f64::INFINITY,
             ..Settings::default()
         };
-        self.solve(from, c, &settings, record)?;
+        self.solve(from, &settings, record)?;
         self.trial_step = h;
         let Accelerations { algorithmic, .. } = &self.last;
         for (i, before) in algorithmic.iter().enumerate() {
             let a = (self.x[i] - to.q[i]) * a_per_q;
             to.q[i] = self.x[i];
             to.v[i] = from.v[i] + h * ((1.0 - gamma) * before + gamma * a);
-            self.trial.physical[i] = c * self.x[i] + self.offset[i];
+            self.trial.physical[i] = c * self.x[i] + self.rule.e[i];
             self.trial.algorithmic[i] = a;
         }
         self.trial.multipliers.copy_from_slice(&self.x[n..]);
+        to.time = end;
+        self.motion.carry(to);
         Ok(if accuracy.is_some() { self.error(h, c) } else { 0.0 })
     }
 
@@ -374,6 +397,10 @@ impl Method for GeneralizedAlpha<'_> {
         None
     }
 
+    fn support_power(&mut self, state: &State) -> f64 {
+        self.motion.support_power(state).unwrap_or(f64::NAN)
+    }
+
     fn last_increment(&self) -> &[f64] {
         &self.increment
     }
@@ -385,29 +412,38 @@ impl Method for GeneralizedAlpha<'_> {
     fn memory(&self) -> Vec<Vec<f64>> {
         let Accelerations { physical, algorithmic, multipliers } = self.last.clone();
         let (before, step) = self.before.clone().unwrap_or_default();
-        let kept =
-            self.kept.as_ref().map_or((Vec::new(), 0.0, 0.0), |kept| (kept.at.clone(), kept.c, kept.rate));
-        vec![physical, algorithmic, multipliers, before, kept.0, vec![step, kept.1, kept.2]]
+        let (at, c, rate) = self.kept.clone().map_or_else(Default::default, |k| (k.at, k.c, k.rate));
+        vec![
+            physical,
+            algorithmic,
+            multipliers,
+            before,
+            at.q,
+            at.v,
+            vec![step, c, rate, at.time, self.rule.d],
+        ]
     }
 
     fn restore(&mut self, memory: Vec<Vec<f64>>) -> bool {
         let n = self.motion.coordinates();
-        let Ok([physical, algorithmic, multipliers, before, at, numbers]) = <[Vec<f64>; 6]>::try_from(memory)
+        let Ok([physical, algorithmic, multipliers, before, q, v, numbers]) =
+            <[Vec<f64>; 7]>::try_from(memory)
         else {
             return false;
         };
         let fits = |v: &[f64]| v.is_empty() || v.len() == n;
         let required = [physical.len(), algorithmic.len(), multipliers.len(), numbers.len()];
-        if required != [n, n, self.motion.unknowns() - n, 3] || !fits(&before) || !fits(&at) {
+        if required != [n, n, self.motion.unknowns() - n, 5]
+            || !fits(&before)
+            || !fits(&q)
+            || q.len() != v.len()
+        {
             return false;
         }
-        let [step, c, rate] = [numbers[0], numbers[1], numbers[2]];
+        let [step, c, rate, time, d] = [numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]];
         self.last = Accelerations { physical, algorithmic, multipliers };
         self.before = (!before.is_empty()).then_some((before, step));
-        if !at.is_empty() {
-            self.keep(&at, rate);
-            return c == 0.0 || self.factorize(c).is_ok();
-        }
-        true
+        let at = State { time, q, v, ..State::default() };
+        at.q.is_empty() || (self.keep(&at, rate).is_ok() && (c == 0.0 || self.factorize(c, d).is_ok()))
     }
 }

@@ -126,6 +126,8 @@ struct Driver<'t, 'a> {
     /// Whether an event ended the motion within a step, whose end is what the method remembers.
     cut: bool,
     stride: usize,
+    /// Times at which loads or supports are not smooth, rising.
+    kinks: Vec<f64>,
 }
 
 impl<'t, 'a> Driver<'t, 'a> {
@@ -137,10 +139,16 @@ impl<'t, 'a> Driver<'t, 'a> {
     ) -> Self {
         let Checkpoint { state, method: name, memory, step, last_ratio, origin } = task.start.clone();
         let control = task.integrator.step_control();
-        let acceleration = method.start(&state);
-        if let Some(unknown) = acceleration.iter().position(|a| !a.is_finite()) {
+        let mut lost = |unknown: usize, failure: Failure| {
             let at = system.place_of(unknown);
-            solution.stuck = Some(Stuck { time: state.time, step: 0.0, failure: Failure::NotFinite, at });
+            solution.stuck = Some(Stuck { time: state.time, step: 0.0, failure, at });
+        };
+        let acceleration = method.start(&state).unwrap_or_else(|singular| {
+            lost(singular.row, singular.into());
+            vec![0.0; state.q.len()]
+        });
+        if let Some(unknown) = acceleration.iter().position(|a| !a.is_finite()) {
+            lost(unknown, Failure::NotFinite);
         }
         let continued = name == task.integrator.to_string() && method.restore(memory);
         let (step, origin) = match control {
@@ -150,6 +158,9 @@ impl<'t, 'a> Driver<'t, 'a> {
                 (first_step(system, task, &*method, [&state.v, &acceleration], tolerance), (state.time, 0))
             }
         };
+        let mut kinks = system.kinks();
+        kinks.retain(|kink| *kink > state.time && *kink < task.duration);
+        kinks.sort_by(f64::total_cmp);
         let next_record = (state.time / task.output_every + 1.0 + SLACK).floor() as u64;
         solution.states.push(state.clone());
         Self {
@@ -166,6 +177,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             rejected: false,
             cut: false,
             stride: 1,
+            kinks,
         }
     }
 
@@ -220,7 +232,10 @@ impl<'t, 'a> Driver<'t, 'a> {
             let mut record = Iterations::default();
             let result = self.method.attempt(&self.state, h, accuracy, new, &mut record);
             let result = match accuracy {
-                None => result.and_then(|error| self.without_gain(new, end).map(|()| error)),
+                None => result.and_then(|error| {
+                    new.time = end;
+                    self.without_gain(new).map(|()| error)
+                }),
                 Some(_) => result,
             };
             let iterations = record.increments.len();
@@ -240,7 +255,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             if accepted {
                 self.method.statistics().steps += 1;
                 new.time = end;
-                new.work = self.state.work;
+                (new.work, new.lost) = (self.state.work, self.state.lost);
                 if let StepControl::Fixed(step) = self.control
                     && end >= self.grid_end(step)
                 {
@@ -285,17 +300,17 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
-    /// Refuses a coarse step to `new`, at time `end`, that gains energy.
-    fn without_gain(&self, new: &State, end: f64) -> Result<(), Failure> {
+    /// Refuses a coarse step to `new` that gains energy.
+    fn without_gain(&mut self, new: &State) -> Result<(), Failure> {
         let nodes = new.q.chunks_exact(4).zip(self.state.q.chunks_exact(4));
         let square = nodes.fold(0.0_f64, |m, (a, b)| m.max((a[2] - b[2]).powi(2) + (a[3] - b[3]).powi(2)));
         if square.sqrt() <= COARSE_TURN {
             return Ok(());
         }
-        let energy = |state: &State| self.system.energy(1.0, &state.q, Some(&state.v));
+        let energy = |state: &State| self.system.energy(state.time, &state.q, Some(&state.v));
         let (before, after) = (energy(&self.state), energy(new));
-        let step = State { time: end, ..new.clone() };
-        let work = self.work(&step, end, None) - self.state.work;
+        let (work, _) = self.work(new, new.time, None);
+        let work = work - self.state.work;
         let gain = (after.total() - before.total() - work) / before.kinetic.max(after.kinetic);
         // Also refuses a NaN.
         if gain <= LARGEST_GAIN { Ok(()) } else { Err(Failure::Gain { gain }) }
@@ -314,7 +329,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         let (end, sliver) = match self.control {
             StepControl::Fixed(step) => (self.grid_end(step), 1.0 + SLACK),
             // The last two steps share what is left.
-            StepControl::Tolerance(_) => (self.task.duration, 2.0),
+            StepControl::Tolerance(_) => (self.next_kink(), 2.0),
         };
         let left = end - now;
         if self.step * (1.0 + SLACK) >= left {
@@ -326,12 +341,19 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
+    /// Where loads or supports are next not smooth, or the motion ends.
+    fn next_kink(&self) -> f64 {
+        let slack = SMALLEST_STEP * self.task.duration;
+        let next = self.kinks.iter().find(|kink| **kink > self.state.time + slack);
+        next.copied().unwrap_or(self.task.duration)
+    }
+
     /// Records and events of the step from the last state to `new`, which an event may cut short; true where the motion ends.
     fn look(&mut self, new: &mut State) -> bool {
         let slack = SLACK * (new.time - self.state.time);
         let crossed = (0..self.task.watches.len()).any(|w| self.crosses(w, &self.state, new));
         let due = self.next_record as f64 * self.task.output_every < new.time - slack;
-        if !(crossed || due || self.system.has_work()) {
+        if !(crossed || due || self.has_work()) {
             self.record_until(new, None);
             return false;
         }
@@ -343,7 +365,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             *new = state;
             return true;
         }
-        new.work = self.work(new, new.time, pair);
+        (new.work, new.lost) = self.work(new, new.time, pair);
         self.record_until(new, pair);
         false
     }
@@ -365,29 +387,38 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
-    fn between(&self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> State {
+    fn between(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> State {
         let mut state = self.state.between(new, time, accelerations);
-        state.work = self.work(new, time, accelerations);
+        (state.work, state.lost) = self.work(new, time, accelerations);
         state
     }
 
-    /// Work of the loads without potential until `time` in the step to `new`, by three Gauss points.
-    fn work(&self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> f64 {
-        if !self.system.has_work() {
-            return self.state.work;
+    /// Whether energy enters or leaves by other ways than potentials.
+    fn has_work(&self) -> bool {
+        self.system.has_work() || self.system.is_damped() || self.system.supports().moves_in_time()
+    }
+
+    /// Work of the loads without potential and of moving supports, and what damping took, until `time` in the step to `new`, by three Gauss
+    /// points.
+    fn work(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> (f64, f64) {
+        let (mut work, mut lost) = (self.state.work, self.state.lost);
+        if !self.has_work() {
+            return (work, lost);
         }
         let h = time - self.state.time;
         let mut scratch = vec![0.0; new.q.len()];
         let offset = 0.6_f64.sqrt();
         let points = [(-offset, 5.0), (0.0, 8.0), (offset, 5.0)];
-        let sum: f64 = points
-            .iter()
-            .map(|(x, weight)| {
-                let state = self.state.between(new, self.state.time + 0.5 * h * (1.0 + x), accelerations);
-                weight * self.system.power(&state.q, &state.v, &mut scratch)
-            })
-            .sum();
-        self.state.work + h * sum / 18.0
+        for (x, weight) in points {
+            let state = self.state.between(new, self.state.time + 0.5 * h * (1.0 + x), accelerations);
+            let weight = weight * h / 18.0;
+            let power = self.system.power(state.time, &state.q, &state.v, &mut scratch);
+            work += weight * (power + self.method.support_power(&state));
+            if self.system.is_damped() {
+                lost += weight * self.system.lost_power(&state.q, &state.v, &mut scratch);
+            }
+        }
+        (work, lost)
     }
 
     fn crosses(&self, watch: usize, a: &State, b: &State) -> bool {
@@ -405,10 +436,10 @@ impl<'t, 'a> Driver<'t, 'a> {
 
     /// Locates the events of the step to `new`; returns the state of the first that ends the motion.
     fn locate(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) -> Option<State> {
-        let mut found: Vec<(usize, State)> = (0..self.task.watches.len())
-            .filter(|w| self.crosses(*w, &self.state, new))
-            .map(|w| (w, self.crossing(w, new, accelerations)))
-            .collect();
+        let crossed: Vec<usize> =
+            (0..self.task.watches.len()).filter(|w| self.crosses(*w, &self.state, new)).collect();
+        let mut found: Vec<(usize, State)> =
+            crossed.into_iter().map(|w| (w, self.crossing(w, new, accelerations))).collect();
         found.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
         for (watch, state) in found {
             let stop = self.task.watches[watch].stop;
@@ -421,7 +452,7 @@ impl<'t, 'a> Driver<'t, 'a> {
     }
 
     /// The state at which a watch crosses its value: bisection of the interpolated motion, to the last bit but a few of the step.
-    fn crossing(&self, watch: usize, new: &State, accelerations: Option<[&[f64]; 2]>) -> State {
+    fn crossing(&mut self, watch: usize, new: &State, accelerations: Option<[&[f64]; 2]>) -> State {
         let (mut before, mut after) = (self.state.time, new.time);
         for _ in 0..50 {
             let middle = 0.5 * (before + after);

@@ -1,6 +1,7 @@
 //! What a method of time integration is, for the driver that takes its steps.
 
 use super::State;
+use crate::linear::Singular;
 use crate::solve::newton::{Failure, Iterations};
 use crate::trajectory::Statistics;
 
@@ -10,7 +11,10 @@ pub trait Method {
     fn order(&self) -> f64;
 
     /// Prepares the first step from `state`; returns q̈ there.
-    fn start(&mut self, state: &State) -> Vec<f64>;
+    ///
+    /// # Errors
+    /// [`Singular`] where a coordinate has no mass.
+    fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular>;
 
     /// Tries a step of length `h` from `from` and writes the state that it leads to. `accuracy` is the error that the step
     /// may make, relative to the beam length, where the caller controls it; the method then returns an estimate of it, and
@@ -33,6 +37,9 @@ pub trait Method {
     /// The accelerations at both ends of the last attempt by which it is to be interpolated; none where positions and velocities
     /// alone match the order of the method.
     fn end_accelerations(&mut self, from: &State, to: &State) -> Option<[Vec<f64>; 2]>;
+
+    /// Power \[W\] of supports that move with time, in the state `state`.
+    fn support_power(&mut self, state: &State) -> f64;
 
     /// The last Newton increment, by which the place of a failure is told.
     fn last_increment(&self) -> &[f64];

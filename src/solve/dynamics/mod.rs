@@ -46,6 +46,9 @@ pub struct State {
     pub v: Vec<f64>,
     /// Work of the loads without potential since the start \[J\].
     pub work: f64,
+    /// Energy that damping has taken since the start \[J\].
+    #[serde(default)]
+    pub lost: f64,
 }
 
 impl State {
@@ -55,12 +58,17 @@ impl State {
     }
 
     /// The state at `time` between this one and a later one, by the polynomial that has positions and velocities of both (cubic, error
-    /// of the fourth order in the step), and with `accelerations` those too (quintic, sixth order). The work is this state's.
+    /// of the fourth order in the step), and with `accelerations` those too (quintic, sixth order). Work and loss are this state's.
     pub fn between(&self, later: &Self, time: f64, accelerations: Option<[&[f64]; 2]>) -> Self {
         let h = later.time - self.time;
         let x = (time - self.time) / h;
-        let mut state =
-            Self { time, q: vec![0.0; self.q.len()], v: vec![0.0; self.q.len()], work: self.work };
+        let mut state = Self {
+            time,
+            q: vec![0.0; self.q.len()],
+            v: vec![0.0; self.q.len()],
+            work: self.work,
+            lost: self.lost,
+        };
         // From the start: q = q₀ + x h v₀ + x² …; the end's data enter through their defects against the lower terms.
         for i in 0..self.q.len() {
             let (q0, v0, v1) = (self.q[i], h * self.v[i], h * later.v[i]);

@@ -1,14 +1,21 @@
 //! The equations of motion of a system, in the form that all integrators ask for.
 //!
 //! ```text
-//! M q̈ + f(q) + Bᵀ μ = 0,   g(q) = 0,   f = f_int + f_load
+//! M q̈ + f(q, t) + f_d(q, q̇) + Bᵀ μ = 0,   g(q) = 0,   f = f_int + f_load
 //! ```
 //!
 //! What supports hold at nodes is eliminated from every matrix *before* it is factorised, the mass matrix included: solving with
 //! the mass matrix of the free beam and clearing the held components afterwards would give wrong accelerations to all others.
 //! Constraints between nodes are linear in q with constant rows, so that a method which satisfies them in its stages integrates
 //! an ordinary differential equation on the subspace g(q) = 0, with all of its order.
+//!
+//! # Supports that move
+//! A coordinate that moves by a law of time has its exact value, velocity and acceleration in every stage, whatever a method makes of them; what is left is
+//! again an ordinary differential equation for the others. Of a gradient whose *direction* θ(t) is prescribed the length y along that direction is the
+//! unknown, and the method integrates (y, ẏ); fixed axes are met here only, with the centrifugal and Coriolis terms of the turning direction
+//! ([`crate::system::supports::Supports::carry`]). The mass matrix in that frame turns too and is formed anew with each tangent.
 
+use super::State;
 use super::turns::Turns;
 use crate::effect::Workspace;
 use crate::linear::bordered::BorderRow;
@@ -19,8 +26,16 @@ use crate::system::System;
 use crate::trajectory::Statistics;
 use faer::c64;
 
-/// Loads act in full.
-const LOAD: f64 = 1.0;
+/// Velocities and accelerations of the unknowns at a time.
+#[derive(Clone, Copy, Debug)]
+pub struct Rates<'r> {
+    /// Time \[s\].
+    pub time: f64,
+    /// Velocities; read only where forces depend on them.
+    pub v: &'r [f64],
+    /// Accelerations.
+    pub a: &'r [f64],
+}
 
 /// Forces, tangent and mass of a system in motion. Unknowns are the system's coordinates followed by the scaled multipliers.
 pub struct Motion<'a> {
@@ -32,11 +47,34 @@ pub struct Motion<'a> {
     border: Vec<BorderRow>,
     /// Of the elastic forces and loads, in the supports' frames, held coordinates eliminated.
     tangent: Matrix,
+    /// Of the forces that depend on velocities, likewise; none where there are none.
+    damping: Option<Matrix>,
+    /// Whether supports move with time.
+    moves: bool,
     workspace: Workspace,
     force: Vec<f64>,
     scratch: Vec<f64>,
+    /// Of the last accelerations.
+    multipliers: Vec<f64>,
+    /// Positions, velocities and accelerations in fixed axes, where supports move.
+    carried: [Vec<f64>; 3],
     /// Counts so far.
     pub statistics: Statistics,
+}
+
+/// The mass matrix without the held coordinates, in the supports' frames: with zeros for them, and factorised.
+fn free_mass(
+    system: &System,
+    time: f64,
+    mass: &Matrix,
+    border: &[BorderRow],
+) -> Result<(Matrix, Factor), Singular> {
+    let mut free = mass.clone();
+    system.supports().turn_matrix(time, &mut free);
+    let mut eliminated = free.clone();
+    system.supports().eliminate(time, &mut eliminated);
+    system.supports().clear_held(time, &mut free);
+    Ok((free, Factor::new(&eliminated, border)?))
 }
 
 impl<'a> Motion<'a> {
@@ -47,13 +85,10 @@ impl<'a> Motion<'a> {
     pub fn new(system: &'a System) -> Result<Self, Singular> {
         let n = system.coordinates();
         let mass = system.mass_matrix();
-        let mut free_mass = mass.clone();
-        system.supports().turn_matrix(LOAD, &mut free_mass);
-        let border = system.border(LOAD);
-        let mut eliminated = free_mass.clone();
-        system.supports().eliminate(LOAD, &mut eliminated);
-        let mass_factor = Factor::new(&eliminated, &border)?;
-        system.supports().clear_held(LOAD, &mut free_mass);
+        let border = system.border(0.0);
+        let (free_mass, mass_factor) = free_mass(system, 0.0, &mass, &border)?;
+        let moves = system.supports().moves_in_time();
+        let carried = if moves { n } else { 0 };
         Ok(Self {
             system,
             mass,
@@ -61,9 +96,13 @@ impl<'a> Motion<'a> {
             mass_factor,
             border,
             tangent: system.matrix(),
+            damping: system.is_damped().then(|| system.damping_pattern()),
+            moves,
             workspace: Workspace::default(),
             force: vec![0.0; n],
-            scratch: vec![0.0; n + system.multipliers()],
+            scratch: vec![0.0; if system.is_damped() { n } else { 0 }],
+            multipliers: vec![0.0; system.multipliers()],
+            carried: [0; 3].map(|_| vec![0.0; carried]),
             statistics: Statistics { factorizations: 1, ..Statistics::default() },
         })
     }
@@ -88,76 +127,172 @@ impl<'a> Motion<'a> {
         self.system.coordinates() + self.system.multipliers()
     }
 
-    /// q̈ in the state `q`.
-    pub fn acceleration(&mut self, q: &[f64], acceleration: &mut [f64]) {
-        let n = self.coordinates();
-        self.statistics.residual_evaluations += 1;
-        self.system.force(LOAD, q, &mut self.scratch[..n]);
-        self.scratch.iter_mut().for_each(|f| *f = -*f);
-        self.scratch[n..].fill(0.0);
-        self.system.supports().to_frames(LOAD, &mut self.scratch[..n]);
-        self.mass_factor.solve(&mut self.scratch);
-        self.system.supports().from_frames(LOAD, &mut self.scratch[..n]);
-        acceleration.copy_from_slice(&self.scratch[..n]);
+    /// Whether forces depend on velocities.
+    pub fn is_damped(&self) -> bool {
+        self.damping.is_some()
     }
 
-    /// The velocity nearest to `v`, in the norm of the kinetic energy, that supports and constraints allow.
-    pub fn admissible_velocity(&self, v: &[f64]) -> Vec<f64> {
+    /// Forms the mass matrix in the supports' frames at `time`, if these turn.
+    fn turn_mass(&mut self, time: f64) -> Result<(), Singular> {
+        if self.system.supports().turn_in_time() {
+            self.border = self.system.border(time);
+            (self.free_mass, self.mass_factor) = free_mass(self.system, time, &self.mass, &self.border)?;
+        }
+        Ok(())
+    }
+
+    /// Accelerations of the unknowns in the state `state` of unknowns.
+    ///
+    /// # Errors
+    /// [`Singular`] where a coordinate has no mass.
+    pub fn acceleration(&mut self, state: &State, acceleration: &mut [f64]) -> Result<(), Singular> {
         let n = self.coordinates();
-        let mut right = vec![0.0; self.unknowns()];
-        let mut free = v.to_vec();
-        self.system.supports().to_frames(LOAD, &mut free);
-        self.free_mass.multiply_add(1.0, &free, &mut right[..n]);
-        self.mass_factor.solve(&mut right);
-        self.system.supports().from_frames(LOAD, &mut right[..n]);
-        right.truncate(n);
-        right
+        self.turn_mass(state.time)?;
+        let mut negative = vec![0.0; self.unknowns()];
+        // With no acceleration of the unknowns: what is left is that of the supports.
+        acceleration.fill(0.0);
+        let mut x = state.q.clone();
+        x.resize(self.unknowns(), 0.0);
+        self.residual(&x, Rates { time: state.time, v: &state.v, a: acceleration }, &mut negative);
+        let supported: &[f64] = if self.moves { &self.carried[2] } else { acceleration };
+        self.system.constraint_rates(state.time, supported, &mut negative[n..]);
+        self.mass_factor.solve(&mut negative);
+        self.from_frames(&mut negative);
+        acceleration.copy_from_slice(&negative[..n]);
+        self.multipliers.copy_from_slice(&negative[n..]);
+        Ok(())
+    }
+
+    /// The velocity nearest to `v`, in the norm of the kinetic energy, that supports and constraints allow in the state `q` at `time`.
+    ///
+    /// # Errors
+    /// [`Singular`] where a coordinate has no mass.
+    pub fn admissible_velocity(&mut self, time: f64, q: &[f64], v: &[f64]) -> Result<Vec<f64>, Singular> {
+        let n = self.coordinates();
+        self.turn_mass(time)?;
+        let supports = self.system.supports();
+        // That of moving supports, all else at rest; the others' part is then found without it.
+        let mut prescribed = vec![0.0; n];
+        supports.prescribed_velocity(time, q, &mut prescribed);
+        let mut wanted: Vec<f64> = v.iter().zip(&prescribed).map(|(v, p)| v - p).collect();
+        let mut momentum = vec![0.0; self.unknowns()];
+        self.mass.multiply_add(1.0, &wanted, &mut momentum[..n]);
+        supports.to_frames(time, &mut momentum[..n]);
+        self.system.constraint_rates(time, &prescribed, &mut momentum[n..]);
+        self.mass_factor.solve(&mut momentum);
+        supports.to_fixed_axes(time, &mut momentum[..n]);
+        wanted.iter_mut().zip(&momentum).zip(&prescribed).for_each(|((v, w), p)| *v = w + p);
+        Ok(wanted)
     }
 
     /// Writes −(M a + f(q) + Bᵀμ) and −g to `negative`, in the supports' frames; returns the scaled residual.
-    pub fn residual(&mut self, x: &[f64], a: &[f64], negative: &mut [f64]) -> f64 {
-        let n = self.coordinates();
+    pub fn residual(&mut self, x: &[f64], rates: Rates<'_>, negative: &mut [f64]) -> f64 {
         self.statistics.residual_evaluations += 1;
-        self.system.force(LOAD, &x[..n], &mut self.force);
-        self.finish(x, a, negative)
+        if !self.moves {
+            self.system.force(rates.time, &x[..self.coordinates()], &mut self.force);
+            return self.finish(x, rates, negative);
+        }
+        self.with_carried(x, rates, |motion, x, rates| {
+            motion.system.force(rates.time, &x[..motion.coordinates()], &mut motion.force);
+            motion.finish(x, rates, negative)
+        })
     }
 
     /// The same, and the tangent ∂f/∂q with stress resultants extrapolated from the iterate `before`.
-    pub fn linearize(&mut self, x: &[f64], before: &[f64], a: &[f64], negative: &mut [f64]) -> f64 {
+    pub fn linearize(&mut self, x: &[f64], before: &[f64], rates: Rates<'_>, negative: &mut [f64]) -> f64 {
         self.statistics.residual_evaluations += 1;
-        self.assemble(x, before);
-        self.finish(x, a, negative)
-    }
-
-    /// The tangent ∂f/∂q at `q`.
-    pub fn tangent_at(&mut self, q: &[f64]) {
-        self.assemble(q, q);
-    }
-
-    fn assemble(&mut self, x: &[f64], before: &[f64]) {
+        if !self.moves {
+            self.assemble(x, before, rates);
+            return self.finish(x, rates, negative);
+        }
+        let mut before = before.to_vec();
         let n = self.coordinates();
-        let Self { system, force, tangent, workspace, .. } = self;
-        system.force_and_tangent(LOAD, &x[..n], &before[..n], force, tangent, workspace);
-        system.supports().turn_matrix(LOAD, tangent);
-        system.supports().eliminate(LOAD, tangent);
+        let mut idle = vec![0.0; n];
+        let mut still = vec![0.0; n];
+        self.system.supports().carry(rates.time, [&mut before[..n], &mut idle, &mut still]);
+        self.with_carried(x, rates, |motion, x, rates| {
+            motion.assemble(x, &before, rates);
+            motion.finish(x, rates, negative)
+        })
+    }
+
+    /// The tangent ∂f/∂q in the state `state` of unknowns.
+    ///
+    /// # Errors
+    /// [`Singular`] where a coordinate has no mass in a frame that turns.
+    pub fn tangent_at(&mut self, state: &State) -> Result<(), Singular> {
+        self.turn_mass(state.time)?;
+        let rates = Rates { time: state.time, v: &state.v, a: &state.v };
+        if self.moves {
+            self.with_carried(&state.q, rates, |motion, x, rates| motion.assemble(x, x, rates));
+        } else {
+            self.assemble(&state.q, &state.q, rates);
+        }
+        Ok(())
+    }
+
+    /// Calls `f` with positions, velocities and accelerations in fixed axes, those of moving supports as prescribed.
+    fn with_carried<T>(
+        &mut self,
+        x: &[f64],
+        rates: Rates<'_>,
+        f: impl FnOnce(&mut Self, &[f64], Rates<'_>) -> T,
+    ) -> T {
+        let n = self.coordinates();
+        let [mut q, mut v, mut a] = std::mem::take(&mut self.carried);
+        q.clear();
+        q.extend_from_slice(x);
+        v.copy_from_slice(&rates.v[..n]);
+        a.copy_from_slice(&rates.a[..n]);
+        self.system.supports().carry(rates.time, [&mut q[..n], &mut v, &mut a]);
+        let result = f(self, &q, Rates { time: rates.time, v: &v, a: &a });
+        self.carried = [q, v, a];
+        result
+    }
+
+    /// Force, tangent and damping matrix, in fixed axes and in the supports' frames.
+    fn assemble(&mut self, x: &[f64], before: &[f64], rates: Rates<'_>) {
+        let n = self.coordinates();
+        let Self { system, force, tangent, damping, workspace, scratch, .. } = self;
+        let supports = system.supports();
+        if let Some(damping) = damping {
+            system.damping_matrix(&x[..n], rates.v, scratch, damping, workspace);
+            supports.turn_matrix(rates.time, damping);
+            supports.clear_held(rates.time, damping);
+        }
+        system.force_and_tangent(rates.time, &x[..n], &before[..n], force, tangent, workspace);
+        supports.turn_matrix(rates.time, tangent);
+        supports.eliminate(rates.time, tangent);
         self.statistics.tangent_evaluations += 1;
     }
 
-    fn finish(&mut self, x: &[f64], a: &[f64], negative: &mut [f64]) -> f64 {
-        let add_inertia = |force: &mut [f64]| self.mass.multiply_add(1.0, a, force);
-        balance(self.system, LOAD, x, &mut self.force, add_inertia, negative)
+    fn finish(&mut self, x: &[f64], rates: Rates<'_>, negative: &mut [f64]) -> f64 {
+        let n = self.coordinates();
+        if self.damping.is_some() {
+            self.system.add_damping(&x[..n], rates.v, &mut self.force);
+        }
+        let add_inertia = |force: &mut [f64]| self.mass.multiply_add(1.0, rates.a, force);
+        balance(self.system, rates.time, x, &mut self.force, add_inertia, negative)
     }
 
-    /// Factorises K + c M with the last tangent K.
+    /// Factorises K + d D + c M with the last tangent K and damping matrix D.
     ///
     /// # Errors
     /// [`Singular`] where it has no inverse.
-    pub fn factorize(&mut self, c: f64, earlier: Option<Factor>) -> Result<Factor, Singular> {
+    pub fn factorize(&mut self, c: f64, d: f64, earlier: Option<Factor>) -> Result<Factor, Singular> {
         self.statistics.factorizations += 1;
-        Factor::shifted(earlier, &self.tangent, (c, &self.free_mass), &self.border)
+        let mass = (c, &self.free_mass);
+        match &self.damping {
+            None => Factor::shifted(earlier, &self.tangent, mass, &self.border),
+            Some(damping) => {
+                let mut sum = self.tangent.clone();
+                sum.add(d, damping);
+                Factor::shifted(earlier, &sum, mass, &self.border)
+            }
+        }
     }
 
-    /// Factorises K + ζ M with the last tangent K.
+    /// Factorises K + ζ D + ζ² M with the last tangent K and damping matrix D.
     ///
     /// # Errors
     /// [`Singular`] where it has no inverse.
@@ -167,7 +302,16 @@ impl<'a> Motion<'a> {
         earlier: Option<ComplexFactor>,
     ) -> Result<ComplexFactor, Singular> {
         self.statistics.factorizations += 1;
-        ComplexFactor::again(earlier, &self.tangent, &self.free_mass, zeta, &self.border)
+        let square = zeta * zeta;
+        let Some(damping) = &self.damping else {
+            return ComplexFactor::again(earlier, &self.tangent, &self.free_mass, square, &self.border);
+        };
+        let (mut real, mut imaginary) = (self.tangent.clone(), self.free_mass.clone());
+        real.add(square.re, &self.free_mass);
+        real.add(zeta.re, damping);
+        imaginary.add(square.im - 1.0, &self.free_mass);
+        imaginary.add(zeta.im, damping);
+        ComplexFactor::again(earlier, &real, &imaginary, c64::new(0.0, 1.0), &self.border)
     }
 
     /// Multiplies by the mass matrix without the held coordinates: `b += factor · M d`, both in the supports' frames.
@@ -176,22 +320,83 @@ impl<'a> Motion<'a> {
         self.free_mass.multiply_add(factor, &d[..n], &mut b[..n]);
     }
 
-    /// Turns a vector of coordinates into the supports' frames and clears what is held.
+    /// Turns changes of unknowns into the supports' frames and clears what is held.
     pub fn to_frames(&self, v: &mut [f64]) {
         let n = self.coordinates();
-        self.system.supports().to_frames(LOAD, &mut v[..n]);
+        self.system.supports().unknowns_to_frames(&mut v[..n]);
     }
 
-    /// Turns a vector of coordinates back from the supports' frames.
+    /// Turns changes of unknowns back from the supports' frames.
     pub fn from_frames(&self, v: &mut [f64]) {
         let n = self.coordinates();
-        self.system.supports().from_frames(LOAD, &mut v[..n]);
+        self.system.supports().from_frames(0.0, &mut v[..n]);
     }
 
-    /// Sets the held coordinates.
-    pub fn impose(&self, q: &mut [f64]) {
+    /// Sets the held coordinates to their values at `time`.
+    pub fn impose(&self, time: f64, x: &mut [f64]) {
         let n = self.coordinates();
-        self.system.supports().impose(LOAD, &mut q[..n]);
+        self.system.supports().impose_unknowns(time, &mut x[..n]);
+    }
+
+    /// The unknowns and their velocities of a state in fixed axes.
+    pub fn unknowns_of<'s>(&self, state: &'s State) -> std::borrow::Cow<'s, State> {
+        if !self.system.supports().turn_in_time() {
+            return std::borrow::Cow::Borrowed(state);
+        }
+        let mut state = state.clone();
+        self.system.supports().uncarry(state.time, &mut state.q, &mut state.v);
+        std::borrow::Cow::Owned(state)
+    }
+
+    /// Turns a state of unknowns into fixed axes; moving supports receive their prescribed values.
+    pub fn carry(&self, state: &mut State) {
+        if self.moves {
+            let mut acceleration = vec![0.0; state.q.len()];
+            self.system.supports().carry(state.time, [&mut state.q, &mut state.v, &mut acceleration]);
+        }
+    }
+
+    /// Accelerations in fixed axes from those of the unknowns in the state `state`, which is in fixed axes.
+    pub fn carried_acceleration(&self, state: &State, mut acceleration: Vec<f64>) -> Vec<f64> {
+        if self.moves {
+            let mut state = self.unknowns_of(state).into_owned();
+            self.system.supports().carry(state.time, [&mut state.q, &mut state.v, &mut acceleration]);
+        }
+        acceleration
+    }
+
+    /// Forces of the supports on the held coordinates, zero for all others: M q̈ + f in the state `state`, in fixed axes.
+    ///
+    /// # Errors
+    /// [`Singular`] where a coordinate has no mass.
+    pub fn reactions(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
+        let n = self.coordinates();
+        let unknowns = self.unknowns_of(state).into_owned();
+        let mut acceleration = vec![0.0; n];
+        self.acceleration(&unknowns, &mut acceleration)?;
+        let (mut q, mut v) = (unknowns.q, unknowns.v);
+        self.system.supports().carry(state.time, [&mut q, &mut v, &mut acceleration]);
+        let mut force = vec![0.0; n];
+        self.system.force(state.time, &q, &mut force);
+        self.system.add_damping(&q, &v, &mut force);
+        self.mass.multiply_add(1.0, &acceleration, &mut force);
+        self.system.add_constraint_forces(state.time, &self.multipliers, &mut force);
+        self.system.supports().keep_held(state.time, &mut force);
+        Ok(force)
+    }
+
+    /// Power \[W\] that moving supports put in.
+    ///
+    /// # Errors
+    /// [`Singular`] where a coordinate has no mass.
+    pub fn support_power(&mut self, state: &State) -> Result<f64, Singular> {
+        if !self.moves {
+            return Ok(0.0);
+        }
+        let reactions = self.reactions(state)?;
+        let mut velocity = vec![0.0; state.q.len()];
+        self.system.supports().prescribed_velocity(state.time, &state.q, &mut velocity);
+        Ok(reactions.iter().zip(&velocity).map(|(r, v)| r * v).sum())
     }
 
     /// Root mean square over the nodes of the change of their positions, in beam lengths.

@@ -38,8 +38,8 @@ pub enum StartError {
 /// [`StartError::Held`] where supports do not allow them.
 pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Checkpoint, StartError> {
     let mut state = State::at_rest(system.reference());
-    system.supports().impose(1.0, &mut state.q);
-    if velocities.is_empty() {
+    system.supports().impose(0.0, &mut state.q);
+    if velocities.is_empty() && !system.supports().moves_in_time() {
         return Ok(Checkpoint { state, ..Checkpoint::default() });
     }
     for velocity in velocities {
@@ -54,7 +54,7 @@ pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Chec
             v[3] += w * q[2];
         }
     }
-    let admissible = Motion::new(system)?.admissible_velocity(&state.v);
+    let admissible = Motion::new(system)?.admissible_velocity(state.time, &state.q, &state.v)?;
     let largest = state.v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let change = |(i, (a, b)): (usize, (&f64, &f64))| (i, (a - b).abs());
     let (worst, change) = state
@@ -62,6 +62,7 @@ pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Chec
         .iter()
         .zip(&admissible)
         .enumerate()
+        .filter(|(i, _)| !system.supports().moves_in_time() || system.supports().holds_still(*i))
         .map(change)
         .fold((0, 0.0), |w, c| if c.1 > w.1 { c } else { w });
     if change > ROUND_OFF * largest {

@@ -42,6 +42,8 @@ pub struct Tableau {
     pub a: DMatrix<f64>,
     /// A².
     pub a_squared: DMatrix<f64>,
+    /// A⁻¹.
+    pub inverse: DMatrix<f64>,
     /// A⁻².
     pub inverse_squared: DMatrix<f64>,
     /// bᵀ A⁻¹: weights of the stage displacements in the position at the end.
@@ -96,6 +98,7 @@ impl Tableau {
             velocity_weights: (&b * &inverse_squared).iter().copied().collect(),
             inverse_transformation: invert(&transformation),
             transformation,
+            inverse,
             inverse_squared,
             blocks,
             a,

@@ -1,0 +1,89 @@
+//! Damping of a beam: in proportion to its mass, and of Kelvin–Voigt's kind on strain and curvature.
+//!
+//! For small vibrations the force of mass damping is α M q̇, and with the same η for strain and curvature that of Kelvin–Voigt's is η K q̇:
+//! Rayleigh's damping, by which a mode of frequency ω has the damping ratio ζ = ½ (α/ω + η ω).
+
+use super::{Dissipation, Gradient, Hessian, Strain, bend};
+use nalgebra::Matrix2;
+
+/// R = ½ c ṙ·ṙ with c = α ρA \[N s/m²\].
+#[derive(Clone, Debug)]
+pub struct MassDamping {
+    /// c.
+    pub coefficient: f64,
+}
+
+impl Dissipation<1> for MassDamping {
+    const ORDERS: [usize; 1] = [0];
+
+    fn force(&self, _: usize, _: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
+        [rate[0] * self.coefficient]
+    }
+
+    fn force_and_matrix(&self, _: usize, _: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+        ([rate[0] * self.coefficient], [[Matrix2::identity() * self.coefficient]])
+    }
+}
+
+/// R = ½ η EA ε̇², ε̇ = ∂ε/∂r'·ṙ': the axial force is EA (ε + η ε̇).
+#[derive(Clone, Debug)]
+pub struct StretchDamping<S> {
+    coefficient: f64,
+    strain: std::marker::PhantomData<S>,
+}
+
+impl<S: Strain> StretchDamping<S> {
+    /// η EA \[N s\].
+    pub fn new(coefficient: f64) -> Self {
+        Self { coefficient, strain: std::marker::PhantomData }
+    }
+}
+
+impl<S: Strain> Dissipation<1> for StretchDamping<S> {
+    const ORDERS: [usize; 1] = [1];
+
+    fn force(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
+        let (_, first) = S::first(&z[0]);
+        [first * (self.coefficient * first.dot(&rate[0]))]
+    }
+
+    fn force_and_matrix(
+        &self,
+        point: usize,
+        z: &Gradient<1>,
+        rate: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
+        let (_, first) = S::first(&z[0]);
+        (self.force(point, z, rate), [[first * first.transpose() * self.coefficient]])
+    }
+}
+
+/// R = ½ η EI κ̇², κ̇ = ∂κ/∂r'·ṙ' + ∂κ/∂r''·ṙ'': the bending moment is EI (κ + η κ̇).
+#[derive(Clone, Debug)]
+pub struct BendDamping {
+    /// η EI \[N m² s\].
+    pub coefficient: f64,
+}
+
+impl Dissipation<2> for BendDamping {
+    const ORDERS: [usize; 2] = [1, 2];
+
+    fn force(&self, _: usize, z: &Gradient<2>, rate: &Gradient<2>) -> Gradient<2> {
+        let (_, [a, b], _) = bend::first_derivatives(z);
+        let moment = self.coefficient * (a.dot(&rate[0]) + b.dot(&rate[1]));
+        [a * moment, b * moment]
+    }
+
+    fn force_and_matrix(
+        &self,
+        point: usize,
+        z: &Gradient<2>,
+        rate: &Gradient<2>,
+    ) -> (Gradient<2>, Hessian<2>) {
+        let (_, [a, b], _) = bend::first_derivatives(z);
+        let c = self.coefficient;
+        let mixed = a * b.transpose() * c;
+        let matrix = [[a * a.transpose() * c, mixed], [mixed.transpose(), b * b.transpose() * c]];
+        (self.force(point, z, rate), matrix)
+    }
+}

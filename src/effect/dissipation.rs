@@ -1,0 +1,103 @@
+//! Forces that depend on velocity, as derivatives of a dissipation function.
+//!
+//! What takes energy out of a motion (material damping, dashpots, drag, friction) has a dissipation function R(z, ż), Rayleigh's where it is
+//! quadratic in ż, whose derivatives give
+//!
+//! ```text
+//! force     f_a  = ∫ Σ_m N_a⁽ᵒᵐ⁾ ∂R/∂ż_m ds
+//! matrix    D_ab = ∫ Σ_m Σ_n N_a⁽ᵒᵐ⁾ ∂²R/∂ż_m∂ż_n N_b⁽ᵒⁿ⁾ ds      (symmetric)
+//! power     P    = f · q̇ ≥ 0, lost
+//! ```
+//!
+//! with z the local fields of the position and ż those of the velocity, and the same tables as a [`Density`]. The change of f with z is left
+//! out of the iteration matrix K + d D + c M: it is smaller than D/h, h being the step, by the rotation within that step, and would
+//! cost the symmetry.
+
+use super::{Density, Gradient, Hessian, Integral, Kind, Workspace};
+use crate::linear::Matrix;
+
+/// A dissipation function per unit of arc length that depends on `M` local fields and their rates.
+pub trait Dissipation<const M: usize>: Send + Sync {
+    /// The local fields, as derivative orders of r in rising order.
+    const ORDERS: [usize; M];
+
+    /// ∂R/∂ż at quadrature point number `point`.
+    fn force(&self, point: usize, z: &Gradient<M>, rate: &Gradient<M>) -> Gradient<M>;
+
+    /// ∂R/∂ż and ∂²R/∂ż∂ż.
+    fn force_and_matrix(
+        &self,
+        point: usize,
+        z: &Gradient<M>,
+        rate: &Gradient<M>,
+    ) -> (Gradient<M>, Hessian<M>);
+}
+
+/// A dissipation function summed over a beam.
+///
+/// Coordinates `q`, velocities `v` and forces `f` are those of the whole system.
+pub trait Damping: Send + Sync {
+    /// What it is.
+    fn kind(&self) -> Kind;
+
+    /// Index of the beam on which it acts.
+    fn beam(&self) -> usize;
+
+    /// `f += ∂R/∂q̇`.
+    fn add_force(&self, q: &[f64], v: &[f64], f: &mut [f64]);
+
+    /// `d += ∂²R/∂q̇∂q̇`; `f` receives the force.
+    fn add_matrix(&self, q: &[f64], v: &[f64], f: &mut [f64], d: &mut Matrix, workspace: &mut Workspace);
+
+    /// Quadrature points, and bytes of its tables and data.
+    fn size(&self) -> (usize, usize);
+}
+
+/// A dissipation function as a density of ż, whose "iterate before" is z.
+#[derive(Clone, Debug)]
+pub struct Rayleigh<D>(pub D);
+
+impl<D: Dissipation<M>, const M: usize> Density<M> for Rayleigh<D> {
+    const ORDERS: [usize; M] = D::ORDERS;
+    const CONSERVATIVE: bool = false;
+
+    fn energy(&self, _: usize, _: &Gradient<M>) -> f64 {
+        0.0
+    }
+
+    fn gradient(&self, point: usize, rate: &Gradient<M>) -> Gradient<M> {
+        self.0.force(point, rate, rate)
+    }
+
+    #[inline(always)]
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        rate: &Gradient<M>,
+        z: &Gradient<M>,
+    ) -> (Gradient<M>, Hessian<M>) {
+        self.0.force_and_matrix(point, z, rate)
+    }
+}
+
+impl<D: Dissipation<M>, const M: usize> Damping for Integral<Rayleigh<D>, M> {
+    fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    fn beam(&self) -> usize {
+        self.beam
+    }
+
+    fn add_force(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
+        self.force_of_pairs(q, v, f, |point, z, rate| self.density.0.force(point, z, rate));
+    }
+
+    fn add_matrix(&self, q: &[f64], v: &[f64], f: &mut [f64], d: &mut Matrix, workspace: &mut Workspace) {
+        super::Effect::add_force_and_tangent(self, 1.0, v, q, f, d, workspace);
+    }
+
+    fn size(&self) -> (usize, usize) {
+        super::Effect::size(self)
+    }
+}

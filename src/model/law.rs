@@ -1,0 +1,233 @@
+//! Laws of time: by what factor a load acts, how a support moves.
+
+use std::f64::consts::PI;
+
+/// A number as a function of time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// 0 until `start`, then growing evenly to 1 within `duration`.
+    Ramp {
+        /// When it begins \[s\].
+        start: f64,
+        /// How long it takes \[s\].
+        duration: f64,
+    },
+    /// The same with continuous acceleration: 10 x³ − 15 x⁴ + 6 x⁵, x the part of the duration that is over.
+    SmoothRamp {
+        /// When it begins \[s\].
+        start: f64,
+        /// How long it takes \[s\].
+        duration: f64,
+    },
+    /// 0 until `start`, then 1.
+    Step {
+        /// When it acts \[s\].
+        start: f64,
+    },
+    /// sin(ω t + φ).
+    Harmonic {
+        /// ω \[rad/s\].
+        frequency: f64,
+        /// φ \[rad\].
+        phase: f64,
+    },
+    /// Σ c_k t^k, t in seconds.
+    Polynomial(Vec<f64>),
+    /// Through given points, constant before the first and after the last.
+    Table(Table),
+    /// The angle of a hub that is brought to the speed Ω within T (Simo & Vu-Quoc, *J. Appl. Mech.* 53, 1986, 855–863):
+    /// Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) until T, then Ω (t − T/2).
+    SpinUp {
+        /// Ω \[rad/s\].
+        speed: f64,
+        /// T \[s\].
+        duration: f64,
+    },
+}
+
+/// Points of a law.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    /// Second derivatives of the natural cubic spline at the points; none: straight between them.
+    curvatures: Option<Vec<f64>>,
+}
+
+impl Table {
+    /// Through `values` at increasing `times` \[s\], straight or by the natural cubic spline between them; none where there are fewer than two points or
+    /// the times do not increase.
+    pub fn new(times: Vec<f64>, values: Vec<f64>, smooth: bool) -> Option<Self> {
+        let rising = times.windows(2).all(|t| t[1] > t[0]);
+        if times.len() < 2 || times.len() != values.len() || !rising {
+            return None;
+        }
+        let curvatures = smooth.then(|| natural_spline(&times, &values));
+        Some(Self { times, values, curvatures })
+    }
+
+    fn at(&self, t: f64) -> [f64; 3] {
+        let last = self.times.len() - 1;
+        if t <= self.times[0] {
+            return [self.values[0], 0.0, 0.0];
+        }
+        if t >= self.times[last] {
+            return [self.values[last], 0.0, 0.0];
+        }
+        let i = self.times.partition_point(|&time| time <= t) - 1;
+        let h = self.times[i + 1] - self.times[i];
+        let (x, rise) = ((t - self.times[i]) / h, self.values[i + 1] - self.values[i]);
+        let (value, rate) = (self.values[i] + x * rise, rise / h);
+        let Some(curvatures) = &self.curvatures else { return [value, rate, 0.0] };
+        let (a, b, y) = (curvatures[i], curvatures[i + 1], 1.0 - x);
+        [
+            value + h * h / 6.0 * ((y * y * y - y) * a + (x * x * x - x) * b),
+            rate + h / 6.0 * ((1.0 - 3.0 * y * y) * a + (3.0 * x * x - 1.0) * b),
+            y * a + x * b,
+        ]
+    }
+}
+
+/// Second derivatives of the cubic spline that has none at its ends, by elimination in its tridiagonal system.
+fn natural_spline(t: &[f64], v: &[f64]) -> Vec<f64> {
+    let n = t.len();
+    let (mut above, mut right) = (vec![0.0; n], vec![0.0; n]);
+    for i in 1..n - 1 {
+        let (before, after) = (t[i] - t[i - 1], t[i + 1] - t[i]);
+        let defect = (v[i + 1] - v[i]) / after - (v[i] - v[i - 1]) / before;
+        let pivot = 2.0 * (before + after) - before * above[i - 1];
+        above[i] = after / pivot;
+        right[i] = (6.0 * defect - before * right[i - 1]) / pivot;
+    }
+    for i in (0..n - 1).rev() {
+        right[i] -= above[i] * right[i + 1];
+    }
+    right
+}
+
+impl Law {
+    /// Value, rate \[1/s\] and second rate \[1/s²\] at time `t`.
+    pub fn at(&self, t: f64) -> [f64; 3] {
+        match self {
+            Self::Ramp { start, duration } => match (t - start) / duration {
+                x if x < 0.0 => [0.0; 3],
+                x if x < 1.0 => [x, 1.0 / duration, 0.0],
+                _ => [1.0, 0.0, 0.0],
+            },
+            Self::SmoothRamp { start, duration } => match (t - start) / duration {
+                x if x < 0.0 => [0.0; 3],
+                x if x < 1.0 => [
+                    x * x * x * (10.0 + x * (6.0 * x - 15.0)),
+                    30.0 * (x * (1.0 - x)).powi(2) / duration,
+                    60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (duration * duration),
+                ],
+                _ => [1.0, 0.0, 0.0],
+            },
+            Self::Step { start } => [f64::from(t >= *start), 0.0, 0.0],
+            Self::Harmonic { frequency: w, phase } => {
+                let (sine, cosine) = (w * t + phase).sin_cos();
+                [sine, w * cosine, -w * w * sine]
+            }
+            Self::Polynomial(coefficients) => {
+                let step =
+                    |[v, d, s]: [f64; 3], c: &f64| [v.mul_add(t, *c), d.mul_add(t, v), s.mul_add(t, 2.0 * d)];
+                coefficients.iter().rev().fold([0.0; 3], step)
+            }
+            Self::Table(table) => table.at(t),
+            Self::SpinUp { speed, duration } if t < *duration => {
+                let w = 2.0 * PI / duration;
+                let (sine, cosine) = (w * t).sin_cos();
+                let slope = speed / duration;
+                [
+                    slope * (0.5 * t * t + (cosine - 1.0) / (w * w)),
+                    slope * (t - sine / w),
+                    slope * (1.0 - cosine),
+                ]
+            }
+            Self::SpinUp { speed, duration } => [speed * (t - 0.5 * duration), *speed, 0.0],
+        }
+    }
+
+    /// Times at which the value or a derivative up to the third jumps: steps of an integrator should end there.
+    pub fn kinks(&self) -> Vec<f64> {
+        match self {
+            Self::Ramp { start, duration } | Self::SmoothRamp { start, duration } => {
+                vec![*start, start + duration]
+            }
+            Self::Step { start } => vec![*start],
+            Self::Harmonic { .. } | Self::Polynomial(_) => Vec::new(),
+            Self::Table(table) => table.times.clone(),
+            Self::SpinUp { duration, .. } => vec![*duration],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn laws() -> Vec<Law> {
+        let table = |smooth| {
+            Law::Table(Table::new(vec![0.1, 0.5, 0.7, 2.0], vec![0.0, 1.0, -1.0, 0.5], smooth).unwrap())
+        };
+        vec![
+            Law::Ramp { start: 0.3, duration: 1.2 },
+            Law::SmoothRamp { start: 0.3, duration: 1.2 },
+            Law::Step { start: 0.4 },
+            Law::Harmonic { frequency: 3.0, phase: 0.3 },
+            Law::Polynomial(vec![1.0, -2.0, 0.5, 3.0]),
+            table(false),
+            table(true),
+            Law::SpinUp { speed: 6.0, duration: 1.5 },
+        ]
+    }
+
+    #[test]
+    fn rates_are_derivatives() {
+        let h = 1e-4;
+        for law in laws() {
+            for t in [0.05, 0.32, 0.61, 0.93, 1.44, 1.7, 2.3] {
+                let ([a, ra, _], [b, rb, _], [v, rate, second]) = (law.at(t - h), law.at(t + h), law.at(t));
+                assert!(((b - a) / (2.0 * h) - rate).abs() < 1e-6, "{law:?} at {t}");
+                assert!(((rb - ra) / (2.0 * h) - second).abs() < 1e-5, "{law:?} at {t}");
+                assert!(v.is_finite());
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_jumps_but_at_kinks() {
+        for law in laws() {
+            let kinks = law.kinks();
+            for i in 0..2500 {
+                let t = 1e-3 * (f64::from(i) + 0.5);
+                if kinks.iter().all(|kink| (kink - t).abs() > 1e-3) {
+                    let ([a, ra, sa], [b, rb, sb]) = (law.at(t - 1e-9), law.at(t + 1e-9));
+                    let jumps = (b - a).abs() + (rb - ra).abs() + (sb - sa).abs();
+                    assert!(jumps < 1e-5, "{law:?} jumps by {jumps} at {t}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_spline_is_as_smooth_as_it_says_and_meets_its_points() {
+        let times = [0.0, 1.0, 1.5, 4.0];
+        let values = [2.0, -1.0, 0.5, 0.25];
+        let law = Law::Table(Table::new(times.to_vec(), values.to_vec(), true).unwrap());
+        for (t, v) in times.iter().zip(values) {
+            assert!((law.at(*t)[0] - v).abs() < 1e-14);
+        }
+        for t in [1.0, 1.5] {
+            let (a, b) = (law.at(t - 1e-9), law.at(t + 1e-9));
+            assert!((a[1] - b[1]).abs() < 1e-7 && (a[2] - b[2]).abs() < 1e-7);
+        }
+        assert!(law.at(1e-12)[2].abs() < 1e-10 && law.at(4.0 - 1e-12)[2].abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_table_needs_rising_times() {
+        assert_eq!(Table::new(vec![0.0, 0.0], vec![1.0, 2.0], false), None);
+        assert_eq!(Table::new(vec![0.0], vec![1.0], false), None);
+    }
+}

@@ -1,0 +1,54 @@
+//! Tables of laws → [`Law`].
+
+use crate::model::{Law, Table};
+
+use super::error::Fault;
+use super::file::{LawTable, RampTable};
+use super::value::Located;
+
+const ONE: &str = "give one of `ramp = { duration = \"1 s\" }`, `smooth_ramp = { … }`, `step = { start = \"1 s\" }`, \
+                   `harmonic = { frequency = \"2 Hz\" }`, `polynomial = [0, 1]`, `table = { times = [0, 1], values = [0, 1] }`";
+
+/// The law of a table `in_time`.
+pub(super) fn law(located: &Located<LawTable>) -> Result<Law, Fault> {
+    let LawTable { ramp, smooth_ramp, step, harmonic, polynomial, table } = located.get();
+    let times = |ramp: &RampTable| (ramp.start.map_or(0.0, |start| start.si), ramp.duration.si);
+    let mut laws = Vec::new();
+    if let Some(ramp) = ramp {
+        let (start, duration) = times(ramp);
+        laws.push(Law::Ramp { start, duration });
+    }
+    if let Some(ramp) = smooth_ramp {
+        let (start, duration) = times(ramp);
+        laws.push(Law::SmoothRamp { start, duration });
+    }
+    if let Some(step) = step {
+        laws.push(Law::Step { start: step.start.si });
+    }
+    if let Some(harmonic) = harmonic {
+        let phase = harmonic.phase.map_or(0.0, |phase| phase.si);
+        laws.push(Law::Harmonic { frequency: std::f64::consts::TAU * harmonic.frequency.si, phase });
+    }
+    if let Some(coefficients) = polynomial {
+        laws.push(Law::Polynomial(coefficients.iter().map(|c| c.si).collect()));
+    }
+    if let Some(located) = table {
+        let points = located.get();
+        let times: Vec<f64> = points.times.iter().map(|t| t.si).collect();
+        let values: Vec<f64> = points.values.iter().map(|v| v.si).collect();
+        let (m, n) = (times.len(), values.len());
+        let table = Table::new(times, values, points.smooth).ok_or_else(|| {
+            Fault::new(
+                located.span(),
+                format!("a law needs two points or more at increasing times; found {m} times and {n} values"),
+            )
+            .help("such as `table = { times = [0.0, \"1 s\", 2.5], values = [0.0, 1.0, 0.5] }`")
+        })?;
+        laws.push(Law::Table(table));
+    }
+    match (laws.pop(), laws.is_empty()) {
+        (Some(law), true) => Ok(law),
+        (None, _) => Err(Fault::new(located.span(), "an empty `in_time`").help(ONE)),
+        (Some(_), false) => Err(Fault::new(located.span(), "more than one law in `in_time`").help(ONE)),
+    }
+}

@@ -1,0 +1,213 @@
+//! How a part of a model becomes terms of the equations.
+//!
+//! A [`Part`] is what a scene names besides beams, supports and loads: springs, dampers, masses, contacts, …. It knows the model in words (arc
+//! lengths, stiffnesses) and, asked once when the system is built, hands densities to the [`Assembly`], which tabulates the shape
+//! functions where the density is to be summed.
+
+use super::{Acting, BeamPart, Needs, SystemError};
+use crate::basis::{Basis, BasisTable, Quadrature};
+use crate::effect::{Damping, Density, Dissipation, Effect, Integral, Kind, Rayleigh};
+use crate::model::{Beam, Law, Model, Place};
+use crate::system::course::Amplitude;
+use nalgebra::Vector2;
+use std::fmt;
+
+/// What takes part in the mechanics besides beams, supports and loads.
+pub trait Part: fmt::Debug + Send + Sync {
+    /// Adds the part's densities to the equations under assembly.
+    ///
+    /// # Errors
+    /// [`SystemError`] where the part does not fit the model.
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError>;
+}
+
+/// Two parts are equal if they describe themselves alike.
+impl PartialEq for dyn Part {
+    fn eq(&self, other: &Self) -> bool {
+        format!("{self:?}") == format!("{other:?}")
+    }
+}
+
+/// Where a density is summed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extent {
+    /// Over a whole beam, by a quadrature rule in every cell.
+    Beam(usize, Quadrature),
+    /// At one point, with weight 1.
+    Point(Place),
+}
+
+/// The equations under assembly.
+pub struct Assembly<'a> {
+    model: &'a Model,
+    beams: &'a [BeamPart],
+    reference: &'a [f64],
+    needs: Needs,
+    pub(super) internal: Vec<Box<dyn Effect>>,
+    pub(super) loads: Vec<Acting>,
+    pub(super) inertia: Vec<Box<dyn Effect>>,
+    pub(super) damping: Vec<Box<dyn Damping>>,
+}
+
+impl<'a> Assembly<'a> {
+    pub(super) fn new(model: &'a Model, beams: &'a [BeamPart], reference: &'a [f64], needs: Needs) -> Self {
+        Self {
+            model,
+            beams,
+            reference,
+            needs,
+            internal: Vec::new(),
+            loads: Vec::new(),
+            inertia: Vec::new(),
+            damping: Vec::new(),
+        }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &'a Model {
+        self.model
+    }
+
+    /// What the analysis asks for.
+    pub fn needs(&self) -> Needs {
+        self.needs
+    }
+
+    /// A beam, as `what` refers to it.
+    ///
+    /// # Errors
+    /// [`SystemError::NoSuchBeam`].
+    pub fn beam(&self, what: &'static str, beam: usize) -> Result<&'a Beam, SystemError> {
+        let none = SystemError::NoSuchBeam { what, beam, count: self.model.beams.len() };
+        self.model.beams.get(beam).ok_or(none)
+    }
+
+    /// A beam's shape functions and its place among the coordinates.
+    pub fn discretised(&self, beam: usize) -> &'a BeamPart {
+        &self.beams[beam]
+    }
+
+    /// A rule that integrates products of two shape functions: exact for the cable element's mass matrix (degree 6).
+    pub fn mass_rule(&self, beam: usize) -> Quadrature {
+        let points = self.model.beams[beam].gauss_points;
+        Quadrature::Gauss(points.stretch.max(points.bend).max(4))
+    }
+
+    /// Something with an energy: springs, foundations, contacts, a beam's own elasticity. `density` receives the fields of the stress-free state at
+    /// the points.
+    ///
+    /// # Errors
+    /// [`SystemError`] where the extent is off the beam, naming the kind.
+    pub fn elastic<D: Density<M> + 'static, const M: usize>(
+        &mut self,
+        kind: Kind,
+        extent: Extent,
+        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<(), SystemError> {
+        let effect = self.integral(kind, extent, D::ORDERS, density)?;
+        self.internal.push(Box::new(effect));
+        Ok(())
+    }
+
+    /// A load: grows with the load factor in statics; acts in full, or by `law`, in a motion.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`], and where there is a law of time in an analysis without time.
+    pub fn load<D: Density<M> + 'static, const M: usize>(
+        &mut self,
+        kind: Kind,
+        extent: Extent,
+        law: Option<&Law>,
+        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<(), SystemError> {
+        if law.is_some() && !self.needs.motion {
+            return Err(SystemError::NoTime { what: "a load" });
+        }
+        let effect = self.integral(kind, extent, D::ORDERS, density)?;
+        self.loads.push(Acting { effect: Box::new(effect), amplitude: law.cloned().map(Amplitude::Law) });
+        Ok(())
+    }
+
+    /// A kinetic energy, quadratic in the velocities, with a constant matrix; nothing in an analysis without inertia.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`].
+    pub fn inertia<D: Density<M> + 'static, const M: usize>(
+        &mut self,
+        kind: Kind,
+        extent: Extent,
+        density: D,
+    ) -> Result<(), SystemError> {
+        if self.needs.inertia {
+            let effect = self.integral(kind, extent, D::ORDERS, |_| density)?;
+            self.inertia.push(Box::new(effect));
+        }
+        Ok(())
+    }
+
+    /// A dissipation function; nothing in an analysis without motion.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`].
+    pub fn damping<D: Dissipation<M> + 'static, const M: usize>(
+        &mut self,
+        kind: Kind,
+        extent: Extent,
+        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<(), SystemError> {
+        if self.needs.motion {
+            let effect = self.integral(kind, extent, D::ORDERS, |fields| Rayleigh(density(fields)))?;
+            self.damping.push(Box::new(effect));
+        }
+        Ok(())
+    }
+
+    fn integral<D, const M: usize>(
+        &self,
+        kind: Kind,
+        extent: Extent,
+        orders: [usize; M],
+        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<Integral<D, M>, SystemError>
+    where
+        D: Density<M>,
+    {
+        let index = match extent {
+            Extent::Beam(beam, _) => beam,
+            Extent::Point(place) => place.beam,
+        };
+        let beam = self.beam(kind.name(), index)?;
+        let part = &self.beams[index];
+        let table = match extent {
+            Extent::Beam(_, rule) => part.basis.table(rule, &orders),
+            Extent::Point(place) => part.basis.points(&[part.arc_length(kind.name(), place.s)?], &orders),
+        };
+        let table = table.map_err(|e| SystemError::basis(&beam.name, e))?;
+        let fields = reference_fields::<M>(&table, part.offset(), self.reference);
+        Ok(Integral::new(kind, index, part.offset(), table, density(fields)))
+    }
+
+    /// The shape functions of a beam.
+    pub fn basis(&self, beam: usize) -> &'a Basis {
+        &self.beams[beam].basis
+    }
+}
+
+/// The fields of the reference state at all points of a table: one `[z_0, z_1, …]` a point.
+fn reference_fields<const M: usize>(table: &BasisTable, offset: usize, q: &[f64]) -> Vec<[Vector2<f64>; M]> {
+    let width = table.width;
+    let mut fields = Vec::with_capacity(table.s.len());
+    for entry in &table.cells {
+        let (_, rows) = table.block(*entry);
+        let q = &q[2 * (offset + entry.first as usize)..];
+        for rows in rows.chunks_exact(M * width) {
+            fields.push(std::array::from_fn(|m| {
+                let row = &rows[m * width..(m + 1) * width];
+                row.iter()
+                    .zip(q.chunks_exact(2))
+                    .fold(Vector2::zeros(), |sum, (n, q)| sum + Vector2::new(q[0], q[1]) * *n)
+            }));
+        }
+    }
+    fields
+}

@@ -1,0 +1,88 @@
+//! What a model's supports hold: coordinates of nodes, which are eliminated, and rows of constraints between nodes.
+
+use super::constraints::{Constraint, Row};
+use super::course::Course;
+use super::supports::{Held, Hold, Supports};
+use super::{Needs, System, SystemError, View};
+use crate::model::{Displacement, FixedRotation, Support};
+
+/// Eliminated supports and constraint rows.
+pub(super) fn hold(
+    system: &System,
+    supports: &[Support],
+    needs: Needs,
+) -> Result<(Supports, Vec<Constraint>), SystemError> {
+    let mut held: Vec<Held> = Vec::new();
+    let mut constraints = Vec::new();
+    for support in supports {
+        let (part, s) = system.part("a support", support.at)?;
+        let moves = support.displacement != Displacement::default();
+        match (needs.motion, &support.law) {
+            (true, None) if moves => return Err(SystemError::NoLaw { beam: part.name.clone(), s }),
+            (false, Some(_)) => return Err(SystemError::NoTime { what: "a support" }),
+            (true, Some(_)) if moves && part.basis.node_at(s).is_none() => {
+                return Err(SystemError::MovesBetweenNodes { beam: part.name.clone(), s });
+            }
+            _ => {}
+        }
+        let in_basis = |e| SystemError::basis(&part.name, e);
+        let fields = View::point(&part.basis, part.offset(), s).map_err(in_basis)?.fields(&system.reference);
+        let (position, gradient) = (fields.position, fields.gradient);
+        let course = |start: f64, change: f64| Course { start, change, law: support.law.clone() };
+        let angle = course(gradient[1].atan2(gradient[0]), support.displacement.angle);
+        let rotation = course(0.0, support.displacement.angle);
+        let motion = [support.displacement.x, support.displacement.y];
+        let fixed = [support.fix.x, support.fix.y];
+        let components: [Option<Course>; 2] =
+            std::array::from_fn(|axis| fixed[axis].then(|| course(position[axis], motion[axis])));
+        if let Some(node) = part.basis.node_at(s) {
+            let pair = 2 * (part.first_node + node);
+            let mut add = |pair: usize, hold: Hold| match held.iter_mut().find(|h| h.pair == pair) {
+                None => {
+                    held.push(Held { pair, hold });
+                    Ok(())
+                }
+                Some(Held { hold: Hold::Position(there), .. }) => match hold {
+                    Hold::Position(new) if (0..2).all(|a| there[a].is_none() || new[a].is_none()) => {
+                        *there = std::array::from_fn(|a| there[a].take().or_else(|| new[a].clone()));
+                        Ok(())
+                    }
+                    _ => Err("position"),
+                },
+                Some(_) => Err("rotation"),
+            };
+            let position = if components.iter().any(Option::is_some) {
+                add(pair, Hold::Position(components.clone()))
+            } else {
+                Ok(())
+            };
+            position
+                .and_then(|()| match support.fix.rotation {
+                    FixedRotation::Free => Ok(()),
+                    FixedRotation::Angle => add(pair + 1, Hold::Direction(angle)),
+                    FixedRotation::Gradient => {
+                        add(pair + 1, Hold::Gradient { reference: gradient, rotation })
+                    }
+                })
+                .map_err(|what| SystemError::HeldTwice { what, beam: part.name.clone(), s: support.at.s })?;
+        } else {
+            let mut rows: Vec<(usize, Row)> = components
+                .into_iter()
+                .enumerate()
+                .filter_map(|(axis, c)| Some((0, Row::Position { axis, value: c? })))
+                .collect();
+            match support.fix.rotation {
+                FixedRotation::Free => {}
+                FixedRotation::Angle => rows.push((1, Row::Direction(angle))),
+                FixedRotation::Gradient => rows.extend((0..2).map(|axis| {
+                    (1, Row::Gradient { axis, reference: gradient, rotation: rotation.clone() })
+                })),
+            }
+            for (order, row) in rows {
+                let table = part.basis.points(&[s], &[order]).map_err(in_basis)?;
+                constraints.push(Constraint::new(&table, part.offset(), row));
+            }
+        }
+    }
+    Ok((Supports::new(held), constraints))
+}
