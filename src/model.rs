@@ -11,6 +11,7 @@ pub use analysis::*;
 pub use joint::Joint;
 pub use law::{Law, Table};
 
+use crate::basis::Quadrature;
 use crate::system::assembly::Part;
 use std::fmt;
 use std::sync::Arc;
@@ -307,6 +308,18 @@ pub struct Probe {
     pub name: String,
     /// Where.
     pub at: Place,
+}
+
+impl GaussPoints {
+    /// The rule for ½ EA ε².
+    pub fn stretch_rule(self) -> Quadrature {
+        if self.lobatto { Quadrature::Lobatto(self.stretch) } else { Quadrature::Gauss(self.stretch) }
+    }
+
+    /// The rule for ½ EI κ².
+    pub fn bend_rule(self) -> Quadrature {
+        Quadrature::Gauss(self.bend)
+    }
 }
 
 impl fmt::Display for StrainMeasure {

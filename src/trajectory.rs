@@ -103,7 +103,9 @@ pub struct Energy {
     pub stretch: f64,
     /// ½∫ EI κ² ds.
     pub bend: f64,
-    /// ½∫ ρA ṙ·ṙ ds.
+    /// Of springs, foundations and contacts.
+    pub stored: f64,
+    /// ½∫ ρA ṙ·ṙ ds, with masses and rotary inertias.
     pub kinetic: f64,
     /// −∫ ρA g·(r − r₀) ds, zero in the stress-free shape, and that of conservative loads.
     pub potential: f64,
@@ -116,7 +118,7 @@ pub struct Energy {
 impl Energy {
     /// Sum of all parts, less the work put in and with what was lost: constant.
     pub fn total(&self) -> f64 {
-        self.stretch + self.bend + self.kinetic + self.potential - self.work + self.lost
+        self.stretch + self.bend + self.stored + self.kinetic + self.potential - self.work + self.lost
     }
 }
 

@@ -54,6 +54,27 @@ pub(super) fn first_derivatives(z: &Gradient<2>) -> (f64, Gradient<2>, f64) {
     (kappa, [by_first, by_second], inverse)
 }
 
+/// ∂²κ/∂r'∂r' and ∂²κ/∂r'∂r''.
+#[inline(always)]
+pub(super) fn second_derivatives(z: &Gradient<2>) -> (Matrix2<f64>, Matrix2<f64>) {
+    let (kappa, [a, b], inverse) = first_derivatives(z);
+    second_from(&z[0], kappa, &a, &b, inverse)
+}
+
+#[inline(always)]
+fn second_from(
+    r: &Vector2<f64>,
+    kappa: f64,
+    a: &Vector2<f64>,
+    b: &Vector2<f64>,
+    inverse: f64,
+) -> (Matrix2<f64>, Matrix2<f64>) {
+    let curl = Matrix2::new(0.0, 1.0, -1.0, 0.0);
+    let aa = (a * r.transpose() + r * a.transpose() + Matrix2::identity() * kappa) * (-2.0 * inverse);
+    let ab = (curl - r * b.transpose() * 2.0) * inverse;
+    (aa, ab)
+}
+
 impl Density<2> for Bend {
     const ORDERS: [usize; 2] = [1, 2];
 
@@ -85,10 +106,7 @@ impl Density<2> for Bend {
             * (kappa_before - reference
                 + a_before.dot(&(z[0] - before[0]))
                 + b_before.dot(&(z[1] - before[1])));
-        let r = z[0];
-        let curl = Matrix2::new(0.0, 1.0, -1.0, 0.0);
-        let aa = (a * r.transpose() + r * a.transpose() + Matrix2::identity() * kappa) * (-2.0 * inverse);
-        let ab = (curl - r * b.transpose() * 2.0) * inverse;
+        let (aa, ab) = second_from(&z[0], kappa, &a, &b, inverse);
         let ei = self.bending_stiffness;
         let mixed = a * b.transpose() * ei + ab * extrapolated;
         (

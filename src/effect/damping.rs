@@ -3,7 +3,10 @@
 //! For small vibrations the force of mass damping is α M q̇, and with the same η for strain and curvature that of Kelvin–Voigt's is η K q̇:
 //! Rayleigh's damping, by which a mode of frequency ω has the damping ratio ζ = ½ (α/ω + η ω).
 
-use super::{Dissipation, Gradient, Hessian, Strain, bend};
+use super::{Dissipation, Engineering, Gradient, Green, Hessian, Kind, Strain, bend};
+use crate::model::StrainMeasure;
+use crate::system::SystemError;
+use crate::system::assembly::{Assembly, Extent, Part};
 use nalgebra::Matrix2;
 
 /// R = ½ c ṙ·ṙ with c = α ρA \[N s/m²\].
@@ -85,5 +88,49 @@ impl Dissipation<2> for BendDamping {
         let mixed = a * b.transpose() * c;
         let matrix = [[a * a.transpose() * c, mixed], [mixed.transpose(), b * b.transpose() * c]];
         (self.force(point, z, rate), matrix)
+    }
+}
+
+/// Damping of one beam.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BeamDamping {
+    /// Index of the beam.
+    pub beam: usize,
+    /// α \[1/s\]: force per length −α ρA ṙ.
+    pub mass_proportional: Option<f64>,
+    /// η \[s\] of the axial force EA (ε + η ε̇).
+    pub strain: Option<f64>,
+    /// η \[s\] of the bending moment EI (κ + η κ̇).
+    pub curvature: Option<f64>,
+}
+
+impl Part for BeamDamping {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+        let beam = assembly.beam("damping", self.beam)?;
+        let lacks =
+            |quantity| SystemError::Missing { beam: beam.name.clone(), quantity, needed_by: "damping" };
+        let points = beam.gauss_points;
+        if let Some(alpha) = self.mass_proportional {
+            let mass = beam.section.mass_per_length.ok_or_else(|| lacks("mass per length"))?;
+            let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
+            assembly.damping(Kind::Damping, extent, |_| MassDamping { coefficient: alpha * mass })?;
+        }
+        if let Some(eta) = self.strain {
+            let stiffness = beam.section.axial_stiffness.ok_or_else(|| lacks("axial stiffness"))?;
+            let extent = Extent::Beam(self.beam, points.stretch_rule());
+            match beam.strain {
+                StrainMeasure::Green => {
+                    assembly.damping(Kind::Damping, extent, |_| StretchDamping::<Green>::new(eta * stiffness))
+                }
+                StrainMeasure::Engineering => assembly
+                    .damping(Kind::Damping, extent, |_| StretchDamping::<Engineering>::new(eta * stiffness)),
+            }?;
+        }
+        if let Some(eta) = self.curvature {
+            let stiffness = beam.section.bending_stiffness.ok_or_else(|| lacks("bending stiffness"))?;
+            let extent = Extent::Beam(self.beam, points.bend_rule());
+            assembly.damping(Kind::Damping, extent, |_| BendDamping { coefficient: eta * stiffness })?;
+        }
+        Ok(())
     }
 }

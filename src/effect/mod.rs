@@ -23,20 +23,32 @@
 //! converged rotation into an enormous axial force, so that steps can be many times longer. With z⁻ = z it is the
 //! ordinary tangent.
 
+mod actuation;
 mod bend;
+mod contact;
 mod damping;
 mod dissipation;
+mod drag;
+mod foundation;
 mod inertia;
 mod integral;
 mod load;
+mod mass;
+mod spring;
 mod stretch;
 
+pub use actuation::{Actuation, PreCurvature, PreStrain};
 pub use bend::{Bend, curvature};
-pub use damping::{BendDamping, MassDamping, StretchDamping};
+pub use contact::{Contact, Friction, Obstacle, Penalty, Rubbing};
+pub use damping::{BeamDamping, BendDamping, MassDamping, StretchDamping};
 pub use dissipation::{Damping, Dissipation, Rayleigh};
+pub use drag::{Buoyancy, Drag};
+pub use foundation::Foundation;
 pub use inertia::Inertia;
 pub use integral::{Integral, Workspace};
 pub use load::{DeadForce, FollowerForce, Moment};
+pub use mass::{PointMass, RotaryInertia, SectionInertia};
+pub use spring::{Dashpot, Spring, Strut, Tie, Torsion, TorsionDashpot, TorsionSpring};
 pub use stretch::{Engineering, Green, Strain, Stretch};
 
 use crate::linear::Matrix;
@@ -78,8 +90,7 @@ pub trait Density<const M: usize>: Send + Sync {
 }
 
 /// What an effect is, for energies and inventories.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
     /// Axial strain energy.
     Stretch,
@@ -97,11 +108,39 @@ pub enum Kind {
     DistributedForce,
     /// Damping of a beam's motion and deformation.
     Damping,
+    /// Spring to the ground.
+    Spring,
+    /// Dashpot to the ground.
+    Dashpot,
+    /// Torsional spring to the ground.
+    TorsionSpring,
+    /// Torsional dashpot to the ground.
+    TorsionDashpot,
+    /// Mass at a point.
+    PointMass,
+    /// Rotary inertia of a point or of sections.
+    RotaryInertia,
+    /// Elastic foundation.
+    Foundation,
+    /// Strain that a beam would take by itself.
+    PreStrain,
+    /// Curvature that a beam would take by itself.
+    PreCurvature,
+    /// Resistance of a fluid.
+    Drag,
+    /// Lift by a displaced fluid.
+    Buoyancy,
+    /// Contact with an obstacle.
+    Contact,
+    /// Friction in a contact.
+    Friction,
+    /// An effect that another crate brings.
+    Other(&'static str),
 }
 
 impl Kind {
-    /// All kinds that exist.
-    pub const ALL: [Self; 8] = [
+    /// All kinds that exist here.
+    pub const ALL: [Self; 21] = [
         Self::Stretch,
         Self::Bend,
         Self::Inertia,
@@ -110,6 +149,19 @@ impl Kind {
         Self::Moment,
         Self::DistributedForce,
         Self::Damping,
+        Self::Spring,
+        Self::Dashpot,
+        Self::TorsionSpring,
+        Self::TorsionDashpot,
+        Self::PointMass,
+        Self::RotaryInertia,
+        Self::Foundation,
+        Self::PreStrain,
+        Self::PreCurvature,
+        Self::Drag,
+        Self::Buoyancy,
+        Self::Contact,
+        Self::Friction,
     ];
 
     /// The name used in scenes and inventories.
@@ -123,7 +175,27 @@ impl Kind {
             Self::Moment => "moment",
             Self::DistributedForce => "distributed_force",
             Self::Damping => "damping",
+            Self::Spring => "spring",
+            Self::Dashpot => "dashpot",
+            Self::TorsionSpring => "torsion_spring",
+            Self::TorsionDashpot => "torsion_dashpot",
+            Self::PointMass => "point_mass",
+            Self::RotaryInertia => "rotary_inertia",
+            Self::Foundation => "foundation",
+            Self::PreStrain => "pre_strain",
+            Self::PreCurvature => "pre_curvature",
+            Self::Drag => "drag",
+            Self::Buoyancy => "buoyancy",
+            Self::Contact => "contact",
+            Self::Friction => "friction",
+            Self::Other(name) => name,
         }
+    }
+}
+
+impl serde::Serialize for Kind {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
     }
 }
 

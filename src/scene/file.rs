@@ -7,9 +7,11 @@ use std::collections::BTreeMap;
 
 mod analysis;
 mod law;
+mod part;
 
 pub use analysis::*;
 pub use law::*;
+pub use part::*;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -36,6 +38,9 @@ pub struct SceneTable {
     /// What is held, and what is moved by prescription.
     #[serde(default)]
     pub support: Vec<Located<SupportTable>>,
+    /// How beams are joined to each other, or to lines of the ground.
+    #[serde(default)]
+    pub joint: Vec<Located<JointTable>>,
     /// What acts on the beams.
     #[serde(default)]
     pub effect: EffectTable,
@@ -306,8 +311,28 @@ pub struct EffectTable {
     pub moment: Vec<MomentTable>,
     /// Forces per length along whole beams.
     pub distributed_force: Vec<DistributedForceTable>,
-    /// Weight of every beam.
+    /// Weight of every beam and mass.
     pub gravity: Option<Located<GravityTable>>,
+    /// Damping of beams.
+    pub damping: Vec<DampingTable>,
+    /// Springs and dashpots to the ground.
+    pub spring: Vec<SpringTable>,
+    /// Torsional springs and dashpots to the ground.
+    pub torsion_spring: Vec<TorsionSpringTable>,
+    /// Masses at points.
+    pub point_mass: Vec<PointMassTable>,
+    /// Rotary inertia of sections.
+    pub rotary_inertia: Vec<SectionInertiaTable>,
+    /// Elastic foundations.
+    pub foundation: Vec<FoundationTable>,
+    /// Strains and curvatures that beams would take by themselves.
+    pub actuation: Vec<ActuationTable>,
+    /// Resistance of a fluid.
+    pub drag: Vec<DragTable>,
+    /// Lift by a displaced fluid.
+    pub buoyancy: Vec<BuoyancyTable>,
+    /// Contacts with obstacles.
+    pub contact: Vec<ContactTable>,
 }
 
 /// A concentrated force.

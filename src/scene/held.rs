@@ -1,6 +1,6 @@
 //! What supports hold: nothing twice, and in statics every rigid motion of every beam.
 
-use crate::model::{FixedRotation, Model, Support};
+use crate::model::{FixedRotation, Joint, Model, Place, Support};
 
 use super::error::Fault;
 use super::file::SceneTable;
@@ -36,44 +36,74 @@ pub(super) fn check_duplicates(file: &SceneTable, model: &Model) -> Result<(), F
     Ok(())
 }
 
-/// Refuses a beam that can move without deforming. A planar rigid motion is (t_x, t_y, ω); a support at r₀ holds
-/// t_x − ω (y₀ − ȳ), t_y + ω (x₀ − x̄) and ω. All three motions are held when these rows have rank 3.
+/// Refuses a structure that can move without deforming. A planar rigid motion of a beam is (t_x, t_y, ω); a support at r₀ holds
+/// t_x − ω (y₀ − ȳ), t_y + ω (x₀ − x̄) and ω, and a joint equals those of two beams. All motions are held when the rows have full rank.
 pub(super) fn check_rigid_motions(model: &Model, built: &[Built]) -> Result<(), Fault> {
-    for (index, beam) in built.iter().enumerate() {
-        let length = beam.curve.length();
-        let origin = beam.curve.position(0.0);
-        let mut rows: Vec<[f64; 3]> = Vec::new();
-        for Support { at, fix, .. } in model.supports.iter().filter(|support| support.at.beam == index) {
-            let [x, y] = beam.curve.position(at.s);
-            if fix.x {
-                rows.push([1.0, 0.0, -(y - origin[1]) / length]);
-            }
-            if fix.y {
-                rows.push([0.0, 1.0, (x - origin[0]) / length]);
-            }
-            if fix.rotation != FixedRotation::Free {
-                rows.push([0.0, 0.0, 1.0]);
+    let length = built.iter().map(|beam| beam.curve.length()).fold(0.0, f64::max);
+    let origins: Vec<[f64; 2]> = built.iter().map(|beam| beam.curve.position(0.0)).collect();
+    let columns = 3 * built.len();
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    // A row of Σ n·u over points, and one of Σ ω.
+    let displacement = |terms: &[(Place, [f64; 2])]| {
+        let mut row = vec![0.0; columns];
+        for (place, n) in terms {
+            let ([x, y], [ox, oy]) = (built[place.beam].curve.position(place.s), origins[place.beam]);
+            let lever = (n[1] * (x - ox) - n[0] * (y - oy)) / length;
+            for (i, value) in [n[0], n[1], lever].into_iter().enumerate() {
+                row[3 * place.beam + i] += value;
             }
         }
-        if let Some(motion) = free_motion(rows) {
-            let words = describe(motion, origin, length);
-            return Err(Fault::new(
-                beam.name.span(),
-                format!("beam `{}` is under-supported: it is free for {words}", beam.name.get()),
-            )
-            .help(
-                "an equilibrium needs every rigid motion held: add a `[[support]]`, such as \
-                 `fix = [\"x\", \"y\", \"angle\"]` at the start",
-            ));
+        row
+    };
+    let rotation = |terms: &[(Place, f64)]| {
+        let mut row = vec![0.0; columns];
+        terms.iter().for_each(|(place, sign)| row[3 * place.beam + 2] += sign);
+        row
+    };
+    for Support { at, fix, .. } in &model.supports {
+        if fix.x {
+            rows.push(displacement(&[(*at, [1.0, 0.0])]));
+        }
+        if fix.y {
+            rows.push(displacement(&[(*at, [0.0, 1.0])]));
+        }
+        if fix.rotation != FixedRotation::Free {
+            rows.push(rotation(&[(*at, 1.0)]));
         }
     }
-    Ok(())
+    for joint in &model.joints {
+        match *joint {
+            Joint::Slider { at, along: [x, y] } => rows.push(displacement(&[(at, [-y, x])])),
+            Joint::Hinge { first, second } | Joint::Weld { first, second } => {
+                rows.push(displacement(&[(first, [-1.0, 0.0]), (second, [1.0, 0.0])]));
+                rows.push(displacement(&[(first, [0.0, -1.0]), (second, [0.0, 1.0])]));
+                if matches!(joint, Joint::Weld { .. }) {
+                    rows.push(rotation(&[(first, -1.0), (second, 1.0)]));
+                }
+            }
+        }
+    }
+    let Some(motion) = free_motion(rows, columns) else { return Ok(()) };
+    // The beam that moves most.
+    let size = |beam: usize| motion[3 * beam..3 * beam + 3].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let index = (0..built.len()).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or(0);
+    let of_beam = [0, 1, 2].map(|i| motion[3 * index + i] / size(index));
+    let words = describe(of_beam, origins[index], length);
+    let beam = &built[index];
+    Err(Fault::new(
+        beam.name.span(),
+        format!("beam `{}` is under-supported: it is free for {words}", beam.name.get()),
+    )
+    .help(
+        "an equilibrium needs every rigid motion held: add a `[[support]]`, such as \
+         `fix = [\"x\", \"y\", \"angle\"]` at the start, or a `[[joint]]`",
+    ))
 }
 
 /// A motion that every row leaves free, if there is one: Gauss–Jordan elimination with full pivoting.
-fn free_motion(mut rows: Vec<[f64; 3]>) -> Option<[f64; 3]> {
-    let mut pivots: Vec<usize> = Vec::with_capacity(3);
-    while pivots.len() < 3 {
+fn free_motion(mut rows: Vec<Vec<f64>>, columns: usize) -> Option<Vec<f64>> {
+    let mut pivots: Vec<usize> = Vec::with_capacity(columns);
+    while pivots.len() < columns {
         let done = pivots.len();
         let best = rows
             .iter()
@@ -84,11 +114,12 @@ fn free_motion(mut rows: Vec<[f64; 3]>) -> Option<[f64; 3]> {
             .max_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, r, c)) = best.filter(|(size, ..)| *size > 1e-9) else { break };
         rows.swap(done, r);
-        let pivot = rows[done].map(|value| value / rows[done][c]);
+        let by = rows[done][c];
+        let pivot: Vec<f64> = rows[done].iter().map(|value| value / by).collect();
         for (other, row) in rows.iter_mut().enumerate() {
             let factor = row[c];
             if other != done {
-                for (value, p) in row.iter_mut().zip(pivot) {
+                for (value, p) in row.iter_mut().zip(&pivot) {
                     *value -= factor * p;
                 }
             }
@@ -97,8 +128,8 @@ fn free_motion(mut rows: Vec<[f64; 3]>) -> Option<[f64; 3]> {
         pivots.push(c);
     }
     // The last column without a pivot; rotation is named in preference to a shift.
-    let free = (0..3).rev().find(|c| !pivots.contains(c))?;
-    let mut motion = [0.0; 3];
+    let free = (0..columns).rev().find(|c| !pivots.contains(c))?;
+    let mut motion = vec![0.0; columns];
     motion[free] = 1.0;
     for (row, c) in rows.iter().zip(pivots) {
         motion[c] = -row[free];

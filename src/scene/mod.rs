@@ -21,6 +21,7 @@ mod to_analysis;
 mod to_basis;
 mod to_law;
 mod to_model;
+mod to_parts;
 mod unit;
 mod value;
 

@@ -69,6 +69,22 @@ measures! {
     AngularVelocity: "angular velocity", "rad/s", "90 deg/s", Dimension { metre: 0, kilogram: 0, second: -1, radian: 1 };
     /// Cycles per second \[Hz\].
     Frequency: "frequency", "Hz", "2 Hz", Dimension::new(0, 0, -1);
+    /// Curvature \[1/m\].
+    Curvature: "curvature", "1/m", "0.5 1/m", Dimension::new(-1, 0, 0);
+    /// Mass \[kg\].
+    Mass: "mass", "kg", "200 g", Dimension::new(0, 1, 0);
+    /// Moment of inertia \[kg m²\].
+    RotaryInertia: "moment of inertia", "kg m^2", "3 g m^2", Dimension::new(2, 1, 0);
+    /// Moment of inertia per length \[kg m\].
+    RotaryInertiaPerLength: "moment of inertia per length", "kg m", "2 g m", Dimension::new(1, 1, 0);
+    /// Force per velocity \[N s/m\].
+    TranslationalDamping: "force per velocity", "N s/m", "5 N s/m", Dimension::new(0, 1, -1);
+    /// Moment per angular velocity \[N m s\].
+    TorsionalDamping: "moment per angular velocity", "N m s", "0.1 N m s", Dimension::new(2, 1, -1);
+    /// Force per length and velocity \[N s/m²\].
+    ViscousDamping: "force per length and velocity", "N s/m^2", "2 N s/m^2", Dimension::new(-1, 1, -1);
+    /// Force per length and squared velocity \[N s²/m³\].
+    DragCoefficient: "force per length and squared velocity", "N s^2/m^3", "6 N s^2/m^3", Dimension::new(-2, 1, 0);
     /// A pure number.
     Ratio: "number", "", "0.5", Dimension::new(0, 0, 0);
 }

@@ -13,7 +13,7 @@ use super::error::Fault;
 use super::file::{BeamTable, FixName, LawTable, MoveTable, SceneTable, StrainName, SupportTable};
 use super::to_basis::{self, Size};
 use super::value::{At, Located};
-use super::{held, to_analysis, to_law};
+use super::{held, to_analysis, to_law, to_parts};
 
 /// A beam with what the checks of other tables need to know of it.
 pub(super) struct Built {
@@ -48,6 +48,7 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
     }
     held::check_duplicates(file, &model)?;
     loads(file, &built, &mut model)?;
+    to_parts::parts(file, &built, &mut model)?;
     initial_velocities(file, &built, &mut model)?;
     probes(file, &built, &mut model)?;
     let analysis = to_analysis::analysis(file, &model, size)?;
@@ -57,7 +58,11 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
         Analysis::Modal { about, .. } => about == About::Equilibrium,
         Analysis::Dynamic(_) => false,
     };
-    if from_equilibrium {
+    // What springs and foundations hold depends on their stiffness.
+    let elastic = !(file.effect.spring.is_empty()
+        && file.effect.foundation.is_empty()
+        && file.effect.torsion_spring.is_empty());
+    if from_equilibrium && !elastic {
         held::check_rigid_motions(&model, &built)?;
     }
     Ok((model, analysis))
@@ -197,9 +202,6 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
         if beam.section.axial_stiffness.is_none() {
             lacks("axial stiffness EA", kind, "axial_stiffness", ["youngs_modulus", "area"])?;
         }
-        if beam.section.bending_stiffness.is_none() {
-            lacks("bending stiffness EI", kind, "bending_stiffness", ["youngs_modulus", "second_moment"])?;
-        }
         if let (None, Some(who)) = (beam.section.mass_per_length, mass) {
             lacks("mass", who, "mass_per_length", ["density", "area"])?;
         }
@@ -207,7 +209,7 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
     Ok(())
 }
 
-fn beam_index(name: &Located<String>, built: &[Built]) -> Result<usize, Fault> {
+pub(super) fn beam_index(name: &Located<String>, built: &[Built]) -> Result<usize, Fault> {
     built.iter().position(|beam| beam.name.get() == name.get()).ok_or_else(|| {
         let names: Vec<String> = built.iter().map(|beam| beam.name.get().clone()).collect();
         Fault::new(name.span(), format!("there is no beam named `{}`", name.get())).help(choices(
@@ -218,7 +220,7 @@ fn beam_index(name: &Located<String>, built: &[Built]) -> Result<usize, Fault> {
     })
 }
 
-fn place(beam: &Located<String>, at: &Located<At>, built: &[Built]) -> Result<Place, Fault> {
+pub(super) fn place(beam: &Located<String>, at: &Located<At>, built: &[Built]) -> Result<Place, Fault> {
     let index = beam_index(beam, built)?;
     let length = built.get(index).map_or(0.0, |b| b.curve.length());
     let s = match *at.get() {

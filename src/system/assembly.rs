@@ -19,6 +19,11 @@ pub trait Part: fmt::Debug + Send + Sync {
     /// # Errors
     /// [`SystemError`] where the part does not fit the model.
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError>;
+
+    /// A mass \[kg\] on which gravity acts.
+    fn mass(&self) -> Option<(Place, f64)> {
+        None
+    }
 }
 
 /// Two parts are equal if they describe themselves alike.

@@ -2,9 +2,8 @@
 
 use super::SystemError;
 use super::assembly::{Assembly, Extent};
-use crate::basis::Quadrature;
 use crate::effect::{Bend, DeadForce, Engineering, FollowerForce, Green, Inertia, Kind, Moment, Stretch};
-use crate::model::{Beam, GaussPoints, Law, Load, StrainMeasure};
+use crate::model::{Beam, Law, Load, StrainMeasure};
 use nalgebra::Vector2;
 
 fn missing(beam: &Beam, quantity: &'static str, needed_by: &'static str) -> SystemError {
@@ -27,12 +26,10 @@ fn add_beam(assembly: &mut Assembly<'_>, index: usize, beam: &Beam) -> Result<()
     // Only a curved beam keeps its reference strains.
     let straight = assembly.discretised(index).straight;
     if let Some(ea) = beam.section.axial_stiffness {
-        let GaussPoints { stretch, lobatto, .. } = beam.gauss_points;
-        let rule = if lobatto { Quadrature::Lobatto(stretch) } else { Quadrature::Gauss(stretch) };
         let gradients = |z: Vec<[Vector2<f64>; 1]>| -> Vec<_> {
             if straight { Vec::new() } else { z.into_iter().map(|[r]| r).collect() }
         };
-        let extent = Extent::Beam(index, rule);
+        let extent = Extent::Beam(index, beam.gauss_points.stretch_rule());
         match beam.strain {
             StrainMeasure::Green => {
                 assembly.elastic(Kind::Stretch, extent, |z| Stretch::<Green>::new(ea, &gradients(z)))
@@ -43,7 +40,7 @@ fn add_beam(assembly: &mut Assembly<'_>, index: usize, beam: &Beam) -> Result<()
         }?;
     }
     if let Some(ei) = beam.section.bending_stiffness {
-        let extent = Extent::Beam(index, Quadrature::Gauss(beam.gauss_points.bend));
+        let extent = Extent::Beam(index, beam.gauss_points.bend_rule());
         assembly.elastic(Kind::Bend, extent, |z| Bend::new(ei, if straight { &[] } else { &z }))?;
     }
     if assembly.needs().inertia {
@@ -66,6 +63,11 @@ fn add_load(assembly: &mut Assembly<'_>, load: &Load, law: Option<&Law>) -> Resu
                 any = true;
                 let extent = Extent::Beam(index, assembly.mass_rule(index));
                 dead_force(assembly, Kind::Gravity, extent, acceleration.map(|g| mass * g), law)?;
+            }
+            for (at, mass) in model.parts.iter().filter_map(|part| part.mass()) {
+                any = true;
+                let force = acceleration.map(|g| mass * g);
+                dead_force(assembly, Kind::Gravity, Extent::Point(at), force, law)?;
             }
             match (any, model.beams.first()) {
                 (false, Some(first)) => Err(missing(first, "mass per length", "gravity")),

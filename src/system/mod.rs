@@ -452,6 +452,12 @@ impl System {
         rows.collect()
     }
 
+    /// Energy \[J\] in springs, foundations and contacts.
+    fn stored_energy(&self, q: &[f64]) -> f64 {
+        let others = self.internal.iter().filter(|e| !matches!(e.kind(), Kind::Stretch | Kind::Bend));
+        others.map(|e| e.energy(q)).sum()
+    }
+
     /// Writes −∂g/∂q·v, scaled, which is what the rates of unknowns must make up for where supports have the rates `v`.
     pub fn constraint_rates(&self, parameter: f64, v: &[f64], rates: &mut [f64]) {
         for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
@@ -483,6 +489,7 @@ impl System {
         Energy {
             stretch: sum(&self.internal, Kind::Stretch, q),
             bend: sum(&self.internal, Kind::Bend, q),
+            stored: self.stored_energy(q),
             kinetic: velocity.map_or(0.0, |v| self.inertia.iter().map(|e| e.energy(v)).sum()),
             potential: self.amplitude.at(parameter) * potential,
             work: 0.0,

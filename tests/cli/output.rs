@@ -61,6 +61,7 @@ fn motion(records: u32) -> Trajectory {
             .map(|i| Energy {
                 stretch: 0.1,
                 bend: 1.0 / 3.0,
+                stored: 0.0,
                 kinetic: time(i),
                 potential: -0.999 * time(i),
                 work: 0.0,

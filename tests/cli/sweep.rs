@@ -199,7 +199,7 @@ fn what_cannot_be_built_is_a_row_too() {
     assert_eq!(status(&output), 0, "{}", stderr(&output));
     let table = Table::read(&folder.path().join("out/sweep.csv"));
     assert_eq!(table.column("outcome"), ["solved", "refused"]);
-    assert!(table.column("message")[1].contains("prescribed motion of a support"));
+    assert!(table.column("message")[1].contains("does not say how in time"));
     assert!(table.column("probes.tip.vx")[0].parse::<f64>().unwrap().is_finite());
     assert_eq!(table.column("probes.tip.vx")[1], "");
     assert!(stderr(&output).contains("1 of 2 runs were not solved"), "{}", stderr(&output));

@@ -1,0 +1,113 @@
+//! Pre-strain and pre-curvature: a stress-free shape that grows with the load factor or follows a law of time.
+//!
+//! Heat, a tendon, pressure or a piezoelectric layer ask for a strain ε₀ and a curvature κ₀. Of the energy ½ EA (ε − ε₀)² only −EA ε₀ ε does work on the
+//! beam: a load with a potential, beside the elastic energy ½ EA ε², so that it can be switched on like any other load.
+
+use super::{Density, Engineering, Gradient, Green, Hessian, Kind, Strain, bend};
+use crate::model::{Law, StrainMeasure};
+use crate::system::SystemError;
+use crate::system::assembly::{Assembly, Extent, Part};
+use nalgebra::Matrix2;
+
+/// The strain and curvature that a beam would take by itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Actuation {
+    /// Index of the beam.
+    pub beam: usize,
+    /// ε₀.
+    pub strain: Option<f64>,
+    /// κ₀ \[1/m\].
+    pub curvature: Option<f64>,
+    /// How they follow time.
+    pub law: Option<Law>,
+}
+
+impl Part for Actuation {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+        let beam = assembly.beam("pre-strain", self.beam)?;
+        let lacks =
+            |quantity| SystemError::Missing { beam: beam.name.clone(), quantity, needed_by: "pre-strain" };
+        if let Some(strain) = self.strain {
+            let force = strain * beam.section.axial_stiffness.ok_or_else(|| lacks("axial stiffness"))?;
+            let extent = Extent::Beam(self.beam, beam.gauss_points.stretch_rule());
+            let law = self.law.as_ref();
+            match beam.strain {
+                StrainMeasure::Green => {
+                    assembly.load(Kind::PreStrain, extent, law, |_| PreStrain::<Green>::new(force))
+                }
+                StrainMeasure::Engineering => {
+                    assembly.load(Kind::PreStrain, extent, law, |_| PreStrain::<Engineering>::new(force))
+                }
+            }?;
+        }
+        if let Some(curvature) = self.curvature {
+            let moment =
+                curvature * beam.section.bending_stiffness.ok_or_else(|| lacks("bending stiffness"))?;
+            let extent = Extent::Beam(self.beam, beam.gauss_points.bend_rule());
+            assembly.load(Kind::PreCurvature, extent, self.law.as_ref(), |_| PreCurvature { moment })?;
+        }
+        Ok(())
+    }
+}
+
+/// W = −N₀ ε with N₀ = EA ε₀ \[N\].
+#[derive(Clone, Debug)]
+pub struct PreStrain<S> {
+    force: f64,
+    strain: std::marker::PhantomData<S>,
+}
+
+impl<S: Strain> PreStrain<S> {
+    /// N₀ \[N\].
+    pub fn new(force: f64) -> Self {
+        Self { force, strain: std::marker::PhantomData }
+    }
+}
+
+impl<S: Strain> Density<1> for PreStrain<S> {
+    const ORDERS: [usize; 1] = [1];
+
+    fn energy(&self, _: usize, z: &Gradient<1>) -> f64 {
+        -self.force * S::strain(&z[0])
+    }
+
+    fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
+        [S::first(&z[0]).1 * -self.force]
+    }
+
+    fn gradient_and_hessian(&self, _: usize, z: &Gradient<1>, _: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+        let (_, first, second) = S::second(&z[0]);
+        ([first * -self.force], [[second * -self.force]])
+    }
+}
+
+/// W = −M₀ κ with M₀ = EI κ₀ \[N m\].
+#[derive(Clone, Debug)]
+pub struct PreCurvature {
+    /// M₀.
+    pub moment: f64,
+}
+
+impl Density<2> for PreCurvature {
+    const ORDERS: [usize; 2] = [1, 2];
+
+    fn energy(&self, _: usize, z: &Gradient<2>) -> f64 {
+        -self.moment * bend::curvature(&z[0], &z[1])
+    }
+
+    fn gradient(&self, _: usize, z: &Gradient<2>) -> Gradient<2> {
+        let (_, [a, b], _) = bend::first_derivatives(z);
+        [a * -self.moment, b * -self.moment]
+    }
+
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<2>,
+        _: &Gradient<2>,
+    ) -> (Gradient<2>, Hessian<2>) {
+        let (aa, ab) = bend::second_derivatives(z);
+        let m = -self.moment;
+        (self.gradient(point, z), [[aa * m, ab * m], [ab.transpose() * m, Matrix2::zeros()]])
+    }
+}

@@ -1,0 +1,26 @@
+//! Elastic foundation along a beam.
+
+use super::Kind;
+use super::spring::Tie;
+use crate::system::SystemError;
+use crate::system::assembly::{Assembly, Extent, Part};
+use nalgebra::Vector2;
+
+/// Winkler's foundation, W = ½ (k_x u_x² + k_y u_y²) per length with the displacement u = r − r₀; k_y alone carries a beam along x.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foundation {
+    /// Index of the beam.
+    pub beam: usize,
+    /// k_x, k_y \[N/m²\].
+    pub stiffness: [f64; 2],
+}
+
+impl Part for Foundation {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+        assembly.beam("a foundation", self.beam)?;
+        let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
+        assembly.elastic(Kind::Foundation, extent, |z: Vec<[Vector2<f64>; 1]>| {
+            Tie::new(self.stiffness, z.into_iter().map(|[r]| r).collect())
+        })
+    }
+}

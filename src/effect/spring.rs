@@ -1,0 +1,262 @@
+//! Springs and dashpots between a point of a beam and the ground.
+
+use super::{Density, Dissipation, Gradient, Hessian, Kind};
+use crate::model::Place;
+use crate::system::SystemError;
+use crate::system::assembly::{Assembly, Extent, Part};
+use nalgebra::{Matrix2, Vector2};
+
+/// A spring and a dashpot side by side. With an anchor they act along the line from it to the point, W = ½ k (ℓ − ℓ₀)², R = ½ c ℓ̇²; without one they
+/// hold the point where it is in the stress-free shape in all directions, W = ½ k |r − r₀|², R = ½ c |ṙ|².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// The point.
+    pub at: Place,
+    /// The other end, on the ground \[m\].
+    pub anchor: Option<[f64; 2]>,
+    /// Length without force \[m\]; that of the stress-free shape where it is not given.
+    pub length: Option<f64>,
+    /// k \[N/m\].
+    pub stiffness: Option<f64>,
+    /// c \[N s/m\].
+    pub damping: Option<f64>,
+}
+
+impl Part for Spring {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+        let extent = Extent::Point(self.at);
+        if let Some(stiffness) = self.stiffness {
+            match self.anchor {
+                None => assembly.elastic(Kind::Spring, extent, |z: Vec<[Vector2<f64>; 1]>| {
+                    Tie::new([stiffness; 2], z.into_iter().map(|[r]| r).collect())
+                }),
+                Some(anchor) => assembly.elastic(Kind::Spring, extent, |z: Vec<[Vector2<f64>; 1]>| {
+                    let anchor = Vector2::from(anchor);
+                    let there = z.first().map_or(0.0, |[r]| (r - anchor).norm());
+                    Strut { stiffness, anchor, length: self.length.unwrap_or(there) }
+                }),
+            }?;
+        }
+        if let Some(coefficient) = self.damping {
+            let anchor = self.anchor.map(Vector2::from);
+            assembly.damping(Kind::Dashpot, extent, |_| Dashpot { coefficient, anchor })?;
+        }
+        Ok(())
+    }
+}
+
+/// A torsional spring and dashpot on the direction of r': W = ½ k (θ − θ₀)², R = ½ c θ̇².
+///
+/// θ − θ₀ is counted from −π to π, so that a spring that is wound up further jumps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorsionSpring {
+    /// The point.
+    pub at: Place,
+    /// k \[N m/rad\].
+    pub stiffness: Option<f64>,
+    /// c \[N m s/rad\].
+    pub damping: Option<f64>,
+}
+
+impl Part for TorsionSpring {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+        let extent = Extent::Point(self.at);
+        if let Some(stiffness) = self.stiffness {
+            assembly.elastic(Kind::TorsionSpring, extent, |z: Vec<[Vector2<f64>; 1]>| {
+                let reference = z.first().map_or(Vector2::x(), |[r]| *r);
+                Torsion { stiffness, reference }
+            })?;
+        }
+        if let Some(coefficient) = self.damping {
+            assembly.damping(Kind::TorsionDashpot, extent, |_| TorsionDashpot { coefficient })?;
+        }
+        Ok(())
+    }
+}
+
+/// W = ½ Σ k_d (r_d − r₀_d)²: a spring or an elastic foundation.
+#[derive(Clone, Debug)]
+pub struct Tie {
+    stiffness: Vector2<f64>,
+    reference: Vec<Vector2<f64>>,
+}
+
+impl Tie {
+    /// k_x, k_y \[N/m\] or, per length, \[N/m²\], and r₀ at each point.
+    pub fn new(stiffness: [f64; 2], reference: Vec<Vector2<f64>>) -> Self {
+        Self { stiffness: stiffness.into(), reference }
+    }
+
+    fn displacement(&self, point: usize, z: &Gradient<1>) -> Vector2<f64> {
+        z[0] - self.reference.get(point).copied().unwrap_or_default()
+    }
+}
+
+impl Density<1> for Tie {
+    const ORDERS: [usize; 1] = [0];
+
+    fn energy(&self, point: usize, z: &Gradient<1>) -> f64 {
+        let u = self.displacement(point, z);
+        0.5 * u.dot(&self.stiffness.component_mul(&u))
+    }
+
+    fn gradient(&self, point: usize, z: &Gradient<1>) -> Gradient<1> {
+        [self.stiffness.component_mul(&self.displacement(point, z))]
+    }
+
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
+        (self.gradient(point, z), [[Matrix2::from_diagonal(&self.stiffness)]])
+    }
+}
+
+/// W = ½ k (|r − a| − ℓ₀)².
+#[derive(Clone, Debug)]
+pub struct Strut {
+    stiffness: f64,
+    anchor: Vector2<f64>,
+    length: f64,
+}
+
+impl Strut {
+    /// k \[N/m\], the anchor a and ℓ₀ \[m\].
+    pub fn new(stiffness: f64, anchor: [f64; 2], length: f64) -> Self {
+        Self { stiffness, anchor: anchor.into(), length }
+    }
+
+    /// d = r − a, its length, and ℓ₀/|d|, zero where both vanish.
+    fn ratio(&self, z: &Gradient<1>) -> (Vector2<f64>, f64, f64) {
+        let d = z[0] - self.anchor;
+        let length = d.norm();
+        (d, length, if self.length == 0.0 { 0.0 } else { self.length / length })
+    }
+}
+
+impl Density<1> for Strut {
+    const ORDERS: [usize; 1] = [0];
+
+    fn energy(&self, _: usize, z: &Gradient<1>) -> f64 {
+        let (_, length, _) = self.ratio(z);
+        0.5 * self.stiffness * (length - self.length).powi(2)
+    }
+
+    fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
+        let (d, _, ratio) = self.ratio(z);
+        [d * (self.stiffness * (1.0 - ratio))]
+    }
+
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
+        let (d, length, ratio) = self.ratio(z);
+        let along = if ratio == 0.0 { Matrix2::zeros() } else { d * d.transpose() / (length * length) };
+        let hessian = (Matrix2::identity() * (1.0 - ratio) + along * ratio) * self.stiffness;
+        (self.gradient(point, z), [[hessian]])
+    }
+}
+
+/// R = ½ c |ṙ|², or with an anchor a ½ c (e·ṙ)², e the direction of r − a.
+#[derive(Clone, Debug)]
+pub struct Dashpot {
+    /// c \[N s/m\].
+    pub coefficient: f64,
+    /// a \[m\].
+    pub anchor: Option<Vector2<f64>>,
+}
+
+impl Dissipation<1> for Dashpot {
+    const ORDERS: [usize; 1] = [0];
+
+    fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
+        self.force_and_matrix(point, z, rate).0
+    }
+
+    fn force_and_matrix(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+        let along = self.anchor.map_or_else(Matrix2::identity, |anchor| {
+            let d = z[0] - anchor;
+            let square = d.norm_squared();
+            if square > 0.0 { d * d.transpose() / square } else { Matrix2::identity() }
+        });
+        let matrix = along * self.coefficient;
+        ([matrix * rate[0]], [[matrix]])
+    }
+}
+
+/// ∂θ/∂r' = J r'/|r'|².
+fn turn(r: &Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-r.y, r.x) / r.norm_squared()
+}
+
+/// W = ½ k (θ − θ₀)².
+#[derive(Clone, Debug)]
+pub struct Torsion {
+    stiffness: f64,
+    reference: Vector2<f64>,
+}
+
+impl Torsion {
+    /// k \[N m/rad\] and r'₀.
+    pub fn new(stiffness: f64, reference: [f64; 2]) -> Self {
+        Self { stiffness, reference: reference.into() }
+    }
+
+    fn angle(&self, r: &Vector2<f64>) -> f64 {
+        let t = &self.reference;
+        (t.x * r.y - t.y * r.x).atan2(t.dot(r))
+    }
+}
+
+impl Density<1> for Torsion {
+    const ORDERS: [usize; 1] = [1];
+
+    fn energy(&self, _: usize, z: &Gradient<1>) -> f64 {
+        0.5 * self.stiffness * self.angle(&z[0]).powi(2)
+    }
+
+    fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
+        [turn(&z[0]) * (self.stiffness * self.angle(&z[0]))]
+    }
+
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
+        let (x, y) = (z[0].x, z[0].y);
+        let inverse = 1.0 / z[0].norm_squared();
+        let second =
+            Matrix2::new(2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y) * (inverse * inverse);
+        let first = turn(&z[0]);
+        let hessian = (first * first.transpose() + second * self.angle(&z[0])) * self.stiffness;
+        (self.gradient(point, z), [[hessian]])
+    }
+}
+
+/// R = ½ c θ̇².
+#[derive(Clone, Debug)]
+pub struct TorsionDashpot {
+    /// c \[N m s/rad\].
+    pub coefficient: f64,
+}
+
+impl Dissipation<1> for TorsionDashpot {
+    const ORDERS: [usize; 1] = [1];
+
+    fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
+        self.force_and_matrix(point, z, rate).0
+    }
+
+    fn force_and_matrix(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+        let first = turn(&z[0]);
+        let matrix = first * first.transpose() * self.coefficient;
+        ([matrix * rate[0]], [[matrix]])
+    }
+}

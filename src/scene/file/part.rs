@@ -1,0 +1,240 @@
+//! Tables of what takes part besides beams, supports and loads: damping, springs, masses, fluids, contacts; and of joints.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::LawTable;
+use crate::scene::quantity::{
+    Angle, Curvature, DragCoefficient, ForcePerLength, Frequency, Length, Mass, MassPerLength, Moment,
+    Positive, Quantity, Ratio, RotaryInertia, RotaryInertiaPerLength, Stress, Time, TorsionalDamping,
+    TranslationalDamping, Velocity, ViscousDamping,
+};
+use crate::scene::value::{At, Located, Vector};
+
+/// Damping of a beam; at least one of the coefficients.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DampingTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// α of the force per length −α ρA ṙ.
+    pub mass_proportional: Option<Quantity<Frequency, Positive>>,
+    /// η of N = EA (ε + η ε̇) and M = EI (κ + η κ̇), in place of `strain` and `curvature`.
+    pub stiffness_proportional: Option<Located<Quantity<Time, Positive>>>,
+    /// η of N = EA (ε + η ε̇).
+    pub strain: Option<Quantity<Time, Positive>>,
+    /// η of M = EI (κ + η κ̇).
+    pub curvature: Option<Quantity<Time, Positive>>,
+}
+
+/// A spring and dashpot from a point to the ground; `stiffness`, `damping` or both.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpringTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Which point of it.
+    pub at: Located<At>,
+    /// The end on the ground; without it the point is tied to where it is in the stress-free shape, in all directions.
+    pub anchor: Option<Vector<Length>>,
+    /// Length without force, of a spring with an anchor; that of the stress-free shape when left out.
+    pub length: Option<Located<Quantity<Length>>>,
+    /// Force per length.
+    pub stiffness: Option<Quantity<ForcePerLength, Positive>>,
+    /// Force per velocity.
+    pub damping: Option<Quantity<TranslationalDamping, Positive>>,
+}
+
+/// A torsional spring and dashpot on the direction of r' at a point; `stiffness`, `damping` or both.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TorsionSpringTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Which point of it.
+    pub at: Located<At>,
+    /// Moment per radian.
+    pub stiffness: Option<Quantity<Moment, Positive>>,
+    /// Moment per radian a second.
+    pub damping: Option<Quantity<TorsionalDamping, Positive>>,
+}
+
+/// A mass at a point; `mass`, `rotary_inertia` or both.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointMassTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Which point of it.
+    pub at: Located<At>,
+    /// Mass, on which gravity acts too.
+    pub mass: Option<Quantity<Mass, Positive>>,
+    /// Moment of inertia, which turns with the section.
+    pub rotary_inertia: Option<Quantity<RotaryInertia, Positive>>,
+}
+
+/// The rotary inertia of a beam's sections.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SectionInertiaTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// ρI.
+    pub per_length: Quantity<RotaryInertiaPerLength, Positive>,
+}
+
+/// An elastic foundation along a beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FoundationTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Force per length and displacement along x and y.
+    pub stiffness: Located<Vector<Stress>>,
+}
+
+/// A strain or curvature that the beam would take by itself.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ActuationTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// ε₀.
+    pub strain: Option<Quantity<Ratio>>,
+    /// κ₀.
+    pub curvature: Option<Quantity<Curvature>>,
+    /// In a motion: the law of time that multiplies both.
+    pub in_time: Option<Located<LawTable>>,
+}
+
+/// Resistance of a fluid, by the velocity along and across the beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DragTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// ½ ρ C_D D across the beam.
+    pub normal: Option<Quantity<DragCoefficient, Positive>>,
+    /// The same along the beam.
+    pub tangential: Option<Quantity<DragCoefficient, Positive>>,
+    /// Viscous force per length and velocity across the beam.
+    pub viscous_normal: Option<Quantity<ViscousDamping, Positive>>,
+    /// The same along the beam.
+    pub viscous_tangential: Option<Quantity<ViscousDamping, Positive>>,
+    /// Velocity of the fluid.
+    pub flow: Option<Vector<Velocity>>,
+}
+
+/// Lift of a beam in a heavy fluid; needs gravity.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BuoyancyTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Mass of the fluid that a length of the beam displaces.
+    pub displaced_mass_per_length: Quantity<MassPerLength, Positive>,
+}
+
+/// Contact of a beam with one obstacle of the ground: `circle`, `half_plane` or `box`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["circle"] }, { "required": ["half_plane"] }, { "required": ["box"] }]))]
+pub struct ContactTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// A disc, or a round hole around the beam.
+    pub circle: Option<CircleTable>,
+    /// All that lies behind a straight line.
+    pub half_plane: Option<HalfPlaneTable>,
+    /// A rectangle.
+    #[serde(rename = "box")]
+    pub rectangle: Option<BoxTable>,
+    /// Force per length of beam and penetration.
+    pub stiffness: Quantity<Stress, Positive>,
+    /// Distance of the beam's surface from its centreline; zero when left out.
+    pub half_thickness: Option<Quantity<Length, Positive>>,
+    /// Dry friction.
+    pub friction: Option<FrictionTable>,
+}
+
+/// A circle.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CircleTable {
+    /// Its centre.
+    pub center: Vector<Length>,
+    /// Its radius.
+    pub radius: Quantity<Length, Positive>,
+    /// Whether the beam is within it.
+    #[serde(default)]
+    pub inside: bool,
+}
+
+/// A half-plane.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HalfPlaneTable {
+    /// A point of its border.
+    pub point: Vector<Length>,
+    /// Towards the beam.
+    pub normal: Located<Vector<Ratio>>,
+}
+
+/// A rectangle.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxTable {
+    /// Its centre.
+    pub center: Vector<Length>,
+    /// Its sides.
+    pub size: Located<Vector<Length>>,
+    /// By which it is turned.
+    pub angle: Option<Quantity<Angle>>,
+}
+
+/// Dry friction, regularised.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FrictionTable {
+    /// Friction force against contact force.
+    pub coefficient: Quantity<Ratio, Positive>,
+    /// Sliding velocity about which the force changes its sign smoothly.
+    pub velocity: Quantity<Velocity, Positive>,
+}
+
+/// How beams are joined: exactly one kind, with the points that it joins.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointTable {
+    /// What it leaves free.
+    #[serde(rename = "type")]
+    pub kind: Located<JointName>,
+    /// A point.
+    pub first: PointTable,
+    /// The point to which it is joined; not of a slider.
+    pub second: Option<PointTable>,
+    /// Direction of a slider's line.
+    pub along: Option<Located<Vector<Ratio>>>,
+}
+
+/// The kinds of joints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum JointName {
+    /// The points coincide.
+    Hinge,
+    /// The points coincide and the angle between the beams stays.
+    Weld,
+    /// The point moves along a line of the ground.
+    Slider,
+}
+
+/// A point of a beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Which point of it.
+    pub at: Located<At>,
+}

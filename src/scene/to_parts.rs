@@ -1,0 +1,230 @@
+//! Tables of joints, damping, springs, masses, fluids and contacts → parts of the model.
+
+use std::sync::Arc;
+
+use crate::effect::{
+    Actuation, BeamDamping, Buoyancy, Contact, Drag, Foundation, Friction, Obstacle, PointMass,
+    SectionInertia, Spring, TorsionSpring,
+};
+use crate::model::{Joint, Model};
+
+use super::error::Fault;
+use super::file::{ContactTable, JointName, JointTable, PointTable, SceneTable};
+use super::to_law;
+use super::to_model::{Built, beam_index, place};
+use super::value::Located;
+
+/// Adds what the file names to the model.
+pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {
+    let effects = &file.effect;
+    let parts = &mut model.parts;
+    for t in &effects.damping {
+        let both = t.stiffness_proportional.as_ref();
+        if let (Some(both), true) = (both, t.strain.is_some() || t.curvature.is_some()) {
+            return Err(Fault::new(
+                both.span(),
+                "`stiffness_proportional` stands for `strain` and `curvature`",
+            )
+            .help("keep `stiffness_proportional`, or the other two"));
+        }
+        let both = both.map(|eta| eta.get().si);
+        let part = BeamDamping {
+            beam: beam_index(&t.beam, built)?,
+            mass_proportional: t.mass_proportional.map(|alpha| alpha.si),
+            strain: t.strain.map(|eta| eta.si).or(both),
+            curvature: t.curvature.map(|eta| eta.si).or(both),
+        };
+        let nothing = part == BeamDamping { beam: part.beam, ..BeamDamping::default() };
+        needs(
+            !nothing,
+            &t.beam,
+            "this damping",
+            "`mass_proportional`, `stiffness_proportional`, `strain`, `curvature`",
+        )?;
+        parts.push(Arc::new(part));
+    }
+    for t in &effects.spring {
+        needs(
+            t.stiffness.is_some() || t.damping.is_some(),
+            &t.beam,
+            "this spring",
+            "`stiffness`, `damping`",
+        )?;
+        if let (Some(length), None) = (&t.length, t.anchor) {
+            return Err(Fault::new(length.span(), "a spring without an `anchor` has no length")
+                .help("give `anchor = [0.0, 1.0]`, its end on the ground, or leave `length` out"));
+        }
+        if let Some(length) = t.length.as_ref().filter(|length| length.get().si < 0.0) {
+            return Err(
+                Fault::new(length.span(), "a spring's length cannot be negative").help("give 0 or more")
+            );
+        }
+        parts.push(Arc::new(Spring {
+            at: place(&t.beam, &t.at, built)?,
+            anchor: t.anchor.map(|anchor| anchor.si),
+            length: t.length.as_ref().map(|length| length.get().si),
+            stiffness: t.stiffness.map(|k| k.si),
+            damping: t.damping.map(|c| c.si),
+        }));
+    }
+    for t in &effects.torsion_spring {
+        needs(
+            t.stiffness.is_some() || t.damping.is_some(),
+            &t.beam,
+            "this spring",
+            "`stiffness`, `damping`",
+        )?;
+        parts.push(Arc::new(TorsionSpring {
+            at: place(&t.beam, &t.at, built)?,
+            stiffness: t.stiffness.map(|k| k.si),
+            damping: t.damping.map(|c| c.si),
+        }));
+    }
+    for t in &effects.point_mass {
+        needs(
+            t.mass.is_some() || t.rotary_inertia.is_some(),
+            &t.beam,
+            "this mass",
+            "`mass`, `rotary_inertia`",
+        )?;
+        parts.push(Arc::new(PointMass {
+            at: place(&t.beam, &t.at, built)?,
+            mass: t.mass.map(|m| m.si),
+            rotary_inertia: t.rotary_inertia.map(|j| j.si),
+        }));
+    }
+    for t in &effects.rotary_inertia {
+        let (beam, per_length) = (beam_index(&t.beam, built)?, t.per_length.si);
+        parts.push(Arc::new(SectionInertia { beam, per_length }));
+    }
+    for t in &effects.foundation {
+        let stiffness = t.stiffness.get().si;
+        if stiffness.iter().any(|k| *k < 0.0) || stiffness == [0.0; 2] {
+            return Err(Fault::new(t.stiffness.span(), "a foundation needs a positive stiffness")
+                .help("such as `stiffness = [0.0, \"2 kN/m^2\"]` for a beam along x"));
+        }
+        parts.push(Arc::new(Foundation { beam: beam_index(&t.beam, built)?, stiffness }));
+    }
+    for t in &effects.actuation {
+        needs(
+            t.strain.is_some() || t.curvature.is_some(),
+            &t.beam,
+            "this actuation",
+            "`strain`, `curvature`",
+        )?;
+        parts.push(Arc::new(Actuation {
+            beam: beam_index(&t.beam, built)?,
+            strain: t.strain.map(|strain| strain.si),
+            curvature: t.curvature.map(|curvature| curvature.si),
+            law: t.in_time.as_ref().map(to_law::law).transpose()?,
+        }));
+    }
+    for t in &effects.drag {
+        let drag = Drag {
+            beam: beam_index(&t.beam, built)?,
+            viscous: [t.viscous_tangential, t.viscous_normal].map(|c| c.map_or(0.0, |c| c.si)),
+            quadratic: [t.tangential, t.normal].map(|c| c.map_or(0.0, |c| c.si)),
+            flow: t.flow.map_or([0.0; 2], |flow| flow.si),
+        };
+        let something = drag.viscous != [0.0; 2] || drag.quadratic != [0.0; 2];
+        needs(
+            something,
+            &t.beam,
+            "this drag",
+            "`normal`, `tangential`, `viscous_normal`, `viscous_tangential`",
+        )?;
+        parts.push(Arc::new(drag));
+    }
+    for t in &effects.buoyancy {
+        let Some(gravity) = &effects.gravity else {
+            return Err(Fault::new(t.beam.span(), "there is no buoyancy without gravity")
+                .help("add `[effect.gravity]` with `acceleration = [0.0, -9.81]`"));
+        };
+        let acceleration = gravity.get().acceleration.si;
+        let (beam, displaced) = (beam_index(&t.beam, built)?, t.displaced_mass_per_length.si);
+        parts.push(Arc::new(Buoyancy { beam, displaced, acceleration }));
+    }
+    for t in &effects.contact {
+        parts.push(Arc::new(contact(t, built)?));
+    }
+    for table in &file.joint {
+        model.joints.push(joint(table.get(), built)?);
+    }
+    Ok(())
+}
+
+/// Refuses a part that does nothing.
+fn needs(something: bool, at: &Located<String>, what: &str, keys: &str) -> Result<(), Fault> {
+    if something {
+        return Ok(());
+    }
+    Err(Fault::new(at.span(), format!("{what} does nothing")).help(format!("give one or more of {keys}")))
+}
+
+fn contact(t: &ContactTable, built: &[Built]) -> Result<Contact, Fault> {
+    let mut obstacles = Vec::new();
+    if let Some(c) = &t.circle {
+        obstacles.push(Obstacle::Circle { center: c.center.si, radius: c.radius.si, inside: c.inside });
+    }
+    if let Some(h) = &t.half_plane {
+        let normal = unit(&h.normal.get().si).ok_or_else(|| {
+            Fault::new(h.normal.span(), "a normal of no length").help("such as `normal = [0.0, 1.0]`")
+        })?;
+        obstacles.push(Obstacle::HalfPlane { point: h.point.si, normal });
+    }
+    if let Some(b) = &t.rectangle {
+        let half = b.size.get().si.map(|side| 0.5 * side);
+        if half.iter().any(|side| *side <= 0.0) {
+            return Err(Fault::new(b.size.span(), "a box needs positive sides")
+                .help("such as `size = [\"20 cm\", \"10 cm\"]`"));
+        }
+        let angle = b.angle.map_or(0.0, |angle| angle.si);
+        obstacles.push(Obstacle::Box { center: b.center.si, half, angle });
+    }
+    let (Some(obstacle), true) = (obstacles.pop(), obstacles.is_empty()) else {
+        return Err(Fault::new(t.beam.span(), "a contact needs exactly one obstacle").help(
+            "give one of `circle = { center = [0, 0], radius = 1 }`, `half_plane = { point = [0, 0], normal = [0, 1] }`, \
+             `box = { center = [0, 0], size = [1, 1] }`; each further obstacle is a contact of its own",
+        ));
+    };
+    Ok(Contact {
+        beam: beam_index(&t.beam, built)?,
+        obstacle,
+        stiffness: t.stiffness.si,
+        half_thickness: t.half_thickness.map_or(0.0, |h| h.si),
+        friction: t
+            .friction
+            .as_ref()
+            .map(|f| Friction { coefficient: f.coefficient.si, velocity: f.velocity.si }),
+    })
+}
+
+fn unit([x, y]: &[f64; 2]) -> Option<[f64; 2]> {
+    let length = x.hypot(*y);
+    (length > 0.0).then(|| [x / length, y / length])
+}
+
+fn joint(t: &JointTable, built: &[Built]) -> Result<Joint, Fault> {
+    let point = |point: &PointTable| place(&point.beam, &point.at, built);
+    let first = point(&t.first)?;
+    let fault =
+        |message: &str, help: &str| Fault::new(t.kind.span(), message.to_owned()).help(help.to_owned());
+    match (*t.kind.get(), &t.second, &t.along) {
+        (JointName::Hinge, Some(second), None) => Ok(Joint::Hinge { first, second: point(second)? }),
+        (JointName::Weld, Some(second), None) => Ok(Joint::Weld { first, second: point(second)? }),
+        (JointName::Slider, None, Some(along)) => {
+            let along = unit(&along.get().si).ok_or_else(|| {
+                Fault::new(along.span(), "a direction of no length").help("such as `along = [1.0, 0.0]`")
+            })?;
+            Ok(Joint::Slider { at: first, along })
+        }
+        (JointName::Slider, ..) => Err(fault(
+            "a slider moves one point, `first`, along a line of the ground",
+            "give `along = [1.0, 0.0]`, the line's direction, and no `second`",
+        )),
+        _ => Err(fault(
+            "a hinge or a weld joins two points, `first` and `second`",
+            "such as `second = { beam = \"arm\", at = \"start\" }`, without `along`; a point is held to the ground by a `[[support]]`",
+        )),
+    }
+}
