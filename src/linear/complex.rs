@@ -5,9 +5,10 @@
 //! pivoting: with M positive definite and Im ζ ≠ 0, x*(K + ζM)x has an imaginary part different from zero for every x, hence no
 //! leading minor vanishes (George, Ikramov, Kucherov, *SIAM J. Matrix Anal. Appl.* 21, 2000, 377–387).
 //! Real and imaginary parts are kept apart, so that all inner loops are real multiply–adds over contiguous rows: four times
-//! as many as [`super::symmetric`] has, in the same order. Unsymmetric and bordered matrices go to faer's sparse LU.
+//! as many as [`super::symmetric`] has, in the same order. Unsymmetric matrices and those bordered by many rows go to faer's sparse LU.
 
 use super::bordered::{BorderRow, Bordered};
+use super::condensed::{ComplexCondensed, MOST_ROWS};
 use super::fma::fma;
 use super::symmetric::SymmetricBand;
 use super::{Matrix, Singular};
@@ -18,6 +19,8 @@ use faer::c64;
 pub enum ComplexFactor {
     /// L D Lᵀ of a symmetric band.
     Ldl(ComplexLdl),
+    /// The same, bordered by few rows.
+    Condensed(Box<ComplexCondensed>),
     /// Sparse LU of an unsymmetric or bordered band.
     Sparse(Box<Bordered<c64>>),
 }
@@ -35,13 +38,17 @@ impl ComplexFactor {
         zeta: c64,
         border: &[BorderRow],
     ) -> Result<Self, Singular> {
-        if let (Matrix::Symmetric(k), Matrix::Symmetric(m), true) = (k, m, border.is_empty()) {
+        if let (Matrix::Symmetric(k), Matrix::Symmetric(m), ..=MOST_ROWS) = (k, m, border.len()) {
             let mut ldl = match earlier {
                 Some(Self::Ldl(ldl)) => ldl,
+                Some(Self::Condensed(condensed)) => condensed.into_ldl(),
                 _ => ComplexLdl::zeros(k),
             };
             ldl.factorize(k, m, zeta)?;
-            return Ok(Self::Ldl(ldl));
+            if border.is_empty() {
+                return Ok(Self::Ldl(ldl));
+            }
+            return Ok(Self::Condensed(Box::new(ComplexCondensed::new(ldl, k.size(), border)?)));
         }
         let earlier = match earlier {
             Some(Self::Sparse(earlier)) => Some(*earlier),
@@ -55,6 +62,7 @@ impl ComplexFactor {
     pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
         match self {
             Self::Ldl(ldl) => ldl.solve(re, im),
+            Self::Condensed(condensed) => condensed.solve(re, im),
             Self::Sparse(sparse) => {
                 let mut b: Vec<c64> = re.iter().zip(&*im).map(|(re, im)| c64::new(*re, *im)).collect();
                 sparse.solve(&mut b);

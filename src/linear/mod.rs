@@ -2,12 +2,13 @@
 //!
 //! Every unknown belongs to a node, and a node has four: x, y, x', y'. A beam's tangent is therefore a band of
 //! 4 × 4 blocks, as many to the right of the diagonal as a support has further nodes (1 for the cable element, 5 for
-//! six-node radial point interpolation). Three factorisations serve, chosen by the pattern and never by the caller:
+//! six-node radial point interpolation). Four factorisations serve, chosen by the pattern and never by the caller:
 //!
 //! | pattern | method | file |
 //! |---|---|---|
 //! | symmetric band | LDLᵀ by blocks, no pivoting; its signs are the inertia | [`symmetric`] |
 //! | band (follower loads), or a symmetric one with a vanishing pivot | LU with partial pivoting | [`band`] |
+//! | the first, definite and bordered by few constraint rows | LDLᵀ and a small Schur complement | [`condensed`] |
 //! | band bordered by constraint rows | sparse LU by faer | [`bordered`] |
 //!
 //! The complex matrices of collocation's stages are in [`complex`].
@@ -15,11 +16,13 @@
 pub mod band;
 pub mod bordered;
 pub mod complex;
+pub mod condensed;
 pub(crate) mod fma;
 pub mod symmetric;
 
 use band::{Band, BandLu};
 use bordered::{BorderRow, Bordered};
+use condensed::Condensed;
 use fma::fma;
 use symmetric::{Ldl, SymmetricBand};
 
@@ -180,6 +183,8 @@ pub enum Factor {
     Ldl(Ldl),
     /// LU of a band.
     Lu(BandLu),
+    /// LDLᵀ of a symmetric band bordered by few rows.
+    Condensed(Box<Condensed>),
     /// Sparse LU of a bordered band.
     Bordered(Box<Bordered>),
 }
@@ -203,6 +208,20 @@ impl Factor {
         }
     }
 
+    /// Factorises a symmetric positive definite `matrix`, bordered by constraint rows if there are any.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn definite(matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
+        match matrix {
+            Matrix::Symmetric(symmetric) if (1..=condensed::MOST_ROWS).contains(&border.len()) => {
+                let condensed = Condensed::new(Ldl::new(symmetric)?, symmetric.size(), border)?;
+                Ok(Self::Condensed(Box::new(condensed)))
+            }
+            _ => Self::new(matrix, border),
+        }
+    }
+
     /// The same as [`Self::new`], reusing what an earlier factorisation of the same pattern left.
     ///
     /// # Errors
@@ -223,7 +242,7 @@ impl Factor {
     }
 
     /// Factorises `matrix` + c `mass`, bordered by constraint rows if there are any, reusing an earlier factorisation of the same
-    /// pattern.
+    /// pattern. The sum is taken to be definite, as it is where c is large enough for the motion to be followed.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -233,15 +252,32 @@ impl Factor {
         (c, mass): (f64, &Matrix),
         border: &[BorderRow],
     ) -> Result<Self, Singular> {
-        let earlier = match (earlier, matrix, mass) {
-            (Some(Self::Ldl(mut ldl)), Matrix::Symmetric(k), Matrix::Symmetric(m)) if border.is_empty() => {
-                if ldl.refactorize(k, Some((c, m))).is_ok() {
-                    return Ok(Self::Ldl(ldl));
-                }
-                None
-            }
-            (earlier, ..) => earlier,
+        let (kept, earlier) = match earlier {
+            Some(Self::Ldl(ldl)) => (Some(ldl), None),
+            Some(Self::Condensed(condensed)) => (Some(condensed.into_ldl()), None),
+            other => (None, other),
         };
+        if let (Matrix::Symmetric(k), Matrix::Symmetric(m), ..=condensed::MOST_ROWS) =
+            (matrix, mass, border.len())
+        {
+            let ldl = match kept {
+                Some(mut ldl) => ldl.refactorize(k, Some((c, m))).map(|()| ldl),
+                None => {
+                    let mut sum = k.clone();
+                    sum.add(c, m);
+                    Ldl::new(&sum)
+                }
+            };
+            match ldl {
+                Ok(ldl) if border.is_empty() => return Ok(Self::Ldl(ldl)),
+                Ok(ldl) => {
+                    if let Ok(condensed) = Condensed::new(ldl, k.size(), border) {
+                        return Ok(Self::Condensed(Box::new(condensed)));
+                    }
+                }
+                Err(_) => {}
+            }
+        }
         let mut sum = matrix.clone();
         sum.add(c, mass);
         Self::again(earlier, &sum, border)
@@ -252,6 +288,7 @@ impl Factor {
         match self {
             Self::Ldl(ldl) => ldl.solve(b),
             Self::Lu(lu) => lu.solve(b),
+            Self::Condensed(condensed) => condensed.solve(b),
             Self::Bordered(bordered) => bordered.solve(b),
         }
     }
@@ -261,7 +298,7 @@ impl Factor {
     pub fn negative_eigenvalues(&self) -> Option<usize> {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots()),
-            Self::Lu(_) | Self::Bordered(_) => None,
+            Self::Lu(_) | Self::Condensed(_) | Self::Bordered(_) => None,
         }
     }
 

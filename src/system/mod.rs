@@ -466,6 +466,13 @@ impl System {
         }
     }
 
+    /// Writes −g(q), scaled.
+    pub fn constraint_values(&self, parameter: f64, q: &[f64], values: &mut [f64]) {
+        for (value, constraint) in values.iter_mut().zip(&self.constraints) {
+            *value = -constraint.scale(self.stiffness, self.length) * constraint.value(parameter, q);
+        }
+    }
+
     /// `f += Bᵀ μ` with the scaled multipliers μ.
     pub fn add_constraint_forces(&self, parameter: f64, multipliers: &[f64], f: &mut [f64]) {
         for (mu, constraint) in multipliers.iter().zip(&self.constraints) {

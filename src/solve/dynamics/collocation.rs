@@ -391,6 +391,7 @@ impl Method for Collocation<'_> {
         }
         to.time = from.time + h;
         self.motion.carry(to);
+        self.motion.project(to)?;
         let Some(_) = accuracy else { return Ok(0.0) };
         let exponent = (self.tableau.order + 1.0) / (s as f64 + 2.0);
         let (defect, _) = self.defect(0.0, from);

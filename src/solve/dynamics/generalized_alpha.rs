@@ -383,6 +383,7 @@ impl Method for GeneralizedAlpha<'_> {
         self.trial.multipliers.copy_from_slice(&self.x[n..]);
         to.time = end;
         self.motion.carry(to);
+        self.motion.project(to)?;
         Ok(if accuracy.is_some() { self.error(h, c) } else { 0.0 })
     }
 

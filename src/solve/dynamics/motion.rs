@@ -74,7 +74,7 @@ fn free_mass(
     let mut eliminated = free.clone();
     system.supports().eliminate(time, &mut eliminated);
     system.supports().clear_held(time, &mut free);
-    Ok((free, Factor::new(&eliminated, border)?))
+    Ok((free, Factor::definite(&eliminated, border)?))
 }
 
 impl<'a> Motion<'a> {
@@ -363,6 +363,31 @@ impl<'a> Motion<'a> {
             self.system.supports().carry(state.time, [&mut state.q, &mut state.v, &mut acceleration]);
         }
         acceleration
+    }
+
+    /// Moves a state onto the constraints, which holds to round-off only in the step's equations: what they leave in position and velocity adds up over
+    /// many steps. The change is the smallest in the norm of the kinetic energy.
+    ///
+    /// # Errors
+    /// [`Singular`] where a coordinate has no mass.
+    pub fn project(&mut self, state: &mut State) -> Result<(), Singular> {
+        let n = self.coordinates();
+        if self.system.multipliers() == 0 {
+            return Ok(());
+        }
+        self.turn_mass(state.time)?;
+        let supports = self.system.supports();
+        let mut change = vec![0.0; self.unknowns()];
+        self.system.constraint_values(state.time, &state.q, &mut change[n..]);
+        self.mass_factor.solve(&mut change);
+        supports.to_fixed_axes(state.time, &mut change[..n]);
+        state.q.iter_mut().zip(&change).for_each(|(q, d)| *q += d);
+        change[..n].fill(0.0);
+        self.system.constraint_rates(state.time, &state.v, &mut change[n..]);
+        self.mass_factor.solve(&mut change);
+        supports.to_fixed_axes(state.time, &mut change[..n]);
+        state.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);
+        Ok(())
     }
 
     /// Forces of the supports on the held coordinates, zero for all others: M q̈ + f in the state `state`, in fixed axes.
