@@ -35,6 +35,17 @@ pub struct Model {
     pub initial_velocities: Vec<InitialVelocity>,
     /// Where to watch.
     pub probes: Vec<Probe>,
+    /// What else to compute at every record.
+    pub outputs: Outputs,
+}
+
+/// What is computed at every record beside probes and energies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// Forces of supports and joints.
+    pub reactions: bool,
+    /// Energy and resultant force of every effect.
+    pub effects: bool,
 }
 
 /// A slender planar beam: a centreline with a section and a way to discretise it.

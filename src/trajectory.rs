@@ -2,6 +2,7 @@
 //! energies and shapes. Output and verification read nothing else.
 
 use crate::restart::SavedState;
+use crate::system::Reaction;
 use serde::Serialize;
 
 /// The result of one run.
@@ -24,6 +25,10 @@ pub struct Trajectory {
     pub probes: Vec<ProbeSeries>,
     /// One entry per entry of `parameter`.
     pub energy: Vec<Energy>,
+    /// Forces of supports and joints, where they were asked for.
+    pub reactions: Vec<ReactionSeries>,
+    /// Energies and forces of effects, where they were asked for.
+    pub effects: Vec<EffectSeries>,
     /// Centrelines, one frame per entry of `parameter` (thinned where there are very many).
     pub frames: Vec<Frame>,
     /// The stress-free shape of each beam.
@@ -96,6 +101,26 @@ pub struct ProbeSample {
     pub vy: Option<f64>,
 }
 
+/// Forces of a support or joint on its beam; of a joint on its second point.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ReactionSeries {
+    /// `support1`, `support2`, … and `joint1`, … in the order of the scene.
+    pub name: String,
+    /// One sample per record.
+    pub samples: Vec<Reaction>,
+}
+
+/// Energy of an effect and the resultant of its forces on the beam.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct EffectSeries {
+    /// Kind and beam, such as `contact.arm`.
+    pub name: String,
+    /// Whether it has an energy.
+    pub has_energy: bool,
+    /// Per record energy \[J\] and force along x and y \[N\].
+    pub samples: Vec<[f64; 3]>,
+}
+
 /// Energies \[J\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Energy {
@@ -161,6 +186,10 @@ pub struct Shape {
     pub strain: Vec<f64>,
     /// κ \[1/m\].
     pub curvature: Vec<f64>,
+    /// N \[N\].
+    pub axial_force: Vec<f64>,
+    /// M \[N m\].
+    pub bending_moment: Vec<f64>,
     /// Positions of the nodes \[m\].
     pub nodes: Vec<[f64; 2]>,
 }

@@ -48,6 +48,11 @@ impl Part for Actuation {
         }
         Ok(())
     }
+
+    fn actuation(&self, beam: usize) -> Option<(f64, f64, Option<&Law>)> {
+        let own = (self.strain.unwrap_or(0.0), self.curvature.unwrap_or(0.0), self.law.as_ref());
+        (beam == self.beam).then_some(own)
+    }
 }
 
 /// W = −N₀ ε with N₀ = EA ε₀ \[N\].

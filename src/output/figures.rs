@@ -238,6 +238,8 @@ fn energy(t: &Trajectory) -> Option<Sketch> {
         ("kinetic", part(|e| e.kinetic), PALETTE[1]),
         ("potential", part(|e| e.potential), PALETTE[3]),
         ("work of loads", part(|e| e.work), PALETTE[4]),
+        ("springs and contacts", part(|e| e.stored), PALETTE[5]),
+        ("lost", part(|e| e.lost), PALETTE[7]),
     ];
     let size = |points: &[[f64; 2]]| points.iter().fold(0.0_f64, |m, p| m.max(p[1].abs()));
     let largest = parts.iter().fold(0.0_f64, |m, (_, points, _)| m.max(size(points)));

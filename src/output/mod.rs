@@ -46,7 +46,9 @@ pub struct OutputOptions {
 
 /// Names that a run may leave; those that this run does not write are removed when it replaces an older one, so that a
 /// directory never mixes two runs.
-const NAMES: [&str; 23] = [
+const NAMES: [&str; 25] = [
+    "reactions.csv",
+    "effects.csv",
     "summary.json",
     "state.json",
     "probes.csv",
@@ -92,6 +94,12 @@ pub fn write(
     if !t.parameter.is_empty() {
         stage.add("probes.csv", |out| tables::probes(t, out))?;
         stage.add("energy.csv", |out| tables::energy(t, out))?;
+    }
+    if !t.reactions.is_empty() {
+        stage.add("reactions.csv", |out| tables::reactions(t, out))?;
+    }
+    if !t.effects.is_empty() {
+        stage.add("effects.csv", |out| tables::effects(t, out))?;
     }
     stage.add("shape.csv", |out| tables::shape(t, out))?;
     if let Some(saved) = &t.saved {
@@ -155,7 +163,8 @@ fn check(t: &Trajectory) -> Result<(), OutputError> {
         fits(&|| format!("samples of probe `{}`", probe.name), records, probe.samples.len())?;
     }
     for shape in t.undeformed.iter().chain(&t.last).chain(t.modes.iter().flatten()) {
-        for values in [&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature] {
+        let values = [&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
+        for values in values.into_iter().chain([&shape.axial_force, &shape.bending_moment]) {
             fits(&|| format!("values along beam `{}`", shape.beam), shape.s.len(), values.len())?;
         }
     }

@@ -48,13 +48,19 @@ pub struct EnergySummary {
     pub stretch: f64,
     /// ½∫ EI κ² ds.
     pub bend: f64,
+    /// Of springs, foundations and contacts; left out where there are none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub stored: f64,
     /// ½∫ ρA ṙ·ṙ ds.
     pub kinetic: f64,
     /// Of gravity and conservative loads.
     pub potential: f64,
     /// Done by loads without a potential since the start.
     pub work: f64,
-    /// Sum of the energies, less the work.
+    /// Taken by damping since the start; left out where there is none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub lost: f64,
+    /// Sum of the energies, less the work, with what was lost.
     pub total: f64,
     /// max |total − initial total| / max kinetic over all records; `null` where nothing moves.
     pub drift: Option<f64>,
@@ -76,9 +82,11 @@ impl Summary {
             energy: trajectory.energy.last().map(|last| EnergySummary {
                 stretch: last.stretch,
                 bend: last.bend,
+                stored: last.stored,
                 kinetic: last.kinetic,
                 potential: last.potential,
                 work: last.work,
+                lost: last.lost,
                 total: last.total(),
                 drift: drift(&trajectory.energy),
             }),
@@ -99,6 +107,11 @@ impl Summary {
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(self).map(|text| text + "\n")
     }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// max |total − initial total| / max kinetic.

@@ -72,20 +72,62 @@ pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     table.finish()
 }
 
-/// `energy.csv`: the parameter, `stretch, bend, kinetic, potential, work, total` \[J\].
+/// `energy.csv`: the parameter, `stretch, bend, kinetic, potential, work, total` \[J\], and where they are not zero throughout `stored` and `lost`.
 pub(super) fn energy(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let header = [parameter_name(t.analysis), "stretch", "bend", "kinetic", "potential", "work", "total"];
+    let mut header =
+        vec![parameter_name(t.analysis), "stretch", "bend", "kinetic", "potential", "work", "total"];
+    let stored = t.energy.iter().any(|e| e.stored != 0.0);
+    let lost = t.energy.iter().any(|e| e.lost != 0.0);
+    header.extend(
+        [(stored, "stored"), (lost, "lost")].into_iter().filter_map(|(there, name)| there.then_some(name)),
+    );
     let mut table = Table::new(out, &words(&header))?;
     for (&parameter, e) in t.parameter.iter().zip(&t.energy) {
-        table.row(&[], [parameter, e.stretch, e.bend, e.kinetic, e.potential, e.work, e.total()])?;
+        let values = [parameter, e.stretch, e.bend, e.kinetic, e.potential, e.work, e.total()];
+        let more =
+            [(stored, e.stored), (lost, e.lost)].into_iter().filter_map(|(there, e)| there.then_some(e));
+        table.row(&[], values.into_iter().chain(more))?;
     }
     table.finish()
 }
 
-fn shape_rows(table: &mut Table<'_>, lead: &[&str], shape: &Shape) -> io::Result<()> {
+/// `reactions.csv`: the parameter, then per support and joint `fx, fy` \[N\] and `moment` \[N m\] on the beam.
+pub(super) fn reactions(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
+    let mut header = words(&[parameter_name(t.analysis)]);
+    let quantities = ["fx", "fy", "moment"];
+    header.extend(t.reactions.iter().flat_map(|r| quantities.map(|q| format!("{}.{q}", r.name))));
+    let mut table = Table::new(out, &header)?;
+    for (i, &parameter) in t.parameter.iter().enumerate() {
+        let samples = t.reactions.iter().filter_map(|r| r.samples.get(i));
+        table.row(&[], std::iter::once(parameter).chain(samples.flat_map(|r| [r.fx, r.fy, r.moment])))?;
+    }
+    table.finish()
+}
+
+/// `effects.csv`: the parameter, then per effect `energy` \[J\] where it has one, and the resultant `fx, fy` \[N\] of its forces on the beam.
+pub(super) fn effects(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
+    let mut header = words(&[parameter_name(t.analysis)]);
+    for effect in &t.effects {
+        let quantities = ["energy", "fx", "fy"].into_iter().skip(usize::from(!effect.has_energy));
+        header.extend(quantities.map(|q| format!("{}.{q}", effect.name)));
+    }
+    let mut table = Table::new(out, &header)?;
+    for (i, &parameter) in t.parameter.iter().enumerate() {
+        let values = t.effects.iter().filter_map(|effect| {
+            Some(effect.samples.get(i)?.iter().copied().skip(usize::from(!effect.has_energy)))
+        });
+        table.row(&[], std::iter::once(parameter).chain(values.flatten()))?;
+    }
+    table.finish()
+}
+
+fn shape_rows(table: &mut Table<'_>, lead: &[&str], shape: &Shape, forces: bool) -> io::Result<()> {
     let mut words = lead.to_vec();
     words.push(&shape.beam);
-    let columns = [&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
+    let mut columns = vec![&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
+    if forces {
+        columns.extend([&shape.axial_force, &shape.bending_moment]);
+    }
     for (i, &s) in shape.s.iter().enumerate() {
         let values = columns.iter().map(|c| c.get(i).copied().unwrap_or(f64::NAN));
         table.row(&words, std::iter::once(s).chain(values))?;
@@ -93,11 +135,12 @@ fn shape_rows(table: &mut Table<'_>, lead: &[&str], shape: &Shape) -> io::Result
     Ok(())
 }
 
-/// `shape.csv`: the last state, `beam, s, x, y, angle, strain, curvature`.
+/// `shape.csv`: the last state, `beam, s, x, y, angle, strain, curvature, axial_force, bending_moment`.
 pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let mut table = Table::new(out, &words(&["beam", "s", "x", "y", "angle", "strain", "curvature"]))?;
+    let header = ["beam", "s", "x", "y", "angle", "strain", "curvature", "axial_force", "bending_moment"];
+    let mut table = Table::new(out, &words(&header))?;
     for shape in &t.last {
-        shape_rows(&mut table, &[], shape)?;
+        shape_rows(&mut table, &[], shape, true)?;
     }
     table.finish()
 }
@@ -108,7 +151,7 @@ pub(super) fn modes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
         Table::new(out, &words(&["mode", "beam", "s", "x", "y", "angle", "strain", "curvature"]))?;
     for (i, mode) in t.modes.iter().enumerate() {
         for shape in mode {
-            shape_rows(&mut table, &[&(i + 1).to_string()], shape)?;
+            shape_rows(&mut table, &[&(i + 1).to_string()], shape, false)?;
         }
     }
     table.finish()

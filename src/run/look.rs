@@ -1,13 +1,16 @@
 //! Looking at the states of a system: probes, shapes, frames, and the trajectories made of them.
 
 use super::RunError;
-use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
+use crate::model::{ArcLength, Beam, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
 use crate::solve::dynamics;
 use crate::solve::path::Stuck;
 use crate::solve::statics::Solution;
-use crate::system::{System, SystemError, View};
-use crate::trajectory::{AnalysisKind, Energy, Event, Frame, ProbeSample, ProbeSeries, Shape, Trajectory};
+use crate::system::{Fields, Reaction, System, SystemError, View};
+use crate::trajectory::{
+    AnalysisKind, EffectSeries, Energy, Event, Frame, ProbeSample, ProbeSeries, ReactionSeries, Shape,
+    Trajectory,
+};
 use std::f64::consts::TAU;
 
 /// Points at which shapes are sampled.
@@ -98,8 +101,8 @@ impl<'a> Look<'a> {
             complete: true,
             degrees_of_freedom: self.system.degrees_of_freedom(),
             settings: self.settings(),
-            undeformed: self.shape(reference),
-            last: self.shape(reference),
+            undeformed: self.shape(0.0, reference),
+            last: self.shape(0.0, reference),
             probes: self
                 .probes
                 .iter()
@@ -136,10 +139,17 @@ impl<'a> Look<'a> {
         settings
     }
 
-    pub(super) fn shape(&self, q: &[f64]) -> Vec<Shape> {
+    /// The coordinates of coordinates and multipliers.
+    pub(super) fn coordinates_of<'x>(&self, x: &'x [f64]) -> &'x [f64] {
+        &x[..self.system.coordinates()]
+    }
+
+    /// All beams in the state `q` at load factor or time `parameter`.
+    pub(super) fn shape(&self, parameter: f64, q: &[f64]) -> Vec<Shape> {
         let beams = self.model.beams.iter().zip(self.system.beams()).zip(&self.shapes);
         beams
-            .map(|((beam, part), view)| {
+            .enumerate()
+            .map(|(index, ((beam, part), view))| {
                 let mut shape = Shape { beam: beam.name.clone(), s: view.s().to_vec(), ..Shape::default() };
                 let mut angle = None;
                 for fields in view.all(q) {
@@ -161,9 +171,73 @@ impl<'a> Look<'a> {
                         *strain -= reference.strain(beam.strain);
                     }
                 }
+                self.section_forces(parameter, index, view.all(q), &mut shape);
                 shape
             })
             .collect()
+    }
+
+    /// N = ∂U/∂|r'| per length, EA ε for engineering strain and EA ε |r'| for Green's, and M = EI κ, each less what an actuation takes.
+    fn section_forces(
+        &self,
+        parameter: f64,
+        beam: usize,
+        fields: impl Iterator<Item = Fields>,
+        shape: &mut Shape,
+    ) {
+        let Beam { section, strain, .. } = &self.model.beams[beam];
+        let own = self.model.parts.iter().filter_map(|part| part.actuation(beam));
+        let (own_strain, own_curvature) = own.fold((0.0, 0.0), |(e, k), (strain, curvature, law)| {
+            let part = law.map_or_else(|| self.system.amplitude(parameter), |law| law.at(parameter)[0]);
+            (e + part * strain, k + part * curvature)
+        });
+        let (ea, ei) = (section.axial_stiffness.unwrap_or(0.0), section.bending_stiffness.unwrap_or(0.0));
+        let reference: Vec<f64> = if self.system.beams()[beam].straight {
+            vec![0.0; shape.s.len()]
+        } else {
+            self.shapes[beam].all(self.system.reference()).map(|fields| fields.curvature()).collect()
+        };
+        for (i, fields) in fields.enumerate() {
+            let stretch = match strain {
+                StrainMeasure::Green => fields.gradient[0].hypot(fields.gradient[1]),
+                StrainMeasure::Engineering => 1.0,
+            };
+            shape.axial_force.push(ea * (shape.strain[i] - own_strain) * stretch);
+            shape.bending_moment.push(ei * (shape.curvature[i] - reference[i] - own_curvature));
+        }
+    }
+
+    /// Adds one record of forces of supports and joints.
+    fn record_reactions(&self, trajectory: &mut Trajectory, reactions: &[Reaction]) {
+        if trajectory.reactions.is_empty() {
+            let supports = (1..=self.model.supports.len()).map(|i| format!("support{i}"));
+            let joints = (1..=self.model.joints.len()).map(|i| format!("joint{i}"));
+            trajectory.reactions =
+                supports.chain(joints).map(|name| ReactionSeries { name, samples: Vec::new() }).collect();
+        }
+        trajectory.reactions.iter_mut().zip(reactions).for_each(|(series, r)| series.samples.push(*r));
+    }
+
+    /// Adds one record of energies and forces of effects.
+    fn record_effects(
+        &self,
+        trajectory: &mut Trajectory,
+        parameter: f64,
+        q: &[f64],
+        velocity: Option<&[f64]>,
+    ) {
+        let effects = self.system.effects(parameter, q, velocity);
+        if trajectory.effects.is_empty() {
+            let series = |(name, energy, _): &(String, Option<f64>, [f64; 2])| EffectSeries {
+                name: name.clone(),
+                has_energy: energy.is_some(),
+                samples: Vec::new(),
+            };
+            trajectory.effects = effects.iter().map(series).collect();
+        }
+        for (series, (_, energy, [fx, fy])) in trajectory.effects.iter_mut().zip(effects) {
+            series.samples.push([energy.unwrap_or(0.0), fx, fy]);
+        }
     }
 
     pub(super) fn frame(&self, parameter: f64, q: &[f64]) -> Frame {
@@ -181,6 +255,9 @@ impl<'a> Look<'a> {
     ) {
         trajectory.parameter.push(parameter);
         trajectory.energy.push(energy);
+        if self.model.outputs.effects {
+            self.record_effects(trajectory, parameter, q, velocity);
+        }
         for (Watched { view, measure, reference_strain, .. }, series) in
             self.probes.iter().zip(&mut trajectory.probes)
         {
@@ -201,14 +278,18 @@ impl<'a> Look<'a> {
     pub(super) fn statics(&self, solution: &Solution) -> Trajectory {
         let mut trajectory = self.empty(AnalysisKind::Static);
         let every = solution.states.len().div_ceil(FRAMES).max(1);
-        for (i, (load, q)) in solution.states.iter().enumerate() {
+        for (i, (load, x)) in solution.states.iter().enumerate() {
+            let q = self.coordinates_of(x);
+            if self.model.outputs.reactions {
+                self.record_reactions(&mut trajectory, &self.system.static_reactions(*load, x));
+            }
             self.record(&mut trajectory, *load, q, None, self.system.energy(*load, q, None));
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(*load, q));
             }
         }
-        if let Some((_, q)) = solution.states.last() {
-            trajectory.last = self.shape(q);
+        if let Some((load, x)) = solution.states.last() {
+            trajectory.last = self.shape(*load, self.coordinates_of(x));
         }
         trajectory.history = solution.history.clone();
         trajectory.statistics = solution.statistics;
@@ -252,7 +333,13 @@ impl<'a> Look<'a> {
         let mut trajectory = self.empty(AnalysisKind::Dynamic);
         trajectory.settings.push(("integrator".into(), settings.integrator.to_string()));
         let every = solution.states.len().div_ceil(FRAMES).max(1);
+        let mut motion =
+            if self.model.outputs.reactions { dynamics::motion::Motion::new(self.system).ok() } else { None };
         for (i, state) in solution.states.iter().enumerate() {
+            if let Some(motion) = &mut motion {
+                let reactions = motion.reactions(state).unwrap_or_default();
+                self.record_reactions(&mut trajectory, &reactions);
+            }
             let (q, v) = (&state.q[..], Some(&state.v[..]));
             let energy = self.system.energy(state.time, q, v);
             let energy = Energy { work: state.work, lost: state.lost, ..energy };
@@ -262,7 +349,7 @@ impl<'a> Look<'a> {
             }
         }
         if let Some(state) = solution.states.last() {
-            trajectory.last = self.shape(&state.q);
+            trajectory.last = self.shape(state.time, &state.q);
         }
         for (watch, state) in &solution.events {
             let ProbeTarget { probe, axis, value } = settings.events[*watch].target.clone();

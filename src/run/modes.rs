@@ -43,7 +43,9 @@ impl Look<'_> {
             solution.states.drain(..solution.states.len().saturating_sub(1));
             let trajectory = Trajectory { analysis: AnalysisKind::Modal, ..self.statics(&solution) };
             let vibrations = match solution.states.last() {
-                Some((load, q)) if *load == 1.0 => self.modal(trajectory, *load, q, count),
+                Some((load, x)) if *load == 1.0 => {
+                    self.modal(trajectory, *load, self.coordinates_of(x), count)
+                }
                 // Stopped on the way.
                 _ => Ok(trajectory),
             };
@@ -84,6 +86,6 @@ impl Look<'_> {
         let largest = mode.chunks_exact(4).fold(0.0_f64, |m, d| m.max(d[0].hypot(d[1])));
         let factor = if largest > 0.0 { DRAWN * self.system.length() / largest } else { 0.0 };
         let q: Vec<f64> = q.iter().zip(mode).map(|(q, m)| factor.mul_add(*m, *q)).collect();
-        self.shape(&q)
+        self.shape(0.0, &q)
     }
 }

@@ -429,4 +429,8 @@ pub struct OutputTable {
     pub states: bool,
     /// A VTU series for ParaView.
     pub vtu: bool,
+    /// `reactions.csv`: forces of supports and joints at every record.
+    pub reactions: bool,
+    /// `effects.csv`: energy and resultant force of every effect at every record.
+    pub effects: bool,
 }

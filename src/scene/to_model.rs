@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::centreline::Curve;
 use crate::model::{
     About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, InitialVelocity, Law, Load, Model,
-    Place, Probe, Section, StrainMeasure, Support,
+    Outputs, Place, Probe, Section, StrainMeasure, Support,
 };
 
 use super::diagnose::choices;
@@ -32,7 +32,8 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
         ));
     }
 
-    let mut model = Model { title: file.title.clone(), ..Model::default() };
+    let outputs = Outputs { reactions: file.output.reactions, effects: file.output.effects };
+    let mut model = Model { title: file.title.clone(), outputs, ..Model::default() };
     let mut built = Vec::with_capacity(tables.len());
     let mut size = Size::default();
     for (name, table) in tables {

@@ -15,7 +15,7 @@ const LAST_INCREMENT: f64 = 1e-6;
 /// What a static analysis found.
 #[derive(Clone, Debug, Default)]
 pub struct Solution {
-    /// (load factor, coordinates) of the recorded equilibria, the stress-free state first.
+    /// (load factor, coordinates and scaled multipliers) of the recorded equilibria, the stress-free state first.
     pub states: Vec<(f64, Vec<f64>)>,
     /// Attempted steps.
     pub history: Vec<StepRecord>,
@@ -85,9 +85,8 @@ fn along_load(
     solution: &mut Solution,
     observe: Observer<'_>,
 ) -> Result<(), Stuck> {
-    let n = equilibrium.system().coordinates();
     let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0)?;
-    solution.states.push((0.0, path.last().x[..n].to_vec()));
+    solution.states.push((0.0, path.last().x.clone()));
     let parts = settings.steps.unwrap_or(1).max(1);
     let mut part = 1;
     let outcome = loop {
@@ -100,7 +99,7 @@ fn along_load(
         notice(&mut path, &mut solution.events);
         let at_end = point.load >= end;
         if settings.steps.is_none() || at_end {
-            solution.states.push((point.load, point.x[..n].to_vec()));
+            solution.states.push((point.load, point.x.clone()));
         }
         part += usize::from(at_end);
         let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
@@ -111,7 +110,7 @@ fn along_load(
     // Where the path ends early, its end is worth a record too.
     let last = path.last();
     if solution.states.last().is_none_or(|(load, _)| *load != last.load) {
-        solution.states.push((last.load, last.x[..n].to_vec()));
+        solution.states.push((last.load, last.x.clone()));
     }
     solution.history = std::mem::take(&mut path.history);
     outcome
@@ -146,7 +145,7 @@ fn along_arc(
     let n = equilibrium.system().coordinates();
     let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
     let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05))?;
-    solution.states.push((0.0, path.last().x[..n].to_vec()));
+    solution.states.push((0.0, path.last().x.clone()));
     let mut outcome = Ok(());
     for _ in 0..target.arc.max_points {
         path.limit_step(largest);
@@ -181,7 +180,7 @@ fn along_arc(
                     None
                 };
                 let point = end.unwrap_or(point);
-                solution.states.push((point.load, point.x[..n].to_vec()));
+                solution.states.push((point.load, point.x.clone()));
                 let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
                 if load_reached || probe_reached || !go_on {
                     break;

@@ -20,6 +20,11 @@ pub trait Part: fmt::Debug + Send + Sync {
     /// [`SystemError`] where the part does not fit the model.
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError>;
 
+    /// Strain and curvature \[1/m\] that beam `beam` would take by itself, and their law of time.
+    fn actuation(&self, _beam: usize) -> Option<(f64, f64, Option<&Law>)> {
+        None
+    }
+
     /// A mass \[kg\] on which gravity acts.
     fn mass(&self) -> Option<(Place, f64)> {
         None

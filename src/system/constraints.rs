@@ -158,6 +158,21 @@ impl Constraint {
         }
     }
 
+    /// The normal of the last field, and of a row of gradients the field r' itself.
+    pub fn last_field(&self, load: f64, q: &[f64]) -> ([f64; 2], Option<[f64; 2]>) {
+        let (n, _, _, _) = self.normal(load);
+        let k = self.fields.len().saturating_sub(1);
+        let normal = self.normal_of(k, n);
+        if matches!(self.row, Row::Position { .. } | Row::Joint { order: 0, .. }) {
+            return (normal, None);
+        }
+        let along = |axis: usize| {
+            let field = &self.fields[k];
+            field.shape.iter().zip(q[field.first + axis..].iter().step_by(2)).map(|(n, q)| n * q).sum::<f64>()
+        };
+        (normal, Some([along(0), along(1)]))
+    }
+
     /// (coordinate, ∂g/∂q).
     pub fn gradient(&self, load: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (n, _, _, _) = self.normal(load);

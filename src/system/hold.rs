@@ -2,6 +2,7 @@
 
 use super::constraints::{Constraint, Row};
 use super::course::Course;
+use super::reaction::Source;
 use super::supports::{Held, Hold, Supports};
 use super::{Needs, System, SystemError, View};
 use crate::model::{Displacement, FixedRotation, Support};
@@ -11,9 +12,9 @@ pub(super) fn hold(
     system: &System,
     supports: &[Support],
     needs: Needs,
-) -> Result<(Supports, Vec<Constraint>), SystemError> {
+) -> Result<(Supports, Vec<Constraint>, Vec<Source>), SystemError> {
     let mut held: Vec<Held> = Vec::new();
-    let mut constraints = Vec::new();
+    let (mut constraints, mut sources) = (Vec::new(), Vec::new());
     for support in supports {
         let (part, s) = system.part("a support", support.at)?;
         let moves = support.displacement != Displacement::default();
@@ -36,6 +37,7 @@ pub(super) fn hold(
         let components: [Option<Course>; 2] =
             std::array::from_fn(|axis| fixed[axis].then(|| course(position[axis], motion[axis])));
         if let Some(node) = part.basis.node_at(s) {
+            sources.push(Source::node(part.first_node + node, support));
             let pair = 2 * (part.first_node + node);
             let mut add = |pair: usize, hold: Hold| match held.iter_mut().find(|h| h.pair == pair) {
                 None => {
@@ -78,11 +80,13 @@ pub(super) fn hold(
                     (1, Row::Gradient { axis, reference: gradient, rotation: rotation.clone() })
                 })),
             }
+            let first = constraints.len();
             for (order, row) in rows {
                 let table = part.basis.points(&[s], &[order]).map_err(in_basis)?;
                 constraints.push(Constraint::new(&table, part.offset(), row));
             }
+            sources.push(Source::Rows(first..constraints.len()));
         }
     }
-    Ok((Supports::new(held), constraints))
+    Ok((Supports::new(held), constraints, sources))
 }

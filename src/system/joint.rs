@@ -21,20 +21,18 @@ use crate::model::{Joint, Place};
 /// Distance of two points that are one \[beam lengths\].
 const APART: f64 = 1e-9;
 
-/// The rows of a model's joints.
-pub(super) fn rows(system: &System, joints: &[Joint]) -> Result<Vec<Constraint>, SystemError> {
+/// The rows of a joint.
+pub(super) fn rows(system: &System, joint: Joint) -> Result<Vec<Constraint>, SystemError> {
     let mut rows = Vec::new();
-    for joint in joints {
-        match *joint {
-            Joint::Hinge { first, second } => rows.extend(coincide(system, first, second)?),
-            Joint::Weld { first, second } => {
-                rows.extend(coincide(system, first, second)?);
-                rows.extend(keep_angle(system, first, second)?);
-            }
-            Joint::Slider { at, along: [x, y] } => {
-                let length = x.hypot(y);
-                rows.push(row(system, 0, &[(at, [-y / length, x / length])])?);
-            }
+    match joint {
+        Joint::Hinge { first, second } => rows.extend(coincide(system, first, second)?),
+        Joint::Weld { first, second } => {
+            rows.extend(coincide(system, first, second)?);
+            rows.extend(keep_angle(system, first, second)?);
+        }
+        Joint::Slider { at, along: [x, y] } => {
+            let length = x.hypot(y);
+            rows.push(row(system, 0, &[(at, [-y / length, x / length])])?);
         }
     }
     Ok(rows)

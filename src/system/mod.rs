@@ -19,12 +19,14 @@ mod error;
 mod hold;
 mod inventory;
 pub mod joint;
+mod reaction;
 pub mod supports;
 mod view;
 
 pub use error::SystemError;
 pub use inventory::{EffectEntry, Inventory};
-pub use view::View;
+pub use reaction::Reaction;
+pub use view::{Fields, View};
 
 use crate::basis::Basis;
 use crate::centreline::Curve;
@@ -35,6 +37,7 @@ use crate::model::{Centreline, Discretization, Model, Place};
 use crate::trajectory::Energy;
 use constraints::Constraint;
 use course::Amplitude;
+use reaction::Source;
 use supports::Supports;
 
 /// What an analysis asks of the system; nothing else is built.
@@ -105,6 +108,8 @@ pub struct System {
     damping: Vec<Box<dyn Damping>>,
     supports: Supports,
     constraints: Vec<Constraint>,
+    /// Where supports and joints act.
+    sources: Vec<Source>,
     reference: Vec<f64>,
     length: f64,
     stiffness: f64,
@@ -164,6 +169,7 @@ impl System {
             damping: Vec::new(),
             supports: Supports::default(),
             constraints: Vec::new(),
+            sources: Vec::new(),
             reference,
             length,
             stiffness,
@@ -178,9 +184,13 @@ impl System {
         for load in system.loads.iter().filter(|load| load.is_summed()) {
             load.effect.add_force(1.0, &system.reference, &mut system.constant_load);
         }
-        (system.supports, system.constraints) = hold::hold(&system, &model.supports, needs)?;
-        let joints = joint::rows(&system, &model.joints)?;
-        system.constraints.extend(joints);
+        (system.supports, system.constraints, system.sources) = hold::hold(&system, &model.supports, needs)?;
+        for joint in &model.joints {
+            let first = system.constraints.len();
+            let rows = joint::rows(&system, *joint)?;
+            system.constraints.extend(rows);
+            system.sources.push(Source::Rows(first..system.constraints.len()));
+        }
         Ok(system)
     }
 
@@ -325,6 +335,11 @@ impl System {
 
     fn amplitude_of<'a>(&'a self, load: &'a Acting) -> &'a Amplitude {
         load.amplitude.as_ref().unwrap_or(&self.amplitude)
+    }
+
+    /// By what factor loads without a law of their own act.
+    pub fn amplitude(&self, parameter: f64) -> f64 {
+        self.amplitude.at(parameter)
     }
 
     /// Whether a load does work that no potential counts.

@@ -20,6 +20,8 @@ fn line(beam: &str, slope: f64) -> Shape {
         angle: vec![slope.atan(); 201],
         strain: s.iter().map(|s| 1e-7 * s.sin()).collect(),
         curvature: s.iter().map(third).collect(),
+        axial_force: s.iter().map(|s| 3e4 * s).collect(),
+        bending_moment: s.iter().map(|s| -0.7 * s).collect(),
         nodes: vec![[0.0, 0.0], [1.8, 1.8 * slope]],
         s,
     }

@@ -20,7 +20,7 @@ const fn alpha(step: StepControl, spectral_radius: f64) -> Integrator {
 const ALPHA: Integrator = alpha(StepControl::Fixed(0.0), 0.8);
 const GAUSS: Integrator = Integrator::Gauss { stages: 3, step: StepControl::Fixed(0.0) };
 
-fn with_step(integrator: Integrator, step: StepControl) -> Integrator {
+pub fn with_step(integrator: Integrator, step: StepControl) -> Integrator {
     match integrator {
         Integrator::GeneralizedAlpha { spectral_radius, .. } => alpha(step, spectral_radius),
         Integrator::Gauss { stages, .. } => Integrator::Gauss { stages, step },

@@ -8,6 +8,7 @@ mod generators;
 mod invariance;
 mod linear;
 mod modal;
+mod parts;
 mod scene;
 mod supports;
 

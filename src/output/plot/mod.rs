@@ -26,7 +26,7 @@ pub struct Colour(pub u8, pub u8, pub u8);
 
 /// Colours that stay distinct to colour-blind readers and in grey print (M. Okabe, K. Ito, *Color Universal Design*,
 /// 2008), strongest first.
-pub const PALETTE: [Colour; 7] = [
+pub const PALETTE: [Colour; 8] = [
     Colour(0, 114, 178),
     Colour(213, 94, 0),
     Colour(0, 158, 115),
@@ -34,6 +34,7 @@ pub const PALETTE: [Colour; 7] = [
     Colour(230, 159, 0),
     Colour(86, 180, 233),
     Colour(60, 60, 60),
+    Colour(150, 110, 60),
 ];
 
 /// For what stands back: references, undeformed shapes.

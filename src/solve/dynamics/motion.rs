@@ -22,7 +22,7 @@ use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::{Factor, Matrix, Singular};
 use crate::solve::equilibrium::{self, balance};
-use crate::system::System;
+use crate::system::{Reaction, System};
 use crate::trajectory::Statistics;
 use faer::c64;
 
@@ -390,11 +390,17 @@ impl<'a> Motion<'a> {
         Ok(())
     }
 
-    /// Forces of the supports on the held coordinates, zero for all others: M q̈ + f in the state `state`, in fixed axes.
+    /// Forces of supports and joints on the beams in the state `state`.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
-    pub fn reactions(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
+    pub fn reactions(&mut self, state: &State) -> Result<Vec<Reaction>, Singular> {
+        let held = self.held_forces(state)?;
+        Ok(self.system.reactions(state.time, &state.q, &held, &self.multipliers))
+    }
+
+    /// Forces of the supports on the held coordinates, zero for all others: M q̈ + f in the state `state`, in fixed axes.
+    fn held_forces(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
         let n = self.coordinates();
         let unknowns = self.unknowns_of(state).into_owned();
         let mut acceleration = vec![0.0; n];
@@ -418,7 +424,7 @@ impl<'a> Motion<'a> {
         if !self.moves {
             return Ok(0.0);
         }
-        let reactions = self.reactions(state)?;
+        let reactions = self.held_forces(state)?;
         let mut velocity = vec![0.0; state.q.len()];
         self.system.supports().prescribed_velocity(state.time, &state.q, &mut velocity);
         Ok(reactions.iter().zip(&velocity).map(|(r, v)| r * v).sum())

@@ -1,0 +1,123 @@
+//! Forces of supports and joints on the beams.
+//!
+//! A support at a node acts on the held coordinates with R = M q̈ + f; one between nodes, and a joint, with −Bᵀμ. A generalised force F' on a gradient r' has the
+//! moment r' × F' on the section, for δW = F'·δr' = M δθ with δr' = δθ J r'.
+
+use super::System;
+use crate::model::{FixedRotation, Support};
+use std::ops::Range;
+
+/// A force \[N\] and a moment \[N m\] on a beam, in fixed axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Reaction {
+    /// Along x.
+    pub fx: f64,
+    /// Along y.
+    pub fy: f64,
+    /// Counter-clockwise.
+    pub moment: f64,
+}
+
+/// Where a support or joint acts.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Source {
+    /// On what is held of a node.
+    Node { node: usize, position: [bool; 2], rotation: bool },
+    /// By constraint rows.
+    Rows(Range<usize>),
+}
+
+impl Source {
+    pub(super) fn node(node: usize, support: &Support) -> Self {
+        let rotation = support.fix.rotation != FixedRotation::Free;
+        Self::Node { node, position: [support.fix.x, support.fix.y], rotation }
+    }
+}
+
+/// r' × F'.
+fn moment(gradient: [f64; 2], force: [f64; 2]) -> f64 {
+    gradient[0] * force[1] - gradient[1] * force[0]
+}
+
+impl System {
+    /// Forces on the beams of all supports and then of all joints (on their second points), in the model's order. `held` are the forces on held coordinates in
+    /// fixed axes, `multipliers` the scaled μ.
+    pub fn reactions(&self, parameter: f64, q: &[f64], held: &[f64], multipliers: &[f64]) -> Vec<Reaction> {
+        let of = |source: &Source| match source {
+            Source::Node { node, position, rotation } => {
+                let (q, f) = (&q[4 * node..4 * node + 4], &held[4 * node..4 * node + 4]);
+                let component = |axis: usize| if position[axis] { f[axis] } else { 0.0 };
+                let moment = if *rotation { moment([q[2], q[3]], [f[2], f[3]]) } else { 0.0 };
+                Reaction { fx: component(0), fy: component(1), moment }
+            }
+            Source::Rows(rows) => {
+                let mut sum = Reaction::default();
+                for (constraint, mu) in self.constraints[rows.clone()].iter().zip(&multipliers[rows.clone()])
+                {
+                    let mu = -mu * constraint.scale(self.stiffness, self.length);
+                    let (normal, field) = constraint.last_field(parameter, q);
+                    let force = normal.map(|n| mu * n);
+                    match field {
+                        None => {
+                            sum.fx += force[0];
+                            sum.fy += force[1];
+                        }
+                        Some(gradient) => sum.moment += moment(gradient, force),
+                    }
+                }
+                sum
+            }
+        };
+        self.sources.iter().map(of).collect()
+    }
+
+    /// The same in equilibrium, `x` being coordinates and scaled multipliers.
+    pub fn static_reactions(&self, load: f64, x: &[f64]) -> Vec<Reaction> {
+        let (q, multipliers) = x.split_at(self.coordinates());
+        let mut force = vec![0.0; q.len()];
+        self.force(load, q, &mut force);
+        self.add_constraint_forces(load, multipliers, &mut force);
+        self.supports.keep_held(load, &mut force);
+        self.reactions(load, q, &force, multipliers)
+    }
+
+    /// Per effect with an energy or a load its kind, its beam's name, its energy \[J\] and the resultant \[N\] of its forces on the beam. Of damping the
+    /// energy is left out.
+    pub fn effects(
+        &self,
+        parameter: f64,
+        q: &[f64],
+        velocity: Option<&[f64]>,
+    ) -> Vec<(String, Option<f64>, [f64; 2])> {
+        let mut f = vec![0.0; q.len()];
+        // Position functions sum to 1, gradient functions have no part in a resultant.
+        let resultant = |f: &mut Vec<f64>| {
+            let sum = f.chunks_exact(4).fold([0.0; 2], |s, f| [s[0] - f[0], s[1] - f[1]]);
+            f.fill(0.0);
+            sum
+        };
+        let name =
+            |kind: crate::effect::Kind, beam: usize| format!("{}.{}", kind.name(), self.beams[beam].name);
+        let mut out = Vec::new();
+        for effect in &self.internal {
+            effect.add_force(1.0, q, &mut f);
+            out.push((name(effect.kind(), effect.beam()), Some(effect.energy(q)), resultant(&mut f)));
+        }
+        for load in &self.loads {
+            let amplitude = self.amplitude_of(load).at(parameter);
+            load.effect.add_force(amplitude, q, &mut f);
+            let energy = load.effect.is_conservative().then(|| amplitude * load.effect.energy(q));
+            out.push((name(load.effect.kind(), load.effect.beam()), energy, resultant(&mut f)));
+        }
+        if let Some(v) = velocity {
+            for effect in &self.inertia {
+                out.push((name(effect.kind(), effect.beam()), Some(effect.energy(v)), [0.0; 2]));
+            }
+            for damping in &self.damping {
+                damping.add_force(q, v, &mut f);
+                out.push((name(damping.kind(), damping.beam()), None, resultant(&mut f)));
+            }
+        }
+        out
+    }
+}
