@@ -93,6 +93,9 @@ struct InspectArguments {
     scene: PathBuf,
     #[command(flatten)]
     overrides: Overrides,
+    /// Measure the time that each effect and the linear algebra take in an iteration
+    #[arg(long)]
+    measure: bool,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -189,8 +192,9 @@ fn check(arguments: &CheckArguments) -> Result<(), Vec<Failure>> {
 
 fn inspect(arguments: &InspectArguments) -> Result<(), Failure> {
     let scene = load(&arguments.scene, &arguments.overrides)?;
+    let look = if arguments.measure { run::measure } else { run::inspect };
     let inventory =
-        run::inspect(scene.model(), scene.analysis()).map_err(|error| Failure::run(scene.name(), error))?;
+        look(scene.model(), scene.analysis()).map_err(|error| Failure::run(scene.name(), error))?;
     if arguments.json { print_json(&inventory) } else { print(&inventory.to_string()) }
 }
 

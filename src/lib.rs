@@ -18,8 +18,8 @@
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`model`] |
 //! | [`model`], [`centreline`] | the continuous problem: beams, sections, supports, loads, probes; stress-free curves | – |
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | [`model`] |
-//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives | [`basis`], [`linear`] |
-//! | [`system`] | coordinates, supports, constraints, sums over effects, inventory | the above |
+//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part of a model that it is | [`basis`], [`linear`] |
+//! | [`system`] | coordinates, supports, joints, assembly of parts, sums over effects, inventory | the above |
 //! | [`linear`] | block-banded LDLᵀ, real and complex; banded LU, bordered sparse LU | – |
 //! | [`solve`] | Newton, path following, buckling, vibrations, motion | [`system`], [`linear`] |
 //! | [`run`](mod@run), [`trajectory`] | one model, one analysis; what it leaves | [`solve`] |
@@ -36,12 +36,13 @@
 //! | ε, engineering | \|r'\| − 1 | – |
 //! | κ | (r' × r'')/\|r'\|² | 1/m |
 //! | U | ½∫ EA (ε − ε₀)² ds + ½∫ EI (κ − κ₀)² ds | J |
+//! | R | dissipation function: forces ∂R/∂q̇ | W |
 //! | T | ½∫ ρA ṙ·ṙ ds | J |
 //! | M on the section at s | δW = M δθ, θ = atan2(y', x') | N m |
 //! | q | nodal coordinates \[x, y, x', y'\] | m, – |
 //! | λ | load factor: loads and prescribed displacements grow with it from 0 to 1 | – |
 //!
-//! No shear, no rotary inertia. ε₀ and κ₀ are those of the stress-free shape as the discretisation sees it, so that a
+//! No shear; rotary inertia where it is named. ε₀ and κ₀ are those of the stress-free shape as the discretisation sees it, so that a
 //! curved beam starts without stress.
 //!
 //! # Invariants
@@ -52,6 +53,75 @@
 //! - Only the command line prints. Only [`sweep`] and [`cost`] start threads, and compute each run on one. The crate never links Python.
 //! - Where a model does not name an effect there is no object, no table, no matrix and no instruction for it;
 //!   [`system::System::inventory`] says what was built.
+//!
+//! # What takes part, and how it is named in a scene
+//! | scene | part | formula |
+//! |---|---|---|
+//! | `[[joint]]` `hinge`, `weld`, `slider` | [`system::joint`] | constraint rows between two points |
+//! | `move` of a `[[support]]`, `in_time` of a load | [`model::Law`] | ramps, steps, sines, polynomials, tables, spin-up |
+//! | `[[effect.damping]]` | [`effect::BeamDamping`] | −α ρA ṙ; EA (ε + η ε̇), EI (κ + η κ̇) |
+//! | `[[effect.spring]]`, `[[effect.torsion_spring]]` | [`effect::Spring`], [`effect::TorsionSpring`] | ½ k (ℓ − ℓ₀)², ½ k (θ − θ₀)², dashpots beside them |
+//! | `[[effect.point_mass]]`, `[[effect.rotary_inertia]]` | [`effect::PointMass`], [`effect::SectionInertia`] | ½ m ṙ·ṙ + ½ J ṙ'·ṙ' |
+//! | `[[effect.foundation]]` | [`effect::Foundation`] | ½ ∫ k u² ds |
+//! | `[[effect.actuation]]` | [`effect::Actuation`] | ½ EA (ε − ε₀)², ½ EI (κ − κ₀)² |
+//! | `[[effect.drag]]`, `[[effect.buoyancy]]` | [`effect::Drag`], [`effect::Buoyancy`] | −(c + C \|u\|) u along and across; −m g |
+//! | `[[effect.contact]]` | [`effect::Contact`] | ½ ∫ k ⟨−g⟩² ds with circles, half-planes, boxes; friction |
+//!
+//! A beam without a bending stiffness is a string: nothing is computed of its curvature.
+//!
+//! # An effect of one's own
+//! An effect is a density of a few local fields, and a part of the model that says where it is summed. In this crate it is one file in `src/effect`
+//! and one line in the scene's list (`src/scene/to_parts.rs`); from outside it is this:
+//! ```
+//! use ancf::effect::{Density, Gradient, Hessian, Kind};
+//! use ancf::model::*;
+//! use ancf::system::SystemError;
+//! use ancf::system::assembly::{Assembly, Extent, Part};
+//! use nalgebra::{Matrix2, Vector2};
+//!
+//! /// W = ½ k y²: a point is pulled towards the x axis.
+//! struct Pull(f64);
+//!
+//! impl Density<1> for Pull {
+//!     const ORDERS: [usize; 1] = [0];
+//!     fn energy(&self, _: usize, [r]: &Gradient<1>) -> f64 {
+//!         0.5 * self.0 * r.y * r.y
+//!     }
+//!     fn gradient(&self, _: usize, [r]: &Gradient<1>) -> Gradient<1> {
+//!         [Vector2::new(0.0, self.0 * r.y)]
+//!     }
+//!     fn gradient_and_hessian(&self, i: usize, z: &Gradient<1>, _: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+//!         (self.gradient(i, z), [[Matrix2::new(0.0, 0.0, 0.0, self.0)]])
+//!     }
+//! }
+//!
+//! #[derive(Debug)]
+//! struct Rail {
+//!     at: Place,
+//!     stiffness: f64,
+//! }
+//!
+//! impl Part for Rail {
+//!     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+//!         assembly.elastic(Kind::Other("rail"), Extent::Point(self.at), |_| Pull(self.stiffness))
+//!     }
+//! }
+//!
+//! // A cantilever of unit length and stiffness whose tip is pulled back while a small force pushes it away.
+//! let scene = ancf::scene::parse("rail.toml", r#"
+//!     beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1.0, basis.ancf.elements = 2 }
+//!     support = [{ beam = "arm", at = "start", fix = ["x", "y", "angle"] }]
+//!     effect.force = [{ beam = "arm", at = "end", value = [0, 1e-4] }]
+//!     probe = [{ name = "tip", beam = "arm", at = "end" }]
+//!     analysis.static = {}
+//! "#)?;
+//! let mut model = scene.model().clone();
+//! model.parts.push(std::sync::Arc::new(Rail { at: Place { beam: 0, s: 1.0 }, stiffness: 7.0 }));
+//! let trajectory = ancf::run::run(&model, scene.analysis(), &mut |_| ancf::run::Control::Continue)?;
+//! let tip = trajectory.probes[0].samples.last().expect("an equilibrium");
+//! assert!((tip.y - 1e-4 / (3.0 + 7.0)).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! # A beam rolled up into a circle
 //! ```

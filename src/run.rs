@@ -54,6 +54,14 @@ pub fn inspect(model: &Model, analysis: &Analysis) -> Result<Inventory, RunError
     Ok(System::build(model, needs(analysis))?.inventory())
 }
 
+/// The same, with the time that each effect and the linear algebra take.
+///
+/// # Errors
+/// As [`inspect`].
+pub fn measure(model: &Model, analysis: &Analysis) -> Result<Inventory, RunError> {
+    Ok(System::build(model, needs(analysis))?.measured_inventory())
+}
+
 /// Solves `model`. `observer` is called after every step.
 ///
 /// # Errors

@@ -149,6 +149,13 @@ impl Matrix {
         self.set(i, i, diagonal);
     }
 
+    /// Adds `factor` times a diagonal.
+    pub fn add_diagonal(&mut self, factor: f64, diagonal: &[f64]) {
+        for (i, value) in diagonal.iter().enumerate() {
+            self.set(i, i, fma(factor, *value, self.get(i, i)));
+        }
+    }
+
     /// Adds `factor · vᵀ v` of a row `v` whose entries lie within one support, so that the band holds the product.
     pub fn add_outer_product(&mut self, factor: f64, v: &BorderRow) {
         for &(i, a) in v {

@@ -95,6 +95,32 @@ impl<'a> Equilibrium<'a> {
         Ok(residual)
     }
 
+    /// Writes −R(x) to `negative` and factorises the tangent at `x` with σ times a diagonal added.
+    ///
+    /// # Errors
+    /// [`Singular`] where the sum has no inverse.
+    pub fn linearize_shifted(
+        &mut self,
+        load: f64,
+        x: &[f64],
+        (sigma, diagonal): (f64, &[f64]),
+        negative: &mut [f64],
+    ) -> Result<(), Singular> {
+        let system = self.system;
+        let q = &x[..system.coordinates()];
+        self.statistics.residual_evaluations += 1;
+        self.statistics.tangent_evaluations += 1;
+        self.statistics.factorizations += 1;
+        system.force_and_tangent(load, q, q, &mut self.force, &mut self.tangent, &mut self.workspace);
+        balance(self.system, load, x, &mut self.force, |_| (), negative);
+        self.tangent.add_diagonal(sigma, diagonal);
+        system.supports().turn_matrix(load, &mut self.tangent);
+        system.supports().eliminate(load, &mut self.tangent);
+        self.border = system.border(load);
+        self.factor = Some(Factor::again(self.factor.take(), &self.tangent, &self.border)?);
+        Ok(())
+    }
+
     /// −∂R/∂λ − K v with the prescribed rates v of held coordinates; the tangent must not be eliminated yet.
     fn rate_right_hand_side(&mut self, load: f64, x: &[f64], rate: &mut [f64]) {
         let system = self.system;

@@ -8,4 +8,5 @@ pub mod equilibrium;
 pub mod modal;
 pub mod newton;
 pub mod path;
+pub mod relax;
 pub mod statics;

@@ -1,8 +1,9 @@
 //! Static analysis: from the stress-free state to the full loads, or along the path through limit points.
 
 use super::equilibrium::Equilibrium;
-use super::newton::Settings;
+use super::newton::{Iterations, Settings};
 use super::path::{Parameter, Path, Stuck};
+use super::relax::relax;
 use crate::model::{ArcLength, Static};
 use crate::system::{System, View};
 use crate::trajectory::{Statistics, StepRecord};
@@ -61,6 +62,7 @@ pub fn solve(
     let mut solution = Solution::default();
     let newton = newton_settings(settings);
     let outcome = match target {
+        None if system.has_strings() => relaxed(&mut equilibrium, settings, newton, &mut solution, observe),
         None => along_load(&mut equilibrium, settings, newton, &mut solution, observe),
         Some(target) => along_arc(&mut equilibrium, target, newton, &mut solution, observe),
     };
@@ -114,6 +116,40 @@ fn along_load(
     }
     solution.history = std::mem::take(&mut path.history);
     outcome
+}
+
+/// The equilibria at the parts of the load, each relaxed from the one before.
+fn relaxed(
+    equilibrium: &mut Equilibrium<'_>,
+    settings: &Static,
+    newton: Settings,
+    solution: &mut Solution,
+    observe: Observer<'_>,
+) -> Result<(), Stuck> {
+    let mut x = equilibrium.start();
+    solution.states.push((0.0, x.clone()));
+    let parts = settings.steps.unwrap_or(1).max(1);
+    for part in 1..=parts {
+        let load = part as f64 / parts as f64;
+        let mut record = Iterations::default();
+        let outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
+        let at = equilibrium.system().place_of(0);
+        let step = 1.0 / parts as f64;
+        solution.history.push(StepRecord {
+            parameter: load,
+            step,
+            accepted: outcome.is_ok(),
+            increments: record.increments,
+            residuals: record.residuals,
+        });
+        outcome.map_err(|failure| Stuck { load: load - step, step, failure, at })?;
+        equilibrium.statistics.load_steps += 1;
+        solution.states.push((load, x.clone()));
+        if !observe(load, step, &equilibrium.statistics) {
+            break;
+        }
+    }
+    Ok(())
 }
 
 /// Records a change of stability in the last step and locates it by bisection.

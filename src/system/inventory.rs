@@ -1,6 +1,7 @@
 //! What was built, and what was not.
 
 use super::System;
+use super::measure::Measured;
 use crate::effect::Kind;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -31,6 +32,13 @@ pub struct Inventory {
     pub solver: &'static str,
     /// Bytes of one tangent.
     pub matrix_bytes: usize,
+    /// Bytes of the mass matrix; 0 where there is none.
+    pub mass_bytes: usize,
+    /// Bytes of the damping matrix; 0 where there is none.
+    pub damping_bytes: usize,
+    /// Times of the linear algebra, where they were measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<Measured>,
 }
 
 /// One effect.
@@ -44,6 +52,9 @@ pub struct EffectEntry {
     pub points: usize,
     /// Bytes of tables and data.
     pub bytes: usize,
+    /// Time of one evaluation with its tangent \[s\], where it was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
 }
 
 /// One beam.
@@ -84,6 +95,7 @@ impl System {
                 beam: self.beams[beam].name.clone(),
                 points,
                 bytes,
+                seconds: None,
             })
             .collect();
         let beams = self
@@ -118,6 +130,9 @@ impl System {
                 (true, false) => "banded LU",
             },
             matrix_bytes: self.matrix().bytes(),
+            mass_bytes: if self.inertia.is_empty() { 0 } else { self.damping_pattern().bytes() },
+            damping_bytes: if self.damping.is_empty() { 0 } else { self.damping_pattern().bytes() },
+            measured: None,
         }
     }
 }
@@ -139,15 +154,27 @@ impl fmt::Display for Inventory {
                 beam.name, beam.nodes, beam.length, beam.width, beam.distinct_cells, beam.bits
             )?;
         }
+        let share = |seconds: f64| match &self.measured {
+            Some(measured) => {
+                format!(" {:>9.2} µs {:>3.0} %", 1e6 * seconds, 100.0 * seconds / measured.iteration)
+            }
+            None => String::new(),
+        };
         for effect in &self.effects {
             let kind = effect.kind.name();
             writeln!(
                 f,
-                "effect {kind:<18} {:<16} {:>8} points {:>10}",
+                "effect {kind:<18} {:<16} {:>8} points {:>10}{}",
                 effect.beam,
                 effect.points,
-                size(effect.bytes)
+                size(effect.bytes),
+                effect.seconds.map(share).unwrap_or_default()
             )?;
+        }
+        if let Some(measured) = &self.measured {
+            let line = |what: &str, seconds: f64| format!("solver {what:<53}{}", share(seconds));
+            writeln!(f, "{}", line("factorisation", measured.factorization))?;
+            writeln!(f, "{}", line("substitution", measured.substitution))?;
         }
         let absent: Vec<_> = self.absent.iter().map(|kind| kind.name()).collect();
         writeln!(f, "absent: {}", if absent.is_empty() { "nothing".into() } else { absent.join(", ") })?;
@@ -156,6 +183,11 @@ impl fmt::Display for Inventory {
             "unknowns: {} ({} coordinates, {} held, {} multipliers)",
             self.degrees_of_freedom, self.coordinates, self.held, self.multipliers
         )?;
+        for (what, bytes) in [("mass", self.mass_bytes), ("damping", self.damping_bytes)] {
+            if bytes > 0 {
+                writeln!(f, "{what} matrix: {}", size(bytes))?;
+            }
+        }
         write!(
             f,
             "tangent: {}, half bandwidth {}, {}, {}",

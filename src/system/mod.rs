@@ -19,12 +19,14 @@ mod error;
 mod hold;
 mod inventory;
 pub mod joint;
+mod measure;
 mod reaction;
 pub mod supports;
 mod view;
 
 pub use error::SystemError;
 pub use inventory::{EffectEntry, Inventory};
+pub use measure::Measured;
 pub use reaction::Reaction;
 pub use view::{Fields, View};
 
@@ -115,6 +117,7 @@ pub struct System {
     stiffness: f64,
     round_off: f64,
     lowest_vibration: f64,
+    strings: bool,
 }
 
 impl System {
@@ -174,6 +177,7 @@ impl System {
             length,
             stiffness,
             round_off,
+            strings: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
             lowest_vibration: lowest_vibration_scale(model, length),
         };
         let mut assembly = assembly::Assembly::new(model, &system.beams, &system.reference, needs);
@@ -276,6 +280,35 @@ impl System {
     /// The supports that are eliminated.
     pub fn supports(&self) -> &Supports {
         &self.supports
+    }
+
+    /// Whether a beam has no bending stiffness.
+    pub fn has_strings(&self) -> bool {
+        self.strings
+    }
+
+    /// Per coordinate EA/L² times the share w of the length that is the node's, for gradients times w²/10: a mass matrix's diagonal \[N/m, N m\].
+    pub fn weights(&self) -> Vec<f64> {
+        let scale = self.stiffness / self.length.powi(2);
+        let of_beam = |part: &BeamPart| {
+            let nodes = part.basis.nodes().to_vec();
+            (0..nodes.len()).flat_map(move |i| {
+                let left = nodes[i.saturating_sub(1)];
+                let right = nodes[(i + 1).min(nodes.len() - 1)];
+                let w = 0.5 * (right - left);
+                let (position, gradient) = (scale * w, 0.1 * scale * w.powi(3));
+                [position, position, gradient, gradient]
+            })
+        };
+        self.beams.iter().flat_map(of_beam).collect()
+    }
+
+    /// Size of a vector of forces, those on gradients per beam length \[N\].
+    pub fn norm(&self, force: &[f64]) -> f64 {
+        let nodes = force.chunks_exact(4);
+        let squares =
+            nodes.map(|f| f[0] * f[0] + f[1] * f[1] + (f[2] * f[2] + f[3] * f[3]) / self.length.powi(2));
+        squares.sum::<f64>().sqrt()
     }
 
     /// Per coordinate, whether a support at a node holds it, in that support's frame.

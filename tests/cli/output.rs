@@ -159,14 +159,26 @@ fn tables_read_back_to_the_same_bits() {
         );
     }
     let (header, rows) = table(&directory.path().join("shape.csv"));
-    assert_eq!(header, ["beam", "s", "x", "y", "angle", "strain", "curvature"]);
+    assert_eq!(
+        header,
+        ["beam", "s", "x", "y", "angle", "strain", "curvature", "axial_force", "bending_moment"]
+    );
     assert_eq!(rows.len(), 201);
     let b = &t.last[0];
     for (i, row) in rows.iter().enumerate() {
         assert_eq!(row[0], "arm");
         assert_eq!(
             bits(&row[1..]),
-            bits_of(&[b.s[i], b.x[i], b.y[i], b.angle[i], b.strain[i], b.curvature[i]])
+            bits_of(&[
+                b.s[i],
+                b.x[i],
+                b.y[i],
+                b.angle[i],
+                b.strain[i],
+                b.curvature[i],
+                b.axial_force[i],
+                b.bending_moment[i]
+            ])
         );
     }
     let (header, rows) = table(&directory.path().join("states.csv"));

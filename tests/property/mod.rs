@@ -1,5 +1,6 @@
 //! What must hold at every state: derivatives, invariances, exactness.
 
+mod absence;
 mod agreement;
 mod basis;
 mod derivatives;

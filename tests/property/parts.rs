@@ -292,11 +292,11 @@ fn imbalance(trajectory: &Trajectory) -> f64 {
     trajectory.energy.iter().fold(0.0_f64, |m, e| m.max((e.total() - first).abs())) / kinetic
 }
 
-/// A hub that swings by a law, with all that depends on velocity: supports whose frames turn, damping matrices, laws of time.
-fn driven(rotation: FixedRotation) -> Model {
+/// A hub that is turned by a law, with all that depends on velocity: supports whose frames turn, damping matrices, laws of time.
+fn driven(rotation: FixedRotation, duration: f64) -> Model {
     let hub = Support {
         displacement: Displacement { x: 0.05, y: 0.0, angle: 0.7 },
-        law: Some(Law::Harmonic { frequency: 9.0, phase: -0.4 }),
+        law: Some(Law::SmoothRamp { start: 0.0, duration }),
         ..support(0.0, rotation)
     };
     let at = Place { beam: 0, s: LENGTH };
@@ -337,8 +337,9 @@ fn driven(rotation: FixedRotation) -> Model {
 
 #[test]
 fn what_depends_on_time_and_velocity_keeps_the_order_of_every_method() {
+    let mut wrong = Vec::new();
     for rotation in [FixedRotation::Gradient, FixedRotation::Angle] {
-        let model = driven(rotation);
+        let model = driven(rotation, 0.08);
         for (integrator, expected) in methods(1.0) {
             let step: f64 = match expected {
                 2.0 => 2e-5,
@@ -355,18 +356,19 @@ fn what_depends_on_time_and_velocity_keeps_the_order_of_every_method() {
             let [a, b, c] = [2.0, 1.0, 0.5].map(at);
             let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
             let order = (distance(a, b) / distance(b, c)).log2();
-            assert!(
-                (order - expected).abs() < 0.2 * expected.max(3.0),
-                "{rotation:?}, {integrator}: order {order}"
-            );
+            if (order - expected).abs() > 0.2 * expected.max(3.0) {
+                let changes = [distance(a, b), distance(b, c)];
+                wrong.push(format!("{rotation:?}, {integrator}: order {order}, changes {changes:?}"));
+            }
         }
     }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
 fn what_is_lost_and_put_in_closes_the_balance_of_energy() {
     for rotation in [FixedRotation::Gradient, FixedRotation::Angle] {
-        let trajectory = moved(&driven(rotation), 0.5, gauss(5e-4));
+        let trajectory = moved(&driven(rotation, 0.4), 0.5, gauss(5e-4));
         let last = trajectory.energy.last().expect("a record");
         assert!(last.lost > 0.01 * last.kinetic && last.work.abs() > 0.01 * last.kinetic, "{last:?}");
         let off = imbalance(&trajectory);
@@ -401,16 +403,17 @@ fn a_hub_of_constant_speed_keeps_a_rigid_rotation_in_its_equilibrium() {
     };
     let mut model = one(
         vec![hub],
-        vec![Arc::new(BeamDamping { strain: Some(0.02), curvature: Some(0.05), ..BeamDamping::default() })],
+        vec![Arc::new(BeamDamping { strain: Some(0.02), curvature: Some(0.4), ..BeamDamping::default() })],
     );
     model.initial_velocities = vec![InitialVelocity { rotation: speed, ..InitialVelocity::default() }];
-    let trajectory = moved(&model, 3.0, gauss(2e-3));
+    let trajectory = moved(&model, 6.0, gauss(2e-3));
     let last = trajectory.probes[0].samples.last().expect("a record");
     // The stretched radius: u'' EA + ρA Ω² (s + u) = 0, u(0) = 0, u'(L) = 0, so s + u = sin(ks)/(k cos(kL)).
     let k = speed * (0.4_f64 / 2e3).sqrt();
     let radius = (k * LENGTH).tan() / k;
     assert!((last.x.hypot(last.y) - radius).abs() < 1e-8, "radius {} and not {radius}", last.x.hypot(last.y));
-    assert!((last.angle - speed * 3.0).abs() < 1e-7, "angle {}", last.angle);
+    // The slowest vibration about it has not quite died out.
+    assert!((last.angle - speed * 6.0).abs() < 1e-5, "angle {}", last.angle);
     // The hub pulls with ∫ ρA Ω² r ds.
     let pull = trajectory.reactions[0].samples.last().expect("a record");
     let exact = 2e3 * (1.0 / (k * LENGTH).cos() - 1.0);
@@ -462,7 +465,7 @@ fn a_corner_keeps_its_angle_and_passes_forces_on() {
     ];
     let trajectory = still(&model);
     let [corner, foot, top] = [0, 1, 2].map(|i| *trajectory.probes[i].samples.last().expect("a record"));
-    assert!(corner.angle.abs() > 0.2, "it bends by {}", corner.angle);
+    assert!(corner.angle.abs() > 0.1, "it bends by {}", corner.angle);
     assert!((foot.angle - corner.angle - std::f64::consts::FRAC_PI_2).abs() < 1e-10);
     let [clamp, joint] = [0, 1].map(|i| *trajectory.reactions[i].samples.last().expect("a record"));
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-7, "{a} and not {b}");
@@ -552,7 +555,7 @@ fn a_beam_bounces_from_a_plane() {
         half_thickness: 0.0,
         friction,
     };
-    let tolerance = Integrator::Gauss { stages: 2, step: StepControl::Tolerance(1e-6) };
+    let tolerance = Integrator::Gauss { stages: 2, step: StepControl::Tolerance(1e-7) };
     for friction in [None, Some(Friction { coefficient: 0.3, velocity: 0.01 })] {
         let mut model = one(vec![], vec![Arc::new(contact(friction))]);
         model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
@@ -593,6 +596,42 @@ fn a_string_has_no_bending() {
     let trajectory = moved(&model, 0.3, gauss(1e-3));
     assert!(trajectory.energy.iter().all(|e| e.bend == 0.0));
     assert!(imbalance(&trajectory) < 1e-4, "{}", imbalance(&trajectory));
+}
+
+/// A slack cable between two supports, laid out as an arc, hangs as a catenary: y = a cosh(x/a) with 2 a sinh(w/2a) = L.
+#[test]
+fn a_slack_cable_hangs_as_a_catenary() {
+    let (radius, half) = (1.0_f64, 1.0_f64);
+    let mut cable = beam("cable", [0.0; 2], [1.0, 0.0], ancf(24));
+    cable.centreline = Centreline::Arc { center: [0.0, 0.0], radius, from: -2.0, to: -2.0 + 2.0 * half };
+    cable.section =
+        Section { axial_stiffness: Some(1e6), bending_stiffness: None, mass_per_length: Some(0.4) };
+    let length = 2.0 * half * radius;
+    let ends = [0.0, length].map(|s| support(s, FixedRotation::Free));
+    let mut model = one(ends.to_vec(), vec![]);
+    model.beams = vec![cable];
+    model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+    model.probes = tip(0, 0.5 * length);
+    let trajectory = still(&model);
+    let [a, b] = [-2.0_f64, 0.0].map(|angle| [radius * angle.cos(), radius * angle.sin()]);
+    // The catenary through both ends: √(L² − v²) = 2 c sinh(h/2c), h and v the distances along x and y.
+    let (h, v) = (b[0] - a[0], b[1] - a[1]);
+    let mut bracket = (0.05_f64, 50.0_f64);
+    for _ in 0..200 {
+        let c = 0.5 * (bracket.0 + bracket.1);
+        if 2.0 * c * (0.5 * h / c).sinh() > (length * length - v * v).sqrt() {
+            bracket.0 = c
+        } else {
+            bracket.1 = c
+        }
+    }
+    let c = bracket.0;
+    let tension = c * 0.4 * 9.81;
+    let pull = trajectory.reactions[1].samples.last().expect("a record");
+    assert!((pull.fx - tension).abs() < 2e-3 * tension, "{} N and not {tension} N", pull.fx);
+    let weight: f64 = trajectory.reactions.iter().filter_map(|r| r.samples.last()).map(|r| r.fy).sum();
+    assert!((weight - 0.4 * 9.81 * length).abs() < 1e-6, "the supports bear {weight} N");
+    assert!(trajectory.last[0].bending_moment.iter().all(|m| *m == 0.0));
 }
 
 #[test]

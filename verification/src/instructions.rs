@@ -22,17 +22,34 @@ const GROWTH: f64 = 1.01;
 #[derive(Deserialize)]
 struct List {
     count: Vec<Run>,
+    price: Price,
+}
+
+/// A motion to which effects are added one at a time.
+#[derive(Deserialize)]
+struct Price {
+    #[serde(flatten)]
+    base: Run,
+    effect: Vec<Added>,
+}
+
+/// An effect and the overrides by which it enters a scene.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Added {
+    name: String,
+    set: Vec<String>,
 }
 
 /// A run whose instructions are counted.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Deserialize)]
 struct Run {
     name: String,
     /// In the folder of the cases.
     scene: PathBuf,
     /// Overrides of the scene.
-    basis: Option<String>,
+    #[serde(default)]
+    set: Vec<String>,
     integrator: Option<String>,
     /// Two durations of a motion.
     durations: Option<[String; 2]>,
@@ -47,6 +64,9 @@ pub struct Day {
     pub commit: String,
     /// Name of the run, instructions per step or of the whole analysis.
     pub counts: Vec<(String, f64)>,
+    /// Instructions per step of the base of the price list, and with each effect added.
+    #[serde(default)]
+    pub prices: Vec<(String, f64)>,
 }
 
 /// Counts with `program`, prints the counts beside those of `against` or else of the last time, and adds them to the history. The answer is whether
@@ -55,7 +75,7 @@ pub fn print(suite: &Suite, program: &Path, against: Option<&Path>) -> Result<bo
     let list: List = toml::from_str(&read(&suite.root.join(LIST))?).map_err(|e| format!("{LIST}: {e}"))?;
     let file = suite.root.join(HISTORY);
     let mut history = history(&file)?;
-    let mut today = Day { date: now(), commit: commit(suite), counts: Vec::new() };
+    let mut today = Day { date: now(), commit: commit(suite), counts: Vec::new(), prices: Vec::new() };
     let before = against.is_none().then(|| history.last().cloned()).flatten();
     let mut held = true;
     eprintln!("{:>12} {:>12} {:>7}", "now", "before", "ratio");
@@ -75,6 +95,7 @@ pub fn print(suite: &Suite, program: &Path, against: Option<&Path>) -> Result<bo
         eprintln!("{count:>12.0} {beside}  {}", run.name);
         today.counts.push((run.name.clone(), count));
     }
+    today.prices = prices(suite, program, &list.price)?;
     history.push(today);
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -82,6 +103,21 @@ pub fn print(suite: &Suite, program: &Path, against: Option<&Path>) -> Result<bo
     std::fs::write(&file, serde_json::to_string_pretty(&history)?)
         .map_err(|e| format!("{}: {e}", file.display()))?;
     Ok(held)
+}
+
+/// Instructions per step of the base, and with each effect added.
+fn prices(suite: &Suite, program: &Path, price: &Price) -> Result<Vec<(String, f64)>, Failure> {
+    let base = count(suite, program, &price.base)?;
+    eprintln!("{base:>12.0} a step of {}", price.base.name);
+    let mut prices = vec![(price.base.name.clone(), base)];
+    for added in &price.effect {
+        let mut run = price.base.clone();
+        run.set.extend(added.set.iter().cloned());
+        let with = count(suite, program, &run)?;
+        eprintln!("{:>+12.0} {:>7.3}  {}", with - base, with / base, added.name);
+        prices.push((added.name.clone(), with));
+    }
+    Ok(prices)
 }
 
 /// Counts of earlier days, the oldest first.
@@ -120,7 +156,7 @@ fn count(suite: &Suite, program: &Path, run: &Run) -> Result<f64, Failure> {
 /// Instructions and steps of one run.
 fn collect(suite: &Suite, program: &Path, run: &Run, duration: Option<&str>) -> Result<(f64, f64), Failure> {
     let folder = tempfile::tempdir()?;
-    let mut set: Vec<String> = run.basis.iter().cloned().collect();
+    let mut set = run.set.clone();
     if let (Some(duration), Some(integrator)) = (duration, &run.integrator) {
         set.push(format!(
             "analysis.dynamic={{duration=\"{duration}\", output_every=\"{duration}\", {integrator}}}"
@@ -172,6 +208,9 @@ mod tests {
                 run.scene.display()
             );
             assert_eq!(run.durations.is_some(), run.integrator.is_some(), "{}", run.name);
+        }
+        for added in list.price.effect {
+            assert!(!added.set.is_empty(), "{}", added.name);
         }
     }
 

@@ -142,7 +142,7 @@ impl<'a> Collocation<'a> {
 
     /// Q̇_i = v₀ + h⁻¹ Σ_j (A⁻¹)_ij Y_j, where forces depend on it.
     fn velocity(&mut self, i: usize, from: &State, h: f64) {
-        if self.motion.is_damped() {
+        if self.motion.needs_velocity() {
             let weights = (0..self.tableau.stages()).map(|j| self.tableau.inverse[(i, j)] / h);
             combine(&mut self.velocity, weights, &self.displacements);
             self.velocity.iter_mut().zip(&from.v).for_each(|(v, start)| *v += start);

@@ -190,7 +190,7 @@ impl<'a> GeneralizedAlpha<'a> {
         if fresh {
             self.keep(from, 1.0)?;
         }
-        let (n, damped) = (self.motion.coordinates(), self.motion.is_damped());
+        let (n, damped) = (self.motion.coordinates(), self.motion.needs_velocity());
         let (c, d) = (self.rule.c, self.rule.d);
         loop {
             self.factorize(c, d)?;
@@ -287,7 +287,7 @@ struct AtEnd<'s, 'a> {
 impl Equations for AtEnd<'_, '_> {
     fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular> {
         self.motion.statistics.newton_iterations += 1;
-        let rates = self.rule.at(x, self.motion.is_damped());
+        let rates = self.rule.at(x, self.motion.needs_velocity());
         let residual = self.motion.linearize(x, before, rates, increment);
         if !residual.is_finite() {
             // What overflows has no pivots either, but that is not why.
@@ -303,7 +303,7 @@ impl Equations for AtEnd<'_, '_> {
 
     fn residual(&mut self, x: &[f64]) -> f64 {
         let mut negative = vec![0.0; x.len()];
-        let rates = self.rule.at(x, self.motion.is_damped());
+        let rates = self.rule.at(x, self.motion.needs_velocity());
         self.motion.residual(x, rates, &mut negative)
     }
 
@@ -342,7 +342,7 @@ impl Method for GeneralizedAlpha<'_> {
         let c = (1.0 - alpha_m) / (1.0 - alpha_f) * a_per_q;
         let d = gamma * h * a_per_q;
         (self.rule.time, self.rule.c, self.rule.d) = (end, c, d);
-        let damped = self.motion.is_damped();
+        let damped = self.motion.needs_velocity();
         let Accelerations { physical, algorithmic, multipliers } = &self.last;
         for i in 0..n {
             let explicit = from.q[i] + h * (from.v[i] + h * (0.5 - beta) * algorithmic[i]);

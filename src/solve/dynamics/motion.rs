@@ -31,7 +31,7 @@ use faer::c64;
 pub struct Rates<'r> {
     /// Time \[s\].
     pub time: f64,
-    /// Velocities; read only where forces depend on them.
+    /// Velocities; read only where [`Motion::needs_velocity`] says so.
     pub v: &'r [f64],
     /// Accelerations.
     pub a: &'r [f64],
@@ -127,9 +127,9 @@ impl<'a> Motion<'a> {
         self.system.coordinates() + self.system.multipliers()
     }
 
-    /// Whether forces depend on velocities.
-    pub fn is_damped(&self) -> bool {
-        self.damping.is_some()
+    /// Whether a residual depends on velocities: by damping, or by the terms of a frame that turns.
+    pub fn needs_velocity(&self) -> bool {
+        self.damping.is_some() || self.system.supports().turn_in_time()
     }
 
     /// Forms the mass matrix in the supports' frames at `time`, if these turn.

@@ -27,18 +27,42 @@ pub enum StartError {
         /// By how much the supports change the velocity \[m/s\].
         change: f64,
     },
+    /// A law of a support is not zero at the start.
+    #[error(
+        "a support moves beam `{beam}` near s = {s:.6} m by {change:.3e} (m, or rad) at the start, all at once"
+    )]
+    #[diagnostic(help("let its law begin with zero, such as `smooth_ramp` or a harmonic of phase 0"))]
+    Jump {
+        /// The beam.
+        beam: String,
+        /// Where \[m\].
+        s: f64,
+        /// By how much.
+        change: f64,
+    },
     /// A coordinate has no mass.
     #[error(transparent)]
     Singular(#[from] Singular),
 }
 
+/// The place and size of the largest difference of two vectors.
+fn largest_difference(a: &[f64], b: &[f64]) -> (usize, f64) {
+    let changes = a.iter().zip(b).map(|(a, b)| (a - b).abs()).enumerate();
+    changes.fold((0, 0.0), |w, c| if c.1 > w.1 { c } else { w })
+}
+
 /// The stress-free state with the given velocities.
 ///
 /// # Errors
-/// [`StartError::Held`] where supports do not allow them.
+/// [`StartError::Held`] where supports do not allow them, [`StartError::Jump`] where a support starts elsewhere.
 pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Checkpoint, StartError> {
     let mut state = State::at_rest(system.reference());
     system.supports().impose(0.0, &mut state.q);
+    let (at, change) = largest_difference(&state.q, system.reference());
+    if change > ROUND_OFF * system.length().max(1.0) {
+        let (beam, s) = system.place_of(at);
+        return Err(StartError::Jump { beam: system.beams()[beam].name.clone(), s, change });
+    }
     if velocities.is_empty() && !system.supports().moves_in_time() {
         return Ok(Checkpoint { state, ..Checkpoint::default() });
     }
@@ -56,15 +80,15 @@ pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Chec
     }
     let admissible = Motion::new(system)?.admissible_velocity(state.time, &state.q, &state.v)?;
     let largest = state.v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let change = |(i, (a, b)): (usize, (&f64, &f64))| (i, (a - b).abs());
-    let (worst, change) = state
-        .v
-        .iter()
-        .zip(&admissible)
-        .enumerate()
-        .filter(|(i, _)| !system.supports().moves_in_time() || system.supports().holds_still(*i))
-        .map(change)
-        .fold((0, 0.0), |w, c| if c.1 > w.1 { c } else { w });
+    // A support that moves gives the beam its velocity.
+    let moves = system.supports().moves_in_time();
+    let mut given = state.v.clone();
+    for (i, (given, admissible)) in given.iter_mut().zip(&admissible).enumerate() {
+        if moves && !system.supports().holds_still(i) {
+            *given = *admissible;
+        }
+    }
+    let (worst, change) = largest_difference(&given, &admissible);
     if change > ROUND_OFF * largest {
         let (beam, s) = system.place_of(worst);
         return Err(StartError::Held { beam: system.beams()[beam].name.clone(), s, change });

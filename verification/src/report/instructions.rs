@@ -14,6 +14,7 @@ use crate::instructions::{Day, history};
 struct Body<'a> {
     last: Option<&'a Day>,
     lines: Vec<Line>,
+    prices: Vec<[String; 3]>,
     drawing: Option<Result<String, String>>,
 }
 
@@ -30,13 +31,14 @@ pub fn page(file: &Path) -> Result<Page, Failure> {
     let days = history(file)?;
     let last = days.last();
     let lines = last.map_or(Vec::new(), |day| day.counts.iter().map(|count| line(&days, count)).collect());
+    let prices = last.map_or(Vec::new(), prices);
     let drawing = (days.len() > 1).then(|| trend(&days));
     Ok(Page {
         id: "instructions".into(),
         title: "Instructions".into(),
         pass: None,
         listed: true,
-        body: Body { last, lines, drawing }.render()?,
+        body: Body { last, lines, prices, drawing }.render()?,
     })
 }
 
@@ -54,6 +56,16 @@ fn line(days: &[Day], (name, count): &(String, f64)) -> Line {
         count: format!("{count:.0}"),
         ratios: [ratio(earlier(before, name).next_back()), ratio(earlier(before, name).next())],
     }
+}
+
+/// Per effect its name, what it adds to a step, and that against the base; the base comes first.
+fn prices(day: &Day) -> Vec<[String; 3]> {
+    let Some((name, base)) = day.prices.first() else { return Vec::new() };
+    let first = [name.clone(), format!("{base:.0}"), "1".to_owned()];
+    let others = day.prices.iter().skip(1).map(|(name, with)| {
+        [format!("with {name}"), format!("{:+.0}", with - base), format!("{:.3}", with / base)]
+    });
+    std::iter::once(first).chain(others).collect()
 }
 
 /// Every count relative to its first, over the number of the measurement.
@@ -80,11 +92,17 @@ mod tests {
 
     #[test]
     fn a_count_is_compared_with_the_last_and_the_first() {
-        let day =
-            |count: f64| Day { date: "d".into(), commit: "c".into(), counts: vec![("a".into(), count)] };
+        let day = |count: f64| Day {
+            date: "d".into(),
+            commit: "c".into(),
+            counts: vec![("a".into(), count)],
+            prices: Vec::new(),
+        };
         let days = [day(200.0), day(100.0), day(50.0)];
         let line = line(&days, &days[2].counts[0]);
         assert_eq!(line.ratios, ["0.5000", "0.2500"]);
         assert!(trend(&days).expect("a drawing").contains("<svg"));
+        let priced = Day { prices: vec![("base".into(), 100.0), ("drag".into(), 125.0)], ..day(1.0) };
+        assert_eq!(prices(&priced)[1], ["with drag", "+25", "1.250"]);
     }
 }

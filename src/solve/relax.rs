@@ -1,0 +1,75 @@
+//! Equilibria of what has no stiffness before it is loaded: strings and cables.
+//!
+//! A slack string under ever so small a load takes a shape far from its stress-free one, so that no path of load steps leads there. It is found as the
+//! rest of a creeping motion, σ D ẋ = −R(x), by implicit Euler steps (pseudo-transient continuation; Kelley & Keyes, *SIAM J. Numer. Anal.* 35, 1998,
+//! 508–523):
+//!
+//! ```text
+//! (K(x) + σ D) δ = −R(x),   σ ← σ |R_new|/|R|
+//! ```
+//!
+//! With falling residual σ vanishes and the iteration becomes Newton's. D weighs a node by its share w of the length, EA/L² (w, w³/10) for position and gradient,
+//! as a beam's mass matrix does.
+
+use super::equilibrium::Equilibrium;
+use super::newton::{Failure, Iterations, Settings};
+
+/// Largest change of an iterate: positions in beam lengths, gradients as they are.
+const LARGEST: f64 = 0.3;
+/// σ changes at most by these factors in an iteration.
+const LIMITS: (f64, f64) = (0.1, 4.0);
+/// σ below which the iteration is Newton's to all digits that count.
+const NONE: f64 = 1e-12;
+/// Most iterations.
+const ITERATIONS: usize = 2000;
+
+/// Relaxes `x` to the equilibrium at load factor `load`.
+///
+/// # Errors
+/// [`Failure`] where it does not come to rest.
+pub fn relax(
+    equilibrium: &mut Equilibrium<'_>,
+    load: f64,
+    x: &mut [f64],
+    settings: &Settings,
+    record: &mut Iterations,
+) -> Result<(), Failure> {
+    let n = equilibrium.system().coordinates();
+    let mut increment = vec![0.0; x.len()];
+    equilibrium.system().supports().impose(load, &mut x[..n]);
+    let weights = equilibrium.system().weights();
+    let (mut sigma, mut last) = (1.0_f64, f64::INFINITY);
+    let mut size = f64::INFINITY;
+    for _ in 0..ITERATIONS {
+        let residual = equilibrium.residual(load, x, &mut increment);
+        let norm = equilibrium.system().norm(&increment[..n]);
+        if !norm.is_finite() {
+            return Err(Failure::NotFinite);
+        }
+        if last.is_finite() && last > 0.0 {
+            sigma *= (norm / last).clamp(LIMITS.0, LIMITS.1);
+        }
+        last = norm;
+        let shift = if sigma < NONE { 0.0 } else { sigma };
+        match equilibrium.linearize_shifted(load, x, (shift, &weights), &mut increment) {
+            Ok(()) => {}
+            Err(singular) if shift == 0.0 => return Err(singular.into()),
+            Err(_) => {
+                sigma *= LIMITS.1;
+                continue;
+            }
+        }
+        equilibrium.solve(load, &mut increment, false);
+        equilibrium.statistics.newton_iterations += 1;
+        size = equilibrium.size(&increment);
+        record.residuals.push(residual);
+        record.increments.push(size);
+        let part = if size > LARGEST { LARGEST / size } else { 1.0 };
+        x.iter_mut().zip(&increment).for_each(|(x, d)| *x += part * d);
+        // Of a residual that is round-off the increment tells nothing but where σ holds it.
+        if size <= settings.tolerance && sigma < 1e-3 && residual <= settings.residual_tolerance {
+            return Ok(());
+        }
+    }
+    Err(Failure::TooSlow { iterations: ITERATIONS, last: size })
+}
