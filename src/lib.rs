@@ -65,6 +65,7 @@
 //! | `[[effect.foundation]]` | [`effect::Foundation`] | ½ ∫ k u² ds |
 //! | `[[effect.actuation]]` | [`effect::Actuation`] | ½ EA (ε − ε₀)², ½ EI (κ − κ₀)² |
 //! | `[[effect.drag]]`, `[[effect.buoyancy]]` | [`effect::Drag`], [`effect::Buoyancy`] | −(c + C \|u\|) u along and across; −m g |
+//! | `[[effect.moving_force]]` | [`effect::MovingForce`] | −N(s₀ + v t) F |
 //! | `[[effect.contact]]` | [`effect::Contact`] | ½ ∫ k ⟨−g⟩² ds with circles, half-planes, boxes; friction |
 //!
 //! A beam without a bending stiffness is a string: nothing is computed of its curvature.

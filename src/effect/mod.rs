@@ -34,6 +34,7 @@ mod inertia;
 mod integral;
 mod load;
 mod mass;
+mod moving;
 mod spring;
 mod stretch;
 
@@ -48,6 +49,7 @@ pub use inertia::Inertia;
 pub use integral::{Integral, Workspace};
 pub use load::{DeadForce, FollowerForce, Moment};
 pub use mass::{PointMass, RotaryInertia, SectionInertia};
+pub use moving::{MovingForce, Travelling};
 pub use spring::{Dashpot, Spring, Strut, Tie, Torsion, TorsionDashpot, TorsionSpring};
 pub use stretch::{Engineering, Green, Strain, Stretch};
 
@@ -134,13 +136,15 @@ pub enum Kind {
     Contact,
     /// Friction in a contact.
     Friction,
+    /// Force that travels along a beam.
+    MovingForce,
     /// An effect that another crate brings.
     Other(&'static str),
 }
 
 impl Kind {
     /// All kinds that exist here.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::Stretch,
         Self::Bend,
         Self::Inertia,
@@ -162,6 +166,7 @@ impl Kind {
         Self::Buoyancy,
         Self::Contact,
         Self::Friction,
+        Self::MovingForce,
     ];
 
     /// The name used in scenes and inventories.
@@ -188,6 +193,7 @@ impl Kind {
             Self::Buoyancy => "buoyancy",
             Self::Contact => "contact",
             Self::Friction => "friction",
+            Self::MovingForce => "moving_force",
             Self::Other(name) => name,
         }
     }

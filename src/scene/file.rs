@@ -331,6 +331,8 @@ pub struct EffectTable {
     pub drag: Vec<DragTable>,
     /// Lift by a displaced fluid.
     pub buoyancy: Vec<BuoyancyTable>,
+    /// Forces that travel along beams.
+    pub moving_force: Vec<MovingForceTable>,
     /// Contacts with obstacles.
     pub contact: Vec<ContactTable>,
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::effect::{
-    Actuation, BeamDamping, Buoyancy, Contact, Drag, Foundation, Friction, Obstacle, PointMass,
+    Actuation, BeamDamping, Buoyancy, Contact, Drag, Foundation, Friction, MovingForce, Obstacle, PointMass,
     SectionInertia, Spring, TorsionSpring,
 };
 use crate::model::{Joint, Model};
@@ -143,6 +143,15 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
         let acceleration = gravity.get().acceleration.si;
         let (beam, displaced) = (beam_index(&t.beam, built)?, t.displaced_mass_per_length.si);
         parts.push(Arc::new(Buoyancy { beam, displaced, acceleration }));
+    }
+    for t in &effects.moving_force {
+        let (beam, speed) = (beam_index(&t.beam, built)?, t.speed.get().si);
+        if speed == 0.0 {
+            return Err(Fault::new(t.speed.span(), "a moving force needs a speed")
+                .help("give a `speed` other than 0, or a `[[effect.force]]`"));
+        }
+        let start = t.start.map_or(0.0, |start| start.si);
+        parts.push(Arc::new(MovingForce { beam, value: t.value.si, start, speed }));
     }
     for t in &effects.contact {
         parts.push(Arc::new(contact(t, built)?));

@@ -6,7 +6,7 @@
 
 use super::{Acting, BeamPart, Needs, SystemError};
 use crate::basis::{Basis, BasisTable, Quadrature};
-use crate::effect::{Damping, Density, Dissipation, Effect, Integral, Kind, Rayleigh};
+use crate::effect::{Damping, Density, Dissipation, Effect, Integral, Kind, Rayleigh, Travelling};
 use crate::model::{Beam, Law, Model, Place};
 use crate::system::course::Amplitude;
 use nalgebra::Vector2;
@@ -57,6 +57,7 @@ pub struct Assembly<'a> {
     pub(super) loads: Vec<Acting>,
     pub(super) inertia: Vec<Box<dyn Effect>>,
     pub(super) damping: Vec<Box<dyn Damping>>,
+    pub(super) travelling: Vec<Travelling>,
 }
 
 impl<'a> Assembly<'a> {
@@ -70,6 +71,7 @@ impl<'a> Assembly<'a> {
             loads: Vec::new(),
             inertia: Vec::new(),
             damping: Vec::new(),
+            travelling: Vec::new(),
         }
     }
 
@@ -169,6 +171,18 @@ impl<'a> Assembly<'a> {
             let effect = self.integral(kind, extent, D::ORDERS, |fields| Rayleigh(density(fields)))?;
             self.damping.push(Box::new(effect));
         }
+        Ok(())
+    }
+
+    /// A force whose place moves.
+    ///
+    /// # Errors
+    /// [`SystemError::NoTime`] in an analysis without time.
+    pub fn travelling(&mut self, travelling: Travelling) -> Result<(), SystemError> {
+        if !self.needs.motion {
+            return Err(SystemError::NoTime { what: "a moving force" });
+        }
+        self.travelling.push(travelling);
         Ok(())
     }
 

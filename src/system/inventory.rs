@@ -82,7 +82,8 @@ impl System {
         let effects = self.internal.iter().chain(&self.inertia).chain(loads);
         let effects = effects.map(|effect| (effect.beam(), effect.kind(), effect.size()));
         let damping = self.damping.iter().map(|damping| (damping.beam(), damping.kind(), damping.size()));
-        for (beam, kind, (points, bytes)) in effects.chain(damping) {
+        let travelling = self.travelling.iter().map(|force| (force.beam(), force.kind(), force.size()));
+        for (beam, kind, (points, bytes)) in effects.chain(damping).chain(travelling) {
             let entry = entries.entry((beam, kind)).or_default();
             entry.0 += points;
             entry.1 += bytes;

@@ -32,7 +32,7 @@ pub use view::{Fields, View};
 
 use crate::basis::Basis;
 use crate::centreline::Curve;
-use crate::effect::{Damping, Effect, Kind, Workspace};
+use crate::effect::{Damping, Effect, Kind, Travelling, Workspace};
 use crate::linear::Matrix;
 use crate::linear::bordered::BorderRow;
 use crate::model::{Centreline, Discretization, Model, Place};
@@ -108,6 +108,7 @@ pub struct System {
     constant_load: Vec<f64>,
     inertia: Vec<Box<dyn Effect>>,
     damping: Vec<Box<dyn Damping>>,
+    travelling: Vec<Travelling>,
     supports: Supports,
     constraints: Vec<Constraint>,
     /// Where supports and joints act.
@@ -170,6 +171,7 @@ impl System {
             constant_load: Vec::new(),
             inertia: Vec::new(),
             damping: Vec::new(),
+            travelling: Vec::new(),
             supports: Supports::default(),
             constraints: Vec::new(),
             sources: Vec::new(),
@@ -182,8 +184,9 @@ impl System {
         };
         let mut assembly = assembly::Assembly::new(model, &system.beams, &system.reference, needs);
         effects::add(&mut assembly)?;
-        let assembly::Assembly { internal, loads, inertia, damping, .. } = assembly;
-        (system.internal, system.loads, system.inertia, system.damping) = (internal, loads, inertia, damping);
+        let assembly::Assembly { internal, loads, inertia, damping, travelling, .. } = assembly;
+        (system.internal, system.loads, system.inertia) = (internal, loads, inertia);
+        (system.damping, system.travelling) = (damping, travelling);
         system.constant_load = vec![0.0; system.coordinates()];
         for load in system.loads.iter().filter(|load| load.is_summed()) {
             load.effect.add_force(1.0, &system.reference, &mut system.constant_load);
@@ -344,6 +347,7 @@ impl System {
         for (effect, amplitude) in self.varying_loads(parameter) {
             effect.add_force(amplitude, q, f);
         }
+        self.travelling.iter().for_each(|force| force.add_force(parameter, f));
     }
 
     /// `f += factor · ∂f/∂λ` of loads in proportion to the load factor.
@@ -377,7 +381,7 @@ impl System {
 
     /// Whether a load does work that no potential counts.
     pub fn has_work(&self) -> bool {
-        self.loads.iter().any(|load| !load.has_potential())
+        !self.travelling.is_empty() || self.loads.iter().any(|load| !load.has_potential())
     }
 
     /// Whether forces depend on velocities.
@@ -389,9 +393,10 @@ impl System {
     pub fn power(&self, parameter: f64, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
         scratch.fill(0.0);
         for load in self.loads.iter().filter(|load| !load.has_potential()) {
-            load.effect.add_force(-self.amplitude_of(load).at(parameter), q, scratch);
+            load.effect.add_force(self.amplitude_of(load).at(parameter), q, scratch);
         }
-        scratch.iter().zip(v).map(|(f, v)| f * v).sum()
+        self.travelling.iter().for_each(|force| force.add_force(parameter, scratch));
+        -scratch.iter().zip(v).map(|(f, v)| f * v).sum::<f64>()
     }
 
     /// `f += ` the forces that depend on velocities.
@@ -429,7 +434,8 @@ impl System {
             Some(Amplitude::Law(law)) => Some(law.kinks()),
             _ => None,
         });
-        laws.flatten().chain(self.supports.kinks()).collect()
+        let travelling = self.travelling.iter().flat_map(Travelling::kinks);
+        laws.flatten().chain(self.supports.kinks()).chain(travelling).collect()
     }
 
     /// The same force as [`Self::force`], and its derivative by q; stress resultants in the tangent are extrapolated
@@ -452,6 +458,7 @@ impl System {
         for (effect, amplitude) in self.varying_loads(parameter) {
             effect.add_force_and_tangent(amplitude, q, before, f, k, workspace);
         }
+        self.travelling.iter().for_each(|force| force.add_force(parameter, f));
     }
 
     /// `f = K v` with the tangent of [`Self::force_and_tangent`] at `q`, but to many more digits where the mesh is fine.

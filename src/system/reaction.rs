@@ -109,6 +109,10 @@ impl System {
             let energy = load.effect.is_conservative().then(|| amplitude * load.effect.energy(q));
             out.push((name(load.effect.kind(), load.effect.beam()), energy, resultant(&mut f)));
         }
+        for force in &self.travelling {
+            force.add_force(parameter, &mut f);
+            out.push((name(force.kind(), force.beam()), None, resultant(&mut f)));
+        }
         if let Some(v) = velocity {
             for effect in &self.inertia {
                 out.push((name(effect.kind(), effect.beam()), Some(effect.energy(v)), [0.0; 2]));

@@ -41,6 +41,7 @@ fn blocks() -> Vec<(&'static str, Vec<Kind>)> {
         ("[[effect.foundation]]\nbeam = 'arm'\nstiffness = [0.0, 1.0]", vec![Kind::Foundation]),
         ("[[effect.actuation]]\nbeam = 'arm'\nstrain = 1e-3", vec![Kind::PreStrain]),
         ("[[effect.drag]]\nbeam = 'arm'\nnormal = 1.0", vec![Kind::Drag]),
+        ("[[effect.moving_force]]\nbeam = 'arm'\nvalue = [0.0, 1.0]\nspeed = 2.0", vec![Kind::MovingForce]),
         (
             "[[effect.contact]]\nbeam = 'arm'\nstiffness = 1e3\ncircle = { center = [0.5, -1.0], radius = 0.5 }\n\
              friction = { coefficient = 0.2, velocity = 0.1 }",
@@ -113,7 +114,9 @@ fn every_kind_is_tested_here() {
 
 #[test]
 fn statics_has_no_mass_and_an_undamped_motion_no_damping() {
-    let all: Vec<&str> = blocks().into_iter().map(|(block, _)| block).collect();
+    // A force that moves needs time.
+    let timeless = |(_, kinds): &(&str, Vec<Kind>)| !kinds.contains(&Kind::MovingForce);
+    let all: Vec<&str> = blocks().into_iter().filter(timeless).map(|(block, _)| block).collect();
     let statics = inventory(&scene(&all, "[analysis.static]\n"));
     assert_eq!((statics.mass_bytes, statics.damping_bytes), (0, 0));
     let moving =

@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::LawTable;
 use crate::scene::quantity::{
-    Angle, Curvature, DragCoefficient, ForcePerLength, Frequency, Length, Mass, MassPerLength, Moment,
+    Angle, Curvature, DragCoefficient, Force, ForcePerLength, Frequency, Length, Mass, MassPerLength, Moment,
     Positive, Quantity, Ratio, RotaryInertia, RotaryInertiaPerLength, Stress, Time, TorsionalDamping,
     TranslationalDamping, Velocity, ViscousDamping,
 };
@@ -133,6 +133,20 @@ pub struct BuoyancyTable {
     pub beam: Located<String>,
     /// Mass of the fluid that a length of the beam displaces.
     pub displaced_mass_per_length: Quantity<MassPerLength, Positive>,
+}
+
+/// A dead force that travels along a beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MovingForceTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Components in the fixed frame.
+    pub value: Vector<Force>,
+    /// Speed along the beam.
+    pub speed: Located<Quantity<Velocity>>,
+    /// Arc length at time zero, also off the beam; its start when left out.
+    pub start: Option<Quantity<Length>>,
 }
 
 /// Contact of a beam with one obstacle of the ground: `circle`, `half_plane` or `box`.
