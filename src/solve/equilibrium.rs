@@ -103,15 +103,17 @@ impl<'a> Equilibrium<'a> {
         &mut self,
         load: f64,
         x: &[f64],
+        before: &[f64],
         (sigma, diagonal): (f64, &[f64]),
         negative: &mut [f64],
     ) -> Result<(), Singular> {
         let system = self.system;
-        let q = &x[..system.coordinates()];
+        let n = system.coordinates();
+        let (q, before) = (&x[..n], &before[..n]);
         self.statistics.residual_evaluations += 1;
         self.statistics.tangent_evaluations += 1;
         self.statistics.factorizations += 1;
-        system.force_and_tangent(load, q, q, &mut self.force, &mut self.tangent, &mut self.workspace);
+        system.force_and_tangent(load, q, before, &mut self.force, &mut self.tangent, &mut self.workspace);
         balance(self.system, load, x, &mut self.force, |_| (), negative);
         self.tangent.add_diagonal(sigma, diagonal);
         system.supports().turn_matrix(load, &mut self.tangent);

@@ -195,7 +195,8 @@ impl<'a> GeneralizedAlpha<'a> {
         loop {
             self.factorize(c, d)?;
             let Some(kept) = &self.kept else { return Ok(false) };
-            let mut rate = kept.rate;
+            // What an earlier step found may no longer hold where steps take one iteration each.
+            let mut rate = kept.rate.max(KEEP);
             self.turns.measure(&kept.at.q, &self.x[..n]);
             let mut last = 0.0;
             for _ in 0..ITERATIONS {
