@@ -6,6 +6,7 @@
 
 use super::supports::Ramp;
 use crate::basis::BasisTable;
+use std::ops::Range;
 
 /// What a row holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +47,11 @@ impl Constraint {
     pub fn new(table: &BasisTable, offset: usize, row: Row) -> Self {
         let (_, shape) = table.block(table.cells[0]);
         Self { first: 2 * (offset + table.cells[0].first as usize), shape: shape.to_vec(), row }
+    }
+
+    /// The coordinates that it combines.
+    pub fn span(&self) -> Range<usize> {
+        self.first..self.first + 2 * self.shape.len()
     }
 
     /// n, c and their derivatives by λ.

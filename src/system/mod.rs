@@ -94,7 +94,7 @@ impl System {
         let mut reference = Vec::new();
         let (mut stiffness, mut round_off) = (0.0_f64, 0.0_f64);
         for beam in &model.beams {
-            let in_curve = |source| SystemError::Curve { beam: beam.name.clone(), source };
+            let in_curve = |cause| SystemError::Curve { beam: beam.name.clone(), cause };
             let in_basis = |e| SystemError::basis(&beam.name, e);
             let curve = Curve::new(&beam.centreline).map_err(in_curve)?;
             let basis = Basis::new(&beam.discretization, curve.length()).map_err(in_basis)?;
@@ -250,6 +250,26 @@ impl System {
         }
         self.supports = Supports::new(held);
         self.constraints = constraints;
+        self.check_room()
+    }
+
+    /// Refuses more constraint rows on the same coordinates than there are free ones.
+    fn check_room(&self) -> Result<(), SystemError> {
+        let held = self.held();
+        for constraint in &self.constraints {
+            let span = constraint.span();
+            let rows = self.constraints.iter().filter(|other| other.span() == span).count();
+            let free = held[span.clone()].iter().filter(|held| !**held).count();
+            if rows > free {
+                let (beam, s) = self.place_of(span.start);
+                return Err(SystemError::OverSupported {
+                    beam: self.beams[beam].name.clone(),
+                    s,
+                    rows,
+                    free,
+                });
+            }
+        }
         Ok(())
     }
 
