@@ -246,9 +246,7 @@ impl<'a> Look<'a> {
             Failure::Singular(Singular { row }) if row >= self.system.coordinates() => {
                 "supports between nodes hold the same motion more than once: leave some out, or use more nodes"
             }
-            Failure::Crushed { .. } => {
-                TOO_SOFT
-            }
+            Failure::Crushed { .. } => TOO_SOFT,
             _ if stuck.step == 0.0 => {
                 "the undeformed structure can move without resistance: add a support, or give the beam a bending stiffness"
             }

@@ -101,9 +101,9 @@ fn a_fold_between_two_elements_is_refused_with_its_place() {
     let alpha = "dynamic = { duration = 0.5, generalized_alpha = { step = 1e-3 } }";
     Scene { analysis: alpha, ..folded }.refused(&[
         "beyond t = 0.0",
-        "gain energy",
+        "crushed",
         "of beam `arm`",
-        "tolerance",
+        "axial stiffness",
     ]);
 }
 
@@ -172,9 +172,8 @@ fn where_everything_is_held_nothing_moves_or_vibrates() {
     ] {
         assert_eq!(tip(&Scene { analysis, ..held }.solved()), [1.0, 0.0], "{analysis}");
     }
-    for analysis in ["modal = { count = 1 }", "buckling = { count = 1 }"] {
-        Scene { analysis, ..held }.refused(&["nothing is left that could move", "more elements"]);
-    }
+    let modal = Scene { analysis: "modal = { count = 1 }", ..held };
+    modal.refused(&["nothing is left that could move", "more elements"]);
 }
 
 /// Round-off of positions makes forces of ε EI L/h³: at h = L/1e5 a thirtieth of the load, at two nodes that nearly coincide far more.
@@ -224,8 +223,10 @@ fn over_supported_scenes_are_solved_or_refused() {
     };
     let one = Scene { basis: "ancf = { elements = 1 }", effects: LIFT, ..PLAIN };
     // More than rigid motions need, and the element has coordinates for it.
-    let [x, y] = tip(&Scene { supports: at(&["0.1", "0.3"], "['x', 'y', 'angle']"), ..one }.solved());
-    assert!(x.is_finite() && y > 0.0, "{x} {y}");
+    let [_, y] = tip(&Scene { supports: at(&["0.1", "0.3", "0.5"], "['x', 'y']"), ..one }.solved());
+    assert!(y > 0.0, "{y}");
+    let [_, y] = tip(&Scene { supports: at(&["0.1", "0.3"], "['x', 'y', 'angle']"), ..one }.solved());
+    assert!(y.abs() < 1e-12, "four rows hold all of the cubic: {y}");
     Scene { supports: at(&["0.1", "0.3", "0.5", "0.7"], "['x', 'y', 'gradient']"), ..one }.refused(&[
         "beam `arm`",
         "hold 16 quantities",
