@@ -247,6 +247,9 @@ impl<'a> Look<'a> {
                 "supports between nodes hold the same motion more than once: leave some out, or use more nodes"
             }
             Failure::Crushed { .. } => TOO_SOFT,
+            Failure::NotFinite if stuck.step == 0.0 => {
+                "a load or a stiffness is no number, or beyond what its products leave room for: use other units"
+            }
             _ if stuck.step == 0.0 => {
                 "the undeformed structure can move without resistance: add a support, or give the beam a bending stiffness"
             }

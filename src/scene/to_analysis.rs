@@ -69,7 +69,9 @@ fn check_memory(span: Range<usize>, what: &str, states: f64, size: Size) -> Resu
     let memory = states * size.nodes * 32.0 / 1024f64.powi(3);
     if memory > MAX_MEMORY {
         return Err(Fault::new(span, format!("{what} of {} nodes need about {memory:.3e} GiB", size.nodes))
-            .help(format!("all states are kept in memory, up to {MAX_MEMORY} GiB: ask for fewer, or for fewer nodes")));
+            .help(format!(
+                "all states are kept in memory, up to {MAX_MEMORY} GiB: ask for fewer, or for fewer nodes"
+            )));
     }
     Ok(())
 }

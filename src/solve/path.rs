@@ -10,7 +10,7 @@
 //! So is one that the tangents at its two ends do not explain. On a smooth path the trapezoidal rule,
 //! x₁ ≈ x₀ + ½h (ẋ₀ + ẋ₁), errs by O(h³) and thus by a fraction of the corrector's own O(h²): of 2400 steps under random loads
 //! nine in ten missed it by less than a fifth of the corrector's turn, and all but nine by less than half. A step to
-//! another branch misses it by all of the jump. Folds of the path that are much shorter than a step remain unseen.
+//! another branch misses it by all of the jump. And so is, unless it is short, one that ends at an unstable state. Folds of the path that are much shorter than a step remain unseen.
 //!
 //! Polynomials through the last points, with and without the tangents there, were tried: their corrections are smaller, but the first steps,
 //! which find no past to extrapolate, decide, and Newton's method takes as many iterations a step. Half circle and elastica (PL²/EI = 10)
@@ -54,6 +54,9 @@ const LARGEST_TURN: f64 = 0.5;
 const UNEXPLAINED_PART: f64 = 0.5;
 /// Unexplained turn that is never refused \[rad\]: near an inflection of the path the corrector's own turn vanishes.
 const UNEXPLAINED_TURN: f64 = 0.02;
+/// Longest step over which stability may be lost, relative to the first one that was to be tried. A structure that is not quite
+/// perfect has a stable path past the critical load of the perfect one, whose own path a longer step would take for it.
+const STEP_TO_INSTABILITY: f64 = 5e-3;
 /// Predicted turn of any node in one step \[rad\].
 const LARGEST_STEP: f64 = 0.8;
 /// Smallest step, relative to the first one that was to be tried.
@@ -205,6 +208,10 @@ impl<'e, 'a> Path<'e, 'a> {
             at: self.equilibrium.system().place_of(singular.row),
         })?;
         self.equilibrium.solve(load, &mut rate, true);
+        if let Some(unknown) = rate.iter().position(|rate| !rate.is_finite()) {
+            let at = self.equilibrium.system().place_of(unknown);
+            return Err(Stuck { load, step: 0.0, failure: Failure::NotFinite, at });
+        }
         rate.push(1.0);
         if self.parameter == Parameter::ArcLength {
             rate = self.along(rate, None);
@@ -347,6 +354,13 @@ impl<'e, 'a> Path<'e, 'a> {
         });
         let turn = outcome?;
         point.unstable = self.equilibrium.unstable_directions();
+        let lost = point.unstable > before.unstable && before.unstable.is_some();
+        if lost && self.parameter == Parameter::Load && step > STEP_TO_INSTABILITY * self.first_step {
+            if let Some(record) = self.history.last_mut() {
+                record.accepted = false;
+            }
+            return Err((Failure::OtherBranch { turn }, self.worst(&point.x, &predicted.x)));
+        }
         Ok((point, turn))
     }
 

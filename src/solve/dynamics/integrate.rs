@@ -302,8 +302,11 @@ impl<'t, 'a> Driver<'t, 'a> {
         let step = State { time: end, ..new.clone() };
         let work = self.work(&step, end, None) - self.state.work;
         let gain = (after.total() - before.total() - work) / before.kinetic.max(after.kinetic);
-        // Also refuses a NaN.
-        if gain <= LARGEST_GAIN { Ok(()) } else { Err(Failure::Gain { gain }) }
+        match gain {
+            _ if gain <= LARGEST_GAIN => Ok(()),
+            _ if gain.is_nan() => Err(Failure::NotFinite),
+            _ => Err(Failure::Gain { gain }),
+        }
     }
 
     /// Where the present step of fixed length ends.

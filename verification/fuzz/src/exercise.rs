@@ -56,9 +56,15 @@ fn few_steps() -> impl FnMut(&run::Progress) -> Control {
 }
 
 fn nodes(model: &Model) -> usize {
-    model.beams.iter().map(|beam| match &beam.discretization {
-        ancf::model::Discretization::Ancf { nodes } | ancf::model::Discretization::Rpim { nodes, .. } => nodes.count(),
-    }).fold(0, usize::saturating_add)
+    model
+        .beams
+        .iter()
+        .map(|beam| match &beam.discretization {
+            ancf::model::Discretization::Ancf { nodes } | ancf::model::Discretization::Rpim { nodes, .. } => {
+                nodes.count()
+            }
+        })
+        .fold(0, usize::saturating_add)
 }
 
 fn is_small(analysis: &Analysis) -> bool {

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use fastrand::Rng;
 
-use crate::exercise::{self, Input};
+use crate::exercise;
 use crate::{Arguments, MEMORY, damage};
 
 /// The file that holds the present input.
