@@ -258,3 +258,43 @@ fn under_supported_scenes_are_refused_where_there_must_be_an_equilibrium() {
     let [x, y] = tip(&Scene { analysis: "dynamic = { duration = 0.1 }", ..hinged }.solved());
     assert!(x < 1.0 && y > 0.0);
 }
+
+#[test]
+fn what_no_memory_holds_is_refused_with_what_it_would_need() {
+    let (small, large) = ("ancf = { elements = 8 }", "ancf = { elements = 1_000_000 }");
+    for (basis, analysis, part) in [
+        ("ancf = { elements = 1_000_000_000_000 }", "static = {}", "nodes, which need about 1."),
+        (
+            "rpim = { nodes = 1_000_000, neighbours = 16, gauss_points = { stretch = 64, bend = 64 } }",
+            "static = {}",
+            "nodes, which need about 2.",
+        ),
+        (
+            large,
+            "dynamic = { duration = 1.0, output_every = 1e-5 }",
+            "1.000e5 records of 1000001 nodes need about",
+        ),
+        (large, "static = { steps = 1_000_000 }", "1000000 load steps of 1000001 nodes need about"),
+        (
+            large,
+            "static.arc_length = { max_points = 1_000_000 }",
+            "points on the path of 1000001 nodes need about",
+        ),
+        (large, "modal = { count = 100_000 }", "100000 modes of 1000001 nodes need about"),
+        (small, "dynamic = { duration = 1.0, output_every = 1e-9 }", "1.000e9 records"),
+        (
+            small,
+            "dynamic = { duration = 1.0, generalized_alpha = { step = 1e-12 } }",
+            "the step must lie between",
+        ),
+        ("rpim = { nodes = 8, polynomial_terms = 1_000_000 }", "static = {}", "carry at most 8 terms"),
+        ("rpim = { nodes = 8, neighbours = 1_000_000 }", "static = {}", "from 0 to 16 are legal"),
+        (
+            "ancf = { elements = 8, gauss_points = { stretch = 1_000_000, bend = 3 } }",
+            "static = {}",
+            "from 1 to 64 are legal",
+        ),
+    ] {
+        Scene { basis, analysis, ..PLAIN }.refused(&["scene.toml:", part]);
+    }
+}
