@@ -10,7 +10,9 @@
 //! So is one that the tangents at its two ends do not explain. On a smooth path the trapezoidal rule,
 //! x₁ ≈ x₀ + ½h (ẋ₀ + ẋ₁), errs by O(h³) and thus by a fraction of the corrector's own O(h²): of 2400 steps under random loads
 //! nine in ten missed it by less than a fifth of the corrector's turn, and all but nine by less than half. A step to
-//! another branch misses it by all of the jump. And so is, unless it is short, one that ends at an unstable state. Folds of the path that are much shorter than a step remain unseen.
+//! another branch misses it by all of the jump. And so is, unless it is short, a step over which the tangent loses
+//! definiteness, or under follower loads its determinant changes sign: the stable path of a structure that is not quite
+//! perfect has gone elsewhere. Folds of the path that are much shorter than a step remain unseen.
 //!
 //! Polynomials through the last points, with and without the tangents there, were tried: their corrections are smaller, but the first steps,
 //! which find no past to extrapolate, decide, and Newton's method takes as many iterations a step. Half circle and elastica (PL²/EI = 10)
@@ -31,6 +33,8 @@ pub struct Point {
     pub x: Vec<f64>,
     /// Unstable directions, where the factorisation tells.
     pub unstable: Option<usize>,
+    /// Whether the determinant of the tangent is negative, where the factorisation tells.
+    pub negative: Option<bool>,
     /// The path's tangent (dx/dt, dλ/dt); empty where it is not known.
     pub rate: Vec<f64>,
 }
@@ -99,7 +103,7 @@ impl<'e, 'a> Path<'e, 'a> {
         let mut x = equilibrium.start();
         let n = equilibrium.system().coordinates();
         equilibrium.system().supports().impose(0.0, &mut x[..n]);
-        let start = Point { parameter: 0.0, load: 0.0, x, unstable: None, rate: Vec::new() };
+        let start = Point { parameter: 0.0, load: 0.0, x, unstable: None, negative: None, rate: Vec::new() };
         Ok(Self {
             equilibrium,
             settings,
@@ -217,6 +221,7 @@ impl<'e, 'a> Path<'e, 'a> {
             rate = self.along(rate, None);
         }
         self.points[0].unstable = self.equilibrium.unstable_directions();
+        self.points[0].negative = self.equilibrium.determinant_is_negative();
         self.points[0].rate = rate;
         Ok(())
     }
@@ -262,7 +267,7 @@ impl<'e, 'a> Path<'e, 'a> {
         load = if self.parameter == Parameter::Load { parameter } else { load + h * rate[x.len()] };
         let n = self.equilibrium.system().coordinates();
         self.equilibrium.system().supports().impose(load, &mut x[..n]);
-        Point { parameter, load, x, unstable: None, rate }
+        Point { parameter, load, x, unstable: None, negative: None, rate }
     }
 
     /// Largest change of a nodal gradient between two states.
@@ -354,7 +359,12 @@ impl<'e, 'a> Path<'e, 'a> {
         });
         let turn = outcome?;
         point.unstable = self.equilibrium.unstable_directions();
-        let lost = point.unstable > before.unstable && before.unstable.is_some();
+        point.negative = self.equilibrium.determinant_is_negative();
+        let lost = match (before.unstable, point.unstable) {
+            (Some(before), Some(after)) => after > before,
+            // Under follower loads the determinant is all that tells.
+            _ => before.negative.is_some() && point.negative.is_some() && before.negative != point.negative,
+        };
         if lost && self.parameter == Parameter::Load && step > STEP_TO_INSTABILITY * self.first_step {
             if let Some(record) = self.history.last_mut() {
                 record.accepted = false;
@@ -390,6 +400,6 @@ impl<'e, 'a> Path<'e, 'a> {
         let mut equations = AtLoad::new(self.equilibrium, load);
         newton::solve(&mut equations, &mut x, &start, &self.settings, &mut record).ok()?;
         let unstable = self.equilibrium.unstable_directions();
-        Some(Point { parameter: load, load, x, unstable, rate: Vec::new() })
+        Some(Point { parameter: load, load, x, unstable, negative: None, rate: Vec::new() })
     }
 }
