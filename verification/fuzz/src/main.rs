@@ -36,10 +36,10 @@ struct Arguments {
     /// Folder of the findings
     #[arg(long, default_value = "target/fuzz")]
     out: PathBuf,
-    /// Longest time for one input [s]
+    /// Longest time for one input, in seconds
     #[arg(long, default_value_t = 20)]
     seconds: u64,
-    /// Memory beyond what the seeds take [MiB]
+    /// Memory beyond what the seeds take, in MiB
     #[arg(long, default_value_t = 512)]
     mebibytes: usize,
     /// Be the worker
