@@ -134,7 +134,7 @@ impl System {
         let mut reference = Vec::new();
         let (mut stiffness, mut round_off) = (0.0_f64, 0.0_f64);
         for beam in &model.beams {
-            let in_curve = |source| SystemError::Curve { beam: beam.name.clone(), source };
+            let in_curve = |cause| SystemError::Curve { beam: beam.name.clone(), cause };
             let in_basis = |e| SystemError::basis(&beam.name, e);
             let curve = Curve::new(&beam.centreline).map_err(in_curve)?;
             let basis = Basis::new(&beam.discretization, curve.length()).map_err(in_basis)?;
@@ -198,6 +198,7 @@ impl System {
             system.constraints.extend(rows);
             system.sources.push(Source::Rows(first..system.constraints.len()));
         }
+        system.check_room()?;
         Ok(system)
     }
 
@@ -231,6 +232,25 @@ impl System {
         let view =
             View::point(&part.basis, part.offset(), s).map_err(|e| SystemError::basis(&part.name, e))?;
         Ok(view.fields(&self.reference).gradient)
+    }
+
+    /// Refuses more constraint rows on the same coordinates than there are free ones.
+    fn check_room(&self) -> Result<(), SystemError> {
+        let held = self.held();
+        for span in self.constraints.iter().filter_map(Constraint::span) {
+            let rows = self.constraints.iter().filter(|other| other.span() == Some(span.clone())).count();
+            let free = held[span.clone()].iter().filter(|held| !**held).count();
+            if rows > free {
+                let (beam, s) = self.place_of(span.start);
+                return Err(SystemError::OverSupported {
+                    beam: self.beams[beam].name.clone(),
+                    s,
+                    rows,
+                    free,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// The beams' parts.
