@@ -4,6 +4,7 @@ use super::RunError;
 use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
 use crate::solve::dynamics;
+use crate::solve::newton::Failure;
 use crate::solve::path::Stuck;
 use crate::solve::statics::Solution;
 use crate::system::{System, SystemError, View};
@@ -233,6 +234,9 @@ impl<'a> Look<'a> {
         let (beam, s) = stuck.at;
         let advice = if stuck.step == 0.0 {
             "the undeformed structure can move without resistance: add a support, or give the beam a bending stiffness"
+        } else if matches!(stuck.failure, Failure::RoundOff { .. }) {
+            "EA L²/EI and the number of nodes are too large for double precision: use fewer nodes or a smaller axial stiffness, \
+             which changes nothing else in so slender a beam"
         } else {
             "near a limit point the load cannot grow: follow the path with `arc_length` in [analysis.static]; \
              if the shape is folded there, use more nodes or smaller loads"

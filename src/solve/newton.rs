@@ -79,6 +79,14 @@ pub enum Failure {
         /// The last scaled increment.
         last: f64,
     },
+    /// Forces balance to their round-off, but positions follow from them no better than this.
+    #[error(
+        "the forces balance to round-off, which leaves positions uncertain by {last:.1e} of a beam length"
+    )]
+    RoundOff {
+        /// The last scaled increment.
+        last: f64,
+    },
     /// A force or an increment overflowed or is not a number.
     #[error("a force or an increment is not finite")]
     NotFinite,
@@ -88,6 +96,9 @@ pub enum Failure {
         /// Largest turn of a node between prediction and solution \[rad\].
         turn: f64,
     },
+    /// Converged, but to an unstable equilibrium where a path that bends away may still be stable.
+    #[error("the tangent loses definiteness within the step")]
+    StabilityLost,
     /// A step of a motion gains energy that no load puts in.
     #[error("the step would gain energy, {:.1} % of the kinetic", 100.0 * gain)]
     Gain {
@@ -138,7 +149,13 @@ pub fn solve(
         let contraction = if iteration == 0 { 1.0 } else { size / last };
         let stalled = contraction > 0.5 && size <= ROUND_OFF;
         if !stalled && (size > 10.0 * first || (iteration >= 4 && contraction > 1.0)) {
-            return Err(Failure::Diverging { last: size });
+            let balanced = residual <= settings.residual_tolerance && settings.residual_tolerance.is_finite();
+            let failure = if balanced && size <= first {
+                Failure::RoundOff { last: size }
+            } else {
+                Failure::Diverging { last: size }
+            };
+            return Err(failure);
         }
         before.copy_from_slice(x);
         equations.apply(&increment, x);

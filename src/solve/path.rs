@@ -7,6 +7,10 @@
 //! step for a wanted turn follows at once. A step whose corrector turns too far is redone smaller even though it
 //! converged: a solution that far from the prediction may lie on another branch.
 //!
+//! Under load control a step that ends in an unstable equilibrium is redone smaller too. The path of an imperfect column bends
+//! away from its critical load and stays stable; long steps, of which no corrector turns far, end on the unstable path beside it.
+//! Only where ever smaller steps lose stability as well does the path itself, and it goes on with a warning.
+//!
 //! Polynomials through the last points, with and without the tangents there, were tried: their corrections are smaller, but the first steps,
 //! which find no past to extrapolate, decide, and Newton's method takes as many iterations a step. Half circle and elastica (PL²/EI = 10)
 //! take 20 factorisations with tangents, 33 and 42 with a cubic through four points.
@@ -49,6 +53,9 @@ const LARGEST_TURN: f64 = 0.5;
 const LARGEST_STEP: f64 = 0.8;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
+/// A step of this load factor in which stability is lost is believed. The knee of an imperfect path is about as wide as the
+/// imperfection to the power of 2/3 (Koiter), which leaves it to imperfections of 1e-7.
+const BELIEVED_STEP: f64 = 1e-5;
 
 /// Why a path could not be followed.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,7 +168,16 @@ impl<'e, 'a> Path<'e, 'a> {
                 predicted = self.predict(here + step);
             }
             let target = if step >= left { end } else { here + step };
-            match self.correct(predicted, target, step) {
+            let corrected = match self.correct(predicted, target, step) {
+                Ok((point, _)) if self.loses_stability(&point) && step > BELIEVED_STEP => {
+                    if let Some(record) = self.history.last_mut() {
+                        record.accepted = false;
+                    }
+                    Err((Failure::StabilityLost, self.worst(&point.x, &self.last().x)))
+                }
+                other => other,
+            };
+            match corrected {
                 Ok((point, turn)) => {
                     let factor = (WANTED_TURN / turn.max(1e-12)).sqrt();
                     self.step = self.step.max(step) * factor.clamp(0.4, 2.5);
@@ -182,6 +198,12 @@ impl<'e, 'a> Path<'e, 'a> {
                 }
             }
         }
+    }
+
+    /// Whether the load, which is prescribed, leads from here to a point with more unstable directions.
+    fn loses_stability(&self, point: &Point) -> bool {
+        let (before, after) = (self.last().unstable, point.unstable);
+        self.parameter == Parameter::Load && before.zip(after).is_some_and(|(before, after)| after > before)
     }
 
     /// Stability and the path's tangent at the start.
