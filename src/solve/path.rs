@@ -169,13 +169,20 @@ impl<'e, 'a> Path<'e, 'a> {
             }
             let target = if step >= left { end } else { here + step };
             let corrected = match self.correct(predicted, target, step) {
-                Ok((point, _)) if self.loses_stability(&point) && step > BELIEVED_STEP => {
-                    if let Some(record) = self.history.last_mut() {
-                        record.accepted = false;
+                Ok((mut point, turn)) => {
+                    if self.loses_stability(&point) {
+                        self.judge_again(&mut point);
                     }
-                    Err((Failure::StabilityLost, self.worst(&point.x, &self.last().x)))
+                    if self.loses_stability(&point) && step > BELIEVED_STEP {
+                        if let Some(record) = self.history.last_mut() {
+                            record.accepted = false;
+                        }
+                        Err((Failure::StabilityLost, self.worst(&point.x, &self.last().x)))
+                    } else {
+                        Ok((point, turn))
+                    }
                 }
-                other => other,
+                failed => failed,
             };
             match corrected {
                 Ok((point, turn)) => {
@@ -204,6 +211,15 @@ impl<'e, 'a> Path<'e, 'a> {
     fn loses_stability(&self, point: &Point) -> bool {
         let (before, after) = (self.last().unstable, point.unstable);
         self.parameter == Parameter::Load && before.zip(after).is_some_and(|(before, after)| after > before)
+    }
+
+    /// Stability at the point itself: near a critical load what the last increment still changed decides over the sign.
+    fn judge_again(&mut self, point: &mut Point) {
+        let mut scratch = vec![0.0; point.x.len()];
+        let mut rate = scratch.clone();
+        if self.equilibrium.linearize(point.load, &point.x, &point.x, &mut scratch, &mut rate).is_ok() {
+            point.unstable = self.equilibrium.unstable_directions();
+        }
     }
 
     /// Stability and the path's tangent at the start.
