@@ -4,7 +4,6 @@ use super::RunError;
 use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
 use crate::solve::dynamics;
-use crate::solve::newton::Failure;
 use crate::solve::path::Stuck;
 use crate::solve::statics::Solution;
 use crate::system::{System, SystemError, View};
@@ -234,9 +233,9 @@ impl<'a> Look<'a> {
         let (beam, s) = stuck.at;
         let advice = if stuck.step == 0.0 {
             "the undeformed structure can move without resistance: add a support, or give the beam a bending stiffness"
-        } else if matches!(stuck.failure, Failure::RoundOff { .. }) {
-            "EA L²/EI and the number of nodes are too large for double precision: use fewer nodes or a smaller axial stiffness, \
-             which changes nothing else in so slender a beam"
+        } else if self.limited_by_round_off() {
+            "positions in double precision leave forces uncertain by as much as EI/L²: use fewer nodes, none that nearly coincide, \
+             or in a very slender beam a smaller axial stiffness, which changes little else"
         } else {
             "near a limit point the load cannot grow: follow the path with `arc_length` in [analysis.static]; \
              if the shape is folded there, use more nodes or smaller loads"
@@ -250,6 +249,13 @@ impl<'a> Look<'a> {
             advice: advice.into(),
             partial: Box::new(Trajectory { complete: false, ..self.statics(solution) }),
         }
+    }
+
+    /// Whether the round-off of internal forces comes near a force that bends the stiffest beam.
+    fn limited_by_round_off(&self) -> bool {
+        let stiffest =
+            self.model.beams.iter().filter_map(|beam| beam.section.bending_stiffness).fold(0.0, f64::max);
+        stiffest > 0.0 && self.system.round_off() > 0.1 * stiffest / self.system.length().powi(2)
     }
 
     pub(super) fn dynamics(&self, settings: &Dynamic, solution: dynamics::Solution) -> Trajectory {

@@ -79,14 +79,6 @@ pub enum Failure {
         /// The last scaled increment.
         last: f64,
     },
-    /// Forces balance to their round-off, but positions follow from them no better than this.
-    #[error(
-        "the forces balance to round-off, which leaves positions uncertain by {last:.1e} of a beam length"
-    )]
-    RoundOff {
-        /// The last scaled increment.
-        last: f64,
-    },
     /// A force or an increment overflowed or is not a number.
     #[error("a force or an increment is not finite")]
     NotFinite,
@@ -149,13 +141,7 @@ pub fn solve(
         let contraction = if iteration == 0 { 1.0 } else { size / last };
         let stalled = contraction > 0.5 && size <= ROUND_OFF;
         if !stalled && (size > 10.0 * first || (iteration >= 4 && contraction > 1.0)) {
-            let balanced = residual <= settings.residual_tolerance && settings.residual_tolerance.is_finite();
-            let failure = if balanced && size <= first {
-                Failure::RoundOff { last: size }
-            } else {
-                Failure::Diverging { last: size }
-            };
-            return Err(failure);
+            return Err(Failure::Diverging { last: size });
         }
         before.copy_from_slice(x);
         equations.apply(&increment, x);

@@ -79,6 +79,8 @@ pub struct Path<'e, 'a> {
     points: Vec<Point>,
     step: f64,
     first_step: f64,
+    /// An unstable equilibrium ahead, by the shortest step that led to one.
+    crossing: Option<(Point, f64)>,
     /// Attempted steps so far.
     pub history: Vec<StepRecord>,
 }
@@ -102,6 +104,7 @@ impl<'e, 'a> Path<'e, 'a> {
             points: vec![start],
             step,
             first_step: step,
+            crossing: None,
             history: Vec::new(),
         })
     }
@@ -177,7 +180,9 @@ impl<'e, 'a> Path<'e, 'a> {
                         if let Some(record) = self.history.last_mut() {
                             record.accepted = false;
                         }
-                        Err((Failure::StabilityLost, self.worst(&point.x, &self.last().x)))
+                        let at = self.worst(&point.x, &self.last().x);
+                        self.crossing = Some((point, turn));
+                        Err((Failure::StabilityLost, at))
                     } else {
                         Ok((point, turn))
                     }
@@ -185,26 +190,37 @@ impl<'e, 'a> Path<'e, 'a> {
                 failed => failed,
             };
             match corrected {
-                Ok((point, turn)) => {
-                    let factor = (WANTED_TURN / turn.max(1e-12)).sqrt();
-                    self.step = self.step.max(step) * factor.clamp(0.4, 2.5);
-                    self.points.push(point);
-                    if self.points.len() > MEMORY {
-                        self.points.remove(0);
-                    }
-                    self.equilibrium.statistics.steps += 1;
-                    self.equilibrium.statistics.load_steps += 1;
-                    return Ok(self.last());
-                }
+                Ok((point, turn)) => return Ok(self.accept(point, step, turn)),
                 Err((failure, at)) => {
                     self.equilibrium.statistics.rejected_steps += 1;
                     self.step = step * 0.4;
-                    if self.step < SMALLEST_STEP * self.first_step {
-                        return Err(Stuck { load: self.last().load, step, failure, at });
+                    if self.step >= SMALLEST_STEP * self.first_step {
+                        continue;
+                    }
+                    // Close to the singular tangent nothing may converge that does beyond it.
+                    match self.crossing.take() {
+                        Some((point, turn)) if point.load > self.last().load => {
+                            self.step = point.load - self.last().load;
+                            return Ok(self.accept(point, self.step, turn));
+                        }
+                        _ => return Err(Stuck { load: self.last().load, step, failure, at }),
                     }
                 }
             }
         }
+    }
+
+    /// Adds a point that a step led to, and chooses the next step.
+    fn accept(&mut self, point: Point, step: f64, turn: f64) -> &Point {
+        let factor = (WANTED_TURN / turn.max(1e-12)).sqrt();
+        self.step = self.step.max(step) * factor.clamp(0.4, 2.5);
+        self.points.push(point);
+        if self.points.len() > MEMORY {
+            self.points.remove(0);
+        }
+        self.equilibrium.statistics.steps += 1;
+        self.equilibrium.statistics.load_steps += 1;
+        self.last()
     }
 
     /// Whether the load, which is prescribed, leads from here to a point with more unstable directions.

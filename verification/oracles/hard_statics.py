@@ -71,6 +71,8 @@ def column():
 def shallow_arch():
     """Pinned circular arch of span 2 and rise 0.2, EI = 1, EA = 400, dead force P downwards at its crown: the symmetric path.
 
+    Printed is its mirror image, a sagging beam whose lowest point, at height y, is pushed up by `factor` times 20.
+
     Half of the arch: at the crown the section keeps its direction and carries P/2. Unknowns u = (angle at the hinge, Fx,
     P); given is the height of the crown. Where dP/dy = 0 are the limit points.
     """
@@ -96,9 +98,9 @@ def shallow_arch():
         height = rise * (1 - mpf(k) / 5)
         u, dp = slope(height, u)
         path.append((height, u, dp))
-        rows.append(["path", height, u[2]])
+        rows.append(["path", -height, u[2] / 20])
     for name, sign in (("upper", -1), ("lower", 1)):
-        # downwards P first falls to its maximum where dP/dy changes from - to +, then back
+        # on the way down dP/dy is negative at first: the load grows
         k = next(k for k in range(1, 15) if path[k - 1][2] * sign > 0 and path[k][2] * sign <= 0)
         (a, ua, fa), (b, _, fb) = path[k - 1], path[k]
         for _ in range(60):  # regula falsi (Illinois)
@@ -112,8 +114,8 @@ def shallow_arch():
             if abs(fc) < mpf(10) ** -9:
                 break
         # the load forgives the square of what is left of the slope
-        rows.append([name, b, uc[2]])
-    show(["point", "y", "load"], rows)
+        rows.append([name, -b, uc[2] / 20])
+    show(["point", "y", "factor"], rows)
 
 
 CASES = {
