@@ -88,9 +88,9 @@ pub enum Failure {
         /// Largest turn of a node between prediction and solution \[rad\].
         turn: f64,
     },
-    /// Converged, but to an unstable equilibrium where a path that bends away may still be stable.
-    #[error("the tangent loses definiteness within the step")]
-    StabilityLost,
+    /// Converged, but to an equilibrium that lies beyond a bifurcation, where a path that bends away may still be stable.
+    #[error("the step ends beyond a bifurcation, perhaps on another branch")]
+    Bifurcation,
     /// A step of a motion gains energy that no load puts in.
     #[error("the step would gain energy, {:.1} % of the kinetic", 100.0 * gain)]
     Gain {

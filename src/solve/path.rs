@@ -7,9 +7,10 @@
 //! step for a wanted turn follows at once. A step whose corrector turns too far is redone smaller even though it
 //! converged: a solution that far from the prediction may lie on another branch.
 //!
-//! Under load control a step that ends in an unstable equilibrium is redone smaller too. The path of an imperfect column bends
-//! away from its critical load and stays stable; long steps, of which no corrector turns far, end on the unstable path beside it.
-//! Only where ever smaller steps lose stability as well does the path itself, and it goes on with a warning.
+//! A step that passes no limit point and yet ends in an unstable equilibrium is redone smaller too, and so is one that ends opposite to
+//! where it was to go. The path of an imperfect column bends away from its critical load and stays stable; long steps, of which no
+//! corrector turns far, end on the unstable path beside it, or on the branch that bends to the other side. Only where ever smaller steps
+//! lose stability as well does the path itself, and it goes on with a warning.
 //!
 //! Polynomials through the last points, with and without the tangents there, were tried: their corrections are smaller, but the first steps,
 //! which find no past to extrapolate, decide, and Newton's method takes as many iterations a step. Half circle and elastica (PL²/EI = 10)
@@ -51,9 +52,11 @@ const WANTED_TURN: f64 = 0.25;
 const LARGEST_TURN: f64 = 0.5;
 /// Predicted turn of any node in one step \[rad\].
 const LARGEST_STEP: f64 = 0.8;
+/// A corrector that turns no node by more than this stays on its side of a bifurcation \[rad\].
+const SURE_TURN: f64 = 0.05;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
-/// A step of this load factor in which stability is lost is believed. The knee of an imperfect path is about as wide as the
+/// A step of this size in which stability is lost is believed. The knee of an imperfect path is about as wide as the
 /// imperfection to the power of 2/3 (Koiter), which leaves it to imperfections of 1e-7.
 const BELIEVED_STEP: f64 = 1e-5;
 
@@ -79,7 +82,7 @@ pub struct Path<'e, 'a> {
     points: Vec<Point>,
     step: f64,
     first_step: f64,
-    /// An unstable equilibrium ahead, by the shortest step that led to one.
+    /// A doubtful equilibrium ahead, by the shortest step that led to one.
     crossing: Option<(Point, f64)>,
     /// Attempted steps so far.
     pub history: Vec<StepRecord>,
@@ -170,19 +173,22 @@ impl<'e, 'a> Path<'e, 'a> {
                 step = self.step;
                 predicted = self.predict(here + step);
             }
+            let predicted_state = predicted.x.clone();
             let target = if step >= left { end } else { here + step };
             let corrected = match self.correct(predicted, target, step) {
                 Ok((mut point, turn)) => {
                     if self.loses_stability(&point) {
                         self.judge_again(&mut point);
                     }
-                    if self.loses_stability(&point) && step > BELIEVED_STEP {
+                    let doubtful = self.loses_stability(&point)
+                        || turn > SURE_TURN && self.turns_back(&point, &predicted_state);
+                    if doubtful && step > BELIEVED_STEP {
                         if let Some(record) = self.history.last_mut() {
                             record.accepted = false;
                         }
                         let at = self.worst(&point.x, &self.last().x);
                         self.crossing = Some((point, turn));
-                        Err((Failure::StabilityLost, at))
+                        Err((Failure::Bifurcation, at))
                     } else {
                         Ok((point, turn))
                     }
@@ -223,10 +229,20 @@ impl<'e, 'a> Path<'e, 'a> {
         self.last()
     }
 
-    /// Whether the load, which is prescribed, leads from here to a point with more unstable directions.
+    /// Whether a point has more unstable directions than the last one although no limit point of the load lies between them.
     fn loses_stability(&self, point: &Point) -> bool {
-        let (before, after) = (self.last().unstable, point.unstable);
-        self.parameter == Parameter::Load && before.zip(after).is_some_and(|(before, after)| after > before)
+        let last = self.last();
+        let along = |rate: &[f64]| rate.last().is_some_and(|load| *load > 0.0);
+        last.unstable.zip(point.unstable).is_some_and(|(before, after)| after > before)
+            && along(&last.rate) == along(&point.rate)
+    }
+
+    /// Whether a point lies on the other side of the last one than was predicted, as on the mirrored branch of a column.
+    fn turns_back(&self, point: &Point, predicted: &[f64]) -> bool {
+        let from_here = |x: &[f64]| -> Vec<f64> {
+            x.iter().zip(&self.last().x).map(|(a, b)| a - b).chain([0.0]).collect()
+        };
+        self.parameter == Parameter::Load && self.dot(&from_here(&point.x), &from_here(predicted)) < 0.0
     }
 
     /// Stability at the point itself: near a critical load what the last increment still changed decides over the sign.
