@@ -403,7 +403,8 @@ fn a_spinning_beam_keeps_momenta_and_energy_for_long_times_and_restarts_in_their
     assert!((middle.get() - 50.0).abs() < 0.01);
     let text = serde_json::to_string(&interrupted.checkpoint).expect("finite numbers");
     let start: Checkpoint = serde_json::from_str(&text).expect("what was written");
-    let rest = finished(solve(&system, &Task { start, ..task(&system, 100.0, integrator) }, &mut |_, _, _| true));
+    let rest =
+        finished(solve(&system, &Task { start, ..task(&system, 100.0, integrator) }, &mut |_, _, _| true));
     assert_eq!(last(&rest).q, last(&solution).q);
     assert_eq!(last(&rest).v, last(&solution).v);
 }
