@@ -98,7 +98,7 @@ impl Traces {
             Line::Dashed => Mark::Dashed,
             Line::Points => Mark::Circles,
         };
-        let shown = self.named.iter().any(|(name, s)| *name == label && s.mark == mark);
+        let shown = self.named.iter().any(|(name, _)| *name == label);
         let series = Series::new(if shown { "" } else { &label }, points, mark, colour).opacity(opacity);
         self.named.push((label, series));
     }
@@ -126,8 +126,8 @@ fn curves(examined: &Examined, curves: &[Curve]) -> Result<Vec<Series>, String> 
         let (_, runs) = examined.runs(curve.run.as_deref())?;
         if let Some(check) = curve.check {
             for (label, points) in errors(examined, check, curve, runs)? {
-                traces.add(label.clone(), points.clone(), Line::Points, curve.color);
-                traces.add(label, points, curve.line, curve.color);
+                traces.add(label.clone(), points.clone(), curve.line, curve.color);
+                traces.add(label, points, Line::Points, curve.color);
             }
             continue;
         }
