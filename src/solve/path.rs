@@ -205,8 +205,8 @@ impl<'e, 'a> Path<'e, 'a> {
                     }
                     // Close to the singular tangent nothing may converge that does beyond it.
                     match self.crossing.take() {
-                        Some((point, turn)) if point.load > self.last().load => {
-                            self.step = point.load - self.last().load;
+                        Some((point, turn)) if point.parameter > here => {
+                            self.step = point.parameter - here;
                             return Ok(self.accept(point, self.step, turn));
                         }
                         _ => return Err(Stuck { load: self.last().load, step, failure, at }),

@@ -105,7 +105,8 @@ fn found(name: &str, trajectory: &Trajectory) -> String {
     lines.join("\n") + "\n\n"
 }
 
-/// Another machine rounds otherwise; a motion of thousands of steps carries that to so many parts of the largest number in a line.
+/// Another machine rounds otherwise; a motion of thousands of steps carries that to so many parts of the largest number in a line, or
+/// of 1 where all are smaller: what is zero but for round-off has no digits to compare.
 const ROUND_OFF: f64 = 1e-8;
 
 fn agree(stored: &str, now: &str) -> bool {
@@ -116,7 +117,7 @@ fn agree(stored: &str, now: &str) -> bool {
             let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
             let (stored, now) = (words(stored), words(now));
             let number = |word: &String| word.parse::<f64>().ok();
-            let scale = stored.iter().filter_map(number).fold(0.0_f64, |m, v| m.max(v.abs()));
+            let scale = stored.iter().filter_map(number).fold(1.0_f64, |m, v| m.max(v.abs()));
             stored.len() == now.len()
                 && stored.iter().zip(&now).all(|(a, b)| match (number(a), number(b)) {
                     (Some(a), Some(b)) => (a - b).abs() <= ROUND_OFF * scale,
