@@ -4,6 +4,7 @@ use super::RunError;
 use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
 use crate::solve::dynamics;
+use crate::solve::newton::Failure;
 use crate::solve::path::Stuck;
 use crate::solve::statics::Solution;
 use crate::system::{System, SystemError, View};
@@ -233,8 +234,8 @@ impl<'a> Look<'a> {
         let (beam, s) = stuck.at;
         let advice = if stuck.step == 0.0 {
             "the undeformed structure can move without resistance: add a support, or give the beam a bending stiffness"
-        } else if self.limited_by_round_off() {
-            "positions in double precision leave forces uncertain by as much as EI/L²: use fewer nodes, none that nearly coincide, \
+        } else if self.limited_by_round_off(&stuck.failure) {
+            "positions in double precision leave forces too uncertain: use fewer nodes, none that nearly coincide, \
              or in a very slender beam a smaller axial stiffness, which changes little else"
         } else {
             "near a limit point the load cannot grow: follow the path with `arc_length` in [analysis.static]; \
@@ -251,11 +252,14 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Whether the round-off of internal forces comes near a force that bends the stiffest beam.
-    fn limited_by_round_off(&self) -> bool {
-        let stiffest =
-            self.model.beams.iter().filter_map(|beam| beam.section.bending_stiffness).fold(0.0, f64::max);
-        stiffest > 0.0 && self.system.round_off() > 0.1 * stiffest / self.system.length().powi(2)
+    /// Whether increments are small but do not vanish, or the round-off of internal forces comes near a force that bends the
+    /// stiffest beam.
+    fn limited_by_round_off(&self, failure: &Failure) -> bool {
+        const SMALL: f64 = 1e-6;
+        let sections = self.model.beams.iter().map(|beam| &beam.section);
+        let stiffest = sections.filter_map(|section| section.bending_stiffness).fold(0.0, f64::max);
+        matches!(failure, Failure::TooSlow { last, .. } if *last < SMALL)
+            || stiffest > 0.0 && self.system.round_off() > 0.1 * stiffest / self.system.length().powi(2)
     }
 
     pub(super) fn dynamics(&self, settings: &Dynamic, solution: dynamics::Solution) -> Trajectory {
