@@ -21,6 +21,8 @@ const SHAPE_POINTS: usize = 201;
 const FRAME_STRIDE: usize = 2;
 /// Round-off of internal forces, relative to the loads, that leaves nothing to converge to.
 const DROWNED: f64 = 1e-2;
+/// An increment so small that did not vanish is round-off \[beam lengths\].
+const STALLED: f64 = 1e-6;
 /// What to try where a beam is crushed.
 const TOO_SOFT: &str = "a beam is a model for small strains: use smaller loads, or a larger axial stiffness";
 /// Frames kept for the animation.
@@ -319,7 +321,7 @@ impl<'a> Look<'a> {
     pub(super) fn stuck(&self, stuck: &Stuck, solution: &Solution) -> RunError {
         let (beam, s) = stuck.at;
         let advice = match stuck.failure {
-            _ if self.drowned() => {
+            _ if self.limited_by_round_off(&stuck.failure) => {
                 "double precision cannot resolve these loads: the stiffness is so large, or nodes are so close, that the \
                  round-off of positions alone makes forces of their size; use fewer nodes, even spacing, or an axial \
                  stiffness that is not far beyond EI/h² with the spacing h"
@@ -350,13 +352,15 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Whether the round-off of internal forces compares with the loads, so that there is nothing to converge to.
-    fn drowned(&self) -> bool {
+    /// Whether increments are small but do not vanish, or the round-off of internal forces compares with the loads, so that there is nothing
+    /// to converge to.
+    fn limited_by_round_off(&self, failure: &Failure) -> bool {
         let mut loads = vec![0.0; self.system.coordinates()];
         self.system.add_load_rate(1.0, self.system.reference(), &mut loads);
         let length = self.system.length();
         let total: f64 = loads.chunks_exact(4).map(|f| f[0].hypot(f[1]).max(f[2].hypot(f[3]) / length)).sum();
-        total > 0.0 && self.system.round_off() > DROWNED * total
+        matches!(failure, Failure::TooSlow { last, .. } if *last < STALLED)
+            || total > 0.0 && self.system.round_off() > DROWNED * total
     }
 
     pub(super) fn dynamics(&self, settings: &Dynamic, solution: dynamics::Solution) -> Trajectory {

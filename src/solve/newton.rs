@@ -1,7 +1,8 @@
 //! Newton's method, which knows nothing of loads or time.
 //!
 //! Convergence is judged by the increment in a scaled norm, which is what the user's accuracy means, and by the scaled
-//! residual, which catches a tangent that lies. Because convergence is quadratic, an increment δ_k with contraction
+//! residual, which catches a tangent that lies; increments below the tolerance that no longer shrink are the round-off of
+//! the forces, which then balance as well as they can. Because convergence is quadratic, an increment δ_k with contraction
 //! Θ = |δ_k|/|δ_{k−1}| leaves an error of about Θ² |δ_k|; iteration stops when that is below the tolerance. The first
 //! contraction also tells the caller how far the predictor was from the solution (Deuflhard, *Newton Methods for
 //! Nonlinear Problems*, 2004, ch. 5).
@@ -98,6 +99,9 @@ pub enum Failure {
         /// The node.
         node: usize,
     },
+    /// Converged, but to an equilibrium that lies beyond a bifurcation, where a path that bends away may still be stable.
+    #[error("the step ends beyond a bifurcation, perhaps on another branch")]
+    Bifurcation,
     /// A step of a motion gains energy that no load puts in.
     #[error("the step would gain energy, {:.1} % of the kinetic", 100.0 * gain)]
     Gain {
@@ -155,6 +159,7 @@ pub fn solve(
         let remaining = size * contraction * contraction;
         if ((remaining <= settings.tolerance && size <= settings.last_increment) || stalled)
             && (size <= 1e-3 * settings.tolerance
+                || (stalled && size <= settings.tolerance)
                 || settings.residual_tolerance == f64::INFINITY
                 || equations.residual(x) <= settings.residual_tolerance)
         {

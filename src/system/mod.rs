@@ -151,10 +151,10 @@ impl System {
             let section = &beam.section;
             let per_length = section.bending_stiffness.map_or(0.0, |ei| ei / curve.length().powi(2));
             stiffness = stiffness.max(section.axial_stiffness.unwrap_or(per_length));
-            // A position is stored to ε L, which changes r' by ε L/h and r'' by ε L/h².
+            // A position is stored to ε L; a cubic element resists that with EA/h, and with 12 EI/h³ across.
             let spacing = basis.nodes().windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
             let axial = section.axial_stiffness.unwrap_or(0.0);
-            let bending = section.bending_stiffness.unwrap_or(0.0) / spacing.powi(2);
+            let bending = 12.0 * section.bending_stiffness.unwrap_or(0.0) / spacing.powi(2);
             round_off = round_off.max(f64::EPSILON * axial.max(bending) * curve.length() / spacing);
             beams.push(BeamPart { name: beam.name.clone(), basis, first_node, straight });
         }
@@ -289,7 +289,7 @@ impl System {
     }
 
     /// By how much the internal forces on a node change when a position changes by its round-off \[N\]:
-    /// ε max(EA, EI/h²) L/h with the smallest spacing h of nodes.
+    /// ε max(EA, 12 EI/h²) L/h with the smallest spacing h of nodes.
     pub fn round_off(&self) -> f64 {
         self.round_off
     }

@@ -474,7 +474,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         self.between(new, after, accelerations)
     }
 
-    /// Keeps every second record of the past where there are too many; rejected ones stay.
+    /// Keeps every second record of the past where there are too many; rejected ones stay unless they are the most.
     fn remember(&mut self, record: StepRecord) {
         let steps = self.method.statistics().steps;
         if record.accepted && !steps.is_multiple_of(self.stride) {
@@ -482,11 +482,15 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
         self.solution.history.push(record);
         if self.solution.history.len() > HISTORY {
-            self.stride *= 2;
+            let rejected = self.solution.history.iter().filter(|record| !record.accepted).count();
+            let mostly_rejected = rejected > HISTORY / 2;
+            if !mostly_rejected {
+                self.stride *= 2;
+            }
             let mut keep = false;
             self.solution.history.retain(|record| {
                 keep = !keep;
-                keep || !record.accepted
+                keep || !(record.accepted || mostly_rejected)
             });
         }
     }
