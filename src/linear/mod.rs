@@ -314,7 +314,7 @@ impl Factor {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots() % 2 == 1),
             Self::Lu(lu) => Some(lu.determinant_is_negative()),
-            Self::Bordered(_) => None,
+            Self::Condensed(_) | Self::Bordered(_) => None,
         }
     }
 

@@ -87,23 +87,9 @@ pub struct CaseText {
     /// What is drawn in the report.
     #[serde(default)]
     pub figure: Vec<Figure>,
-    /// Of a hard case, what makes it hard.
-    pub hard: Option<Hard>,
 }
 
 /// Why a case is hard, in a sentence or two each.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Hard {
-    /// What makes it hard.
-    pub difficulty: String,
-    /// What the plain method does.
-    pub plain: String,
-    /// What ours does.
-    pub ours: String,
-}
-
-/// What makes a problem hard, and what becomes of it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Hard {
