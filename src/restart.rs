@@ -28,17 +28,16 @@ pub struct SavedState {
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum RestartError {
     /// The file cannot be read.
-    #[error("{path}: {source}")]
+    #[error("{path}: {cause}")]
     #[diagnostic(help("give the `state.json` that a run has written into its output directory"))]
     Read {
         /// The file.
         path: PathBuf,
         /// Why.
-        #[source]
-        source: std::io::Error,
+        cause: std::io::Error,
     },
     /// The file is not a saved state.
-    #[error("{path} is not a saved state: {source}")]
+    #[error("{path} is not a saved state: {cause}")]
     #[diagnostic(help(
         "give the `state.json` that a run of this version has written into its output directory"
     ))]
@@ -46,8 +45,7 @@ pub enum RestartError {
         /// The file.
         path: PathBuf,
         /// Why.
-        #[source]
-        source: serde_json::Error,
+        cause: serde_json::Error,
     },
     /// The format is another.
     #[error("the saved state has format {found}, and this version reads format {FORMAT}")]
@@ -103,9 +101,9 @@ impl SavedState {
     /// [`RestartError`] where there is no such file or it is something else.
     pub fn load(path: &Path) -> Result<Self, RestartError> {
         let text = std::fs::read_to_string(path)
-            .map_err(|source| RestartError::Read { path: path.to_path_buf(), source })?;
+            .map_err(|cause| RestartError::Read { path: path.to_path_buf(), cause })?;
         let saved: Self = serde_json::from_str(&text)
-            .map_err(|source| RestartError::Parse { path: path.to_path_buf(), source })?;
+            .map_err(|cause| RestartError::Parse { path: path.to_path_buf(), cause })?;
         if saved.format != FORMAT {
             return Err(RestartError::Format { found: saved.format });
         }
@@ -137,6 +135,13 @@ impl SavedState {
         let finite = state.q.iter().chain(&state.v).chain([&state.time, &state.work]).all(|v| v.is_finite());
         if state.q.len() != system.coordinates() || state.v.len() != system.coordinates() || !finite {
             return mismatch("its coordinates or velocities are incomplete".into());
+        }
+        let Checkpoint { method, memory, step, last_ratio, origin: (origin, _), .. } = &self.checkpoint;
+        let positive = |v: f64| v.is_finite() && v > 0.0;
+        let sound = positive(*step) && positive(*last_ratio) && origin.is_finite();
+        // Where no method is named none has left anything.
+        if !(method.is_empty() || sound && memory.iter().flatten().all(|v| v.is_finite())) {
+            return mismatch("what its integrator carries from step to step is no sound number".into());
         }
         Ok(self.checkpoint.clone())
     }

@@ -1,6 +1,7 @@
 //! Tests of the whole: properties, validation against reference data, regression snapshots, the command line.
 
 mod cli;
+mod hard;
 mod property;
 mod regress;
 mod validate;

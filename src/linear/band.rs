@@ -137,6 +137,13 @@ impl BandLu {
         Ok(Self { n, half, upper: rows, lower, pivots })
     }
 
+    /// Whether det A < 0.
+    pub fn determinant_is_negative(&self) -> bool {
+        let swaps = self.pivots.iter().enumerate().filter(|(k, pivot)| k != *pivot).count();
+        let negative = self.upper.chunks_exact(2 * self.half + 1).filter(|row| row[0] < 0.0).count();
+        (swaps + negative) % 2 == 1
+    }
+
     /// Solves A x = b in place.
     pub fn solve(&self, b: &mut [f64]) {
         let width = 2 * self.half + 1;

@@ -309,6 +309,15 @@ impl Factor {
         }
     }
 
+    /// Whether the determinant is negative; `None` where the factorisation does not tell.
+    pub fn determinant_is_negative(&self) -> Option<bool> {
+        match self {
+            Self::Ldl(ldl) => Some(ldl.negative_pivots() % 2 == 1),
+            Self::Lu(lu) => Some(lu.determinant_is_negative()),
+            Self::Condensed(_) | Self::Bordered(_) => None,
+        }
+    }
+
     /// Number of negative eigenvalues of the factorised `matrix` restricted to motions that the rows of `border` allow;
     /// `None` where it has no symmetry or cannot be told.
     pub fn negative_directions(&self, matrix: &Matrix, border: &[BorderRow]) -> Option<usize> {

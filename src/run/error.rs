@@ -14,7 +14,9 @@ pub enum RunError {
     System(#[from] SystemError),
     /// No equilibrium was found beyond some load factor.
     #[error(
-        "no equilibrium beyond load factor {load:.6}: {cause}; smallest step tried {step:.1e}, worst at s = {s:.4} m of beam `{beam}`"
+        "no equilibrium beyond load factor {}: {cause}; smallest step tried {step:.1e}, worst at s = {} m of beam `{beam}`",
+        plain(*.load, 6),
+        plain(*.s, 4)
     )]
     #[diagnostic(help("{advice}"))]
     NoEquilibrium {
@@ -47,7 +49,9 @@ pub enum RunError {
     Eigen(#[from] crate::solve::eigen::EigenError),
     /// A time step could not be taken.
     #[error(
-        "no step of {step:.1e} s beyond t = {time:.6} s: {cause}; the last iterate changed most at s = {s:.4} m of beam `{beam}`"
+        "no step of {step:.1e} s beyond t = {} s: {cause}; the last iterate changed most at s = {} m of beam `{beam}`",
+        plain(*.time, 6),
+        plain(*.s, 4)
     )]
     #[diagnostic(help("{advice}"))]
     NoStep {
@@ -109,5 +113,14 @@ impl RunError {
             Self::NoEquilibrium { partial, .. } | Self::NoStep { partial, .. } => Some(partial),
             _ => None,
         }
+    }
+}
+
+/// A number with so many decimals, or in powers of ten where these would show too few digits of it or too many.
+fn plain(value: f64, decimals: usize) -> String {
+    if value == 0.0 || (1e-2..1e6).contains(&value.abs()) {
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.decimals$e}")
     }
 }

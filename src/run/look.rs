@@ -1,9 +1,11 @@
 //! Looking at the states of a system: probes, shapes, frames, and the trajectories made of them.
 
 use super::RunError;
+use crate::linear::Singular;
 use crate::model::{ArcLength, Beam, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
 use crate::solve::dynamics;
+use crate::solve::newton::Failure;
 use crate::solve::path::Stuck;
 use crate::solve::statics::Solution;
 use crate::system::{Fields, Reaction, System, SystemError, View};
@@ -17,6 +19,12 @@ use std::f64::consts::TAU;
 const SHAPE_POINTS: usize = 201;
 /// Every so many of them are in a frame of the animation.
 const FRAME_STRIDE: usize = 2;
+/// Round-off of internal forces, relative to the loads, that leaves nothing to converge to.
+const DROWNED: f64 = 1e-2;
+/// An increment so small that did not vanish is round-off \[beam lengths\].
+const STALLED: f64 = 1e-6;
+/// What to try where a beam is crushed.
+const TOO_SOFT: &str = "a beam is a model for small strains: use smaller loads, or a larger axial stiffness";
 /// Frames kept for the animation.
 const FRAMES: usize = 400;
 
@@ -312,11 +320,26 @@ impl<'a> Look<'a> {
 
     pub(super) fn stuck(&self, stuck: &Stuck, solution: &Solution) -> RunError {
         let (beam, s) = stuck.at;
-        let advice = if stuck.step == 0.0 {
-            "the undeformed structure can move without resistance: add a support, or give the beam a bending stiffness"
-        } else {
-            "near a limit point the load cannot grow: follow the path with `arc_length` in [analysis.static]; \
-             if the shape is folded there, use more nodes or smaller loads"
+        let advice = match stuck.failure {
+            _ if self.limited_by_round_off(&stuck.failure) => {
+                "double precision cannot resolve these loads: the stiffness is so large, or nodes are so close, that the \
+                 round-off of positions alone makes forces of their size; use fewer nodes, even spacing, or an axial \
+                 stiffness that is not far beyond EI/h² with the spacing h"
+            }
+            Failure::Singular(Singular { row }) if row >= self.system.coordinates() => {
+                "supports between nodes hold the same motion more than once: leave some out, or use more nodes"
+            }
+            Failure::Crushed { .. } => TOO_SOFT,
+            Failure::NotFinite if stuck.step == 0.0 => {
+                "a load or a stiffness is no number, or beyond what its products leave room for: use other units"
+            }
+            _ if stuck.step == 0.0 => {
+                "the undeformed structure can move without resistance: add a support, or give the beam a bending stiffness"
+            }
+            _ => {
+                "near a limit point the load cannot grow: follow the path with `arc_length` in [analysis.static]; \
+                 if the shape is folded there, use more nodes or smaller loads"
+            }
         };
         RunError::NoEquilibrium {
             load: stuck.load,
@@ -327,6 +350,17 @@ impl<'a> Look<'a> {
             advice: advice.into(),
             partial: Box::new(Trajectory { complete: false, ..self.statics(solution) }),
         }
+    }
+
+    /// Whether increments are small but do not vanish, or the round-off of internal forces compares with the loads, so that there is nothing
+    /// to converge to.
+    fn limited_by_round_off(&self, failure: &Failure) -> bool {
+        let mut loads = vec![0.0; self.system.coordinates()];
+        self.system.add_load_rate(1.0, self.system.reference(), &mut loads);
+        let length = self.system.length();
+        let total: f64 = loads.chunks_exact(4).map(|f| f[0].hypot(f[1]).max(f[2].hypot(f[3]) / length)).sum();
+        matches!(failure, Failure::TooSlow { last, .. } if *last < STALLED)
+            || total > 0.0 && self.system.round_off() > DROWNED * total
     }
 
     pub(super) fn dynamics(&self, settings: &Dynamic, solution: dynamics::Solution) -> Trajectory {
@@ -378,6 +412,7 @@ impl<'a> Look<'a> {
     ) -> RunError {
         let (beam, s) = stuck.at;
         let advice = match settings.integrator.step_control() {
+            _ if matches!(stuck.failure, Failure::Crushed { .. }) => TOO_SOFT,
             StepControl::Fixed(_) => {
                 "give `tolerance` instead of `step`, so that steps are as short as the motion needs them; a smaller `step`; \
                  or more nodes where the beam bends most"

@@ -1,4 +1,4 @@
-//! What supports hold: nothing twice, and in statics every rigid motion of every beam.
+//! What supports hold: nothing twice, no more than a mesh can give, and in statics every rigid motion of every beam.
 
 use crate::model::{FixedRotation, Joint, Model, Place, Support};
 
@@ -6,11 +6,16 @@ use super::error::Fault;
 use super::file::SceneTable;
 use super::to_model::Built;
 
+/// Places nearer to each other than this, per length of the beam, are one: what two supports hold there differs by less
+/// than the equations can tell.
+const NEAR: f64 = 1e-6;
+
 /// Refuses two supports at one point of a beam that hold the same quantity.
-pub(super) fn check_duplicates(file: &SceneTable, model: &Model) -> Result<(), Fault> {
+pub(super) fn check_duplicates(file: &SceneTable, model: &Model, built: &[Built]) -> Result<(), Fault> {
     for (index, later) in model.supports.iter().enumerate() {
         for earlier in model.supports.iter().take(index) {
-            let apart = (later.at.s - earlier.at.s).abs() > 1e-12 * later.at.s.abs();
+            let length = built.get(later.at.beam).map_or(0.0, |beam| beam.curve.length());
+            let apart = (later.at.s - earlier.at.s).abs() > NEAR * length;
             if later.at.beam != earlier.at.beam || apart {
                 continue;
             }

@@ -1,5 +1,7 @@
 //! The `analysis` table → [`Analysis`].
 
+use std::ops::Range;
+
 use crate::model::{
     About, Analysis, ArcLength, Crossing, Dynamic, Event, Integrator, Model, ProbeTarget, Static, StepControl,
 };
@@ -10,7 +12,7 @@ use super::file::{
     AboutName, ArcLengthTable, CrossingName, DynamicTable, EventTable, SceneTable, StaticTable,
 };
 use super::quantity::{Length, Positive, Quantity, Ratio, Time};
-use super::to_basis::Size;
+use super::to_basis::{MAX_MEMORY, Size};
 use super::value::{Count, Located};
 
 /// Points on a path unless the scene says otherwise.
@@ -30,8 +32,8 @@ pub const DYNAMIC_RECORDS: f64 = 200.0;
 pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<Analysis, Fault> {
     let table = file.analysis.get();
     match (&table.statics, &table.dynamic, &table.buckling, &table.modal) {
-        (Some(table), None, None, None) => Ok(Analysis::Static(statics(table, model)?)),
-        (None, Some(table), None, None) => Ok(Analysis::Dynamic(dynamic(table, model)?)),
+        (Some(table), None, None, None) => Ok(Analysis::Static(statics(table, model, size)?)),
+        (None, Some(table), None, None) => Ok(Analysis::Dynamic(dynamic(table, model, size)?)),
         (None, None, Some(table), None) => Ok(Analysis::Buckling { count: modes(&table.count, size)? }),
         (None, None, None, Some(table)) => Ok(Analysis::Modal {
             count: modes(&table.count, size)?,
@@ -56,7 +58,22 @@ fn modes<const MIN: u64>(located: &Located<Count<MIN>>, size: Size) -> Result<us
         return Err(Fault::new(located.span(), format!("found {count} modes"))
             .help(format!("this scene has {most} coordinates and so at most as many modes")));
     }
-    bounded(located, "modes")
+    let modes = bounded(located, "modes")?;
+    // Shapes, their products with both matrices, and the basis in which they are found.
+    check_memory(located.span(), &format!("{count} modes"), 4.0 * count as f64, size)?;
+    Ok(modes)
+}
+
+/// Refuses more states than any memory holds: each is four numbers a node.
+fn check_memory(span: Range<usize>, what: &str, states: f64, size: Size) -> Result<(), Fault> {
+    let memory = states * size.nodes * 32.0 / 1024f64.powi(3);
+    if memory > MAX_MEMORY {
+        return Err(Fault::new(span, format!("{what} of {} nodes need about {memory:.3e} GiB", size.nodes))
+            .help(format!(
+                "all states are kept in memory, up to {MAX_MEMORY} GiB: ask for fewer, or for fewer nodes"
+            )));
+    }
+    Ok(())
 }
 
 fn bounded<const MIN: u64>(count: &Located<Count<MIN>>, what: &str) -> Result<usize, Fault> {
@@ -76,25 +93,33 @@ fn tolerance(value: &Located<Quantity<Ratio, Positive>>) -> Result<f64, Fault> {
     Ok(tolerance)
 }
 
-fn statics(table: &StaticTable, model: &Model) -> Result<Static, Fault> {
+fn statics(table: &StaticTable, model: &Model, size: Size) -> Result<Static, Fault> {
     if let (Some(steps), Some(_)) = (&table.steps, &table.arc_length) {
         return Err(Fault::new(steps.span(), "`steps` beside `arc_length`").help(
             "`steps` records at parts of the load, `arc_length` at points of the path; keep one of them",
         ));
     }
+    if let Some(steps) = &table.steps {
+        let count = steps.get().0;
+        check_memory(steps.span(), &format!("{count} load steps"), count as f64, size)?;
+    }
     Ok(Static {
         steps: table.steps.as_ref().map(|n| bounded(n, "load steps")).transpose()?,
         tolerance: table.tolerance.as_ref().map(tolerance).transpose()?,
-        arc_length: table.arc_length.as_ref().map(|table| arc_length(table, model)).transpose()?,
+        arc_length: table.arc_length.as_ref().map(|table| arc_length(table, model, size)).transpose()?,
     })
 }
 
-fn arc_length(located: &Located<ArcLengthTable>, model: &Model) -> Result<ArcLength, Fault> {
+fn arc_length(located: &Located<ArcLengthTable>, model: &Model, size: Size) -> Result<ArcLength, Fault> {
     let table = located.get();
     if table.until_load.is_none() && table.until_probe.is_none() && table.max_points.is_none() {
         return Err(Fault::new(located.span(), "nothing says where the path ends").help(
             "give `until_load = 1.0`, `until_probe = { probe = \"NAME\", y = -0.5 }` or `max_points = 200`",
         ));
+    }
+    if let Some(points) = &table.max_points {
+        let count = points.get().0;
+        check_memory(points.span(), &format!("{count} points on the path"), count as f64, size)?;
     }
     let until_probe = table.until_probe.as_ref().map(|located| {
         let target = located.get();
@@ -146,7 +171,7 @@ fn event(table: &EventTable, model: &Model) -> Result<Event, Fault> {
     Ok(Event { target: probe_target(&table.probe, table.x, table.y, model)?, crossing, stop: table.stop })
 }
 
-fn dynamic(located: &Located<DynamicTable>, model: &Model) -> Result<Dynamic, Fault> {
+fn dynamic(located: &Located<DynamicTable>, model: &Model, size: Size) -> Result<Dynamic, Fault> {
     let table = located.get();
     let duration = table.duration.si;
     let output_every = match &table.output_every {
@@ -166,6 +191,8 @@ fn dynamic(located: &Located<DynamicTable>, model: &Model) -> Result<Dynamic, Fa
                 )
                 .help(format!("up to {MAX_RECORDS} are legal: every record is kept in memory")));
             }
+            // Positions and velocities.
+            check_memory(every.span(), &format!("{records:.3e} records"), 2.0 * records, size)?;
             value
         }
         None => duration / DYNAMIC_RECORDS,

@@ -47,7 +47,7 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
     for table in &file.support {
         model.supports.push(support(table, &built)?);
     }
-    held::check_duplicates(file, &model)?;
+    held::check_duplicates(file, &model, &built)?;
     loads(file, &built, &mut model)?;
     to_parts::parts(file, &built, &mut model)?;
     initial_velocities(file, &built, &mut model)?;

@@ -177,6 +177,12 @@ impl<'a> Equilibrium<'a> {
         self.factor.as_ref()?.negative_directions(&self.tangent, &self.border)
     }
 
+    /// Whether the determinant of the last tangent is negative, where the factorisation tells. Its sign changes where an odd
+    /// number of directions lose their stiffness, follower loads or not.
+    pub fn determinant_is_negative(&self) -> Option<bool> {
+        self.factor.as_ref()?.determinant_is_negative()
+    }
+
     /// The factorised tangent.
     pub fn factor(&self) -> Option<&Factor> {
         self.factor.as_ref()

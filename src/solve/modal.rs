@@ -57,6 +57,9 @@ pub fn solve(system: &System, load: f64, q: &[f64], count: usize) -> Result<Mode
     let (border, held) = (system.border(load), system.held());
     let pencil = Pencil { a: &shifted, b: &mass, border: &border, held: &held };
     let pairs = largest_reciprocals(&pencil, count + GUARD)?;
+    if pairs.vectors.is_empty() {
+        return Err(EigenError::NotConverged { found: 0, wanted: count });
+    }
     let stiff: Vec<Vec<f64>> = pairs
         .vectors
         .iter()

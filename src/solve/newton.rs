@@ -1,7 +1,8 @@
 //! Newton's method, which knows nothing of loads or time.
 //!
 //! Convergence is judged by the increment in a scaled norm, which is what the user's accuracy means, and by the scaled
-//! residual, which catches a tangent that lies. Because convergence is quadratic, an increment δ_k with contraction
+//! residual, which catches a tangent that lies; increments below the tolerance that no longer shrink are the round-off of
+//! the forces, which then balance as well as they can. Because convergence is quadratic, an increment δ_k with contraction
 //! Θ = |δ_k|/|δ_{k−1}| leaves an error of about Θ² |δ_k|; iteration stops when that is below the tolerance. The first
 //! contraction also tells the caller how far the predictor was from the solution (Deuflhard, *Newton Methods for
 //! Nonlinear Problems*, 2004, ch. 5).
@@ -83,11 +84,24 @@ pub enum Failure {
     #[error("a force or an increment is not finite")]
     NotFinite,
     /// Converged, but so far from the prediction that it may be another equilibrium than the one that continues the path.
-    #[error("the solution lies {turn:.2} rad from the prediction, perhaps on another branch")]
+    #[error("the solution lies {turn:.2} rad from where the path's tangents lead, perhaps on another branch")]
     OtherBranch {
-        /// Largest turn of a node between prediction and solution \[rad\].
+        /// Largest turn of a node between solution and prediction \[rad\].
         turn: f64,
     },
+    /// A node's gradient has shrunk so far that the beam is no beam there.
+    #[error(
+        "the beam is crushed: |r'|, its length against the stress-free one, is down to {stretch:.2} at a node"
+    )]
+    Crushed {
+        /// |r'| there; 0 where it has turned about.
+        stretch: f64,
+        /// The node.
+        node: usize,
+    },
+    /// Converged, but to an equilibrium that lies beyond a bifurcation, where a path that bends away may still be stable.
+    #[error("the step ends beyond a bifurcation, perhaps on another branch")]
+    Bifurcation,
     /// A step of a motion gains energy that no load puts in.
     #[error("the step would gain energy, {:.1} % of the kinetic", 100.0 * gain)]
     Gain {
@@ -145,6 +159,7 @@ pub fn solve(
         let remaining = size * contraction * contraction;
         if ((remaining <= settings.tolerance && size <= settings.last_increment) || stalled)
             && (size <= 1e-3 * settings.tolerance
+                || (stalled && size <= settings.tolerance)
                 || settings.residual_tolerance == f64::INFINITY
                 || equations.residual(x) <= settings.residual_tolerance)
         {
@@ -153,4 +168,32 @@ pub fn solve(
         last = size;
     }
     Err(Failure::TooSlow { iterations: settings.max_iterations, last })
+}
+
+/// |r'| at a node below which no section stands any more. Green's strain gives a force even to a beam that is compressed
+/// to a point and through it; it has long lost any meaning there.
+const CRUSHED: f64 = 0.05;
+
+/// Refuses coordinates in which a node's gradient has all but vanished.
+///
+/// # Errors
+/// [`Failure::Crushed`] with the first such node.
+pub fn not_crushed(q: &[f64]) -> Result<(), Failure> {
+    let square = |node: &[f64]| node[2] * node[2] + node[3] * node[3];
+    match q.chunks_exact(4).position(|node| square(node) < CRUSHED * CRUSHED) {
+        Some(node) => Err(Failure::Crushed { stretch: square(&q[4 * node..]).sqrt(), node }),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a step from `before` to `q` that turns a node's gradient about, or ends where it has all but vanished.
+///
+/// # Errors
+/// [`Failure::Crushed`] with the node.
+pub fn not_crushed_since(before: &[f64], q: &[f64]) -> Result<(), Failure> {
+    let mut pairs = before.chunks_exact(4).zip(q.chunks_exact(4));
+    match pairs.position(|(a, b)| a[2] * b[2] + a[3] * b[3] < 0.0) {
+        Some(node) => Err(Failure::Crushed { stretch: 0.0, node }),
+        None => not_crushed(q),
+    }
 }

@@ -6,6 +6,7 @@
 
 use super::course::Course;
 use crate::basis::BasisTable;
+use std::ops::Range;
 
 /// What a row holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,6 +95,14 @@ impl Constraint {
             *value = 0.0;
         }
         self
+    }
+
+    /// The coordinates that it combines, where they belong to one point.
+    pub fn span(&self) -> Option<Range<usize>> {
+        match &self.fields[..] {
+            [field] => Some(field.first..field.first + 2 * field.shape.len()),
+            _ => None,
+        }
     }
 
     /// n, c and their derivatives by λ; of a joint without the normals.

@@ -100,28 +100,43 @@ pub enum SystemError {
         /// Where \[m\].
         s: f64,
     },
+    /// Supports between nodes ask for more than the mesh can give.
+    #[error(
+        "supports of beam `{beam}` between the nodes from s = {s} m on hold {rows} quantities, and the mesh has {free} free coordinates there"
+    )]
+    #[diagnostic(help(
+        "use more elements or nodes, put nodes where the supports are, or leave some supports out"
+    ))]
+    OverSupported {
+        /// The beam's name.
+        beam: String,
+        /// The first of these nodes \[m\].
+        s: f64,
+        /// Rows.
+        rows: usize,
+        /// Coordinates that no support at a node holds.
+        free: usize,
+    },
     /// The shape functions could not be built.
-    #[error("beam `{beam}`: {source}")]
+    #[error("beam `{beam}`: {cause}")]
     Basis {
         /// The beam's name.
         beam: String,
         /// Why.
-        #[source]
-        source: Box<BasisError>,
+        cause: Box<BasisError>,
     },
     /// The centreline is not a curve.
-    #[error("beam `{beam}`: {source}")]
+    #[error("beam `{beam}`: {cause}")]
     Curve {
         /// The beam's name.
         beam: String,
         /// Why.
-        #[source]
-        source: CurveError,
+        cause: CurveError,
     },
 }
 
 impl SystemError {
     pub(crate) fn basis(beam: &str, source: BasisError) -> Self {
-        Self::Basis { beam: beam.to_owned(), source: Box::new(source) }
+        Self::Basis { beam: beam.to_owned(), cause: Box::new(source) }
     }
 }

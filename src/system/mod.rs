@@ -134,7 +134,7 @@ impl System {
         let mut reference = Vec::new();
         let (mut stiffness, mut round_off) = (0.0_f64, 0.0_f64);
         for beam in &model.beams {
-            let in_curve = |source| SystemError::Curve { beam: beam.name.clone(), source };
+            let in_curve = |cause| SystemError::Curve { beam: beam.name.clone(), cause };
             let in_basis = |e| SystemError::basis(&beam.name, e);
             let curve = Curve::new(&beam.centreline).map_err(in_curve)?;
             let basis = Basis::new(&beam.discretization, curve.length()).map_err(in_basis)?;
@@ -151,10 +151,10 @@ impl System {
             let section = &beam.section;
             let per_length = section.bending_stiffness.map_or(0.0, |ei| ei / curve.length().powi(2));
             stiffness = stiffness.max(section.axial_stiffness.unwrap_or(per_length));
-            // A position is stored to ε L, which changes r' by ε L/h and r'' by ε L/h².
+            // A position is stored to ε L; a cubic element resists that with EA/h, and with 12 EI/h³ across.
             let spacing = basis.nodes().windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
             let axial = section.axial_stiffness.unwrap_or(0.0);
-            let bending = section.bending_stiffness.unwrap_or(0.0) / spacing.powi(2);
+            let bending = 12.0 * section.bending_stiffness.unwrap_or(0.0) / spacing.powi(2);
             round_off = round_off.max(f64::EPSILON * axial.max(bending) * curve.length() / spacing);
             beams.push(BeamPart { name: beam.name.clone(), basis, first_node, straight });
         }
@@ -198,6 +198,7 @@ impl System {
             system.constraints.extend(rows);
             system.sources.push(Source::Rows(first..system.constraints.len()));
         }
+        system.check_room()?;
         Ok(system)
     }
 
@@ -231,6 +232,25 @@ impl System {
         let view =
             View::point(&part.basis, part.offset(), s).map_err(|e| SystemError::basis(&part.name, e))?;
         Ok(view.fields(&self.reference).gradient)
+    }
+
+    /// Refuses more constraint rows on the same coordinates than there are free ones.
+    fn check_room(&self) -> Result<(), SystemError> {
+        let held = self.held();
+        for span in self.constraints.iter().filter_map(Constraint::span) {
+            let rows = self.constraints.iter().filter(|other| other.span() == Some(span.clone())).count();
+            let free = held[span.clone()].iter().filter(|held| !**held).count();
+            if rows > free {
+                let (beam, s) = self.place_of(span.start);
+                return Err(SystemError::OverSupported {
+                    beam: self.beams[beam].name.clone(),
+                    s,
+                    rows,
+                    free,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// The beams' parts.
@@ -269,7 +289,7 @@ impl System {
     }
 
     /// By how much the internal forces on a node change when a position changes by its round-off \[N\]:
-    /// ε max(EA, EI/h²) L/h with the smallest spacing h of nodes.
+    /// ε max(EA, 12 EI/h²) L/h with the smallest spacing h of nodes.
     pub fn round_off(&self) -> f64 {
         self.round_off
     }

@@ -6,28 +6,28 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-pub(super) const ROLL_UP: &str = include_str!("../scenes/roll-up-ancf.toml");
+pub(crate) const ROLL_UP: &str = include_str!("../scenes/roll-up-ancf.toml");
 
 /// A folder with `scene.toml` in it.
-pub(super) fn folder(text: &str) -> TempDir {
+pub(crate) fn folder(text: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.toml"), text).unwrap();
     folder
 }
 
-pub(super) fn ancf(folder: &Path, arguments: &[&str]) -> Output {
+pub(crate) fn ancf(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_ancf")).current_dir(folder).args(arguments).output().unwrap()
 }
 
-pub(super) fn status(output: &Output) -> i32 {
+pub(crate) fn status(output: &Output) -> i32 {
     output.status.code().unwrap_or_else(|| panic!("killed: {}", stderr(output)))
 }
 
-pub(super) fn stderr(output: &Output) -> String {
+pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-pub(super) fn entries(folder: &Path) -> Vec<String> {
+pub(crate) fn entries(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
         .unwrap()
         .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())

@@ -24,6 +24,18 @@ fn interrupted(folder: &Path, times: usize) -> Output {
 /// The same for any command, once it is `ready`.
 #[cfg(unix)]
 fn interrupted_once(ready: impl Fn() -> bool, folder: &Path, arguments: &[&str], times: usize) -> Output {
+    signalled("-INT", ready, folder, arguments, times)
+}
+
+/// The same by any signal.
+#[cfg(unix)]
+fn signalled(
+    signal: &str,
+    ready: impl Fn() -> bool,
+    folder: &Path,
+    arguments: &[&str],
+    times: usize,
+) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_ancf"))
         .current_dir(folder)
         .args(arguments)
@@ -38,7 +50,7 @@ fn interrupted_once(ready: impl Fn() -> bool, folder: &Path, arguments: &[&str],
     for _ in 0..times {
         sleep(Duration::from_millis(400));
         let sent =
-            Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill exists");
+            Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill exists");
         assert!(sent.success(), "the program ended by itself");
     }
     while child.try_wait().expect("a child").is_none() {
@@ -75,6 +87,28 @@ fn an_interrupted_motion_leaves_what_it_computed() {
     assert!(page.contains("<h2>Incomplete</h2>") && page.contains("scene.toml: interrupted"));
     let probes = fs::read_to_string(folder.path().join("out/scene/probes.csv")).expect("a table");
     assert!(probes.lines().count() > 1);
+}
+
+/// SIGTERM is what a queue sends before it kills.
+#[cfg(unix)]
+#[test]
+fn a_motion_that_was_told_to_end_goes_on_bit_for_bit() {
+    let folder = folder(&PENDULUM.replace("\"2.5 s\"", "8"));
+    let run = |arguments: &[&str]| {
+        let output = ancf(folder.path(), &[&["run", "scene.toml", "-q"], arguments].concat());
+        assert_eq!(status(&output), 0, "{}", stderr(&output));
+    };
+    run(&["-o", "whole"]);
+    let first = folder.path().join("first");
+    for signal in ["-INT", "-TERM"] {
+        let arguments = ["run", "scene.toml", "-o", "first"];
+        let output = signalled(signal, || first.is_dir(), folder.path(), &arguments, 1);
+        assert_eq!(status(&output), 1, "{}", stderr(&output));
+        run(&["-o", "second", "--from", "first/state.json"]);
+        let state = |name: &str| fs::read(folder.path().join(name).join("state.json")).expect("a state");
+        assert!(state("whole") == state("second"), "{signal}");
+        fs::remove_dir_all(&first).expect("a directory");
+    }
 }
 
 #[cfg(unix)]

@@ -1,5 +1,6 @@
 //! What people read when a scene is wrong, word for word.
 
+use ancf::run::{Control, RunError};
 use ancf::scene::{self, Scene};
 
 const BASE: &str = r#"title = "Cantilever"
@@ -231,4 +232,17 @@ fn compare(name: &str, text: &str) {
     insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false, omit_expression => true }, {
         insta::assert_snapshot!(name, text);
     });
+}
+
+/// Nodes a micrometre apart: what the round-off of positions hides is not blamed on a limit point.
+#[test]
+fn nodes_that_nearly_coincide_are_named_where_no_equilibrium_is_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("near.toml");
+    let text = BASE.replace("elements = 3", "nodes = [0.0, 0.6, 0.600001, 1.2, 1.8]");
+    std::fs::write(&path, text).expect("a file");
+    let scene = Scene::load(&path, &[]).expect("a legal scene");
+    let found = ancf::run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
+    let Err(RunError::NoEquilibrium { advice, .. }) = found else { panic!("forces cannot balance here") };
+    assert!(advice.contains("none that nearly coincide"), "{advice}");
 }

@@ -1,6 +1,6 @@
 //! The program as its users meet it: commands, exit statuses, messages, files.
 
-mod commands;
+pub(crate) mod commands;
 mod cost;
 mod interrupt;
 mod messages;

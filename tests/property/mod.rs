@@ -5,7 +5,7 @@ mod agreement;
 mod basis;
 mod derivatives;
 mod dynamics;
-mod generators;
+pub mod generators;
 mod invariance;
 mod linear;
 mod modal;
@@ -16,7 +16,7 @@ mod supports;
 use proptest::test_runner::{Config, FileFailurePersistence};
 
 /// So many random cases; what once failed is kept beside the test and tried again first.
-fn cases(count: u32) -> Config {
+pub fn cases(count: u32) -> Config {
     let beside = FileFailurePersistence::WithSource("regressions");
     Config { cases: count, failure_persistence: Some(Box::new(beside)), ..Config::default() }
 }

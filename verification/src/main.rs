@@ -1,5 +1,7 @@
 //! `verify`: makes the reference data of the verification cases, and reports how the solver compares with it.
 
+#![forbid(unsafe_code)]
+
 mod beside;
 mod cost;
 mod freeze;

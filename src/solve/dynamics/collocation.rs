@@ -261,6 +261,9 @@ impl<'a> Collocation<'a> {
             if !(size.is_finite() && residual.is_finite()) {
                 return Err(Failure::NotFinite);
             }
+            if size == 0.0 {
+                return Ok(());
+            }
             if last[1] > 0.0 {
                 rate = if last[0] > 0.0 { (size / last[0]).sqrt() } else { size / last[1] };
             }

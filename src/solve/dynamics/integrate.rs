@@ -22,7 +22,7 @@ use super::tableau::Tableau;
 use super::{Checkpoint, Solution, State, Stuck};
 use crate::linear::Singular;
 use crate::model::{Crossing, Integrator, StepControl};
-use crate::solve::newton::{Failure, Iterations};
+use crate::solve::newton::{Failure, Iterations, not_crushed};
 use crate::system::{System, View};
 use crate::trajectory::{Statistics, StepRecord};
 
@@ -152,7 +152,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
         let continued = name == task.integrator.to_string() && method.restore(memory);
         let (step, origin) = match control {
-            _ if continued => (step, origin),
+            _ if continued && on_grid(control, origin, state.time) => (step, origin),
             StepControl::Fixed(step) => (step, (state.time, 0)),
             StepControl::Tolerance(tolerance) => {
                 (first_step(system, task, &*method, [&state.v, &acceleration], tolerance), (state.time, 0))
@@ -238,6 +238,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                 }),
                 Some(_) => result,
             };
+            let result = result.and_then(|error| not_crushed(&new.q).map(|()| error));
             let iterations = record.increments.len();
             let ratio = match (&result, accuracy) {
                 (Ok(error), Some(accuracy)) => error / accuracy,
@@ -274,7 +275,11 @@ impl<'t, 'a> Driver<'t, 'a> {
                 return Ok(());
             }
             let stuck = |method: &dyn Method, failure| {
-                let at = self.system.place_of(worst(method.last_increment()));
+                let unknown = match failure {
+                    Failure::Crushed { node, .. } => 4 * node,
+                    _ => worst(method.last_increment()),
+                };
+                let at = self.system.place_of(unknown);
                 Stuck { time: self.state.time, step: h, failure, at }
             };
             self.method.statistics().rejected_steps += 1;
@@ -312,8 +317,11 @@ impl<'t, 'a> Driver<'t, 'a> {
         let (work, _) = self.work(new, new.time, None);
         let work = work - self.state.work;
         let gain = (after.total() - before.total() - work) / before.kinetic.max(after.kinetic);
-        // Also refuses a NaN.
-        if gain <= LARGEST_GAIN { Ok(()) } else { Err(Failure::Gain { gain }) }
+        match gain {
+            _ if gain <= LARGEST_GAIN => Ok(()),
+            _ if gain.is_nan() => Err(Failure::NotFinite),
+            _ => Err(Failure::Gain { gain }),
+        }
     }
 
     /// Where the present step of fixed length ends.
@@ -466,7 +474,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         self.between(new, after, accelerations)
     }
 
-    /// Keeps every second record of the past where there are too many; rejected ones stay.
+    /// Keeps every second record of the past where there are too many; rejected ones stay unless they are the most.
     fn remember(&mut self, record: StepRecord) {
         let steps = self.method.statistics().steps;
         if record.accepted && !steps.is_multiple_of(self.stride) {
@@ -474,13 +482,28 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
         self.solution.history.push(record);
         if self.solution.history.len() > HISTORY {
-            self.stride *= 2;
+            let rejected = self.solution.history.iter().filter(|record| !record.accepted).count();
+            let mostly_rejected = rejected > HISTORY / 2;
+            if !mostly_rejected {
+                self.stride *= 2;
+            }
             let mut keep = false;
             self.solution.history.retain(|record| {
                 keep = !keep;
-                keep || !record.accepted
+                keep || !(record.accepted || mostly_rejected)
             });
         }
+    }
+}
+
+/// Whether a time lies in the step of fixed length that is to be taken next; a saved state may say otherwise.
+fn on_grid(control: StepControl, (start, taken): (f64, u64), time: f64) -> bool {
+    match control {
+        StepControl::Fixed(step) => {
+            let parts = (time - start) / step - taken as f64;
+            (-SLACK..1.0 + SLACK).contains(&parts)
+        }
+        StepControl::Tolerance(_) => true,
     }
 }
 

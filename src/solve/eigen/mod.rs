@@ -44,6 +44,10 @@ pub enum EigenError {
         /// The analysis.
         analysis: &'static str,
     },
+    /// Supports and constraints leave no motion.
+    #[error("the supports hold every coordinate of the mesh: nothing is left that could move")]
+    #[diagnostic(help("use more elements or nodes, or fewer supports"))]
+    NoMotion,
     /// The projected problem could not be solved.
     #[error("the projected eigenproblem did not converge")]
     Projection,
@@ -103,8 +107,11 @@ const SHARE: usize = 4;
 /// The `count` largest positive 1/θ, fewer where there are not so many.
 ///
 /// # Errors
-/// [`EigenError`] where A is singular or indefinite on the allowed motions, or an iteration fails.
+/// [`EigenError`] where there are no allowed motions, A is singular or indefinite on them, or an iteration fails.
 pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, EigenError> {
+    if pencil.motions() == 0 {
+        return Err(EigenError::NoMotion);
+    }
     if pencil.motions() <= FEW.max(SHARE * count) {
         dense::largest_reciprocals(pencil, count)
     } else {

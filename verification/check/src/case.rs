@@ -4,6 +4,12 @@
 //! title = "Cantilever under a dead tip load"
 //! claim = "One sentence that is true or false."
 //! source = "Where the problem comes from."
+//! nightly = true                        # left out of `cargo test`; default false
+//!
+//! [hard]                                # only where it is: a line in the report's page of hard cases
+//! difficulty = "What makes it hard."
+//! plain = "What the plain method does."
+//! ours = "What ours does."
 //!
 //! [oracle.shooting]                     # → reference_data/<case>/shooting.csv
 //! class = "closed-form"                 # closed-form | published | code | integrator | refinement
@@ -65,6 +71,11 @@ pub struct CaseText {
     pub claim: String,
     /// Where the problem comes from.
     pub source: String,
+    /// Takes longer than some seconds: compared by the report and by `cargo test -- --ignored` alone.
+    #[serde(default)]
+    pub nightly: bool,
+    /// Why this is difficult; the report has a page of such cases.
+    pub hard: Option<Hard>,
     /// References, by the name of their file.
     #[serde(default)]
     pub oracle: IndexMap<String, Oracle>,
@@ -76,6 +87,18 @@ pub struct CaseText {
     /// What is drawn in the report.
     #[serde(default)]
     pub figure: Vec<Figure>,
+}
+
+/// Why a case is hard, in a sentence or two each.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Hard {
+    /// What makes it hard.
+    pub difficulty: String,
+    /// What the plain method does.
+    pub plain: String,
+    /// What ours does.
+    pub ours: String,
 }
 
 /// How much a reference can be trusted, strongest first.

@@ -28,7 +28,8 @@ pub struct Figure {
     pub curve: Vec<Curve>,
 }
 
-/// One curve for each member of a family that `only` leaves, from the run or, with `oracle`, from the reference.
+/// One curve for each member of a family that `only` leaves, from the run or, with `oracle`, from the reference. With `check`,
+/// one for each set of runs that differ in nothing but the variable `x`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Curve {
@@ -44,9 +45,12 @@ pub struct Curve {
     /// Rows of the reference.
     #[serde(default, rename = "where")]
     pub rows: IndexMap<String, Scalar>,
-    /// Quantity or column on the horizontal axis.
+    /// Draw the errors of this check, from 1.
+    pub check: Option<usize>,
+    /// Quantity, column or variable on the horizontal axis.
     pub x: String,
-    /// Quantity or column on the vertical axis.
+    /// Quantity or column on the vertical axis; not with `check`.
+    #[serde(default)]
     pub y: String,
     /// Appearance.
     #[serde(default)]

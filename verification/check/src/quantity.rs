@@ -8,7 +8,7 @@
 //! | `parameter` | load factor or time \[s\] itself | time or load factor |
 //! | `shape.x` (`s`, `y`, `angle`, `strain`, `curvature`), `shape.<beam>.x` | the last state | s \[m\] |
 //! | `frequency.<k>`, `load-factor.<k>` | k-th from 1, \[Hz\] or – | – |
-//! | `statistics.<name>` | counts, as in `summary.json` | – |
+//! | `statistics.<name>` | counts, as in `summary.json`; `most_iterations` of an accepted step | – |
 //! | `interpolated.stretch` (`bend`) | ½∫EA ε² ds, ½∫EI κ² ds of exact nodal values \[J\] | – |
 //! | `interpolated.distance` | largest distance of 201 even places of the interpolated curve from the exact one \[m\] | – |
 //! | `interpolated.x` (`s`, `y`, `curvature`, `strain`) | the interpolated curve | s \[m\] |
@@ -195,6 +195,9 @@ fn statistic(t: &Trajectory, name: &str) -> std::result::Result<Values, String> 
         "tangent_evaluations" => s.tangent_evaluations,
         "factorizations" => s.factorizations,
         "degrees_of_freedom" => t.degrees_of_freedom,
+        "most_iterations" => {
+            t.history.iter().filter(|s| s.accepted).map(|s| s.increments.len()).max().unwrap_or(0)
+        }
         _ => return Err("no such count; see `statistics` in summary.json".to_owned()),
     };
     Ok(Values::Number(count as f64))

@@ -102,6 +102,12 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
         probes: Vec::new(),
         analysis: question(analysis)?,
     };
+    if let Some(joint) = model.joints.first() {
+        return Err(none(&format!("{joint:?}")));
+    }
+    if let Some(part) = model.parts.first() {
+        return Err(none(&format!("{part:?}")));
+    }
     for support in &model.supports {
         let moved = support.displacement;
         if [moved.x, moved.y, moved.angle] != [0.0; 3] {
@@ -130,6 +136,7 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
                 description.gravity[1] += y;
             }
             Load::DistributedForce { .. } => return Err(none("a distributed force")),
+            Load::InTime { .. } => return Err(none("a load that follows time")),
         }
     }
     for given in &model.initial_velocities {

@@ -98,7 +98,7 @@ impl Traces {
             Line::Dashed => Mark::Dashed,
             Line::Points => Mark::Circles,
         };
-        let shown = self.named.iter().any(|(name, s)| *name == label && s.mark == mark);
+        let shown = self.named.iter().any(|(name, _)| *name == label);
         let series = Series::new(if shown { "" } else { &label }, points, mark, colour).opacity(opacity);
         self.named.push((label, series));
     }
@@ -124,6 +124,13 @@ fn curves(examined: &Examined, curves: &[Curve]) -> Result<Vec<Series>, String> 
             continue;
         }
         let (_, runs) = examined.runs(curve.run.as_deref())?;
+        if let Some(check) = curve.check {
+            for (label, points) in errors(examined, check, curve, runs)? {
+                traces.add(label.clone(), points.clone(), curve.line, curve.color);
+                traces.add(label, points, Line::Points, curve.color);
+            }
+            continue;
+        }
         for run in runs.iter().filter(|run| run.member.is(&curve.only)) {
             let label = match (&curve.label, &curve.oracle) {
                 (Some(label), _) => run.member.fill(label)?,
@@ -138,6 +145,32 @@ fn curves(examined: &Examined, curves: &[Curve]) -> Result<Vec<Series>, String> 
         }
     }
     Ok(traces.series())
+}
+
+/// Errors of a check over the variable on the horizontal axis; one set for each of the other axes' points.
+fn errors(
+    examined: &Examined,
+    check: usize,
+    curve: &Curve,
+    runs: &[Run],
+) -> Result<Vec<(String, Points)>, String> {
+    let mut groups: Vec<(String, Points)> = Vec::new();
+    for outcome in examined.outcomes.iter().filter(|o| o.check + 1 == check && !o.is_rate()) {
+        let Some(run) = outcome.run.and_then(|k| runs.get(k)).filter(|run| run.member.is(&curve.only)) else {
+            continue;
+        };
+        let x = run.member.fill(&format!("{{{}}}", curve.x))?;
+        let x = x.parse().map_err(|_| format!("`{}` is no number: `{x}`", curve.x))?;
+        let label = match &curve.label {
+            Some(label) => run.member.fill(label)?,
+            None => run.member.label_without(&curve.x),
+        };
+        match groups.iter_mut().find(|(name, _)| *name == label) {
+            Some((_, points)) => points.push([x, outcome.error]),
+            None => groups.push((label, vec![[x, outcome.error]])),
+        }
+    }
+    if groups.is_empty() { Err(format!("check {check} has no runs to draw")) } else { Ok(groups) }
 }
 
 fn points(x: &[f64], y: &[f64]) -> Points {

@@ -4,7 +4,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `page` | the list of pages, and the one file that holds them |
-//! | `overview`, `case`, `work`, `mutants` | a kind of page each: what its template shows, made from what was found |
+//! | `overview`, `case`, `hard`, `work`, `mutants` | a kind of page each: what its template shows, made from what was found |
 //! | `check`, `figure`, `number` | parts of a case's page |
 //! | `before` | an earlier report, to compare with |
 //!
@@ -14,6 +14,7 @@ mod before;
 mod case;
 mod check;
 mod figure;
+mod hard;
 mod instructions;
 mod mutants;
 mod number;
@@ -159,6 +160,7 @@ fn pages(
     for entry in entries {
         pages.push(case::page(suite, entry)?);
     }
+    pages.push(hard::page(entries)?);
     pages.extend(work::pages(suite, measured)?);
     pages.push(scaling::page(&suite.root.join(crate::scaling::FILE))?);
     pages.push(instructions::page(&suite.root.join(crate::instructions::HISTORY))?);
@@ -220,10 +222,11 @@ pub fn machine() -> String {
 mod tests {
     use super::*;
 
-    /// Two cases run as ever, one that compares curves, and one that cannot be run.
+    /// Cases run as ever, one that compares curves and one that is hard, and one that cannot be run.
     fn file() -> String {
         let suite = Suite::here();
-        let mut entries = run_all(&suite, &["distributed-load".to_owned(), "euler-column".to_owned()]);
+        let names = ["distributed-load", "euler-column", "hard-shape-parameter"].map(str::to_owned);
+        let mut entries = run_all(&suite, &names);
         let error = ancf_check::Error::Check {
             case: "broken".into(),
             check: "1".into(),
@@ -263,6 +266,16 @@ mod tests {
         assert!(
             page.iter().all(|page| page.matches("<svg").count() >= 3 && !page.contains("nothing to draw"))
         );
+    }
+
+    #[test]
+    fn the_page_of_hard_cases_shows_those_that_say_why_they_are() {
+        let file = file();
+        let page = between(&file, "<section class=\"page\" id=\"hard-cases\">", "</section>");
+        let [page] = page[..] else { panic!("one page of hard cases") };
+        assert!(page.contains("href=\"#hard-shape-parameter\"") && page.contains("double precision"));
+        assert!(!page.contains("href=\"#euler-column\"") && page.contains("broken could not be examined"));
+        assert!(page.contains("<svg") && !page.contains("nothing to draw"));
     }
 
     #[test]

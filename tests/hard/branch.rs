@@ -1,0 +1,137 @@
+//! Branch jumps: whatever step the control chooses, it ends at the equilibrium to which the path leads.
+
+use crate::property::cases;
+use crate::property::generators::clamp;
+use ancf::model::{
+    Analysis, ArcLength, Beam, Centreline, Discretization, GaussPoints, Kernel, Load, Model, Nodes, Place,
+    Probe, Section, SideCondition, Static, StrainMeasure,
+};
+use ancf::run::{Control, RunError, run};
+use ancf::trajectory::{ProbeSample, Trajectory};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+
+/// Load steps that follow a path closely: no node turns by more than some 0.1 rad in one.
+const SMALL_STEPS: usize = 200;
+
+fn discretization() -> impl Strategy<Value = Discretization> {
+    prop_oneof![
+        (4..13_usize).prop_map(|elements| Discretization::Ancf { nodes: Nodes::Uniform(elements + 1) }),
+        (6..13_usize).prop_map(|nodes| Discretization::Rpim {
+            nodes: Nodes::Uniform(nodes),
+            kernel: Kernel::Multiquadric { q: 1.03, shape: 5.0 },
+            polynomial_terms: 2,
+            side_condition: SideCondition::Plus,
+            neighbours: 2,
+        }),
+    ]
+}
+
+/// Loads on a beam with L = EI = 1, from weak to far beyond what linear theory is good for.
+fn loads() -> impl Strategy<Value = Vec<Load>> {
+    let size = |largest: f64| {
+        (-2.0..0.0_f64, 0.0..2.0 * PI).prop_map(move |(decades, angle)| {
+            let value = largest * 10.0_f64.powf(decades);
+            [value * angle.cos(), value * angle.sin()]
+        })
+    };
+    let tip = Place { beam: 0, s: 1.0 };
+    let force = (size(20.0), 0.3..1.0_f64, any::<bool>()).prop_map(|(value, s, follower)| Load::Force {
+        at: Place { beam: 0, s },
+        value,
+        follower,
+    });
+    let moment = (-2.0 * PI..2.0 * PI).prop_map(move |value| Load::Moment { at: tip, value });
+    let distributed = (size(40.0), any::<bool>()).prop_map(|(value, follower)| Load::DistributedForce {
+        beam: 0,
+        value,
+        follower,
+    });
+    prop::collection::vec(prop_oneof![force, moment, distributed], 1..4)
+}
+
+fn cantilever() -> impl Strategy<Value = Model> {
+    let centreline = prop_oneof![
+        Just(Centreline::Line { start: [0.0; 2], end: [1.0, 0.0] }),
+        (0.5..3.0_f64).prop_map(|opening| Centreline::Arc {
+            center: [0.0, 1.0 / opening],
+            radius: 1.0 / opening,
+            from: -0.5 * PI,
+            to: opening - 0.5 * PI,
+        }),
+    ];
+    (discretization(), centreline, loads(), 3.0..7.0_f64, any::<bool>()).prop_map(
+        |(discretization, centreline, loads, slenderness, green)| Model {
+            beams: vec![Beam {
+                name: "beam".into(),
+                centreline,
+                section: Section {
+                    axial_stiffness: Some(10.0_f64.powf(slenderness)),
+                    bending_stiffness: Some(1.0),
+                    mass_per_length: None,
+                },
+                strain: if green { StrainMeasure::Green } else { StrainMeasure::Engineering },
+                discretization,
+                gauss_points: GaussPoints { stretch: 4, bend: 3, lobatto: false },
+            }],
+            supports: vec![clamp()],
+            loads,
+            probes: [0.5, 1.0].map(|s| Probe { name: s.to_string(), at: Place { beam: 0, s } }).to_vec(),
+            ..Model::default()
+        },
+    )
+}
+
+fn analysis(model: &Model, settings: Static) -> Result<Trajectory, RunError> {
+    run(model, &Analysis::Static(settings), &mut |_| Control::Continue)
+}
+
+fn last(trajectory: &Trajectory) -> Vec<ProbeSample> {
+    trajectory.probes.iter().map(|probe| *probe.samples.last().expect("a state")).collect()
+}
+
+/// The last equilibrium, and where the path ended if the full load has none.
+fn end(model: &Model, steps: Option<usize>) -> (Vec<ProbeSample>, Option<f64>) {
+    match analysis(model, Static { steps, ..Static::default() }) {
+        Ok(trajectory) => (last(&trajectory), None),
+        Err(RunError::NoEquilibrium { load, partial, .. }) => (last(&partial), Some(load)),
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Where the path first has this load factor, followed in small steps by arc length.
+fn along_path(model: &Model, load: f64) -> Vec<ProbeSample> {
+    let arc =
+        ArcLength { until_load: Some(load), max_points: 20_000, max_step: Some(5e-3), until_probe: None };
+    last(&analysis(model, Static { arc_length: Some(arc), ..Static::default() }).expect("a path"))
+}
+
+fn apart(a: &[ProbeSample], b: &[ProbeSample]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a.x - b.x).hypot(a.y - b.y).max((a.angle - b.angle).abs()))
+        .fold(0.0, f64::max)
+}
+
+proptest! {
+    #![proptest_config(cases(200))]
+
+    #[test]
+    fn chosen_steps_end_where_small_steps_end(model in cantilever()) {
+        let (chosen, stopped) = end(&model, None);
+        let (small, limit) = end(&model, Some(SMALL_STEPS));
+        match (stopped, limit) {
+            (None, None) => prop_assert!(apart(&chosen, &small) < 1e-6, "{chosen:?} {small:?}"),
+            // A limit point, which both find.
+            (Some(a), Some(b)) if (a - b).abs() < 1e-3 => {}
+            // A fold of few elements that lock, shorter than a step: beyond it the path goes on, and there lies the solution.
+            (stopped, Some(limit)) if stopped.is_none_or(|load| load > limit) => {
+                // At a limit point, shortly before it, from where the state is as far as the root of what is left of the load.
+                let (load, allowed) = stopped.map_or((1.0, 1e-6), |load| (load - 1e-4, 5e-2));
+                let path = along_path(&model, load);
+                prop_assert!(apart(&chosen, &path) < allowed, "{chosen:?} {path:?}");
+            }
+            ends => prop_assert!(false, "{ends:?}"),
+        }
+    }
+}

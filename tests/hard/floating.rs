@@ -1,0 +1,166 @@
+//! The edge of floating point: what overflows or is no number is found at once, and the same run gives the same bits.
+
+use ancf::model::{Analysis, Load, Model};
+use ancf::restart::SavedState;
+use ancf::run::{Control, RunError, run, run_from};
+use ancf::scene::{self, Scene};
+use ancf::trajectory::{Seconds, Trajectory};
+use std::path::Path;
+
+const TIP_LOAD: &str = include_str!("../scenes/tip-load.toml");
+const PENDULUM: &str = include_str!("../scenes/soft-pendulum.toml");
+const ACCURATE: &str = include_str!("../scenes/soft-pendulum-accurate.toml");
+const MODAL: &str = include_str!("../scenes/modal.toml");
+
+fn parsed(text: &str) -> Scene {
+    scene::parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn outcome(model: &Model, analysis: &Analysis) -> Result<Trajectory, RunError> {
+    let mut steps = 0;
+    run(model, analysis, &mut |_| {
+        steps += 1;
+        assert!(steps < 10_000, "no end in sight");
+        Control::Continue
+    })
+}
+
+fn short() -> String {
+    PENDULUM.replace("\"2.5 s\"", "0.05")
+}
+
+/// A program may hand over what no scene file can say.
+#[test]
+fn loads_that_are_no_numbers_are_found_at_once() {
+    for text in [TIP_LOAD.to_owned(), short()] {
+        let scene = parsed(&text);
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut model = scene.model().clone();
+            let at = model.probes[0].at;
+            model.loads.push(Load::Force { at, value: [value, 0.0], follower: false });
+            let error = outcome(&model, scene.analysis()).expect_err("a load that is no number");
+            let message = error.to_string();
+            assert!(message.contains("not finite"), "{message}");
+            assert!(
+                message.contains("beyond load factor 0") || message.contains("beyond t = 0"),
+                "{message}"
+            );
+        }
+    }
+}
+
+/// Sizes from the smallest number to the largest: an answer, or a message, and every number of an answer is one.
+#[test]
+fn numbers_of_any_size_give_finite_results_or_a_message() {
+    let extremes = ["5e-324", "1e-310", "1e-300", "1e-160", "1e160", "1e300", "1.7e308"];
+    for (text, keys) in [
+        (TIP_LOAD, &["axial_stiffness = 1e6", "bending_stiffness = 1.0", "end = [1.0,", "-5.0]"][..]),
+        (MODAL, &[]),
+    ] {
+        for key in keys {
+            assert!(text.contains(key), "{key}");
+            for extreme in extremes {
+                let number = key.trim_end_matches([',', ']']).rsplit([' ', '[']).next().expect("a number");
+                let changed = text.replacen(key, &key.replace(number, extreme), 1);
+                let Ok(scene) = scene::parse("scene.toml", &changed) else { continue };
+                let Ok(trajectory) = outcome(scene.model(), scene.analysis()) else { continue };
+                let samples = trajectory.probes.iter().flat_map(|probe| &probe.samples);
+                let numbers = samples.flat_map(|s| [s.x, s.y, s.angle, s.curvature, s.strain]);
+                let energies = trajectory.energy.iter().flat_map(|e| [e.stretch, e.bend, e.potential]);
+                assert!(numbers.chain(energies).all(f64::is_finite), "{key} → {extreme}");
+            }
+        }
+    }
+}
+
+/// A load of the smallest number does nothing, and does it without a rejected step.
+#[test]
+fn subnormal_loads_are_no_load() {
+    let trajectory =
+        outcome(parsed(&TIP_LOAD.replace("-5.0]", "-5e-324]")).model(), parsed(TIP_LOAD).analysis())
+            .expect("a straight cantilever");
+    assert_eq!(trajectory.statistics.rejected_steps, 0);
+    let tip = trajectory.probes[0].samples.last().expect("a state");
+    assert!((tip.x - 1.0).abs() < 1e-15 && tip.y.abs() < 1e-15, "{tip:?}");
+}
+
+fn resumed(scene: &Scene, state: &serde_json::Value) -> Result<Trajectory, RunError> {
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    std::fs::write(file.path(), state.to_string()).expect("a file");
+    loaded(scene, file.path())
+}
+
+fn loaded(scene: &Scene, path: &Path) -> Result<Trajectory, RunError> {
+    let saved = SavedState::load(path)?;
+    run_from(scene.model(), scene.analysis(), Some(&saved), &mut |_| Control::Continue)
+}
+
+#[test]
+fn saved_states_that_are_no_numbers_are_refused() {
+    for text in [PENDULUM, ACCURATE] {
+        let short = parsed(&text.replace("\"2.5 s\"", "0.05"));
+        let long = parsed(&text.replace("\"2.5 s\"", "0.1"));
+        let trajectory = outcome(short.model(), short.analysis()).expect("a motion");
+        let state = serde_json::to_value(trajectory.saved.expect("a saved state")).expect("JSON");
+        let whole = resumed(&long, &state).expect("a sound state");
+        assert!(whole.complete);
+        let reference = outcome(long.model(), long.analysis()).expect("a motion");
+
+        for (place, value) in [
+            ("/checkpoint/state/time", "-1e400"),
+            ("/checkpoint/state/q/5", "1e999"),
+            ("/checkpoint/state/v/5", "NaN"),
+            ("/checkpoint/state/q/5", "null"),
+        ] {
+            let mark = "\"a mark\"";
+            let mut broken = state.clone();
+            *broken.pointer_mut(place).expect("a place") = serde_json::Value::from("a mark");
+            let file = tempfile::NamedTempFile::new().expect("a file");
+            std::fs::write(file.path(), broken.to_string().replace(mark, value)).expect("a file");
+            let error = loaded(&long, file.path()).expect_err(value);
+            assert_eq!(error.exit_status(), 2, "{error}");
+            assert!(error.to_string().contains("not a saved state"), "{error}");
+        }
+        for (place, value) in
+            [("/checkpoint/step", 0.0), ("/checkpoint/step", -1e-3), ("/checkpoint/last_ratio", -1.0)]
+        {
+            let mut broken = state.clone();
+            *broken.pointer_mut(place).expect("a place") = value.into();
+            let error = resumed(&long, &broken).expect_err(place);
+            assert_eq!(error.exit_status(), 2, "{error}");
+            assert!(error.to_string().contains("from step to step"), "{error}");
+        }
+        // Steps counted from a time that was not: the motion goes on from its state all the same.
+        for (start, taken) in [(0.0, 7_u64), (0.0, u64::MAX), (1e300, 0), (-1e300, 3)] {
+            let mut broken = state.clone();
+            *broken.pointer_mut("/checkpoint/origin").expect("a place") = serde_json::json!([start, taken]);
+            let trajectory = resumed(&long, &broken).expect("a state");
+            let last = |t: &Trajectory| *t.probes[0].samples.last().expect("a state");
+            let (a, b) = (last(&trajectory), last(&reference));
+            assert!((a.x - b.x).hypot(a.y - b.y) < 1e-6, "{start} {taken}: {a:?} {b:?}");
+            assert!(trajectory.parameter.is_sorted(), "{:?}", trajectory.parameter);
+        }
+    }
+}
+
+fn bits(scene: &Scene) -> String {
+    let mut trajectory = outcome(scene.model(), scene.analysis()).expect("a solution");
+    trajectory.seconds = Seconds::default();
+    serde_json::to_string(&trajectory).expect("JSON")
+}
+
+/// The largest problem is one that a parallel linear algebra would share out.
+#[test]
+fn the_same_run_gives_the_same_bits_on_any_thread() {
+    let dense = MODAL.replace("count = 3", "count = 60");
+    let fine = TIP_LOAD.replace("nodes = 12", "nodes = 150");
+    for text in [TIP_LOAD.to_owned(), fine, short(), ACCURATE.replace("\"2.5 s\"", "0.05"), dense] {
+        let scene = parsed(&text);
+        let expected = bits(&scene);
+        let others = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..4).map(|_| scope.spawn(|| bits(&scene))).collect();
+            threads.into_iter().map(|thread| thread.join().expect("no panic")).collect::<Vec<_>>()
+        });
+        assert!(others.iter().all(|other| *other == expected), "{}", scene.model().title);
+    }
+}

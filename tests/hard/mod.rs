@@ -1,0 +1,9 @@
+//! What happens when it gets hard: branches, degenerate scenes, scales, numbers at the edge of floating point, the end of
+//! the process or the disk.
+
+mod branch;
+mod degenerate;
+mod floating;
+#[cfg(unix)]
+mod killed;
+mod scale;
