@@ -15,6 +15,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 use ancf::output::OutputOptions;
 use ancf::restart::SavedState;
@@ -65,6 +66,10 @@ struct RunArguments {
     /// Start a motion from the state that another run has saved (`state.json` in its directory)
     #[arg(long, value_name = "STATE")]
     from: Option<PathBuf>,
+    /// Save the state of a motion every so often by the clock, such as "10 min", into `state.json` of the directory, from which `--from` goes on should
+    /// the run be killed
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    checkpoint: Option<Duration>,
     #[command(flatten)]
     overrides: Overrides,
     /// Print warnings and errors only
@@ -123,6 +128,11 @@ pub fn main() -> ExitCode {
     ExitCode::from(failures.iter().map(Failure::exit_status).max().unwrap_or(0))
 }
 
+/// A positive time with its unit.
+fn duration(text: &str) -> Result<Duration, String> {
+    Duration::try_from_secs_f64(scene::seconds(text)?).map_err(|error| error.to_string())
+}
+
 fn load(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
     Scene::load(path, &overrides.set).map_err(Failure::Scene)
 }
@@ -141,7 +151,18 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
         progress.show(progress_now);
         if interrupted.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
     };
-    let outcome = run::run_from(scene.model(), scene.analysis(), saved.as_ref(), observer);
+    let take = |state: &SavedState| {
+        if let Err(error) = ancf::output::save(destination.path(), state) {
+            terminal::note(&format!("{}: no checkpoint: {error}", destination.path().display()));
+        }
+    };
+    let outcome = match arguments.checkpoint {
+        None => run::run_from(scene.model(), scene.analysis(), saved.as_ref(), observer),
+        Some(every) => {
+            let keep = Some(run::Keep { every, take: &take });
+            run::run_keeping(scene.model(), scene.analysis(), saved.as_ref(), keep, observer)
+        }
+    };
     progress.clear();
     let (mut trajectory, failure) = match outcome {
         Ok(trajectory) if trajectory.complete => (trajectory, None),

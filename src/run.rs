@@ -14,7 +14,7 @@ use crate::solve::{buckling, dynamics};
 use crate::system::{Inventory, Needs, System};
 use crate::trajectory::{Statistics, Trajectory};
 use look::Look;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// How far a computation is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +80,29 @@ pub fn run_from(
     saved: Option<&SavedState>,
     observer: Observer<'_>,
 ) -> Result<Trajectory, RunError> {
+    run_keeping(model, analysis, saved, None, observer)
+}
+
+/// Takes the states from which a motion could go on, every so often by the clock.
+#[derive(Clone, Copy)]
+pub struct Keep<'k> {
+    /// Wall time between them.
+    pub every: Duration,
+    /// Receives them.
+    pub take: &'k dyn Fn(&SavedState),
+}
+
+/// The same as [`run_from`], leaving checkpoints on the way.
+///
+/// # Errors
+/// As [`run_from`].
+pub fn run_keeping(
+    model: &Model,
+    analysis: &Analysis,
+    saved: Option<&SavedState>,
+    keep: Option<Keep<'_>>,
+    observer: Observer<'_>,
+) -> Result<Trajectory, RunError> {
     let not_a_motion = match analysis {
         Analysis::Static(_) => Some("static"),
         Analysis::Buckling { .. } => Some("buckling"),
@@ -125,12 +148,18 @@ pub fn run_from(
         Analysis::Modal { count, about } => look.vibrations(*count, *about, observer),
         Analysis::Dynamic(settings) => {
             let watches = look.watches(settings)?;
+            let take = |checkpoint| {
+                if let Some(keep) = keep {
+                    (keep.take)(&SavedState::new(&system, checkpoint));
+                }
+            };
             let task = dynamics::Task {
                 duration: settings.duration,
                 output_every: settings.output_every,
                 integrator: settings.integrator,
                 start: beginning(model, settings, &system, saved)?,
                 watches: &watches,
+                keep: keep.map(|keep| dynamics::Keep { every: keep.every, take: &take }),
             };
             let report = &mut |time: f64, step: f64, statistics: &Statistics| {
                 let newton_iterations = statistics.newton_iterations;

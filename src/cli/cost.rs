@@ -7,7 +7,6 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use ancf::cost::{self, Control, Options, Progress};
-use ancf::scene;
 use clap::Args;
 
 use super::destination::Destination;
@@ -38,7 +37,7 @@ pub struct CostArguments {
     #[arg(long, value_name = "ERROR", default_value_t = Options::default().target)]
     target: f64,
     /// Time for everything, with its unit; the reference takes up to half of it
-    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = budget)]
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = super::duration)]
     budget: Duration,
     /// Directory of the results [default: out/<stem of the scene file>]
     #[arg(short, long, value_name = "DIR")]
@@ -51,10 +50,6 @@ pub struct CostArguments {
     /// Print the results (cost.json) on standard output
     #[arg(long)]
     json: bool,
-}
-
-fn budget(text: &str) -> Result<Duration, String> {
-    Duration::try_from_secs_f64(scene::seconds(text)?).map_err(|error| error.to_string())
 }
 
 /// Runs the command.

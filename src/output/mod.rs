@@ -31,6 +31,7 @@ use std::time::Instant;
 pub use error::OutputError;
 pub use summary::{EnergySummary, Summary};
 
+use crate::restart::SavedState;
 use crate::trajectory::{AnalysisKind, Trajectory};
 pub(crate) use stage::Stage;
 pub(crate) use tables::exact;
@@ -147,6 +148,16 @@ pub fn write(
         let _ = fs::remove_dir(directory.join("vtu"));
     }
     Ok(summary)
+}
+
+/// Writes `state.json` alone: a checkpoint of a run that is under way.
+///
+/// # Errors
+/// [`OutputError`] where it cannot be written; an older one is then left as it was.
+pub fn save(directory: &Path, state: &SavedState) -> Result<(), OutputError> {
+    let mut stage = Stage::new(directory)?;
+    stage.add("state.json", |out| Ok(serde_json::to_writer(out, state)?))?;
+    stage.commit()
 }
 
 /// Refuses lists whose lengths do not fit together, which would put values beside the wrong parameter.

@@ -191,3 +191,31 @@ fn a_folder_that_cannot_be_written_is_refused_before_anything_is_solved() {
     }
     assert_eq!(entries(folder.path()), ["scene.toml"]);
 }
+
+/// A motion that is killed goes on from its last checkpoint, and ends to the last bit where the whole motion does.
+#[test]
+fn a_killed_motion_goes_on_from_its_checkpoint() {
+    let text = PENDULUM.replace("\"2.5 s\"", "\"60 s\"").replace("\"10 ms\"", "\"1 s\"");
+    let folder = folder(&text);
+    let run = ["run", "scene.toml", "--quiet", "--checkpoint", "20 ms", "-o", "killed"];
+    killed(folder.path(), &run, Duration::from_millis(700));
+    let state = folder.path().join("killed/state.json");
+    assert!(state.is_file(), "no checkpoint in 0.7 s");
+    let saved: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(&state).expect("a text")).expect("a whole state");
+    let time = saved["checkpoint"]["state"]["time"].as_f64().expect("a time");
+    assert!(time > 0.0 && time < 60.0, "saved at {time} s");
+    // Both to the same end, soon after.
+    let end = format!("analysis.dynamic.duration=\"{} s\"", time.ceil().max(1.0) + 1.0);
+    let last = |directory: &str, more: &[&str]| {
+        let mut arguments = vec!["run", "scene.toml", "--quiet", "--set", &end, "-o", directory];
+        arguments.extend(more);
+        let output = ancf(folder.path(), &arguments);
+        assert_eq!(status(&output), 0, "{}", stderr(&output));
+        let summary =
+            fs::read_to_string(folder.path().join(directory).join("summary.json")).expect("a summary");
+        serde_json::from_str::<serde_json::Value>(&summary).expect("JSON")["probes"].clone()
+    };
+    let resumed = last("resumed", &["--from", "killed/state.json"]);
+    assert_eq!(resumed, last("whole", &[]), "resumed at {time} s");
+}

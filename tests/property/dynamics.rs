@@ -94,7 +94,7 @@ fn either() -> [Discretization; 2] {
 
 fn task(system: &System, duration: f64, integrator: Integrator) -> Task<'static> {
     let start = from_rest(system, &[]).expect("at rest");
-    Task { duration, output_every: duration / 8.0, integrator, start, watches: &[] }
+    Task { duration, output_every: duration / 8.0, integrator, start, watches: &[], keep: None }
 }
 
 fn moved(system: &System, duration: f64, integrator: Integrator, step: f64) -> Solution {

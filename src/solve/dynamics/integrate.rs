@@ -25,6 +25,7 @@ use crate::model::{Crossing, Integrator, StepControl};
 use crate::solve::newton::{Failure, Iterations, not_crushed};
 use crate::system::{System, View};
 use crate::trajectory::{Statistics, StepRecord};
+use std::time::{Duration, Instant};
 
 /// What is to be integrated, and how.
 pub struct Task<'t> {
@@ -38,6 +39,17 @@ pub struct Task<'t> {
     pub start: Checkpoint,
     /// What to watch for.
     pub watches: &'t [Watch],
+    /// Where to leave checkpoints on the way.
+    pub keep: Option<Keep<'t>>,
+}
+
+/// Takes checkpoints on the way.
+#[derive(Clone, Copy)]
+pub struct Keep<'k> {
+    /// Wall time between them.
+    pub every: Duration,
+    /// Receives them.
+    pub take: &'k dyn Fn(Checkpoint),
 }
 
 /// A coordinate of a point of a beam that may cross a value.
@@ -183,6 +195,7 @@ impl<'t, 'a> Driver<'t, 'a> {
 
     fn run(&mut self, observe: &mut dyn FnMut(f64, f64, &Statistics) -> bool) {
         let mut new = self.state.clone();
+        let mut kept = Instant::now();
         while self.solution.stuck.is_none()
             && self.task.duration - self.state.time > SMALLEST_STEP * self.task.duration
         {
@@ -192,6 +205,12 @@ impl<'t, 'a> Driver<'t, 'a> {
                     self.cut = self.look(&mut new);
                     self.method.accept();
                     std::mem::swap(&mut self.state, &mut new);
+                    if let Some(Keep { every, take }) = self.task.keep
+                        && kept.elapsed() >= every
+                    {
+                        take(self.checkpoint());
+                        kept = Instant::now();
+                    }
                     if self.cut || !observe(self.state.time, self.step, self.method.statistics()) {
                         return;
                     }
@@ -206,19 +225,23 @@ impl<'t, 'a> Driver<'t, 'a> {
             self.solution.states.push(self.state.clone());
         }
         self.solution.statistics = *self.method.statistics();
-        self.solution.checkpoint = Some(if self.cut {
-            Checkpoint { state: self.state, ..Checkpoint::default() }
-        } else {
-            Checkpoint {
-                state: self.state,
-                method: self.task.integrator.to_string(),
-                memory: self.method.memory(),
-                step: self.step,
-                last_ratio: self.last_ratio,
-                origin: self.origin,
-            }
-        });
+        self.solution.checkpoint = Some(self.checkpoint());
         self.solution
+    }
+
+    fn checkpoint(&self) -> Checkpoint {
+        let state = self.state.clone();
+        if self.cut {
+            return Checkpoint { state, ..Checkpoint::default() };
+        }
+        Checkpoint {
+            state,
+            method: self.task.integrator.to_string(),
+            memory: self.method.memory(),
+            step: self.step,
+            last_ratio: self.last_ratio,
+            origin: self.origin,
+        }
     }
 
     /// Takes one step, smaller as often as needed, to `new`.

@@ -33,7 +33,7 @@ use super::newton::Failure;
 use crate::trajectory::{Statistics, StepRecord};
 use serde::{Deserialize, Serialize};
 
-pub use integrate::{Task, Watch, solve};
+pub use integrate::{Keep, Task, Watch, solve};
 
 /// A state of motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
