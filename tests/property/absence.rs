@@ -138,3 +138,18 @@ fn small_vibrations_need_no_iteration() {
     assert_eq!(trajectory.frequencies.len(), 3);
     assert_eq!((trajectory.statistics.newton_iterations, trajectory.statistics.residual_evaluations), (0, 0));
 }
+
+#[test]
+fn every_beam_has_its_own_effects() {
+    let two = format!(
+        "{BEAM}\n[beam.other]\nstart = [0.0, 1.0]\nend = [1.0, 1.0]\naxial_stiffness = 1e4\nmass_per_length = 0.5\nbasis.ancf.elements = 2\n[effect.gravity]\nacceleration = [0.0, -9.81]\n{MOTION}"
+    );
+    let two = parse("two.toml", &two).unwrap_or_else(|error| panic!("{error}"));
+    let inventory = inventory(&two);
+    for (beam, points) in [("arm", 20), ("other", 10)] {
+        for kind in [Kind::Stretch, Kind::Inertia, Kind::Gravity] {
+            let entry = inventory.effects.iter().find(|effect| effect.beam == beam && effect.kind == kind);
+            assert_eq!(entry.map(|effect| effect.points), Some(points), "{} of {beam}", kind.name());
+        }
+    }
+}

@@ -2,8 +2,9 @@
 
 use ancf::effect::{
     Actuation, BeamDamping, BendDamping, Contact, Dashpot, Density, Dissipation, Drag, Engineering,
-    Foundation, Friction, Green, Obstacle, Penalty, PointMass, PreCurvature, PreStrain, RotaryInertia,
-    Rubbing, SectionInertia, Spring, StretchDamping, Strut, Tie, Torsion, TorsionDashpot, TorsionSpring,
+    Foundation, Friction, Green, Inertia, Obstacle, Penalty, PointMass, PreCurvature, PreStrain,
+    RotaryInertia, Rubbing, SectionInertia, Spring, StretchDamping, Strut, Tie, Torsion, TorsionDashpot,
+    TorsionSpring,
 };
 use ancf::model::*;
 use ancf::run::{Control, run};
@@ -134,6 +135,7 @@ proptest! {
             cross(&z[0], &z[1]) / dot(&z[0], &z[0]) * -0.7
         });
         derivatives(&RotaryInertia { inertia: 0.3 }, [c], |z| dot(&z[0], &z[0]) * 0.15);
+        derivatives(&Inertia { mass_per_length: 0.3 }, [c], |z| dot(&z[0], &z[0]) * 0.15);
     }
 
     #[test]

@@ -212,3 +212,15 @@ fn supports_at_one_node_add_up() {
     assert_eq!(together.last(), apart.last());
     assert!(tip(vec![support(true, true), support(false, true)]).is_err(), "y is held twice");
 }
+
+/// The path's tangent carries moved supports along: where all is nearly linear the first prediction leaves next to nothing to correct.
+#[test]
+fn the_prediction_moves_with_the_supports() {
+    let moved = Support { displacement: Displacement { x: 2e-5, y: -3e-5, angle: 1e-5 }, ..clamp() };
+    let mut model = model(Discretization::Ancf { nodes: Nodes::Uniform(9) }, 0.4, vec![moved]);
+    model.loads.clear();
+    let trajectory = run(&model, &Analysis::Static(Static::default()), &mut |_| Control::Continue)
+        .expect("an equilibrium");
+    let first = trajectory.history[0].increments[0];
+    assert!(first < 1e-8, "the first correction is {first} of a beam length");
+}
