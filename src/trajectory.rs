@@ -186,7 +186,7 @@ pub struct Shape {
     pub strain: Vec<f64>,
     /// κ \[1/m\].
     pub curvature: Vec<f64>,
-    /// N \[N\].
+    /// N \[N\]; of the last state alone, as is M.
     pub axial_force: Vec<f64>,
     /// M \[N m\].
     pub bending_moment: Vec<f64>,

@@ -109,8 +109,8 @@ impl<'a> Look<'a> {
             complete: true,
             degrees_of_freedom: self.system.degrees_of_freedom(),
             settings: self.settings(),
-            undeformed: self.shape(0.0, reference),
-            last: self.shape(0.0, reference),
+            undeformed: self.shape(reference),
+            last: self.shape(reference),
             probes: self
                 .probes
                 .iter()
@@ -152,12 +152,11 @@ impl<'a> Look<'a> {
         &x[..self.system.coordinates()]
     }
 
-    /// All beams in the state `q` at load factor or time `parameter`.
-    pub(super) fn shape(&self, parameter: f64, q: &[f64]) -> Vec<Shape> {
+    /// All beams in the state `q`.
+    pub(super) fn shape(&self, q: &[f64]) -> Vec<Shape> {
         let beams = self.model.beams.iter().zip(self.system.beams()).zip(&self.shapes);
         beams
-            .enumerate()
-            .map(|(index, ((beam, part), view))| {
+            .map(|((beam, part), view)| {
                 let mut shape = Shape { beam: beam.name.clone(), s: view.s().to_vec(), ..Shape::default() };
                 let mut angle = None;
                 for fields in view.all(q) {
@@ -179,10 +178,18 @@ impl<'a> Look<'a> {
                         *strain -= reference.strain(beam.strain);
                     }
                 }
-                self.section_forces(parameter, index, view.all(q), &mut shape);
                 shape
             })
             .collect()
+    }
+
+    /// The same with section forces.
+    pub(super) fn loaded(&self, parameter: f64, q: &[f64]) -> Vec<Shape> {
+        let mut shapes = self.shape(q);
+        for (index, shape) in shapes.iter_mut().enumerate() {
+            self.section_forces(parameter, index, self.shapes[index].all(q), shape);
+        }
+        shapes
     }
 
     /// N = ∂U/∂|r'| per length, EA ε for engineering strain and EA ε |r'| for Green's, and M = EI κ, each less what an actuation takes.
@@ -297,7 +304,7 @@ impl<'a> Look<'a> {
             }
         }
         if let Some((load, x)) = solution.states.last() {
-            trajectory.last = self.shape(*load, self.coordinates_of(x));
+            trajectory.last = self.loaded(*load, self.coordinates_of(x));
         }
         trajectory.history = solution.history.clone();
         trajectory.statistics = solution.statistics;
@@ -383,7 +390,7 @@ impl<'a> Look<'a> {
             }
         }
         if let Some(state) = solution.states.last() {
-            trajectory.last = self.shape(state.time, &state.q);
+            trajectory.last = self.loaded(state.time, &state.q);
         }
         for (watch, state) in &solution.events {
             let ProbeTarget { probe, axis, value } = settings.events[*watch].target.clone();

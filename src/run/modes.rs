@@ -25,7 +25,8 @@ impl Look<'_> {
         observer: Observer<'_>,
     ) -> Result<Trajectory, RunError> {
         if about == About::Reference {
-            let trajectory = self.empty(AnalysisKind::Modal);
+            let mut trajectory = self.empty(AnalysisKind::Modal);
+            trajectory.last = self.loaded(0.0, self.system.reference());
             return self.modal(trajectory, 0.0, self.system.reference(), count);
         }
         let report = &mut |load: f64, step: f64, statistics: &Statistics| {
@@ -74,6 +75,7 @@ impl Look<'_> {
 
     pub(super) fn buckling(&self, modes: &buckling::Modes) -> Trajectory {
         let mut trajectory = self.empty(AnalysisKind::Buckling);
+        trajectory.last = self.loaded(0.0, self.system.reference());
         trajectory.load_factors = modes.load_factors.clone();
         let reference = self.system.reference();
         trajectory.modes = modes.shapes.iter().map(|mode| self.mode_shape(reference, mode)).collect();
@@ -86,6 +88,6 @@ impl Look<'_> {
         let largest = mode.chunks_exact(4).fold(0.0_f64, |m, d| m.max(d[0].hypot(d[1])));
         let factor = if largest > 0.0 { DRAWN * self.system.length() / largest } else { 0.0 };
         let q: Vec<f64> = q.iter().zip(mode).map(|(q, m)| factor.mul_add(*m, *q)).collect();
-        self.shape(0.0, &q)
+        self.shape(&q)
     }
 }

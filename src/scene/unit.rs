@@ -239,6 +239,10 @@ impl<'a> Parser<'a> {
                 return Err("a bracket is not closed".into());
             }
             inner
+        } else if self.rest.starts_with("1/") {
+            // As in `1/m`.
+            self.rest = &self.rest[1..];
+            return Ok(Unit { factor: 1.0, dimension: Dimension::default() });
         } else {
             let name = self.name();
             if name.is_empty() {
@@ -353,6 +357,8 @@ mod tests {
             ("2766.67 kg/m^3", 2766.67, "kg m^-3"),
             ("1 g/cm^3", 1000.0, "kg m^-3"),
             ("10 ms", 0.01, "s"),
+            ("0.5 1/m", 0.5, "m^-1"),
+            ("3 1/ms", 3e3, "s^-1"),
             ("2 min", 120.0, "s"),
             ("-180 deg", -std::f64::consts::PI, "rad"),
             ("3 kN m", 3000.0, "kg m^2 s^-2"),
