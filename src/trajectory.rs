@@ -147,17 +147,39 @@ impl Energy {
     }
 }
 
-/// A probe's coordinate crossed a value.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Event {
-    /// When \[s\].
-    pub time: f64,
-    /// Name of the probe.
-    pub probe: String,
-    /// `x` or `y`.
-    pub axis: String,
-    /// The value \[m\].
-    pub value: f64,
+/// Something that happened in a motion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Event {
+    /// A probe's coordinate crossed a value.
+    Crossing {
+        /// When \[s\].
+        time: f64,
+        /// Name of the probe.
+        probe: String,
+        /// `x` or `y`.
+        axis: String,
+        /// The value \[m\].
+        value: f64,
+    },
+    /// A beam touched an obstacle, or came free of it.
+    Contact {
+        /// When \[s\].
+        time: f64,
+        /// The beam and the number of its contact, such as `arm.1`.
+        contact: String,
+        /// Whether it touches from then on.
+        touches: bool,
+    },
+}
+
+impl Event {
+    /// When it happened \[s\].
+    pub fn time(&self) -> f64 {
+        match self {
+            Self::Crossing { time, .. } | Self::Contact { time, .. } => *time,
+        }
+    }
 }
 
 /// The centrelines of all beams at one record.

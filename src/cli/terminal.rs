@@ -12,7 +12,7 @@ use ancf::model::Analysis;
 use ancf::output::plot::human;
 use ancf::run::Progress;
 use ancf::sweep;
-use ancf::trajectory::{AnalysisKind, ProbeSample, Trajectory};
+use ancf::trajectory::{AnalysisKind, Event, ProbeSample, Trajectory};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
@@ -223,8 +223,16 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
         );
     }
     for event in &trajectory.events {
-        let at = format!("{} s: {} = {} m", number(event.time), event.axis, number(event.value));
-        row(&format!("event at {}", event.probe), at);
+        match event {
+            Event::Crossing { time, probe, axis, value } => {
+                let at = format!("{} s: {axis} = {} m", number(*time), number(*value));
+                row(&format!("event at {probe}"), at);
+            }
+            Event::Contact { time, contact, touches } => {
+                let what = if *touches { "begins" } else { "ends" };
+                row(&format!("contact {contact}"), format!("{} s: {what}", number(*time)));
+            }
+        }
     }
     let counts = &trajectory.statistics;
     let mut work = Vec::new();

@@ -394,8 +394,15 @@ impl<'a> Look<'a> {
         }
         for (watch, state) in &solution.events {
             let ProbeTarget { probe, axis, value } = settings.events[*watch].target.clone();
-            trajectory.events.push(Event { time: state.time, probe, axis: ["x", "y"][axis].into(), value });
+            let axis = ["x", "y"][axis].into();
+            trajectory.events.push(Event::Crossing { time: state.time, probe, axis, value });
         }
+        let contacts: Vec<String> = self.system.contacts().collect();
+        for (contact, touches, time) in &solution.contacts {
+            let contact = contacts.get(*contact).cloned().unwrap_or_default();
+            trajectory.events.push(Event::Contact { time: *time, contact, touches: *touches });
+        }
+        trajectory.events.sort_by(|a, b| a.time().total_cmp(&b.time()));
         let divided = solution.statistics.rejected_steps;
         if divided > 0 && matches!(settings.integrator.step_control(), StepControl::Fixed(_)) {
             let smallest = solution.history.iter().map(|r| r.step).fold(f64::INFINITY, f64::min);

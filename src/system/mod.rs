@@ -533,6 +533,22 @@ impl System {
         others.map(|e| e.energy(q)).sum()
     }
 
+    fn contact_effects(&self) -> impl Iterator<Item = &dyn Effect> {
+        self.internal.iter().map(|effect| &**effect).filter(|effect| effect.kind() == Kind::Contact)
+    }
+
+    /// Per contact, whether it touches in the state `q`: whether it has an energy.
+    pub fn touching<'q>(&'q self, q: &'q [f64]) -> impl Iterator<Item = bool> + 'q {
+        self.contact_effects().map(|effect| effect.energy(q) > 0.0)
+    }
+
+    /// Names of the contacts: the beam and a number, such as `arm.1`.
+    pub fn contacts(&self) -> impl Iterator<Item = String> + '_ {
+        self.contact_effects()
+            .enumerate()
+            .map(|(i, effect)| format!("{}.{}", self.beams[effect.beam()].name, i + 1))
+    }
+
     /// Writes −∂g/∂q·v, scaled, which is what the rates of unknowns must make up for where supports have the rates `v`.
     pub fn constraint_rates(&self, parameter: f64, v: &[f64], rates: &mut [f64]) {
         for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {

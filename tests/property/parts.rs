@@ -9,7 +9,7 @@ use ancf::effect::{
 use ancf::model::*;
 use ancf::run::{Control, run};
 use ancf::system::assembly::Part;
-use ancf::trajectory::Trajectory;
+use ancf::trajectory::{Event, Trajectory};
 use nalgebra::{DVector, Dyn, Vector2};
 use num_dual::{Dual2Vec, DualNum, hessian};
 use proptest::prelude::*;
@@ -568,6 +568,20 @@ fn a_beam_bounces_from_a_plane() {
         assert!((-0.12..-0.05).contains(&lowest), "lowest {lowest}");
         let off = imbalance(&trajectory);
         assert!(off < 1e-3, "balance off by {off}");
+        // It falls 0.1 m, and is pushed back.
+        let [
+            Event::Contact { time: begin, contact, touches: true },
+            Event::Contact { time: end, touches: false, .. },
+            ..,
+        ] = &trajectory.events[..]
+        else {
+            panic!("{:?}", trajectory.events)
+        };
+        assert!(
+            contact == "arm.1" && (begin - (0.2_f64 / 9.81).sqrt()).abs() < 1e-6,
+            "{contact} at {begin} s"
+        );
+        assert!((1e-3..0.1).contains(&(end - begin)), "it touches until {end} s");
         let lost = trajectory.energy.last().expect("a record").lost;
         assert_eq!(friction.is_some(), lost > 1e-3, "lost {lost}");
         let speed = trajectory.probes[0].samples.last().and_then(|s| s.vx).unwrap_or_default();

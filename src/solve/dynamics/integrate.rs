@@ -140,6 +140,8 @@ struct Driver<'t, 'a> {
     stride: usize,
     /// Times at which loads or supports are not smooth, rising.
     kinks: Vec<f64>,
+    /// Per contact, whether it touches.
+    touching: Vec<bool>,
 }
 
 impl<'t, 'a> Driver<'t, 'a> {
@@ -170,6 +172,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                 (first_step(system, task, &*method, [&state.v, &acceleration], tolerance), (state.time, 0))
             }
         };
+        let touching = system.touching(&state.q).collect();
         let mut kinks = system.kinks();
         kinks.retain(|kink| *kink > state.time && *kink < task.duration);
         kinks.sort_by(f64::total_cmp);
@@ -190,6 +193,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             cut: false,
             stride: 1,
             kinks,
+            touching,
         }
     }
 
@@ -384,6 +388,9 @@ impl<'t, 'a> Driver<'t, 'a> {
         let slack = SLACK * (new.time - self.state.time);
         let crossed = (0..self.task.watches.len()).any(|w| self.crosses(w, &self.state, new));
         let due = self.next_record as f64 * self.task.output_every < new.time - slack;
+        if !self.touching.is_empty() {
+            self.notice_contacts(new);
+        }
         if !(crossed || due || self.has_work()) {
             self.record_until(new, None);
             return false;
@@ -399,6 +406,28 @@ impl<'t, 'a> Driver<'t, 'a> {
         (new.work, new.lost) = self.work(new, new.time, pair);
         self.record_until(new, pair);
         false
+    }
+
+    /// Records contacts that begin or end in the step to `new`, at the times to which bisection of the interpolated motion leads.
+    fn notice_contacts(&mut self, new: &State) {
+        let touching: Vec<bool> = self.system.touching(&new.q).collect();
+        for (contact, touches) in touching.iter().enumerate() {
+            if *touches == self.touching[contact] {
+                continue;
+            }
+            let (mut before, mut after) = (self.state.time, new.time);
+            for _ in 0..40 {
+                let middle = 0.5 * (before + after);
+                let state = self.state.between(new, middle, None);
+                if self.system.touching(&state.q).nth(contact) == Some(*touches) {
+                    after = middle;
+                } else {
+                    before = middle;
+                }
+            }
+            self.solution.contacts.push((contact, *touches, after));
+        }
+        self.touching = touching;
     }
 
     fn record_until(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) {

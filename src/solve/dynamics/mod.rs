@@ -106,6 +106,8 @@ pub struct Solution {
     pub history: Vec<StepRecord>,
     /// Events in the order of their times: (number of the watch, state).
     pub events: Vec<(usize, State)>,
+    /// Contacts that began or ended, in order: (number of the contact, whether it touches from then on, time \[s\]).
+    pub contacts: Vec<(usize, bool, f64)>,
     /// Counts.
     pub statistics: Statistics,
     /// From which the motion can be continued.
