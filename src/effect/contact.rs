@@ -177,10 +177,12 @@ pub struct Rubbing {
 impl Dissipation<1> for Rubbing {
     const ORDERS: [usize; 1] = [0];
 
+    #[inline(always)]
     fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
         self.force_and_matrix(point, z, rate).0
     }
 
+    #[inline(always)]
     fn force_and_matrix(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
         let Some((depth, normal, _)) = self.normal.penetration(&z[0]) else {
             return ([Vector2::zeros()], [[Matrix2::zeros()]]);

@@ -19,10 +19,12 @@ pub struct MassDamping {
 impl Dissipation<1> for MassDamping {
     const ORDERS: [usize; 1] = [0];
 
+    #[inline(always)]
     fn force(&self, _: usize, _: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
         [rate[0] * self.coefficient]
     }
 
+    #[inline(always)]
     fn force_and_matrix(&self, _: usize, _: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
         ([rate[0] * self.coefficient], [[Matrix2::identity() * self.coefficient]])
     }
@@ -45,11 +47,13 @@ impl<S: Strain> StretchDamping<S> {
 impl<S: Strain> Dissipation<1> for StretchDamping<S> {
     const ORDERS: [usize; 1] = [1];
 
+    #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
         let (_, first) = S::first(&z[0]);
         [first * (self.coefficient * first.dot(&rate[0]))]
     }
 
+    #[inline(always)]
     fn force_and_matrix(
         &self,
         point: usize,
@@ -71,12 +75,14 @@ pub struct BendDamping {
 impl Dissipation<2> for BendDamping {
     const ORDERS: [usize; 2] = [1, 2];
 
+    #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<2>, rate: &Gradient<2>) -> Gradient<2> {
         let (_, [a, b], _) = bend::first_derivatives(z);
         let moment = self.coefficient * (a.dot(&rate[0]) + b.dot(&rate[1]));
         [a * moment, b * moment]
     }
 
+    #[inline(always)]
     fn force_and_matrix(
         &self,
         point: usize,

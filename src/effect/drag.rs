@@ -31,10 +31,12 @@ impl Part for Drag {
 impl Dissipation<2> for Drag {
     const ORDERS: [usize; 2] = [0, 1];
 
+    #[inline(always)]
     fn force(&self, point: usize, z: &Gradient<2>, rate: &Gradient<2>) -> Gradient<2> {
         self.force_and_matrix(point, z, rate).0
     }
 
+    #[inline(always)]
     fn force_and_matrix(&self, _: usize, z: &Gradient<2>, rate: &Gradient<2>) -> (Gradient<2>, Hessian<2>) {
         let along = z[1] / z[1].norm();
         let u = rate[0] - Vector2::from(self.flow);

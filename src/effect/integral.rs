@@ -186,16 +186,31 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         f: &mut [f64],
         force: impl Fn(usize, &Gradient<M>, &Gradient<M>) -> Gradient<M>,
     ) {
-        let width = self.table.width;
+        match self.table.width {
+            4 => self.force_of_pairs_within::<4>(q, v, f, force),
+            8 => self.force_of_pairs_within::<8>(q, v, f, force),
+            12 => self.force_of_pairs_within::<12>(q, v, f, force),
+            _ => self.force_of_pairs_within::<0>(q, v, f, force),
+        }
+    }
+
+    fn force_of_pairs_within<const W: usize>(
+        &self,
+        q: &[f64],
+        v: &[f64],
+        f: &mut [f64],
+        force: impl Fn(usize, &Gradient<M>, &Gradient<M>) -> Gradient<M>,
+    ) {
+        let width = self.width::<W>();
         for (cell, entry) in self.table.cells.iter().enumerate() {
             let (weights, rows) = self.table.block(*entry);
             let first = 2 * (self.offset + entry.first as usize);
             let range = first..first + 2 * width;
             let (q, v, f) = (&q[range.clone()], &v[range.clone()], &mut f[range]);
             for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
-                let (z, rate) = (self.fields::<0>(rows, q), self.fields::<0>(rows, v));
+                let (z, rate) = (self.fields::<W>(rows, q), self.fields::<W>(rows, v));
                 let gradient = force(cell * weights.len() + p, &z, &rate);
-                self.add_gradient::<0>(*weight, rows, &gradient, f);
+                self.add_gradient::<W>(*weight, rows, &gradient, f);
             }
         }
     }

@@ -174,10 +174,12 @@ pub struct Dashpot {
 impl Dissipation<1> for Dashpot {
     const ORDERS: [usize; 1] = [0];
 
+    #[inline(always)]
     fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
         self.force_and_matrix(point, z, rate).0
     }
 
+    #[inline(always)]
     fn force_and_matrix(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
         let along = self.anchor.map_or_else(Matrix2::identity, |anchor| {
             let d = z[0] - anchor;
@@ -250,10 +252,12 @@ pub struct TorsionDashpot {
 impl Dissipation<1> for TorsionDashpot {
     const ORDERS: [usize; 1] = [1];
 
+    #[inline(always)]
     fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
         self.force_and_matrix(point, z, rate).0
     }
 
+    #[inline(always)]
     fn force_and_matrix(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
         let first = turn(&z[0]);
         let matrix = first * first.transpose() * self.coefficient;

@@ -130,7 +130,7 @@ fn dimensionless(units: Units, t: &Trajectory) -> Vec<f64> {
     }
     numbers.extend(t.frequencies.iter().map(|f| f * time));
     numbers.extend(&t.load_factors);
-    numbers.extend(t.events.iter().map(|event| event.time / time));
+    numbers.extend(t.events.iter().map(|event| event.time() / time));
     numbers
 }
 

@@ -79,16 +79,12 @@ const SHRINK: f64 = 0.3;
 const SMALLEST_STEP: f64 = 1e-12;
 /// Smallest part of a step of fixed length into which it is divided where its equations cannot be solved.
 const SMALLEST_PART: f64 = 1e-3;
-/// Turn of a node beyond which a step of fixed length is asked what it does to the energy \[rad\].
-const COARSE_TURN: f64 = 0.1;
-/// Energy that such a step may gain, relative to the kinetic energy.
-const LARGEST_GAIN: f64 = 1e-3;
 /// Iterations beyond which a step does not grow: the next tangent would be worse.
 const MANY_ITERATIONS: usize = 10;
 /// Attempted steps that are kept for the reader.
 const HISTORY: usize = 20_000;
 /// Time by which a record or an end may miss a step's end, relative to the step.
-const SLACK: f64 = 1e-9;
+pub(super) const SLACK: f64 = 1e-9;
 
 /// Integrates `task`. `observe` is called with (time, next step, counts) after every step and ends the integration by
 /// returning false.
@@ -122,26 +118,29 @@ fn method<'a>(system: &'a System, integrator: Integrator) -> Result<Box<dyn Meth
     })
 }
 
-struct Driver<'t, 'a> {
-    system: &'a System,
-    task: &'t Task<'t>,
-    method: Box<dyn Method + 'a>,
-    solution: Solution,
-    control: StepControl,
-    state: State,
+/// A motion under way.
+pub(super) struct Driver<'t, 'a> {
+    pub(super) system: &'a System,
+    pub(super) task: &'t Task<'t>,
+    pub(super) method: Box<dyn Method + 'a>,
+    pub(super) solution: Solution,
+    pub(super) control: StepControl,
+    pub(super) state: State,
     /// The next step \[s\].
-    step: f64,
-    origin: (f64, u64),
-    next_record: u64,
-    last_ratio: f64,
-    rejected: bool,
+    pub(super) step: f64,
+    pub(super) origin: (f64, u64),
+    pub(super) next_record: u64,
+    pub(super) last_ratio: f64,
+    pub(super) rejected: bool,
     /// Whether an event ended the motion within a step, whose end is what the method remembers.
-    cut: bool,
-    stride: usize,
+    pub(super) cut: bool,
+    pub(super) stride: usize,
     /// Times at which loads or supports are not smooth, rising.
-    kinks: Vec<f64>,
+    pub(super) kinks: Vec<f64>,
     /// Per contact, whether it touches.
-    touching: Vec<bool>,
+    pub(super) touching: Vec<bool>,
+    /// Times and powers at the start and the end of the last step.
+    pub(super) powers: [(f64, (f64, f64)); 2],
 }
 
 impl<'t, 'a> Driver<'t, 'a> {
@@ -194,6 +193,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             stride: 1,
             kinks,
             touching,
+            powers: [(f64::NAN, (0.0, 0.0)); 2],
         }
     }
 
@@ -332,25 +332,6 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
-    /// Refuses a coarse step to `new` that gains energy.
-    fn without_gain(&mut self, new: &State) -> Result<(), Failure> {
-        let nodes = new.q.chunks_exact(4).zip(self.state.q.chunks_exact(4));
-        let square = nodes.fold(0.0_f64, |m, (a, b)| m.max((a[2] - b[2]).powi(2) + (a[3] - b[3]).powi(2)));
-        if square.sqrt() <= COARSE_TURN {
-            return Ok(());
-        }
-        let energy = |state: &State| self.system.energy(state.time, &state.q, Some(&state.v));
-        let (before, after) = (energy(&self.state), energy(new));
-        let (work, _) = self.work(new, new.time, None);
-        let work = work - self.state.work;
-        let gain = (after.total() - before.total() - work) / before.kinetic.max(after.kinetic);
-        match gain {
-            _ if gain <= LARGEST_GAIN => Ok(()),
-            _ if gain.is_nan() => Err(Failure::NotFinite),
-            _ => Err(Failure::Gain { gain }),
-        }
-    }
-
     /// Where the present step of fixed length ends.
     fn grid_end(&self, step: f64) -> f64 {
         let end = self.origin.0 + step * (self.origin.1 + 1) as f64;
@@ -381,149 +362,6 @@ impl<'t, 'a> Driver<'t, 'a> {
         let slack = SMALLEST_STEP * self.task.duration;
         let next = self.kinks.iter().find(|kink| **kink > self.state.time + slack);
         next.copied().unwrap_or(self.task.duration)
-    }
-
-    /// Records and events of the step from the last state to `new`, which an event may cut short; true where the motion ends.
-    fn look(&mut self, new: &mut State) -> bool {
-        let slack = SLACK * (new.time - self.state.time);
-        let crossed = (0..self.task.watches.len()).any(|w| self.crosses(w, &self.state, new));
-        let due = self.next_record as f64 * self.task.output_every < new.time - slack;
-        if !self.touching.is_empty() {
-            self.notice_contacts(new);
-        }
-        if !(crossed || due || self.has_work()) {
-            self.record_until(new, None);
-            return false;
-        }
-        let accelerations = self.method.end_accelerations(&self.state, new);
-        let pair = accelerations.as_ref().map(|[a, b]| [&a[..], &b[..]]);
-        let stop = self.locate(new, pair);
-        if let Some(state) = stop {
-            self.record_until(&state, pair);
-            *new = state;
-            return true;
-        }
-        (new.work, new.lost) = self.work(new, new.time, pair);
-        self.record_until(new, pair);
-        false
-    }
-
-    /// Records contacts that begin or end in the step to `new`, at the times to which bisection of the interpolated motion leads.
-    fn notice_contacts(&mut self, new: &State) {
-        let touching: Vec<bool> = self.system.touching(&new.q).collect();
-        for (contact, touches) in touching.iter().enumerate() {
-            if *touches == self.touching[contact] {
-                continue;
-            }
-            let (mut before, mut after) = (self.state.time, new.time);
-            for _ in 0..40 {
-                let middle = 0.5 * (before + after);
-                let state = self.state.between(new, middle, None);
-                if self.system.touching(&state.q).nth(contact) == Some(*touches) {
-                    after = middle;
-                } else {
-                    before = middle;
-                }
-            }
-            self.solution.contacts.push((contact, *touches, after));
-        }
-        self.touching = touching;
-    }
-
-    fn record_until(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) {
-        let slack = SLACK * (new.time - self.state.time);
-        loop {
-            let time = self.next_record as f64 * self.task.output_every;
-            if time > new.time + slack || time > self.task.duration + slack {
-                return;
-            }
-            let state = if (time - new.time).abs() <= slack {
-                new.clone()
-            } else {
-                self.between(new, time, accelerations)
-            };
-            self.solution.states.push(state);
-            self.next_record += 1;
-        }
-    }
-
-    fn between(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> State {
-        let mut state = self.state.between(new, time, accelerations);
-        (state.work, state.lost) = self.work(new, time, accelerations);
-        state
-    }
-
-    /// Whether energy enters or leaves by other ways than potentials.
-    fn has_work(&self) -> bool {
-        self.system.has_work() || self.system.is_damped() || self.system.supports().moves_in_time()
-    }
-
-    /// Work of the loads without potential and of moving supports, and what damping took, until `time` in the step to `new`, by three Gauss
-    /// points.
-    fn work(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> (f64, f64) {
-        let (mut work, mut lost) = (self.state.work, self.state.lost);
-        if !self.has_work() {
-            return (work, lost);
-        }
-        let h = time - self.state.time;
-        let mut scratch = vec![0.0; new.q.len()];
-        let offset = 0.6_f64.sqrt();
-        let points = [(-offset, 5.0), (0.0, 8.0), (offset, 5.0)];
-        for (x, weight) in points {
-            let state = self.state.between(new, self.state.time + 0.5 * h * (1.0 + x), accelerations);
-            let weight = weight * h / 18.0;
-            let power = self.system.power(state.time, &state.q, &state.v, &mut scratch);
-            work += weight * (power + self.method.support_power(&state));
-            if self.system.is_damped() {
-                lost += weight * self.system.lost_power(&state.q, &state.v, &mut scratch);
-            }
-        }
-        (work, lost)
-    }
-
-    fn crosses(&self, watch: usize, a: &State, b: &State) -> bool {
-        let watch = &self.task.watches[watch];
-        let distance = |state: &State| watch.view.fields(&state.q).position[watch.axis] - watch.value;
-        let (before, after) = (distance(a), distance(b));
-        let rising = before < 0.0 && after >= 0.0;
-        let falling = before > 0.0 && after <= 0.0;
-        match watch.crossing {
-            Crossing::Rising => rising,
-            Crossing::Falling => falling,
-            Crossing::Any => rising || falling,
-        }
-    }
-
-    /// Locates the events of the step to `new`; returns the state of the first that ends the motion.
-    fn locate(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) -> Option<State> {
-        let crossed: Vec<usize> =
-            (0..self.task.watches.len()).filter(|w| self.crosses(*w, &self.state, new)).collect();
-        let mut found: Vec<(usize, State)> =
-            crossed.into_iter().map(|w| (w, self.crossing(w, new, accelerations))).collect();
-        found.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
-        for (watch, state) in found {
-            let stop = self.task.watches[watch].stop;
-            self.solution.events.push((watch, state.clone()));
-            if stop {
-                return Some(state);
-            }
-        }
-        None
-    }
-
-    /// The state at which a watch crosses its value: bisection of the interpolated motion, to the last bit but a few of the step.
-    fn crossing(&mut self, watch: usize, new: &State, accelerations: Option<[&[f64]; 2]>) -> State {
-        let (mut before, mut after) = (self.state.time, new.time);
-        for _ in 0..50 {
-            let middle = 0.5 * (before + after);
-            let state = self.state.between(new, middle, accelerations);
-            if self.crosses(watch, &self.state, &state) {
-                after = middle;
-            } else {
-                before = middle;
-            }
-        }
-        self.between(new, after, accelerations)
     }
 
     /// Keeps every second record of the past where there are too many; rejected ones stay unless they are the most.

@@ -7,7 +7,7 @@
 //! | [`generalized_alpha`] | second order, numerical damping by choice |
 //! | [`collocation`], [`tableau`] | Gauss (order 2, 4, 6; symplectic), Radau IIA (order 3, 5; stiff) |
 //! | [`start`] | initial velocities |
-//! | [`integrate`] | the driver: steps, records, events, restart |
+//! | [`integrate`] | the driver: steps, restart; with its records and events in `record`, the balance of energy in `balance` |
 //!
 //! # No explicit method
 //! Störmer's and Verlet's rule and the six-stage method of order 4 of Blanes and Moan were built and measured on the soft pendulum (E = 68.95 MPa, the least stiff
@@ -20,11 +20,13 @@
 //! O(h^{2s}): 1e-7 of the kinetic energy where a step of the same length by an energy–momentum scheme errs by 1e-3 in the motion
 //! itself. Its exact energy would be the only digit that it has right; it was left out.
 
+mod balance;
 pub mod collocation;
 pub mod generalized_alpha;
 pub mod integrate;
 pub mod method;
 pub mod motion;
+mod record;
 pub mod start;
 pub mod tableau;
 pub mod turns;

@@ -1,0 +1,91 @@
+//! The balance of energy of a motion: what loads and supports put in, what damping takes, and steps that gain what nobody put in.
+
+use super::State;
+use super::integrate::Driver;
+use crate::solve::newton::Failure;
+
+/// Turn of a node beyond which a step of fixed length is asked what it does to the energy \[rad\].
+const COARSE_TURN: f64 = 0.1;
+/// Energy that such a step may gain, relative to the kinetic energy.
+const LARGEST_GAIN: f64 = 1e-3;
+
+impl Driver<'_, '_> {
+    /// Refuses a coarse step to `new` that gains energy.
+    pub(super) fn without_gain(&mut self, new: &State) -> Result<(), Failure> {
+        let nodes = new.q.chunks_exact(4).zip(self.state.q.chunks_exact(4));
+        let square = nodes.fold(0.0_f64, |m, (a, b)| m.max((a[2] - b[2]).powi(2) + (a[3] - b[3]).powi(2)));
+        if square.sqrt() <= COARSE_TURN {
+            return Ok(());
+        }
+        let energy = |state: &State| self.system.energy(state.time, &state.q, Some(&state.v));
+        let (before, after) = (energy(&self.state), energy(new));
+        let (work, _) = self.work(new, new.time, None);
+        let work = work - self.state.work;
+        let gain = (after.total() - before.total() - work) / before.kinetic.max(after.kinetic);
+        match gain {
+            _ if gain <= LARGEST_GAIN => Ok(()),
+            _ if gain.is_nan() => Err(Failure::NotFinite),
+            _ => Err(Failure::Gain { gain }),
+        }
+    }
+
+    /// Whether energy enters or leaves by other ways than potentials.
+    pub(super) fn has_work(&self) -> bool {
+        self.system.has_work() || self.system.is_damped() || self.system.supports().moves_in_time()
+    }
+
+    /// Work of the loads without potential and of moving supports, and what damping took, until `time` in the step to `new`: by the trapezoidal
+    /// rule where the method itself is of second order, and else by three Gauss points.
+    pub(super) fn work(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> (f64, f64) {
+        let (mut work, mut lost) = (self.state.work, self.state.lost);
+        if !self.has_work() {
+            return (work, lost);
+        }
+        let h = time - self.state.time;
+        if self.method.order() <= 2.0 {
+            let before = self.power_at_start();
+            let after = if time == new.time {
+                self.power(new)
+            } else {
+                let state = self.state.between(new, time, accelerations);
+                self.power(&state)
+            };
+            if time == new.time {
+                self.powers[1] = (time, after);
+            }
+            return (work + 0.5 * h * (before.0 + after.0), lost + 0.5 * h * (before.1 + after.1));
+        }
+        let offset = 0.6_f64.sqrt();
+        for (x, weight) in [(-offset, 5.0), (0.0, 8.0), (offset, 5.0)] {
+            let state = self.state.between(new, self.state.time + 0.5 * h * (1.0 + x), accelerations);
+            let weight = weight * h / 18.0;
+            let (put_in, taken) = self.power(&state);
+            work += weight * put_in;
+            lost += weight * taken;
+        }
+        (work, lost)
+    }
+
+    /// Power at the start of the step, which was its end before, unless an attempt since then ended elsewhere.
+    pub(super) fn power_at_start(&mut self) -> (f64, f64) {
+        let known = self.powers.iter().find(|(time, _)| *time == self.state.time).map(|(_, power)| *power);
+        let power = known.unwrap_or_else(|| {
+            let state = self.state.clone();
+            self.power(&state)
+        });
+        self.powers[0] = (self.state.time, power);
+        power
+    }
+
+    /// Power \[W\] put in by loads without potential and by moving supports, and taken by damping.
+    pub(super) fn power(&mut self, state: &State) -> (f64, f64) {
+        let mut scratch = vec![0.0; state.q.len()];
+        let loads = self.system.power(state.time, &state.q, &state.v, &mut scratch);
+        let taken = if self.system.is_damped() {
+            self.system.lost_power(&state.q, &state.v, &mut scratch)
+        } else {
+            0.0
+        };
+        (loads + self.method.support_power(state), taken)
+    }
+}

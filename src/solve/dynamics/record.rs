@@ -1,0 +1,127 @@
+//! What a motion leaves behind on its way: records at the requested times, crossings of probes, contacts.
+
+use super::State;
+use super::integrate::{Driver, SLACK};
+use crate::model::Crossing;
+
+impl Driver<'_, '_> {
+    /// Records and events of the step from the last state to `new`, which an event may cut short; true where the motion ends.
+    pub(super) fn look(&mut self, new: &mut State) -> bool {
+        let slack = SLACK * (new.time - self.state.time);
+        let crossed = (0..self.task.watches.len()).any(|w| self.crosses(w, &self.state, new));
+        let due = self.next_record as f64 * self.task.output_every < new.time - slack;
+        if !self.touching.is_empty() {
+            self.notice_contacts(new);
+        }
+        if !(crossed || due || self.has_work()) {
+            self.record_until(new, None);
+            return false;
+        }
+        let accelerations = self.method.end_accelerations(&self.state, new);
+        let pair = accelerations.as_ref().map(|[a, b]| [&a[..], &b[..]]);
+        let stop = self.locate(new, pair);
+        if let Some(state) = stop {
+            self.record_until(&state, pair);
+            *new = state;
+            return true;
+        }
+        (new.work, new.lost) = self.work(new, new.time, pair);
+        self.record_until(new, pair);
+        false
+    }
+
+    /// Records contacts that begin or end in the step to `new`, at the times to which bisection of the interpolated motion leads.
+    pub(super) fn notice_contacts(&mut self, new: &State) {
+        let touching: Vec<bool> = self.system.touching(&new.q).collect();
+        for (contact, touches) in touching.iter().enumerate() {
+            if *touches == self.touching[contact] {
+                continue;
+            }
+            let (mut before, mut after) = (self.state.time, new.time);
+            for _ in 0..40 {
+                let middle = 0.5 * (before + after);
+                let state = self.state.between(new, middle, None);
+                if self.system.touching(&state.q).nth(contact) == Some(*touches) {
+                    after = middle;
+                } else {
+                    before = middle;
+                }
+            }
+            self.solution.contacts.push((contact, *touches, after));
+        }
+        self.touching = touching;
+    }
+
+    pub(super) fn record_until(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) {
+        let slack = SLACK * (new.time - self.state.time);
+        loop {
+            let time = self.next_record as f64 * self.task.output_every;
+            if time > new.time + slack || time > self.task.duration + slack {
+                return;
+            }
+            let state = if (time - new.time).abs() <= slack {
+                new.clone()
+            } else {
+                self.between(new, time, accelerations)
+            };
+            self.solution.states.push(state);
+            self.next_record += 1;
+        }
+    }
+
+    pub(super) fn between(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> State {
+        let mut state = self.state.between(new, time, accelerations);
+        (state.work, state.lost) = self.work(new, time, accelerations);
+        state
+    }
+
+    pub(super) fn crosses(&self, watch: usize, a: &State, b: &State) -> bool {
+        let watch = &self.task.watches[watch];
+        let distance = |state: &State| watch.view.fields(&state.q).position[watch.axis] - watch.value;
+        let (before, after) = (distance(a), distance(b));
+        let rising = before < 0.0 && after >= 0.0;
+        let falling = before > 0.0 && after <= 0.0;
+        match watch.crossing {
+            Crossing::Rising => rising,
+            Crossing::Falling => falling,
+            Crossing::Any => rising || falling,
+        }
+    }
+
+    /// Locates the events of the step to `new`; returns the state of the first that ends the motion.
+    pub(super) fn locate(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) -> Option<State> {
+        let crossed: Vec<usize> =
+            (0..self.task.watches.len()).filter(|w| self.crosses(*w, &self.state, new)).collect();
+        let mut found: Vec<(usize, State)> =
+            crossed.into_iter().map(|w| (w, self.crossing(w, new, accelerations))).collect();
+        found.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
+        for (watch, state) in found {
+            let stop = self.task.watches[watch].stop;
+            self.solution.events.push((watch, state.clone()));
+            if stop {
+                return Some(state);
+            }
+        }
+        None
+    }
+
+    /// The state at which a watch crosses its value: bisection of the interpolated motion, to the last bit but a few of the step.
+    pub(super) fn crossing(
+        &mut self,
+        watch: usize,
+        new: &State,
+        accelerations: Option<[&[f64]; 2]>,
+    ) -> State {
+        let (mut before, mut after) = (self.state.time, new.time);
+        for _ in 0..50 {
+            let middle = 0.5 * (before + after);
+            let state = self.state.between(new, middle, accelerations);
+            if self.crosses(watch, &self.state, &state) {
+                after = middle;
+            } else {
+                before = middle;
+            }
+        }
+        self.between(new, after, accelerations)
+    }
+}
