@@ -82,6 +82,39 @@ fn regress_statistics_and_results() {
     }
 }
 
+/// What a stated accuracy takes, by every method: error estimates and tolerances of iterations that were off by some factor would show nowhere else.
+#[test]
+fn regress_work_for_a_tolerance() {
+    let pendulum = Suite::here().cases_folder().join("soft-pendulum/scene.toml");
+    let mut text = String::new();
+    for method in [
+        "generalized_alpha={spectral_radius=1.0,TOL}",
+        "generalized_alpha={spectral_radius=0.8,TOL}",
+        "gauss={stages=1,TOL}",
+        "gauss={stages=2,TOL}",
+        "gauss={stages=3,TOL}",
+        "radau={stages=2,TOL}",
+        "radau={stages=3,TOL}",
+    ] {
+        for tolerance in ["tolerance=1e-3", "tolerance=1e-5"] {
+            let method = method.replace("TOL", tolerance);
+            let analysis = format!("analysis.dynamic={{duration='0.4 s',output_every='0.4 s',{method}}}");
+            let set = ["beam.arm.basis={ancf={elements=12}}".to_owned(), analysis];
+            let scene = Scene::load(&pendulum, &set).expect("a legal scene");
+            let trajectory =
+                run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("a motion");
+            let s = trajectory.statistics;
+            writeln!(
+                text,
+                "{method}: {} steps, {} rejected, {} iterations",
+                s.steps, s.rejected_steps, s.newton_iterations
+            )
+            .expect("text takes text");
+        }
+    }
+    snapshot("work_for_a_tolerance", &text);
+}
+
 /// Last positions of the probes, energies, frequencies, critical loads.
 fn found(name: &str, trajectory: &Trajectory) -> String {
     let mut lines = vec![name.to_owned()];
