@@ -21,6 +21,8 @@ mod inventory;
 pub mod joint;
 mod measure;
 mod reaction;
+mod rows;
+mod sums;
 pub mod supports;
 mod view;
 
@@ -32,11 +34,9 @@ pub use view::{Fields, View};
 
 use crate::basis::Basis;
 use crate::centreline::Curve;
-use crate::effect::{Damping, Effect, Kind, Travelling, Workspace};
+use crate::effect::{Damping, Effect, Travelling};
 use crate::linear::Matrix;
-use crate::linear::bordered::BorderRow;
 use crate::model::{Centreline, Discretization, Model, Place};
-use crate::trajectory::Energy;
 use constraints::Constraint;
 use course::Amplitude;
 use reaction::Source;
@@ -234,25 +234,6 @@ impl System {
         Ok(view.fields(&self.reference).gradient)
     }
 
-    /// Refuses more constraint rows on the same coordinates than there are free ones.
-    fn check_room(&self) -> Result<(), SystemError> {
-        let held = self.held();
-        for span in self.constraints.iter().filter_map(Constraint::span) {
-            let rows = self.constraints.iter().filter(|other| other.span() == Some(span.clone())).count();
-            let free = held[span.clone()].iter().filter(|held| !**held).count();
-            if rows > free {
-                let (beam, s) = self.place_of(span.start);
-                return Err(SystemError::OverSupported {
-                    beam: self.beams[beam].name.clone(),
-                    s,
-                    rows,
-                    free,
-                });
-            }
-        }
-        Ok(())
-    }
-
     /// The beams' parts.
     pub fn beams(&self) -> &[BeamPart] {
         &self.beams
@@ -355,244 +336,6 @@ impl System {
     /// A zero tangent of the right pattern.
     pub fn matrix(&self) -> Matrix {
         Matrix::zeros(self.nodes, self.blocks, self.is_symmetric())
-    }
-
-    /// `f = f_int(q) + f_load(q)` at load factor or time `parameter`.
-    pub fn force(&self, parameter: f64, q: &[f64], f: &mut [f64]) {
-        f.fill(0.0);
-        for effect in &self.internal {
-            effect.add_force(1.0, q, f);
-        }
-        self.add_constant_load(self.amplitude.at(parameter), f);
-        for (effect, amplitude) in self.varying_loads(parameter) {
-            effect.add_force(amplitude, q, f);
-        }
-        self.travelling.iter().for_each(|force| force.add_force(parameter, f));
-    }
-
-    /// `f += factor · ∂f/∂λ` of loads in proportion to the load factor.
-    pub fn add_load_rate(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        self.add_constant_load(factor, f);
-        for (effect, one) in self.varying_loads(1.0) {
-            effect.add_force(factor * one, q, f);
-        }
-    }
-
-    fn add_constant_load(&self, factor: f64, f: &mut [f64]) {
-        for (f, load) in f.iter_mut().zip(&self.constant_load) {
-            *f += factor * load;
-        }
-    }
-
-    /// Loads that are not part of the constant sum, with their factors.
-    fn varying_loads(&self, parameter: f64) -> impl Iterator<Item = (&dyn Effect, f64)> {
-        let loads = self.loads.iter().filter(|load| !load.is_summed());
-        loads.map(move |load| (&*load.effect, self.amplitude_of(load).at(parameter)))
-    }
-
-    fn amplitude_of<'a>(&'a self, load: &'a Acting) -> &'a Amplitude {
-        load.amplitude.as_ref().unwrap_or(&self.amplitude)
-    }
-
-    /// By what factor loads without a law of their own act.
-    pub fn amplitude(&self, parameter: f64) -> f64 {
-        self.amplitude.at(parameter)
-    }
-
-    /// Whether a load does work that no potential counts.
-    pub fn has_work(&self) -> bool {
-        !self.travelling.is_empty() || self.loads.iter().any(|load| !load.has_potential())
-    }
-
-    /// Whether forces depend on velocities.
-    pub fn is_damped(&self) -> bool {
-        !self.damping.is_empty()
-    }
-
-    /// Power \[W\] at time `parameter` of the loads without potential in the state (q, v); `scratch` is overwritten.
-    pub fn power(&self, parameter: f64, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
-        scratch.fill(0.0);
-        for load in self.loads.iter().filter(|load| !load.has_potential()) {
-            load.effect.add_force(self.amplitude_of(load).at(parameter), q, scratch);
-        }
-        self.travelling.iter().for_each(|force| force.add_force(parameter, scratch));
-        -scratch.iter().zip(v).map(|(f, v)| f * v).sum::<f64>()
-    }
-
-    /// `f += ` the forces that depend on velocities.
-    pub fn add_damping(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
-        for damping in &self.damping {
-            damping.add_force(q, v, f);
-        }
-    }
-
-    /// `f += ` the forces that depend on velocities, `d = ` their derivative by the velocities.
-    pub fn damping_matrix(
-        &self,
-        q: &[f64],
-        v: &[f64],
-        f: &mut [f64],
-        d: &mut Matrix,
-        workspace: &mut Workspace,
-    ) {
-        d.clear();
-        for damping in &self.damping {
-            damping.add_matrix(q, v, f, d, workspace);
-        }
-    }
-
-    /// Power \[W\] that damping takes in the state (q, v); `scratch` is overwritten.
-    pub fn lost_power(&self, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
-        scratch.fill(0.0);
-        self.add_damping(q, v, scratch);
-        scratch.iter().zip(v).map(|(f, v)| f * v).sum()
-    }
-
-    /// Times at which a load or the motion of a support is not smooth, in no order.
-    pub fn kinks(&self) -> Vec<f64> {
-        let laws = self.loads.iter().filter_map(|load| match &load.amplitude {
-            Some(Amplitude::Law(law)) => Some(law.kinks()),
-            _ => None,
-        });
-        let travelling = self.travelling.iter().flat_map(Travelling::kinks);
-        laws.flatten().chain(self.supports.kinks()).chain(travelling).collect()
-    }
-
-    /// The same force as [`Self::force`], and its derivative by q; stress resultants in the tangent are extrapolated
-    /// from the iterate `before` (see [`crate::effect`]).
-    pub fn force_and_tangent(
-        &self,
-        parameter: f64,
-        q: &[f64],
-        before: &[f64],
-        f: &mut [f64],
-        k: &mut Matrix,
-        workspace: &mut Workspace,
-    ) {
-        f.fill(0.0);
-        k.clear();
-        for effect in &self.internal {
-            effect.add_force_and_tangent(1.0, q, before, f, k, workspace);
-        }
-        self.add_constant_load(self.amplitude.at(parameter), f);
-        for (effect, amplitude) in self.varying_loads(parameter) {
-            effect.add_force_and_tangent(amplitude, q, before, f, k, workspace);
-        }
-        self.travelling.iter().for_each(|force| force.add_force(parameter, f));
-    }
-
-    /// `f = K v` with the tangent of [`Self::force_and_tangent`] at `q`, but to many more digits where the mesh is fine.
-    pub fn tangent_product(&self, parameter: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
-        f.fill(0.0);
-        for effect in &self.internal {
-            effect.add_tangent_product(1.0, q, v, f);
-        }
-        for (effect, amplitude) in self.varying_loads(parameter).filter(|(_, amplitude)| *amplitude != 0.0) {
-            effect.add_tangent_product(amplitude, q, v, f);
-        }
-    }
-
-    /// The tangent of the internal forces alone, which is symmetric.
-    pub fn internal_tangent(&self, q: &[f64]) -> Matrix {
-        self.sum_of_tangents(&self.internal, q)
-    }
-
-    /// The constant mass matrix, if inertia was asked for.
-    pub fn mass_matrix(&self) -> Matrix {
-        self.sum_of_tangents(&self.inertia, &vec![0.0; self.coordinates()])
-    }
-
-    fn sum_of_tangents(&self, effects: &[Box<dyn Effect>], q: &[f64]) -> Matrix {
-        let mut sum = self.damping_pattern();
-        let mut force = vec![0.0; self.coordinates()];
-        let mut workspace = Workspace::default();
-        for effect in effects {
-            effect.add_force_and_tangent(1.0, q, q, &mut force, &mut sum, &mut workspace);
-        }
-        sum
-    }
-
-    /// Scaled rows of ∂g/∂q in the supports' frames, without the held coordinates.
-    pub fn border(&self, load: f64) -> Vec<BorderRow> {
-        let mut dense = vec![0.0; self.coordinates()];
-        let rows = self.constraints.iter().map(|constraint| {
-            dense.fill(0.0);
-            let scale = constraint.scale(self.stiffness, self.length);
-            for (i, value) in constraint.gradient(load) {
-                dense[i] = scale * value;
-            }
-            self.supports.to_frames(load, &mut dense);
-            dense.iter().copied().enumerate().filter(|(_, value)| *value != 0.0).collect()
-        });
-        rows.collect()
-    }
-
-    /// Energy \[J\] in springs, foundations and contacts.
-    fn stored_energy(&self, q: &[f64]) -> f64 {
-        let others = self.internal.iter().filter(|e| !matches!(e.kind(), Kind::Stretch | Kind::Bend));
-        others.map(|e| e.energy(q)).sum()
-    }
-
-    fn contact_effects(&self) -> impl Iterator<Item = &dyn Effect> {
-        self.internal.iter().map(|effect| &**effect).filter(|effect| effect.kind() == Kind::Contact)
-    }
-
-    /// Per contact, whether it touches in the state `q`: whether it has an energy.
-    pub fn touching<'q>(&'q self, q: &'q [f64]) -> impl Iterator<Item = bool> + 'q {
-        self.contact_effects().map(|effect| effect.energy(q) > 0.0)
-    }
-
-    /// Names of the contacts: the beam and a number, such as `arm.1`.
-    pub fn contacts(&self) -> impl Iterator<Item = String> + '_ {
-        self.contact_effects()
-            .enumerate()
-            .map(|(i, effect)| format!("{}.{}", self.beams[effect.beam()].name, i + 1))
-    }
-
-    /// Writes −∂g/∂q·v, scaled, which is what the rates of unknowns must make up for where supports have the rates `v`.
-    pub fn constraint_rates(&self, parameter: f64, v: &[f64], rates: &mut [f64]) {
-        for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
-            let scale = constraint.scale(self.stiffness, self.length);
-            *rate = -scale * constraint.gradient(parameter).map(|(i, value)| value * v[i]).sum::<f64>();
-        }
-    }
-
-    /// Writes −g(q), scaled.
-    pub fn constraint_values(&self, parameter: f64, q: &[f64], values: &mut [f64]) {
-        for (value, constraint) in values.iter_mut().zip(&self.constraints) {
-            *value = -constraint.scale(self.stiffness, self.length) * constraint.value(parameter, q);
-        }
-    }
-
-    /// `f += Bᵀ μ` with the scaled multipliers μ.
-    pub fn add_constraint_forces(&self, parameter: f64, multipliers: &[f64], f: &mut [f64]) {
-        for (mu, constraint) in multipliers.iter().zip(&self.constraints) {
-            let mu = mu * constraint.scale(self.stiffness, self.length);
-            constraint.gradient(parameter).for_each(|(i, value)| f[i] += mu * value);
-        }
-    }
-
-    /// A zero matrix for [`Self::damping_matrix`].
-    pub fn damping_pattern(&self) -> Matrix {
-        Matrix::zeros(self.nodes, self.blocks, true)
-    }
-
-    /// Energies at load factor or time `parameter`; `velocity` where there is motion.
-    pub fn energy(&self, parameter: f64, q: &[f64], velocity: Option<&[f64]>) -> Energy {
-        let sum = |effects: &[Box<dyn Effect>], kind: Kind, q: &[f64]| -> f64 {
-            effects.iter().filter(|e| e.kind() == kind).map(|e| e.energy(q)).sum()
-        };
-        let with_potential = self.loads.iter().filter(|load| load.has_potential());
-        let potential = with_potential.map(|load| load.effect.energy(q)).sum::<f64>();
-        Energy {
-            stretch: sum(&self.internal, Kind::Stretch, q),
-            bend: sum(&self.internal, Kind::Bend, q),
-            stored: self.stored_energy(q),
-            kinetic: velocity.map_or(0.0, |v| self.inertia.iter().map(|e| e.energy(v)).sum()),
-            potential: self.amplitude.at(parameter) * potential,
-            work: 0.0,
-            lost: 0.0,
-        }
     }
 }
 
