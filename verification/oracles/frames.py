@@ -7,7 +7,7 @@ Along each member the state (x, y, theta, M, Fx, Fy) obeys
 with the force F that the part beyond exerts. At a rigid corner theta jumps by the corner's angle and all else goes on; a load P lowers F by
 P. Paths through limit points are followed in the unknowns of the start and the load together.
 
-    python3 frames.py lee-frame
+    python3 frames.py lee-frame | right-angle
 """
 
 import sys
@@ -104,5 +104,22 @@ def lee_frame():
                 row(kind, at(x), lee(at(x))[1])
 
 
+def right_angle():
+    """Column and arm of 1 m, EA = 1e5, EI = 1, clamped at the foot, under dead forces at the free end: the unknown is the foot's moment."""
+    print("force,x,y,angle,moment")
+    member, unknown = Member(1, 1e5, 1), np.zeros(1)
+    for force in (0.5, 1, 2, 3):
+
+        def end(z, force=force):
+            corner = member.end([0, 0, np.pi / 2, z[0], 0, -force])
+            corner[2] -= np.pi / 2
+            return member.end(corner)
+
+        unknown = newton(lambda z: end(z)[3:4], unknown)
+        x, y, angle, *_ = end(unknown)
+        # The clamp acts on the beam against what the beam beyond it transmits.
+        print(f"{force},{x:.12g},{y:.12g},{angle:.12g},{-unknown[0]:.12g}")
+
+
 if __name__ == "__main__":
-    {"lee-frame": lee_frame}[sys.argv[1]]()
+    {"lee-frame": lee_frame, "right-angle": right_angle}[sys.argv[1]]()

@@ -137,5 +137,16 @@ def terminal_speed():
     table(("t", "y", "vy"), [(t, -u / r * log(cosh(r * t)), -u * tanh(r * t)) for t in times])
 
 
+def actuation():
+    """A free-ended beam that would by itself be stretched by e and curved by k: x = (1 + e) sin(k s)/k, y = (1 + e) (1 - cos(k s))/k."""
+    rows = []
+    for curvature, strain in [("1", "0"), ("3", "0.1")]:
+        k, e = mpf(curvature), mpf(strain)
+        for i in range(21):
+            s = mpf(i) / 20
+            rows.append((k, e, s, (1 + e) * sin(k * s) / k, (1 + e) * (1 - cos(k * s)) / k))
+    table(("curvature", "strain", "s", "x", "y"), rows)
+
+
 if __name__ == "__main__":
     globals()[sys.argv[1].replace("-", "_")]()
