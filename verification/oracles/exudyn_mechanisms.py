@@ -1,10 +1,10 @@
-"""Mechanisms of planar cables by Exudyn 1.13.6: hubs that turn by a law, hinges, sliders, contact with circles.
+"""Mechanisms of planar cables by Exudyn 1.13.6: hubs that turn by a law, hinges, sliders.
 
 Every subcommand builds its mechanism from ANCFCable2D elements, whose strain and Gauss points are those of our ANCF with engineering
 strain (5 points for stretching, 3 for bending), and moves it by the trapezoidal rule, which in a form of index 2 is our generalised-alpha
 method with spectral radius 1. It prints places of points against time.
 
-    python3 exudyn_mechanisms.py spin-up | double-pendulum | slider-crank | contact-circle
+    python3 exudyn_mechanisms.py spin-up | double-pendulum | slider-crank
 """
 
 import contextlib
@@ -96,10 +96,6 @@ class Mechanism:
         """Two nodes are at one place."""
         markers = [self.mbs.AddMarker(item.MarkerNodePosition(nodeNumber=n)) for n in (first, second)]
         self.mbs.AddObject(item.ObjectJointRevolute2D(markerNumbers=markers))
-
-    def force(self, node, vector):
-        marker = self.mbs.AddMarker(item.MarkerNodePosition(nodeNumber=node))
-        self.mbs.AddLoad(item.Force(markerNumber=marker, loadVector=[*vector, 0]))
 
     def watch(self, *nodes):
         for node in nodes:

@@ -1,4 +1,4 @@
-"""Closed forms of single parts: hubs, strings, foundations, masses, damping, travelling forces, fluids.
+"""Closed forms of single parts: hubs, strings, foundations, masses, springs, damping, travelling forces, fluids, friction, actuation.
 
 Each subcommand states its formula and prints one CSV table.
 
@@ -7,7 +7,10 @@ Each subcommand states its formula and prints one CSV table.
 
 import sys
 
-from mpmath import asinh, besselj, besseljzero, cos, cosh, exp, findroot, log, lu_solve, matrix, mp, mpc, mpf, nstr, pi, sin, sinh, sqrt, tanh
+from mpmath import (
+    asinh, besselj, besseljzero, cos, cosh, exp, findroot, log, lu_solve, matrix, mp, mpc, mpf, nstr, pi, sin,
+    sinh, sqrt, tanh,
+)
 
 mp.dps = 30
 
@@ -57,6 +60,11 @@ def swinging_chain():
     table(("t", "x"), [(mpf(i) / 20, sum(a * sin(w * i / 20) / w for a, w in parts)) for i in range(41)])
 
 
+def chain_modes():
+    """Frequencies j sqrt(g/L) / 4 pi of a hanging chain of 1 m that does not stretch, with the zeros j of J0."""
+    table(("mode", "frequency"), [(n, besseljzero(0, n) * sqrt(mpf("9.81")) / (4 * pi)) for n in range(1, 5)])
+
+
 def elastic_foundation():
     """A pinned beam on an elastic foundation under a force P at its middle (Hetenyi): EI u'''' + k u = 0 on either side, by the
     complex roots of r^4 = -k/EI, with u' = 0 and EI u''' = P/2 at the middle, u = u'' = 0 at the end."""
@@ -77,16 +85,17 @@ def elastic_foundation():
 
 
 def tip_mass():
-    """Cantilever with a mass m and a rotary inertia J at its tip, EI = rho A = L = 1, w = b^2: u = A (cosh - cos) + B (sinh - sin)
-    with u'' = J b^4 u' and u''' = -m b^4 u at the tip."""
+    """Cantilever with a mass m, a rotary inertia J, a spring k across and a torsion spring c at its tip, EI = rho A = L = 1, w = b^2:
+    u = A (cosh - cos) + B (sinh - sin) with u'' = (J b^4 - c) u' and u''' = (k - m b^4) u at the tip."""
     rows = []
-    for mass, inertia in [("0.5", "0"), ("2", "0"), ("1", "0.1")]:
-        m, j = mpf(mass), mpf(inertia)
+    for words in ["0.5 0 0 0", "2 0 0 0", "1 0.1 0 0", "0 0 20 0", "0 0 0 3", "0 0 20 3"]:
+        m, j, k, torsion = map(mpf, words.split())
 
         def determinant(b):
             c, s, ch, sh = cos(b), sin(b), cosh(b), sinh(b)
-            first = ch + c - j * b**3 * (sh + s), sh + s - j * b**3 * (ch - c)
-            second = sh - s + m * b * (ch - c), ch + c + m * b * (sh - s)
+            turn, shift = j * b**3 - torsion / b, m * b - k / b**3
+            first = ch + c - turn * (sh + s), sh + s - turn * (ch - c)
+            second = sh - s + shift * (ch - c), ch + c + shift * (sh - s)
             return first[0] * second[1] - first[1] * second[0]
 
         found, b, step = [], mpf("0.1"), mpf("0.05")
@@ -94,8 +103,8 @@ def tip_mass():
             if determinant(b) * determinant(b + step) < 0:
                 found.append(findroot(determinant, (b, b + step), solver="anderson"))
             b += step
-        rows += [(m, j, n + 1, root**2 / (2 * pi)) for n, root in enumerate(found)]
-    table(("mass", "inertia", "mode", "frequency"), rows)
+        rows += [(m, j, k, torsion, n + 1, root**2 / (2 * pi)) for n, root in enumerate(found)]
+    table(("mass", "inertia", "spring", "torsion", "mode", "frequency"), rows)
 
 
 def moving_force():
@@ -146,6 +155,26 @@ def actuation():
             s = mpf(i) / 20
             rows.append((k, e, s, (1 + e) * sin(k * s) / k, (1 + e) * (1 - cos(k * s)) / k))
     table(("curvature", "strain", "s", "x", "y"), rows)
+
+
+def sliding():
+    """A rod slides to rest on rough ground: v' = -mu g v / sqrt(v^2 + w^2), so that mu g t and mu g x grow by the decrease of
+    sqrt(v^2 + w^2) - w asinh(w/v) and of (v sqrt(v^2 + w^2) + w^2 asinh(v/w)) / 2."""
+    start, friction, smooth = mpf(2), mpf("0.4") * mpf("9.81"), mpf("0.05")
+
+    def time(v):
+        return sqrt(v**2 + smooth**2) - smooth * asinh(smooth / v)
+
+    def way(v):
+        return (v * sqrt(v**2 + smooth**2) + smooth**2 * asinh(v / smooth)) / 2
+
+    rows, v = [(0, 0, start)], start
+    for i in range(1, 17):
+        t = mpf(i) / 20
+        # In log v the time is smooth where v becomes small.
+        v = exp(findroot(lambda z: time(start) - time(exp(z)) - friction * t, (log(v), log(v) - 1), solver="anderson"))
+        rows.append((t, (way(start) - way(v)) / friction, v))
+    table(("t", "x", "vx"), rows)
 
 
 if __name__ == "__main__":
