@@ -260,5 +260,5 @@ fn nodes_that_nearly_coincide_are_named_where_no_equilibrium_is_found() {
     let scene = Scene::load(&path, &[]).expect("a legal scene");
     let found = ancf::run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
     let Err(RunError::NoEquilibrium { advice, .. }) = found else { panic!("forces cannot balance here") };
-    assert!(advice.contains("none that nearly coincide"), "{advice}");
+    assert!(advice.contains("nodes are so close"), "{advice}");
 }
