@@ -13,7 +13,7 @@ use crate::trajectory::{
     AnalysisKind, EffectSeries, Energy, Event, Frame, ProbeSample, ProbeSeries, ReactionSeries, Shape,
     Trajectory,
 };
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Points at which shapes are sampled.
 const SHAPE_POINTS: usize = 201;
@@ -306,6 +306,7 @@ impl<'a> Look<'a> {
         if let Some((load, x)) = solution.states.last() {
             trajectory.last = self.loaded(*load, self.coordinates_of(x));
         }
+        trajectory.warnings.extend(self.folds(&trajectory.last));
         trajectory.history = solution.history.clone();
         trajectory.statistics = solution.statistics;
         for event in &solution.events {
@@ -323,6 +324,32 @@ impl<'a> Look<'a> {
             ));
         }
         trajectory
+    }
+
+    /// Strings that turn back within a cell. Nothing resists such a fold but the string's length, so that it may stay where a large step has left it.
+    fn folds(&self, shapes: &[Shape]) -> Vec<String> {
+        let strings = shapes.iter().zip(self.system.beams()).zip(&self.model.beams);
+        let strings = strings.filter(|(_, beam)| beam.section.bending_stiffness.is_none());
+        let folds = strings.filter_map(|((shape, part), _)| {
+            let s = part.basis.nodes().windows(2).find_map(|cell| match *cell {
+                [start, end] => {
+                    let from = shape.s.partition_point(|s| *s < start).saturating_sub(1);
+                    let to = (shape.s.partition_point(|s| *s <= end) + 1).min(shape.s.len());
+                    let angles = shape.angle.get(from..to)?.iter();
+                    let (low, high) =
+                        angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+                    (high - low > FRAC_PI_2).then_some(start)
+                }
+                _ => None,
+            })?;
+            Some(format!(
+                "string `{}` turns by more than a right angle within its cell from s = {s:.4} m: it may have folded back, \
+                 which is no equilibrium of a real string; begin from an arc of its length, reach the load in smaller `steps`, \
+                 or use more nodes",
+                shape.beam
+            ))
+        });
+        folds.collect()
     }
 
     pub(super) fn stuck(&self, stuck: &Stuck, solution: &Solution) -> RunError {

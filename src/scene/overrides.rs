@@ -126,7 +126,20 @@ fn assign(root: &mut Item, path: &[String], value: Value) -> Result<(), (String,
         }
         return Ok(());
     }
+    let of_tables = item.is_array_of_tables();
     let place = child(item, path, depth, last, false)?;
+    if of_tables {
+        // Of a `[[list]]` only tables are written; any other entry would silently be lost.
+        let found = value.type_name();
+        let Value::InlineTable(table) = value else {
+            return Err((
+                format!("`{}` is a table, found a value of type {found}", path.join(".")),
+                "give a table, such as { beam = \"arm\", … }, or set one of its keys".into(),
+            ));
+        };
+        *place = Item::Table(table.into_table());
+        return Ok(());
+    }
     let decor = place.as_value().map(|old| old.decor().clone());
     *place = Item::Value(value);
     if let (Some(decor), Some(new)) = (decor, place.as_value_mut()) {

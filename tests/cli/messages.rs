@@ -1,5 +1,6 @@
 //! What people read when a scene is wrong, word for word.
 
+use ancf::model::Load;
 use ancf::run::{Control, RunError};
 use ancf::scene::{self, Scene};
 
@@ -206,6 +207,21 @@ fn overrides_do_not_move_the_blame() {
         let error = Scene::load(&path, &[option.to_owned()]).expect_err(option);
         assert_eq!(error.place().map(|(_, line, column)| (line, column)), Some((20, 6)), "{option}: {error}");
     }
+}
+
+/// An entry of a `[[list]]` is replaced as a whole, and never lost.
+#[test]
+fn overrides_replace_entries_of_lists() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.toml");
+    std::fs::write(&path, BASE).unwrap();
+    let before = Scene::load(&path, &[]).expect("a legal scene");
+    let option = "effect.force.0={ beam = 'arm', at = 'start', value = [0, 7] }".to_owned();
+    let after = Scene::load(&path, &[option]).expect("a legal scene");
+    assert_eq!(after.model().loads.len(), before.model().loads.len());
+    assert!(matches!(after.model().loads[0], Load::Force { value: [0.0, 7.0], .. }));
+    let error = Scene::load(&path, &["effect.force.0=7".to_owned()]).expect_err("no table").to_string();
+    assert!(error.contains("`effect.force.0` is a table, found a value of type integer"), "{error}");
 }
 
 #[test]

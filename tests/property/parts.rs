@@ -650,6 +650,33 @@ fn a_slack_cable_hangs_as_a_catenary() {
     assert!(trajectory.last[0].bending_moment.iter().all(|m| *m == 0.0));
 }
 
+/// A straight string whose end is brought nearer at once may be left with a fold, and says so; by small steps it hangs without one.
+#[test]
+fn a_folded_string_is_named() {
+    let cable = |steps| {
+        let mut model =
+            one(vec![support(0.0, FixedRotation::Free), support(1.0, FixedRotation::Free)], vec![]);
+        model.beams = vec![beam("cable", [0.0; 2], [1.0, 0.0], ancf(16))];
+        model.beams[0].section =
+            Section { axial_stiffness: Some(100.0), bending_stiffness: None, mass_per_length: Some(1.0) };
+        model.supports[1].displacement = Displacement { x: -0.4, ..Displacement::default() };
+        model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+        model.probes = tip(0, 0.5);
+        let settings = Static { steps, ..Static::default() };
+        run(&model, &Analysis::Static(settings), &mut |_| Control::Continue).expect("an equilibrium")
+    };
+    for steps in [None, Some(40)] {
+        let trajectory = cable(steps);
+        let middle = trajectory.probes[0].samples.last().expect("a record");
+        // What is free of folds is symmetric.
+        let symmetric = (middle.x - 0.3).abs() < 1e-6;
+        let named =
+            trajectory.warnings.iter().any(|w| w.contains("string `cable` turns by more than a right angle"));
+        assert_eq!(named, !symmetric, "{steps:?} steps: x = {}, {:?}", middle.x, trajectory.warnings);
+        assert!(symmetric || steps.is_none(), "x = {}", middle.x);
+    }
+}
+
 #[test]
 fn what_does_not_fit_is_refused_with_its_place() {
     let refused = |model: &Model, words: &str| {

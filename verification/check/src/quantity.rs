@@ -3,16 +3,18 @@
 //! | quantity | what it is | a series over |
 //! |---|---|---|
 //! | `probe.<name>.x` (`y`, `angle`, `curvature`, `strain`, `vx`, `vy`) | what a probe saw | time or load factor |
-//! | `energy.stretch` (`bend`, `kinetic`, `potential`, `work`, `total`) | energies \[J\] | time or load factor |
+//! | `energy.stretch` (`bend`, `stored`, `kinetic`, `potential`, `work`, `lost`, `total`) | energies \[J\] | time or load factor |
+//! | `reaction.<name>.x` (`y`, `moment`) | forces of a support or joint, where `output.reactions` asks for them | time or load factor |
 //! | `energy.drift` | max abs(total − initial) / max kinetic | – |
 //! | `parameter` | load factor or time \[s\] itself | time or load factor |
-//! | `shape.x` (`s`, `y`, `angle`, `strain`, `curvature`), `shape.<beam>.x` | the last state | s \[m\] |
+//! | `shape.x` (`s`, `y`, `angle`, `strain`, `curvature`, `axial_force`, `bending_moment`), `shape.<beam>.x` | the last state | s \[m\] |
 //! | `frequency.<k>`, `load-factor.<k>` | k-th from 1, \[Hz\] or – | – |
 //! | `statistics.<name>` | counts, as in `summary.json`; `most_iterations` of an accepted step | – |
 //! | `interpolated.stretch` (`bend`) | ½∫EA ε² ds, ½∫EI κ² ds of exact nodal values \[J\] | – |
 //! | `interpolated.distance` | largest distance of 201 even places of the interpolated curve from the exact one \[m\] | – |
 //! | `interpolated.x` (`s`, `y`, `curvature`, `strain`) | the interpolated curve | s \[m\] |
 
+use ancf::system::Reaction;
 use ancf::trajectory::{Energy, ProbeSample, Shape, Trajectory};
 
 use crate::case::Pick;
@@ -113,6 +115,17 @@ fn solved(words: &[&str], t: &Trajectory) -> std::result::Result<Values, String>
             })?;
             Ok(series(probe.samples.iter().map(|s| sample(s, field)).collect::<std::result::Result<_, _>>()?))
         }
+        ["reaction", name, field] => {
+            let reaction = t.reactions.iter().find(|r| r.name == *name).ok_or_else(|| {
+                format!(
+                    "no such reaction; there are {}",
+                    crate::case::list(t.reactions.iter().map(|r| &r.name))
+                )
+            })?;
+            Ok(series(
+                reaction.samples.iter().map(|s| force(s, field)).collect::<std::result::Result<_, _>>()?,
+            ))
+        }
         ["energy", "drift"] => {
             let initial = t.energy.first().map_or(0.0, Energy::total);
             let drift = t.energy.iter().map(|e| (e.total() - initial).abs()).fold(0.0, f64::max);
@@ -159,15 +172,26 @@ fn sample(s: &ProbeSample, field: &str) -> std::result::Result<f64, String> {
     }
 }
 
+fn force(reaction: &Reaction, field: &str) -> std::result::Result<f64, String> {
+    match field {
+        "x" => Ok(reaction.fx),
+        "y" => Ok(reaction.fy),
+        "moment" => Ok(reaction.moment),
+        _ => Err("a reaction has x, y, moment".to_owned()),
+    }
+}
+
 fn energy(e: &Energy, field: &str) -> std::result::Result<f64, String> {
     match field {
         "stretch" => Ok(e.stretch),
         "bend" => Ok(e.bend),
+        "stored" => Ok(e.stored),
         "kinetic" => Ok(e.kinetic),
         "potential" => Ok(e.potential),
         "work" => Ok(e.work),
+        "lost" => Ok(e.lost),
         "total" => Ok(e.total()),
-        _ => Err("there are stretch, bend, kinetic, potential, work, total, drift".to_owned()),
+        _ => Err("there are stretch, bend, stored, kinetic, potential, work, lost, total, drift".to_owned()),
     }
 }
 
@@ -179,7 +203,13 @@ fn shape(shape: &Shape, field: &str) -> std::result::Result<Values, String> {
         "angle" => &shape.angle,
         "strain" => &shape.strain,
         "curvature" => &shape.curvature,
-        _ => return Err("a shape has s, x, y, angle, strain, curvature".to_owned()),
+        "axial_force" => &shape.axial_force,
+        "bending_moment" => &shape.bending_moment,
+        _ => {
+            return Err(
+                "a shape has s, x, y, angle, strain, curvature, axial_force, bending_moment".to_owned()
+            );
+        }
     };
     Ok(Values::Shape { abscissa: shape.s.clone(), values: values.clone() })
 }
