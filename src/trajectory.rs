@@ -35,6 +35,8 @@ pub struct Trajectory {
     pub undeformed: Vec<Shape>,
     /// The last state of each beam.
     pub last: Vec<Shape>,
+    /// Lines of the ground that belong in a picture: borders of obstacles.
+    pub outlines: Vec<Vec<[f64; 2]>>,
     /// One entry per attempted step.
     pub history: Vec<StepRecord>,
     /// Natural frequencies \[Hz\], ascending, 0 where nothing resists the motion; modal analysis only.

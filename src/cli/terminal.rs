@@ -210,17 +210,22 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
         row(&format!("critical load {}", index + 1), format!("{} × the load", number(*factor)));
     }
     if let Some(energy) = trajectory.energy.last() {
-        row(
-            "energy",
-            format!(
-                "stretch {} J, bend {} J, kinetic {} J, potential {} J, total {} J",
-                number(energy.stretch),
-                number(energy.bend),
-                number(energy.kinetic),
-                number(energy.potential),
-                number(energy.total())
-            ),
-        );
+        let parts = [
+            ("stretch", energy.stretch),
+            ("bend", energy.bend),
+            ("springs and contacts", energy.stored),
+            ("kinetic", energy.kinetic),
+            ("potential", energy.potential),
+            ("put in", energy.work),
+            ("lost", energy.lost),
+        ];
+        let there = |(name, value): &(&str, f64)| {
+            let always = matches!(*name, "stretch" | "bend" | "kinetic" | "potential");
+            (always || *value != 0.0).then(|| format!("{name} {} J", number(*value)))
+        };
+        let mut words: Vec<String> = parts.iter().filter_map(there).collect();
+        words.push(format!("total {} J", number(energy.total())));
+        row("energy", words.join(", "));
     }
     for event in &trajectory.events {
         match event {

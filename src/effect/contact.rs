@@ -46,6 +46,27 @@ pub enum Obstacle {
 }
 
 impl Obstacle {
+    /// Its border; of a half-plane as long as the beams.
+    fn outline(&self, size: f64) -> Vec<[f64; 2]> {
+        match *self {
+            Self::Circle { center: [x, y], radius, .. } => {
+                let at = |i: u32| {
+                    let (sine, cosine) = (f64::from(i) * std::f64::consts::TAU / 72.0).sin_cos();
+                    [x + radius * cosine, y + radius * sine]
+                };
+                (0..=72).map(at).collect()
+            }
+            Self::HalfPlane { point: [x, y], normal: [nx, ny] } => {
+                [-size, size].map(|along| [x - along * ny, y + along * nx]).into()
+            }
+            Self::Box { center: [x, y], half: [a, b], angle } => {
+                let (sine, cosine) = angle.sin_cos();
+                let corner = |(a, b): (f64, f64)| [x + cosine * a - sine * b, y + sine * a + cosine * b];
+                [(a, b), (-a, b), (-a, -b), (a, -b), (a, b)].map(corner).into()
+            }
+        }
+    }
+
     /// Signed distance of a point, its gradient, and its second derivative.
     fn distance(&self, r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>) {
         // From a point: the distance and its derivatives.
@@ -118,6 +139,10 @@ impl Part for Contact {
             assembly.damping(Kind::Friction, extent, |_| Rubbing { normal, friction })?;
         }
         Ok(())
+    }
+
+    fn outline(&self, size: f64) -> Vec<[f64; 2]> {
+        self.obstacle.outline(size)
     }
 }
 

@@ -111,6 +111,10 @@ fn shape(t: &Trajectory) -> Option<Sketch> {
         return None;
     }
     let mut chart = Chart::new("", Axis::linear("x [m]"), Axis::linear("y [m]")).equal_aspect(620);
+    for (i, outline) in t.outlines.iter().enumerate() {
+        let label = if i == 0 { "obstacle" } else { "" };
+        chart = chart.with(Series::line(label, outline.clone(), GREY).size(1.6));
+    }
     let mut label = "on the way";
     for i in selection(t.frames.len(), 24) {
         for points in &t.frames[i].beams {

@@ -110,13 +110,20 @@ fn energy(t: &Trajectory, summary: &Summary) -> Option<Table> {
     let parts = [
         ("stretch", e.stretch),
         ("bend", e.bend),
+        ("springs and contacts", e.stored),
         ("kinetic", e.kinetic),
         ("potential", e.potential),
+        ("put in", e.work),
+        ("lost", e.lost),
         ("total", e.total),
     ];
+    // What is not simulated has no column.
+    let there = |(name, value): &(&str, f64)| {
+        *value != 0.0 || !matches!(*name, "springs and contacts" | "put in" | "lost")
+    };
     let mut header: Vec<String> = vec!["energy [J]".into()];
     let mut row: Vec<String> = vec!["last record".into()];
-    for (name, value) in parts {
+    for (name, value) in parts.into_iter().filter(there) {
         header.push(name.into());
         row.push(human(value, 7));
     }

@@ -110,6 +110,7 @@ impl<'a> Look<'a> {
             degrees_of_freedom: self.system.degrees_of_freedom(),
             settings: self.settings(),
             undeformed: self.shape(reference),
+            outlines: self.outlines(),
             last: self.shape(reference),
             probes: self
                 .probes
@@ -118,6 +119,11 @@ impl<'a> Look<'a> {
                 .collect(),
             ..Trajectory::default()
         }
+    }
+
+    fn outlines(&self) -> Vec<Vec<[f64; 2]>> {
+        let lines = self.model.parts.iter().map(|part| part.outline(self.system.length()));
+        lines.filter(|line| !line.is_empty()).collect()
     }
 
     fn settings(&self) -> Vec<(String, String)> {

@@ -25,6 +25,11 @@ pub trait Part: fmt::Debug + Send + Sync {
         None
     }
 
+    /// What it looks like on the ground, as a line for pictures; `size` is that of the beams \[m\].
+    fn outline(&self, _size: f64) -> Vec<[f64; 2]> {
+        Vec::new()
+    }
+
     /// A mass \[kg\] on which gravity acts.
     fn mass(&self) -> Option<(Place, f64)> {
         None

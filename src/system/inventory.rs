@@ -3,6 +3,7 @@
 use super::System;
 use super::measure::Measured;
 use crate::effect::Kind;
+use crate::linear::condensed::MOST_ROWS;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -126,6 +127,9 @@ impl System {
             symmetric,
             half_bandwidth: 4 * self.blocks - 1,
             solver: match (self.constraints.is_empty(), symmetric) {
+                (false, true) if !self.inertia.is_empty() && self.constraints.len() <= MOST_ROWS => {
+                    "banded LDLᵀ, constraints condensed"
+                }
                 (false, _) => "sparse LU (faer)",
                 (true, true) => "banded LDLᵀ",
                 (true, false) => "banded LU",

@@ -69,9 +69,18 @@ impl System {
         self.supports.turn_matrix(0.0, &mut k);
         self.supports.eliminate(0.0, &mut k);
         let border = self.border(0.0);
-        if let Ok(factor) = Factor::new(&k, &border) {
+        // As a motion with short steps does, where there is one.
+        let mass = (!self.inertia.is_empty()).then(|| self.mass_matrix());
+        let factorize = || match &mass {
+            None => Factor::new(&k, &border),
+            Some(mass) => {
+                let stiffest = (0..q.len()).fold(0.0_f64, |m, i| m.max(k.get(i, i) / mass.get(i, i)));
+                Factor::shifted(None, &k, (stiffest, mass), &border)
+            }
+        };
+        if let Ok(factor) = factorize() {
             let mut b = vec![1.0; q.len() + border.len()];
-            let factorization = time(|| drop(Factor::new(&k, &border)));
+            let factorization = time(|| drop(factorize()));
             let substitution = time(|| factor.solve(&mut b));
             let effects = inventory.effects.iter().filter_map(|e| e.seconds).sum::<f64>();
             let iteration = effects + factorization + substitution;

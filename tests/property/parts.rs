@@ -568,6 +568,7 @@ fn a_beam_bounces_from_a_plane() {
         assert!((-0.12..-0.05).contains(&lowest), "lowest {lowest}");
         let off = imbalance(&trajectory);
         assert!(off < 1e-3, "balance off by {off}");
+        assert_eq!(trajectory.outlines, [[[LENGTH, -0.1], [-LENGTH, -0.1]]]);
         // It falls 0.1 m, and is pushed back.
         let [
             Event::Contact { time: begin, contact, touches: true },
