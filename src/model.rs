@@ -39,6 +39,13 @@ pub struct Model {
     pub outputs: Outputs,
 }
 
+impl Model {
+    /// Whether a beam names no axial stiffness, and so keeps its length.
+    pub fn is_inextensible(&self) -> bool {
+        self.beams.iter().any(|beam| beam.section.axial_stiffness.is_none())
+    }
+}
+
 /// What is computed at every record beside probes and energies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outputs {
@@ -90,7 +97,7 @@ pub enum Centreline {
     Points(Vec<[f64; 2]>),
 }
 
-/// What the section resists and weighs. `None`: the scene does not name it, so it is not simulated.
+/// What the section resists and weighs. `None`: the scene does not name it, so it is not simulated; what names no axial stiffness keeps its length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Section {
     /// EA \[N\].

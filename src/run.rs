@@ -147,6 +147,7 @@ pub fn run_keeping(
         Analysis::Buckling { count } => Ok(look.buckling(&buckling::solve(&system, *count)?)),
         Analysis::Modal { count, about } => look.vibrations(*count, *about, observer),
         Analysis::Dynamic(settings) => {
+            settings.integrator.suits(model)?;
             let watches = look.watches(settings)?;
             let take = |checkpoint| {
                 if let Some(keep) = keep {

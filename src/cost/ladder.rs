@@ -76,7 +76,7 @@ fn accurate(task: &Task<'_>) -> Solver {
     match task.analysis {
         Analysis::Dynamic(_) => {
             let step = StepControl::Tolerance(tolerance(0.1 * task.target));
-            Solver::Integrator(Integrator::Gauss { stages: 3, step })
+            Solver::Integrator(Integrator::accurate(task.model, step))
         }
         _ => Solver::Scene,
     }
@@ -335,7 +335,7 @@ mod tests {
     use super::*;
     use crate::cost::{Deviation, Measured};
     use crate::model::{Discretization, Dynamic, Static};
-    use crate::scene::{INTEGRATOR, parse};
+    use crate::scene::{STEP_CONTROL, parse};
 
     /// A bench with a clock of its own, on which `time` and `error` follow from family and cells.
     struct Fake {
@@ -393,7 +393,7 @@ mod tests {
         let motion = Analysis::Dynamic(Dynamic {
             duration: 1.0,
             output_every: 0.1,
-            integrator: INTEGRATOR,
+            integrator: Integrator::Gauss { stages: 3, step: STEP_CONTROL },
             events: vec![],
         });
         for analysis in [&Analysis::Static(Static::default()), &motion] {

@@ -96,6 +96,8 @@ pub trait Density<const M: usize>: Send + Sync {
 pub enum Kind {
     /// Axial strain energy.
     Stretch,
+    /// An axis that keeps its length, by constraint.
+    Inextensibility,
     /// Bending strain energy.
     Bend,
     /// Kinetic energy of the centreline.
@@ -144,8 +146,9 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds that exist here.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Stretch,
+        Self::Inextensibility,
         Self::Bend,
         Self::Inertia,
         Self::Gravity,
@@ -173,6 +176,7 @@ impl Kind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Stretch => "stretch",
+            Self::Inextensibility => "inextensibility",
             Self::Bend => "bend",
             Self::Inertia => "inertia",
             Self::Gravity => "gravity",

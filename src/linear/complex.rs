@@ -5,11 +5,13 @@
 //! pivoting: with M positive definite and Im ζ ≠ 0, x*(K + ζM)x has an imaginary part different from zero for every x, hence no
 //! leading minor vanishes (George, Ikramov, Kucherov, *SIAM J. Matrix Anal. Appl.* 21, 2000, 377–387).
 //! Real and imaginary parts are kept apart, so that all inner loops are real multiply–adds over contiguous rows: four times
-//! as many as [`super::symmetric`] has, in the same order. Unsymmetric matrices and those bordered by many rows go to faer's sparse LU.
+//! as many as [`super::symmetric`] has, in the same order. Unsymmetric matrices and those bordered by many rows are
+//! factorised with pivoting, as a band where the rows lie within it, else by faer's sparse LU.
 
 use super::bordered::{BorderRow, Bordered};
 use super::condensed::{ComplexCondensed, MOST_ROWS};
 use super::fma::fma;
+use super::interleaved::{self, Interleaved};
 use super::symmetric::SymmetricBand;
 use super::{Matrix, Singular};
 use faer::c64;
@@ -21,7 +23,9 @@ pub enum ComplexFactor {
     Ldl(ComplexLdl),
     /// The same, bordered by few rows.
     Condensed(Box<ComplexCondensed>),
-    /// Sparse LU of an unsymmetric or bordered band.
+    /// LU of an unsymmetric band, its constraint rows among the unknowns.
+    Interleaved(Box<Interleaved<c64>>),
+    /// Sparse LU of a bordered band.
     Sparse(Box<Bordered<c64>>),
 }
 
@@ -50,11 +54,14 @@ impl ComplexFactor {
             }
             return Ok(Self::Condensed(Box::new(ComplexCondensed::new(ldl, k.size(), border)?)));
         }
+        let entry = |i, j| c64::new(k.get(i, j) + zeta.re * m.get(i, j), zeta.im * m.get(i, j));
+        if interleaved::fits(k, border) {
+            return Ok(Self::Interleaved(Box::new(Interleaved::new(k, entry, border)?)));
+        }
         let earlier = match earlier {
             Some(Self::Sparse(earlier)) => Some(*earlier),
             _ => None,
         };
-        let entry = |i, j| c64::new(k.get(i, j) + zeta.re * m.get(i, j), zeta.im * m.get(i, j));
         Ok(Self::Sparse(Box::new(Bordered::from_entries(k, entry, border, earlier)?)))
     }
 
@@ -63,14 +70,18 @@ impl ComplexFactor {
         match self {
             Self::Ldl(ldl) => ldl.solve(re, im),
             Self::Condensed(condensed) => condensed.solve(re, im),
-            Self::Sparse(sparse) => {
-                let mut b: Vec<c64> = re.iter().zip(&*im).map(|(re, im)| c64::new(*re, *im)).collect();
-                sparse.solve(&mut b);
-                for ((re, im), b) in re.iter_mut().zip(im).zip(b) {
-                    (*re, *im) = (b.re, b.im);
-                }
-            }
+            Self::Interleaved(lu) => pairwise(re, im, |b| lu.solve(b)),
+            Self::Sparse(sparse) => pairwise(re, im, |b| sparse.solve(b)),
         }
+    }
+}
+
+/// Solves with real and imaginary parts side by side.
+fn pairwise(re: &mut [f64], im: &mut [f64], solve: impl FnOnce(&mut [c64])) {
+    let mut b: Vec<c64> = re.iter().zip(&*im).map(|(re, im)| c64::new(*re, *im)).collect();
+    solve(&mut b);
+    for ((re, im), b) in re.iter_mut().zip(im).zip(b) {
+        (*re, *im) = (b.re, b.im);
     }
 }
 

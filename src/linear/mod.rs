@@ -2,14 +2,15 @@
 //!
 //! Every unknown belongs to a node, and a node has four: x, y, x', y'. A beam's tangent is therefore a band of
 //! 4 × 4 blocks, as many to the right of the diagonal as a support has further nodes (1 for the cable element, 5 for
-//! six-node radial point interpolation). Four factorisations serve, chosen by the pattern and never by the caller:
+//! six-node radial point interpolation). Five factorisations serve, chosen by the pattern and never by the caller:
 //!
 //! | pattern | method | file |
 //! |---|---|---|
 //! | symmetric band | LDLᵀ by blocks, no pivoting; its signs are the inertia | [`symmetric`] |
 //! | band (follower loads), or a symmetric one with a vanishing pivot | LU with partial pivoting | [`band`] |
 //! | the first, definite and bordered by few constraint rows | LDLᵀ and a small Schur complement | [`condensed`] |
-//! | band bordered by constraint rows | sparse LU by faer | [`bordered`] |
+//! | band bordered by constraint rows within it | LU of a band in another order | [`interleaved`] |
+//! | band bordered by others, such as those of joints | sparse LU by faer | [`bordered`] |
 //!
 //! The complex matrices of collocation's stages are in [`complex`].
 
@@ -18,12 +19,14 @@ pub mod bordered;
 pub mod complex;
 pub mod condensed;
 pub(crate) mod fma;
+pub mod interleaved;
 pub mod symmetric;
 
 use band::{Band, BandLu};
 use bordered::{BorderRow, Bordered};
 use condensed::Condensed;
 use fma::fma;
+use interleaved::Interleaved;
 use symmetric::{Ldl, SymmetricBand};
 
 /// How much stiffer than the structure a constraint is made where stability is judged: enough to dominate, and far from
@@ -160,10 +163,15 @@ impl Matrix {
     pub fn add_outer_product(&mut self, factor: f64, v: &BorderRow) {
         for &(i, a) in v {
             for &(j, b) in v {
-                if matches!(self, Self::General(_)) || i <= j {
-                    self.set(i, j, self.get(i, j) + factor * a * b);
-                }
+                self.add_at(i, j, factor * a * b);
             }
+        }
+    }
+
+    /// Adds to the entry in row `i`, column `j`, of a symmetric matrix once for both halves.
+    pub fn add_at(&mut self, i: usize, j: usize, value: f64) {
+        if matches!(self, Self::General(_)) || i <= j {
+            self.set(i, j, self.get(i, j) + value);
         }
     }
 
@@ -192,6 +200,8 @@ pub enum Factor {
     Lu(BandLu),
     /// LDLᵀ of a symmetric band bordered by few rows.
     Condensed(Box<Condensed>),
+    /// LU of a bordered band in another order.
+    Interleaved(Box<Interleaved>),
     /// Sparse LU of a bordered band.
     Bordered(Box<Bordered>),
 }
@@ -204,7 +214,7 @@ impl Factor {
     /// [`Singular`] where the matrix has no inverse to round-off.
     pub fn new(matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
         if !border.is_empty() {
-            return Ok(Self::Bordered(Box::new(Bordered::new(matrix, border, None)?)));
+            return Self::bordered(None, matrix, border);
         }
         match matrix {
             Matrix::Symmetric(symmetric) => match Ldl::new(symmetric) {
@@ -213,6 +223,14 @@ impl Factor {
             },
             Matrix::General(band) => Ok(Self::Lu(BandLu::new(band)?)),
         }
+    }
+
+    fn bordered(earlier: Option<Bordered>, matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
+        if interleaved::fits(matrix, border) {
+            let lu = Interleaved::new(matrix, |i, j| matrix.get(i, j), border)?;
+            return Ok(Self::Interleaved(Box::new(lu)));
+        }
+        Ok(Self::Bordered(Box::new(Bordered::new(matrix, border, earlier)?)))
     }
 
     /// Factorises a symmetric positive definite `matrix`, bordered by constraint rows if there are any.
@@ -242,7 +260,7 @@ impl Factor {
                 }
             }
             (Some(Self::Bordered(earlier)), _) if !border.is_empty() => {
-                Ok(Self::Bordered(Box::new(Bordered::new(matrix, border, Some(*earlier))?)))
+                Self::bordered(Some(*earlier), matrix, border)
             }
             _ => Self::new(matrix, border),
         }
@@ -296,6 +314,7 @@ impl Factor {
             Self::Ldl(ldl) => ldl.solve(b),
             Self::Lu(lu) => lu.solve(b),
             Self::Condensed(condensed) => condensed.solve(b),
+            Self::Interleaved(interleaved) => interleaved.solve(b),
             Self::Bordered(bordered) => bordered.solve(b),
         }
     }
@@ -305,7 +324,7 @@ impl Factor {
     pub fn negative_eigenvalues(&self) -> Option<usize> {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots()),
-            Self::Lu(_) | Self::Condensed(_) | Self::Bordered(_) => None,
+            Self::Lu(_) | Self::Condensed(_) | Self::Interleaved(_) | Self::Bordered(_) => None,
         }
     }
 
@@ -314,7 +333,7 @@ impl Factor {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots() % 2 == 1),
             Self::Lu(lu) => Some(lu.determinant_is_negative()),
-            Self::Condensed(_) | Self::Bordered(_) => None,
+            Self::Condensed(_) | Self::Interleaved(_) | Self::Bordered(_) => None,
         }
     }
 
@@ -328,11 +347,7 @@ impl Factor {
             return None;
         }
         // What ties beams to each other lies outside the band.
-        let within = |row: &BorderRow| match (row.first(), row.last()) {
-            (Some((first, _)), Some((last, _))) => matrix.columns(*first).contains(last),
-            _ => true,
-        };
-        if !border.iter().all(within) {
+        if !interleaved::fits(matrix, border) {
             return None;
         }
         // A penalty on the constraints leaves the allowed motions' inertia and makes all others positive. It is measured

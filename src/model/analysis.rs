@@ -136,12 +136,48 @@ impl Integrator {
     /// Newton tolerance of generalised-α where nothing is said: a thousand steps then add up to less than 1e-8.
     pub const NEWTON_TOLERANCE: f64 = 1e-11;
 
+    /// The most accurate method for a model: Gauss collocation with three stages, or Radau IIA where a beam is inextensible.
+    pub fn accurate(model: &super::Model, step: StepControl) -> Self {
+        if model.is_inextensible() {
+            Self::Radau { stages: 3, step }
+        } else {
+            Self::Gauss { stages: 3, step }
+        }
+    }
+
+    /// Checks that the method can do with the model.
+    ///
+    /// # Errors
+    /// [`Undamped`].
+    pub fn suits(&self, model: &super::Model) -> Result<(), Undamped> {
+        let damps = match self {
+            Self::GeneralizedAlpha { spectral_radius, .. } => *spectral_radius < 1.0,
+            Self::Gauss { .. } => false,
+            Self::Radau { .. } => true,
+        };
+        if damps || !model.is_inextensible() { Ok(()) } else { Err(Undamped { integrator: *self }) }
+    }
+
     /// How steps are chosen.
     pub fn step_control(&self) -> StepControl {
         match *self {
             Self::GeneralizedAlpha { step, .. } | Self::Gauss { step, .. } | Self::Radau { step, .. } => step,
         }
     }
+}
+
+/// A method without damping at infinite frequency, and a beam that is inextensible: an error of its axial force would be carried on from step to step,
+/// and grow.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{integrator}: the error that it makes in the axial force of an inextensible beam would grow")]
+pub struct Undamped {
+    /// The method.
+    pub integrator: Integrator,
+}
+
+impl Undamped {
+    /// What to try.
+    pub const HELP: &str = "use `radau`, or `generalized_alpha` with a `spectral_radius` below 1; or give the beam an `axial_stiffness`";
 }
 
 impl fmt::Display for StepControl {

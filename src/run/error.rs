@@ -1,5 +1,6 @@
 //! Why there is no result.
 
+use crate::model::Undamped;
 use crate::restart::RestartError;
 use crate::solve::dynamics::start::StartError;
 use crate::system::SystemError;
@@ -47,6 +48,10 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Eigen(#[from] crate::solve::eigen::EigenError),
+    /// An integrator cannot do with inextensible beams.
+    #[error(transparent)]
+    #[diagnostic(help("{}", Undamped::HELP))]
+    Undamped(#[from] Undamped),
     /// A time step could not be taken.
     #[error(
         "no step of {step:.1e} s beyond t = {} s: {cause}; the last iterate changed most at s = {} m of beam `{beam}`",
@@ -97,6 +102,7 @@ impl RunError {
             | Self::NoSuchProbe { .. }
             | Self::Start(_)
             | Self::Restart(_)
+            | Self::Undamped(_)
             | Self::Unavailable { .. } => 2,
             Self::NoEquilibrium { .. } | Self::NoStep { .. } | Self::Eigen(_) => 1,
         }

@@ -189,16 +189,22 @@ impl<'a> Look<'a> {
             .collect()
     }
 
-    /// The same with section forces.
-    pub(super) fn loaded(&self, parameter: f64, q: &[f64]) -> Vec<Shape> {
+    /// The same with section forces, `x` being coordinates and scaled multipliers.
+    pub(super) fn loaded(&self, parameter: f64, x: &[f64]) -> Vec<Shape> {
+        let (q, multipliers) = x.split_at(self.system.coordinates());
         let mut shapes = self.shape(q);
         for (index, shape) in shapes.iter_mut().enumerate() {
             self.section_forces(parameter, index, self.shapes[index].all(q), shape);
+            let forces = self.system.axial_forces(index, multipliers);
+            if !forces.is_empty() {
+                shape.axial_force = shape.s.iter().map(|&s| interpolate(&forces, s)).collect();
+            }
         }
         shapes
     }
 
-    /// N = ∂U/∂|r'| per length, EA ε for engineering strain and EA ε |r'| for Green's, and M = EI κ, each less what an actuation takes.
+    /// N = ∂U/∂|r'| per length, EA ε for engineering strain and EA ε |r'| for Green's, and M = EI κ, each less what an actuation takes. N of an
+    /// inextensible beam is that of its constraints.
     fn section_forces(
         &self,
         parameter: f64,
@@ -310,7 +316,7 @@ impl<'a> Look<'a> {
             }
         }
         if let Some((load, x)) = solution.states.last() {
-            trajectory.last = self.loaded(*load, self.coordinates_of(x));
+            trajectory.last = self.loaded(*load, x);
         }
         trajectory.warnings.extend(self.folds(&trajectory.last));
         trajectory.history = solution.history.clone();
@@ -423,7 +429,14 @@ impl<'a> Look<'a> {
             }
         }
         if let Some(state) = solution.states.last() {
-            trajectory.last = self.loaded(state.time, &state.q);
+            let mut x = state.q.clone();
+            if self.system.has_nonlinear_constraints()
+                && let Ok(mut motion) = dynamics::motion::Motion::new(self.system)
+                && motion.reactions(state).is_ok()
+            {
+                x.extend_from_slice(motion.multipliers());
+            }
+            trajectory.last = self.loaded(state.time, &x);
         }
         for (watch, state) in &solution.events {
             let ProbeTarget { probe, axis, value } = settings.events[*watch].target.clone();
@@ -478,6 +491,16 @@ impl<'a> Look<'a> {
             advice: advice.into(),
             partial: Box::new(Trajectory { complete: false, ..self.dynamics(settings, solution) }),
         }
+    }
+}
+
+/// Linear between the points, and beyond the first and the last.
+fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
+    let next = points.partition_point(|(s, _)| *s < at).clamp(1, points.len().max(2) - 1);
+    match (points.get(next - 1), points.get(next)) {
+        (Some((a, left)), Some((b, right))) => left + (right - left) * (at - a) / (b - a),
+        (Some((_, value)), None) => *value,
+        _ => 0.0,
     }
 }
 

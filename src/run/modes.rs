@@ -27,7 +27,9 @@ impl Look<'_> {
         if about == About::Reference {
             let mut trajectory = self.empty(AnalysisKind::Modal);
             trajectory.last = self.loaded(0.0, self.system.reference());
-            return self.modal(trajectory, 0.0, self.system.reference(), count);
+            let mut x = self.system.reference().to_vec();
+            x.resize(x.len() + self.system.multipliers(), 0.0);
+            return self.modal(trajectory, 0.0, &x, count);
         }
         let report = &mut |load: f64, step: f64, statistics: &Statistics| {
             let newton_iterations = statistics.newton_iterations;
@@ -44,9 +46,7 @@ impl Look<'_> {
             solution.states.drain(..solution.states.len().saturating_sub(1));
             let trajectory = Trajectory { analysis: AnalysisKind::Modal, ..self.statics(&solution) };
             let vibrations = match solution.states.last() {
-                Some((load, x)) if *load == 1.0 => {
-                    self.modal(trajectory, *load, self.coordinates_of(x), count)
-                }
+                Some((load, x)) if *load == 1.0 => self.modal(trajectory, *load, x, count),
                 // Stopped on the way.
                 _ => Ok(trajectory),
             };
@@ -61,12 +61,13 @@ impl Look<'_> {
         &self,
         mut trajectory: Trajectory,
         load: f64,
-        q: &[f64],
+        x: &[f64],
         count: usize,
     ) -> Result<Trajectory, RunError> {
         let about = if load == 0.0 { "the stress-free state" } else { "the equilibrium under all loads" };
         trajectory.settings.push(("vibrations about".into(), about.into()));
-        let modes = modal::solve(self.system, load, q, count)?;
+        let modes = modal::solve(self.system, load, x, count)?;
+        let q = self.coordinates_of(x);
         trajectory.modes = modes.shapes.iter().map(|mode| self.mode_shape(q, mode)).collect();
         trajectory.statistics.factorizations += modes.factorizations;
         trajectory.frequencies = modes.frequencies;

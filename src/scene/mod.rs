@@ -40,7 +40,7 @@ pub(crate) use unit::split_number;
 pub use error::{Brief, Invalid, SceneError};
 pub use schema::schema;
 pub use to_analysis::{
-    ARC_LENGTH_MAX_POINTS, DYNAMIC_RECORDS, INTEGRATOR, MAX_RECORDS, MAX_STEPS, SPECTRAL_RADIUS,
+    ARC_LENGTH_MAX_POINTS, DYNAMIC_RECORDS, MAX_RECORDS, MAX_STEPS, SPECTRAL_RADIUS, STEP_CONTROL,
 };
 pub use to_basis::{
     ANCF_GAUSS_POINTS, MAX_GAUSS_POINTS, MAX_MEMORY, MAX_NEIGHBOURS, MAX_NODES, RPIM_GAUSS_POINTS,

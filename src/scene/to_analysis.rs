@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use crate::model::{
-    About, Analysis, ArcLength, Crossing, Dynamic, Event, Integrator, Model, ProbeTarget, Static, StepControl,
+    About, Analysis, ArcLength, Crossing, Dynamic, Event, Integrator, Model, ProbeTarget, Static,
+    StepControl, Undamped,
 };
 
 use super::diagnose::choices;
@@ -21,8 +22,8 @@ pub const ARC_LENGTH_MAX_POINTS: usize = 1000;
 pub const MAX_RECORDS: u64 = 1_000_000;
 /// Most time steps of a run with a fixed step.
 pub const MAX_STEPS: f64 = 1e9;
-/// Time integration unless the scene says otherwise.
-pub const INTEGRATOR: Integrator = Integrator::Gauss { stages: 3, step: StepControl::Tolerance(1e-6) };
+/// Accuracy of a motion unless the scene says otherwise.
+pub const STEP_CONTROL: StepControl = StepControl::Tolerance(1e-6);
 /// Spectral radius of the generalised-α method unless the scene says otherwise.
 pub const SPECTRAL_RADIUS: f64 = 0.9;
 /// Records of a dynamic run unless the scene says otherwise.
@@ -198,9 +199,9 @@ fn dynamic(located: &Located<DynamicTable>, model: &Model, size: Size) -> Result
         None => duration / DYNAMIC_RECORDS,
     };
     const ONE: &str = "give one of `[analysis.dynamic.generalized_alpha]`, `[analysis.dynamic.gauss]`, \
-                       `[analysis.dynamic.radau]`, or none for Gauss collocation with its default accuracy";
+                       `[analysis.dynamic.radau]`, or none for collocation with its default accuracy";
     let integrator = match (&table.generalized_alpha, &table.gauss, &table.radau) {
-        (None, None, None) => INTEGRATOR,
+        (None, None, None) => Integrator::accurate(model, STEP_CONTROL),
         (Some(alpha), None, None) => {
             let t = alpha.get();
             let spectral_radius = match &t.spectral_radius {
@@ -238,6 +239,12 @@ fn dynamic(located: &Located<DynamicTable>, model: &Model, size: Size) -> Result
         }
         _ => return Err(Fault::new(located.span(), "more than one integrator").help(ONE)),
     };
+    if let Err(undamped) = integrator.suits(model) {
+        let spans =
+            [table.generalized_alpha.as_ref().map(Located::span), table.gauss.as_ref().map(Located::span)];
+        let span = spans.into_iter().flatten().next().unwrap_or_else(|| located.span());
+        return Err(Fault::new(span, undamped.to_string()).help(Undamped::HELP));
+    }
     let events = table.event.iter().map(|table| event(table, model)).collect::<Result<_, _>>()?;
     Ok(Dynamic { duration, output_every, integrator, events })
 }

@@ -200,9 +200,6 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
             )
             .help(format!("give `{key}`, or `{a}` and `{b}`")))
         };
-        if beam.section.axial_stiffness.is_none() {
-            lacks("axial stiffness EA", kind, "axial_stiffness", ["youngs_modulus", "area"])?;
-        }
         if let (None, Some(who)) = (beam.section.mass_per_length, mass) {
             lacks("mass", who, "mass_per_length", ["density", "area"])?;
         }

@@ -26,6 +26,8 @@ pub struct Modes {
     pub factorizations: usize,
 }
 
+/// Displacement, in beam lengths, that round-off leaves to an inextensible beam that its load does not move.
+const NOTHING_MOVES: f64 = 1e-9;
 /// Turn of a node by which the tangent is differenced \[rad\].
 const DIFFERENCE: f64 = 1e-3;
 
@@ -43,17 +45,23 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     equilibrium.linearize(0.0, &x, &x, &mut negative, &mut rate)?;
     equilibrium.solve(0.0, &mut rate, true);
     let size = equilibrium.size(&rate);
-    if size == 0.0 {
+    let n = system.coordinates();
+    if size == 0.0 && rate[n..].iter().all(|force| *force == 0.0) {
         return Ok(Modes::default());
     }
-    let n = system.coordinates();
-    let h = DIFFERENCE / size;
+    // Multipliers enter the tangent in proportion: where nothing moves, any difference is exact.
+    let h = if size > NOTHING_MOVES { DIFFERENCE / size } else { 1.0 };
+    if h != 1.0 && system.has_nonlinear_constraints() {
+        return Err(EigenError::Deforms);
+    }
     let mut workspace = Workspace::default();
     let mut tangent_at = |load: f64| {
-        let q: Vec<f64> = x[..n].iter().zip(&rate).map(|(x, r)| x + load * r).collect();
+        let x: Vec<f64> = x.iter().zip(&rate).map(|(x, r)| x + load * r).collect();
+        let (q, multipliers) = x.split_at(n);
         let mut k = system.matrix();
         let mut force = vec![0.0; n];
-        system.force_and_tangent(load, &q, &q, &mut force, &mut k, &mut workspace);
+        system.force_and_tangent(load, q, q, &mut force, &mut k, &mut workspace);
+        system.add_constraint_stiffness(multipliers, &mut k);
         system.supports().turn_matrix(0.0, &mut k);
         k
     };
@@ -69,7 +77,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     system.supports().clear_held(0.0, &mut geometric);
     let mut stiffness = tangent_at(0.0);
     system.supports().eliminate(0.0, &mut stiffness);
-    let (border, held) = (system.border(0.0), system.held());
+    let (border, held) = (system.border(0.0, system.reference()), system.held());
     let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, held: &held };
     let pairs = largest_reciprocals(&pencil, count)?;
     let shapes = pairs.vectors.into_iter().map(|mut v| {

@@ -87,10 +87,11 @@ impl<'a> Equilibrium<'a> {
         let (q, before) = (&x[..n], &before[..n]);
         system.force_and_tangent(load, q, before, &mut self.force, &mut self.tangent, &mut self.workspace);
         let residual = balance(self.system, load, x, &mut self.force, |_| (), negative);
+        system.add_constraint_stiffness(&x[n..], &mut self.tangent);
         system.supports().turn_matrix(load, &mut self.tangent);
         self.rate_right_hand_side(load, x, rate);
         system.supports().eliminate(load, &mut self.tangent);
-        self.border = system.border(load);
+        self.border = system.border(load, q);
         self.factor = Some(Factor::again(self.factor.take(), &self.tangent, &self.border)?);
         Ok(residual)
     }
@@ -115,10 +116,11 @@ impl<'a> Equilibrium<'a> {
         self.statistics.factorizations += 1;
         system.force_and_tangent(load, q, before, &mut self.force, &mut self.tangent, &mut self.workspace);
         balance(self.system, load, x, &mut self.force, |_| (), negative);
+        system.add_constraint_stiffness(&x[n..], &mut self.tangent);
         self.tangent.add_diagonal(sigma, diagonal);
         system.supports().turn_matrix(load, &mut self.tangent);
         system.supports().eliminate(load, &mut self.tangent);
-        self.border = system.border(load);
+        self.border = system.border(load, q);
         self.factor = Some(Factor::again(self.factor.take(), &self.tangent, &self.border)?);
         Ok(())
     }
@@ -144,7 +146,7 @@ impl<'a> Equilibrium<'a> {
             for (r, constraint) in system.constraints().iter().enumerate() {
                 let unit = constraint.scale(system.stiffness(), system.length());
                 rate[n + r] -=
-                    unit * constraint.gradient(load).map(|(i, value)| value * global[i]).sum::<f64>();
+                    unit * constraint.gradient(load, q).map(|(i, value)| value * global[i]).sum::<f64>();
             }
         }
         system.supports().to_frames(load, &mut rate[..n]);
@@ -210,11 +212,11 @@ pub(super) fn balance(
     for (r, constraint) in system.constraints().iter().enumerate() {
         let unit = constraint.scale(system.stiffness(), system.length());
         let mu = x[n + r] * unit;
-        for (i, value) in constraint.gradient(load) {
+        for (i, value) in constraint.gradient(load, &x[..n]) {
             scale = scale.max((mu * value).abs() * if i % 4 < 2 { 1.0 } else { 1.0 / system.length() });
             force[i] += mu * value;
         }
-        // Linear in q: Newton's method satisfies it to round-off at once.
+        // Newton's method satisfies what is linear in q to round-off at once, and lengths as soon as its increments vanish.
         negative[n + r] = -unit * constraint.value(load, &x[..n]);
     }
     system.supports().to_frames(load, force);

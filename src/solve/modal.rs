@@ -29,13 +29,14 @@ pub struct Modes {
     pub factorizations: usize,
 }
 
-/// The `count` lowest vibrations about the equilibrium `q` at load factor `load`, motions without resistance included.
-/// At load factor 0 the loads are absent.
+/// The `count` lowest vibrations about the equilibrium `x` (coordinates, then scaled multipliers) at load factor `load`, motions
+/// without resistance included. At load factor 0 the loads are absent.
 ///
 /// # Errors
 /// [`EigenError`] where the state is unstable or the loads have no symmetric tangent.
-pub fn solve(system: &System, load: f64, q: &[f64], count: usize) -> Result<Modes, EigenError> {
+pub fn solve(system: &System, load: f64, x: &[f64], count: usize) -> Result<Modes, EigenError> {
     let supports = system.supports();
+    let (q, multipliers) = x.split_at(system.coordinates());
     let mut stiffness = if load == 0.0 {
         system.internal_tangent(q)
     } else if system.is_symmetric() {
@@ -45,6 +46,7 @@ pub fn solve(system: &System, load: f64, q: &[f64], count: usize) -> Result<Mode
     } else {
         return Err(EigenError::NotSymmetric { analysis: "modal" });
     };
+    system.add_constraint_stiffness(multipliers, &mut stiffness);
     let mut mass = system.mass_matrix();
     for matrix in [&mut stiffness, &mut mass] {
         supports.turn_matrix(load, matrix);
@@ -54,7 +56,7 @@ pub fn solve(system: &System, load: f64, q: &[f64], count: usize) -> Result<Mode
     let shift = SHIFT * system.lowest_vibration_scale() + STAND_OUT * noise(&stiffness, &mass);
     let mut shifted = stiffness.clone();
     shifted.add(shift, &mass);
-    let (border, held) = (system.border(load), system.held());
+    let (border, held) = (system.border(load, q), system.held());
     let pencil = Pencil { a: &shifted, b: &mass, border: &border, held: &held };
     let pairs = largest_reciprocals(&pencil, count + GUARD)?;
     if pairs.vectors.is_empty() {
@@ -67,6 +69,7 @@ pub fn solve(system: &System, load: f64, q: &[f64], count: usize) -> Result<Mode
             let (mut v, mut f) = (vector.clone(), vec![0.0; q.len()]);
             supports.from_frames(load, &mut v);
             system.tangent_product(load, q, &v, &mut f);
+            system.add_constraint_stiffness_product(multipliers, &v, &mut f);
             supports.to_frames(load, &mut f);
             f
         })

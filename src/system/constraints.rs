@@ -1,8 +1,9 @@
-//! Supports between nodes and joints, as linear constraint rows with Lagrange multipliers.
+//! Supports between nodes, joints and inextensible beams, as constraint rows with Lagrange multipliers.
 //!
 //! At an arc length between nodes a support holds a combination of coordinates, g = n(λ)·Σ_a N_a q_a − c(λ) = 0, with the
 //! rows N of r or of r' there: a component of the position, a component of the gradient, or, for a held direction θ, the
-//! gradient's component across it, n = (−sin θ, cos θ). A joint ties the fields of two points, each with a normal of its own.
+//! gradient's component across it, n = (−sin θ, cos θ). A joint ties the fields of two points, each with a normal of its own. These rows are linear in q.
+//! The length of the gradient, which an inextensible beam keeps ([`super::inextensible`]), is quadratic: its row's normal follows the gradient.
 
 use super::course::Course;
 use crate::basis::BasisTable;
@@ -38,6 +39,13 @@ pub enum Row {
         /// What the sum is.
         value: f64,
     },
+    /// Half the square of the gradient's length, ½ w (r'·r' − |r'₀|²).
+    Length {
+        /// |r'₀|².
+        square: f64,
+        /// w, the part of the beam \[m\] for which the row stands.
+        weight: f64,
+    },
 }
 
 /// The shape functions of a field at one point.
@@ -55,6 +63,12 @@ impl Field {
         let (_, shape) = table.block(table.cells[0]);
         Self { first: 2 * (offset + table.cells[0].first as usize), shape: shape.to_vec() }
     }
+
+    /// Σ N_a q_a.
+    fn at(&self, q: &[f64]) -> [f64; 2] {
+        let terms = self.shape.iter().zip(q[self.first..].chunks_exact(2));
+        terms.fold([0.0; 2], |sum, (n, q)| [sum[0] + n * q[0], sum[1] + n * q[1]])
+    }
 }
 
 /// One constraint.
@@ -69,6 +83,14 @@ impl Constraint {
     /// beam's first coefficient.
     pub fn new(table: &BasisTable, offset: usize, row: Row) -> Self {
         Self { fields: vec![Field::new(table, offset)], row }
+    }
+
+    /// |r'| as in the state `reference` at a point where its shape functions are `shape`, `first` being the first coordinate that they touch; the
+    /// row stands for `weight` \[m\] of the beam.
+    pub fn length(first: usize, shape: &[f64], weight: f64, reference: &[f64]) -> Self {
+        let field = Field { first, shape: shape.to_vec() };
+        let [x, y] = field.at(reference);
+        Self { fields: vec![field], row: Row::Length { square: x * x + y * y, weight } }
     }
 
     /// Σ n·r⁽ᵒ⁾ = 0 over the points of several tables of one row, each with the first coefficient of its beam.
@@ -97,6 +119,16 @@ impl Constraint {
         self
     }
 
+    /// Bytes of its shape functions.
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + self.fields.iter().map(|field| size_of_val(&field.shape[..])).sum::<usize>()
+    }
+
+    /// Whether ∂g/∂q depends on q.
+    pub fn is_nonlinear(&self) -> bool {
+        matches!(self.row, Row::Length { .. })
+    }
+
     /// The coordinates that it combines, where they belong to one point.
     pub fn span(&self) -> Option<Range<usize>> {
         match &self.fields[..] {
@@ -121,31 +153,32 @@ impl Constraint {
                 ([-sine, cosine], 0.0, [-cosine * angle.change, -sine * angle.change], 0.0)
             }
             Row::Joint { value, .. } => ([0.0; 2], *value, [0.0; 2], 0.0),
+            Row::Length { square, weight } => ([0.0; 2], 0.5 * weight * square, [0.0; 2], 0.0),
         }
     }
 
-    /// The normal of field `k`, that of all fields being `n` for what is no joint.
-    fn normal_of(&self, k: usize, n: [f64; 2]) -> [f64; 2] {
+    /// The normal of field `k` in the state `q`, that of all fields being `n` for what is no joint and no length.
+    fn normal_of(&self, k: usize, n: [f64; 2], q: &[f64]) -> [f64; 2] {
         match &self.row {
             Row::Joint { normals, .. } => normals.get(k).copied().unwrap_or(n),
+            Row::Length { weight, .. } => self.fields[k].at(q).map(|r| weight * r),
             _ => n,
         }
     }
 
     fn combine(&self, n: impl Fn(usize) -> [f64; 2], q: &[f64]) -> f64 {
         let fields = self.fields.iter().enumerate().map(|(k, field)| {
-            let n = n(k);
-            let terms = field.shape.iter().zip(q[field.first..].chunks_exact(2));
-            terms.map(|(shape, q)| shape * (n[0] * q[0] + n[1] * q[1])).sum::<f64>()
+            let (n, r) = (n(k), field.at(q));
+            n[0] * r[0] + n[1] * r[1]
         });
         fields.sum()
     }
 
     /// The number by which the row is multiplied so that its entries compare with those of the tangent: EA/L \[N/m\] for
-    /// a position, EA L \[N m\] for a gradient.
+    /// a position and for a length, EA L \[N m\] for a gradient.
     pub fn scale(&self, stiffness: f64, length: f64) -> f64 {
         match self.row {
-            Row::Position { .. } | Row::Joint { order: 0, .. } => stiffness / length,
+            Row::Position { .. } | Row::Length { .. } | Row::Joint { order: 0, .. } => stiffness / length,
             Row::Gradient { .. } | Row::Direction(_) | Row::Joint { .. } => stiffness * length,
         }
     }
@@ -153,13 +186,14 @@ impl Constraint {
     /// g(q, λ).
     pub fn value(&self, load: f64, q: &[f64]) -> f64 {
         let (n, c, _, _) = self.normal(load);
-        self.combine(|k| self.normal_of(k, n), q) - c
+        let degree = if self.is_nonlinear() { 0.5 } else { 1.0 };
+        degree * self.combine(|k| self.normal_of(k, n, q), q) - c
     }
 
     /// ∂g/∂λ.
     pub fn rate(&self, load: f64, q: &[f64]) -> f64 {
         match &self.row {
-            Row::Joint { .. } => 0.0,
+            Row::Joint { .. } | Row::Length { .. } => 0.0,
             _ => {
                 let (_, _, n, c) = self.normal(load);
                 self.combine(|_| n, q) - c
@@ -171,24 +205,50 @@ impl Constraint {
     pub fn last_field(&self, load: f64, q: &[f64]) -> ([f64; 2], Option<[f64; 2]>) {
         let (n, _, _, _) = self.normal(load);
         let k = self.fields.len().saturating_sub(1);
-        let normal = self.normal_of(k, n);
+        let normal = self.normal_of(k, n, q);
         if matches!(self.row, Row::Position { .. } | Row::Joint { order: 0, .. }) {
             return (normal, None);
         }
-        let along = |axis: usize| {
-            let field = &self.fields[k];
-            field.shape.iter().zip(q[field.first + axis..].iter().step_by(2)).map(|(n, q)| n * q).sum::<f64>()
-        };
-        (normal, Some([along(0), along(1)]))
+        (normal, Some(self.fields[k].at(q)))
     }
 
-    /// (coordinate, ∂g/∂q).
-    pub fn gradient(&self, load: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
+    /// (coordinate, ∂g/∂q) in the state `q`.
+    pub fn gradient<'q>(&'q self, load: f64, q: &'q [f64]) -> impl Iterator<Item = (usize, f64)> + 'q {
         let (n, _, _, _) = self.normal(load);
         self.fields.iter().enumerate().flat_map(move |(k, field)| {
-            let n = self.normal_of(k, n);
+            let n = self.normal_of(k, n, q);
             let entries = field.shape.iter().enumerate();
             entries.flat_map(move |(a, shape)| (0..2).map(move |d| (field.first + 2 * a + d, n[d] * shape)))
         })
+    }
+
+    /// (coordinate, coordinate, ∂²g/∂q∂q), symmetric; nothing for what is linear.
+    pub fn second_derivative(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let lengths = match &self.row {
+            Row::Length { weight, .. } => Some(*weight),
+            _ => None,
+        };
+        lengths.into_iter().flat_map(move |weight| {
+            self.fields.iter().flat_map(move |field| {
+                let at = move |a: usize, d: usize| field.first + 2 * a + d;
+                let rows = field.shape.iter().enumerate();
+                rows.flat_map(move |(a, na)| {
+                    let columns = field.shape.iter().enumerate();
+                    columns
+                        .flat_map(move |(b, nb)| (0..2).map(move |d| (at(a, d), at(b, d), weight * na * nb)))
+                })
+            })
+        })
+    }
+
+    /// v·∂²g/∂q∂q·v.
+    pub fn curvature(&self, v: &[f64]) -> f64 {
+        match &self.row {
+            Row::Length { weight, .. } => {
+                let squares = self.fields.iter().map(|field| field.at(v)).map(|[x, y]| x * x + y * y);
+                weight * squares.sum::<f64>()
+            }
+            _ => 0.0,
+        }
     }
 }

@@ -4,6 +4,7 @@ use super::System;
 use super::measure::Measured;
 use crate::effect::Kind;
 use crate::linear::condensed::MOST_ROWS;
+use crate::linear::interleaved::fits;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -23,7 +24,7 @@ pub struct Inventory {
     pub coordinates: usize,
     /// Coordinates eliminated by supports at nodes.
     pub held: usize,
-    /// Multipliers of supports between nodes.
+    /// Multipliers of supports between nodes, joints and inextensible beams.
     pub multipliers: usize,
     /// Whether the tangent is symmetric.
     pub symmetric: bool,
@@ -84,7 +85,8 @@ impl System {
         let effects = effects.map(|effect| (effect.beam(), effect.kind(), effect.size()));
         let damping = self.damping.iter().map(|damping| (damping.beam(), damping.kind(), damping.size()));
         let travelling = self.travelling.iter().map(|force| (force.beam(), force.kind(), force.size()));
-        for (beam, kind, (points, bytes)) in effects.chain(damping).chain(travelling) {
+        let lengths = self.lengths().map(|(beam, bytes)| (beam, Kind::Inextensibility, (1, bytes)));
+        for (beam, kind, (points, bytes)) in effects.chain(damping).chain(travelling).chain(lengths) {
             let entry = entries.entry((beam, kind)).or_default();
             entry.0 += points;
             entry.1 += bytes;
@@ -129,6 +131,9 @@ impl System {
             solver: match (self.constraints.is_empty(), symmetric) {
                 (false, true) if !self.inertia.is_empty() && self.constraints.len() <= MOST_ROWS => {
                     "banded LDLᵀ, constraints condensed"
+                }
+                (false, _) if fits(&self.matrix(), &self.border(0.0, &self.reference)) => {
+                    "banded LU, constraints among the unknowns"
                 }
                 (false, _) => "sparse LU (faer)",
                 (true, true) => "banded LDLᵀ",

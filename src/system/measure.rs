@@ -68,7 +68,7 @@ impl System {
         self.force_and_tangent(0.0, q, q, &mut f, &mut k, &mut workspace);
         self.supports.turn_matrix(0.0, &mut k);
         self.supports.eliminate(0.0, &mut k);
-        let border = self.border(0.0);
+        let border = self.border(0.0, q);
         // As a motion with short steps does, where there is one.
         let mass = (!self.inertia.is_empty()).then(|| self.mass_matrix());
         let factorize = || match &mass {

@@ -3,7 +3,7 @@
 //! # Coordinates
 //! Node after node, beam after beam, four each: `[x, y, x', y']`, positions in metres, gradients without unit. What a
 //! support holds stays in this vector and is eliminated in place ([`supports`]); supports between nodes and joints add one Lagrange
-//! multiplier a row ([`constraints`], [`joint`]).
+//! multiplier a row ([`constraints`], [`joint`]), and so does the length of a beam without axial stiffness ([`inextensible`]).
 //!
 //! # Equations of statics
 //! ```text
@@ -17,6 +17,7 @@ pub mod course;
 mod effects;
 mod error;
 mod hold;
+mod inextensible;
 mod inventory;
 pub mod joint;
 mod measure;
@@ -113,6 +114,8 @@ pub struct System {
     constraints: Vec<Constraint>,
     /// Where supports and joints act.
     sources: Vec<Source>,
+    /// Where the last constraints keep the length of inextensible beams.
+    lengths: Vec<inextensible::Row>,
     reference: Vec<f64>,
     length: f64,
     stiffness: f64,
@@ -175,6 +178,7 @@ impl System {
             supports: Supports::default(),
             constraints: Vec::new(),
             sources: Vec::new(),
+            lengths: Vec::new(),
             reference,
             length,
             stiffness,
@@ -197,6 +201,14 @@ impl System {
             let rows = joint::rows(&system, *joint)?;
             system.constraints.extend(rows);
             system.sources.push(Source::Rows(first..system.constraints.len()));
+        }
+        let (lengths, rows) = inextensible::rows(&system, model)?;
+        system.lengths = lengths;
+        system.constraints.extend(rows);
+        if system.stiffness == 0.0 {
+            // Chains, which nothing but their loads gives a force.
+            let load = system.norm(&system.constant_load);
+            system.stiffness = if load > 0.0 { load } else { 1.0 };
         }
         system.check_room()?;
         Ok(system)
@@ -264,7 +276,7 @@ impl System {
         self.length
     }
 
-    /// Largest EA \[N\], the scale of internal forces.
+    /// Largest EA \[N\], the scale of internal forces; of inextensible beams EI/L², of chains their weight.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
@@ -322,7 +334,7 @@ impl System {
         held
     }
 
-    /// The supports and joints that are constraint rows.
+    /// The supports and joints that are constraint rows, and the lengths that inextensible beams keep.
     pub fn constraints(&self) -> &[Constraint] {
         &self.constraints
     }

@@ -76,7 +76,7 @@ impl System {
         let (q, multipliers) = x.split_at(self.coordinates());
         let mut force = vec![0.0; q.len()];
         self.force(load, q, &mut force);
-        self.add_constraint_forces(load, multipliers, &mut force);
+        self.add_constraint_forces(load, q, multipliers, &mut force);
         self.supports.keep_held(load, &mut force);
         self.reactions(load, q, &force, multipliers)
     }

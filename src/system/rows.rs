@@ -1,23 +1,54 @@
-//! The rows of supports between nodes and of joints, all together.
+//! The rows of supports between nodes, of joints and of inextensible beams, all together.
 
 use super::constraints::Constraint;
 use super::{System, SystemError};
+use crate::linear::Matrix;
 use crate::linear::bordered::BorderRow;
+use std::collections::BTreeMap;
 
 impl System {
-    /// Scaled rows of ∂g/∂q in the supports' frames, without the held coordinates.
-    pub fn border(&self, load: f64) -> Vec<BorderRow> {
+    /// Scaled rows of ∂g/∂q in the supports' frames, without the held coordinates. An entry that happens to vanish stays, so that the pattern does.
+    pub fn border(&self, load: f64, q: &[f64]) -> Vec<BorderRow> {
         let mut dense = vec![0.0; self.coordinates()];
-        let rows = self.constraints.iter().map(|constraint| {
-            dense.fill(0.0);
+        let held = self.held();
+        let mut rows = Vec::with_capacity(self.constraints.len());
+        for constraint in &self.constraints {
             let scale = constraint.scale(self.stiffness, self.length);
-            for (i, value) in constraint.gradient(load) {
+            let mut touched = Vec::new();
+            for (i, value) in constraint.gradient(load, q) {
                 dense[i] = scale * value;
+                // A support's frame mixes the two components.
+                touched.extend([i & !1, i | 1]);
             }
+            touched.sort_unstable();
+            touched.dedup();
             self.supports.to_frames(load, &mut dense);
-            dense.iter().copied().enumerate().filter(|(_, value)| *value != 0.0).collect()
-        });
-        rows.collect()
+            let keep = |i: &usize| !held[*i] && (constraint.is_nonlinear() || dense[*i] != 0.0);
+            rows.push(touched.iter().filter(|i| keep(i)).map(|&i| (i, dense[i])).collect());
+            touched.iter().for_each(|&i| dense[i] = 0.0);
+        }
+        rows
+    }
+
+    /// Whether rows depend on the state.
+    pub fn has_nonlinear_constraints(&self) -> bool {
+        self.constraints.iter().any(Constraint::is_nonlinear)
+    }
+
+    /// `k += Σ μ ∂²g/∂q∂q` with the scaled multipliers μ.
+    pub fn add_constraint_stiffness(&self, multipliers: &[f64], k: &mut Matrix) {
+        for (mu, constraint) in multipliers.iter().zip(&self.constraints) {
+            let mu = mu * constraint.scale(self.stiffness, self.length);
+            constraint.second_derivative().for_each(|(i, j, value)| k.add_at(i, j, mu * value));
+        }
+    }
+
+    /// `f += Σ μ ∂²g/∂q∂q·v` with the scaled multipliers μ.
+    pub fn add_constraint_stiffness_product(&self, multipliers: &[f64], v: &[f64], f: &mut [f64]) {
+        for (mu, constraint) in multipliers.iter().zip(&self.constraints) {
+            let mu = mu * constraint.scale(self.stiffness, self.length);
+            constraint.second_derivative().for_each(|(i, j, value)| f[i] += mu * value * v[j]);
+        }
     }
 
     /// Writes −g(q), scaled.
@@ -27,27 +58,38 @@ impl System {
         }
     }
 
-    /// Writes −∂g/∂q·v, scaled, which is what the rates of unknowns must make up for where supports have the rates `v`.
-    pub fn constraint_rates(&self, parameter: f64, v: &[f64], rates: &mut [f64]) {
+    /// Writes −∂g/∂q·v, scaled, in the state `q`, which is what the rates of unknowns must make up for where supports have the rates `v`.
+    pub fn constraint_rates(&self, parameter: f64, q: &[f64], v: &[f64], rates: &mut [f64]) {
         for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
             let scale = constraint.scale(self.stiffness, self.length);
-            *rate = -scale * constraint.gradient(parameter).map(|(i, value)| value * v[i]).sum::<f64>();
+            *rate = -scale * constraint.gradient(parameter, q).map(|(i, value)| value * v[i]).sum::<f64>();
         }
     }
 
-    /// `f += Bᵀ μ` with the scaled multipliers μ.
-    pub fn add_constraint_forces(&self, parameter: f64, multipliers: &[f64], f: &mut [f64]) {
+    /// Adds −v·∂²g/∂q∂q·v, scaled: the part of −g̈ that velocities have.
+    pub fn add_constraint_curvatures(&self, v: &[f64], rates: &mut [f64]) {
+        for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
+            *rate -= constraint.scale(self.stiffness, self.length) * constraint.curvature(v);
+        }
+    }
+
+    /// `f += Bᵀ μ` with the scaled multipliers μ, in the state `q`.
+    pub fn add_constraint_forces(&self, parameter: f64, q: &[f64], multipliers: &[f64], f: &mut [f64]) {
         for (mu, constraint) in multipliers.iter().zip(&self.constraints) {
             let mu = mu * constraint.scale(self.stiffness, self.length);
-            constraint.gradient(parameter).for_each(|(i, value)| f[i] += mu * value);
+            constraint.gradient(parameter, q).for_each(|(i, value)| f[i] += mu * value);
         }
     }
 
     /// Refuses more constraint rows on the same coordinates than there are free ones.
     pub(super) fn check_room(&self) -> Result<(), SystemError> {
         let held = self.held();
+        let mut rows_of: BTreeMap<(usize, usize), usize> = BTreeMap::new();
         for span in self.constraints.iter().filter_map(Constraint::span) {
-            let rows = self.constraints.iter().filter(|other| other.span() == Some(span.clone())).count();
+            *rows_of.entry((span.start, span.end)).or_default() += 1;
+        }
+        for ((start, end), rows) in rows_of {
+            let span = start..end;
             let free = held[span.clone()].iter().filter(|held| !**held).count();
             if rows > free {
                 let (beam, s) = self.place_of(span.start);

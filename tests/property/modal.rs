@@ -140,7 +140,7 @@ proptest! {
             }
         }
         let system = system(&model(beams, supports));
-        let ((k, m), border, held) = (matrices(&system), system.border(0.0), system.held());
+        let ((k, m), border, held) = (matrices(&system), system.border(0.0, system.reference()), system.held());
         let pencil = Pencil { a: &k, b: &m, border: &border, held: &held };
         let found: [Pairs; 2] =
             [dense::largest_reciprocals(&pencil, 8), lanczos::largest_reciprocals(&pencil, 8)]

@@ -161,7 +161,7 @@ impl<'a> Collocation<'a> {
     /// Factorises the transformed systems with the tangent at `at`, turned with each node to where it is in each stage.
     fn linearize(&mut self, at: &State, from: &State, h: f64) -> Result<(), Singular> {
         let s = self.tableau.stages();
-        self.motion.tangent_at(at)?;
+        self.motion.tangent_at(at, &self.displacements[s - 1][at.q.len()..])?;
         for i in 0..s {
             self.stage(i, from, h);
             self.turns[i].measure(&at.q, &self.stage[..at.q.len()]);
@@ -361,6 +361,8 @@ impl Method for Collocation<'_> {
         let unknowns = self.motion.unknowns_of(state);
         self.motion.acceleration(&unknowns, &mut acceleration)?;
         self.accelerations.iter_mut().for_each(|a| a.copy_from_slice(&acceleration));
+        let n = acceleration.len();
+        self.displacements.iter_mut().for_each(|y| y[n..].copy_from_slice(self.motion.multipliers()));
         (self.last_step, self.rate) = (0.0, 1.0);
         Ok(acceleration)
     }

@@ -121,6 +121,8 @@ pub struct GeneralizedAlpha<'a> {
 struct Kept {
     /// Where it was taken.
     at: State,
+    /// And with which multipliers.
+    multipliers: Vec<f64>,
     /// Of K + cM; 0 before it is factorised.
     c: f64,
     /// How much increments shrink an iteration.
@@ -161,9 +163,9 @@ impl<'a> GeneralizedAlpha<'a> {
     }
 
     /// Takes the tangent at `at`.
-    fn keep(&mut self, at: &State, rate: f64) -> Result<(), Singular> {
-        self.motion.tangent_at(at)?;
-        self.kept = Some(Kept { at: at.clone(), c: 0.0, rate });
+    fn keep(&mut self, at: &State, multipliers: Vec<f64>, rate: f64) -> Result<(), Singular> {
+        self.motion.tangent_at(at, &multipliers)?;
+        self.kept = Some(Kept { at: at.clone(), multipliers, c: 0.0, rate });
         Ok(())
     }
 
@@ -188,7 +190,7 @@ impl<'a> GeneralizedAlpha<'a> {
         let predicted = self.x.clone();
         let mut fresh = self.kept.as_ref().is_none_or(|kept| kept.rate > KEEP);
         if fresh {
-            self.keep(from, 1.0)?;
+            self.keep(from, self.last.multipliers.clone(), 1.0)?;
         }
         let (n, damped) = (self.motion.coordinates(), self.motion.needs_velocity());
         let (c, d) = (self.rule.c, self.rule.d);
@@ -236,7 +238,7 @@ impl<'a> GeneralizedAlpha<'a> {
                 self.kept = None;
                 return Ok(false);
             }
-            self.keep(from, 1.0)?;
+            self.keep(from, self.last.multipliers.clone(), 1.0)?;
             fresh = true;
         }
     }
@@ -322,6 +324,7 @@ impl Method for GeneralizedAlpha<'_> {
         let unknowns = self.motion.unknowns_of(state);
         self.motion.acceleration(&unknowns, &mut self.last.physical)?;
         self.last.algorithmic.copy_from_slice(&self.last.physical);
+        self.last.multipliers.copy_from_slice(self.motion.multipliers());
         self.before = None;
         Ok(self.last.physical.clone())
     }
@@ -414,7 +417,8 @@ impl Method for GeneralizedAlpha<'_> {
     fn memory(&self) -> Vec<Vec<f64>> {
         let Accelerations { physical, algorithmic, multipliers } = self.last.clone();
         let (before, step) = self.before.clone().unwrap_or_default();
-        let (at, c, rate) = self.kept.clone().map_or_else(Default::default, |k| (k.at, k.c, k.rate));
+        let (at, with, c, rate) =
+            self.kept.clone().map_or_else(Default::default, |k| (k.at, k.multipliers, k.c, k.rate));
         vec![
             physical,
             algorithmic,
@@ -422,14 +426,15 @@ impl Method for GeneralizedAlpha<'_> {
             before,
             at.q,
             at.v,
+            with,
             vec![step, c, rate, at.time, self.rule.d],
         ]
     }
 
     fn restore(&mut self, memory: Vec<Vec<f64>>) -> bool {
         let n = self.motion.coordinates();
-        let Ok([physical, algorithmic, multipliers, before, q, v, numbers]) =
-            <[Vec<f64>; 7]>::try_from(memory)
+        let Ok([physical, algorithmic, multipliers, before, q, v, with, numbers]) =
+            <[Vec<f64>; 8]>::try_from(memory)
         else {
             return false;
         };
@@ -439,6 +444,7 @@ impl Method for GeneralizedAlpha<'_> {
             || !fits(&before)
             || !fits(&q)
             || q.len() != v.len()
+            || (!q.is_empty() && with.len() != multipliers.len())
         {
             return false;
         }
@@ -446,6 +452,6 @@ impl Method for GeneralizedAlpha<'_> {
         self.last = Accelerations { physical, algorithmic, multipliers };
         self.before = (!before.is_empty()).then_some((before, step));
         let at = State { time, q, v, ..State::default() };
-        at.q.is_empty() || (self.keep(&at, rate).is_ok() && (c == 0.0 || self.factorize(c, d).is_ok()))
+        at.q.is_empty() || (self.keep(&at, with, rate).is_ok() && (c == 0.0 || self.factorize(c, d).is_ok()))
     }
 }

@@ -6,8 +6,14 @@
 //!
 //! What supports hold at nodes is eliminated from every matrix *before* it is factorised, the mass matrix included: solving with
 //! the mass matrix of the free beam and clearing the held components afterwards would give wrong accelerations to all others.
-//! Constraints between nodes are linear in q with constant rows, so that a method which satisfies them in its stages integrates
+//! Supports between nodes and joints are linear in q with constant rows, so that a method which satisfies them in its stages integrates
 //! an ordinary differential equation on the subspace g(q) = 0, with all of its order.
+//!
+//! # Inextensible beams
+//! Their rows follow the gradients, and the equations are differential-algebraic of index 3: the constraint is an equation of every stage, and after a step
+//! positions and velocities are put back onto it ([`Motion::project`]; Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, ch. VII). Methods that
+//! damp infinite frequencies serve: Radau IIA, and generalised-α with ρ∞ < 1. Gauss' methods and the trapezoidal rule carry an error of the axial
+//! force on from step to step, undamped, and are refused.
 //!
 //! # Supports that move
 //! A coordinate that moves by a law of time has its exact value, velocity and acceleration in every stage, whatever a method makes of them; what is left is
@@ -51,6 +57,8 @@ pub struct Motion<'a> {
     damping: Option<Matrix>,
     /// Whether supports move with time.
     moves: bool,
+    /// Whether the border follows the state.
+    follows: bool,
     workspace: Workspace,
     force: Vec<f64>,
     scratch: Vec<f64>,
@@ -85,7 +93,7 @@ impl<'a> Motion<'a> {
     pub fn new(system: &'a System) -> Result<Self, Singular> {
         let n = system.coordinates();
         let mass = system.mass_matrix();
-        let border = system.border(0.0);
+        let border = system.border(0.0, system.reference());
         let (free_mass, mass_factor) = free_mass(system, 0.0, &mass, &border)?;
         let moves = system.supports().moves_in_time();
         let carried = if moves { n } else { 0 };
@@ -98,6 +106,7 @@ impl<'a> Motion<'a> {
             tangent: system.matrix(),
             damping: system.is_damped().then(|| system.damping_pattern()),
             moves,
+            follows: system.has_nonlinear_constraints(),
             workspace: Workspace::default(),
             force: vec![0.0; n],
             scratch: vec![0.0; if system.is_damped() { n } else { 0 }],
@@ -110,6 +119,11 @@ impl<'a> Motion<'a> {
     /// The system that moves.
     pub fn system(&self) -> &'a System {
         self.system
+    }
+
+    /// The scaled multipliers of the last accelerations.
+    pub fn multipliers(&self) -> &[f64] {
+        &self.multipliers
     }
 
     /// Turns of the nodes, for a tangent that turns with them.
@@ -132,10 +146,10 @@ impl<'a> Motion<'a> {
         self.damping.is_some() || self.system.supports().turn_in_time()
     }
 
-    /// Forms the mass matrix in the supports' frames at `time`, if these turn.
-    fn turn_mass(&mut self, time: f64) -> Result<(), Singular> {
-        if self.system.supports().turn_in_time() {
-            self.border = self.system.border(time);
+    /// Forms the mass matrix in the supports' frames at `time`, if these turn, with the constraints' rows in the state `q`, if they follow it.
+    fn mass_at(&mut self, time: f64, q: &[f64]) -> Result<(), Singular> {
+        if self.system.supports().turn_in_time() || self.follows {
+            self.border = self.system.border(time, q);
             (self.free_mass, self.mass_factor) = free_mass(self.system, time, &self.mass, &self.border)?;
         }
         Ok(())
@@ -147,7 +161,7 @@ impl<'a> Motion<'a> {
     /// [`Singular`] where a coordinate has no mass.
     pub fn acceleration(&mut self, state: &State, acceleration: &mut [f64]) -> Result<(), Singular> {
         let n = self.coordinates();
-        self.turn_mass(state.time)?;
+        self.mass_at(state.time, &state.q)?;
         let mut negative = vec![0.0; self.unknowns()];
         // With no acceleration of the unknowns: what is left is that of the supports.
         acceleration.fill(0.0);
@@ -155,7 +169,8 @@ impl<'a> Motion<'a> {
         x.resize(self.unknowns(), 0.0);
         self.residual(&x, Rates { time: state.time, v: &state.v, a: acceleration }, &mut negative);
         let supported: &[f64] = if self.moves { &self.carried[2] } else { acceleration };
-        self.system.constraint_rates(state.time, supported, &mut negative[n..]);
+        self.system.constraint_rates(state.time, &state.q, supported, &mut negative[n..]);
+        self.system.add_constraint_curvatures(&state.v, &mut negative[n..]);
         self.mass_factor.solve(&mut negative);
         self.from_frames(&mut negative);
         acceleration.copy_from_slice(&negative[..n]);
@@ -169,7 +184,7 @@ impl<'a> Motion<'a> {
     /// [`Singular`] where a coordinate has no mass.
     pub fn admissible_velocity(&mut self, time: f64, q: &[f64], v: &[f64]) -> Result<Vec<f64>, Singular> {
         let n = self.coordinates();
-        self.turn_mass(time)?;
+        self.mass_at(time, q)?;
         let supports = self.system.supports();
         // That of moving supports, all else at rest; the others' part is then found without it.
         let mut prescribed = vec![0.0; n];
@@ -178,7 +193,7 @@ impl<'a> Motion<'a> {
         let mut momentum = vec![0.0; self.unknowns()];
         self.mass.multiply_add(1.0, &wanted, &mut momentum[..n]);
         supports.to_frames(time, &mut momentum[..n]);
-        self.system.constraint_rates(time, &prescribed, &mut momentum[n..]);
+        self.system.constraint_rates(time, q, &prescribed, &mut momentum[n..]);
         self.mass_factor.solve(&mut momentum);
         supports.to_fixed_axes(time, &mut momentum[..n]);
         wanted.iter_mut().zip(&momentum).zip(&prescribed).for_each(|((v, w), p)| *v = w + p);
@@ -216,17 +231,21 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// The tangent ∂f/∂q in the state `state` of unknowns.
+    /// The tangent ∂f/∂q in the state `state` of unknowns, with the scaled `multipliers`.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass in a frame that turns.
-    pub fn tangent_at(&mut self, state: &State) -> Result<(), Singular> {
-        self.turn_mass(state.time)?;
+    pub fn tangent_at(&mut self, state: &State, multipliers: &[f64]) -> Result<(), Singular> {
+        if self.system.supports().turn_in_time() {
+            self.mass_at(state.time, &state.q)?;
+        }
         let rates = Rates { time: state.time, v: &state.v, a: &state.v };
+        let mut x = state.q.clone();
+        x.extend_from_slice(multipliers);
         if self.moves {
-            self.with_carried(&state.q, rates, |motion, x, rates| motion.assemble(x, x, rates));
+            self.with_carried(&x, rates, |motion, x, rates| motion.assemble(x, x, rates));
         } else {
-            self.assemble(&state.q, &state.q, rates);
+            self.assemble(&x, &x, rates);
         }
         Ok(())
     }
@@ -261,8 +280,12 @@ impl<'a> Motion<'a> {
             supports.clear_held(rates.time, damping);
         }
         system.force_and_tangent(rates.time, &x[..n], &before[..n], force, tangent, workspace);
+        system.add_constraint_stiffness(&x[n..], tangent);
         supports.turn_matrix(rates.time, tangent);
         supports.eliminate(rates.time, tangent);
+        if self.follows {
+            self.border = system.border(rates.time, &x[..n]);
+        }
         self.statistics.tangent_evaluations += 1;
     }
 
@@ -375,15 +398,16 @@ impl<'a> Motion<'a> {
         if self.system.multipliers() == 0 {
             return Ok(());
         }
-        self.turn_mass(state.time)?;
+        self.mass_at(state.time, &state.q)?;
         let supports = self.system.supports();
         let mut change = vec![0.0; self.unknowns()];
+        // What a step leaves is so small that once is enough, with quadratic rows too.
         self.system.constraint_values(state.time, &state.q, &mut change[n..]);
         self.mass_factor.solve(&mut change);
         supports.to_fixed_axes(state.time, &mut change[..n]);
         state.q.iter_mut().zip(&change).for_each(|(q, d)| *q += d);
         change[..n].fill(0.0);
-        self.system.constraint_rates(state.time, &state.v, &mut change[n..]);
+        self.system.constraint_rates(state.time, &state.q, &state.v, &mut change[n..]);
         self.mass_factor.solve(&mut change);
         supports.to_fixed_axes(state.time, &mut change[..n]);
         state.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);
@@ -411,7 +435,7 @@ impl<'a> Motion<'a> {
         self.system.force(state.time, &q, &mut force);
         self.system.add_damping(&q, &v, &mut force);
         self.mass.multiply_add(1.0, &acceleration, &mut force);
-        self.system.add_constraint_forces(state.time, &self.multipliers, &mut force);
+        self.system.add_constraint_forces(state.time, &q, &self.multipliers, &mut force);
         self.system.supports().keep_held(state.time, &mut force);
         Ok(force)
     }

@@ -1,0 +1,149 @@
+//! A band bordered by constraint rows each of which lies within one support.
+//!
+//! Numbered behind the last unknown of its row, a multiplier stays within the band, which becomes wider by the rows that share a support:
+//!
+//! ```text
+//! [ K  Bᵀ ]        x₀ x₁ μ₀ μ₁ x₂ μ₂ μ₃ …
+//! [ B  0  ]   →    one band, LU with partial pivoting
+//! ```
+//!
+//! Two rows a cell of cable elements make 10 diagonals out of 7 on either side, and a cell costs the same however many there are.
+
+use super::band::{Band, BandLu, Number};
+use super::bordered::BorderRow;
+use super::{Matrix, Singular};
+
+/// LU of a bordered matrix that is a band in another order, real or complex.
+#[derive(Clone, Debug)]
+pub struct Interleaved<T = f64> {
+    /// Where each unknown and multiplier stands.
+    place: Vec<usize>,
+    lu: BandLu<T>,
+}
+
+/// Whether each row lies within the band of `matrix`.
+pub fn fits(matrix: &Matrix, border: &[BorderRow]) -> bool {
+    border.iter().all(|row| match (row.first(), row.last()) {
+        (Some((first, _)), Some((last, _))) => matrix.columns(*first).contains(last),
+        _ => true,
+    })
+}
+
+/// Where unknowns and multipliers stand.
+fn places(size: usize, border: &[BorderRow]) -> Vec<usize> {
+    let last = |row: &BorderRow| row.last().map_or(0, |(last, _)| *last);
+    let mut order: Vec<(usize, usize)> = (0..size).map(|i| (i, i)).collect();
+    order.extend(border.iter().enumerate().map(|(r, row)| (last(row), size + r)));
+    // Stable: behind the unknown, rows of the same support in their order.
+    order.sort_by_key(|(at, index)| (*at, *index));
+    let mut place = vec![0; order.len()];
+    order.iter().enumerate().for_each(|(position, (_, index))| place[*index] = position);
+    place
+}
+
+impl<T: Number> Interleaved<T> {
+    /// Factorises the matrix with the pattern of `pattern` and the entries `entry(row, column)`, bordered by `border`, which must fit.
+    ///
+    /// # Errors
+    /// [`Singular`] where the whole matrix is.
+    pub fn new(
+        pattern: &Matrix,
+        entry: impl Fn(usize, usize) -> T,
+        border: &[BorderRow],
+    ) -> Result<Self, Singular> {
+        let size = pattern.size();
+        let place = places(size, border);
+        let apart = |i: usize, j: usize| place[i].abs_diff(place[j]);
+        let of_matrix = (0..size).flat_map(|i| {
+            let columns = pattern.columns(i);
+            [apart(i, columns.start), apart(i, columns.end - 1)]
+        });
+        let of_rows =
+            border.iter().enumerate().flat_map(|(r, row)| row.iter().map(move |(j, _)| (size + r, *j)));
+        let half = of_matrix.chain(of_rows.map(|(i, j)| apart(i, j))).max().unwrap_or(0);
+        let mut band = Band::<T>::zeros(place.len(), half);
+        for i in 0..size {
+            pattern.columns(i).for_each(|j| band.set(place[i], place[j], entry(i, j)));
+        }
+        for (r, row) in border.iter().enumerate() {
+            for &(j, value) in row {
+                let (mu, j) = (place[size + r], place[j]);
+                band.set(mu, j, T::from_real(value));
+                band.set(j, mu, T::from_real(value));
+            }
+        }
+        let lu = BandLu::new(&band).map_err(|singular| {
+            let row = place.iter().position(|position| *position == singular.row);
+            Singular { row: row.unwrap_or(size) }
+        })?;
+        Ok(Self { place, lu })
+    }
+
+    /// Solves in place: unknowns first, multipliers last.
+    pub fn solve(&self, b: &mut [T]) {
+        let mut ordered = b.to_vec();
+        self.place.iter().zip(&*b).for_each(|(place, value)| ordered[*place] = *value);
+        self.lu.solve(&mut ordered);
+        self.place.iter().zip(b).for_each(|(place, value)| *value = ordered[*place]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::bordered::Bordered;
+    use faer::c64;
+
+    /// Three nodes, an indefinite K, and rows that share supports.
+    fn example() -> (Matrix, Vec<BorderRow>) {
+        let mut k = Matrix::zeros(3, 2, true);
+        for i in 0..12 {
+            for j in k.columns(i) {
+                let value = ((3 * i * i + 7 * i * j + 3 * j * j) as f64).sin();
+                k.add_at(i.min(j), i.max(j), if i <= j { value } else { 0.0 });
+            }
+        }
+        let row =
+            |from: usize, to: usize, f: f64| (from..to).map(|i| (i, (f * (i + 1) as f64).cos())).collect();
+        (k, vec![row(0, 8, 1.0), row(0, 8, 2.0), row(4, 12, 3.0), row(5, 12, 0.7)])
+    }
+
+    #[test]
+    fn it_solves_what_a_sparse_factorisation_solves() {
+        let (k, border) = example();
+        assert!(fits(&k, &border));
+        let mut expected: Vec<f64> = (0..16).map(|i| 1.0 / f64::from(i + 1)).collect();
+        let mut found = expected.clone();
+        Bordered::new(&k, &border, None).unwrap().solve(&mut expected);
+        Interleaved::new(&k, |i, j| k.get(i, j), &border).unwrap().solve(&mut found);
+        for (a, b) in expected.iter().zip(&found) {
+            assert!((a - b).abs() < 1e-12 * a.abs().max(1.0), "{a} and {b}");
+        }
+    }
+
+    #[test]
+    fn complex_matrices_too() {
+        let (k, border) = example();
+        let entry = |i: usize, j: usize| c64::new(k.get(i, j), if i == j { 0.3 } else { 0.0 });
+        let mut expected: Vec<c64> = (0..16).map(|i| c64::new(1.0, f64::from(i))).collect();
+        let mut found = expected.clone();
+        Bordered::from_entries(&k, entry, &border, None).unwrap().solve(&mut expected);
+        Interleaved::new(&k, entry, &border).unwrap().solve(&mut found);
+        for (a, b) in expected.iter().zip(&found) {
+            assert!((a - b).norm() < 1e-11 * a.norm().max(1.0), "{a} and {b}");
+        }
+    }
+
+    #[test]
+    fn rows_that_depend_on_each_other_are_refused() {
+        let (k, mut border) = example();
+        border[3] = border[2].clone();
+        assert!(Interleaved::new(&k, |i, j| k.get(i, j), &border).is_err());
+    }
+
+    #[test]
+    fn a_row_across_the_band_does_not_fit() {
+        let (k, _) = example();
+        assert!(!fits(&k, &[vec![(0, 1.0), (11, 1.0)]]));
+    }
+}
