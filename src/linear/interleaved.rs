@@ -1,13 +1,14 @@
-//! A band bordered by constraint rows each of which lies within one support.
+//! A band bordered by constraint rows each of which lies within a few neighbouring supports.
 //!
-//! Numbered behind the last unknown of its row, a multiplier stays within the band, which becomes wider by the rows that share a support:
+//! Numbered behind the last unknown of its row, a multiplier stays within the band, which becomes wider by the rows that share its place:
 //!
 //! ```text
 //! [ K  Bᵀ ]        x₀ x₁ μ₀ μ₁ x₂ μ₂ μ₃ …
 //! [ B  0  ]   →    one band, LU with partial pivoting
 //! ```
 //!
-//! Two rows a cell of cable elements make 10 diagonals out of 7 on either side, and a cell costs the same however many there are.
+//! The rows of an inextensible beam of cable elements, which span two of them, make 14 diagonals out of 7 on either side, and a cell costs the same
+//! however many there are.
 
 use super::band::{Band, BandLu, Number};
 use super::bordered::BorderRow;
@@ -21,12 +22,18 @@ pub struct Interleaved<T = f64> {
     lu: BandLu<T>,
 }
 
-/// Whether each row lies within the band of `matrix`.
+/// Blocks of four unknowns that the longest row spans.
+pub fn reach(border: &[BorderRow]) -> usize {
+    let span = |row: &BorderRow| match (row.first(), row.last()) {
+        (Some((first, _)), Some((last, _))) => last / 4 - first / 4 + 1,
+        _ => 0,
+    };
+    border.iter().map(span).max().unwrap_or(0)
+}
+
+/// Whether the rows are local: such as span at most one node more than the functions of a cell.
 pub fn fits(matrix: &Matrix, border: &[BorderRow]) -> bool {
-    border.iter().all(|row| match (row.first(), row.last()) {
-        (Some((first, _)), Some((last, _))) => matrix.columns(*first).contains(last),
-        _ => true,
-    })
+    reach(border) <= matrix.columns(0).len() / 4 + 1
 }
 
 /// Where unknowns and multipliers stand.

@@ -94,13 +94,12 @@ impl Matrix {
 
     /// Adds `factor` times a matrix of the same size whose band is not wider.
     pub fn add(&mut self, factor: f64, other: &Self) {
-        if let (Self::Symmetric(a), Self::Symmetric(b)) = (&mut *self, other) {
-            a.add(factor, b);
-            return;
-        }
-        for i in 0..other.size() {
-            for j in other.columns(i) {
-                self.set(i, j, fma(factor, other.get(i, j), self.get(i, j)));
+        match (&mut *self, other) {
+            (Self::Symmetric(a), Self::Symmetric(b)) if a.stride() == b.stride() => a.add(factor, b),
+            _ => {
+                for i in 0..other.size() {
+                    other.columns(i).for_each(|j| self.add_at(i, j, factor * other.get(i, j)));
+                }
             }
         }
     }
@@ -352,7 +351,9 @@ impl Factor {
         }
         // A penalty on the constraints leaves the allowed motions' inertia and makes all others positive. It is measured
         // against the stiffness of the coordinate that the row holds most firmly, whatever the units.
-        let mut penalised = matrix.clone();
+        let blocks = interleaved::reach(border).max(matrix.columns(0).len() / 4);
+        let mut penalised = Matrix::zeros(matrix.size() / 4, blocks, true);
+        penalised.add(1.0, matrix);
         for row in border {
             let firmest = row.iter().fold(0.0_f64, |m, &(i, b)| m.max(b * b / matrix.get(i, i).abs()));
             penalised.add_outer_product(PENALTY / firmest, row);

@@ -195,9 +195,8 @@ impl<'a> Look<'a> {
         let mut shapes = self.shape(q);
         for (index, shape) in shapes.iter_mut().enumerate() {
             self.section_forces(parameter, index, self.shapes[index].all(q), shape);
-            let forces = self.system.axial_forces(index, multipliers);
-            if !forces.is_empty() {
-                shape.axial_force = shape.s.iter().map(|&s| interpolate(&forces, s)).collect();
+            if let Some(forces) = self.system.axial_force(index, multipliers, &shape.s) {
+                shape.axial_force = forces;
             }
         }
         shapes
@@ -372,6 +371,10 @@ impl<'a> Look<'a> {
                  round-off of positions alone makes forces of their size; use fewer nodes, even spacing, or an axial \
                  stiffness that is not far beyond EI/h² with the spacing h"
             }
+            Failure::Singular(_) if self.model.is_inextensible() && stuck.step == 0.0 => {
+                "an inextensible beam cannot move between supports that hold both ends along its straight axis: let one slide, \
+                 give the beam an `axial_stiffness`, or use more nodes"
+            }
             Failure::Singular(Singular { row }) if row >= self.system.coordinates() => {
                 "supports between nodes hold the same motion more than once: leave some out, or use more nodes"
             }
@@ -491,16 +494,6 @@ impl<'a> Look<'a> {
             advice: advice.into(),
             partial: Box::new(Trajectory { complete: false, ..self.dynamics(settings, solution) }),
         }
-    }
-}
-
-/// Linear between the points, and beyond the first and the last.
-fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
-    let next = points.partition_point(|(s, _)| *s < at).clamp(1, points.len().max(2) - 1);
-    match (points.get(next - 1), points.get(next)) {
-        (Some((a, left)), Some((b, right))) => left + (right - left) * (at - a) / (b - a),
-        (Some((_, value)), None) => *value,
-        _ => 0.0,
     }
 }
 

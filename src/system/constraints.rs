@@ -39,12 +39,12 @@ pub enum Row {
         /// What the sum is.
         value: f64,
     },
-    /// Half the square of the gradient's length, ½ w (r'·r' − |r'₀|²).
+    /// The gradient's length over part of a beam, Σ_p ½ w_p (r'_p·r'_p − |r'_p|₀²).
     Length {
-        /// |r'₀|².
-        square: f64,
-        /// w, the part of the beam \[m\] for which the row stands.
-        weight: f64,
+        /// w_p \[m\].
+        weights: Vec<f64>,
+        /// Σ_p ½ w_p |r'_p|₀² of the stress-free state.
+        value: f64,
     },
 }
 
@@ -85,12 +85,18 @@ impl Constraint {
         Self { fields: vec![Field::new(table, offset)], row }
     }
 
-    /// |r'| as in the state `reference` at a point where its shape functions are `shape`, `first` being the first coordinate that they touch; the
-    /// row stands for `weight` \[m\] of the beam.
-    pub fn length(first: usize, shape: &[f64], weight: f64, reference: &[f64]) -> Self {
-        let field = Field { first, shape: shape.to_vec() };
-        let [x, y] = field.at(reference);
-        Self { fields: vec![field], row: Row::Length { square: x * x + y * y, weight } }
+    /// The length of the gradient as in the state `reference`, weighted over several points: of each (first coordinate that its shape
+    /// functions touch, shape functions of r', weight \[m\]).
+    pub fn length(points: &[(usize, &[f64], f64)], reference: &[f64]) -> Self {
+        let field = |&(first, shape, _): &(usize, &[f64], f64)| Field { first, shape: shape.to_vec() };
+        let fields = points.iter().map(field).collect();
+        let weights = points.iter().map(|(.., weight)| *weight).collect();
+        let mut row = Self { fields, row: Row::Length { weights, value: 0.0 } };
+        let held = row.value(0.0, reference);
+        if let Row::Length { value, .. } = &mut row.row {
+            *value = held;
+        }
+        row
     }
 
     /// Σ n·r⁽ᵒ⁾ = 0 over the points of several tables of one row, each with the first coefficient of its beam.
@@ -153,7 +159,7 @@ impl Constraint {
                 ([-sine, cosine], 0.0, [-cosine * angle.change, -sine * angle.change], 0.0)
             }
             Row::Joint { value, .. } => ([0.0; 2], *value, [0.0; 2], 0.0),
-            Row::Length { square, weight } => ([0.0; 2], 0.5 * weight * square, [0.0; 2], 0.0),
+            Row::Length { value, .. } => ([0.0; 2], *value, [0.0; 2], 0.0),
         }
     }
 
@@ -161,7 +167,7 @@ impl Constraint {
     fn normal_of(&self, k: usize, n: [f64; 2], q: &[f64]) -> [f64; 2] {
         match &self.row {
             Row::Joint { normals, .. } => normals.get(k).copied().unwrap_or(n),
-            Row::Length { weight, .. } => self.fields[k].at(q).map(|r| weight * r),
+            Row::Length { weights, .. } => self.fields[k].at(q).map(|r| weights[k] * r),
             _ => n,
         }
     }
@@ -224,19 +230,16 @@ impl Constraint {
 
     /// (coordinate, coordinate, ∂²g/∂q∂q), symmetric; nothing for what is linear.
     pub fn second_derivative(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
-        let lengths = match &self.row {
-            Row::Length { weight, .. } => Some(*weight),
-            _ => None,
+        let weights = match &self.row {
+            Row::Length { weights, .. } => &weights[..],
+            _ => &[],
         };
-        lengths.into_iter().flat_map(move |weight| {
-            self.fields.iter().flat_map(move |field| {
-                let at = move |a: usize, d: usize| field.first + 2 * a + d;
-                let rows = field.shape.iter().enumerate();
-                rows.flat_map(move |(a, na)| {
-                    let columns = field.shape.iter().enumerate();
-                    columns
-                        .flat_map(move |(b, nb)| (0..2).map(move |d| (at(a, d), at(b, d), weight * na * nb)))
-                })
+        self.fields.iter().zip(weights).flat_map(|(field, weight)| {
+            let at = move |a: usize, d: usize| field.first + 2 * a + d;
+            let rows = field.shape.iter().enumerate();
+            rows.flat_map(move |(a, na)| {
+                let columns = field.shape.iter().enumerate();
+                columns.flat_map(move |(b, nb)| (0..2).map(move |d| (at(a, d), at(b, d), weight * na * nb)))
             })
         })
     }
@@ -244,9 +247,9 @@ impl Constraint {
     /// v·∂²g/∂q∂q·v.
     pub fn curvature(&self, v: &[f64]) -> f64 {
         match &self.row {
-            Row::Length { weight, .. } => {
-                let squares = self.fields.iter().map(|field| field.at(v)).map(|[x, y]| x * x + y * y);
-                weight * squares.sum::<f64>()
+            Row::Length { weights, .. } => {
+                let rates = self.fields.iter().map(|field| field.at(v));
+                rates.zip(weights).map(|([x, y], weight)| weight * (x * x + y * y)).sum()
             }
             _ => 0.0,
         }

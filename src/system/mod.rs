@@ -59,6 +59,9 @@ struct Acting {
     amplitude: Option<Amplitude>,
 }
 
+/// ω² of a hanging chain, in units of its weight on ρA L²; the lowest is 1.45.
+const CHAIN: f64 = 0.1;
+
 /// Distance beyond an end, per length, that counts as round-off.
 const PLACE_ROUND_OFF: f64 = 1e-9;
 
@@ -209,6 +212,9 @@ impl System {
             // Chains, which nothing but their loads gives a force.
             let load = system.norm(&system.constant_load);
             system.stiffness = if load > 0.0 { load } else { 1.0 };
+            let lightest = model.beams.iter().filter_map(|beam| beam.section.mass_per_length);
+            let mass = length * lightest.fold(f64::INFINITY, f64::min);
+            system.lowest_vibration = CHAIN * system.stiffness / (mass * length);
         }
         system.check_room()?;
         Ok(system)
@@ -288,7 +294,7 @@ impl System {
     }
 
     /// The order of magnitude of the lowest vibration's ω² \[1/s²\]: EI/(ρA L⁴), or for a string a small part of
-    /// EA/(ρA L²).
+    /// EA/(ρA L²), of a chain a part of its load on ρA L².
     pub fn lowest_vibration_scale(&self) -> f64 {
         self.lowest_vibration
     }

@@ -16,7 +16,7 @@ impl System {
             let scale = constraint.scale(self.stiffness, self.length);
             let mut touched = Vec::new();
             for (i, value) in constraint.gradient(load, q) {
-                dense[i] = scale * value;
+                dense[i] += scale * value;
                 // A support's frame mixes the two components.
                 touched.extend([i & !1, i | 1]);
             }

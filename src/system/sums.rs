@@ -170,7 +170,8 @@ impl System {
     /// Energies at load factor or time `parameter`; `velocity` where there is motion.
     pub fn energy(&self, parameter: f64, q: &[f64], velocity: Option<&[f64]>) -> Energy {
         let sum = |effects: &[Box<dyn Effect>], kind: Kind, q: &[f64]| -> f64 {
-            effects.iter().filter(|e| e.kind() == kind).map(|e| e.energy(q)).sum()
+            // `sum` of nothing is −0.
+            effects.iter().filter(|e| e.kind() == kind).fold(0.0, |sum, e| sum + e.energy(q))
         };
         let with_potential = self.loads.iter().filter(|load| load.has_potential());
         let potential = with_potential.map(|load| load.effect.energy(q)).sum::<f64>();

@@ -103,10 +103,20 @@ fn an_effect_is_there_when_it_is_named_and_only_then() {
 }
 
 #[test]
+fn a_beam_stretches_or_keeps_its_length() {
+    let text = BEAM.replace("axial_stiffness = 1e4\n", "");
+    let rigid = parse("arm.toml", &format!("{text}[analysis.static]\n")).expect("a scene");
+    let there = |inventory: &Inventory| bytes(inventory).into_keys().collect::<Vec<_>>();
+    assert_eq!(there(&inventory(&rigid)), [Kind::Inextensibility]);
+    let elastic = inventory(&scene(&[], "[analysis.static]\n"));
+    assert_eq!((there(&elastic), elastic.multipliers), (vec![Kind::Stretch], 0));
+}
+
+#[test]
 fn every_kind_is_tested_here() {
     let tested: Vec<Kind> = blocks().into_iter().flat_map(|(_, kinds)| kinds).collect();
     // What comes with every beam, with another block, or needs a companion.
-    let others = [Kind::Stretch, Kind::Inertia, Kind::PreCurvature, Kind::Buoyancy];
+    let others = [Kind::Stretch, Kind::Inextensibility, Kind::Inertia, Kind::PreCurvature, Kind::Buoyancy];
     for kind in Kind::ALL {
         assert!(tested.contains(&kind) || others.contains(&kind), "{}", kind.name());
     }

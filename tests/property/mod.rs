@@ -6,6 +6,7 @@ mod basis;
 mod derivatives;
 mod dynamics;
 pub mod generators;
+mod inextensible;
 mod invariance;
 mod linear;
 mod modal;
