@@ -20,7 +20,7 @@
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | [`model`] |
 //! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part of a model that it is | [`basis`], [`linear`] |
 //! | [`system`] | coordinates, supports, joints, assembly of parts, sums over effects, inventory | the above |
-//! | [`linear`] | block-banded LDLᵀ, real and complex; banded LU, bordered sparse LU | – |
+//! | [`linear`] | block-banded LDLᵀ, real and complex; banded LU, also with constraint rows; bordered sparse LU | – |
 //! | [`solve`] | Newton, path following, buckling, vibrations, motion | [`system`], [`linear`] |
 //! | [`run`](mod@run), [`trajectory`] | one model, one analysis; what it leaves | [`solve`] |
 //! | [`restart`] | a saved state, from which a motion goes on | [`solve`] |
@@ -68,7 +68,8 @@
 //! | `[[effect.moving_force]]` | [`effect::MovingForce`] | −N(s₀ + v t) F |
 //! | `[[effect.contact]]` | [`effect::Contact`] | ½ ∫ k ⟨−g⟩² ds with circles, half-planes, boxes; friction |
 //!
-//! A beam without a bending stiffness is a string: nothing is computed of its curvature.
+//! A beam without a bending stiffness is a string: nothing is computed of its curvature. One without an axial stiffness keeps its length
+//! ([`system::inextensible`]): ∫ N ½ (r'·r' − |r'₀|²) ds with the axial force N as an unknown.
 //!
 //! # An effect of one's own
 //! An effect is a density of a few local fields, and a part of the model that says where it is summed. In this crate it is one file in `src/effect`

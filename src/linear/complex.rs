@@ -9,7 +9,7 @@
 //! factorised with pivoting, as a band where the rows lie within it, else by faer's sparse LU.
 
 use super::bordered::{BorderRow, Bordered};
-use super::condensed::{ComplexCondensed, MOST_ROWS};
+use super::condensed::{self, ComplexCondensed};
 use super::fma::fma;
 use super::interleaved::{self, Interleaved};
 use super::symmetric::SymmetricBand;
@@ -42,7 +42,7 @@ impl ComplexFactor {
         zeta: c64,
         border: &[BorderRow],
     ) -> Result<Self, Singular> {
-        if let (Matrix::Symmetric(k), Matrix::Symmetric(m), ..=MOST_ROWS) = (k, m, border.len()) {
+        if let (Matrix::Symmetric(k), Matrix::Symmetric(m), true) = (k, m, condensed::serves(k, border)) {
             let mut ldl = match earlier {
                 Some(Self::Ldl(ldl)) => ldl,
                 Some(Self::Condensed(condensed)) => condensed.into_ldl(),

@@ -9,15 +9,23 @@
 //!
 //! r substitutions for K⁻¹Bᵀ when it is factorised, one when it is solved: a fifth of the time of a sparse LU for a chain of two beams.
 
-use super::Singular;
 use super::bordered::BorderRow;
 use super::complex::ComplexLdl;
+use super::interleaved::fits;
 use super::symmetric::Ldl;
+use super::{Matrix, Singular};
 use faer::c64;
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 
 /// Rows beyond which a sparse LU serves better.
-pub const MOST_ROWS: usize = 48;
+const MOST_ROWS: usize = 48;
+/// Rows beyond which the LU of a wider band does, where the rows are local.
+const MOST_LOCAL_ROWS: usize = 12;
+
+/// Whether the rows are few enough.
+pub fn serves(matrix: &Matrix, border: &[BorderRow]) -> bool {
+    border.len() <= if fits(matrix, border) { MOST_LOCAL_ROWS } else { MOST_ROWS }
+}
 
 fn dot(row: &BorderRow, x: &[f64]) -> f64 {
     row.iter().map(|(i, value)| value * x[*i]).sum()

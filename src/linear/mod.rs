@@ -238,7 +238,7 @@ impl Factor {
     /// As [`Self::new`].
     pub fn definite(matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
         match matrix {
-            Matrix::Symmetric(symmetric) if (1..=condensed::MOST_ROWS).contains(&border.len()) => {
+            Matrix::Symmetric(symmetric) if !border.is_empty() && condensed::serves(matrix, border) => {
                 let condensed = Condensed::new(Ldl::new(symmetric)?, symmetric.size(), border)?;
                 Ok(Self::Condensed(Box::new(condensed)))
             }
@@ -281,8 +281,8 @@ impl Factor {
             Some(Self::Condensed(condensed)) => (Some(condensed.into_ldl()), None),
             other => (None, other),
         };
-        if let (Matrix::Symmetric(k), Matrix::Symmetric(m), ..=condensed::MOST_ROWS) =
-            (matrix, mass, border.len())
+        if let (Matrix::Symmetric(k), Matrix::Symmetric(m), true) =
+            (matrix, mass, condensed::serves(matrix, border))
         {
             let ldl = match kept {
                 Some(mut ldl) => ldl.refactorize(k, Some((c, m))).map(|()| ldl),

@@ -79,9 +79,9 @@ pub struct BeamTable {
     pub second_moment: Option<Located<Quantity<SecondMoment, Positive>>>,
     /// Density ρ.
     pub density: Option<Located<Quantity<Density, Positive>>>,
-    /// Axial stiffness EA, in place of `youngs_modulus` and `area`.
+    /// Axial stiffness EA, in place of `youngs_modulus` and `area`. A beam without any keeps its length.
     pub axial_stiffness: Option<Located<Quantity<Force, Positive>>>,
-    /// Bending stiffness EI, in place of `youngs_modulus` and `second_moment`.
+    /// Bending stiffness EI, in place of `youngs_modulus` and `second_moment`. A beam without any is a string.
     pub bending_stiffness: Option<Located<Quantity<BendingStiffness, Positive>>>,
     /// Mass per length ρA, in place of `density` and `area`.
     pub mass_per_length: Option<Located<Quantity<MassPerLength, Positive>>>,

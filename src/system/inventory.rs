@@ -3,7 +3,7 @@
 use super::System;
 use super::measure::Measured;
 use crate::effect::Kind;
-use crate::linear::condensed::MOST_ROWS;
+use crate::linear::condensed::serves;
 use crate::linear::interleaved::fits;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -118,6 +118,7 @@ impl System {
             })
             .collect();
         let symmetric = self.is_symmetric();
+        let (matrix, border) = (self.matrix(), self.border(0.0, &self.reference));
         Inventory {
             effects,
             absent,
@@ -129,17 +130,15 @@ impl System {
             symmetric,
             half_bandwidth: 4 * self.blocks - 1,
             solver: match (self.constraints.is_empty(), symmetric) {
-                (false, true) if !self.inertia.is_empty() && self.constraints.len() <= MOST_ROWS => {
+                (false, true) if !self.inertia.is_empty() && serves(&matrix, &border) => {
                     "banded LDLᵀ, constraints condensed"
                 }
-                (false, _) if fits(&self.matrix(), &self.border(0.0, &self.reference)) => {
-                    "banded LU, constraints among the unknowns"
-                }
+                (false, _) if fits(&matrix, &border) => "banded LU, constraints among the unknowns",
                 (false, _) => "sparse LU (faer)",
                 (true, true) => "banded LDLᵀ",
                 (true, false) => "banded LU",
             },
-            matrix_bytes: self.matrix().bytes(),
+            matrix_bytes: matrix.bytes(),
             mass_bytes: if self.inertia.is_empty() { 0 } else { self.damping_pattern().bytes() },
             damping_bytes: if self.damping.is_empty() { 0 } else { self.damping_pattern().bytes() },
             measured: None,

@@ -17,7 +17,7 @@ pub mod course;
 mod effects;
 mod error;
 mod hold;
-mod inextensible;
+pub mod inextensible;
 mod inventory;
 pub mod joint;
 mod measure;

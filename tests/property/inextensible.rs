@@ -143,7 +143,8 @@ fn a_half_circle_keeps_its_length() {
         assert!(error < allowed, "{basis}: {error:.1e}");
         let shape = &trajectory.last[0];
         assert!(shape.strain.iter().all(|e| e.abs() < 1e-3), "{:?}", shape.strain);
-        assert!(shape.axial_force.iter().all(|n| n.abs() < 1e-2), "{:?}", shape.axial_force);
+        // One part in a hundred of EI κ².
+        assert!(shape.axial_force.iter().all(|n| n.abs() < 0.1), "{:?}", shape.axial_force);
         assert_eq!(trajectory.energy.last().map(|e| e.stretch), Some(0.0));
     }
 }
