@@ -150,7 +150,11 @@ mod tests {
 
     #[test]
     fn a_row_across_the_band_does_not_fit() {
-        let (k, _) = example();
-        assert!(!fits(&k, &[vec![(0, 1.0), (11, 1.0)]]));
+        let k = Matrix::zeros(4, 2, true);
+        let row = |last: usize| [vec![(0, 1.0), (last, 1.0)]];
+        assert_eq!(
+            [7, 11, 12].map(|last| (reach(&row(last)), fits(&k, &row(last)))),
+            [(2, true), (3, true), (4, false)]
+        );
     }
 }

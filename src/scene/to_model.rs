@@ -142,6 +142,14 @@ fn section(beam: &str, table: &BeamTable) -> Result<Section, Fault> {
     let ea = table.axial_stiffness.as_ref().map(|v| (v.get().si, v.span()));
     let ei = table.bending_stiffness.as_ref().map(|v| (v.get().si, v.span()));
     let mass = table.mass_per_length.as_ref().map(|v| (v.get().si, v.span()));
+    if let (Some((_, span)), None, None) = (&e, &area, &ea) {
+        // Inextensible, or forgotten? An elastic modulus speaks for the latter.
+        let message = format!("beam `{beam}` has a `youngs_modulus` but no `area`: is it to stretch?");
+        return Err(Fault::new(span.clone(), message).help(
+            "give `area`, or `axial_stiffness`; or, for a beam that keeps its length, `bending_stiffness` in place of \
+             `youngs_modulus` and `second_moment`",
+        ));
+    }
     type Given<'a> = &'a Option<(f64, Range<usize>)>;
     let either = |direct: Given<'_>, a: Given<'_>, b: Given<'_>, key: &str, product: [&str; 2]| {
         let value = match (direct, a, b) {
