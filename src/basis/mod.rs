@@ -365,3 +365,38 @@ fn check_orders(orders: &[usize]) -> Result<(), BasisError> {
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Kernel;
+
+    /// No scene is known that all precisions fail: the message is made of what a cell would leave.
+    #[test]
+    fn what_no_precision_solves_is_described_with_its_place_and_spacings() {
+        let quality = Quality { error: 0.3, log2_condition: 100.0, bits: 212, ..Quality::default() };
+        let kernel = Kernel::Multiquadric { q: 1.03, shape: 4.0 };
+        let described = |nodes: &[f64]| match ill_conditioned(7, 5, nodes, &kernel, quality) {
+            BasisError::IllConditioned {
+                cell,
+                first_node,
+                last_node,
+                min_spacing,
+                max_spacing,
+                bits,
+                error,
+                condition_log10,
+                advice,
+                ..
+            } => {
+                assert_eq!((cell, first_node, last_node, bits, error), (7, 5, 8, 212, 0.3));
+                assert!((condition_log10 - 30.1).abs() < 0.01, "{condition_log10}");
+                (min_spacing, max_spacing, advice.contains("evenly"))
+            }
+            other => panic!("{other}"),
+        };
+        assert_eq!(described(&[1.0, 1.5, 3.5, 4.5]), (0.5, 2.0, false));
+        assert_eq!(described(&[1.0, 1.0078125, 3.0, 4.0]), (0.0078125, 1.9921875, true));
+        assert!(!described(&[0.0, 1.0, 101.0, 102.0]).2, "a hundred times is not too uneven");
+    }
+}

@@ -360,3 +360,25 @@ fn the_condition_number_is_told() {
     assert!((3.5..7.5).contains(&one), "shape 1: {one}");
     assert!((8.5..13.5).contains(&four), "shape 4: {four}");
 }
+
+/// Powers of two are exact: whatever is measured in units of a function's own scale is the same to the last bit on any of them.
+#[test]
+fn quality_does_not_depend_on_the_unit_of_length() {
+    let of = |nodes: Nodes, kernel: Kernel, length: f64| {
+        let basis = Discretization::Rpim {
+            nodes,
+            kernel,
+            polynomial_terms: 2,
+            side_condition: SideCondition::Plus,
+            neighbours: 2,
+        };
+        Basis::new(&basis, length).expect("a basis").defects()
+    };
+    let kernel = Kernel::Multiquadric { q: 1.03, shape: 4.0 };
+    for nodes in [Nodes::Uniform(9), Nodes::Chebyshev(7)] {
+        let [one, small, large] = [0, -20, 10].map(|power| of(nodes.clone(), kernel, 2f64.powi(power)));
+        assert!(one.reproduction > 0.0 && one.kronecker > 0.0, "{one:?}");
+        assert_eq!(one, small);
+        assert_eq!(one, large);
+    }
+}
