@@ -661,6 +661,39 @@ fn a_slack_cable_hangs_as_a_catenary() {
     assert!(trajectory.last[0].bending_moment.iter().all(|m| *m == 0.0));
 }
 
+/// Where nothing acts a string stays where it is, though nothing would resist it.
+#[test]
+fn a_string_without_load_stays() {
+    let arc = Centreline::Arc { center: [0.0, 0.0], radius: 1.0, from: -2.0, to: -0.5 };
+    let line = Centreline::Line { start: [0.0; 2], end: [0.9, 1.2] };
+    for centreline in [arc, line] {
+        let mut model =
+            one(vec![support(0.0, FixedRotation::Free), support(1.5, FixedRotation::Free)], vec![]);
+        model.beams[0].centreline = centreline;
+        model.beams[0].section.bending_stiffness = None;
+        for supports in [2, 1, 0] {
+            model.supports.truncate(supports);
+            let trajectory = still(&model);
+            assert_eq!(trajectory.statistics.newton_iterations, 0);
+            assert_eq!(
+                (&trajectory.last[0].x, &trajectory.last[0].y),
+                (&trajectory.undeformed[0].x, &trajectory.undeformed[0].y)
+            );
+        }
+        // A support that has a way to go is not at rest.
+        model.supports = vec![support(0.0, FixedRotation::Free), support(1.5, FixedRotation::Free)];
+        model.supports[1].displacement = Displacement { x: 0.01, ..Displacement::default() };
+        let end = still(&Model { probes: tip(0, 1.5), ..model.clone() }).probes[0]
+            .samples
+            .last()
+            .expect("a record")
+            .x;
+        let before =
+            still(&Model { probes: tip(0, 1.5), supports: vec![], ..model.clone() }).probes[0].samples[0].x;
+        assert!((end - before - 0.01).abs() < 1e-9, "{end} from {before}");
+    }
+}
+
 /// A straight string whose end is brought nearer at once may be left with a fold, and says so; by small steps it hangs without one.
 #[test]
 fn a_folded_string_is_named() {
