@@ -1,5 +1,6 @@
 //! Motion: exact where it must be, of the order that each method promises, energy and momentum kept, restarts bit for bit.
 
+use ancf::effect::{Contact, Obstacle};
 use ancf::model::{
     Beam, Centreline, Crossing, Discretization, Fixed, FixedRotation, GaussPoints, InitialVelocity,
     Integrator, Kernel, Load, Model, Nodes, Place, Profile, Section, SideCondition, StepControl,
@@ -9,6 +10,7 @@ use ancf::solve::dynamics::start::from_rest;
 use ancf::solve::dynamics::{Checkpoint, Solution, State, Task, Watch, solve};
 use ancf::system::{Needs, System, View};
 use proptest::prelude::*;
+use std::sync::Arc;
 
 const LENGTH: f64 = 1.2;
 const GRAVITY: [f64; 2] = [1.5, -9.0];
@@ -365,6 +367,47 @@ proptest! {
         let second = finished(solve(&system, &Task { start, ..task(&system, 0.1, integrator) }, &mut |_, _, _| true));
         prop_assert_eq!(&last(&second).q, &last(&whole).q);
         prop_assert_eq!(&last(&second).v, &last(&whole).v);
+    }
+}
+
+/// What a beam has of momentum when it is in the air again is its weight's part and the impulses of the contacts that have ended.
+#[test]
+fn impulses_of_contacts_balance_the_momentum() {
+    let contact =
+        |obstacle| Contact { beam: 0, obstacle, stiffness: 2e3, half_thickness: 0.01, friction: None };
+    let ground = Obstacle::HalfPlane { point: [0.0, -0.3], normal: [0.0, 1.0] };
+    let stone = Obstacle::Circle { center: [0.9, -0.2], radius: 0.2, inside: false };
+    let methods =
+        [with_step(GAUSS, StepControl::Tolerance(1e-8)), with_step(ALPHA, StepControl::Fixed(1e-4))];
+    for (discretization, method) in either().into_iter().zip(methods) {
+        let mut model = model(discretization, vec![]);
+        model.beams[0].centreline = Centreline::Line { start: [0.0; 2], end: [LENGTH * 0.8, LENGTH * 0.6] };
+        model.parts = vec![Arc::new(contact(ground)), Arc::new(contact(stone))];
+        let system = build(&model);
+        let task = Task { output_every: 1e-3, ..task(&system, 0.6, method) };
+        let solution = finished(solve(&system, &task, &mut |_, _, _| true));
+        let changes = &solution.contacts;
+        let blows = |time: f64| changes.iter().filter(move |c| c.time <= time).filter_map(|c| c.blow);
+        let in_the_air = |time: f64| {
+            let touches = |contact| {
+                changes.iter().rfind(|c| c.contact == contact && c.time <= time).is_some_and(|c| c.touches)
+            };
+            !(touches(0) || touches(1))
+        };
+        let before = momenta(&system, &solution.states[0]);
+        let after = solution.states.iter().filter(|s| in_the_air(s.time) && blows(s.time).count() >= 2);
+        let mut count = 0;
+        for state in after {
+            let found = momenta(&system, state);
+            for axis in 0..2 {
+                let impulse: f64 = blows(state.time).map(|blow| blow.impulse[axis]).sum();
+                let expected = before[axis] + 0.4 * LENGTH * GRAVITY[axis] * state.time + impulse;
+                let apart = (found[axis] - expected).abs();
+                assert!(apart < 2e-5, "{apart} N s along {axis} at {} s, impulses {impulse} N s", state.time);
+            }
+            count += 1;
+        }
+        assert!(count > 20, "{count} records in the air, {changes:?}");
     }
 }
 
