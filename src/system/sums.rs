@@ -200,6 +200,11 @@ impl System {
         self.contact_effects().map(|effect| effect.energy(q) > 0.0)
     }
 
+    /// The same of contact number `contact` alone.
+    pub fn touches(&self, contact: usize, q: &[f64]) -> bool {
+        self.contact_effects().nth(contact).is_some_and(|effect| effect.energy(q) > 0.0)
+    }
+
     /// The resultant \[N\] of contact number `contact` on its beam in the state `q`, without friction; `scratch` is overwritten.
     pub fn contact_force(&self, contact: usize, q: &[f64], scratch: &mut [f64]) -> [f64; 2] {
         scratch.fill(0.0);

@@ -48,19 +48,21 @@ impl Touch {
 impl Driver<'_, '_> {
     /// A time well within the step to `new` at which a contact first begins or ends.
     pub(super) fn kink_within(&self, new: &State) -> Option<f64> {
+        if self.touching.is_empty() {
+            return None;
+        }
         let near = NEAR * (new.time - self.state.time);
-        let changes = (0..self.touching.len()).filter_map(|contact| self.change(contact, new));
-        let first = changes.min_by(f64::total_cmp)?;
-        (first > self.state.time + near && first < new.time - near).then_some(first)
+        // The step may have been made to begin where a contact does.
+        let begun = self.state.between(new, self.state.time + near, None);
+        let begun: Vec<bool> = self.system.touching(&begun.q).collect();
+        let first = self.first_change(new, |q| self.system.touching(q).ne(begun.iter().copied()))?;
+        (first < new.time - near).then_some(first)
     }
 
-    /// When a contact first begins or ends in the step to `new`: bisection of the interpolated motion.
-    fn change(&self, contact: usize, new: &State) -> Option<f64> {
+    /// When coordinates first are `changed` in the step to `new`: bisection of the interpolated motion.
+    fn first_change(&self, new: &State, changed: impl Fn(&[f64]) -> bool) -> Option<f64> {
         let (start, h) = (self.state.time, new.time - self.state.time);
-        let changed = |part: f64| {
-            let state = self.state.between(new, start + part * h, None);
-            self.system.touching(&state.q).nth(contact) != Some(self.touching[contact].touches)
-        };
+        let changed = |part: f64| changed(&self.state.between(new, start + part * h, None).q);
         let step = 1.0 / f64::from(PARTS);
         let mut after = (1..=PARTS).map(|k| f64::from(k) * step).find(|part| changed(*part))?;
         let mut before = after - step;
@@ -81,8 +83,9 @@ impl Driver<'_, '_> {
         let mut scratch = Vec::new();
         for (contact, touches) in now.into_iter().enumerate() {
             let Touch { touches: touched, mut blow } = self.touching[contact];
-            let time =
-                if touches == touched { None } else { Some(self.change(contact, new).unwrap_or(new.time)) };
+            let time = (touches != touched).then(|| {
+                self.first_change(new, |q| self.system.touches(contact, q) == touches).unwrap_or(new.time)
+            });
             if touched || touches {
                 let (begin, end) = match time {
                     Some(time) if touches => (time, new.time),
