@@ -6,10 +6,12 @@
 mod analysis;
 mod joint;
 mod law;
+mod velocity;
 
 pub use analysis::*;
 pub use joint::Joint;
 pub use law::{Law, Table};
+pub use velocity::{InitialVelocity, Profile};
 
 use crate::basis::Quadrature;
 use crate::system::assembly::Part;
@@ -304,19 +306,6 @@ pub enum Load {
         /// By what factor.
         law: Law,
     },
-}
-
-/// The velocity of a beam as a rigid body: ṙ = v + ω × (r − c). Several of one beam add up.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct InitialVelocity {
-    /// Index of the beam.
-    pub beam: usize,
-    /// v \[m/s\].
-    pub translation: [f64; 2],
-    /// ω \[rad/s\], counter-clockwise.
-    pub rotation: f64,
-    /// c \[m\].
-    pub center: [f64; 2],
 }
 
 /// A point that is watched.

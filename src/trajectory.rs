@@ -172,7 +172,19 @@ pub enum Event {
         contact: String,
         /// Whether it touches from then on.
         touches: bool,
+        /// What it did while it touched; where it ends.
+        #[serde(flatten)]
+        blow: Option<Blow>,
     },
+}
+
+/// What a contact did to a beam from its beginning to its end; without friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Blow {
+    /// ∫ F dt \[N s\].
+    pub impulse: [f64; 2],
+    /// The largest \|F\| \[N\] that was seen, at three points of every step and more.
+    pub largest_force: f64,
 }
 
 impl Event {

@@ -12,7 +12,7 @@ use ancf::model::Analysis;
 use ancf::output::plot::human;
 use ancf::run::Progress;
 use ancf::sweep;
-use ancf::trajectory::{AnalysisKind, Event, ProbeSample, Trajectory};
+use ancf::trajectory::{AnalysisKind, Blow, Event, ProbeSample, Trajectory};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
@@ -233,9 +233,13 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
                 let at = format!("{} s: {axis} = {} m", number(*time), number(*value));
                 row(&format!("event at {probe}"), at);
             }
-            Event::Contact { time, contact, touches } => {
-                let what = if *touches { "begins" } else { "ends" };
-                row(&format!("contact {contact}"), format!("{} s: {what}", number(*time)));
+            Event::Contact { time, contact, touches, blow } => {
+                let mut what = format!("{} s: {}", number(*time), if *touches { "begins" } else { "ends" });
+                if let Some(Blow { impulse: [x, y], largest_force }) = blow {
+                    let (x, y, force) = (number(*x), number(*y), number(*largest_force));
+                    what.push_str(&format!(", impulse ({x}, {y}) N s, up to {force} N"));
+                }
+                row(&format!("contact {contact}"), what);
             }
         }
     }

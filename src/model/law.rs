@@ -62,8 +62,15 @@ impl Table {
         if times.len() < 2 || times.len() != values.len() || !rising {
             return None;
         }
-        let curvatures = smooth.then(|| natural_spline(&times, &values));
+        let curvatures = smooth.then(|| spline(&times, &values, [false; 2]));
         Some(Self { times, values, curvatures })
+    }
+
+    /// By the cubic spline that is flat at its ends where `flat` says so, and not curved there otherwise.
+    pub fn with_flat_ends(times: Vec<f64>, values: Vec<f64>, flat: [bool; 2]) -> Option<Self> {
+        let table = Self::new(times, values, false)?;
+        let curvatures = Some(spline(&table.times, &table.values, flat));
+        Some(Self { curvatures, ..table })
     }
 
     fn at(&self, t: f64) -> [f64; 3] {
@@ -74,7 +81,12 @@ impl Table {
         if t >= self.times[last] {
             return [self.values[last], 0.0, 0.0];
         }
-        let i = self.times.partition_point(|&time| time <= t) - 1;
+        self.between(t)
+    }
+
+    /// The same with what is between the first two points, or the last two, continued beyond.
+    pub(super) fn between(&self, t: f64) -> [f64; 3] {
+        let i = self.times.partition_point(|&time| time <= t).clamp(1, self.times.len() - 1) - 1;
         let h = self.times[i + 1] - self.times[i];
         let (x, rise) = ((t - self.times[i]) / h, self.values[i + 1] - self.values[i]);
         let (value, rate) = (self.values[i] + x * rise, rise / h);
@@ -88,16 +100,23 @@ impl Table {
     }
 }
 
-/// Second derivatives of the cubic spline that has none at its ends, by elimination in its tridiagonal system.
-fn natural_spline(t: &[f64], v: &[f64]) -> Vec<f64> {
+/// Second derivatives of the cubic spline that is flat or not curved at its ends, by elimination in its tridiagonal system.
+fn spline(t: &[f64], v: &[f64], [flat_start, flat_end]: [bool; 2]) -> Vec<f64> {
     let n = t.len();
     let (mut above, mut right) = (vec![0.0; n], vec![0.0; n]);
+    if flat_start {
+        (above[0], right[0]) = (0.5, 3.0 * (v[1] - v[0]) / (t[1] - t[0]).powi(2));
+    }
     for i in 1..n - 1 {
         let (before, after) = (t[i] - t[i - 1], t[i + 1] - t[i]);
         let defect = (v[i + 1] - v[i]) / after - (v[i] - v[i - 1]) / before;
         let pivot = 2.0 * (before + after) - before * above[i - 1];
         above[i] = after / pivot;
         right[i] = (6.0 * defect - before * right[i - 1]) / pivot;
+    }
+    if flat_end {
+        let fall = 6.0 * (v[n - 2] - v[n - 1]) / (t[n - 1] - t[n - 2]).powi(2);
+        right[n - 1] = (fall - right[n - 2]) / (2.0 - above[n - 2]);
     }
     for i in (0..n - 1).rev() {
         right[i] -= above[i] * right[i + 1];
@@ -223,6 +242,28 @@ mod tests {
             assert!((a[1] - b[1]).abs() < 1e-7 && (a[2] - b[2]).abs() < 1e-7);
         }
         assert!(law.at(1e-12)[2].abs() < 1e-10 && law.at(4.0 - 1e-12)[2].abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_spline_is_flat_where_it_is_to_be() {
+        // With both ends flat and two points it is 3x² − 2x³.
+        let table = Table::with_flat_ends(vec![0.0, 2.0], vec![1.0, 3.0], [true; 2]).unwrap();
+        for x in [0.0, 0.3, 0.5, 1.0] {
+            assert!((table.between(2.0 * x)[0] - 1.0 - 2.0 * x * x * (3.0 - 2.0 * x)).abs() < 1e-14);
+        }
+        for flat in [[true, false], [false, true], [true, true]] {
+            let (s, v) = (vec![0.0, 1.0, 1.5, 4.0], vec![2.0, -1.0, 0.5, 0.25]);
+            let table = Table::with_flat_ends(s.clone(), v.clone(), flat).unwrap();
+            let ends = [table.between(0.0), table.between(4.0)];
+            for (end, flat) in ends.iter().zip(flat) {
+                assert!(end[if flat { 1 } else { 2 }].abs() < 1e-12, "{end:?}");
+            }
+            for (s, v) in s.iter().zip(v) {
+                assert!((table.between(*s)[0] - v).abs() < 1e-14);
+                let (a, b) = (table.between(s - 1e-9), table.between(s + 1e-9));
+                assert!((a[1] - b[1]).abs() < 1e-6, "{a:?} {b:?}");
+            }
+        }
     }
 
     #[test]

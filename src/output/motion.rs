@@ -10,6 +10,8 @@ use crate::trajectory::{AnalysisKind, Shape, Trajectory};
 const CELLS: f64 = 8000.0;
 /// Coordinates in all; each takes about five characters.
 const COORDINATES: usize = 200_000;
+/// Part of the beams' extent by which the picture grows for obstacles.
+const GROUND: f64 = 0.25;
 /// Points of a beam in a mode shape.
 const MODE_POINTS: usize = 101;
 
@@ -31,6 +33,8 @@ pub(super) struct Motion {
     size: [i32; 2],
     /// Load factor, time, frequency of each frame.
     parameter: Vec<f64>,
+    /// Borders of obstacles.
+    ground: Lines,
     rest: Lines,
     frames: Vec<Lines>,
 }
@@ -81,8 +85,20 @@ impl Motion {
                 high[axis] = high[axis].max(point[axis]);
             }
         }
-        let sides = [high[0] - low[0], high[1] - low[1]];
-        let longer = sides[0].max(sides[1]);
+        let extent = |low: [f64; 2], high: [f64; 2]| [high[0] - low[0], high[1] - low[1]];
+        let longest = |[width, height]: [f64; 2]| width.max(height);
+        // Of obstacles what is near the beams: a plane has no end.
+        let margin = GROUND * longest(extent(low, high));
+        let (nearest, farthest) = (low.map(|c| c - margin), high.map(|c| c + margin));
+        let near = |p: &&[f64; 2]| (0..2).all(|axis| (nearest[axis]..=farthest[axis]).contains(&p[axis]));
+        for point in t.outlines.iter().flatten().filter(near) {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(point[axis]);
+                high[axis] = high[axis].max(point[axis]);
+            }
+        }
+        let sides = extent(low, high);
+        let longer = longest(sides);
         if !(longer.is_finite() && longer > 0.0) {
             return None;
         }
@@ -116,6 +132,7 @@ impl Motion {
             cell,
             size,
             parameter,
+            ground: cells(&t.outlines),
             rest: cells(&rest),
             frames: frames.iter().map(cells).collect(),
         })

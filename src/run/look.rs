@@ -447,9 +447,9 @@ impl<'a> Look<'a> {
             trajectory.events.push(Event::Crossing { time: state.time, probe, axis, value });
         }
         let contacts: Vec<String> = self.system.contacts().collect();
-        for (contact, touches, time) in &solution.contacts {
-            let contact = contacts.get(*contact).cloned().unwrap_or_default();
-            trajectory.events.push(Event::Contact { time: *time, contact, touches: *touches });
+        for dynamics::Change { contact, touches, time, blow } in solution.contacts.iter().copied() {
+            let contact = contacts.get(contact).cloned().unwrap_or_default();
+            trajectory.events.push(Event::Contact { time, contact, touches, blow });
         }
         trajectory.events.sort_by(|a, b| a.time().total_cmp(&b.time()));
         let divided = solution.statistics.rejected_steps;

@@ -409,7 +409,7 @@ pub struct ProbeTable {
     pub at: Located<At>,
 }
 
-/// The velocity of a beam as a rigid body; several of one beam add up.
+/// The velocity of a beam: as a rigid body, along the arc length, or both; several of one beam add up.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialVelocityTable {
@@ -421,6 +421,38 @@ pub struct InitialVelocityTable {
     pub rotation: Option<Quantity<AngularVelocity>>,
     /// The point about which the beam turns; the origin when left out.
     pub about: Option<Vector<Length>>,
+    /// A velocity that is a polynomial in the arc length.
+    pub polynomial: Option<Located<VelocityPolynomialTable>>,
+    /// A velocity through given points of the arc length.
+    pub table: Option<Located<VelocityPointsTable>>,
+}
+
+/// Components in the fixed frame, as coefficients of 1, s, s², … with s in metres and velocities in metres per second; `vx`, `vy` or both.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VelocityPolynomialTable {
+    /// Along x.
+    #[schemars(length(min = 1))]
+    pub vx: Option<Vec<Quantity<Ratio>>>,
+    /// Along y.
+    #[schemars(length(min = 1))]
+    pub vy: Option<Vec<Quantity<Ratio>>>,
+}
+
+/// Components in the fixed frame at places from one end of the beam to the other, by a cubic spline between them, which is flat at an end whose
+/// direction a support holds; `vx`, `vy` or both.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VelocityPointsTable {
+    /// Arc lengths, from 0 to the beam's length.
+    #[schemars(length(min = 2))]
+    pub s: Vec<Quantity<Length>>,
+    /// Along x, as many as arc lengths.
+    #[schemars(length(min = 2))]
+    pub vx: Option<Vec<Quantity<Velocity>>>,
+    /// Along y, as many as arc lengths.
+    #[schemars(length(min = 2))]
+    pub vy: Option<Vec<Quantity<Velocity>>>,
 }
 
 /// Files beyond those that are always written.

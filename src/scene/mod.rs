@@ -22,6 +22,7 @@ mod to_basis;
 mod to_law;
 mod to_model;
 mod to_parts;
+mod to_velocity;
 mod unit;
 mod value;
 

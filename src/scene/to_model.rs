@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::centreline::Curve;
 use crate::model::{
-    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, InitialVelocity, Law, Load, Model,
-    Outputs, Place, Probe, Section, StrainMeasure, Support,
+    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Law, Load, Model, Outputs, Place,
+    Probe, Section, StrainMeasure, Support,
 };
 
 use super::diagnose::choices;
@@ -13,7 +13,7 @@ use super::error::Fault;
 use super::file::{BeamTable, FixName, LawTable, MoveTable, SceneTable, StrainName, SupportTable};
 use super::to_basis::{self, Size};
 use super::value::{At, Located};
-use super::{held, to_analysis, to_law, to_parts};
+use super::{held, to_analysis, to_law, to_parts, to_velocity};
 
 /// A beam with what the checks of other tables need to know of it.
 pub(super) struct Built {
@@ -50,7 +50,7 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
     held::check_duplicates(file, &model, &built)?;
     loads(file, &built, &mut model)?;
     to_parts::parts(file, &built, &mut model)?;
-    initial_velocities(file, &built, &mut model)?;
+    to_velocity::initial_velocities(file, &built, &mut model)?;
     probes(file, &built, &mut model)?;
     let analysis = to_analysis::analysis(file, &model, size)?;
     check_needs(file, &model, &built, &analysis)?;
@@ -346,23 +346,6 @@ fn loads(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fa
     if let Some(gravity) = &effects.gravity {
         let acceleration = gravity.get().acceleration.si;
         add(Load::Gravity { acceleration }, &gravity.get().in_time)?;
-    }
-    Ok(())
-}
-
-fn initial_velocities(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {
-    for velocity in &file.initial_velocity {
-        if velocity.value.is_none() && velocity.rotation.is_none() {
-            return Err(Fault::new(velocity.beam.span(), "this initial velocity is nothing").help(
-                "give `value = [\"1 m/s\", 0]`, `rotation = \"2 rad/s\"` with `about = [0, 0]`, or both",
-            ));
-        }
-        model.initial_velocities.push(InitialVelocity {
-            beam: beam_index(&velocity.beam, built)?,
-            translation: velocity.value.map_or([0.0; 2], |value| value.si),
-            rotation: velocity.rotation.map_or(0.0, |rotation| rotation.si),
-            center: velocity.about.map_or([0.0; 2], |about| about.si),
-        });
     }
     Ok(())
 }

@@ -52,7 +52,14 @@ pub fn relax(
             return Err(Failure::NotFinite);
         }
         if sigma == 0.0 {
-            sigma = equilibrium.system().norm(&increment[..n]) / equilibrium.system().stiffness();
+            let (system, (forces, gaps)) = (equilibrium.system(), increment.split_at(n));
+            let unbalanced = system.norm(forces);
+            // Where nothing acts there is nowhere to go, and no stiffness that would say so.
+            let round_off = system.round_off();
+            if unbalanced <= round_off && gaps.iter().all(|gap| gap.abs() <= round_off) {
+                return Ok(());
+            }
+            sigma = unbalanced / system.stiffness();
             first = sigma;
         }
         let shift = if sigma < NONE { 0.0 } else { sigma };

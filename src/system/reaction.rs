@@ -90,9 +90,8 @@ impl System {
         velocity: Option<&[f64]>,
     ) -> Vec<(String, Option<f64>, [f64; 2])> {
         let mut f = vec![0.0; q.len()];
-        // Position functions sum to 1, gradient functions have no part in a resultant.
         let resultant = |f: &mut Vec<f64>| {
-            let sum = f.chunks_exact(4).fold([0.0; 2], |s, f| [s[0] - f[0], s[1] - f[1]]);
+            let sum = super::sums::resultant(f);
             f.fill(0.0);
             sum
         };

@@ -201,10 +201,29 @@ impl System {
         self.contact_effects().map(|effect| effect.energy(q) > 0.0)
     }
 
+    /// The same of contact number `contact` alone.
+    pub fn touches(&self, contact: usize, q: &[f64]) -> bool {
+        self.contact_effects().nth(contact).is_some_and(|effect| effect.energy(q) > 0.0)
+    }
+
+    /// The resultant \[N\] of contact number `contact` on its beam in the state `q`, without friction; `scratch` is overwritten.
+    pub fn contact_force(&self, contact: usize, q: &[f64], scratch: &mut [f64]) -> [f64; 2] {
+        scratch.fill(0.0);
+        if let Some(effect) = self.contact_effects().nth(contact) {
+            effect.add_force(1.0, q, scratch);
+        }
+        resultant(scratch)
+    }
+
     /// Names of the contacts: the beam and a number, such as `arm.1`.
     pub fn contacts(&self) -> impl Iterator<Item = String> + '_ {
         self.contact_effects()
             .enumerate()
             .map(|(i, effect)| format!("{}.{}", self.beams[effect.beam()].name, i + 1))
     }
+}
+
+/// The resultant of forces on a beam \[N\], from their negative on the coordinates: position functions sum to 1, and gradient functions have no part in it.
+pub(super) fn resultant(f: &[f64]) -> [f64; 2] {
+    f.chunks_exact(4).fold([0.0; 2], |sum, f| [sum[0] - f[0], sum[1] - f[1]])
 }

@@ -57,6 +57,37 @@ const CASES: &[(&str, &str, &str)] = &[
     ("product overflows", "\"2.5 cm^2\"", "1e300"),
     ("EA given twice", "area =", "axial_stiffness = 1e6\narea ="),
     ("EA missing", "area = \"2.5 cm^2\"\n", ""),
+    ("velocity of nothing", "[[probe]]", "[[initial_velocity]]\nbeam = \"arm\"\n\n[[probe]]"),
+    (
+        "velocity without coefficients",
+        "[[probe]]",
+        "[[initial_velocity]]\nbeam = \"arm\"\npolynomial = {}\n[[probe]]",
+    ),
+    (
+        "velocities without components",
+        "[[probe]]",
+        "[[initial_velocity]]\nbeam = \"arm\"\ntable = { s = [0, 1.8] }\n[[probe]]",
+    ),
+    (
+        "velocities of a part of the beam",
+        "[[probe]]",
+        "[[initial_velocity]]\nbeam = \"arm\"\ntable = { s = [0, 1.2], vy = [0, 1] }\n[[probe]]",
+    ),
+    (
+        "velocities at unsorted places",
+        "[[probe]]",
+        "[[initial_velocity]]\nbeam = \"arm\"\ntable = { s = [0, 1, 0.5, 1.8], vy = [0, 1, 2, 3] }\n[[probe]]",
+    ),
+    (
+        "velocities too few",
+        "[[probe]]",
+        "[[initial_velocity]]\nbeam = \"arm\"\ntable = { s = [0, 1, 1.8], vy = [0, \"1 m/s\"] }\n[[probe]]",
+    ),
+    (
+        "velocity of another dimension",
+        "[[probe]]",
+        "[[initial_velocity]]\nbeam = \"arm\"\ntable = { s = [0, 1.8], vy = [0, \"1 m\"] }\n[[probe]]",
+    ),
     ("empty law", "value = [0.0, \"-5 N\"]", "value = [0.0, 1.0]\nin_time = {}"),
     (
         "two laws",

@@ -85,6 +85,24 @@ fn velocities_of_the_scene_are_where_the_motion_starts() {
     assert!(stderr(&output).contains("moves what a support holds"), "{}", stderr(&output));
 }
 
+/// A velocity given by points turns no section that a clamp holds; a polynomial is what it is, and may be refused.
+#[test]
+fn velocities_along_a_clamped_beam() {
+    let clamped =
+        PENDULUM.replace("\"2.5 s\"", "\"10 ms\"").replace("[\"x\", \"y\"]", "[\"x\", \"y\", \"angle\"]");
+    for (field, admissible) in [
+        ("table = { s = [0, 0.9, 1.8], vy = [0, \"25 cm/s\", 1] }", true),
+        ("table = { s = [0, 0.9, 1.8], vy = [0.1, \"25 cm/s\", 1] }", false),
+        ("polynomial = { vy = [0, 0, 0.3] }", true),
+        ("polynomial = { vy = [0, 0.5] }", false),
+    ] {
+        let folder = folder(&format!("{clamped}\n[[initial_velocity]]\nbeam = \"arm\"\n{field}\n"));
+        let output = ancf(folder.path(), &["run", "scene.toml", "-o", "out"]);
+        assert_eq!(status(&output), if admissible { 0 } else { 2 }, "{field}: {}", stderr(&output));
+        assert_eq!(stderr(&output).contains("moves what a support holds"), !admissible, "{field}");
+    }
+}
+
 /// A step in which the beam would turn by half a radian or more cannot be solved as a whole; it is divided, and said so.
 #[test]
 fn a_step_that_cannot_be_solved_is_divided() {

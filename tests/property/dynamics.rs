@@ -1,14 +1,16 @@
 //! Motion: exact where it must be, of the order that each method promises, energy and momentum kept, restarts bit for bit.
 
+use ancf::effect::{Contact, Obstacle};
 use ancf::model::{
     Beam, Centreline, Crossing, Discretization, Fixed, FixedRotation, GaussPoints, InitialVelocity,
-    Integrator, Kernel, Load, Model, Nodes, Place, Section, SideCondition, StepControl, StrainMeasure,
-    Support,
+    Integrator, Kernel, Load, Model, Nodes, Place, Profile, Section, SideCondition, StepControl,
+    StrainMeasure, Support, Table,
 };
 use ancf::solve::dynamics::start::from_rest;
 use ancf::solve::dynamics::{Checkpoint, Solution, State, Task, Watch, solve};
 use ancf::system::{Needs, System, View};
 use proptest::prelude::*;
+use std::sync::Arc;
 
 const LENGTH: f64 = 1.2;
 const GRAVITY: [f64; 2] = [1.5, -9.0];
@@ -315,7 +317,7 @@ proptest! {
         let mut model = model(if meshfree { rpim } else { ancf }, vec![]);
         model.loads.clear();
         let system = build(&model);
-        let velocity = InitialVelocity { beam: 0, translation: [vx, vy], rotation, center: [0.2, -0.1] };
+        let velocity = InitialVelocity { translation: [vx, vy], rotation, center: [0.2, -0.1], ..InitialVelocity::default() };
         let mut start = from_rest(&system, &[velocity]).expect("a free beam");
         start.state.v.iter_mut().zip(bump).for_each(|(v, b)| *v += b);
         for integrator in [GAUSS, Integrator::Gauss { stages: 2, step: StepControl::Fixed(0.0) }] {
@@ -368,6 +370,117 @@ proptest! {
     }
 }
 
+/// What a beam has of momentum when it is in the air again is its weight's part and the impulses of the contacts that have ended.
+#[test]
+fn impulses_of_contacts_balance_the_momentum() {
+    let contact =
+        |obstacle| Contact { beam: 0, obstacle, stiffness: 2e3, half_thickness: 0.01, friction: None };
+    let ground = Obstacle::HalfPlane { point: [0.0, -0.3], normal: [0.0, 1.0] };
+    let stone = Obstacle::Circle { center: [0.9, -0.2], radius: 0.2, inside: false };
+    let methods =
+        [with_step(GAUSS, StepControl::Tolerance(1e-8)), with_step(ALPHA, StepControl::Fixed(1e-4))];
+    for (discretization, method) in either().into_iter().zip(methods) {
+        let mut model = model(discretization, vec![]);
+        model.beams[0].centreline = Centreline::Line { start: [0.0; 2], end: [LENGTH * 0.8, LENGTH * 0.6] };
+        model.parts = vec![Arc::new(contact(ground)), Arc::new(contact(stone))];
+        let system = build(&model);
+        let task = Task { output_every: 1e-3, ..task(&system, 0.6, method) };
+        let solution = finished(solve(&system, &task, &mut |_, _, _| true));
+        let changes = &solution.contacts;
+        let blows = |time: f64| changes.iter().filter(move |c| c.time <= time).filter_map(|c| c.blow);
+        let in_the_air = |time: f64| {
+            let touches = |contact| {
+                changes.iter().rfind(|c| c.contact == contact && c.time <= time).is_some_and(|c| c.touches)
+            };
+            !(touches(0) || touches(1))
+        };
+        let before = momenta(&system, &solution.states[0]);
+        let after = solution.states.iter().filter(|s| in_the_air(s.time) && blows(s.time).count() >= 2);
+        let mut count = 0;
+        for state in after {
+            let found = momenta(&system, state);
+            for axis in 0..2 {
+                let impulse: f64 = blows(state.time).map(|blow| blow.impulse[axis]).sum();
+                let expected = before[axis] + 0.4 * LENGTH * GRAVITY[axis] * state.time + impulse;
+                let apart = (found[axis] - expected).abs();
+                assert!(apart < 2e-5, "{apart} N s along {axis} at {} s, impulses {impulse} N s", state.time);
+            }
+            count += 1;
+        }
+        assert!(count > 20, "{count} records in the air, {changes:?}");
+    }
+}
+
+/// A velocity that grows evenly along a straight beam is a rotation, given as a polynomial or by points; momenta and the energy have closed forms.
+#[test]
+fn a_linear_velocity_field_is_a_rotation() {
+    let rotation = 3.0;
+    let straight = Table::with_flat_ends(
+        vec![0.0, 0.5, LENGTH],
+        vec![0.0, 0.5 * rotation, LENGTH * rotation],
+        [false; 2],
+    );
+    let fields = [
+        InitialVelocity { rotation, ..InitialVelocity::default() },
+        InitialVelocity {
+            along: [Profile::None, Profile::Polynomial(vec![0.0, rotation])],
+            ..InitialVelocity::default()
+        },
+        InitialVelocity {
+            along: [Profile::None, Profile::Table(straight.expect("rising places"))],
+            ..InitialVelocity::default()
+        },
+    ];
+    for discretization in either() {
+        let mut model = model(discretization, vec![]);
+        model.loads.clear();
+        let system = build(&model);
+        let ends = fields.clone().map(|field| {
+            let start = from_rest(&system, &[field]).expect("a free beam");
+            let [_, vertical, angular] = momenta(&system, &start.state);
+            let (mass, energy) = (0.4 * LENGTH, system.energy(0.0, &start.state.q, Some(&start.state.v)));
+            assert!((vertical - mass * rotation * LENGTH / 2.0).abs() < 1e-12);
+            assert!((angular - mass * rotation * LENGTH.powi(2) / 3.0).abs() < 1e-12);
+            assert!((energy.kinetic - mass * (rotation * LENGTH).powi(2) / 6.0).abs() < 1e-12);
+            let task = Task { start, ..task(&system, 0.3, with_step(GAUSS, StepControl::Fixed(2e-3))) };
+            last(&finished(solve(&system, &task, &mut |_, _, _| true))).q.clone()
+        });
+        // Free flight: the centre goes straight up while the beam turns about it, drawn out a little by its own rotation.
+        let turned = 0.3 * rotation;
+        let centre = [LENGTH / 2.0, 0.3 * rotation * LENGTH / 2.0];
+        let q = &ends[0];
+        let n = q.len();
+        let middle = [0.5 * (q[0] + q[n - 4]), 0.5 * (q[1] + q[n - 3])];
+        assert!((middle[0] - centre[0]).hypot(middle[1] - centre[1]) < 1e-9, "{middle:?}, not {centre:?}");
+        assert!(((q[n - 3] - q[1]).atan2(q[n - 4] - q[0]) - turned).abs() < 1e-3);
+        for end in &ends[1..] {
+            let apart = q.iter().zip(end).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+            assert!(apart < 1e-10, "{apart}");
+        }
+    }
+}
+
+/// What a velocity of cubic shape has of energy and momentum, by integration of the polynomial; elements of third degree have it exactly.
+#[test]
+fn a_cubic_velocity_field_has_its_energy() {
+    let [discretization, _] = either();
+    let model = model(discretization, vec![]);
+    let system = build(&model);
+    let (a, b) = ([0.3, -1.0, 0.0, 0.8], [0.0, 0.5, 2.0, -1.1]);
+    let along = [a, b].map(|c| Profile::Polynomial(c.to_vec()));
+    let start = from_rest(&system, &[InitialVelocity { along, ..InitialVelocity::default() }]).expect("free");
+    let moment = |c: [f64; 4], d: [f64; 4]| -> f64 {
+        let pairs = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
+        pairs.map(|(i, j)| c[i] * d[j] * LENGTH.powi((i + j) as i32 + 1) / (i + j + 1) as f64).sum()
+    };
+    let kinetic = 0.5 * 0.4 * (moment(a, a) + moment(b, b));
+    let found = system.energy(0.0, &start.state.q, Some(&start.state.v)).kinetic;
+    assert!((found - kinetic).abs() < 1e-12 * kinetic, "{found} J, not {kinetic} J");
+    let one = [1.0, 0.0, 0.0, 0.0];
+    let [px, py, _] = momenta(&system, &start.state);
+    assert!((px - 0.4 * moment(a, one)).abs() < 1e-12 && (py - 0.4 * moment(b, one)).abs() < 1e-12);
+}
+
 /// A hundred revolutions of a free beam, 20,000 steps: momenta stay to round-off, the energy wavers no more in the second half than in the
 /// first, and a run continued from the middle ends in the same bits.
 #[test]
@@ -376,7 +489,12 @@ fn a_spinning_beam_keeps_momenta_and_energy_for_long_times_and_restarts_in_their
     model.loads.clear();
     let system = build(&model);
     let (translation, center) = ([0.03, 0.01], [LENGTH / 2.0, 0.0]);
-    let velocity = InitialVelocity { beam: 0, translation, rotation: std::f64::consts::TAU, center };
+    let velocity = InitialVelocity {
+        translation,
+        rotation: std::f64::consts::TAU,
+        center,
+        ..InitialVelocity::default()
+    };
     let start = from_rest(&system, &[velocity]).expect("a free beam");
     let integrator = with_step(GAUSS, StepControl::Fixed(5e-3));
     let whole = Task { start: start.clone(), ..task(&system, 100.0, integrator) };

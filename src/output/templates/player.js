@@ -57,6 +57,7 @@
 
   function draw() {
     context.clearRect(0, 0, width, height);
+    path(motion.ground, "#777", 1.6, []);
     path(motion.rest, "#aaa", 1.2, [6, 5]);
     let lines = motion.frames[frame];
     if (motion.vibration) {

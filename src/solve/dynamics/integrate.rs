@@ -19,6 +19,7 @@ use super::generalized_alpha::GeneralizedAlpha;
 use super::method::Method;
 use super::motion::Motion;
 use super::tableau::Tableau;
+use super::touch::Touch;
 use super::{Checkpoint, Solution, State, Stuck};
 use crate::linear::Singular;
 use crate::model::{Crossing, Integrator, StepControl};
@@ -81,6 +82,8 @@ const SMALLEST_STEP: f64 = 1e-12;
 const SMALLEST_PART: f64 = 1e-3;
 /// Iterations beyond which a step does not grow: the next tangent would be worse.
 const MANY_ITERATIONS: usize = 10;
+/// How often a step may end earlier because a contact begins or ends in it.
+const CUTS: usize = 6;
 /// Attempted steps that are kept for the reader.
 const HISTORY: usize = 20_000;
 /// Time by which a record or an end may miss a step's end, relative to the step.
@@ -137,8 +140,8 @@ pub(super) struct Driver<'t, 'a> {
     pub(super) stride: usize,
     /// Times at which loads or supports are not smooth, rising.
     pub(super) kinks: Vec<f64>,
-    /// Per contact, whether it touches.
-    pub(super) touching: Vec<bool>,
+    /// Per contact, how it is.
+    pub(super) touching: Vec<Touch>,
     /// Times and powers at the start and the end of the last step.
     pub(super) powers: [(f64, (f64, f64)); 2],
 }
@@ -171,7 +174,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                 (first_step(system, task, &*method, [&state.v, &acceleration], tolerance), (state.time, 0))
             }
         };
-        let touching = system.touching(&state.q).collect();
+        let touching = system.touching(&state.q).map(Touch::new).collect();
         let mut kinks = system.kinks();
         kinks.retain(|kink| *kink > state.time && *kink < task.duration);
         kinks.sort_by(f64::total_cmp);
@@ -250,19 +253,18 @@ impl<'t, 'a> Driver<'t, 'a> {
 
     /// Takes one step, smaller as often as needed, to `new`.
     fn advance(&mut self, new: &mut State) -> Result<(), Stuck> {
+        let (mut touch, mut cuts) = (f64::INFINITY, 0);
         loop {
-            let (end, h) = self.next_end();
+            let (end, h) = self.next_end(touch);
             let accuracy = match self.control {
                 StepControl::Fixed(_) => None,
                 StepControl::Tolerance(tolerance) => Some(STEP_PART * tolerance),
             };
             let mut record = Iterations::default();
             let result = self.method.attempt(&self.state, h, accuracy, new, &mut record);
+            new.time = end;
             let result = match accuracy {
-                None => result.and_then(|error| {
-                    new.time = end;
-                    self.without_gain(new).map(|()| error)
-                }),
+                None => result.and_then(|error| self.without_gain(new).map(|()| error)),
                 Some(_) => result,
             };
             let result = result.and_then(|error| not_crushed(&new.q).map(|()| error));
@@ -271,7 +273,10 @@ impl<'t, 'a> Driver<'t, 'a> {
                 (Ok(error), Some(accuracy)) => error / accuracy,
                 _ => 0.0,
             };
-            let accepted = result.is_ok() && ratio <= 1.0;
+            let accurate = result.is_ok() && ratio <= 1.0;
+            let kink =
+                if accurate && accuracy.is_some() && cuts < CUTS { self.kink_within(new) } else { None };
+            let accepted = accurate && kink.is_none();
             self.remember(StepRecord {
                 parameter: end,
                 step: h,
@@ -282,7 +287,6 @@ impl<'t, 'a> Driver<'t, 'a> {
             let power = 1.0 / (self.method.order() + 1.0);
             if accepted {
                 self.method.statistics().steps += 1;
-                new.time = end;
                 (new.work, new.lost) = (self.state.work, self.state.lost);
                 if let StepControl::Fixed(step) = self.control
                     && end >= self.grid_end(step)
@@ -310,6 +314,10 @@ impl<'t, 'a> Driver<'t, 'a> {
                 Stuck { time: self.state.time, step: h, failure, at }
             };
             self.method.statistics().rejected_steps += 1;
+            if let Some(time) = kink {
+                (touch, cuts) = (time, cuts + 1);
+                continue;
+            }
             match (result, accuracy) {
                 (Err(failure), _) => {
                     let smallest = match self.control {
@@ -339,13 +347,13 @@ impl<'t, 'a> Driver<'t, 'a> {
         if end > self.task.duration - SLACK * step { self.task.duration } else { end }
     }
 
-    /// Where the next step ends, and its length.
-    fn next_end(&self) -> (f64, f64) {
+    /// Where the next step ends, and its length; not beyond `touch` if steps are chosen.
+    fn next_end(&self, touch: f64) -> (f64, f64) {
         let now = self.state.time;
         let (end, sliver) = match self.control {
             StepControl::Fixed(step) => (self.grid_end(step), 1.0 + SLACK),
             // The last two steps share what is left.
-            StepControl::Tolerance(_) => (self.next_kink(), 2.0),
+            StepControl::Tolerance(_) => (self.next_kink().min(touch), 2.0),
         };
         let left = end - now;
         if self.step * (1.0 + SLACK) >= left {

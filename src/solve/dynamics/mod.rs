@@ -7,7 +7,7 @@
 //! | [`generalized_alpha`] | second order, numerical damping by choice |
 //! | [`collocation`], [`tableau`] | Gauss (order 2, 4, 6; symplectic), Radau IIA (order 3, 5; stiff) |
 //! | [`start`] | initial velocities |
-//! | [`integrate`] | the driver: steps, restart; with its records and events in `record`, the balance of energy in `balance` |
+//! | [`integrate`] | the driver: steps, restart; with its records and events in `record`, the balance of energy in `balance`, contacts in `touch` |
 //!
 //! # No explicit method
 //! Störmer's and Verlet's rule and the six-stage method of order 4 of Blanes and Moan were built and measured on the soft pendulum (E = 68.95 MPa, the least stiff
@@ -29,6 +29,7 @@ pub mod motion;
 mod record;
 pub mod start;
 pub mod tableau;
+mod touch;
 pub mod turns;
 
 use super::newton::Failure;
@@ -36,6 +37,7 @@ use crate::trajectory::{Statistics, StepRecord};
 use serde::{Deserialize, Serialize};
 
 pub use integrate::{Keep, Task, Watch, solve};
+pub use touch::Change;
 
 /// A state of motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -108,8 +110,8 @@ pub struct Solution {
     pub history: Vec<StepRecord>,
     /// Events in the order of their times: (number of the watch, state).
     pub events: Vec<(usize, State)>,
-    /// Contacts that began or ended, in order: (number of the contact, whether it touches from then on, time \[s\]).
-    pub contacts: Vec<(usize, bool, f64)>,
+    /// Contacts that began or ended, in order.
+    pub contacts: Vec<Change>,
     /// Counts.
     pub statistics: Statistics,
     /// From which the motion can be continued.

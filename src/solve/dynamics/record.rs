@@ -1,4 +1,4 @@
-//! What a motion leaves behind on its way: records at the requested times, crossings of probes, contacts.
+//! What a motion leaves behind on its way: records at the requested times, crossings of probes.
 
 use super::State;
 use super::integrate::{Driver, SLACK};
@@ -28,28 +28,6 @@ impl Driver<'_, '_> {
         (new.work, new.lost) = self.work(new, new.time, pair);
         self.record_until(new, pair);
         false
-    }
-
-    /// Records contacts that begin or end in the step to `new`, at the times to which bisection of the interpolated motion leads.
-    pub(super) fn notice_contacts(&mut self, new: &State) {
-        let touching: Vec<bool> = self.system.touching(&new.q).collect();
-        for (contact, touches) in touching.iter().enumerate() {
-            if *touches == self.touching[contact] {
-                continue;
-            }
-            let (mut before, mut after) = (self.state.time, new.time);
-            for _ in 0..40 {
-                let middle = 0.5 * (before + after);
-                let state = self.state.between(new, middle, None);
-                if self.system.touching(&state.q).nth(contact) == Some(*touches) {
-                    after = middle;
-                } else {
-                    before = middle;
-                }
-            }
-            self.solution.contacts.push((contact, *touches, after));
-        }
-        self.touching = touching;
     }
 
     pub(super) fn record_until(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) {

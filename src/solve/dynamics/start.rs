@@ -1,4 +1,4 @@
-//! Where a motion starts: at rest, or with the velocities of rigid bodies.
+//! Where a motion starts: at rest, or with given velocities.
 
 use super::{Checkpoint, State};
 use crate::linear::Singular;
@@ -17,7 +17,8 @@ pub enum StartError {
         "the initial velocity moves what a support holds: near s = {s:.6} m of beam `{beam}` the supports change it by {change:.3e} m/s"
     )]
     #[diagnostic(help(
-        "let the velocity vanish where the beam is held, such as by a rotation about a hinge: `rotation = \"2 rad/s\"`, `about = [0, 0]`"
+        "let the velocity vanish where the beam is held, such as by a rotation about a hinge: `rotation = \"2 rad/s\"`, `about = [0, 0]`; \
+         and its slope where the direction is held, such as by `polynomial = {{ vy = [0, 0, 1] }}`"
     ))]
     Held {
         /// The beam.
@@ -70,12 +71,10 @@ pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Chec
         let Some(part) = system.beams().get(velocity.beam) else { continue };
         let first = 4 * part.first_node;
         let range = first..first + 4 * part.basis.nodes().len();
-        let ([vx, vy], [cx, cy], w) = (velocity.translation, velocity.center, velocity.rotation);
-        for (q, v) in state.q[range.clone()].chunks_exact(4).zip(state.v[range].chunks_exact_mut(4)) {
-            v[0] += vx - w * (q[1] - cy);
-            v[1] += vy + w * (q[0] - cx);
-            v[2] -= w * q[3];
-            v[3] += w * q[2];
+        let coordinates = state.q[range.clone()].chunks_exact(4).zip(state.v[range].chunks_exact_mut(4));
+        for (s, (q, v)) in part.basis.nodes().iter().zip(coordinates) {
+            let rates = velocity.at(*s, [q[0], q[1]], [q[2], q[3]]);
+            v.iter_mut().zip(rates).for_each(|(v, rate)| *v += rate);
         }
     }
     let admissible = Motion::new(system)?.admissible_velocity(state.time, &state.q, &state.v)?;

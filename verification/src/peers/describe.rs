@@ -141,11 +141,9 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
     }
     for given in &model.initial_velocities {
         let beam = description.beams.get_mut(given.beam).ok_or_else(|| none("a velocity of no beam"))?;
-        let ([vx, vy], [cx, cy], omega, [tx, ty]) =
-            (given.translation, given.center, given.rotation, beam.tangent);
-        for (rate, [x, y]) in beam.velocities.iter_mut().zip(&beam.nodes) {
-            let rigid = [vx - omega * (y - cy), vy + omega * (x - cx), -omega * ty, omega * tx];
-            rate.iter_mut().zip(rigid).for_each(|(sum, v)| *sum += v);
+        let nodes = beam.nodes.iter().zip(bases[given.beam].nodes());
+        for (rate, (position, s)) in beam.velocities.iter_mut().zip(nodes) {
+            rate.iter_mut().zip(given.at(*s, *position, beam.tangent)).for_each(|(sum, v)| *sum += v);
         }
     }
     for probe in &model.probes {

@@ -143,6 +143,11 @@ beam = "free"
 value = [1.0, 2.0]
 rotation = 3.0
 about = [0.5, 0.5]
+polynomial = { vx = [0.0, 0.3, -0.5], vy = [0.1, 0.0, 0.0, 0.4] }
+
+[[initial_velocity]]
+beam = "held"
+table = { s = [0.0, 0.4, 1.0], vx = [0.0, 0.2, -0.3] }
 
 [[effect.force]]
 beam = "held"

@@ -1,0 +1,56 @@
+//! How beams move at the start of a motion.
+
+use super::Table;
+
+/// The velocity of a beam at the start: ṙ = v + ω × (r − c) + w(s). Several of one beam add up.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InitialVelocity {
+    /// Index of the beam.
+    pub beam: usize,
+    /// v \[m/s\].
+    pub translation: [f64; 2],
+    /// ω \[rad/s\], counter-clockwise.
+    pub rotation: f64,
+    /// c \[m\].
+    pub center: [f64; 2],
+    /// w along x and y.
+    pub along: [Profile; 2],
+}
+
+/// A component of a velocity along the arc length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Profile {
+    /// Zero.
+    #[default]
+    None,
+    /// Σ c_k s^k, s in metres, c_k in m/s/mᵏ.
+    Polynomial(Vec<f64>),
+    /// Through given points.
+    Table(Table),
+}
+
+impl Profile {
+    /// w \[m/s\] and dw/ds \[1/s\] at the arc length `s` \[m\].
+    pub fn at(&self, s: f64) -> [f64; 2] {
+        match self {
+            Self::None => [0.0; 2],
+            Self::Polynomial(coefficients) => coefficients
+                .iter()
+                .rev()
+                .fold([0.0; 2], |[value, slope], c| [value * s + c, slope * s + value]),
+            Self::Table(table) => {
+                let [value, slope, _] = table.between(s);
+                [value, slope]
+            }
+        }
+    }
+}
+
+impl InitialVelocity {
+    /// Rates of \[x, y, x', y'\] at the arc length `s` \[m\], where the beam is at `position` \[m\] with the gradient `gradient`.
+    pub fn at(&self, s: f64, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> [f64; 4] {
+        let ([vx, vy], [cx, cy], turn) = (self.translation, self.center, self.rotation);
+        let [[wx, dwx], [wy, dwy]] = [self.along[0].at(s), self.along[1].at(s)];
+        [vx - turn * (y - cy) + wx, vy + turn * (x - cx) + wy, dwx - turn * dy, dwy + turn * dx]
+    }
+}
