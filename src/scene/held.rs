@@ -42,7 +42,8 @@ pub(super) fn check_duplicates(file: &SceneTable, model: &Model, built: &[Built]
 }
 
 /// Refuses a structure that can move without deforming. A planar rigid motion of a beam is (t_x, t_y, ω); a support at r₀ holds
-/// t_x − ω (y₀ − ȳ), t_y + ω (x₀ − x̄) and ω, and a joint equals those of two beams. All motions are held when the rows have full rank.
+/// t_x − ω (y₀ − ȳ), t_y + ω (x₀ − x̄) and ω, and a joint equals those of two beams. All motions are held when the rows have full rank. The direction of
+/// a string is found with its shape, from the load that it carries.
 pub(super) fn check_rigid_motions(model: &Model, built: &[Built]) -> Result<(), Fault> {
     let length = built.iter().map(|beam| beam.curve.length()).fold(0.0, f64::max);
     let origins: Vec<[f64; 2]> = built.iter().map(|beam| beam.curve.position(0.0)).collect();
@@ -75,6 +76,9 @@ pub(super) fn check_rigid_motions(model: &Model, built: &[Built]) -> Result<(), 
         if fix.rotation != FixedRotation::Free {
             rows.push(rotation(&[(*at, 1.0)]));
         }
+    }
+    for (beam, _) in model.beams.iter().enumerate().filter(|(_, b)| b.section.bending_stiffness.is_none()) {
+        rows.push(rotation(&[(Place { beam, s: 0.0 }, 1.0)]));
     }
     for joint in &model.joints {
         match *joint {

@@ -265,6 +265,24 @@ fn welded_corners_need_one_row_for_both_gradients() {
     }
 }
 
+/// A chain on one hook, laid out sideways: nothing but its weight says where down is.
+#[test]
+fn a_chain_on_one_hook_finds_its_way_down() {
+    for stiffness in ["", "axial_stiffness = 1e6\n"] {
+        let text =
+            ARM.replace("BASIS", ANCF).replace("FIX", HINGE).replace("bending_stiffness = 1.0\n", stiffness);
+        let rest = "[effect.gravity]\nacceleration = [0.0, -9.81]\n[analysis.static]\n";
+        let trajectory = solve(&parse("chain.toml", &format!("{text}{rest}")).expect("a chain"));
+        let tip = trajectory.probes[0].samples.last().expect("an equilibrium");
+        assert!(tip.x.abs() < 1e-9 && (tip.y + 1.0).abs() < 1e-5, "({}, {})", tip.x, tip.y);
+        let top = trajectory.last[0].axial_force[0];
+        assert!((top - 9.81).abs() < 1e-3, "{top} N");
+    }
+    // With bending stiffness it is a pendulum, which statics refuses.
+    let text = format!("{}[analysis.static]\n", ARM.replace("BASIS", ANCF).replace("FIX", HINGE));
+    assert!(parse("arm.toml", &text).expect_err("refused").to_string().contains("under-supported"));
+}
+
 #[test]
 fn what_cannot_be_done_is_refused_with_what_to_try() {
     for method in
