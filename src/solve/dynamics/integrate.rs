@@ -73,6 +73,8 @@ const STEP_PART: f64 = 1e-4;
 const SAFETY: f64 = 0.9;
 /// Steps grow and shrink at most by these factors.
 const LIMITS: (f64, f64) = (0.2, 4.0);
+/// Between these factors a step keeps its length: what was factorised for it serves again. With a margin of [`SAFETY`] few are rejected.
+const HOLD: (f64, f64) = (0.9, 1.2);
 /// After an iteration that did not converge.
 const SHRINK: f64 = 0.3;
 /// Smallest step, relative to the duration.
@@ -296,6 +298,9 @@ impl<'t, 'a> Driver<'t, 'a> {
                         factor = factor.min(1.0);
                     }
                     // A step that was cut at the end says nothing about the next.
+                    if (HOLD.0..HOLD.1).contains(&factor) {
+                        factor = 1.0;
+                    }
                     self.step = self.step.max(h) * factor.clamp(LIMITS.0, LIMITS.1);
                     (self.last_ratio, self.rejected) = (ratio, false);
                 }
