@@ -27,9 +27,9 @@
 //! registers of [`crate::linear::symmetric`] made substitution and product six times as short as loops over slices. Four elements side by
 //! side in the lanes of the registers were tried for forces, with densities written for arrays: the compiler kept them scalar, and a tenth was gained.
 //!
-//! Gauss collocation on 20 RPIM nodes (three stages, 5 ms, 7 iterations a step) takes 1.0 million instructions a step. Radau's method with a
-//! tolerance of 1e-4 takes 0.8 million (2.7 iterations a step, a tangent every second to third step): two fifths are forces, a quarter substitutions,
-//! a seventh the tangents with their real and complex factorisation, a tenth products with the mass matrix.
+//! Gauss collocation on 20 RPIM nodes (three stages, 5 ms, 7 iterations a step) takes 1.25 million instructions a step; Radau's method with a tolerance
+//! of 1e-4 0.53 million (2.6 iterations a step, a tangent every second to third step): two fifths are forces, a quarter substitutions, a seventh the
+//! tangents with their real and complex factorisation, a tenth products with the mass matrix.
 
 use super::{Density, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;

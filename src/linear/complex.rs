@@ -4,7 +4,7 @@
 //! K and M are symmetric there, so K + ζ M is complex *symmetric* (not Hermitian) and has L D Lᵀ. It exists without
 //! pivoting: with M positive definite and Im ζ ≠ 0, x*(K + ζM)x has an imaginary part different from zero for every x, hence no
 //! leading minor vanishes (George, Ikramov, Kucherov, *SIAM J. Matrix Anal. Appl.* 21, 2000, 377–387).
-//! Numbers are kept by fours, their real parts before their imaginary parts ([`Four`]), so that all inner loops are real multiply–adds over
+//! Numbers are kept by fours, their real parts before their imaginary parts (`Four`), so that all inner loops are real multiply–adds over
 //! whole registers: four times as many as [`super::symmetric`] has, in the same order. Unsymmetric matrices and those bordered by many rows go to
 //! faer's sparse LU.
 
