@@ -51,9 +51,9 @@ use crate::trajectory::Statistics;
 /// Error of the stages of a step of given length, relative to the displacement in the step: the velocity takes the same relative error.
 const TOLERANCE: f64 = 1e-11;
 /// The same against the error that a step may make, where the method damps high frequencies and where it does not: what is left of the stages'
-/// error excites them. Increments are the largest of any node, gradients too, and the error of a step is a mean of positions: with ten times
+/// error excites them. Increments are the largest of any node, gradients too, and the error of a step is a mean of positions: with thirty times
 /// smaller tolerances the pendulum errs the same.
-const TOLERANCE_OF_ERROR: (f64, f64) = (3.0, 1.0);
+const TOLERANCE_OF_ERROR: (f64, f64) = (10.0, 1.0);
 /// Largest error of a step to which the stages' error is measured.
 const LARGEST_ERROR: f64 = 1e-6;
 /// Increments that no longer shrink count as converged below this size: what is left is round-off.
