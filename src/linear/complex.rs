@@ -4,8 +4,8 @@
 //! K and M are symmetric there, so K + ζ M is complex *symmetric* (not Hermitian) and has L D Lᵀ. It exists without
 //! pivoting: with M positive definite and Im ζ ≠ 0, x*(K + ζM)x has an imaginary part different from zero for every x, hence no
 //! leading minor vanishes (George, Ikramov, Kucherov, *SIAM J. Matrix Anal. Appl.* 21, 2000, 377–387).
-//! Real and imaginary parts are kept apart, so that all inner loops are real multiply–adds over contiguous rows: four times
-//! as many as [`super::symmetric`] has, in the same order. Unsymmetric matrices and those bordered by many rows are
+//! Numbers are kept by fours, their real parts before their imaginary parts (`Four`), so that all inner loops are real multiply–adds over
+//! whole registers: four times as many as [`super::symmetric`] has, in the same order. Unsymmetric matrices and those bordered by many rows are
 //! factorised with pivoting, as a band where the rows lie within it, else by faer's sparse LU.
 
 use super::bordered::{BorderRow, Bordered};
@@ -85,88 +85,118 @@ fn pairwise(re: &mut [f64], im: &mut [f64], solve: impl FnOnce(&mut [c64])) {
     }
 }
 
+/// Real and imaginary parts of four numbers: those of one node in a row.
+type Four = [[f64; 4]; 2];
+
+/// `l · source + target`.
+#[inline(always)]
+fn add(l: c64, source: &Four, target: &Four) -> Four {
+    let ([s_re, s_im], [mut re, mut im]) = (*source, *target);
+    for lane in 0..4 {
+        re[lane] = fma(-l.im, s_im[lane], fma(l.re, s_re[lane], re[lane]));
+        im[lane] = fma(l.im, s_re[lane], fma(l.re, s_im[lane], im[lane]));
+    }
+    [re, im]
+}
+
+/// `a · b + sum`, number by number.
+#[inline(always)]
+fn add_products(a: &Four, b: &Four, sum: &Four) -> Four {
+    let [mut re, mut im] = *sum;
+    for lane in 0..4 {
+        re[lane] = fma(-a[1][lane], b[1][lane], fma(a[0][lane], b[0][lane], re[lane]));
+        im[lane] = fma(a[1][lane], b[0][lane], fma(a[0][lane], b[1][lane], im[lane]));
+    }
+    [re, im]
+}
+
+#[inline(always)]
+fn number(four: &Four, lane: usize) -> c64 {
+    c64::new(four[0][lane], four[1][lane])
+}
+
+#[inline(always)]
+fn sum(four: &Four) -> c64 {
+    let [re, im] = four.map(|part| (part[0] + part[1]) + (part[2] + part[3]));
+    c64::new(re, im)
+}
+
+/// The unknowns of `node`, zeros beyond the last.
+#[inline(always)]
+fn unknowns(re: &[f64], im: &[f64], node: usize) -> Four {
+    match (re.as_chunks().0.get(node), im.as_chunks().0.get(node)) {
+        (Some(re), Some(im)) => [*re, *im],
+        _ => [[0.0; 4]; 2],
+    }
+}
+
 /// L D Lᵀ of a complex symmetric band. The rows hold D Lᵀ.
 #[derive(Clone, Debug)]
 pub struct ComplexLdl {
-    nodes: usize,
-    stride: usize,
-    re: Vec<f64>,
-    im: Vec<f64>,
+    /// Blocks in a panel, the diagonal one included.
+    blocks: usize,
+    /// Panels of four rows of `blocks` blocks, one a node.
+    rows: Vec<Four>,
     /// 1/d.
     reciprocal: Vec<c64>,
 }
 
 impl ComplexLdl {
     fn zeros(pattern: &SymmetricBand) -> Self {
-        let (size, stride) = (pattern.size(), pattern.stride());
-        Self {
-            nodes: size / 4,
-            stride,
-            re: vec![0.0; size * stride],
-            im: vec![0.0; size * stride],
-            reciprocal: vec![c64::new(0.0, 0.0); size],
-        }
+        let (size, blocks) = (pattern.size(), pattern.stride() / 4);
+        Self { blocks, rows: vec![[[0.0; 4]; 2]; size * blocks], reciprocal: vec![c64::new(0.0, 0.0); size] }
     }
 
     fn factorize(&mut self, k: &SymmetricBand, m: &SymmetricBand, zeta: c64) -> Result<(), Singular> {
-        let parts = self.re.iter_mut().zip(&mut self.im);
-        for ((re, im), (k, m)) in parts.zip(k.data().iter().zip(m.data())) {
-            *re = fma(zeta.re, *m, *k);
-            *im = zeta.im * m;
+        let sources = k.data().as_chunks::<4>().0.iter().zip(m.data().as_chunks::<4>().0);
+        for ([re, im], (k, m)) in self.rows.iter_mut().zip(sources) {
+            for lane in 0..4 {
+                re[lane] = fma(zeta.re, m[lane], k[lane]);
+                im[lane] = zeta.im * m[lane];
+            }
         }
-        match self.stride {
-            8 => self.eliminate::<8>(),
-            16 => self.eliminate::<16>(),
-            24 => self.eliminate::<24>(),
+        match self.blocks {
+            2 => self.eliminate::<2>(),
+            4 => self.eliminate::<4>(),
+            6 => self.eliminate::<6>(),
             _ => self.eliminate::<0>(),
         }
     }
 
-    fn eliminate<const STRIDE: usize>(&mut self) -> Result<(), Singular> {
-        let stride = if STRIDE == 0 { self.stride } else { STRIDE };
-        for node in 0..self.nodes {
-            let (panel_re, later_re) = self.re[node * 4 * stride..].split_at_mut(4 * stride);
-            let (panel_im, later_im) = self.im[node * 4 * stride..].split_at_mut(4 * stride);
-            let mut reciprocal = [c64::new(0.0, 0.0); 4];
+    /// With the number of blocks a compile-time constant, or 0.
+    fn eliminate<const BLOCKS: usize>(&mut self) -> Result<(), Singular> {
+        let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
+        for (node, reciprocal) in self.reciprocal.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+            let (panel, later) = self.rows[node * 4 * blocks..].split_at_mut(4 * blocks);
             for r in 0..4 {
-                let (done_re, rest_re) = panel_re.split_at_mut((r + 1) * stride);
-                let (done_im, rest_im) = panel_im.split_at_mut((r + 1) * stride);
-                let (row_re, row_im) = (&done_re[r * stride..], &done_im[r * stride..]);
-                let size = row_re[r] * row_re[r] + row_im[r] * row_im[r];
+                let (done, below) = panel.split_at_mut((r + 1) * blocks);
+                let row = &done[r * blocks..];
+                let pivot = number(&row[0], r);
+                let size = pivot.re * pivot.re + pivot.im * pivot.im;
                 // Written so that a NaN fails too.
                 if !(size > 0.0 && size.is_finite()) {
                     return Err(Singular { row: 4 * node + r });
                 }
-                reciprocal[r] = c64::new(row_re[r] / size, -row_im[r] / size);
-                let below = rest_re.chunks_exact_mut(stride).zip(rest_im.chunks_exact_mut(stride));
-                for (below, (target_re, target_im)) in below.enumerate() {
-                    let c = r + 1 + below;
-                    let l = -c64::new(row_re[c], row_im[c]) * reciprocal[r];
-                    let target = target_re.iter_mut().zip(target_im);
-                    for ((t_re, t_im), (s_re, s_im)) in target.zip(row_re.iter().zip(row_im)) {
-                        *t_re = fma(-l.im, *s_im, fma(l.re, *s_re, *t_re));
-                        *t_im = fma(l.im, *s_re, fma(l.re, *s_im, *t_im));
+                reciprocal[r] = c64::new(pivot.re / size, -pivot.im / size);
+                for (c, target) in (r + 1..4).zip(below.chunks_exact_mut(blocks)) {
+                    let l = -number(&row[0], c) * reciprocal[r];
+                    for (t, s) in target.iter_mut().zip(row) {
+                        *t = add(l, s, t);
                     }
                 }
             }
-            self.reciprocal[4 * node..4 * node + 4].copy_from_slice(&reciprocal);
-            let reach = (stride / 4 - 1).min(self.nodes - 1 - node);
-            let panels = later_re.chunks_exact_mut(4 * stride).zip(later_im.chunks_exact_mut(4 * stride));
-            for (ahead, (target_re, target_im)) in panels.take(reach).enumerate() {
-                let from = 4 * (ahead + 1);
-                let length = stride - from;
-                let rows = target_re.chunks_exact_mut(stride).zip(target_im.chunks_exact_mut(stride));
-                for (r, (target_re, target_im)) in rows.enumerate() {
-                    // One source row at a time: eight streams at once would not fit the registers.
-                    for (k, reciprocal) in reciprocal.iter().enumerate() {
-                        let (source_re, source_im) = (&panel_re[k * stride..], &panel_im[k * stride..]);
-                        let l = -c64::new(source_re[from + r], source_im[from + r]) * *reciprocal;
-                        let target = target_re[..length].iter_mut().zip(&mut target_im[..length]);
-                        let source = source_re[from..stride].iter().zip(&source_im[from..stride]);
-                        for ((t_re, t_im), (s_re, s_im)) in target.zip(source) {
-                            *t_re = fma(-l.im, *s_im, fma(l.re, *s_re, *t_re));
-                            *t_im = fma(l.im, *s_re, fma(l.re, *s_im, *t_im));
-                        }
+            let (first, second) = panel.split_at(2 * blocks);
+            let ((a, b), (c, d)) = (first.split_at(blocks), second.split_at(blocks));
+            for (ahead, target) in later.chunks_exact_mut(4 * blocks).take(blocks - 1).enumerate() {
+                let (a, b, c, d) = (&a[ahead + 1..], &b[ahead + 1..], &c[ahead + 1..], &d[ahead + 1..]);
+                for (r, target) in target.chunks_exact_mut(blocks).enumerate() {
+                    let l0 = -number(&a[0], r) * reciprocal[0];
+                    let l1 = -number(&b[0], r) * reciprocal[1];
+                    let l2 = -number(&c[0], r) * reciprocal[2];
+                    let l3 = -number(&d[0], r) * reciprocal[3];
+                    let sources = a.iter().zip(b).zip(c.iter().zip(d));
+                    for (t, ((a, b), (c, d))) in target.iter_mut().zip(sources) {
+                        *t = add(l3, d, &add(l2, c, &add(l1, b, &add(l0, a, t))));
                     }
                 }
             }
@@ -176,102 +206,63 @@ impl ComplexLdl {
 
     /// Solves A x = b in place.
     pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
-        match self.stride {
-            8 => self.substitute_window::<8>(re, im),
-            16 => self.substitute_window::<16>(re, im),
-            24 => self.substitute_window::<24>(re, im),
-            _ => self.substitute(re, im),
+        match self.blocks {
+            2 => self.substitute_window(&mut [[[0.0; 4]; 2]; 2], re, im),
+            4 => self.substitute_window(&mut [[[0.0; 4]; 2]; 4], re, im),
+            6 => self.substitute_window(&mut [[[0.0; 4]; 2]; 6], re, im),
+            _ => self.substitute(&mut vec![[[0.0; 4]; 2]; self.blocks], re, im),
         }
     }
 
-    /// As [`super::symmetric::Ldl`] does it, with a window for each part.
-    fn substitute_window<const STRIDE: usize>(&self, re: &mut [f64], im: &mut [f64]) {
-        let panels_re = self.re.as_chunks::<STRIDE>().0.as_chunks::<4>().0;
-        let panels_im = self.im.as_chunks::<STRIDE>().0.as_chunks::<4>().0;
-        let ahead = STRIDE - 4;
-        let (mut w_re, mut w_im) = ([0.0; STRIDE], [0.0; STRIDE]);
-        let loaded = re.len().min(STRIDE);
-        w_re[..loaded].copy_from_slice(&re[..loaded]);
-        w_im[..loaded].copy_from_slice(&im[..loaded]);
-        for (node, (u_re, u_im)) in panels_re.iter().zip(panels_im).enumerate() {
-            for r in 0..4 {
-                let z = c64::new(w_re[r], w_im[r]) * self.reciprocal[4 * node + r];
-                // The second range has the length of whole registers.
-                for range in [r + 1..4, 4..STRIDE] {
-                    for c in range {
-                        w_re[c] = fma(z.im, u_im[r][c], fma(-z.re, u_re[r][c], w_re[c]));
-                        w_im[c] = fma(-z.im, u_re[r][c], fma(-z.re, u_im[r][c], w_im[c]));
-                    }
-                }
-                (re[4 * node + r], im[4 * node + r]) = (z.re, z.im);
-            }
-            for (window, b) in [(&mut w_re, &*re), (&mut w_im, &*im)] {
-                window.copy_within(4.., 0);
-                match b.get(4 * node + STRIDE..4 * node + STRIDE + 4) {
-                    Some(values) => window[ahead..].copy_from_slice(values),
-                    None => window[ahead..].fill(0.0),
-                }
-            }
-        }
-        w_re.fill(0.0);
-        w_im.fill(0.0);
-        for (node, (u_re, u_im)) in panels_re.iter().zip(panels_im).enumerate().rev() {
-            w_re.copy_within(..ahead, 4);
-            w_im.copy_within(..ahead, 4);
-            for r in (0..4).rev() {
-                let (mut lanes_re, mut lanes_im) = ([0.0; 4], [0.0; 4]);
-                for c in (4..STRIDE).step_by(4) {
-                    for lane in 0..4 {
-                        let (a_re, a_im) = (u_re[r][c + lane], u_im[r][c + lane]);
-                        let (x_re, x_im) = (w_re[c + lane], w_im[c + lane]);
-                        lanes_re[lane] = fma(-x_im, a_im, fma(x_re, a_re, lanes_re[lane]));
-                        lanes_im[lane] = fma(x_im, a_re, fma(x_re, a_im, lanes_im[lane]));
-                    }
-                }
-                let sum = |lanes: [f64; 4]| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-                let mut sum = c64::new(sum(lanes_re), sum(lanes_im));
-                for c in r + 1..4 {
-                    sum += c64::new(u_re[r][c], u_im[r][c]) * c64::new(w_re[c], w_im[c]);
-                }
-                let x = c64::new(re[4 * node + r], im[4 * node + r]) - sum * self.reciprocal[4 * node + r];
-                (w_re[r], w_im[r]) = (x.re, x.im);
-                (re[4 * node + r], im[4 * node + r]) = (x.re, x.im);
-            }
-        }
+    /// Forward and backward substitution with the numbers that a panel touches in a window of registers.
+    fn substitute_window<const BLOCKS: usize>(
+        &self,
+        window: &mut [Four; BLOCKS],
+        re: &mut [f64],
+        im: &mut [f64],
+    ) {
+        self.substitute(window, re, im);
     }
 
-    fn substitute(&self, re: &mut [f64], im: &mut [f64]) {
-        let stride = self.stride;
-        let n = 4 * self.nodes;
-        let row = |i: usize, from: usize, length: usize| {
-            let start = i * stride + from;
-            (&self.re[start..start + length], &self.im[start..start + length])
-        };
-        for i in 0..n {
-            let start = 4 * (i / 4);
-            let length = (start + stride).min(n) - (i + 1);
-            let (row_re, row_im) = row(i, i + 1 - start, length);
-            let z = c64::new(re[i], im[i]) * self.reciprocal[i];
-            let target = re[i + 1..].iter_mut().zip(&mut im[i + 1..]);
-            for ((t_re, t_im), (s_re, s_im)) in target.zip(row_re.iter().zip(row_im)) {
-                *t_re = fma(z.im, *s_im, fma(-z.re, *s_re, *t_re));
-                *t_im = fma(-z.im, *s_re, fma(-z.re, *s_im, *t_im));
-            }
-            (re[i], im[i]) = (z.re, z.im);
+    /// `window` has as many blocks as a panel. Inlined where that is a constant, it is kept in registers.
+    #[inline(always)]
+    fn substitute(&self, window: &mut [Four], re: &mut [f64], im: &mut [f64]) {
+        let blocks = window.len();
+        for (node, block) in window.iter_mut().enumerate() {
+            *block = unknowns(re, im, node);
         }
-        for i in (0..n).rev() {
-            let start = 4 * (i / 4);
-            let length = (start + stride).min(n) - (i + 1);
-            let (row_re, row_im) = row(i, i + 1 - start, length);
-            let (mut sum_re, mut sum_im) = (0.0, 0.0);
-            let known = re[i + 1..].iter().zip(&im[i + 1..]);
-            for ((x_re, x_im), (s_re, s_im)) in known.zip(row_re.iter().zip(row_im)) {
-                sum_re = fma(-x_im, *s_im, fma(*x_re, *s_re, sum_re));
-                sum_im = fma(*x_im, *s_re, fma(*x_re, *s_im, sum_im));
+        let panels = self.rows.chunks_exact(4 * blocks).zip(self.reciprocal.as_chunks::<4>().0);
+        for (node, (panel, reciprocal)) in panels.clone().enumerate() {
+            let mut z = [[0.0; 4]; 2];
+            for (r, row) in panel.chunks_exact(blocks).enumerate() {
+                // What this changes in the first block up to its own place is not read again.
+                let value = number(&window[0], r) * reciprocal[r];
+                for (w, u) in window.iter_mut().zip(row) {
+                    *w = add(-value, u, w);
+                }
+                (z[0][r], z[1][r]) = (value.re, value.im);
             }
-            let x = c64::new(sum_re, sum_im) * self.reciprocal[i];
-            re[i] -= x.re;
-            im[i] -= x.im;
+            re[4 * node..4 * node + 4].copy_from_slice(&z[0]);
+            im[4 * node..4 * node + 4].copy_from_slice(&z[1]);
+            window.copy_within(1.., 0);
+            window[blocks - 1] = unknowns(re, im, node + blocks);
+        }
+        window.fill([[0.0; 4]; 2]);
+        for (node, (panel, reciprocal)) in panels.enumerate().rev() {
+            window.copy_within(..blocks - 1, 1);
+            // Zeros meet the entries left of the diagonal.
+            window[0] = [[0.0; 4]; 2];
+            let z = unknowns(re, im, node);
+            for (r, row) in panel.chunks_exact(blocks).enumerate().rev() {
+                let mut sums = [[0.0; 4]; 2];
+                for (w, u) in window.iter().zip(row) {
+                    sums = add_products(u, w, &sums);
+                }
+                let x = number(&z, r) - sum(&sums) * reciprocal[r];
+                (window[0][0][r], window[0][1][r]) = (x.re, x.im);
+            }
+            re[4 * node..4 * node + 4].copy_from_slice(&window[0][0]);
+            im[4 * node..4 * node + 4].copy_from_slice(&window[0][1]);
         }
     }
 }

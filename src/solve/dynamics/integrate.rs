@@ -3,7 +3,8 @@
 //! # Steps that meet a stated accuracy
 //! The tolerance is the wanted error of positions at the end, root mean square over the nodes, relative to the beam length. A step may
 //! err by a fixed part of it; with an estimate of order p + 1 the step for that follows, by the proportional–integral rule of Gustafsson (*ACM Trans. Math. Softw.* 20,
-//! 1994, 496–517).
+//! 1994, 496–517). Of methods that gain by it a step that could grow by
+//! little keeps its length ([`Method::hold`]).
 //!
 //! Two other choices were tried and left. An allowance in proportion to the step asks for ever smaller steps once a high frequency rings,
 //! whose share in the error does not add up. The largest change of any gradient, in place of positions, sees the shortest waves most, which the
@@ -298,6 +299,9 @@ impl<'t, 'a> Driver<'t, 'a> {
                     let mut factor = SAFETY * ratio.powf(-0.7 * power) * self.last_ratio.powf(0.4 * power);
                     if self.rejected || iterations > MANY_ITERATIONS {
                         factor = factor.min(1.0);
+                    }
+                    if (1.0..self.method.hold()).contains(&factor) {
+                        factor = 1.0;
                     }
                     // A step that was cut at the end says nothing about the next.
                     self.step = self.step.max(h) * factor.clamp(LIMITS.0, LIMITS.1);

@@ -10,6 +10,11 @@ pub trait Method {
     /// Order p: the local error is of the order p + 1.
     fn order(&self) -> f64;
 
+    /// A step that could grow by less than this factor keeps its length: what was factorised for it serves again.
+    fn hold(&self) -> f64 {
+        1.0
+    }
+
     /// Prepares the first step from `state`; returns q̈ there.
     ///
     /// # Errors

@@ -148,9 +148,14 @@ impl<'a> Motion<'a> {
 
     /// Forms the mass matrix in the supports' frames at `time`, if these turn, with the constraints' rows in the state `q`, if they follow it.
     fn mass_at(&mut self, time: f64, q: &[f64]) -> Result<(), Singular> {
-        if self.system.supports().turn_in_time() || self.follows {
-            self.border = self.system.border(time, q);
-            (self.free_mass, self.mass_factor) = free_mass(self.system, time, &self.mass, &self.border)?;
+        let turns = self.system.supports().turn_in_time();
+        if turns || self.follows {
+            let border = self.system.border(time, q);
+            (self.free_mass, self.mass_factor) = free_mass(self.system, time, &self.mass, &border)?;
+            // Rows that follow the state are those of the tangent until it is taken anew.
+            if !self.follows {
+                self.border = border;
+            }
         }
         Ok(())
     }

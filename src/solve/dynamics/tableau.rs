@@ -46,6 +46,8 @@ pub struct Tableau {
     pub inverse: DMatrix<f64>,
     /// A⁻².
     pub inverse_squared: DMatrix<f64>,
+    /// b.
+    pub weights: Vec<f64>,
     /// bᵀ A⁻¹: weights of the stage displacements in the position at the end.
     pub position_weights: Vec<f64>,
     /// bᵀ A⁻²: their weights in h times the velocity at the end.
@@ -94,6 +96,7 @@ impl Tableau {
         Self {
             order,
             a_squared: &a * &a,
+            weights: b.iter().copied().collect(),
             position_weights: (&b * &inverse).iter().copied().collect(),
             velocity_weights: (&b * &inverse_squared).iter().copied().collect(),
             inverse_transformation: invert(&transformation),
@@ -109,6 +112,11 @@ impl Tableau {
     /// Number of stages.
     pub fn stages(&self) -> usize {
         self.nodes.len()
+    }
+
+    /// Whether what oscillates infinitely fast dies out in one step: where the last stage is the end of the step.
+    pub fn damps(&self) -> bool {
+        self.nodes.last() == Some(&1.0)
     }
 
     /// ℓ_j(x).
