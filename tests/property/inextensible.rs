@@ -277,10 +277,44 @@ fn a_chain_on_one_hook_finds_its_way_down() {
         assert!(tip.x.abs() < 1e-9 && (tip.y + 1.0).abs() < 1e-5, "({}, {})", tip.x, tip.y);
         let top = trajectory.last[0].axial_force[0];
         assert!((top - 9.81).abs() < 1e-3, "{top} N");
+        assert_eq!(trajectory.statistics.load_steps, 1);
     }
     // With bending stiffness it is a pendulum, which statics refuses.
     let text = format!("{}[analysis.static]\n", ARM.replace("BASIS", ANCF).replace("FIX", HINGE));
     assert!(parse("arm.toml", &text).expect_err("refused").to_string().contains("under-supported"));
+}
+
+/// Two beams that cannot stretch, welded to one that can: one of them holds the length of both gradients.
+#[test]
+fn of_gradients_welded_to_an_elastic_one_a_single_row_is_kept() {
+    let beam = |name: &str, start: &str, end: &str, more: &str| {
+        format!(
+            "[beam.{name}]\nstart = {start}\nend = {end}\nbending_stiffness = 1.0\n{more}basis = {ANCF}\n"
+        )
+    };
+    let weld = |to: &str| {
+        format!(
+            "[[joint]]\ntype = 'weld'\nfirst = {{ beam = 'post', at = 'end' }}\nsecond = {{ beam = '{to}', at = 'start' }}\n"
+        )
+    };
+    let text = [
+        beam("post", "[0.0, 0.0]", "[0.0, 1.0]", "strain = 'engineering'\naxial_stiffness = 1e4\n"),
+        beam("left", "[0.0, 1.0]", "[-1.0, 1.0]", ""),
+        beam("right", "[0.0, 1.0]", "[1.0, 1.0]", ""),
+        weld("left"),
+        weld("right"),
+        format!("[[support]]\nbeam = 'post'\nat = 'start'\nfix = {CLAMP}\n"),
+        "[[effect.force]]\nbeam = 'right'\nat = 'end'\nvalue = [0.0, -0.7]\n[analysis.static]\n".into(),
+    ];
+    let scene = parse("tee.toml", &text.concat()).unwrap_or_else(|error| panic!("{error}"));
+    let inventory = inspect(scene.model(), scene.analysis()).expect("an inventory");
+    let rows = |beam: &str| {
+        let mut of_beam = inventory.effects.iter().filter(|e| e.beam == beam);
+        of_beam.find(|e| e.kind == Kind::Inextensibility).map(|e| e.points)
+    };
+    assert_eq!((rows("post"), rows("left"), rows("right")), (None, Some(41), Some(40)));
+    let trajectory = solve(&scene);
+    assert!(trajectory.last.iter().flat_map(|shape| &shape.strain).all(|e| e.abs() < 1e-3));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! Where a contact begins or ends the force has a kink. A step across it has an error of low order, which estimates that presume a smooth motion do not
 //! see: with Gauss' method and a tolerance of 1e-8 a rod that falls flat left the ground at a height wrong by 1e-3. So a step that is to meet an
 //! accuracy ends at the kink: the place is found by the interpolated motion of the step, which is tried again until it hits. The rod then
-//! errs by 2e-11.
+//! errs by 1e-10.
 
 use super::State;
 use super::integrate::Driver;
