@@ -175,6 +175,7 @@ pub mod basis;
 pub mod centreline;
 pub mod cost;
 pub mod effect;
+pub mod lanes;
 pub mod linear;
 pub mod model;
 pub mod output;

@@ -49,6 +49,26 @@ impl BasisTable {
         )
     }
 
+    /// The first cells of as many fours as there are that have the same block and start each a node later than the one before, and the cells
+    /// that are in no four.
+    pub fn by_fours(&self) -> (Vec<u32>, Vec<u32>) {
+        let alike = |cells: &[Cell]| {
+            cells.windows(2).all(|pair| pair[0].block == pair[1].block && pair[1].first == pair[0].first + 2)
+        };
+        let (mut fours, mut singles) = (Vec::new(), Vec::new());
+        let mut cell = 0;
+        while cell < self.cells.len() {
+            if self.cells.get(cell..cell + 4).is_some_and(alike) {
+                fours.push(cell as u32);
+                cell += 4;
+            } else {
+                singles.push(cell as u32);
+                cell += 1;
+            }
+        }
+        (fours, singles)
+    }
+
     /// Numbers from one point's rows to the next point's: `width` times the number of orders.
     #[inline]
     pub fn row_stride(&self) -> usize {

@@ -7,7 +7,7 @@ use super::{Density, Engineering, Gradient, Green, Hessian, Kind, Strain, bend};
 use crate::model::{Law, StrainMeasure};
 use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Extent, Part};
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 
 /// The strain and curvature that a beam would take by itself.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -77,7 +77,7 @@ impl<S: Strain> Density<1> for PreStrain<S> {
     }
 
     fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
-        [S::first(&z[0]).1 * -self.force]
+        [Vector2::from(S::first(z[0].into()).1) * -self.force]
     }
 
     fn gradient_and_hessian(&self, _: usize, z: &Gradient<1>, _: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {

@@ -1,6 +1,7 @@
 //! Bending strain energy ½ EI κ².
 
 use super::{Density, Gradient, Hessian};
+use crate::lanes::{Lanes, Pair, Points, Real, cross, dot};
 use nalgebra::{Matrix2, Vector2};
 
 /// W = ½ EI (κ − κ₀)² with the material curvature κ = (r' × r'')/|r'|², κ₀ that of the stress-free shape as the
@@ -41,6 +42,17 @@ impl Bend {
     #[inline(always)]
     fn reference(&self, point: usize) -> f64 {
         self.reference.get(point).copied().unwrap_or(0.0)
+    }
+
+    /// `factor` times M ∂κ/∂r' and M ∂κ/∂r''.
+    #[inline(always)]
+    fn force<T: Real>(&self, factor: f64, reference: T, [first, second]: [Pair<T>; 2]) -> [Pair<T>; 2] {
+        let inverse = dot(first, first).inverse();
+        let kappa = cross(first, second) * inverse;
+        let moment = T::of(factor * self.bending_stiffness) * (kappa - reference) * inverse;
+        let (twice, opposite) = (kappa + kappa, -moment);
+        let by_first = [twice.fma(-first[0], second[1]) * moment, twice.fma(first[1], second[0]) * opposite];
+        [by_first, [first[1] * opposite, first[0] * moment]]
     }
 }
 
@@ -86,9 +98,14 @@ impl Density<2> for Bend {
 
     #[inline(always)]
     fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
-        let (kappa, first, _) = first_derivatives(z);
-        let moment = self.bending_stiffness * (kappa - self.reference(point));
-        [first[0] * moment, first[1] * moment]
+        self.force(1.0, self.reference(point), [z[0].into(), z[1].into()]).map(Vector2::from)
+    }
+
+    const BY_FOURS: bool = true;
+
+    #[inline(always)]
+    fn gradients(&self, factor: f64, points: Points, z: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
+        self.force(factor, points.of(&self.reference), *z)
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@ use super::{Dissipation, Engineering, Gradient, Green, Hessian, Kind, Strain, be
 use crate::model::StrainMeasure;
 use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Extent, Part};
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 
 /// R = ½ c ṙ·ṙ with c = α ρA \[N s/m²\].
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ impl<S: Strain> Dissipation<1> for StretchDamping<S> {
 
     #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
-        let (_, first) = S::first(&z[0]);
+        let first = Vector2::from(S::first(z[0].into()).1);
         [first * (self.coefficient * first.dot(&rate[0]))]
     }
 
@@ -60,7 +60,7 @@ impl<S: Strain> Dissipation<1> for StretchDamping<S> {
         z: &Gradient<1>,
         rate: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
-        let (_, first) = S::first(&z[0]);
+        let first = Vector2::from(S::first(z[0].into()).1);
         (self.force(point, z, rate), [[first * first.transpose() * self.coefficient]])
     }
 }

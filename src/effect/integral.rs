@@ -32,6 +32,7 @@
 
 use super::{Density, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
+use crate::lanes::{self, Lanes, Points};
 use crate::linear::Matrix;
 use crate::linear::fma::fma;
 use nalgebra::Vector2;
@@ -50,8 +51,14 @@ pub struct Integral<D, const M: usize> {
     /// First coefficient of the beam; coefficient c has the coordinates 2c and 2c + 1.
     offset: usize,
     table: BasisTable,
+    /// First cells of four that are alike, each a node further than the one before, and all cells that are in no such four.
+    fours: Vec<u32>,
+    singles: Vec<u32>,
     pub(super) density: D,
 }
+
+/// Points in a cell with which cells are summed four at a time.
+const POINTS_BY_FOURS: std::ops::RangeInclusive<usize> = 2..=5;
 
 /// `f(const width, arguments…)`, the width a compile-time constant for the common tables and 0 for all others.
 macro_rules! with_width {
@@ -70,7 +77,12 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     /// [`Density::ORDERS`].
     pub fn new(kind: Kind, beam: usize, offset: usize, table: BasisTable, density: D) -> Self {
         debug_assert_eq!(table.orders, D::ORDERS);
-        Self { kind, beam, offset, table, density }
+        let (fours, singles) = if D::BY_FOURS && POINTS_BY_FOURS.contains(&table.points_per_cell) {
+            table.by_fours()
+        } else {
+            (Vec::new(), (0..table.cells.len() as u32).collect())
+        };
+        Self { kind, beam, offset, table, fours, singles, density }
     }
 
     fn width<const W: usize>(&self) -> usize {
@@ -141,40 +153,100 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     }
 
     fn force_within<const W: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        for (cell, entry) in self.table.cells.iter().enumerate() {
-            let (weights, rows) = self.table.block(*entry);
-            let first = 2 * (self.offset + entry.first as usize);
-            let (q, f) = (&q[first..first + 2 * W], &mut f[first..first + 2 * W]);
-            // Both stay in registers while the points go by.
-            let mut here = [[0.0; 2]; W];
-            let mut sums = [[0.0; 2]; W];
-            here.copy_from_slice(&q.as_chunks().0[..W]);
-            for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * W)).enumerate() {
-                let point = cell * weights.len() + p;
-                let weight = factor * weight;
-                let rows = &rows.as_chunks::<W>().0[..M];
-                let mut z = [Vector2::zeros(); M];
-                for (z, row) in z.iter_mut().zip(rows) {
-                    let mut sum = [0.0; 2];
-                    for a in 0..W {
-                        sum[0] = fma(row[a], here[a][0], sum[0]);
-                        sum[1] = fma(row[a], here[a][1], sum[1]);
-                    }
-                    *z = Vector2::new(sum[0], sum[1]);
+        if D::BY_FOURS {
+            match self.table.points_per_cell {
+                2 => self.forces_of_fours::<W, 2>(factor, q, f),
+                3 => self.forces_of_fours::<W, 3>(factor, q, f),
+                4 => self.forces_of_fours::<W, 4>(factor, q, f),
+                5 => self.forces_of_fours::<W, 5>(factor, q, f),
+                _ => {}
+            }
+        }
+        for &cell in &self.singles {
+            let cell = cell as usize;
+            let first = self.first(cell);
+            let range = first..first + 2 * W;
+            self.force_of_cell::<W>(cell, factor, &q[range.clone()], &mut f[range]);
+        }
+    }
+
+    /// The first coordinate of a cell.
+    #[inline(always)]
+    fn first(&self, cell: usize) -> usize {
+        2 * (self.offset + self.table.cells[cell].first as usize)
+    }
+
+    /// `q` and `f` are the coefficients of the cell.
+    #[inline(always)]
+    fn force_of_cell<const W: usize>(&self, cell: usize, factor: f64, q: &[f64], f: &mut [f64]) {
+        let (weights, rows) = self.table.block(self.table.cells[cell]);
+        // Both stay in registers while the points go by.
+        let mut here = [[0.0; 2]; W];
+        let mut sums = [[0.0; 2]; W];
+        here.copy_from_slice(&q.as_chunks().0[..W]);
+        for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * W)).enumerate() {
+            let point = cell * weights.len() + p;
+            let weight = factor * weight;
+            let rows = &rows.as_chunks::<W>().0[..M];
+            let mut z = [Vector2::zeros(); M];
+            for (z, row) in z.iter_mut().zip(rows) {
+                let mut sum = [0.0; 2];
+                for a in 0..W {
+                    sum[0] = fma(row[a], here[a][0], sum[0]);
+                    sum[1] = fma(row[a], here[a][1], sum[1]);
                 }
-                let gradient = self.density.gradient(point, &z);
-                for (g, row) in gradient.iter().zip(rows) {
-                    let g = [weight * g.x, weight * g.y];
+                *z = Vector2::new(sum[0], sum[1]);
+            }
+            let gradient = self.density.gradient(point, &z);
+            for (g, row) in gradient.iter().zip(rows) {
+                let g = [weight * g.x, weight * g.y];
+                for a in 0..W {
+                    sums[a][0] = fma(row[a], g[0], sums[a][0]);
+                    sums[a][1] = fma(row[a], g[1], sums[a][1]);
+                }
+            }
+        }
+        for (f, sum) in f.as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
+            f[0] += sum[0];
+            f[1] += sum[1];
+        }
+    }
+
+    /// The same of all cells that come by fours, `P` points in each.
+    fn forces_of_fours<const W: usize, const P: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+        for &cell in &self.fours {
+            let cell = cell as usize;
+            let first = self.first(cell);
+            let range = first..first + 2 * W + 12;
+            let (weights, rows) = self.table.block(self.table.cells[cell]);
+            let (weights, rows) = (&weights[..P], &rows.as_chunks::<W>().0[..P * M]);
+            let here = lanes::gather::<W>(&q[range.clone()]);
+            // All points first: the sums would not fit into the registers beside the coefficients.
+            let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
+            for p in 0..P {
+                let mut z = [[Lanes::ZERO; 2]; M];
+                for m in 0..M {
                     for a in 0..W {
-                        sums[a][0] = fma(row[a], g[0], sums[a][0]);
-                        sums[a][1] = fma(row[a], g[1], sums[a][1]);
+                        let n = Lanes::splat(rows[p * M + m][a]);
+                        z[m] = [n.mul_add(here[a][0], z[m][0]), n.mul_add(here[a][1], z[m][1])];
+                    }
+                }
+                let points = Points { first: cell * P + p, stride: P };
+                gradients[p] = self.density.gradients(factor * weights[p], points, &z);
+            }
+            // Loaded anew: carried on from above they would be stored to and loaded from the stack, as all registers are taken.
+            let rows = std::hint::black_box(rows);
+            let mut sums = [[Lanes::ZERO; 2]; W];
+            for a in 0..W {
+                for p in 0..P {
+                    for m in 0..M {
+                        let n = Lanes::splat(rows[p * M + m][a]);
+                        let g = gradients[p][m];
+                        sums[a] = [n.mul_add(g[0], sums[a][0]), n.mul_add(g[1], sums[a][1])];
                     }
                 }
             }
-            for (f, sum) in f.as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
-                f[0] += sum[0];
-                f[1] += sum[1];
-            }
+            lanes::scatter(&sums, &mut f[range]);
         }
     }
 

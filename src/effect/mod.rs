@@ -53,6 +53,7 @@ pub use moving::{MovingForce, Travelling};
 pub use spring::{Dashpot, Spring, Strut, Tie, Torsion, TorsionDashpot, TorsionSpring};
 pub use stretch::{Engineering, Green, Strain, Stretch};
 
+use crate::lanes::{Lanes, Pair, Points};
 use crate::linear::Matrix;
 use nalgebra::{Matrix2, Vector2};
 
@@ -81,6 +82,23 @@ pub trait Density<const M: usize>: Send + Sync {
 
     /// ∂W/∂z.
     fn gradient(&self, point: usize, z: &Gradient<M>) -> Gradient<M>;
+
+    /// Whether [`Self::gradients`] is faster than four times [`Self::gradient`].
+    const BY_FOURS: bool = false;
+
+    /// `factor · ∂W/∂z` at four points.
+    #[inline(always)]
+    fn gradients(&self, factor: f64, points: Points, z: &[Pair<Lanes>; M]) -> [Pair<Lanes>; M] {
+        let numbers = points.numbers();
+        let gradients: [Gradient<M>; 4] = std::array::from_fn(|lane| {
+            let z = z.map(|[x, y]| Vector2::new(x.to_array()[lane], y.to_array()[lane]));
+            self.gradient(numbers[lane], &z).map(|g| g * factor)
+        });
+        std::array::from_fn(|m| {
+            let part = |d: usize| Lanes::new(std::array::from_fn(|lane| gradients[lane][m][d]));
+            [part(0), part(1)]
+        })
+    }
 
     /// ∂W/∂z and ∂²W/∂z∂z, stress resultants in the latter extrapolated from the iterate `before`.
     fn gradient_and_hessian(

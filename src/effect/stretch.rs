@@ -1,6 +1,7 @@
 //! Axial strain energy ½ EA ε².
 
 use super::{Density, Gradient, Hessian};
+use crate::lanes::{Lanes, Pair, Points, Real, dot};
 use nalgebra::{Matrix2, Vector2};
 
 /// An axial strain as a function of the gradient r'.
@@ -9,7 +10,7 @@ pub trait Strain: Copy + Send + Sync {
     fn strain(r: &Vector2<f64>) -> f64;
 
     /// ε and ∂ε/∂r'.
-    fn first(r: &Vector2<f64>) -> (f64, Vector2<f64>);
+    fn first<T: Real>(r: Pair<T>) -> (T, Pair<T>);
 
     /// ε, ∂ε/∂r' and ∂²ε/∂r'∂r'.
     fn second(r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>);
@@ -28,8 +29,8 @@ impl Strain for Green {
     }
 
     #[inline(always)]
-    fn first(r: &Vector2<f64>) -> (f64, Vector2<f64>) {
-        (Self::strain(r), *r)
+    fn first<T: Real>(r: Pair<T>) -> (T, Pair<T>) {
+        (T::of(0.5) * (dot(r, r) - T::of(1.0)), r)
     }
 
     #[inline(always)]
@@ -49,9 +50,10 @@ impl Strain for Engineering {
     }
 
     #[inline(always)]
-    fn first(r: &Vector2<f64>) -> (f64, Vector2<f64>) {
-        let length = r.norm_squared().sqrt();
-        (length - 1.0, r / length)
+    fn first<T: Real>(r: Pair<T>) -> (T, Pair<T>) {
+        let length = dot(r, r).sqrt();
+        let inverse = length.inverse();
+        (length - T::of(1.0), [r[0] * inverse, r[1] * inverse])
     }
 
     #[inline(always)]
@@ -85,6 +87,14 @@ impl<S: Strain> Stretch<S> {
     fn reference(&self, point: usize) -> f64 {
         self.reference.get(point).copied().unwrap_or(0.0)
     }
+
+    /// `factor` times N ∂ε/∂r'.
+    #[inline(always)]
+    fn force<T: Real>(&self, factor: f64, reference: T, r: Pair<T>) -> Pair<T> {
+        let (strain, [x, y]) = S::first(r);
+        let force = T::of(factor * self.axial_stiffness) * (strain - reference);
+        [x * force, y * force]
+    }
 }
 
 impl<S: Strain> Density<1> for Stretch<S> {
@@ -98,8 +108,14 @@ impl<S: Strain> Density<1> for Stretch<S> {
 
     #[inline(always)]
     fn gradient(&self, point: usize, z: &Gradient<1>) -> Gradient<1> {
-        let (strain, first) = S::first(&z[0]);
-        [first * (self.axial_stiffness * (strain - self.reference(point)))]
+        [self.force(1.0, self.reference(point), z[0].into()).into()]
+    }
+
+    const BY_FOURS: bool = true;
+
+    #[inline(always)]
+    fn gradients(&self, factor: f64, points: Points, z: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
+        [self.force(factor, points.of(&self.reference), z[0])]
     }
 
     #[inline(always)]
@@ -111,7 +127,8 @@ impl<S: Strain> Density<1> for Stretch<S> {
     ) -> (Gradient<1>, Hessian<1>) {
         let reference = self.reference(point);
         let (strain, first, second) = S::second(&z[0]);
-        let (strain_before, first_before) = S::first(&before[0]);
+        let (strain_before, first_before) = S::first(before[0].into());
+        let first_before = Vector2::from(first_before);
         let force = self.axial_stiffness * (strain - reference);
         let extrapolated = strain_before + first_before.dot(&(z[0] - before[0])) - reference;
         let hessian = (first * first.transpose() + second * extrapolated) * self.axial_stiffness;

@@ -10,10 +10,10 @@
 
 use super::bordered::{BorderRow, Bordered};
 use super::condensed::{self, ComplexCondensed};
-use super::fma::fma;
 use super::interleaved::{self, Interleaved};
 use super::symmetric::SymmetricBand;
 use super::{Matrix, Singular};
+use crate::lanes::Lanes;
 use faer::c64;
 
 /// A factorised K + ζ M.
@@ -86,47 +86,39 @@ fn pairwise(re: &mut [f64], im: &mut [f64], solve: impl FnOnce(&mut [c64])) {
 }
 
 /// Real and imaginary parts of four numbers: those of one node in a row.
-type Four = [[f64; 4]; 2];
+type Four = [Lanes; 2];
+
+const ZERO: Four = [Lanes::ZERO; 2];
 
 /// `l · source + target`.
 #[inline(always)]
-fn add(l: c64, source: &Four, target: &Four) -> Four {
-    let ([s_re, s_im], [mut re, mut im]) = (*source, *target);
-    for lane in 0..4 {
-        re[lane] = fma(-l.im, s_im[lane], fma(l.re, s_re[lane], re[lane]));
-        im[lane] = fma(l.im, s_re[lane], fma(l.re, s_im[lane], im[lane]));
-    }
-    [re, im]
+fn add(l: c64, [s_re, s_im]: &Four, [re, im]: &Four) -> Four {
+    let (l_re, l_im) = (Lanes::splat(l.re), Lanes::splat(l.im));
+    [l_im.mul_neg_add(*s_im, l_re.mul_add(*s_re, *re)), l_im.mul_add(*s_re, l_re.mul_add(*s_im, *im))]
 }
 
 /// `a · b + sum`, number by number.
 #[inline(always)]
-fn add_products(a: &Four, b: &Four, sum: &Four) -> Four {
-    let [mut re, mut im] = *sum;
-    for lane in 0..4 {
-        re[lane] = fma(-a[1][lane], b[1][lane], fma(a[0][lane], b[0][lane], re[lane]));
-        im[lane] = fma(a[1][lane], b[0][lane], fma(a[0][lane], b[1][lane], im[lane]));
-    }
-    [re, im]
+fn add_products(a: &Four, b: &Four, [re, im]: &Four) -> Four {
+    [a[1].mul_neg_add(b[1], a[0].mul_add(b[0], *re)), a[1].mul_add(b[0], a[0].mul_add(b[1], *im))]
 }
 
 #[inline(always)]
 fn number(four: &Four, lane: usize) -> c64 {
-    c64::new(four[0][lane], four[1][lane])
+    c64::new(four[0].to_array()[lane], four[1].to_array()[lane])
 }
 
 #[inline(always)]
 fn sum(four: &Four) -> c64 {
-    let [re, im] = four.map(|part| (part[0] + part[1]) + (part[2] + part[3]));
-    c64::new(re, im)
+    c64::new(four[0].reduce_add(), four[1].reduce_add())
 }
 
 /// The unknowns of `node`, zeros beyond the last.
 #[inline(always)]
 fn unknowns(re: &[f64], im: &[f64], node: usize) -> Four {
     match (re.as_chunks().0.get(node), im.as_chunks().0.get(node)) {
-        (Some(re), Some(im)) => [*re, *im],
-        _ => [[0.0; 4]; 2],
+        (Some(re), Some(im)) => [Lanes::new(*re), Lanes::new(*im)],
+        _ => ZERO,
     }
 }
 
@@ -144,16 +136,14 @@ pub struct ComplexLdl {
 impl ComplexLdl {
     fn zeros(pattern: &SymmetricBand) -> Self {
         let (size, blocks) = (pattern.size(), pattern.stride() / 4);
-        Self { blocks, rows: vec![[[0.0; 4]; 2]; size * blocks], reciprocal: vec![c64::new(0.0, 0.0); size] }
+        Self { blocks, rows: vec![ZERO; size * blocks], reciprocal: vec![c64::new(0.0, 0.0); size] }
     }
 
     fn factorize(&mut self, k: &SymmetricBand, m: &SymmetricBand, zeta: c64) -> Result<(), Singular> {
         let sources = k.data().as_chunks::<4>().0.iter().zip(m.data().as_chunks::<4>().0);
         for ([re, im], (k, m)) in self.rows.iter_mut().zip(sources) {
-            for lane in 0..4 {
-                re[lane] = fma(zeta.re, m[lane], k[lane]);
-                im[lane] = zeta.im * m[lane];
-            }
+            let m = Lanes::new(*m);
+            (*re, *im) = (m.mul_add(Lanes::splat(zeta.re), Lanes::new(*k)), m * Lanes::splat(zeta.im));
         }
         match self.blocks {
             2 => self.eliminate::<2>(),
@@ -207,10 +197,10 @@ impl ComplexLdl {
     /// Solves A x = b in place.
     pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
         match self.blocks {
-            2 => self.substitute_window(&mut [[[0.0; 4]; 2]; 2], re, im),
-            4 => self.substitute_window(&mut [[[0.0; 4]; 2]; 4], re, im),
-            6 => self.substitute_window(&mut [[[0.0; 4]; 2]; 6], re, im),
-            _ => self.substitute(&mut vec![[[0.0; 4]; 2]; self.blocks], re, im),
+            2 => self.substitute_window(&mut [ZERO; 2], re, im),
+            4 => self.substitute_window(&mut [ZERO; 4], re, im),
+            6 => self.substitute_window(&mut [ZERO; 6], re, im),
+            _ => self.substitute(&mut vec![ZERO; self.blocks], re, im),
         }
     }
 
@@ -247,22 +237,24 @@ impl ComplexLdl {
             window.copy_within(1.., 0);
             window[blocks - 1] = unknowns(re, im, node + blocks);
         }
-        window.fill([[0.0; 4]; 2]);
+        window.fill(ZERO);
         for (node, (panel, reciprocal)) in panels.enumerate().rev() {
             window.copy_within(..blocks - 1, 1);
-            // Zeros meet the entries left of the diagonal.
-            window[0] = [[0.0; 4]; 2];
+            // Zeros meet the entries on the diagonal and left of it.
             let z = unknowns(re, im, node);
+            let mut here = [[0.0; 4]; 2];
             for (r, row) in panel.chunks_exact(blocks).enumerate().rev() {
-                let mut sums = [[0.0; 4]; 2];
+                window[0] = here.map(Lanes::new);
+                let mut sums = ZERO;
                 for (w, u) in window.iter().zip(row) {
                     sums = add_products(u, w, &sums);
                 }
                 let x = number(&z, r) - sum(&sums) * reciprocal[r];
-                (window[0][0][r], window[0][1][r]) = (x.re, x.im);
+                (here[0][r], here[1][r]) = (x.re, x.im);
             }
-            re[4 * node..4 * node + 4].copy_from_slice(&window[0][0]);
-            im[4 * node..4 * node + 4].copy_from_slice(&window[0][1]);
+            window[0] = here.map(Lanes::new);
+            re[4 * node..4 * node + 4].copy_from_slice(&here[0]);
+            im[4 * node..4 * node + 4].copy_from_slice(&here[1]);
         }
     }
 }

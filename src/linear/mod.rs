@@ -12,7 +12,7 @@
 //! | band bordered by constraint rows within it | LU of a band in another order | [`interleaved`] |
 //! | band bordered by others, such as those of joints | sparse LU by faer | [`bordered`] |
 //!
-//! The complex matrices of collocation's stages are in [`complex`].
+//! The complex matrices of collocation's stages are in [`complex`], the constant mass matrix in [`isotropic`].
 
 pub mod band;
 pub mod bordered;
@@ -20,6 +20,7 @@ pub mod complex;
 pub mod condensed;
 pub(crate) mod fma;
 pub mod interleaved;
+pub mod isotropic;
 pub mod symmetric;
 
 use band::{Band, BandLu};

@@ -203,11 +203,8 @@ pub(super) fn balance(
 ) -> f64 {
     let n = system.coordinates();
     let inverse = 1.0 / system.length();
-    let size_of = |f: &[f64; 4]| {
-        let [a, b, c, d] = [f[0], f[1], inverse * f[2], inverse * f[3]].map(f64::abs);
-        larger(larger(a, b), larger(c, d))
-    };
-    let mut scale = force.as_chunks().0.iter().fold(0.0, |m, f| larger(m, size_of(f)));
+    let units = [1.0, 1.0, inverse, inverse];
+    let mut scale = largest(force, units);
     add_inertia(force);
     for (r, constraint) in system.constraints().iter().enumerate() {
         let unit = constraint.scale(system.stiffness(), system.length());
@@ -220,11 +217,8 @@ pub(super) fn balance(
         negative[n + r] = -unit * constraint.value(load, &x[..n]);
     }
     system.supports().to_frames(load, force);
-    let mut residual = 0.0;
-    for (negative, force) in negative.as_chunks_mut::<4>().0.iter_mut().zip(force.as_chunks::<4>().0) {
-        *negative = force.map(|f| -f);
-        residual = larger(residual, size_of(force));
-    }
+    negative.iter_mut().zip(&*force).for_each(|(negative, force)| *negative = -force);
+    let residual = largest(force, units);
     let floor = ROUND_OFFS / RESIDUAL_TOLERANCE * system.round_off();
     if residual == 0.0 { 0.0 } else { residual / (scale + floor) }
 }
@@ -232,10 +226,18 @@ pub(super) fn balance(
 /// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not count.
 pub(super) fn size(system: &System, increment: &[f64]) -> f64 {
     let inverse = 1.0 / system.length();
-    increment[..system.coordinates()].chunks_exact(4).fold(0.0, |m, d| {
-        let [a, b, c, d] = [inverse * d[0], inverse * d[1], d[2], d[3]].map(f64::abs);
-        larger(larger(m, a), larger(b, larger(c, d)))
-    })
+    largest(&increment[..system.coordinates()], [inverse, inverse, 1.0, 1.0])
+}
+
+/// The largest size of any number, those of a node in `units`.
+fn largest(numbers: &[f64], units: [f64; 4]) -> f64 {
+    let mut sizes = [0.0; 4];
+    for node in numbers.as_chunks::<4>().0 {
+        for lane in 0..4 {
+            sizes[lane] = larger(sizes[lane], (units[lane] * node[lane]).abs());
+        }
+    }
+    sizes.into_iter().fold(0.0, larger)
 }
 
 /// The larger of two sizes. `f64::max` would drop a NaN.

@@ -9,11 +9,10 @@ use crate::trajectory::Energy;
 impl System {
     /// `f = f_int(q) + f_load(q)` at load factor or time `parameter`.
     pub fn force(&self, parameter: f64, q: &[f64], f: &mut [f64]) {
-        f.fill(0.0);
+        self.start_with_constant_load(parameter, f);
         for effect in &self.internal {
             effect.add_force(1.0, q, f);
         }
-        self.add_constant_load(self.amplitude.at(parameter), f);
         for (effect, amplitude) in self.varying_loads(parameter) {
             effect.add_force(amplitude, q, f);
         }
@@ -26,6 +25,11 @@ impl System {
         for (effect, one) in self.varying_loads(1.0) {
             effect.add_force(factor * one, q, f);
         }
+    }
+
+    fn start_with_constant_load(&self, parameter: f64, f: &mut [f64]) {
+        let factor = self.amplitude.at(parameter);
+        f.iter_mut().zip(&self.constant_load).for_each(|(f, load)| *f = factor * load);
     }
 
     fn add_constant_load(&self, factor: f64, f: &mut [f64]) {
@@ -119,12 +123,11 @@ impl System {
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        f.fill(0.0);
+        self.start_with_constant_load(parameter, f);
         k.clear();
         for effect in &self.internal {
             effect.add_force_and_tangent(1.0, q, before, f, k, workspace);
         }
-        self.add_constant_load(self.amplitude.at(parameter), f);
         for (effect, amplitude) in self.varying_loads(parameter) {
             effect.add_force_and_tangent(amplitude, q, before, f, k, workspace);
         }

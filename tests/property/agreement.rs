@@ -28,9 +28,12 @@ struct Problem {
 
 fn problem() -> impl Strategy<Value = Problem> {
     let load = || -2.0..2.0_f64;
+    // With the distributed load below what buckles a cantilever (2.47, 7.84 if distributed): beyond it a beam that its moment bends to the other side
+    // snaps through before the full load is reached.
+    let force = || -1.1..1.1_f64;
     (
         (-1.0..1.0_f64, 0.0..6.2_f64, -3.0..3.0_f64, 3.0..6.0_f64, any::<bool>()),
-        ([load(), load()], load(), [load(), load()], any::<bool>()),
+        ([force(), force()], load(), [load(), load()], any::<bool>()),
         prop::collection::vec(0.6..1.6_f64, 24),
     )
         .prop_map(|((length, direction, bending, slenderness, green), loads, widths)| {

@@ -346,21 +346,26 @@ impl Method for GeneralizedAlpha<'_> {
         let c = (1.0 - alpha_m) / (1.0 - alpha_f) * a_per_q;
         let d = gamma * h * a_per_q;
         (self.rule.time, self.rule.c, self.rule.d) = (end, c, d);
-        let damped = self.motion.needs_velocity();
         let Accelerations { physical, algorithmic, multipliers } = &self.last;
+        // Slices of one length: loops over them are free of checks and vectorised.
+        let (q, v, algorithmic, physical) = (&from.q[..n], &from.v[..n], &algorithmic[..n], &physical[..n]);
+        let (explicit, e, x) = (&mut to.q[..n], &mut self.rule.e[..n], &mut self.x[..n]);
+        let (ratio, before) = match &self.before {
+            Some((before, step)) => (h / step, &before[..n]),
+            None => (0.0, algorithmic),
+        };
+        let (of_algorithmic, of_physical) = (alpha_m / (1.0 - alpha_f), alpha_f / (1.0 - alpha_f));
         for i in 0..n {
-            let explicit = from.q[i] + h * (from.v[i] + h * (0.5 - beta) * algorithmic[i]);
-            self.rule.e[i] =
-                (alpha_m * algorithmic[i] - alpha_f * physical[i]) / (1.0 - alpha_f) - c * explicit;
-            if damped {
-                self.rule.o[i] = from.v[i] + h * (1.0 - gamma) * algorithmic[i] - d * explicit;
+            let a = algorithmic[i];
+            explicit[i] = q[i] + h * (v[i] + h * (0.5 - beta) * a);
+            e[i] = of_algorithmic * a - of_physical * physical[i] - c * explicit[i];
+            x[i] = explicit[i] + h * h * beta * (a + ratio * (a - before[i]));
+        }
+        if self.motion.needs_velocity() {
+            let o = &mut self.rule.o[..n];
+            for i in 0..n {
+                o[i] = v[i] + h * (1.0 - gamma) * algorithmic[i] - d * explicit[i];
             }
-            let predicted = match &self.before {
-                Some((before, step)) => algorithmic[i] + h / step * (algorithmic[i] - before[i]),
-                None => algorithmic[i],
-            };
-            to.q[i] = explicit;
-            self.x[i] = explicit + h * h * beta * predicted;
         }
         self.x[n..].copy_from_slice(multipliers);
         self.start[..n].copy_from_slice(&from.q);
@@ -376,13 +381,14 @@ impl Method for GeneralizedAlpha<'_> {
         };
         self.solve(from, &settings, record)?;
         self.trial_step = h;
-        let Accelerations { algorithmic, .. } = &self.last;
-        for (i, before) in algorithmic.iter().enumerate() {
-            let a = (self.x[i] - to.q[i]) * a_per_q;
-            to.q[i] = self.x[i];
-            to.v[i] = from.v[i] + h * ((1.0 - gamma) * before + gamma * a);
-            self.trial.physical[i] = c * self.x[i] + self.rule.e[i];
-            self.trial.algorithmic[i] = a;
+        let (v, e, x) = (&from.v[..n], &self.rule.e[..n], &self.x[..n]);
+        let (last, now) = (&self.last.algorithmic[..n], &mut self.trial.algorithmic[..n]);
+        let (to_q, to_v, physical) = (&mut to.q[..n], &mut to.v[..n], &mut self.trial.physical[..n]);
+        for i in 0..n {
+            now[i] = (x[i] - to_q[i]) * a_per_q;
+            to_q[i] = x[i];
+            to_v[i] = v[i] + h * ((1.0 - gamma) * last[i] + gamma * now[i]);
+            physical[i] = c * x[i] + e[i];
         }
         self.trial.multipliers.copy_from_slice(&self.x[n..]);
         to.time = end;

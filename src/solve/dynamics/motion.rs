@@ -26,6 +26,7 @@ use super::turns::Turns;
 use crate::effect::Workspace;
 use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
+use crate::linear::isotropic::Inertia;
 use crate::linear::{Factor, Matrix, Singular};
 use crate::solve::equilibrium::{self, balance};
 use crate::system::{Reaction, System};
@@ -46,7 +47,7 @@ pub struct Rates<'r> {
 /// Forces, tangent and mass of a system in motion. Unknowns are the system's coordinates followed by the scaled multipliers.
 pub struct Motion<'a> {
     system: &'a System,
-    mass: Matrix,
+    mass: Inertia,
     /// In the supports' frames, without the held coordinates.
     free_mass: Matrix,
     mass_factor: Factor,
@@ -74,10 +75,10 @@ pub struct Motion<'a> {
 fn free_mass(
     system: &System,
     time: f64,
-    mass: &Matrix,
+    mass: &Inertia,
     border: &[BorderRow],
 ) -> Result<(Matrix, Factor), Singular> {
-    let mut free = mass.clone();
+    let mut free = mass.to_matrix();
     system.supports().turn_matrix(time, &mut free);
     let mut eliminated = free.clone();
     system.supports().eliminate(time, &mut eliminated);
@@ -92,7 +93,7 @@ impl<'a> Motion<'a> {
     /// [`Singular`] where a coordinate has no mass.
     pub fn new(system: &'a System) -> Result<Self, Singular> {
         let n = system.coordinates();
-        let mass = system.mass_matrix();
+        let mass = Inertia::new(system.mass_matrix());
         let border = system.border(0.0, system.reference());
         let (free_mass, mass_factor) = free_mass(system, 0.0, &mass, &border)?;
         let moves = system.supports().moves_in_time();

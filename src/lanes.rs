@@ -1,0 +1,157 @@
+//! Four points side by side, in the lanes of a register.
+//!
+//! The densities that cost time are written once, for [`Real`] numbers, and serve single points and four at once alike. Left to itself the
+//! compiler keeps four points scalar, so that the lanes are named here, by `wide`'s registers (AVX where the target has it).
+
+use crate::linear::fma::fma;
+use std::ops::{Add, Mul, Neg, Sub};
+use wide::f64x4;
+
+/// Numbers in the four lanes of a register.
+pub type Lanes = f64x4;
+
+/// The components of a vector, or of four.
+pub type Pair<T> = [T; 2];
+
+/// A number, or four of them.
+pub trait Real:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// The number `x`, in all lanes.
+    fn of(x: f64) -> Self;
+    /// `self · b + c`.
+    fn fma(self, b: Self, c: Self) -> Self;
+    /// √x.
+    fn sqrt(self) -> Self;
+    /// 1/x.
+    fn inverse(self) -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn fma(self, b: Self, c: Self) -> Self {
+        fma(self, b, c)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        1.0 / self
+    }
+}
+
+impl Real for Lanes {
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        Self::splat(x)
+    }
+
+    #[inline(always)]
+    fn fma(self, b: Self, c: Self) -> Self {
+        self.mul_add(b, c)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        Self::ONE / self
+    }
+}
+
+/// Four quadrature points: a number, and how much larger each is than the one before.
+#[derive(Clone, Copy, Debug)]
+pub struct Points {
+    /// Of the first lane.
+    pub first: usize,
+    /// From lane to lane.
+    pub stride: usize,
+}
+
+impl Points {
+    /// The number of each lane's point.
+    pub fn numbers(self) -> [usize; 4] {
+        std::array::from_fn(|lane| self.first + lane * self.stride)
+    }
+
+    /// The numbers that `list` has for these points; zeros if it is empty.
+    #[inline(always)]
+    pub fn of(self, list: &[f64]) -> Lanes {
+        if list.is_empty() {
+            Lanes::ZERO
+        } else {
+            Lanes::new(self.numbers().map(|point| list.get(point).copied().unwrap_or(0.0)))
+        }
+    }
+}
+
+/// a · b.
+#[inline(always)]
+pub fn dot<T: Real>(a: Pair<T>, b: Pair<T>) -> T {
+    a[0].fma(b[0], a[1] * b[1])
+}
+
+/// a × b, the component out of the plane.
+#[inline(always)]
+pub fn cross<T: Real>(a: Pair<T>, b: Pair<T>) -> T {
+    a[0].fma(b[1], -(a[1] * b[0]))
+}
+
+/// The `W` coefficients of four cells, each a node further than the one before; `q` starts at the first cell's.
+#[inline(always)]
+pub fn gather<const W: usize>(q: &[f64]) -> [Pair<Lanes>; W] {
+    let nodes = q.as_chunks::<4>().0;
+    let mut here = [[Lanes::ZERO; 2]; W];
+    for (node, pair) in here.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+        let [x, y, along, across] =
+            Lanes::transpose(std::array::from_fn(|lane| Lanes::new(nodes[node + lane])));
+        *pair = [[x, y], [along, across]];
+    }
+    here
+}
+
+/// Adds to the coefficients of four cells what [`gather`] would have taken from them.
+#[inline(always)]
+pub fn scatter<const W: usize>(sums: &[Pair<Lanes>; W], f: &mut [f64]) {
+    let nodes = f.as_chunks_mut::<4>().0;
+    for (node, [[x, y], [along, across]]) in sums.as_chunks::<2>().0.iter().enumerate() {
+        for (lane, sum) in Lanes::transpose([*x, *y, *along, *across]).into_iter().enumerate() {
+            nodes[node + lane] = (Lanes::new(nodes[node + lane]) + sum).to_array();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn four_windows_are_gathered_and_scattered() {
+        let q: Vec<f64> = (0..28).map(f64::from).collect();
+        let here = gather::<8>(&q);
+        for lane in 0..4 {
+            for (a, [x, y]) in here.iter().enumerate() {
+                let place = 4 * lane + 2 * a;
+                assert_eq!([x.to_array()[lane], y.to_array()[lane]], [q[place], q[place + 1]]);
+            }
+        }
+        let mut f = vec![0.5; 28];
+        scatter(&here, &mut f);
+        for (i, f) in f.iter().enumerate() {
+            let windows = (0..4).filter(|lane| (4 * lane..4 * lane + 16).contains(&i)).count();
+            assert_eq!(*f, 0.5 + windows as f64 * i as f64);
+        }
+    }
+}

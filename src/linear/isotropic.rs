@@ -1,0 +1,189 @@
+//! A symmetric band that treats x and y alike and apart: c ⊗ 1₂, as mass matrices are.
+//!
+//! Of the sixteen numbers of a block for a pair of nodes four are different, the products of the two nodes' shape functions of position and
+//! slope. A product of this matrix with a vector takes a fifth of the instructions that [`super::symmetric`] needs, and a quarter of the memory traffic.
+
+use super::Matrix;
+use super::symmetric::SymmetricBand;
+use crate::lanes::Lanes;
+
+/// c ⊗ 1₂, its upper half.
+#[derive(Clone, Debug)]
+pub struct IsotropicBand {
+    nodes: usize,
+    /// Blocks in a row, the diagonal one included.
+    blocks: usize,
+    /// Per node, per block from the diagonal on: \[position–position, position–slope, slope–position, slope–slope\].
+    data: Vec<[f64; 4]>,
+}
+
+impl IsotropicBand {
+    /// The same as `matrix`, where that treats x and y alike and apart.
+    pub fn new(matrix: &SymmetricBand) -> Option<Self> {
+        let (nodes, blocks) = (matrix.size() / 4, matrix.stride() / 4);
+        let mut data = vec![[0.0; 4]; nodes * blocks];
+        for (k, block) in data.iter_mut().enumerate() {
+            let (row, column) = (4 * (k / blocks), 4 * (k / blocks + k % blocks));
+            for (place, value) in block.iter_mut().enumerate() {
+                let (i, j) = (row + 2 * (place / 2), column + 2 * (place % 2));
+                *value = matrix.get(i, j);
+                if matrix.get(i + 1, j + 1) != *value
+                    || matrix.get(i, j + 1) != 0.0
+                    || matrix.get(i + 1, j) != 0.0
+                {
+                    return None;
+                }
+            }
+        }
+        Some(Self { nodes, blocks, data })
+    }
+
+    /// The matrix with all of its entries.
+    pub fn to_symmetric(&self) -> SymmetricBand {
+        let mut matrix = SymmetricBand::zeros(self.nodes, self.blocks);
+        for (k, block) in self.data.iter().enumerate() {
+            let (row, column) = (4 * (k / self.blocks), 4 * (k / self.blocks + k % self.blocks));
+            for (place, value) in block.iter().enumerate() {
+                for d in 0..2 {
+                    matrix.set(row + 2 * (place / 2) + d, column + 2 * (place % 2) + d, *value);
+                }
+            }
+        }
+        matrix
+    }
+
+    /// `y += factor · A x`.
+    pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        let (x, y) = (x.as_chunks::<4>().0, y.as_chunks_mut::<4>().0);
+        let done = match self.blocks {
+            2 => self.whole_rows::<2>(factor, x, y),
+            4 => self.whole_rows::<4>(factor, x, y),
+            6 => self.whole_rows::<6>(factor, x, y),
+            _ => 0,
+        };
+        for (node, row) in self.data.chunks_exact(self.blocks).enumerate().skip(done) {
+            add_row(factor, row, &x[node..], &mut y[node..]);
+        }
+    }
+
+    /// The rows of which no block reaches beyond the last node, their number known at compile time; returns how many these are.
+    fn whole_rows<const BLOCKS: usize>(&self, factor: f64, x: &[[f64; 4]], y: &mut [[f64; 4]]) -> usize {
+        let whole = (self.nodes + 1).saturating_sub(BLOCKS);
+        for (node, row) in self.data.as_chunks::<BLOCKS>().0[..whole].iter().enumerate() {
+            if let (Some(x), Some(y)) =
+                (x[node..].first_chunk::<BLOCKS>(), y[node..].first_chunk_mut::<BLOCKS>())
+            {
+                add_row(factor, row, x, y);
+            }
+        }
+        whole
+    }
+}
+
+/// A row of blocks and its transpose, from the diagonal on.
+#[inline(always)]
+fn add_row(factor: f64, row: &[[f64; 4]], x: &[[f64; 4]], y: &mut [[f64; 4]]) {
+    let near = halves(x[0]);
+    let scaled = near.map(|half| half * Lanes::splat(factor));
+    let mut sum = product(row[0], near, Lanes::ZERO);
+    for ((block, x), y) in row[1..].iter().zip(&x[1..]).zip(&mut y[1..]) {
+        sum = product(*block, halves(*x), sum);
+        let [a, b, c, d] = *block;
+        *y = product([a, c, b, d], scaled, Lanes::new(*y)).to_array();
+    }
+    y[0] = sum.mul_add(Lanes::splat(factor), Lanes::new(y[0])).to_array();
+}
+
+/// Twice the first and twice the second pair.
+#[inline(always)]
+fn halves([x, y, along, across]: [f64; 4]) -> [Lanes; 2] {
+    [Lanes::new([x, y, x, y]), Lanes::new([along, across, along, across])]
+}
+
+/// A block times the coefficients of a node, plus `sum`.
+#[inline(always)]
+fn product([a, b, c, d]: [f64; 4], [low, high]: [Lanes; 2], sum: Lanes) -> Lanes {
+    Lanes::new([b, b, d, d]).mul_add(high, Lanes::new([a, a, c, c]).mul_add(low, sum))
+}
+
+/// The constant mass matrix.
+#[derive(Clone, Debug)]
+pub enum Inertia {
+    /// One that treats x and y alike and apart: that of all effects here.
+    Isotropic(IsotropicBand),
+    /// Any other.
+    Any(Matrix),
+}
+
+impl Inertia {
+    /// Of `matrix`.
+    pub fn new(matrix: Matrix) -> Self {
+        let isotropic = if let Matrix::Symmetric(band) = &matrix { IsotropicBand::new(band) } else { None };
+        isotropic.map_or(Self::Any(matrix), Self::Isotropic)
+    }
+
+    /// The matrix.
+    pub fn to_matrix(&self) -> Matrix {
+        match self {
+            Self::Isotropic(band) => Matrix::Symmetric(band.to_symmetric()),
+            Self::Any(matrix) => matrix.clone(),
+        }
+    }
+
+    /// `y += factor · M x`.
+    pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        match self {
+            Self::Isotropic(band) => band.multiply_add(factor, x, y),
+            Self::Any(matrix) => matrix.multiply_add(factor, x, y),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matrix(blocks: usize) -> SymmetricBand {
+        let mut matrix = SymmetricBand::zeros(7, blocks);
+        for i in 0..28_usize {
+            for j in matrix.columns(i).filter(|j| *j >= i && (i + j) % 2 == 0) {
+                let (a, b) = (i / 2, j / 2);
+                matrix.set(i, j, 1.0 / (1.0 + (a + b) as f64) + ((3 * a + 5 * b) % 7) as f64);
+            }
+        }
+        matrix
+    }
+
+    #[test]
+    fn products_are_those_of_the_whole_matrix() {
+        for blocks in [1, 2, 4, 6] {
+            let matrix = matrix(blocks);
+            let band = IsotropicBand::new(&matrix).expect("isotropic");
+            let x: Vec<f64> = (0..28).map(|i| f64::from(i * i % 11) - 3.0).collect();
+            let (mut y, mut expected) = (vec![0.25; 28], vec![0.25; 28]);
+            band.multiply_add(-0.5, &x, &mut y);
+            matrix.multiply_add(-0.5, &x, &mut expected);
+            for (y, expected) in y.iter().zip(&expected) {
+                assert!((y - expected).abs() <= 1e-13 * expected.abs().max(1.0), "{y} {expected}");
+            }
+            let whole = band.to_symmetric();
+            assert!((0..28).all(|i| (0..28).all(|j| whole.get(i, j) == matrix.get(i, j))));
+        }
+    }
+
+    #[test]
+    fn other_matrices_stay_what_they_are() {
+        for (i, j) in [(4, 5), (4, 9), (5, 5), (6, 11)] {
+            let mut matrix = matrix(2);
+            matrix.set(i, j, 77.0);
+            assert!(IsotropicBand::new(&matrix).is_none());
+            let inertia = Inertia::new(Matrix::Symmetric(matrix));
+            let mut y = vec![0.0; 28];
+            let mut x = vec![0.0; 28];
+            x[i] = 1.0;
+            inertia.multiply_add(1.0, &x, &mut y);
+            assert_eq!(y[j], 77.0);
+            assert_eq!(inertia.to_matrix().get(j, i), 77.0);
+        }
+    }
+}
