@@ -92,7 +92,7 @@
 //!     fn gradient(&self, _: usize, [r]: &Gradient<1>) -> Gradient<1> {
 //!         [Vector2::new(0.0, self.0 * r.y)]
 //!     }
-//!     fn gradient_and_hessian(&self, i: usize, z: &Gradient<1>, _: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+//!     fn gradient_and_hessian(&self, i: usize, z: &Gradient<1>, _: &Gradient<1>, _: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
 //!         (self.gradient(i, z), [[Matrix2::new(0.0, 0.0, 0.0, self.0)]])
 //!     }
 //! }

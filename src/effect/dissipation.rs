@@ -74,7 +74,7 @@ impl<D: Dissipation<M>, const M: usize> Density<M> for Rayleigh<D> {
         &self,
         point: usize,
         rate: &Gradient<M>,
-        z: &Gradient<M>,
+        z: &Gradient<M>, _: &Gradient<M>,
     ) -> (Gradient<M>, Hessian<M>) {
         self.0.force_and_matrix(point, z, rate)
     }
@@ -94,7 +94,8 @@ impl<D: Dissipation<M>, const M: usize> Damping for Integral<Rayleigh<D>, M> {
     }
 
     fn add_matrix(&self, q: &[f64], v: &[f64], f: &mut [f64], d: &mut Matrix, workspace: &mut Workspace) {
-        super::Effect::add_force_and_tangent(self, 1.0, v, q, f, d, workspace);
+        let state = super::Earlier { q, increment: q };
+        super::Effect::add_force_and_tangent(self, 1.0, v, Some(state), f, d, workspace);
     }
 
     fn size(&self) -> (usize, usize) {

@@ -30,7 +30,7 @@
 //! Gauss collocation on 20 RPIM nodes (three stages, 5 ms, 8 iterations a step) takes 1.44 million instructions a step: a third are forces, a
 //! quarter the tangent with its real and its complex factorisation, a fifth substitutions, a tenth products with the mass matrix.
 
-use super::{Density, Effect, Gradient, Hessian, Kind};
+use super::{Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
 use crate::lanes::{self, Lanes, Points};
 use crate::linear::Matrix;
@@ -41,6 +41,7 @@ use nalgebra::Vector2;
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     products: Vec<f64>,
+    pub(super) lanes: Vec<Lanes>,
 }
 
 /// A density, the shape functions at its quadrature points, and the place of its beam among the coordinates.
@@ -50,7 +51,7 @@ pub struct Integral<D, const M: usize> {
     pub(super) beam: usize,
     /// First coefficient of the beam; coefficient c has the coordinates 2c and 2c + 1.
     offset: usize,
-    table: BasisTable,
+    pub(super) table: BasisTable,
     /// First cells of four that are alike, each a node further than the one before, and all cells that are in no such four.
     fours: Vec<u32>,
     singles: Vec<u32>,
@@ -172,7 +173,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
 
     /// The first coordinate of a cell.
     #[inline(always)]
-    fn first(&self, cell: usize) -> usize {
+    pub(super) fn first(&self, cell: usize) -> usize {
         2 * (self.offset + self.table.cells[cell].first as usize)
     }
 
@@ -296,7 +297,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let (q, v, f) = (&q[range.clone()], &v[range.clone()], &mut f[range]);
             for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
                 let (z, change) = (self.fields::<W>(rows, q), self.fields::<W>(rows, v));
-                let (_, hessian) = self.density.gradient_and_hessian(cell * weights.len() + p, &z, &z);
+                let (_, hessian) = self.density.gradient_and_hessian(cell * weights.len() + p, &z, &z, &[Vector2::zeros(); M]);
                 let product = std::array::from_fn(|m| {
                     hessian[m].iter().zip(&change).map(|(h, change)| h * change).sum::<Vector2<f64>>()
                 });
@@ -306,16 +307,16 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     }
 
     #[allow(clippy::too_many_arguments)]
-    fn tangent_of<const W: usize>(
+    fn tangent_any(
         &self,
         factor: f64,
         q: &[f64],
-        before: &[f64],
+        earlier: Option<Earlier<'_>>,
         f: &mut [f64],
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        let width = self.width::<W>();
+        let width = self.table.width;
         let columns = 2 * width;
         let products = &mut workspace.products;
         products.resize(self.table.points_per_cell * 2 * M * columns, 0.0);
@@ -323,7 +324,8 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let (weights, rows) = self.table.block(*entry);
             let first = 2 * (self.offset + entry.first as usize);
             let range = first..first + columns;
-            let (q, before, f) = (&q[range.clone()], &before[range.clone()], &mut f[range]);
+            let earlier = earlier.map(|earlier| [earlier.q, earlier.increment].map(|q| &q[range.clone()]));
+            let (q, f) = (&q[range.clone()], &mut f[range]);
             for (p, ((weight, rows), products)) in weights
                 .iter()
                 .zip(rows.chunks_exact(M * width))
@@ -331,10 +333,12 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
                 .enumerate()
             {
                 let weight = factor * weight;
-                let (z, z_before) = (self.fields::<W>(rows, q), self.fields::<W>(rows, before));
+                let z = self.fields::<0>(rows, q);
+                let [before, change] =
+                    earlier.map_or([z, [Vector2::zeros(); M]], |q| q.map(|q| self.fields::<0>(rows, q)));
                 let point = cell * weights.len() + p;
-                let (gradient, hessian) = self.density.gradient_and_hessian(point, &z, &z_before);
-                self.add_gradient::<W>(weight, rows, &gradient, f);
+                let (gradient, hessian) = self.density.gradient_and_hessian(point, &z, &before, &change);
+                self.add_gradient::<0>(weight, rows, &gradient, f);
                 multiply_rows::<M>(weight, &hessian, rows, width, products);
             }
             add_tiles::<M>(rows, products, width, first / 4, k);
@@ -343,7 +347,6 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
 }
 
 /// `P_md[2b + e] = w Σ_n H_mn(d, e) N_b⁽ᵒⁿ⁾`.
-#[inline(always)]
 fn multiply_rows<const M: usize>(
     weight: f64,
     hessian: &Hessian<M>,
@@ -372,7 +375,6 @@ fn multiply_rows<const M: usize>(
 }
 
 /// Adds all tiles of a cell to the matrix; the cell's first node is `node` of the system.
-#[inline(always)]
 fn add_tiles<const M: usize>(rows: &[f64], products: &[f64], width: usize, node: usize, k: &mut Matrix) {
     let nodes = width / 2;
     match k {
@@ -408,7 +410,6 @@ fn add_tiles<const M: usize>(rows: &[f64], products: &[f64], width: usize, node:
 }
 
 /// Rows of node `a`, columns of node `b`: Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md.
-#[inline(always)]
 fn tile<const M: usize>(rows: &[f64], products: &[f64], width: usize, a: usize, b: usize) -> [[f64; 4]; 4] {
     let columns = 2 * width;
     let mut tile = [[0.0; 4]; 4];
@@ -466,15 +467,19 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
         &self,
         factor: f64,
         q: &[f64],
-        before: &[f64],
+        earlier: Option<Earlier<'_>>,
         f: &mut [f64],
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        if D::HAS_TANGENT {
-            with_width!(self.tangent_of(factor, q, before, f, k, workspace));
-        } else {
-            self.add_force(factor, q, f);
+        if !D::HAS_TANGENT {
+            return self.add_force(factor, q, f);
+        }
+        match self.table.width {
+            4 => self.tangent_within::<4>(factor, q, earlier, f, k, workspace),
+            8 => self.tangent_within::<8>(factor, q, earlier, f, k, workspace),
+            12 => self.tangent_within::<12>(factor, q, earlier, f, k, workspace),
+            _ => self.tangent_any(factor, q, earlier, f, k, workspace),
         }
     }
 

@@ -16,12 +16,12 @@
 //!
 //! # The tangent between two iterates
 //! The stress resultants that enter the tangent's second term (N for stretch, M for bend) are taken by linear
-//! extrapolation from the previous iterate, S = C (ε(z⁻) + ∂ε/∂z (z − z⁻)), and not from the strain at the current one.
+//! extrapolation from the previous iterate, S = C (ε(z⁻) + ∂ε/∂z Δz), and not from the strain at the current one.
 //! This is Newton's method on the mixed problem in which S is an unknown of its own at every quadrature point, with S
 //! eliminated (Magisano, Leonetti, Garcea, *Int. J. Numer. Meth. Engng* 109, 2017, 1237–1262). The equilibria are the
 //! same and convergence stays quadratic; but a slender beam's large EA no longer turns the strain of a not yet
-//! converged rotation into an enormous axial force, so that steps can be many times longer. With z⁻ = z it is the
-//! ordinary tangent.
+//! converged rotation into an enormous axial force, so that steps can be many times longer. With z⁻ = z and Δz = 0 it is the
+//! ordinary tangent. Δz is that of the increment; the current iterate may have been moved along it with turns that are finite.
 
 mod actuation;
 mod bend;
@@ -37,6 +37,7 @@ mod mass;
 mod moving;
 mod spring;
 mod stretch;
+mod tangent;
 
 pub use actuation::{Actuation, PreCurvature, PreStrain};
 pub use bend::{Bend, curvature};
@@ -100,13 +101,23 @@ pub trait Density<const M: usize>: Send + Sync {
         })
     }
 
-    /// ∂W/∂z and ∂²W/∂z∂z, stress resultants in the latter extrapolated from the iterate `before`.
+    /// ∂W/∂z and ∂²W/∂z∂z, stress resultants in the latter extrapolated from the iterate `before` by the `change` that was computed there.
     fn gradient_and_hessian(
         &self,
         point: usize,
         z: &Gradient<M>,
         before: &Gradient<M>,
+        change: &Gradient<M>,
     ) -> (Gradient<M>, Hessian<M>);
+}
+
+/// The iterate before the present one, from which stress resultants are extrapolated.
+#[derive(Clone, Copy, Debug)]
+pub struct Earlier<'a> {
+    /// Its coordinates.
+    pub q: &'a [f64],
+    /// The increment computed there: linear, whatever the present iterate was made of it.
+    pub increment: &'a [f64],
 }
 
 /// What an effect is, for energies and inventories.
@@ -252,12 +263,12 @@ pub trait Effect: Send + Sync {
     /// `f += factor · ∂U/∂q`.
     fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]);
 
-    /// `f += factor · ∂U/∂q`, `k += factor · ∂²U/∂q∂q`, the latter with stress resultants extrapolated from `before`.
+    /// `f += factor · ∂U/∂q`, `k += factor · ∂²U/∂q∂q`, the latter with stress resultants extrapolated from an earlier iterate, if there is one.
     fn add_force_and_tangent(
         &self,
         factor: f64,
         q: &[f64],
-        before: &[f64],
+        earlier: Option<Earlier<'_>>,
         f: &mut [f64],
         k: &mut Matrix,
         workspace: &mut Workspace,

@@ -123,14 +123,14 @@ impl<S: Strain> Density<1> for Stretch<S> {
         &self,
         point: usize,
         z: &Gradient<1>,
-        before: &Gradient<1>,
+        before: &Gradient<1>, change: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
         let reference = self.reference(point);
         let (strain, first, second) = S::second(&z[0]);
         let (strain_before, first_before) = S::first(before[0].into());
         let first_before = Vector2::from(first_before);
         let force = self.axial_stiffness * (strain - reference);
-        let extrapolated = strain_before + first_before.dot(&(z[0] - before[0])) - reference;
+        let extrapolated = strain_before + first_before.dot(&change[0]) - reference;
         let hessian = (first * first.transpose() + second * extrapolated) * self.axial_stiffness;
         ([first * force], [[hessian]])
     }

@@ -42,7 +42,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let mut equilibrium = Equilibrium::new(system);
     let x = equilibrium.start();
     let (mut negative, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    equilibrium.linearize(0.0, &x, &x, &mut negative, &mut rate)?;
+    equilibrium.linearize(0.0, &x, None, &mut negative, &mut rate)?;
     equilibrium.solve(0.0, &mut rate, true);
     let size = equilibrium.size(&rate);
     let n = system.coordinates();
@@ -60,7 +60,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         let (q, multipliers) = x.split_at(n);
         let mut k = system.matrix();
         let mut force = vec![0.0; n];
-        system.force_and_tangent(load, q, q, &mut force, &mut k, &mut workspace);
+        system.force_and_tangent(load, q, None, &mut force, &mut k, &mut workspace);
         system.add_constraint_stiffness(multipliers, &mut k);
         system.supports().turn_matrix(0.0, &mut k);
         k

@@ -1,7 +1,8 @@
 //! The equations of statics at a load factor, in the form that Newton's method and the path solvers ask for.
 
 use super::newton::{Equations, RESIDUAL_TOLERANCE};
-use crate::effect::Workspace;
+use super::retraction::Retraction;
+use crate::effect::{Earlier, Workspace};
 use crate::linear::bordered::BorderRow;
 use crate::linear::{Factor, Matrix, Singular};
 use crate::system::System;
@@ -14,6 +15,8 @@ const ROUND_OFFS: f64 = 100.0;
 /// scaled multipliers.
 pub struct Equilibrium<'a> {
     system: &'a System,
+    /// How states are moved along increments.
+    pub retraction: Retraction,
     tangent: Matrix,
     factor: Option<Factor>,
     border: Vec<BorderRow>,
@@ -30,6 +33,7 @@ impl<'a> Equilibrium<'a> {
         let n = system.coordinates();
         Self {
             system,
+            retraction: Retraction::new(system),
             tangent: system.matrix(),
             factor: None,
             border: Vec::new(),
@@ -75,7 +79,7 @@ impl<'a> Equilibrium<'a> {
         &mut self,
         load: f64,
         x: &[f64],
-        before: &[f64],
+        earlier: Option<Earlier<'_>>,
         negative: &mut [f64],
         rate: &mut [f64],
     ) -> Result<f64, Singular> {
@@ -84,8 +88,8 @@ impl<'a> Equilibrium<'a> {
         self.statistics.residual_evaluations += 1;
         self.statistics.tangent_evaluations += 1;
         self.statistics.factorizations += 1;
-        let (q, before) = (&x[..n], &before[..n]);
-        system.force_and_tangent(load, q, before, &mut self.force, &mut self.tangent, &mut self.workspace);
+        let q = &x[..n];
+        system.force_and_tangent(load, q, earlier, &mut self.force, &mut self.tangent, &mut self.workspace);
         let residual = balance(self.system, load, x, &mut self.force, |_| (), negative);
         system.add_constraint_stiffness(&x[n..], &mut self.tangent);
         system.supports().turn_matrix(load, &mut self.tangent);
@@ -104,17 +108,17 @@ impl<'a> Equilibrium<'a> {
         &mut self,
         load: f64,
         x: &[f64],
-        before: &[f64],
+        earlier: Earlier<'_>,
         (sigma, diagonal): (f64, &[f64]),
         negative: &mut [f64],
     ) -> Result<(), Singular> {
         let system = self.system;
         let n = system.coordinates();
-        let (q, before) = (&x[..n], &before[..n]);
+        let (q, earlier) = (&x[..n], Some(earlier));
         self.statistics.residual_evaluations += 1;
         self.statistics.tangent_evaluations += 1;
         self.statistics.factorizations += 1;
-        system.force_and_tangent(load, q, before, &mut self.force, &mut self.tangent, &mut self.workspace);
+        system.force_and_tangent(load, q, earlier, &mut self.force, &mut self.tangent, &mut self.workspace);
         balance(self.system, load, x, &mut self.force, |_| (), negative);
         system.add_constraint_stiffness(&x[n..], &mut self.tangent);
         self.tangent.add_diagonal(sigma, diagonal);
@@ -272,9 +276,14 @@ impl<'e, 'a> AtLoad<'e, 'a> {
 }
 
 impl Equations for AtLoad<'_, '_> {
-    fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular> {
+    fn increment(
+        &mut self,
+        x: &[f64],
+        earlier: Earlier<'_>,
+        increment: &mut [f64],
+    ) -> Result<f64, Singular> {
         self.equilibrium.statistics.newton_iterations += 1;
-        let residual = self.equilibrium.linearize(self.load, x, before, increment, &mut self.rate)?;
+        let residual = self.equilibrium.linearize(self.load, x, Some(earlier), increment, &mut self.rate)?;
         self.equilibrium.solve(self.load, increment, false);
         Ok(residual)
     }
@@ -285,6 +294,10 @@ impl Equations for AtLoad<'_, '_> {
 
     fn size(&self, increment: &[f64]) -> f64 {
         self.equilibrium.size(increment)
+    }
+
+    fn apply(&self, increment: &[f64], x: &mut [f64]) {
+        self.equilibrium.retraction.apply(increment, x);
     }
 }
 
@@ -317,12 +330,17 @@ impl<'e, 'a> AcrossPath<'e, 'a> {
 }
 
 impl Equations for AcrossPath<'_, '_> {
-    fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular> {
+    fn increment(
+        &mut self,
+        x: &[f64],
+        earlier: Earlier<'_>,
+        increment: &mut [f64],
+    ) -> Result<f64, Singular> {
         let n = self.equilibrium.unknowns();
         let load = x[n];
         self.equilibrium.statistics.newton_iterations += 1;
         let residual =
-            self.equilibrium.linearize(load, &x[..n], &before[..n], &mut increment[..n], &mut self.rate)?;
+            self.equilibrium.linearize(load, &x[..n], Some(earlier), &mut increment[..n], &mut self.rate)?;
         self.equilibrium.solve(load, &mut increment[..n], false);
         self.equilibrium.solve(load, &mut self.rate, true);
         let along = |v: &[f64]| -> f64 { v.iter().zip(&self.normal).map(|(v, n)| v * n).sum() };
@@ -344,9 +362,7 @@ impl Equations for AcrossPath<'_, '_> {
     }
 
     fn apply(&self, increment: &[f64], x: &mut [f64]) {
-        for (x, d) in x.iter_mut().zip(increment) {
-            *x += d;
-        }
+        self.equilibrium.retraction.apply(increment, x);
         // Prescribed rotations are not linear in the load factor.
         let n = self.equilibrium.unknowns();
         let load = x[n];

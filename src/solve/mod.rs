@@ -9,4 +9,5 @@ pub mod modal;
 pub mod newton;
 pub mod path;
 pub mod relax;
+pub mod retraction;
 pub mod statics;

@@ -41,7 +41,7 @@ pub fn solve(system: &System, load: f64, x: &[f64], count: usize) -> Result<Mode
         system.internal_tangent(q)
     } else if system.is_symmetric() {
         let (mut stiffness, mut force) = (system.matrix(), vec![0.0; q.len()]);
-        system.force_and_tangent(load, q, q, &mut force, &mut stiffness, &mut Workspace::default());
+        system.force_and_tangent(load, q, None, &mut force, &mut stiffness, &mut Workspace::default());
         stiffness
     } else {
         return Err(EigenError::NotSymmetric { analysis: "modal" });

@@ -7,16 +7,18 @@
 //! contraction also tells the caller how far the predictor was from the solution (Deuflhard, *Newton Methods for
 //! Nonlinear Problems*, 2004, ch. 5).
 
+use crate::effect::Earlier;
 use crate::linear::Singular;
 
 /// A nonlinear system of equations.
 pub trait Equations {
     /// Writes the Newton increment at `x` to `increment` and returns the scaled residual at `x`. The tangent may take
-    /// account of the iterate `before`.
+    /// account of the iterate before.
     ///
     /// # Errors
     /// [`Singular`] where the tangent has no inverse.
-    fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular>;
+    fn increment(&mut self, x: &[f64], earlier: Earlier<'_>, increment: &mut [f64])
+    -> Result<f64, Singular>;
 
     /// The scaled residual at `x`.
     fn residual(&mut self, x: &[f64]) -> f64;
@@ -39,6 +41,8 @@ pub struct Settings {
     pub tolerance: f64,
     /// Largest scaled residual; infinite: the increments alone decide.
     pub residual_tolerance: f64,
+    /// Largest first increment: how far the prediction may be from the solution.
+    pub first_increment: f64,
     /// Largest last increment: how far the last tangent may be from that of the solution.
     pub last_increment: f64,
     /// Give up after this many iterations.
@@ -53,6 +57,7 @@ impl Default for Settings {
         Self {
             tolerance: 1e-10,
             residual_tolerance: RESIDUAL_TOLERANCE,
+            first_increment: f64::INFINITY,
             last_increment: f64::INFINITY,
             max_iterations: 16,
         }
@@ -74,6 +79,12 @@ pub enum Failure {
     /// The tangent has no inverse.
     #[error(transparent)]
     Singular(#[from] Singular),
+    /// The prediction is so far from the solution that another one may be nearer.
+    #[error("the prediction is {size:.2} of a beam length or rad off")]
+    FarOff {
+        /// The first scaled increment.
+        size: f64,
+    },
     /// Increments grow.
     #[error("the increments grow (the last is {last:.1e} of a beam length)")]
     Diverging {
@@ -123,7 +134,7 @@ pub enum Failure {
 /// Increments that no longer shrink count as converged below this size: what is left is round-off.
 const ROUND_OFF: f64 = 1e-6;
 
-/// Iterates from `x`, which receives the solution; `before` is the iterate from which the first tangent is extrapolated.
+/// Iterates from `x`, which receives the solution; `start` is from where that was predicted and by which increment: the first tangent is extrapolated from it.
 /// `record` receives what happened, also on failure.
 ///
 /// # Errors
@@ -131,15 +142,17 @@ const ROUND_OFF: f64 = 1e-6;
 pub fn solve(
     equations: &mut impl Equations,
     x: &mut [f64],
-    before: &[f64],
+    start: Earlier<'_>,
     settings: &Settings,
     record: &mut Iterations,
 ) -> Result<(), Failure> {
-    let mut before = before.to_vec();
+    let mut before = start.q.to_vec();
+    let mut last_increment = start.increment[..x.len()].to_vec();
     let mut increment = vec![0.0; x.len()];
     let (mut first, mut last) = (0.0, f64::INFINITY);
     for iteration in 0..settings.max_iterations {
-        let residual = equations.increment(x, &before, &mut increment)?;
+        let earlier = Earlier { q: &before, increment: &last_increment };
+        let residual = equations.increment(x, earlier, &mut increment)?;
         let size = equations.size(&increment);
         record.residuals.push(residual);
         record.increments.push(size);
@@ -148,6 +161,9 @@ pub fn solve(
         }
         if iteration == 0 {
             first = size;
+            if size > settings.first_increment {
+                return Err(Failure::FarOff { size });
+            }
         }
         let contraction = if iteration == 0 { 1.0 } else { size / last };
         let stalled = contraction > 0.5 && size <= ROUND_OFF;
@@ -156,6 +172,7 @@ pub fn solve(
         }
         before.copy_from_slice(x);
         equations.apply(&increment, x);
+        std::mem::swap(&mut increment, &mut last_increment);
         let remaining = size * contraction * contraction;
         if ((remaining <= settings.tolerance && size <= settings.last_increment) || stalled)
             && (size <= 1e-3 * settings.tolerance

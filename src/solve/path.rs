@@ -23,7 +23,10 @@
 
 use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
 use super::newton::{self, Failure, Iterations, Settings};
+use crate::effect::Earlier;
+use crate::lanes::{cross, dot};
 use crate::trajectory::StepRecord;
+use std::f64::consts::TAU;
 
 /// An equilibrium on the path.
 #[derive(Clone, Debug)]
@@ -62,7 +65,7 @@ const UNEXPLAINED_PART: f64 = 0.5;
 /// Unexplained turn that is never refused \[rad\]: near an inflection of the path the corrector's own turn vanishes.
 const UNEXPLAINED_TURN: f64 = 0.02;
 /// Predicted turn of any node in one step \[rad\].
-const LARGEST_STEP: f64 = 0.8;
+const LARGEST_STEP: f64 = 7.0;
 /// A corrector that turns no node by more than this stays on its side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
 /// Smallest step, relative to the first one that was to be tried.
@@ -113,7 +116,7 @@ impl<'e, 'a> Path<'e, 'a> {
         let start = Point { parameter: 0.0, load: 0.0, x, unstable: None, negative: None, rate: Vec::new() };
         Ok(Self {
             equilibrium,
-            settings,
+            settings: Settings { first_increment: LARGEST_TURN, ..settings },
             parameter,
             points: vec![start],
             step,
@@ -177,13 +180,12 @@ impl<'e, 'a> Path<'e, 'a> {
             if step > 0.5 * left && step < left {
                 step = 0.5 * left;
             }
-            let mut predicted = self.predict(here + step);
-            let turn = self.turn(&predicted.x, &self.last().x);
+            let turn = self.predicted_turn(step);
             if turn > LARGEST_STEP {
                 self.step = step * (0.95 * LARGEST_STEP / turn);
                 step = self.step;
-                predicted = self.predict(here + step);
             }
+            let predicted = self.predict(here + step);
             let predicted_state = predicted.x.clone();
             let target = if step >= left { end } else { here + step };
             let corrected = match self.correct(predicted, target, step) {
@@ -210,7 +212,12 @@ impl<'e, 'a> Path<'e, 'a> {
                 Ok((point, turn)) => return Ok(self.accept(point, step, turn)),
                 Err((failure, at)) => {
                     self.equilibrium.statistics.rejected_steps += 1;
-                    self.step = step * 0.4;
+                    self.step = step
+                        * match failure {
+                            // The predictor errs by O(h²).
+                            Failure::FarOff { size } => (WANTED_TURN / size).sqrt().clamp(0.05, 0.4),
+                            _ => 0.4,
+                        };
                     if self.step >= SMALLEST_STEP * self.first_step {
                         continue;
                     }
@@ -264,7 +271,7 @@ impl<'e, 'a> Path<'e, 'a> {
     fn judge_again(&mut self, point: &mut Point) {
         let mut scratch = vec![0.0; point.x.len()];
         let mut rate = scratch.clone();
-        if self.equilibrium.linearize(point.load, &point.x, &point.x, &mut scratch, &mut rate).is_ok() {
+        if self.equilibrium.linearize(point.load, &point.x, None, &mut scratch, &mut rate).is_ok() {
             point.unstable = self.equilibrium.unstable_directions();
             point.negative = self.equilibrium.determinant_is_negative();
         }
@@ -275,7 +282,7 @@ impl<'e, 'a> Path<'e, 'a> {
         let n = self.equilibrium.unknowns();
         let Point { load, x, .. } = self.points[0].clone();
         let mut rate = vec![0.0; n];
-        self.equilibrium.linearize(load, &x, &x, &mut vec![0.0; n], &mut rate).map_err(|singular| Stuck {
+        self.equilibrium.linearize(load, &x, None, &mut vec![0.0; n], &mut rate).map_err(|singular| Stuck {
             load,
             step: 0.0,
             failure: singular.into(),
@@ -331,13 +338,24 @@ impl<'e, 'a> Path<'e, 'a> {
     fn predict(&self, parameter: f64) -> Point {
         let Point { mut x, mut load, rate, parameter: here, .. } = self.last().clone();
         let h = parameter - here;
-        for (x, rate) in x.iter_mut().zip(&rate) {
-            *x += h * rate;
-        }
+        self.equilibrium.retraction.apply(&self.increment(h), &mut x);
         load = if self.parameter == Parameter::Load { parameter } else { load + h * rate[x.len()] };
         let n = self.equilibrium.system().coordinates();
         self.equilibrium.system().supports().impose(load, &mut x[..n]);
         Point { parameter, load, x, unstable: None, negative: None, rate }
+    }
+
+    /// The increment of a step of length `h` along the tangent.
+    fn increment(&self, h: f64) -> Vec<f64> {
+        let last = self.last();
+        last.rate[..last.x.len()].iter().map(|rate| h * rate).collect()
+    }
+
+    /// Largest turn of a node in a step of length `h` along the tangent \[rad\].
+    fn predicted_turn(&self, h: f64) -> f64 {
+        let n = self.equilibrium.system().coordinates();
+        let turn = |d: &[f64]| (h * d[2]).hypot(h * d[3]);
+        self.last().rate[..n].chunks_exact(4).map(turn).fold(0.0, f64::max)
     }
 
     /// Largest change of a nodal gradient between two states.
@@ -347,12 +365,24 @@ impl<'e, 'a> Path<'e, 'a> {
         pairs.fold(0.0, |turn: f64, (a, b)| turn.max((a[2] - b[2]).hypot(a[3] - b[3])))
     }
 
-    /// Turn between `to` and where the trapezoidal rule leads from `from` by the tangents at both; 0 where one is unknown.
+    /// Largest angle between a gradient of `to` and where the trapezoidal rule leads from `from` by the turning rates at both; 0 where one is unknown.
     fn unexplained(&self, from: &Point, to: &Point) -> f64 {
         let half = 0.5 * (to.parameter - from.parameter);
-        let rates = from.rate.iter().zip(&to.rate);
-        let led: Vec<f64> = from.x.iter().zip(rates).map(|(x, (a, b))| x + half * (a + b)).collect();
-        if led.len() == to.x.len() { self.turn(&to.x, &led) } else { 0.0 }
+        let n = self.equilibrium.system().coordinates();
+        if from.rate.len() < n || to.rate.len() < n {
+            return 0.0;
+        }
+        let nodes = |point: &'_ Point| {
+            let pairs = point.x[..n].chunks_exact(4).zip(point.rate[..n].chunks_exact(4));
+            pairs.map(|(x, rate)| ([x[2], x[3]], [rate[2], rate[3]])).collect::<Vec<_>>()
+        };
+        let turning = |(g, rate): ([f64; 2], [f64; 2])| cross(g, rate) / dot(g, g);
+        let pairs = nodes(from).into_iter().zip(nodes(to));
+        pairs.fold(0.0, |largest: f64, (a, b)| {
+            let turned = cross(a.0, b.0).atan2(dot(a.0, b.0));
+            let missed = turned - half * (turning(a) + turning(b));
+            largest.max((missed - TAU * (missed / TAU).round()).abs())
+        })
     }
 
     fn correct(
@@ -363,13 +393,15 @@ impl<'e, 'a> Path<'e, 'a> {
     ) -> Result<(Point, f64), (Failure, (usize, f64))> {
         let mut record = Iterations::default();
         let before = self.last().clone();
+        let mut increment = self.increment(predicted.parameter - before.parameter);
+        increment.push(predicted.load - before.load);
         let mut point = predicted.clone();
         let result = match self.parameter {
             Parameter::Load => {
                 point.load = target;
                 let mut equations = AtLoad::new(self.equilibrium, target);
-                let result =
-                    newton::solve(&mut equations, &mut point.x, &before.x, &self.settings, &mut record);
+                let start = Earlier { q: &before.x, increment: &increment };
+                let result = newton::solve(&mut equations, &mut point.x, start, &self.settings, &mut record);
                 point.rate = equations.rate();
                 result
             }
@@ -384,7 +416,8 @@ impl<'e, 'a> Path<'e, 'a> {
                 let mut start = before.x.clone();
                 start.push(before.load);
                 let mut equations = AcrossPath::new(self.equilibrium, normal);
-                let result = newton::solve(&mut equations, &mut x, &start, &self.settings, &mut record);
+                let start = Earlier { q: &start, increment: &increment };
+                let result = newton::solve(&mut equations, &mut x, start, &self.settings, &mut record);
                 let rate = equations.rate();
                 point.load = x.pop().unwrap_or(before.load);
                 point.x = x;
@@ -452,12 +485,13 @@ impl<'e, 'a> Path<'e, 'a> {
         let [.., a, b] = &self.points[..] else { return None };
         let share = (load - a.load) / (b.load - a.load);
         let mut x: Vec<f64> = a.x.iter().zip(&b.x).map(|(a, b)| a + share * (b - a)).collect();
-        let start = x.clone();
+        let (start, still) = (x.clone(), vec![0.0; x.len()]);
         let n = self.equilibrium.system().coordinates();
         self.equilibrium.system().supports().impose(load, &mut x[..n]);
         let mut record = Iterations::default();
         let mut equations = AtLoad::new(self.equilibrium, load);
-        newton::solve(&mut equations, &mut x, &start, &self.settings, &mut record).ok()?;
+        let start = Earlier { q: &start, increment: &still };
+        newton::solve(&mut equations, &mut x, start, &self.settings, &mut record).ok()?;
         let unstable = self.equilibrium.unstable_directions();
         Some(Point { parameter: load, load, x, unstable, negative: None, rate: Vec::new() })
     }

@@ -15,6 +15,7 @@
 
 use super::equilibrium::Equilibrium;
 use super::newton::{Failure, Iterations, Settings};
+use crate::effect::Earlier;
 
 /// Largest change of an iterate: positions in beam lengths, gradients as they are.
 const LARGEST: f64 = 0.3;
@@ -45,7 +46,7 @@ pub fn relax(
     equilibrium.system().supports().impose(load, &mut x[..n]);
     let weights = equilibrium.system().weights();
     let (mut sigma, mut first) = (0.0, 0.0);
-    let (mut size, mut before) = (f64::INFINITY, x.to_vec());
+    let (mut size, mut before, mut change) = (f64::INFINITY, x.to_vec(), vec![0.0; x.len()]);
     for _ in 0..ITERATIONS {
         let residual = equilibrium.residual(load, x, &mut increment);
         if !residual.is_finite() {
@@ -63,7 +64,8 @@ pub fn relax(
             first = sigma;
         }
         let shift = if sigma < NONE { 0.0 } else { sigma };
-        match equilibrium.linearize_shifted(load, x, &before, (shift, &weights), &mut increment) {
+        let earlier = Earlier { q: &before, increment: &change };
+        match equilibrium.linearize_shifted(load, x, earlier, (shift, &weights), &mut increment) {
             Ok(()) => {}
             Err(singular) if shift == 0.0 => return Err(singular.into()),
             Err(_) => {
@@ -79,7 +81,8 @@ pub fn relax(
         sigma *= (size / WANTED).clamp(LIMITS.0, LIMITS.1);
         before.copy_from_slice(x);
         let part = if size > LARGEST { LARGEST / size } else { 1.0 };
-        x.iter_mut().zip(&increment).for_each(|(x, d)| *x += part * d);
+        change.iter_mut().zip(&increment).for_each(|(change, d)| *change = part * d);
+        x.iter_mut().zip(&change).for_each(|(x, d)| *x += d);
         if size <= settings.tolerance && sigma < SETTLED * first && residual <= settings.residual_tolerance {
             return Ok(());
         }

@@ -47,7 +47,7 @@ impl System {
         };
         let loads = self.loads.iter().map(|load| &load.effect);
         for effect in self.internal.iter().chain(loads) {
-            let seconds = time(|| effect.add_force_and_tangent(1.0, q, q, &mut f, &mut k, &mut workspace));
+            let seconds = time(|| effect.add_force_and_tangent(1.0, q, None, &mut f, &mut k, &mut workspace));
             note(&mut inventory, effect.kind(), effect.beam(), seconds);
         }
         if self.is_damped() {
@@ -65,7 +65,7 @@ impl System {
                 note(&mut inventory, first.kind(), first.beam(), seconds);
             }
         }
-        self.force_and_tangent(0.0, q, q, &mut f, &mut k, &mut workspace);
+        self.force_and_tangent(0.0, q, None, &mut f, &mut k, &mut workspace);
         self.supports.turn_matrix(0.0, &mut k);
         self.supports.eliminate(0.0, &mut k);
         let border = self.border(0.0, q);

@@ -2,7 +2,7 @@
 
 use super::course::Amplitude;
 use super::{Acting, System};
-use crate::effect::{Effect, Kind, Travelling, Workspace};
+use crate::effect::{Earlier, Effect, Kind, Travelling, Workspace};
 use crate::linear::Matrix;
 use crate::trajectory::Energy;
 
@@ -113,12 +113,12 @@ impl System {
     }
 
     /// The same force as [`Self::force`], and its derivative by q; stress resultants in the tangent are extrapolated
-    /// from the iterate `before` (see [`crate::effect`]).
+    /// from an earlier iterate, if there is one (see [`crate::effect`]).
     pub fn force_and_tangent(
         &self,
         parameter: f64,
         q: &[f64],
-        before: &[f64],
+        earlier: Option<Earlier<'_>>,
         f: &mut [f64],
         k: &mut Matrix,
         workspace: &mut Workspace,
@@ -126,10 +126,10 @@ impl System {
         self.start_with_constant_load(parameter, f);
         k.clear();
         for effect in &self.internal {
-            effect.add_force_and_tangent(1.0, q, before, f, k, workspace);
+            effect.add_force_and_tangent(1.0, q, earlier, f, k, workspace);
         }
         for (effect, amplitude) in self.varying_loads(parameter) {
-            effect.add_force_and_tangent(amplitude, q, before, f, k, workspace);
+            effect.add_force_and_tangent(amplitude, q, earlier, f, k, workspace);
         }
         self.travelling.iter().for_each(|force| force.add_force(parameter, f));
     }
@@ -165,7 +165,7 @@ impl System {
         let mut force = vec![0.0; self.coordinates()];
         let mut workspace = Workspace::default();
         for effect in effects {
-            effect.add_force_and_tangent(1.0, q, q, &mut force, &mut sum, &mut workspace);
+            effect.add_force_and_tangent(1.0, q, None, &mut force, &mut sum, &mut workspace);
         }
         sum
     }

@@ -121,6 +121,11 @@ impl Supports {
         self.held.iter().filter(half).map(|held| held.pair / 2)
     }
 
+    /// Nodes whose position is held, or a component of it.
+    pub fn positions(&self) -> impl Iterator<Item = usize> + '_ {
+        self.held.iter().filter(|held| matches!(held.hold, Hold::Position(_))).map(|held| held.pair / 2)
+    }
+
     /// Number of coordinates that are eliminated.
     pub fn count(&self) -> usize {
         self.eliminated().count()

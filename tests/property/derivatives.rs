@@ -3,7 +3,7 @@
 
 use super::generators::{beam, clamp, free, noise, perturbed};
 use ancf::basis::{Basis, BasisTable, Quadrature};
-use ancf::effect::Workspace;
+use ancf::effect::{Earlier, Workspace};
 use ancf::model::{Beam, Load, Model, Place, StrainMeasure};
 use ancf::system::{Needs, System};
 use nalgebra::{DVector, Dyn};
@@ -76,7 +76,7 @@ fn assembled(system: &System, load: f64, q: &[f64]) -> (DVector<f64>, nalgebra::
     let n = q.len();
     let mut force = vec![0.0; n];
     let mut tangent = system.matrix();
-    system.force_and_tangent(load, q, q, &mut force, &mut tangent, &mut Workspace::default());
+    system.force_and_tangent(load, q, None, &mut force, &mut tangent, &mut Workspace::default());
     let mut alone = vec![0.0; n];
     system.force(load, q, &mut alone);
     let scale = force.iter().fold(1e-300_f64, |m, f| m.max(f.abs()));
@@ -264,7 +264,9 @@ proptest! {
             let before: Vec<f64> = q.iter().zip(shifted).map(|(q, d)| q + size * d).collect();
             let tangent = |before: &[f64]| {
                 let mut k = system.matrix();
-                system.force_and_tangent(1.0, &q, before, &mut vec![0.0; n], &mut k, &mut Workspace::default());
+                let increment: Vec<f64> = q.iter().zip(before).map(|(q, before)| q - before).collect();
+                let earlier = Some(Earlier { q: before, increment: &increment });
+                system.force_and_tangent(1.0, &q, earlier, &mut vec![0.0; n], &mut k, &mut Workspace::default());
                 nalgebra::DMatrix::from_fn(n, n, |i, j| k.get(i, j))
             };
             (tangent(&before) - tangent(&q)).norm()

@@ -32,7 +32,7 @@ fn derivatives<D: Density<M>, const M: usize>(
         x.as_slice().chunks_exact(2).map(|z| [z[0].clone(), z[1].clone()]).collect()
     };
     let (value, first, second) = hessian(|x| energy(&split(x)), &flat(&z));
-    let (gradient, tangent) = density.gradient_and_hessian(0, &z, &z);
+    let (gradient, tangent) = density.gradient_and_hessian(0, &z, &z, &[Vector2::zeros(); M]);
     let scale = second.amax().max(first.amax()).max(value.abs()).max(1e-12);
     assert!((density.energy(0, &z) - value).abs() < 1e-11 * scale, "energy");
     assert!((flat(&gradient) - &first).amax() < 1e-11 * scale, "gradient {gradient:?}, not {first}");
@@ -67,6 +67,7 @@ fn rates<D: Dissipation<M>, const M: usize>(
             &self,
             point: usize,
             rate: &[Vector2<f64>; M],
+            _: &[Vector2<f64>; M],
             _: &[Vector2<f64>; M],
         ) -> ([Vector2<f64>; M], ancf::effect::Hessian<M>) {
             self.0.force_and_matrix(point, &self.1, rate)

@@ -24,6 +24,7 @@ use super::State;
 use super::method::Method;
 use super::motion::{Motion, Rates};
 use super::turns::Turns;
+use crate::effect::Earlier;
 use crate::linear::{Factor, Singular};
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
 use crate::trajectory::Statistics;
@@ -254,7 +255,9 @@ impl<'a> GeneralizedAlpha<'a> {
             factor: &mut self.factor,
         };
         self.kept = None;
-        newton::solve(&mut equations, &mut self.x, &self.start, settings, record)?;
+        let change: Vec<f64> = self.x.iter().zip(&self.start).map(|(x, start)| x - start).collect();
+        let start = Earlier { q: &self.start, increment: &change };
+        newton::solve(&mut equations, &mut self.x, start, settings, record)?;
         let n = self.motion.coordinates();
         self.turns.measure(&self.x[..n], &self.x[..n]);
         Ok(())
@@ -288,10 +291,15 @@ struct AtEnd<'s, 'a> {
 }
 
 impl Equations for AtEnd<'_, '_> {
-    fn increment(&mut self, x: &[f64], before: &[f64], increment: &mut [f64]) -> Result<f64, Singular> {
+    fn increment(
+        &mut self,
+        x: &[f64],
+        earlier: Earlier<'_>,
+        increment: &mut [f64],
+    ) -> Result<f64, Singular> {
         self.motion.statistics.newton_iterations += 1;
         let rates = self.rule.at(x, self.motion.needs_velocity());
-        let residual = self.motion.linearize(x, before, rates, increment);
+        let residual = self.motion.linearize(x, earlier, rates, increment);
         if !residual.is_finite() {
             // What overflows has no pivots either, but that is not why.
             return Ok(residual);

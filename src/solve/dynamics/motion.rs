@@ -23,7 +23,7 @@
 
 use super::State;
 use super::turns::Turns;
-use crate::effect::Workspace;
+use crate::effect::{Earlier, Workspace};
 use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::isotropic::Inertia;
@@ -219,20 +219,27 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// The same, and the tangent ∂f/∂q with stress resultants extrapolated from the iterate `before`.
-    pub fn linearize(&mut self, x: &[f64], before: &[f64], rates: Rates<'_>, negative: &mut [f64]) -> f64 {
+    /// The same, and the tangent ∂f/∂q with stress resultants extrapolated from an earlier iterate.
+    pub fn linearize(
+        &mut self,
+        x: &[f64],
+        earlier: Earlier<'_>,
+        rates: Rates<'_>,
+        negative: &mut [f64],
+    ) -> f64 {
         self.statistics.residual_evaluations += 1;
         if !self.moves {
-            self.assemble(x, before, rates);
+            self.assemble(x, Some(earlier), rates);
             return self.finish(x, rates, negative);
         }
-        let mut before = before.to_vec();
+        let mut before = earlier.q.to_vec();
         let n = self.coordinates();
         let mut idle = vec![0.0; n];
         let mut still = vec![0.0; n];
         self.system.supports().carry(rates.time, [&mut before[..n], &mut idle, &mut still]);
         self.with_carried(x, rates, |motion, x, rates| {
-            motion.assemble(x, &before, rates);
+            let change: Vec<f64> = x.iter().zip(&before).map(|(x, before)| x - before).collect();
+            motion.assemble(x, Some(Earlier { q: &before, increment: &change }), rates);
             motion.finish(x, rates, negative)
         })
     }
@@ -249,9 +256,9 @@ impl<'a> Motion<'a> {
         let mut x = state.q.clone();
         x.extend_from_slice(multipliers);
         if self.moves {
-            self.with_carried(&x, rates, |motion, x, rates| motion.assemble(x, x, rates));
+            self.with_carried(&x, rates, |motion, x, rates| motion.assemble(x, None, rates));
         } else {
-            self.assemble(&x, &x, rates);
+            self.assemble(&x, None, rates);
         }
         Ok(())
     }
@@ -276,7 +283,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Force, tangent and damping matrix, in fixed axes and in the supports' frames.
-    fn assemble(&mut self, x: &[f64], before: &[f64], rates: Rates<'_>) {
+    fn assemble(&mut self, x: &[f64], earlier: Option<Earlier<'_>>, rates: Rates<'_>) {
         let n = self.coordinates();
         let Self { system, force, tangent, damping, workspace, scratch, .. } = self;
         let supports = system.supports();
@@ -285,7 +292,7 @@ impl<'a> Motion<'a> {
             supports.turn_matrix(rates.time, damping);
             supports.clear_held(rates.time, damping);
         }
-        system.force_and_tangent(rates.time, &x[..n], &before[..n], force, tangent, workspace);
+        system.force_and_tangent(rates.time, &x[..n], earlier, force, tangent, workspace);
         system.add_constraint_stiffness(&x[n..], tangent);
         supports.turn_matrix(rates.time, tangent);
         supports.eliminate(rates.time, tangent);

@@ -1,0 +1,120 @@
+//! Moving a beam along an increment, with turns that are finite.
+//!
+//! An increment Δq of Newton's method is a tangent vector. Added to the coordinates it stretches what it turns: a gradient of length 1 turned by φ becomes
+//! √(1 + φ²) long, and nothing but ever smaller steps undoes the error. Here every gradient and every chord from node to node *turns* instead
+//! by the angle that its increment means,
+//!
+//! ```text
+//! φ = (g × Δg)/|g|²,  g ← (1 + g·Δg/|g|²) R(φ) g        and the same for the chord c with ψ
+//! ```
+//!
+//! and the chords are put one behind the other from where the beam is held. A chord whose ends turn against it by α = φ₁ − ψ and β = φ₂ − ψ would,
+//! with its cubic between them, become longer by (2α² − αβ + 2β²)/30, and is shortened by that. Between two nodes that are held the chords would miss
+//! the second; what they miss by is distributed along the way. The result differs from q + Δq in the second order, so that Newton's convergence stays what
+//! it is (a retraction, in the language of Absil, Mahony, Sepulchre, *Optimization Algorithms on Matrix Manifolds*, 2008, ch. 4), but it is exact
+//! for a straight cantilever that is bent into a circle, whatever the angle.
+
+use crate::system::System;
+
+/// Increments that turn no gradient by more are simply added \[rad\]: what that stretches is less than Newton's method itself leaves.
+const SMALL: f64 = 0.01;
+
+/// How the beams of a system move.
+#[derive(Clone, Debug)]
+pub struct Retraction {
+    chains: Vec<Chain>,
+}
+
+/// A beam.
+#[derive(Clone, Debug)]
+struct Chain {
+    /// Its nodes.
+    nodes: std::ops::Range<usize>,
+    /// Those of them whose positions are held, or the first one.
+    anchors: Vec<usize>,
+}
+
+impl Retraction {
+    /// For `system`. Where constraint rows tie nodes to each other all increments are added: the rows are linear.
+    pub fn new(system: &System) -> Self {
+        if system.multipliers() > 0 {
+            return Self { chains: Vec::new() };
+        }
+        let held: Vec<usize> = system.supports().positions().collect();
+        let chain = |beam: &crate::system::BeamPart| {
+            let nodes = beam.first_node..beam.first_node + beam.basis.nodes().len();
+            let mut anchors: Vec<usize> = held.iter().copied().filter(|node| nodes.contains(node)).collect();
+            anchors.sort_unstable();
+            if anchors.is_empty() {
+                anchors.push(nodes.start);
+            }
+            Chain { nodes, anchors }
+        };
+        Self { chains: system.beams().iter().map(chain).collect() }
+    }
+
+    /// Moves `x` by `increment`; what follows the coordinates is added.
+    pub fn apply(&self, increment: &[f64], x: &mut [f64]) {
+        let coordinates = self.chains.last().map_or(0, |chain| 4 * chain.nodes.end);
+        let turning = increment[..coordinates].as_chunks::<4>().0;
+        let largest = turning.iter().fold(0.0_f64, |m, d| m.max(d[2].abs()).max(d[3].abs()));
+        let start = x[..coordinates].to_vec();
+        x.iter_mut().zip(increment).for_each(|(x, d)| *x += d);
+        if largest > SMALL {
+            let (start, x) = (start.as_chunks::<4>().0, x[..coordinates].as_chunks_mut::<4>().0);
+            self.chains.iter().for_each(|chain| chain.turn(start, turning, x));
+        }
+    }
+}
+
+impl Chain {
+    /// `x` comes as `start + increment`.
+    fn turn(&self, start: &[[f64; 4]], increment: &[[f64; 4]], x: &mut [[f64; 4]]) {
+        let mut turns = Vec::with_capacity(self.nodes.len());
+        for node in self.nodes.clone() {
+            let [_, _, a, b] = start[node];
+            let [_, _, da, db] = increment[node];
+            let (gradient, turn) = turned([a, b], [da, db]);
+            [x[node][2], x[node][3]] = gradient;
+            turns.push(turn);
+        }
+        // By how much every node lands beside its linear place, if the chords are put one behind the other from the first node on.
+        let mut beside = Vec::with_capacity(self.nodes.len());
+        let mut sum = [0.0; 2];
+        beside.push(sum);
+        for (i, node) in self.nodes.clone().skip(1).enumerate() {
+            let difference = |v: &[[f64; 4]]| [v[node][0] - v[node - 1][0], v[node][1] - v[node - 1][1]];
+            let (chord, change) = (difference(start), difference(increment));
+            let (new, turn) = turned(chord, change);
+            let (alpha, beta) = (turns[i] - turn, turns[i + 1] - turn);
+            let shorter = 1.0 - (2.0 * alpha * alpha - alpha * beta + 2.0 * beta * beta) / 30.0;
+            for d in 0..2 {
+                sum[d] += shorter.max(0.0) * new[d] - (chord[d] + change[d]);
+            }
+            beside.push(sum);
+        }
+        let at = |node: usize| beside[node - self.nodes.start];
+        let (first, last) = (self.anchors[0], self.anchors[self.anchors.len() - 1]);
+        for node in self.nodes.clone() {
+            // The two anchors around a node share its error by its distance to them; beyond the outer ones it is theirs.
+            let next = self.anchors.partition_point(|anchor| *anchor <= node);
+            let (left, right) = match next {
+                0 => (first, first),
+                _ if next == self.anchors.len() => (last, last),
+                _ => (self.anchors[next - 1], self.anchors[next]),
+            };
+            let share = if right > left { (node - left) as f64 / (right - left) as f64 } else { 0.0 };
+            for d in 0..2 {
+                x[node][d] += at(node)[d] - ((1.0 - share) * at(left)[d] + share * at(right)[d]);
+            }
+        }
+    }
+}
+
+/// A vector after its change, stretched and turned, and the angle.
+fn turned([x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> ([f64; 2], f64) {
+    let inverse = 1.0 / (x * x + y * y);
+    let (stretch, turn) = (1.0 + (x * dx + y * dy) * inverse, (x * dy - y * dx) * inverse);
+    let (sine, cosine) = turn.sin_cos();
+    ([stretch * (cosine * x - sine * y), stretch * (sine * x + cosine * y)], turn)
+}
