@@ -80,7 +80,13 @@ impl<S: Strain> Density<1> for PreStrain<S> {
         [Vector2::from(S::first(z[0].into()).1) * -self.force]
     }
 
-    fn gradient_and_hessian(&self, _: usize, z: &Gradient<1>, _: &Gradient<1>, _: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+    fn gradient_and_hessian(
+        &self,
+        _: usize,
+        z: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
         let (_, first, second) = S::second(&z[0]);
         ([first * -self.force], [[second * -self.force]])
     }
@@ -109,7 +115,8 @@ impl Density<2> for PreCurvature {
         &self,
         point: usize,
         z: &Gradient<2>,
-        _: &Gradient<2>, _: &Gradient<2>,
+        _: &Gradient<2>,
+        _: &Gradient<2>,
     ) -> (Gradient<2>, Hessian<2>) {
         let (aa, ab) = bend::second_derivatives(z);
         let m = -self.moment;

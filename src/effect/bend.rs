@@ -113,16 +113,15 @@ impl Density<2> for Bend {
         &self,
         point: usize,
         z: &Gradient<2>,
-        before: &Gradient<2>, change: &Gradient<2>,
+        before: &Gradient<2>,
+        change: &Gradient<2>,
     ) -> (Gradient<2>, Hessian<2>) {
         let reference = self.reference(point);
         let (kappa, [a, b], inverse) = first_derivatives(z);
         let moment = self.bending_stiffness * (kappa - reference);
         let (kappa_before, [a_before, b_before], _) = first_derivatives(before);
         let extrapolated = self.bending_stiffness
-            * (kappa_before - reference
-                + a_before.dot(&change[0])
-                + b_before.dot(&change[1]));
+            * (kappa_before - reference + a_before.dot(&change[0]) + b_before.dot(&change[1]));
         let (aa, ab) = second_from(&z[0], kappa, &a, &b, inverse);
         let ei = self.bending_stiffness;
         let mixed = a * b.transpose() * ei + ab * extrapolated;

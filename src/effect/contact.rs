@@ -181,7 +181,8 @@ impl Density<1> for Penalty {
         &self,
         point: usize,
         z: &Gradient<1>,
-        _: &Gradient<1>, _: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
         let hessian = self.penetration(&z[0]).map_or_else(Matrix2::zeros, |(depth, normal, second)| {
             (normal * normal.transpose() - second * depth) * self.stiffness

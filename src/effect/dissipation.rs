@@ -74,7 +74,8 @@ impl<D: Dissipation<M>, const M: usize> Density<M> for Rayleigh<D> {
         &self,
         point: usize,
         rate: &Gradient<M>,
-        z: &Gradient<M>, _: &Gradient<M>,
+        z: &Gradient<M>,
+        _: &Gradient<M>,
     ) -> (Gradient<M>, Hessian<M>) {
         self.0.force_and_matrix(point, z, rate)
     }

@@ -21,7 +21,13 @@ impl Density<1> for Inertia {
         [v[0] * self.mass_per_length]
     }
 
-    fn gradient_and_hessian(&self, _: usize, v: &Gradient<1>, _: &Gradient<1>, _: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+    fn gradient_and_hessian(
+        &self,
+        _: usize,
+        v: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
         ([v[0] * self.mass_per_length], [[Matrix2::identity() * self.mass_per_length]])
     }
 }

@@ -297,7 +297,12 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let (q, v, f) = (&q[range.clone()], &v[range.clone()], &mut f[range]);
             for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
                 let (z, change) = (self.fields::<W>(rows, q), self.fields::<W>(rows, v));
-                let (_, hessian) = self.density.gradient_and_hessian(cell * weights.len() + p, &z, &z, &[Vector2::zeros(); M]);
+                let (_, hessian) = self.density.gradient_and_hessian(
+                    cell * weights.len() + p,
+                    &z,
+                    &z,
+                    &[Vector2::zeros(); M],
+                );
                 let product = std::array::from_fn(|m| {
                     hessian[m].iter().zip(&change).map(|(h, change)| h * change).sum::<Vector2<f64>>()
                 });

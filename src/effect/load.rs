@@ -31,7 +31,13 @@ impl Density<1> for DeadForce {
     }
 
     #[inline(always)]
-    fn gradient_and_hessian(&self, _: usize, _: &Gradient<1>, _: &Gradient<1>, _: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+    fn gradient_and_hessian(
+        &self,
+        _: usize,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
         ([-self.force], [[Matrix2::zeros()]])
     }
 }
@@ -87,7 +93,8 @@ impl Density<2> for FollowerForce {
         &self,
         point: usize,
         z: &Gradient<2>,
-        _: &Gradient<2>, _: &Gradient<2>,
+        _: &Gradient<2>,
+        _: &Gradient<2>,
     ) -> (Gradient<2>, Hessian<2>) {
         let inverse = 1.0 / z[1].norm_squared().sqrt();
         let t = z[1] * inverse;
@@ -127,7 +134,8 @@ impl Density<1> for Moment {
         &self,
         point: usize,
         z: &Gradient<1>,
-        _: &Gradient<1>, _: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
         let (x, y) = (z[0].x, z[0].y);
         let inverse = 1.0 / z[0].norm_squared();

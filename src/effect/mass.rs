@@ -72,7 +72,13 @@ impl Density<1> for RotaryInertia {
         [v[0] * self.inertia]
     }
 
-    fn gradient_and_hessian(&self, _: usize, v: &Gradient<1>, _: &Gradient<1>, _: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+    fn gradient_and_hessian(
+        &self,
+        _: usize,
+        v: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
         ([v[0] * self.inertia], [[Matrix2::identity() * self.inertia]])
     }
 }

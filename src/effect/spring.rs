@@ -108,7 +108,8 @@ impl Density<1> for Tie {
         &self,
         point: usize,
         z: &Gradient<1>,
-        _: &Gradient<1>, _: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
         (self.gradient(point, z), [[Matrix2::from_diagonal(&self.stiffness)]])
     }
@@ -153,7 +154,8 @@ impl Density<1> for Strut {
         &self,
         point: usize,
         z: &Gradient<1>,
-        _: &Gradient<1>, _: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
         let (d, length, ratio) = self.ratio(z);
         let along = if ratio == 0.0 { Matrix2::zeros() } else { d * d.transpose() / (length * length) };
@@ -230,7 +232,8 @@ impl Density<1> for Torsion {
         &self,
         point: usize,
         z: &Gradient<1>,
-        _: &Gradient<1>, _: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
         let (x, y) = (z[0].x, z[0].y);
         let inverse = 1.0 / z[0].norm_squared();

@@ -123,7 +123,8 @@ impl<S: Strain> Density<1> for Stretch<S> {
         &self,
         point: usize,
         z: &Gradient<1>,
-        before: &Gradient<1>, change: &Gradient<1>,
+        before: &Gradient<1>,
+        change: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
         let reference = self.reference(point);
         let (strain, first, second) = S::second(&z[0]);

@@ -43,7 +43,9 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
                 let weight = factor * weight;
                 let z = fields::<M, W>(rows, &here);
                 let [before, change] = match &earlier {
-                    Some([before, increment]) => [fields::<M, W>(rows, before), fields::<M, W>(rows, increment)],
+                    Some([before, increment]) => {
+                        [fields::<M, W>(rows, before), fields::<M, W>(rows, increment)]
+                    }
                     None => [z, [Vector2::zeros(); M]],
                 };
                 let (gradient, hessian) =

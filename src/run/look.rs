@@ -1,6 +1,7 @@
 //! Looking at the states of a system: probes, shapes, frames, and the trajectories made of them.
 
 use super::RunError;
+use super::angle::{self, unfold};
 use crate::linear::Singular;
 use crate::model::{ArcLength, Beam, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
@@ -13,7 +14,7 @@ use crate::trajectory::{
     AnalysisKind, EffectSeries, Energy, Event, Frame, ProbeSample, ProbeSeries, ReactionSeries, Shape,
     Trajectory,
 };
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 /// Points at which shapes are sampled.
 const SHAPE_POINTS: usize = 201;
@@ -39,6 +40,7 @@ pub(super) struct Look<'a> {
 /// A probe with the rows that see its point.
 struct Watched {
     name: String,
+    beam: usize,
     view: View,
     measure: StrainMeasure,
     /// ε of the stress-free state there.
@@ -70,7 +72,7 @@ impl<'a> Look<'a> {
                 } else {
                     view.fields(system.reference()).strain(measure)
                 };
-                Ok(Watched { name: probe.name.clone(), view, measure, reference_strain })
+                Ok(Watched { name: probe.name.clone(), beam: probe.at.beam, view, measure, reference_strain })
             })
             .collect::<Result<_, SystemError>>()?;
         Ok(Self { model, system, shapes, probes })
@@ -275,7 +277,7 @@ impl<'a> Look<'a> {
         &self,
         trajectory: &mut Trajectory,
         parameter: f64,
-        q: &[f64],
+        (before, q): (Option<&[f64]>, &[f64]),
         velocity: Option<&[f64]>,
         energy: Energy,
     ) {
@@ -284,11 +286,13 @@ impl<'a> Look<'a> {
         if self.model.outputs.effects {
             self.record_effects(trajectory, parameter, q, velocity);
         }
-        for (Watched { view, measure, reference_strain, .. }, series) in
+        for (Watched { beam, view, measure, reference_strain, .. }, series) in
             self.probes.iter().zip(&mut trajectory.probes)
         {
             let fields = view.fields(q);
-            let angle = unfold(fields.angle(), series.samples.last().map(|s| s.angle));
+            let turned =
+                before.map_or(0.0, |before| angle::turn(&self.system.beams()[*beam], view.s()[0], before, q));
+            let angle = unfold(fields.angle(), series.samples.last().map(|s| s.angle + turned));
             series.samples.push(ProbeSample {
                 x: fields.position[0],
                 y: fields.position[1],
@@ -309,7 +313,8 @@ impl<'a> Look<'a> {
             if self.model.outputs.reactions {
                 self.record_reactions(&mut trajectory, &self.system.static_reactions(*load, x));
             }
-            self.record(&mut trajectory, *load, q, None, self.system.energy(*load, q, None));
+            let before = i.checked_sub(1).map(|i| self.coordinates_of(&solution.states[i].1));
+            self.record(&mut trajectory, *load, (before, q), None, self.system.energy(*load, q, None));
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(*load, q));
             }
@@ -426,7 +431,7 @@ impl<'a> Look<'a> {
             let (q, v) = (&state.q[..], Some(&state.v[..]));
             let energy = self.system.energy(state.time, q, v);
             let energy = Energy { work: state.work, lost: state.lost, ..energy };
-            self.record(&mut trajectory, state.time, q, v, energy);
+            self.record(&mut trajectory, state.time, (None, q), v, energy);
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(state.time, q));
             }
@@ -495,9 +500,4 @@ impl<'a> Look<'a> {
             partial: Box::new(Trajectory { complete: false, ..self.dynamics(settings, solution) }),
         }
     }
-}
-
-/// The representative of an angle nearest to the one before.
-fn unfold(angle: f64, before: Option<f64>) -> f64 {
-    before.map_or(angle, |before| angle + TAU * ((before - angle) / TAU).round())
 }

@@ -276,12 +276,7 @@ impl<'e, 'a> AtLoad<'e, 'a> {
 }
 
 impl Equations for AtLoad<'_, '_> {
-    fn increment(
-        &mut self,
-        x: &[f64],
-        earlier: Earlier<'_>,
-        increment: &mut [f64],
-    ) -> Result<f64, Singular> {
+    fn increment(&mut self, x: &[f64], earlier: Earlier<'_>, increment: &mut [f64]) -> Result<f64, Singular> {
         self.equilibrium.statistics.newton_iterations += 1;
         let residual = self.equilibrium.linearize(self.load, x, Some(earlier), increment, &mut self.rate)?;
         self.equilibrium.solve(self.load, increment, false);
@@ -330,12 +325,7 @@ impl<'e, 'a> AcrossPath<'e, 'a> {
 }
 
 impl Equations for AcrossPath<'_, '_> {
-    fn increment(
-        &mut self,
-        x: &[f64],
-        earlier: Earlier<'_>,
-        increment: &mut [f64],
-    ) -> Result<f64, Singular> {
+    fn increment(&mut self, x: &[f64], earlier: Earlier<'_>, increment: &mut [f64]) -> Result<f64, Singular> {
         let n = self.equilibrium.unknowns();
         let load = x[n];
         self.equilibrium.statistics.newton_iterations += 1;

@@ -17,8 +17,7 @@ pub trait Equations {
     ///
     /// # Errors
     /// [`Singular`] where the tangent has no inverse.
-    fn increment(&mut self, x: &[f64], earlier: Earlier<'_>, increment: &mut [f64])
-    -> Result<f64, Singular>;
+    fn increment(&mut self, x: &[f64], earlier: Earlier<'_>, increment: &mut [f64]) -> Result<f64, Singular>;
 
     /// The scaled residual at `x`.
     fn residual(&mut self, x: &[f64]) -> f64;

@@ -64,6 +64,8 @@ const LARGEST_TURN: f64 = 0.5;
 const UNEXPLAINED_PART: f64 = 0.5;
 /// Unexplained turn that is never refused \[rad\]: near an inflection of the path the corrector's own turn vanishes.
 const UNEXPLAINED_TURN: f64 = 0.02;
+/// The same as a part of the step's predicted turn: of a whole turn as much as a corrector may turn.
+const UNEXPLAINED_OF_STEP: f64 = 0.02;
 /// Predicted turn of any node in one step \[rad\].
 const LARGEST_STEP: f64 = 7.0;
 /// A corrector that turns no node by more than this stays on its side of a bifurcation \[rad\].
@@ -282,11 +284,13 @@ impl<'e, 'a> Path<'e, 'a> {
         let n = self.equilibrium.unknowns();
         let Point { load, x, .. } = self.points[0].clone();
         let mut rate = vec![0.0; n];
-        self.equilibrium.linearize(load, &x, None, &mut vec![0.0; n], &mut rate).map_err(|singular| Stuck {
-            load,
-            step: 0.0,
-            failure: singular.into(),
-            at: self.equilibrium.system().place_of(singular.row),
+        self.equilibrium.linearize(load, &x, None, &mut vec![0.0; n], &mut rate).map_err(|singular| {
+            Stuck {
+                load,
+                step: 0.0,
+                failure: singular.into(),
+                at: self.equilibrium.system().place_of(singular.row),
+            }
         })?;
         self.equilibrium.solve(load, &mut rate, true);
         if let Some(unknown) = rate.iter().position(|rate| !rate.is_finite()) {
@@ -433,7 +437,8 @@ impl<'e, 'a> Path<'e, 'a> {
         }
         let turn = self.turn(&point.x, &predicted.x);
         let unexplained = self.unexplained(&before, &point);
-        let jump = unexplained > UNEXPLAINED_TURN.max(UNEXPLAINED_PART * turn);
+        let explained = UNEXPLAINED_OF_STEP * self.predicted_turn(predicted.parameter - before.parameter);
+        let jump = unexplained > UNEXPLAINED_TURN.max(UNEXPLAINED_PART * turn).max(explained);
         let outcome = match result {
             Ok(()) if turn > LARGEST_TURN || jump => {
                 let turn = turn.max(unexplained);
@@ -441,7 +446,8 @@ impl<'e, 'a> Path<'e, 'a> {
             }
             Ok(()) => {
                 let n = self.equilibrium.system().coordinates();
-                newton::not_crushed_since(&before.x[..n], &point.x[..n])
+                let since = if self.equilibrium.retraction.turns() { &predicted } else { &before };
+                newton::not_crushed_since(&since.x[..n], &point.x[..n])
                     .map(|()| turn)
                     .map_err(|failure| (failure, self.worst(&point.x, &predicted.x)))
             }

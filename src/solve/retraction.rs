@@ -19,6 +19,9 @@ use crate::system::System;
 /// Increments that turn no gradient by more are simply added \[rad\]: what that stretches is less than Newton's method itself leaves.
 const SMALL: f64 = 0.01;
 
+/// No vector shrinks to a smaller part of its length in one increment.
+const SHORTEST: f64 = 0.1;
+
 /// How the beams of a system move.
 #[derive(Clone, Debug)]
 pub struct Retraction {
@@ -51,6 +54,11 @@ impl Retraction {
             Chain { nodes, anchors }
         };
         Self { chains: system.beams().iter().map(chain).collect() }
+    }
+
+    /// Whether anything turns.
+    pub fn turns(&self) -> bool {
+        !self.chains.is_empty()
     }
 
     /// Moves `x` by `increment`; what follows the coordinates is added.
@@ -114,7 +122,9 @@ impl Chain {
 /// A vector after its change, stretched and turned, and the angle.
 fn turned([x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> ([f64; 2], f64) {
     let inverse = 1.0 / (x * x + y * y);
-    let (stretch, turn) = (1.0 + (x * dx + y * dy) * inverse, (x * dy - y * dx) * inverse);
+    // Whatever an iterate far from the solution asks for: nothing is turned about by being compressed.
+    let stretch = (1.0 + (x * dx + y * dy) * inverse).max(SHORTEST);
+    let turn = (x * dy - y * dx) * inverse;
     let (sine, cosine) = turn.sin_cos();
     ([stretch * (cosine * x - sine * y), stretch * (sine * x + cosine * y)], turn)
 }

@@ -291,12 +291,7 @@ struct AtEnd<'s, 'a> {
 }
 
 impl Equations for AtEnd<'_, '_> {
-    fn increment(
-        &mut self,
-        x: &[f64],
-        earlier: Earlier<'_>,
-        increment: &mut [f64],
-    ) -> Result<f64, Singular> {
+    fn increment(&mut self, x: &[f64], earlier: Earlier<'_>, increment: &mut [f64]) -> Result<f64, Singular> {
         self.motion.statistics.newton_iterations += 1;
         let rates = self.rule.at(x, self.motion.needs_velocity());
         let residual = self.motion.linearize(x, earlier, rates, increment);

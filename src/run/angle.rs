@@ -1,0 +1,34 @@
+//! Angles that count turns: a tip that has gone round once stands at 2π, not at 0.
+
+use crate::system::BeamPart;
+use std::f64::consts::TAU;
+
+/// The representative of an angle nearest to `near`.
+pub(super) fn unfold(angle: f64, near: Option<f64>) -> f64 {
+    near.map_or(angle, |near| angle + TAU * ((near - angle) / TAU).round())
+}
+
+/// By how much the node of a beam nearest to `s` has turned between two states. One load step may wind a beam up by whole turns; but some node has
+/// turned by less than half of one, such as one that is clamped, and the others follow from cell to cell.
+pub(super) fn turn(part: &BeamPart, s: f64, before: &[f64], now: &[f64]) -> f64 {
+    let first = 4 * part.first_node;
+    let nodes = |q: &'_ [f64]| {
+        let angles = q[first..first + 4 * part.basis.nodes().len()].chunks_exact(4).map(|n| n[3].atan2(n[2]));
+        angles.collect::<Vec<_>>()
+    };
+    let folded: Vec<f64> = nodes(before)
+        .into_iter()
+        .zip(nodes(now))
+        .map(|(before, now)| unfold(now - before, Some(0.0)))
+        .collect();
+    let sizes = folded.iter().map(|turn| turn.abs()).enumerate();
+    let still = sizes.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(node, _)| node);
+    let distances = part.basis.nodes().iter().map(|node| (node - s).abs()).enumerate();
+    let target = distances.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(node, _)| node);
+    let follow = |turn: f64, next: &f64| unfold(*next, Some(turn));
+    if target >= still {
+        folded[still + 1..=target].iter().fold(folded[still], follow)
+    } else {
+        folded[target..still].iter().rev().fold(folded[still], follow)
+    }
+}
