@@ -109,6 +109,26 @@ pub fn cross<T: Real>(a: Pair<T>, b: Pair<T>) -> T {
     a[0].fma(b[1], -(a[1] * b[0]))
 }
 
+/// Adds to every lane of `f` what `add` makes of it and of that lane of `q`; `scratch` has two vectors of their length.
+pub fn one_by_one(
+    q: &[Lanes],
+    f: &mut [Lanes],
+    scratch: &mut [Vec<f64>; 2],
+    mut add: impl FnMut(usize, &[f64], &mut [f64]),
+) {
+    let [one, sum] = scratch;
+    for lane in 0..4 {
+        one.iter_mut().zip(q).for_each(|(one, q)| *one = q.to_array()[lane]);
+        sum.fill(0.0);
+        add(lane, one, sum);
+        for (f, sum) in f.iter_mut().zip(&*sum) {
+            let mut lanes = f.to_array();
+            lanes[lane] += sum;
+            *f = Lanes::new(lanes);
+        }
+    }
+}
+
 /// The `W` coefficients of four cells, each a node further than the one before; `q` starts at the first cell's.
 #[inline(always)]
 pub fn gather<const W: usize>(q: &[f64]) -> [Pair<Lanes>; W] {

@@ -32,7 +32,7 @@
 
 use super::{Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
-use crate::lanes::{self, Lanes, Points};
+use crate::lanes::{self, Lanes, Pair, Points};
 use crate::linear::Matrix;
 use crate::linear::fma::fma;
 use nalgebra::Vector2;
@@ -219,35 +219,72 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let cell = cell as usize;
             let first = self.first(cell);
             let range = first..first + 2 * W + 12;
-            let (weights, rows) = self.table.block(self.table.cells[cell]);
-            let (weights, rows) = (&weights[..P], &rows.as_chunks::<W>().0[..P * M]);
             let here = lanes::gather::<W>(&q[range.clone()]);
-            // All points first: the sums would not fit into the registers beside the coefficients.
-            let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
-            for p in 0..P {
-                let mut z = [[Lanes::ZERO; 2]; M];
-                for m in 0..M {
-                    for a in 0..W {
-                        let n = Lanes::splat(rows[p * M + m][a]);
-                        z[m] = [n.mul_add(here[a][0], z[m][0]), n.mul_add(here[a][1], z[m][1])];
-                    }
-                }
-                let points = Points { first: cell * P + p, stride: P };
-                gradients[p] = self.density.gradients(factor * weights[p], points, &z);
-            }
-            // Loaded anew: carried on from above they would be stored to and loaded from the stack, as all registers are taken.
-            let rows = std::hint::black_box(rows);
-            let mut sums = [[Lanes::ZERO; 2]; W];
-            for a in 0..W {
-                for p in 0..P {
-                    for m in 0..M {
-                        let n = Lanes::splat(rows[p * M + m][a]);
-                        let g = gradients[p][m];
-                        sums[a] = [n.mul_add(g[0], sums[a][0]), n.mul_add(g[1], sums[a][1])];
-                    }
-                }
-            }
+            let sums = self.sums_of_four::<W, P>(cell, P, factor, &here);
             lanes::scatter(&sums, &mut f[range]);
+        }
+    }
+
+    /// Forces on the coefficients `here` of four cells, the first of them `cell` and each with `stride` points more before it; or of one cell in four states, without
+    /// a stride.
+    #[inline(always)]
+    fn sums_of_four<const W: usize, const P: usize>(
+        &self,
+        cell: usize,
+        stride: usize,
+        factor: f64,
+        here: &[Pair<Lanes>; W],
+    ) -> [Pair<Lanes>; W] {
+        let (weights, rows) = self.table.block(self.table.cells[cell]);
+        let (weights, rows) = (&weights[..P], &rows.as_chunks::<W>().0[..P * M]);
+        // All points first: the sums would not fit into the registers beside the coefficients.
+        let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
+        for p in 0..P {
+            let mut z = [[Lanes::ZERO; 2]; M];
+            for m in 0..M {
+                for a in 0..W {
+                    let n = Lanes::splat(rows[p * M + m][a]);
+                    z[m] = [n.mul_add(here[a][0], z[m][0]), n.mul_add(here[a][1], z[m][1])];
+                }
+            }
+            let points = Points { first: cell * P + p, stride };
+            gradients[p] = self.density.gradients(factor * weights[p], points, &z);
+        }
+        // Loaded anew: carried on from above they would be stored to and loaded from the stack, as all registers are taken.
+        let rows = std::hint::black_box(rows);
+        let mut sums = [[Lanes::ZERO; 2]; W];
+        for a in 0..W {
+            for p in 0..P {
+                for m in 0..M {
+                    let n = Lanes::splat(rows[p * M + m][a]);
+                    let g = gradients[p][m];
+                    sums[a] = [n.mul_add(g[0], sums[a][0]), n.mul_add(g[1], sums[a][1])];
+                }
+            }
+        }
+        sums
+    }
+
+    /// All cells in four states.
+    fn forces_in_lanes<const W: usize>(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes]) {
+        match self.table.points_per_cell {
+            1 => self.forces_in_lanes_of::<W, 1>(factors, q, f),
+            2 => self.forces_in_lanes_of::<W, 2>(factors, q, f),
+            3 => self.forces_in_lanes_of::<W, 3>(factors, q, f),
+            4 => self.forces_in_lanes_of::<W, 4>(factors, q, f),
+            _ => self.forces_in_lanes_of::<W, 5>(factors, q, f),
+        }
+    }
+
+    fn forces_in_lanes_of<const W: usize, const P: usize>(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes]) {
+        for cell in 0..self.table.cells.len() {
+            let first = self.first(cell);
+            let range = first..first + 2 * W;
+            let Some(here) = q[range.clone()].as_chunks::<2>().0.first_chunk::<W>() else { continue };
+            let sums = self.sums_of_four::<W, P>(cell, 0, 1.0, here);
+            for (f, sum) in f[range].as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
+                *f = [factors.mul_add(sum[0], f[0]), factors.mul_add(sum[1], f[1])];
+            }
         }
     }
 
@@ -465,6 +502,19 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
             8 => self.force_within::<8>(factor, q, f),
             12 => self.force_within::<12>(factor, q, f),
             _ => self.force_any(factor, q, f),
+        }
+    }
+
+    fn add_forces(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
+        let by_fours = self.table.points_per_cell <= *POINTS_BY_FOURS.end();
+        match self.table.width {
+            4 if by_fours => self.forces_in_lanes::<4>(factors, q, f),
+            8 if by_fours => self.forces_in_lanes::<8>(factors, q, f),
+            12 if by_fours => self.forces_in_lanes::<12>(factors, q, f),
+            _ => {
+                let factors = factors.to_array();
+                lanes::one_by_one(q, f, scratch, |lane, q, f| self.add_force(factors[lane], q, f));
+            }
         }
     }
 

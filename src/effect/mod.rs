@@ -54,7 +54,7 @@ pub use moving::{MovingForce, Travelling};
 pub use spring::{Dashpot, Spring, Strut, Tie, Torsion, TorsionDashpot, TorsionSpring};
 pub use stretch::{Engineering, Green, Strain, Stretch};
 
-use crate::lanes::{Lanes, Pair, Points};
+use crate::lanes::{self, Lanes, Pair, Points};
 use crate::linear::Matrix;
 use nalgebra::{Matrix2, Vector2};
 
@@ -262,6 +262,12 @@ pub trait Effect: Send + Sync {
 
     /// `f += factor · ∂U/∂q`.
     fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]);
+
+    /// The same in the states of four lanes, each with its own factor; `scratch` has two vectors of coordinates.
+    fn add_forces(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
+        let factors = factors.to_array();
+        lanes::one_by_one(q, f, scratch, |lane, q, f| self.add_force(factors[lane], q, f));
+    }
 
     /// `f += factor · ∂U/∂q`, `k += factor · ∂²U/∂q∂q`, the latter with stress resultants extrapolated from an earlier iterate, if there is one.
     fn add_force_and_tangent(

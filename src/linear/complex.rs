@@ -97,38 +97,20 @@ fn add(l: c64, [s_re, s_im]: &Four, [re, im]: &Four) -> Four {
     [l_im.mul_neg_add(*s_im, l_re.mul_add(*s_re, *re)), l_im.mul_add(*s_re, l_re.mul_add(*s_im, *im))]
 }
 
-/// `a · b + sum`, number by number.
-#[inline(always)]
-fn add_products(a: &Four, b: &Four, [re, im]: &Four) -> Four {
-    [a[1].mul_neg_add(b[1], a[0].mul_add(b[0], *re)), a[1].mul_add(b[0], a[0].mul_add(b[1], *im))]
-}
-
 #[inline(always)]
 fn number(four: &Four, lane: usize) -> c64 {
     c64::new(four[0].to_array()[lane], four[1].to_array()[lane])
 }
 
-#[inline(always)]
-fn sum(four: &Four) -> c64 {
-    c64::new(four[0].reduce_add(), four[1].reduce_add())
-}
-
-/// The unknowns of `node`, zeros beyond the last.
-#[inline(always)]
-fn unknowns(re: &[f64], im: &[f64], node: usize) -> Four {
-    match (re.as_chunks().0.get(node), im.as_chunks().0.get(node)) {
-        (Some(re), Some(im)) => [Lanes::new(*re), Lanes::new(*im)],
-        _ => ZERO,
-    }
-}
-
-/// L D Lᵀ of a complex symmetric band. The rows hold D Lᵀ.
+/// L D Lᵀ of a complex symmetric band, in blocks as [`super::symmetric::Ldl`] is.
 #[derive(Clone, Debug)]
 pub struct ComplexLdl {
     /// Blocks in a panel, the diagonal one included.
     blocks: usize,
-    /// Panels of four rows of `blocks` blocks, one a node.
+    /// Panels of four rows of `blocks` blocks, one a node: d lᵀ, and right of it W.
     rows: Vec<Four>,
+    /// The blocks Wᵀ.
+    transposed: Vec<[Four; 4]>,
     /// 1/d.
     reciprocal: Vec<c64>,
 }
@@ -136,7 +118,8 @@ pub struct ComplexLdl {
 impl ComplexLdl {
     fn zeros(pattern: &SymmetricBand) -> Self {
         let (size, blocks) = (pattern.size(), pattern.stride() / 4);
-        Self { blocks, rows: vec![ZERO; size * blocks], reciprocal: vec![c64::new(0.0, 0.0); size] }
+        let transposed = vec![[ZERO; 4]; size / 4 * (blocks - 1)];
+        Self { blocks, rows: vec![ZERO; size * blocks], transposed, reciprocal: vec![c64::new(0.0, 0.0); size] }
     }
 
     fn factorize(&mut self, k: &SymmetricBand, m: &SymmetricBand, zeta: c64) -> Result<(), Singular> {
@@ -190,6 +173,15 @@ impl ComplexLdl {
                     }
                 }
             }
+            let transposed = &mut self.transposed[node * (blocks - 1)..];
+            for (block, transposed) in (1..blocks).zip(transposed) {
+                let w = divide_by_pivots(panel, reciprocal, block);
+                for (row, w) in panel.chunks_exact_mut(blocks).zip(w) {
+                    row[block] = w;
+                }
+                let [re, im] = [0, 1].map(|part| Lanes::transpose(w.map(|w| w[part])));
+                *transposed = std::array::from_fn(|c| [re[c], im[c]]);
+            }
         }
         Ok(())
     }
@@ -197,64 +189,78 @@ impl ComplexLdl {
     /// Solves A x = b in place.
     pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
         match self.blocks {
-            2 => self.substitute_window(&mut [ZERO; 2], re, im),
-            4 => self.substitute_window(&mut [ZERO; 4], re, im),
-            6 => self.substitute_window(&mut [ZERO; 6], re, im),
-            _ => self.substitute(&mut vec![ZERO; self.blocks], re, im),
+            2 => self.substitute::<2>(re, im),
+            4 => self.substitute::<4>(re, im),
+            6 => self.substitute::<6>(re, im),
+            _ => self.substitute::<0>(re, im),
         }
     }
 
-    /// Forward and backward substitution with the numbers that a panel touches in a window of registers.
-    fn substitute_window<const BLOCKS: usize>(
-        &self,
-        window: &mut [Four; BLOCKS],
-        re: &mut [f64],
-        im: &mut [f64],
-    ) {
-        self.substitute(window, re, im);
-    }
-
-    /// `window` has as many blocks as a panel. Inlined where that is a constant, it is kept in registers.
-    #[inline(always)]
-    fn substitute(&self, window: &mut [Four], re: &mut [f64], im: &mut [f64]) {
-        let blocks = window.len();
-        for (node, block) in window.iter_mut().enumerate() {
-            *block = unknowns(re, im, node);
-        }
+    /// With the number of blocks a compile-time constant, or 0.
+    fn substitute<const BLOCKS: usize>(&self, re: &mut [f64], im: &mut [f64]) {
+        let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
+        let (re, im) = (re.as_chunks_mut::<4>().0, im.as_chunks_mut::<4>().0);
         let panels = self.rows.chunks_exact(4 * blocks).zip(self.reciprocal.as_chunks::<4>().0);
-        for (node, (panel, reciprocal)) in panels.clone().enumerate() {
-            let mut z = [[0.0; 4]; 2];
-            for (r, row) in panel.chunks_exact(blocks).enumerate() {
-                // What this changes in the first block up to its own place is not read again.
-                let value = number(&window[0], r) * reciprocal[r];
-                for (w, u) in window.iter_mut().zip(row) {
-                    *w = add(-value, u, w);
-                }
-                (z[0][r], z[1][r]) = (value.re, value.im);
+        for (node, (panel, reciprocal)) in panels.enumerate() {
+            let here: [c64; 4] = std::array::from_fn(|r| c64::new(re[node][r], im[node][r]));
+            let rows: [&[Four]; 4] = std::array::from_fn(|r| &panel[blocks * r..blocks * (r + 1)]);
+            for (ahead, (re, im)) in (1..blocks).zip(re[node + 1..].iter_mut().zip(&mut im[node + 1..])) {
+                subtract(rows.map(|row| row[ahead]), here, re, im);
             }
-            re[4 * node..4 * node + 4].copy_from_slice(&z[0]);
-            im[4 * node..4 * node + 4].copy_from_slice(&z[1]);
-            window.copy_within(1.., 0);
-            window[blocks - 1] = unknowns(re, im, node + blocks);
+            let solved = solve_pivots(rows.map(|row| row[0]), reciprocal, here);
+            (re[node], im[node]) = (solved.map(|z| z.re), solved.map(|z| z.im));
         }
-        window.fill(ZERO);
-        for (node, (panel, reciprocal)) in panels.enumerate().rev() {
-            window.copy_within(..blocks - 1, 1);
-            // Zeros meet the entries on the diagonal and left of it.
-            let z = unknowns(re, im, node);
-            let mut here = [[0.0; 4]; 2];
-            for (r, row) in panel.chunks_exact(blocks).enumerate().rev() {
-                window[0] = here.map(Lanes::new);
-                let mut sums = ZERO;
-                for (w, u) in window.iter().zip(row) {
-                    sums = add_products(u, w, &sums);
-                }
-                let x = number(&z, r) - sum(&sums) * reciprocal[r];
-                (here[0][r], here[1][r]) = (x.re, x.im);
+        for (node, transposed) in self.transposed.chunks_exact((blocks - 1).max(1)).enumerate().rev() {
+            let ([re, re_later @ ..], [im, im_later @ ..]) = (&mut re[node..], &mut im[node..]) else { continue };
+            for (w, (source_re, source_im)) in transposed.iter().zip(re_later.iter().zip(im_later)) {
+                let source = std::array::from_fn(|c| c64::new(source_re[c], source_im[c]));
+                subtract(*w, source, re, im);
             }
-            window[0] = here.map(Lanes::new);
-            re[4 * node..4 * node + 4].copy_from_slice(&here[0]);
-            im[4 * node..4 * node + 4].copy_from_slice(&here[1]);
         }
     }
+}
+
+/// Takes `Σ_r rows_r · factors_r` from four numbers, in two chains.
+#[inline(always)]
+fn subtract(rows: [Four; 4], factors: [c64; 4], re: &mut [f64; 4], im: &mut [f64; 4]) {
+    let sum = add(factors[1], &rows[1], &add(factors[0], &rows[0], &ZERO));
+    let target = [Lanes::new(*re), Lanes::new(*im)];
+    let rest = add(-factors[3], &rows[3], &add(-factors[2], &rows[2], &target));
+    (*re, *im) = ((rest[0] - sum[0]).to_array(), (rest[1] - sum[1]).to_array());
+}
+
+/// W = D⁻¹ U of a block, from the rows of d lᵀ and l⁻¹ U that elimination leaves.
+#[inline(always)]
+fn divide_by_pivots(panel: &[Four], reciprocal: &[c64; 4], block: usize) -> [Four; 4] {
+    let blocks = panel.len() / 4;
+    let mut w = [ZERO; 4];
+    for r in (0..4).rev() {
+        let row = &panel[r * blocks..(r + 1) * blocks];
+        let mut sum = row[block];
+        for c in r + 1..4 {
+            sum = add(-number(&row[0], c), &w[c], &sum);
+        }
+        w[r] = add(reciprocal[r], &sum, &ZERO);
+    }
+    w
+}
+
+/// D⁻¹ b with the rows of d lᵀ.
+#[inline(always)]
+fn solve_pivots(rows: [Four; 4], reciprocal: &[c64; 4], mut b: [c64; 4]) -> [c64; 4] {
+    for r in 0..4 {
+        let z = b[r] * reciprocal[r];
+        for c in r + 1..4 {
+            b[c] -= z * number(&rows[r], c);
+        }
+        b[r] = z;
+    }
+    for r in (0..4).rev() {
+        let mut sum = c64::new(0.0, 0.0);
+        for c in r + 1..4 {
+            sum += number(&rows[r], c) * b[c];
+        }
+        b[r] -= sum * reciprocal[r];
+    }
+    b
 }

@@ -5,7 +5,7 @@
 
 use super::Matrix;
 use super::symmetric::SymmetricBand;
-use crate::lanes::Lanes;
+use crate::lanes::{self, Lanes};
 
 /// c ⊗ 1₂, its upper half.
 #[derive(Clone, Debug)]
@@ -66,6 +66,22 @@ impl IsotropicBand {
         }
     }
 
+    /// `y += A x` for four vectors side by side.
+    pub fn multiply_add_lanes(&self, x: &[Lanes], y: &mut [Lanes]) {
+        let (x, y) = (x.as_chunks::<4>().0, y.as_chunks_mut::<4>().0);
+        for (node, row) in self.data.chunks_exact(self.blocks).enumerate() {
+            let [a, b, c, d] = row[0].map(Lanes::splat);
+            let mut sums = add_block([a, b, c, d], &x[node], &y[node]);
+            for (ahead, block) in row[1..].iter().enumerate().take(self.nodes - 1 - node) {
+                let [a, b, c, d] = block.map(Lanes::splat);
+                let other = node + 1 + ahead;
+                sums = add_block([a, b, c, d], &x[other], &sums);
+                y[other] = add_block([a, c, b, d], &x[node], &y[other]);
+            }
+            y[node] = sums;
+        }
+    }
+
     /// The rows of which no block reaches beyond the last node, their number known at compile time; returns how many these are.
     fn whole_rows<const BLOCKS: usize>(&self, factor: f64, x: &[[f64; 4]], y: &mut [[f64; 4]]) -> usize {
         let whole = (self.nodes + 1).saturating_sub(BLOCKS);
@@ -92,6 +108,17 @@ fn add_row(factor: f64, row: &[[f64; 4]], x: &[[f64; 4]], y: &mut [[f64; 4]]) {
         *y = product([a, c, b, d], scaled, Lanes::new(*y)).to_array();
     }
     y[0] = sum.mul_add(Lanes::splat(factor), Lanes::new(y[0])).to_array();
+}
+
+/// A block times the coefficients of a node in four states, plus `sum`.
+#[inline(always)]
+fn add_block([a, b, c, d]: [Lanes; 4], x: &[Lanes; 4], sum: &[Lanes; 4]) -> [Lanes; 4] {
+    [
+        b.mul_add(x[2], a.mul_add(x[0], sum[0])),
+        b.mul_add(x[3], a.mul_add(x[1], sum[1])),
+        d.mul_add(x[2], c.mul_add(x[0], sum[2])),
+        d.mul_add(x[3], c.mul_add(x[1], sum[3])),
+    ]
 }
 
 /// Twice the first and twice the second pair.
@@ -135,6 +162,16 @@ impl Inertia {
         match self {
             Self::Isotropic(band) => band.multiply_add(factor, x, y),
             Self::Any(matrix) => matrix.multiply_add(factor, x, y),
+        }
+    }
+
+    /// `y += M x` for four vectors side by side; `scratch` has two vectors of their length.
+    pub fn multiply_add_lanes(&self, x: &[Lanes], y: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
+        match self {
+            Self::Isotropic(band) => band.multiply_add_lanes(x, y),
+            Self::Any(matrix) => {
+                lanes::one_by_one(x, y, scratch, |_, x, y| matrix.multiply_add(1.0, x, y));
+            }
         }
     }
 }

@@ -11,6 +11,7 @@
 use super::Singular;
 use super::band::Band;
 use super::fma::fma;
+use crate::lanes::Lanes;
 
 /// Upper half of a symmetric matrix, banded by blocks.
 #[derive(Clone, Debug)]
@@ -189,10 +190,17 @@ impl SymmetricBand {
     }
 }
 
-/// A = L D Lᵀ without pivoting. The rows hold D Lᵀ.
+/// A = L D Lᵀ without pivoting, D of blocks of 4 × 4, which are D = l d lᵀ in turn.
+///
+/// The blocks right of the diagonal hold W = D⁻¹ U, so that a substitution is a product with W or Wᵀ from node to node: one after
+/// the other only as far as it must be, and by whole registers. Solving with the pivots themselves waits for nothing and is waited for by nothing.
 #[derive(Clone, Debug)]
 pub struct Ldl {
+    /// d lᵀ on the diagonal, W right of it.
     rows: SymmetricBand,
+    /// The blocks Wᵀ.
+    transposed: Vec<[[f64; 4]; 4]>,
+    /// 1/d.
     reciprocal: Vec<f64>,
     negative: usize,
 }
@@ -206,9 +214,14 @@ impl Ldl {
     /// # Errors
     /// [`Singular`] where a pivot vanishes against the diagonal entry it came from, or is not finite.
     pub fn new(matrix: &SymmetricBand) -> Result<Self, Singular> {
-        let mut ldl = Self { rows: matrix.clone(), reciprocal: vec![0.0; matrix.size()], negative: 0 };
+        let mut ldl = Self::of(matrix);
         ldl.factorize()?;
         Ok(ldl)
+    }
+
+    fn of(matrix: &SymmetricBand) -> Self {
+        let transposed = vec![[[0.0; 4]; 4]; matrix.nodes * (matrix.blocks - 1)];
+        Self { rows: matrix.clone(), transposed, reciprocal: vec![0.0; matrix.size()], negative: 0 }
     }
 
     /// Factorises `matrix`, plus c M where `shift` is (c, M), in the memory of this factorisation of the same pattern.
@@ -221,7 +234,7 @@ impl Ldl {
         shift: Option<(f64, &SymmetricBand)>,
     ) -> Result<(), Singular> {
         if self.rows.data.len() != matrix.data.len() || self.rows.blocks != matrix.blocks {
-            *self = Self { rows: matrix.clone(), reciprocal: vec![0.0; matrix.size()], negative: 0 };
+            *self = Self::of(matrix);
         }
         match shift {
             None => self.rows.data.copy_from_slice(&matrix.data),
@@ -296,6 +309,14 @@ impl Ldl {
                     }
                 }
             }
+            let transposed = &mut self.transposed[node * (stride / 4 - 1)..];
+            for (block, transposed) in (1..stride / 4).zip(transposed) {
+                let w = divide_by_pivots(panel, &reciprocal, block);
+                for (row, w) in panel.chunks_exact_mut(stride).zip(w) {
+                    row[4 * block..4 * block + 4].copy_from_slice(&w.to_array());
+                }
+                *transposed = Lanes::transpose(w).map(Lanes::to_array);
+            }
         }
         Ok(())
     }
@@ -303,81 +324,34 @@ impl Ldl {
     /// Solves A x = b in place.
     pub fn solve(&self, b: &mut [f64]) {
         match self.rows.blocks {
-            2 => self.substitute_window::<8>(b),
-            4 => self.substitute_window::<16>(b),
-            6 => self.substitute_window::<24>(b),
-            _ => self.substitute(b),
+            2 => self.substitute::<2>(b),
+            4 => self.substitute::<4>(b),
+            6 => self.substitute::<6>(b),
+            _ => self.substitute::<0>(b),
         }
     }
 
-    /// Forward and backward substitution with the `STRIDE` numbers that a panel touches in a window of registers. What
-    /// reaches beyond the last unknown is multiplied by zeros.
-    fn substitute_window<const STRIDE: usize>(&self, b: &mut [f64]) {
-        let (panels, _) = self.rows.data.as_chunks::<STRIDE>();
-        let (panels, _) = panels.as_chunks::<4>();
-        let (reciprocals, _) = self.reciprocal.as_chunks::<4>();
-        let ahead = STRIDE - 4;
-        let mut window = [0.0; STRIDE];
-        let loaded = b.len().min(STRIDE);
-        window[..loaded].copy_from_slice(&b[..loaded]);
-        for (node, (panel, reciprocal)) in panels.iter().zip(reciprocals).enumerate() {
-            for r in 0..4 {
-                let z = window[r] * reciprocal[r];
-                for c in r + 1..4 {
-                    window[c] = fma(-z, panel[r][c], window[c]);
-                }
-                for c in 4..STRIDE {
-                    window[c] = fma(-z, panel[r][c], window[c]);
-                }
-                b[4 * node + r] = z;
+    /// With the number of blocks a compile-time constant, or 0.
+    fn substitute<const BLOCKS: usize>(&self, b: &mut [f64]) {
+        let blocks = if BLOCKS == 0 { self.rows.blocks } else { BLOCKS };
+        let panels = self.rows.data.chunks_exact(16 * blocks);
+        let x = b.as_chunks_mut::<4>().0;
+        for (node, (panel, reciprocal)) in panels.zip(self.reciprocal.as_chunks::<4>().0).enumerate() {
+            let Some((here, later)) = x[node..].split_first_mut() else { break };
+            let rows: [&[f64]; 4] = std::array::from_fn(|r| &panel[4 * blocks * r..4 * blocks * (r + 1)]);
+            let sources = here.map(Lanes::splat);
+            for (ahead, target) in (1..blocks).zip(later) {
+                let w = rows.map(|row| Lanes::new(four(row, ahead)));
+                *target = subtract(w, sources, *target);
             }
-            window.copy_within(4.., 0);
-            let next = 4 * node + STRIDE;
-            match b.get(next..next + 4) {
-                Some(values) => window[ahead..].copy_from_slice(values),
-                None => window[ahead..].fill(0.0),
-            }
+            *here = solve_pivots(rows.map(|row| four(row, 0)), reciprocal, *here);
         }
-        window.fill(0.0);
-        for (node, (panel, reciprocal)) in panels.iter().zip(reciprocals).enumerate().rev() {
-            window.copy_within(..ahead, 4);
-            for r in (0..4).rev() {
-                let mut lanes = [0.0; 4];
-                for c in (4..STRIDE).step_by(4) {
-                    for lane in 0..4 {
-                        lanes[lane] = fma(panel[r][c + lane], window[c + lane], lanes[lane]);
-                    }
-                }
-                let mut sum = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-                for c in r + 1..4 {
-                    sum = fma(panel[r][c], window[c], sum);
-                }
-                let x = fma(-sum, reciprocal[r], b[4 * node + r]);
-                (window[r], b[4 * node + r]) = (x, x);
+        let transposed = self.transposed.chunks_exact((blocks - 1).max(1));
+        for (node, transposed) in transposed.enumerate().rev() {
+            let Some((here, later)) = x[node..].split_first_mut() else { continue };
+            for (w, source) in transposed.iter().zip(later) {
+                *here = subtract(w.map(Lanes::new), source.map(Lanes::splat), *here);
             }
-        }
-    }
-
-    fn substitute(&self, b: &mut [f64]) {
-        let stride = self.rows.stride();
-        let n = self.rows.size();
-        for i in 0..n {
-            let start = 4 * (i / 4);
-            let end = (start + stride).min(n);
-            let row = &self.rows.data[i * stride..(i + 1) * stride];
-            let z = b[i] * self.reciprocal[i];
-            for (t, u) in b[i + 1..end].iter_mut().zip(&row[i + 1 - start..]) {
-                *t = fma(-z, *u, *t);
-            }
-            b[i] = z;
-        }
-        for i in (0..n).rev() {
-            let start = 4 * (i / 4);
-            let end = (start + stride).min(n);
-            let row = &self.rows.data[i * stride..(i + 1) * stride];
-            let sum: f64 =
-                b[i + 1..end].iter().zip(&row[i + 1 - start..]).fold(0.0, |sum, (x, u)| fma(*x, *u, sum));
-            b[i] = fma(-sum, self.reciprocal[i], b[i]);
         }
     }
 
@@ -385,4 +359,51 @@ impl Ldl {
     pub fn negative_pivots(&self) -> usize {
         self.negative
     }
+}
+
+/// The numbers of a row that belong to block `block`.
+#[inline(always)]
+fn four(row: &[f64], block: usize) -> [f64; 4] {
+    row[4 * block..].first_chunk().copied().unwrap_or_default()
+}
+
+/// `target − Σ_r rows_r · factors_r`, in two chains.
+#[inline(always)]
+fn subtract(rows: [Lanes; 4], factors: [Lanes; 4], target: [f64; 4]) -> [f64; 4] {
+    let sum = rows[1].mul_add(factors[1], rows[0] * factors[0]);
+    let rest = rows[3].mul_neg_add(factors[3], rows[2].mul_neg_add(factors[2], Lanes::new(target)));
+    (rest - sum).to_array()
+}
+
+/// W = D⁻¹ U of a block, from the rows of d lᵀ and l⁻¹ U that elimination leaves.
+#[inline(always)]
+fn divide_by_pivots(panel: &[f64], reciprocal: &[f64; 4], block: usize) -> [Lanes; 4] {
+    let stride = panel.len() / 4;
+    let mut w = [Lanes::ZERO; 4];
+    for r in (0..4).rev() {
+        let row = &panel[r * stride..(r + 1) * stride];
+        let mut sum = Lanes::new(four(row, block));
+        for c in r + 1..4 {
+            sum = Lanes::splat(row[c]).mul_neg_add(w[c], sum);
+        }
+        w[r] = sum * Lanes::splat(reciprocal[r]);
+    }
+    w
+}
+
+/// D⁻¹ b with the rows of d lᵀ.
+#[inline(always)]
+fn solve_pivots(rows: [[f64; 4]; 4], reciprocal: &[f64; 4], mut b: [f64; 4]) -> [f64; 4] {
+    for r in 0..4 {
+        let z = b[r] * reciprocal[r];
+        for c in r + 1..4 {
+            b[c] = fma(-z, rows[r][c], b[c]);
+        }
+        b[r] = z;
+    }
+    for r in (0..4).rev() {
+        let sum = (r + 1..4).fold(0.0, |sum, c| fma(rows[r][c], b[c], sum));
+        b[r] = fma(-sum, reciprocal[r], b[r]);
+    }
+    b
 }

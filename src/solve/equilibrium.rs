@@ -223,8 +223,12 @@ pub(super) fn balance(
     system.supports().to_frames(load, force);
     negative.iter_mut().zip(&*force).for_each(|(negative, force)| *negative = -force);
     let residual = largest(force, units);
-    let floor = ROUND_OFFS / RESIDUAL_TOLERANCE * system.round_off();
-    if residual == 0.0 { 0.0 } else { residual / (scale + floor) }
+    if residual == 0.0 { 0.0 } else { residual / (scale + floor(system)) }
+}
+
+/// The force to which a residual is compared where nothing else acts.
+pub(super) fn floor(system: &System) -> f64 {
+    ROUND_OFFS / RESIDUAL_TOLERANCE * system.round_off()
 }
 
 /// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not count.

@@ -3,6 +3,7 @@
 use super::course::Amplitude;
 use super::{Acting, System};
 use crate::effect::{Earlier, Effect, Kind, Travelling, Workspace};
+use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 use crate::trajectory::Energy;
 
@@ -17,6 +18,22 @@ impl System {
             effect.add_force(amplitude, q, f);
         }
         self.travelling.iter().for_each(|force| force.add_force(parameter, f));
+    }
+
+    /// The forces of [`Self::force`] in the states of four lanes, each at its own `parameters`; `scratch` has two vectors of coordinates.
+    pub fn forces(&self, parameters: [f64; 4], q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
+        let factor = Lanes::new(parameters.map(|parameter| self.amplitude.at(parameter)));
+        f.iter_mut().zip(&self.constant_load).for_each(|(f, load)| *f = factor * Lanes::splat(*load));
+        for effect in &self.internal {
+            effect.add_forces(Lanes::ONE, q, f, scratch);
+        }
+        for load in self.loads.iter().filter(|load| !load.is_summed()) {
+            let amplitude = self.amplitude_of(load);
+            load.effect.add_forces(Lanes::new(parameters.map(|p| amplitude.at(p))), q, f, scratch);
+        }
+        for force in &self.travelling {
+            lanes::one_by_one(q, f, scratch, |lane, _, f| force.add_force(parameters[lane], f));
+        }
     }
 
     /// `f += factor · ∂f/∂λ` of loads in proportion to the load factor.

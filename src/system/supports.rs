@@ -9,6 +9,7 @@
 //! - a held direction θ lets (x', y') = a (cos θ, sin θ) with a free: in the frame turned by θ the second component is
 //!   fixed to zero.
 
+use crate::lanes::Real;
 use super::course::Course;
 use crate::linear::Matrix;
 
@@ -88,14 +89,15 @@ pub struct Supports {
 /// Values of a pair of coordinates, their velocities and accelerations.
 type PairMotion = [[f64; 2]; 3];
 
-fn rotate([cosine, sine]: [f64; 2], pair: &mut [f64]) {
+fn rotate<T: Real>([cosine, sine]: [f64; 2], pair: &mut [T]) {
+    let (cosine, sine) = (T::of(cosine), T::of(sine));
     (pair[0], pair[1]) = (cosine * pair[0] + sine * pair[1], cosine * pair[1] - sine * pair[0]);
 }
 
-fn clear(pair: &mut [f64], which: [bool; 2]) {
+fn clear<T: Real>(pair: &mut [T], which: [bool; 2]) {
     for (value, which) in pair.iter_mut().zip(which) {
         if which {
-            *value = 0.0;
+            *value = T::of(0.0);
         }
     }
 }
@@ -144,7 +146,7 @@ impl Supports {
     }
 
     /// Turns a vector of forces or increments into the frames of the supports and clears what is held.
-    pub fn to_frames(&self, load: f64, v: &mut [f64]) {
+    pub fn to_frames<T: Real>(&self, load: f64, v: &mut [T]) {
         for held in &self.held {
             let (frame, fixed) = held.frame(load);
             let pair = &mut v[2 * held.pair..2 * held.pair + 2];
@@ -155,7 +157,7 @@ impl Supports {
 
     /// Turns increments back from the frames of the supports, except where these turn with time: there the unknowns of a motion are
     /// components in the frame.
-    pub fn from_frames(&self, load: f64, v: &mut [f64]) {
+    pub fn from_frames<T: Real>(&self, load: f64, v: &mut [T]) {
         for held in self.held.iter().filter(|held| !held.turns()) {
             let ([cosine, sine], _) = held.frame(load);
             rotate([cosine, -sine], &mut v[2 * held.pair..2 * held.pair + 2]);

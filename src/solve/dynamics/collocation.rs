@@ -41,8 +41,10 @@
 use super::State;
 use super::method::Method;
 use super::motion::{Motion, Rates};
+use super::stages::{self, Mixture, Stages};
 use super::tableau::{Block, Tableau};
 use super::turns::Turns;
+use crate::lanes::Lanes;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::{Factor, Singular};
 use crate::solve::newton::{Failure, Iterations};
@@ -115,12 +117,11 @@ pub struct Collocation<'a> {
     smooth: bool,
     stage: Vec<f64>,
     acceleration: Vec<f64>,
-    velocity: Vec<f64>,
-    residuals: Vec<Vec<f64>>,
+    stages: Stages,
     transformed: Vec<Vec<f64>>,
     increment: Vec<f64>,
-    /// Per stage: from where the tangent was taken.
-    turns: Vec<Turns>,
+    /// From where the tangent was taken.
+    turns: Turns,
 }
 
 impl<'a> Collocation<'a> {
@@ -138,11 +139,10 @@ impl<'a> Collocation<'a> {
             smooth: true,
             stage: vec![0.0; unknowns],
             acceleration: vec![0.0; n],
-            velocity: vec![0.0; n],
-            residuals: stages.clone(),
             transformed: stages,
             increment: vec![0.0; unknowns],
-            turns: vec![motion.turns(); s],
+            turns: motion.turns(),
+            stages: motion.stages(),
             motion,
             tableau,
         }
@@ -204,24 +204,6 @@ impl<'a> Collocation<'a> {
         self.stage[n..].copy_from_slice(&self.displacements[i][n..]);
     }
 
-    /// Q̇_i = v₀ + h⁻¹ Σ_j (A⁻¹)_ij Y_j, where forces depend on it.
-    fn velocity(&mut self, i: usize, from: &State, h: f64) {
-        if self.motion.needs_velocity() {
-            let weights = (0..self.tableau.stages()).map(|j| self.tableau.inverse[(i, j)] / h);
-            combine(&mut self.velocity, weights, &self.displacements);
-            self.velocity.iter_mut().zip(&from.v).for_each(|(v, start)| *v += start);
-        }
-    }
-
-    /// Q̈_i = h⁻² Σ_j (A⁻²)_ij Y_j.
-    fn accelerate(&mut self, i: usize, h: f64) {
-        combine(
-            &mut self.acceleration,
-            (0..self.tableau.stages()).map(|j| self.tableau.inverse_squared[(i, j)] / (h * h)),
-            &self.displacements,
-        );
-    }
-
     /// The scaled multipliers of the last stage.
     fn multipliers(&self) -> Vec<f64> {
         let n = self.motion.coordinates();
@@ -254,12 +236,16 @@ impl<'a> Collocation<'a> {
 
     /// Turns the tangent with each node to where it is in each stage.
     fn turn(&mut self, from: &State, h: f64) {
-        for i in 0..self.tableau.stages() {
-            self.stage(i, from, h);
-            if let Some(Kept { at, .. }) = &self.kept {
-                self.turns[i].measure(&at.q, &self.stage[..at.q.len()]);
-            }
+        self.stages.place(from, self.in_lanes(|i| self.tableau.nodes[i] * h), &self.displacements);
+        if let Some(Kept { at, .. }) = &self.kept {
+            self.stages.measure_turns(&at.q);
         }
+    }
+
+    /// A number for every stage; the last one again in lanes beyond it.
+    fn in_lanes(&self, of: impl Fn(usize) -> f64) -> Lanes {
+        let last = self.tableau.stages() - 1;
+        Lanes::new(std::array::from_fn(|lane| of(lane.min(last))))
     }
 
     /// The mean of the stages.
@@ -275,22 +261,14 @@ impl<'a> Collocation<'a> {
 
     /// One iteration; returns the scaled increment and residual.
     fn iterate(&mut self, from: &State, h: f64) -> (f64, f64) {
-        let (s, n) = (self.tableau.stages(), self.motion.coordinates());
-        let mut residual = 0.0_f64;
-        for i in 0..s {
-            self.stage(i, from, h);
-            self.accelerate(i, h);
-            self.velocity(i, from, h);
-            let time = from.time + self.tableau.nodes[i] * h;
-            let rates = Rates { time, v: &self.velocity, a: &self.acceleration };
-            let scaled = self.motion.residual(&self.stage, rates, &mut self.residuals[i]);
-            residual = if scaled.is_nan() { scaled } else { residual.max(scaled) };
-            self.turns[i].back(&mut self.residuals[i][..n]);
-        }
-        for k in 0..s {
-            let row = (0..s).map(|i| self.tableau.inverse_transformation[(k, i)]);
-            combine(&mut self.transformed[k], row, &self.residuals);
-        }
+        let s = self.tableau.stages();
+        self.stages.place(from, self.in_lanes(|i| self.tableau.nodes[i] * h), &self.displacements);
+        let acceleration = Mixture::new(&self.tableau.inverse_squared, (h * h).recip());
+        self.stages.move_on(from, &acceleration, &Mixture::new(&self.tableau.inverse, h.recip()));
+        let times = self.in_lanes(|i| from.time + self.tableau.nodes[i] * h).to_array();
+        let residual = self.motion.residuals(times, s, &mut self.stages);
+        let apart = Mixture::new(&self.tableau.inverse_transformation, 1.0);
+        self.stages.take_apart(&apart, &mut self.transformed);
         for (block, factor) in self.tableau.blocks.iter().zip(&self.factors) {
             match (block, factor) {
                 (Block::Real { row, .. }, BlockFactor::Real(factor)) => {
@@ -303,16 +281,10 @@ impl<'a> Collocation<'a> {
                 _ => {}
             }
         }
-        let mut size = 0.0_f64;
-        for i in 0..s {
-            let row = (0..s).map(|k| self.tableau.transformation[(i, k)]);
-            combine(&mut self.increment, row, &self.transformed);
-            self.turns[i].forth(&mut self.increment[..n]);
-            self.motion.from_frames(&mut self.increment);
-            let this = self.motion.size(&self.increment);
-            size = if this.is_nan() { this } else { size.max(this) };
-            self.displacements[i].iter_mut().zip(&self.increment).for_each(|(y, d)| *y += d);
-        }
+        self.stages.put_together(&Mixture::new(&self.tableau.transformation, 1.0), &self.transformed);
+        self.motion.from_frames(&mut self.stages.residual);
+        let size = self.motion.size_of_stages(&self.stages.residual, s);
+        self.stages.add_to(&mut self.displacements);
         self.motion.statistics.newton_iterations += 1;
         (size, residual)
     }
@@ -398,9 +370,9 @@ impl<'a> Collocation<'a> {
         self.motion.residual(&self.stage, rates, &mut e);
         e[n..].fill(0.0);
         if let Some(Kept { at, .. }) = &self.kept {
-            self.turns[0].measure(&at.q, &state.q);
+            self.turns.measure(&at.q, &state.q);
         }
-        self.turns[0].back(&mut e[..n]);
+        self.turns.back(&mut e[..n]);
         let mut factor = 0.0;
         for (block, matrix) in self.tableau.blocks.iter().zip(&self.factors) {
             match (block, matrix) {
@@ -415,7 +387,7 @@ impl<'a> Collocation<'a> {
                 _ => {}
             }
         }
-        self.turns[0].forth(&mut e[..n]);
+        self.turns.forth(&mut e[..n]);
         self.motion.from_frames(&mut e);
         e.truncate(n);
         (e, factor)
@@ -486,7 +458,11 @@ impl Method for Collocation<'_> {
         let (damped, undamped) = TOLERANCE_OF_ERROR;
         let part = if self.tableau.damps() { damped } else { undamped };
         let tolerance = accuracy.map_or(tight, |allowed| (part * allowed.min(LARGEST_ERROR)).max(tight));
-        self.solve_stages(from, h, tolerance, accuracy.is_some(), record)?;
+        let solved = self.solve_stages(from, h, tolerance, accuracy.is_some(), record);
+        if solved.is_err() {
+            self.increment = stages::lane(&self.stages.residual, self.tableau.stages() - 1);
+        }
+        solved?;
         self.trial_step = h;
         let s = self.tableau.stages();
         for (i, (q, v)) in to.q.iter_mut().zip(&mut to.v).enumerate() {
@@ -512,10 +488,8 @@ impl Method for Collocation<'_> {
         let h = self.trial_step;
         // Round-off must not decide where both are as good.
         self.smooth = self.miss(true) <= 2.0 * self.miss(false);
-        for i in 0..self.tableau.stages() {
-            self.accelerate(i, h);
-            self.accelerations[i].copy_from_slice(&self.acceleration);
-        }
+        let acceleration = Mixture::new(&self.tableau.inverse_squared, (h * h).recip());
+        self.stages.accelerations(&acceleration, &mut self.accelerations);
         self.last_step = h;
     }
 

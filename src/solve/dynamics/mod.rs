@@ -30,7 +30,8 @@ mod record;
 pub mod start;
 pub mod tableau;
 mod touch;
-pub mod turns;
+pub mod stages;
+mod turns;
 
 use super::newton::Failure;
 use crate::trajectory::{Statistics, StepRecord};

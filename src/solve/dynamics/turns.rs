@@ -5,11 +5,53 @@
 //! q but for the change of stress and shape. So a residual is turned back by Rᵀ, solved for with the old factorisation, and the increment turned
 //! forth by R.
 
+use crate::lanes::{Pair, Real, cross, dot};
+
+/// A turn of a node, in one state or in four.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<T> {
+    cosine: T,
+    sine: T,
+}
+
+impl<T: Real> Turn<T> {
+    /// No turn.
+    pub fn none() -> Self {
+        Self { cosine: T::of(1.0), sine: T::of(0.0) }
+    }
+
+    /// From the gradient `start` to the gradient `now`.
+    #[inline(always)]
+    pub fn between(start: Pair<T>, now: Pair<T>) -> Self {
+        let (cosine, sine) = (dot(now, start), cross(start, now));
+        let inverse = (cosine * cosine + sine * sine).sqrt().inverse();
+        Self { cosine: cosine * inverse, sine: sine * inverse }
+    }
+
+    /// R v.
+    #[inline(always)]
+    pub fn forth(&self, v: &mut [T; 4]) {
+        let Self { cosine, sine } = *self;
+        let [a, b, c, d] = *v;
+        *v = [
+            cosine.fma(a, -(sine * b)),
+            cosine.fma(b, sine * a),
+            cosine.fma(c, -(sine * d)),
+            cosine.fma(d, sine * c),
+        ];
+    }
+
+    /// Rᵀ v.
+    #[inline(always)]
+    pub fn back(&self, v: &mut [T; 4]) {
+        Self { cosine: self.cosine, sine: -self.sine }.forth(v);
+    }
+}
+
 /// R, node by node.
 #[derive(Clone, Debug)]
 pub struct Turns {
-    /// Cosine and sine of φ_i.
-    turns: Vec<[f64; 2]>,
+    turns: Vec<Turn<f64>>,
     /// Nodes that do not turn: a held component of a position must stay what it is.
     still: Vec<usize>,
 }
@@ -17,43 +59,27 @@ pub struct Turns {
 impl Turns {
     /// No turn of any of `nodes` nodes; those of `still` never turn.
     pub fn new(nodes: usize, still: Vec<usize>) -> Self {
-        Self { turns: vec![[1.0, 0.0]; nodes], still }
+        Self { turns: vec![Turn::none(); nodes], still }
     }
 
     /// Measures the turns from `q0` to `q`.
     pub fn measure(&mut self, q0: &[f64], q: &[f64]) {
-        let nodes = q.chunks_exact(4).zip(q0.chunks_exact(4));
+        let nodes = q.as_chunks::<4>().0.iter().zip(q0.as_chunks::<4>().0);
         for (turn, (x, start)) in self.turns.iter_mut().zip(nodes) {
-            let (cosine, sine) = (x[2] * start[2] + x[3] * start[3], x[3] * start[2] - x[2] * start[3]);
-            let square = cosine * cosine + sine * sine;
-            // Also false for a NaN.
-            *turn = if square > 0.0 {
-                let inverse = 1.0 / square.sqrt();
-                [cosine * inverse, sine * inverse]
-            } else {
-                [1.0, 0.0]
-            };
+            *turn = Turn::between([start[2], start[3]], [x[2], x[3]]);
         }
         for &node in &self.still {
-            self.turns[node] = [1.0, 0.0];
+            self.turns[node] = Turn::none();
         }
     }
 
     /// R v.
     pub fn forth(&self, v: &mut [f64]) {
-        self.turn(v, 1.0);
+        self.turns.iter().zip(v.as_chunks_mut::<4>().0).for_each(|(turn, v)| turn.forth(v));
     }
 
     /// Rᵀ v.
     pub fn back(&self, v: &mut [f64]) {
-        self.turn(v, -1.0);
-    }
-
-    fn turn(&self, v: &mut [f64], sign: f64) {
-        for (v, [cosine, sine]) in v.chunks_exact_mut(4).zip(&self.turns) {
-            let sine = sign * sine;
-            (v[0], v[1]) = (cosine * v[0] - sine * v[1], cosine * v[1] + sine * v[0]);
-            (v[2], v[3]) = (cosine * v[2] - sine * v[3], cosine * v[3] + sine * v[2]);
-        }
+        self.turns.iter().zip(v.as_chunks_mut::<4>().0).for_each(|(turn, v)| turn.back(v));
     }
 }

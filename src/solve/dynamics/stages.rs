@@ -1,0 +1,186 @@
+//! The stages of a collocation method side by side: stage i of every unknown in lane i of a register.
+//!
+//! All stages ask the same of every cell, so that forces, products with the mass matrix and turns are computed for all of them at once. Lanes beyond the
+//! last stage repeat it. Substitutions go through one vector after the other; between them and the lanes blocks of 4 × 4 numbers are transposed.
+
+use super::State;
+use super::turns::Turn;
+use crate::lanes::Lanes;
+use nalgebra::DMatrix;
+
+/// Stages that fit into a register and are in use: three at most.
+const STAGES: usize = 3;
+
+/// A small matrix that mixes the stages of an unknown.
+#[derive(Clone, Copy, Debug)]
+pub struct Mixture {
+    columns: [Lanes; STAGES],
+}
+
+impl Mixture {
+    /// `factor` times `matrix`.
+    pub fn new(matrix: &DMatrix<f64>, factor: f64) -> Self {
+        let s = matrix.nrows();
+        let column = |j: usize| Lanes::new(std::array::from_fn(|i| factor * matrix[(i.min(s - 1), j)]));
+        Self { columns: std::array::from_fn(|j| if j < s { column(j) } else { Lanes::ZERO }) }
+    }
+
+    /// The product with the stages of one unknown.
+    #[inline(always)]
+    pub fn of(&self, stages: Lanes) -> Lanes {
+        let [a, b, c, _] = stages.to_array();
+        let [first, second, third] = self.columns;
+        let sum = first * Lanes::splat(a);
+        third.mul_add(Lanes::splat(c), second.mul_add(Lanes::splat(b), sum))
+    }
+}
+
+/// Takes vectors, one a stage, into lanes.
+pub fn gather(vectors: &[Vec<f64>], lanes: &mut [Lanes]) {
+    let of_lane = |lane: usize| &vectors[lane.min(vectors.len() - 1)][..];
+    let of_lane: [&[f64]; 4] = std::array::from_fn(of_lane);
+    let blocks = of_lane.map(|vector| vector.as_chunks::<4>().0);
+    let whole = blocks[0].len();
+    for (k, target) in lanes.as_chunks_mut::<4>().0[..whole].iter_mut().enumerate() {
+        *target = Lanes::transpose(blocks.map(|blocks| Lanes::new(blocks[k])));
+    }
+    for (k, target) in lanes.iter_mut().enumerate().skip(4 * whole) {
+        *target = Lanes::new(of_lane.map(|vector| vector[k]));
+    }
+}
+
+/// Writes lanes back to vectors, one a stage.
+pub fn scatter(lanes: &[Lanes], vectors: &mut [Vec<f64>]) {
+    let (blocks, rest) = lanes.as_chunks::<4>();
+    for (k, block) in blocks.iter().enumerate() {
+        let rows = Lanes::transpose(*block);
+        for (vector, row) in vectors.iter_mut().zip(rows) {
+            if let Some(target) = vector.as_chunks_mut::<4>().0.get_mut(k) {
+                *target = row.to_array();
+            }
+        }
+    }
+    for (k, values) in rest.iter().enumerate() {
+        for (vector, value) in vectors.iter_mut().zip(values.to_array()) {
+            vector[4 * blocks.len() + k] = value;
+        }
+    }
+}
+
+/// One stage of all unknowns.
+pub fn lane(lanes: &[Lanes], lane: usize) -> Vec<f64> {
+    lanes.iter().map(|values| values.to_array()[lane]).collect()
+}
+
+/// The largest size of any stage of any number, those of a node in `units`; a NaN wins.
+pub fn largest(numbers: &[Lanes], units: [f64; 4]) -> Lanes {
+    let mut sizes = Lanes::ZERO;
+    let mut not_finite = Lanes::ZERO;
+    for node in numbers.as_chunks::<4>().0 {
+        for (number, unit) in node.iter().zip(units) {
+            let size = (*number * Lanes::splat(unit)).abs();
+            sizes = size.fast_max(sizes);
+            // ∞ − ∞ and NaN leave a NaN, which a maximum may drop.
+            not_finite = not_finite + (size - size);
+        }
+    }
+    sizes + not_finite
+}
+
+/// What an iteration works with.
+#[derive(Clone, Debug)]
+pub struct Stages {
+    /// Y.
+    displacement: Vec<Lanes>,
+    /// Q, followed by the multipliers.
+    pub x: Vec<Lanes>,
+    /// Q̈.
+    pub acceleration: Vec<Lanes>,
+    /// Q̇, where forces depend on it.
+    pub velocity: Vec<Lanes>,
+    /// The negative residual, then the increment.
+    pub residual: Vec<Lanes>,
+    /// From where the tangent was taken.
+    turns: Vec<Turn<Lanes>>,
+    still: Vec<usize>,
+}
+
+impl Stages {
+    /// For `n` coordinates of `unknowns`; the nodes `still` do not turn.
+    pub fn new(n: usize, unknowns: usize, damped: bool, still: Vec<usize>) -> Self {
+        Self {
+            displacement: vec![Lanes::ZERO; unknowns],
+            x: vec![Lanes::ZERO; unknowns],
+            acceleration: vec![Lanes::ZERO; n],
+            velocity: vec![Lanes::ZERO; if damped { n } else { 0 }],
+            residual: vec![Lanes::ZERO; unknowns],
+            turns: vec![Turn::none(); n / 4],
+            still,
+        }
+    }
+
+    /// Q_i = q₀ + c_i h v₀ + Y_i.
+    pub fn place(&mut self, from: &State, ch: Lanes, displacements: &[Vec<f64>]) {
+        gather(displacements, &mut self.displacement);
+        let n = from.q.len();
+        let (x, y) = (&mut self.x[..n], &self.displacement[..n]);
+        let (q, v) = (&from.q[..n], &from.v[..n]);
+        for k in 0..n {
+            x[k] = Lanes::splat(q[k]) + ch.mul_add(Lanes::splat(v[k]), y[k]);
+        }
+        self.x[n..].copy_from_slice(&self.displacement[n..]);
+    }
+
+    /// Q̈_i and, where forces depend on it, Q̇_i.
+    pub fn move_on(&mut self, from: &State, acceleration: &Mixture, velocity: &Mixture) {
+        for (a, y) in self.acceleration.iter_mut().zip(&self.displacement) {
+            *a = acceleration.of(*y);
+        }
+        for ((v, y), start) in self.velocity.iter_mut().zip(&self.displacement).zip(&from.v) {
+            *v = Lanes::splat(*start) + velocity.of(*y);
+        }
+    }
+
+    /// Writes Q̈ to `vectors`, one a stage.
+    pub fn accelerations(&mut self, mixture: &Mixture, vectors: &mut [Vec<f64>]) {
+        for (a, y) in self.acceleration.iter_mut().zip(&self.displacement) {
+            *a = mixture.of(*y);
+        }
+        scatter(&self.acceleration, vectors);
+    }
+
+    /// Measures how far every node has turned since `at`.
+    pub fn measure_turns(&mut self, at: &[f64]) {
+        let nodes = self.x.as_chunks::<4>().0.iter().zip(at.as_chunks::<4>().0);
+        for (turn, (x, start)) in self.turns.iter_mut().zip(nodes) {
+            *turn = Turn::between([start[2], start[3]].map(Lanes::splat), [x[2], x[3]]);
+        }
+        for &node in &self.still {
+            self.turns[node] = Turn::none();
+        }
+    }
+
+    /// Turns the residual back to where the tangent was taken, mixes the stages and writes them to `rows`.
+    pub fn take_apart(&mut self, mixture: &Mixture, rows: &mut [Vec<f64>]) {
+        for (turn, node) in self.turns.iter().zip(self.residual.as_chunks_mut::<4>().0) {
+            turn.back(node);
+        }
+        self.residual.iter_mut().for_each(|r| *r = mixture.of(*r));
+        scatter(&self.residual, rows);
+    }
+
+    /// The increments of the stages from those of the rows.
+    pub fn put_together(&mut self, mixture: &Mixture, rows: &[Vec<f64>]) {
+        gather(rows, &mut self.residual);
+        self.residual.iter_mut().for_each(|r| *r = mixture.of(*r));
+        for (turn, node) in self.turns.iter().zip(self.residual.as_chunks_mut::<4>().0) {
+            turn.forth(node);
+        }
+    }
+
+    /// Adds the increments to the displacements.
+    pub fn add_to(&mut self, displacements: &mut [Vec<f64>]) {
+        self.displacement.iter_mut().zip(&self.residual).for_each(|(y, d)| *y += *d);
+        scatter(&self.displacement, displacements);
+    }
+}
