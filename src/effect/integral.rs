@@ -1,38 +1,22 @@
 //! The sum of a density over a table of shape functions: where the time of a Newton iteration goes.
 //!
 //! The work is dispatched once per effect on the table's width, so that the loops below are compiled with the number
-//! of functions known (4 for the cable element; 8, 10 and 12 for radial point interpolation), and runs in two passes
-//! per cell. The first evaluates the density at the cell's points and multiplies its second derivatives into the rows,
-//!
-//! ```text
-//! P_md = w Σ_n H_mn(d, ·) N⁽ᵒⁿ⁾        (2 M rows of 2 W numbers, x and y interleaved, per point)
-//! ```
-//!
-//! the second adds Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md to row (a, d) of the matrix, a tile of 4 × 4 numbers (two nodes) at a
-//! time, so that the tile stays in registers while the points go by and is loaded and stored once per cell. Of a
-//! symmetric matrix only the tiles on and above the diagonal are computed.
+//! of functions known (4 for the cable element; 8 and 12 for radial point interpolation): forces in `force.rs`, tangents in `tangent.rs`. Other widths
+//! are summed by the loops of this file.
 //!
 //! # What was measured
-//! A Newton iteration of 1000 cable elements with 5/3 points takes 0.31 µs an element on one core of a 2023 server
-//! (0.34 µs with 10 000, 0.46 µs with 100 000, where the matrices leave the caches): 0.19 µs are spent here, 0.04 µs in the
-//! LDLᵀ, the rest in the substitutions and the supports. The tiles' 528 multiply–adds would take 0.02 µs at the machine's
-//! peak: what bounds this loop are the short dependent sums of the local fields and the divisions of the curvature, not
-//! the tiles. Fields are summed two functions at a time, x and y of both in the four lanes of a register; without a closure around the
-//! loop, which the compiler does not inline. With 12 functions that halves the instructions of a force, with 4 it changes
-//! nothing.
+//! Forces of cable elements are bound by the short dependent sums of the local fields and by the divisions of the curvature, so that four of them side by
+//! side in the lanes of a register take the time of one and a half: 210 instructions an element with 5/3 points by fours, 520 alone. A tangent
+//! takes 1 400 (with 3/2 points); its tiles' 528 multiply–adds would take 0.02 µs at the machine's peak.
 //!
-//! A force alone keeps the cell's coordinates and sums in registers: 520 instructions an element with 5/3 points, a third of what the
-//! same loop over slices took. A step of the trapezoidal rule (30 elements, 1 ms, two iterations with a kept tangent) takes 76 000 instructions:
-//! 41 % are forces, 11 % substitutions, 9 % products with the mass matrix, 3 % new tangents, the rest passes over vectors. The windows in
-//! registers of [`crate::linear::symmetric`] made substitution and product six times as short as loops over slices. Four elements side by
-//! side in the lanes of the registers were tried for forces, with densities written for arrays: the compiler kept them scalar, and a tenth was gained.
-//!
-//! Gauss collocation on 20 RPIM nodes (three stages, 5 ms, 8 iterations a step) takes 1.44 million instructions a step: a third are forces, a
-//! quarter the tangent with its real and its complex factorisation, a fifth substitutions, a tenth products with the mass matrix.
+//! A step of the trapezoidal rule (30 elements, 1 ms, two iterations with a kept tangent) takes 47 000 instructions, 76 000 before there were lanes:
+//! 31 % are forces, 15 % substitutions, 13 % new tangents, 7 % products with the mass matrix, the rest passes over vectors. A step of Radau's method
+//! (23 elements with Lobatto points, 2.5 iterations) takes 190 000: 32 % are the tangent and its two factorisations, 18 % forces, 16 % substitutions. In
+//! substitutions it is not the count of instructions that decides but how long one waits for the other ([`crate::linear::symmetric::Ldl`]).
 
 use super::{Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
-use crate::lanes::{self, Lanes, Pair, Points};
+use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 use crate::linear::fma::fma;
 use nalgebra::Vector2;
@@ -53,8 +37,8 @@ pub struct Integral<D, const M: usize> {
     offset: usize,
     pub(super) table: BasisTable,
     /// First cells of four that are alike, each a node further than the one before, and all cells that are in no such four.
-    fours: Vec<u32>,
-    singles: Vec<u32>,
+    pub(super) fours: Vec<u32>,
+    pub(super) singles: Vec<u32>,
     pub(super) density: D,
 }
 
@@ -153,139 +137,10 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         }
     }
 
-    fn force_within<const W: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        if D::BY_FOURS {
-            match self.table.points_per_cell {
-                2 => self.forces_of_fours::<W, 2>(factor, q, f),
-                3 => self.forces_of_fours::<W, 3>(factor, q, f),
-                4 => self.forces_of_fours::<W, 4>(factor, q, f),
-                5 => self.forces_of_fours::<W, 5>(factor, q, f),
-                _ => {}
-            }
-        }
-        for &cell in &self.singles {
-            let cell = cell as usize;
-            let first = self.first(cell);
-            let range = first..first + 2 * W;
-            self.force_of_cell::<W>(cell, factor, &q[range.clone()], &mut f[range]);
-        }
-    }
-
     /// The first coordinate of a cell.
     #[inline(always)]
     pub(super) fn first(&self, cell: usize) -> usize {
         2 * (self.offset + self.table.cells[cell].first as usize)
-    }
-
-    /// `q` and `f` are the coefficients of the cell.
-    #[inline(always)]
-    fn force_of_cell<const W: usize>(&self, cell: usize, factor: f64, q: &[f64], f: &mut [f64]) {
-        let (weights, rows) = self.table.block(self.table.cells[cell]);
-        // Both stay in registers while the points go by.
-        let mut here = [[0.0; 2]; W];
-        let mut sums = [[0.0; 2]; W];
-        here.copy_from_slice(&q.as_chunks().0[..W]);
-        for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * W)).enumerate() {
-            let point = cell * weights.len() + p;
-            let weight = factor * weight;
-            let rows = &rows.as_chunks::<W>().0[..M];
-            let mut z = [Vector2::zeros(); M];
-            for (z, row) in z.iter_mut().zip(rows) {
-                let mut sum = [0.0; 2];
-                for a in 0..W {
-                    sum[0] = fma(row[a], here[a][0], sum[0]);
-                    sum[1] = fma(row[a], here[a][1], sum[1]);
-                }
-                *z = Vector2::new(sum[0], sum[1]);
-            }
-            let gradient = self.density.gradient(point, &z);
-            for (g, row) in gradient.iter().zip(rows) {
-                let g = [weight * g.x, weight * g.y];
-                for a in 0..W {
-                    sums[a][0] = fma(row[a], g[0], sums[a][0]);
-                    sums[a][1] = fma(row[a], g[1], sums[a][1]);
-                }
-            }
-        }
-        for (f, sum) in f.as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
-            f[0] += sum[0];
-            f[1] += sum[1];
-        }
-    }
-
-    /// The same of all cells that come by fours, `P` points in each.
-    fn forces_of_fours<const W: usize, const P: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        for &cell in &self.fours {
-            let cell = cell as usize;
-            let first = self.first(cell);
-            let range = first..first + 2 * W + 12;
-            let here = lanes::gather::<W>(&q[range.clone()]);
-            let sums = self.sums_of_four::<W, P>(cell, P, factor, &here);
-            lanes::scatter(&sums, &mut f[range]);
-        }
-    }
-
-    /// Forces on the coefficients `here` of four cells, the first of them `cell` and each with `stride` points more before it; or of one cell in four states, without
-    /// a stride.
-    #[inline(always)]
-    fn sums_of_four<const W: usize, const P: usize>(
-        &self,
-        cell: usize,
-        stride: usize,
-        factor: f64,
-        here: &[Pair<Lanes>; W],
-    ) -> [Pair<Lanes>; W] {
-        let (weights, rows) = self.table.block(self.table.cells[cell]);
-        let (weights, rows) = (&weights[..P], &rows.as_chunks::<W>().0[..P * M]);
-        // All points first: the sums would not fit into the registers beside the coefficients.
-        let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
-        for p in 0..P {
-            let mut z = [[Lanes::ZERO; 2]; M];
-            for m in 0..M {
-                for a in 0..W {
-                    let n = Lanes::splat(rows[p * M + m][a]);
-                    z[m] = [n.mul_add(here[a][0], z[m][0]), n.mul_add(here[a][1], z[m][1])];
-                }
-            }
-            let points = Points { first: cell * P + p, stride };
-            gradients[p] = self.density.gradients(factor * weights[p], points, &z);
-        }
-        // Loaded anew: carried on from above they would be stored to and loaded from the stack, as all registers are taken.
-        let rows = std::hint::black_box(rows);
-        let mut sums = [[Lanes::ZERO; 2]; W];
-        for a in 0..W {
-            for p in 0..P {
-                for m in 0..M {
-                    let n = Lanes::splat(rows[p * M + m][a]);
-                    let g = gradients[p][m];
-                    sums[a] = [n.mul_add(g[0], sums[a][0]), n.mul_add(g[1], sums[a][1])];
-                }
-            }
-        }
-        sums
-    }
-
-    /// All cells in four states.
-    fn forces_in_lanes<const W: usize>(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes]) {
-        match self.table.points_per_cell {
-            1 => self.forces_in_lanes_of::<W, 1>(factors, q, f),
-            2 => self.forces_in_lanes_of::<W, 2>(factors, q, f),
-            3 => self.forces_in_lanes_of::<W, 3>(factors, q, f),
-            4 => self.forces_in_lanes_of::<W, 4>(factors, q, f),
-            _ => self.forces_in_lanes_of::<W, 5>(factors, q, f),
-        }
-    }
-
-    fn forces_in_lanes_of<const W: usize, const P: usize>(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes]) {
-        for cell in 0..self.table.cells.len() {
-            let first = self.first(cell);
-            let range = first..first + 2 * W;
-            let Some(here) = q[range.clone()].as_chunks::<2>().0.first_chunk::<W>() else { continue };
-            let sums = self.sums_of_four::<W, P>(cell, 0, 1.0, here);
-            for (f, sum) in f[range].as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
-                *f = [factors.mul_add(sum[0], f[0]), factors.mul_add(sum[1], f[1])];
-            }
-        }
     }
 
     /// `f += ∫ Σ_m N⁽ᵒᵐ⁾ g_m(z, ż) ds` with the fields of `q` and `v`.

@@ -29,6 +29,7 @@ mod contact;
 mod damping;
 mod dissipation;
 mod drag;
+mod force;
 mod foundation;
 mod inertia;
 mod integral;

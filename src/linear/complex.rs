@@ -119,7 +119,12 @@ impl ComplexLdl {
     fn zeros(pattern: &SymmetricBand) -> Self {
         let (size, blocks) = (pattern.size(), pattern.stride() / 4);
         let transposed = vec![[ZERO; 4]; size / 4 * (blocks - 1)];
-        Self { blocks, rows: vec![ZERO; size * blocks], transposed, reciprocal: vec![c64::new(0.0, 0.0); size] }
+        Self {
+            blocks,
+            rows: vec![ZERO; size * blocks],
+            transposed,
+            reciprocal: vec![c64::new(0.0, 0.0); size],
+        }
     }
 
     fn factorize(&mut self, k: &SymmetricBand, m: &SymmetricBand, zeta: c64) -> Result<(), Singular> {
@@ -211,7 +216,9 @@ impl ComplexLdl {
             (re[node], im[node]) = (solved.map(|z| z.re), solved.map(|z| z.im));
         }
         for (node, transposed) in self.transposed.chunks_exact((blocks - 1).max(1)).enumerate().rev() {
-            let ([re, re_later @ ..], [im, im_later @ ..]) = (&mut re[node..], &mut im[node..]) else { continue };
+            let ([re, re_later @ ..], [im, im_later @ ..]) = (&mut re[node..], &mut im[node..]) else {
+                continue;
+            };
             for (w, (source_re, source_im)) in transposed.iter().zip(re_later.iter().zip(im_later)) {
                 let source = std::array::from_fn(|c| c64::new(source_re[c], source_im[c]));
                 subtract(*w, source, re, im);
@@ -237,8 +244,8 @@ fn divide_by_pivots(panel: &[Four], reciprocal: &[c64; 4], block: usize) -> [Fou
     for r in (0..4).rev() {
         let row = &panel[r * blocks..(r + 1) * blocks];
         let mut sum = row[block];
-        for c in r + 1..4 {
-            sum = add(-number(&row[0], c), &w[c], &sum);
+        for (c, w) in w.iter().enumerate().skip(r + 1) {
+            sum = add(-number(&row[0], c), w, &sum);
         }
         w[r] = add(reciprocal[r], &sum, &ZERO);
     }
@@ -250,15 +257,15 @@ fn divide_by_pivots(panel: &[Four], reciprocal: &[c64; 4], block: usize) -> [Fou
 fn solve_pivots(rows: [Four; 4], reciprocal: &[c64; 4], mut b: [c64; 4]) -> [c64; 4] {
     for r in 0..4 {
         let z = b[r] * reciprocal[r];
-        for c in r + 1..4 {
-            b[c] -= z * number(&rows[r], c);
+        for (c, b) in b.iter_mut().enumerate().skip(r + 1) {
+            *b -= z * number(&rows[r], c);
         }
         b[r] = z;
     }
     for r in (0..4).rev() {
         let mut sum = c64::new(0.0, 0.0);
-        for c in r + 1..4 {
-            sum += number(&rows[r], c) * b[c];
+        for (c, b) in b.iter().enumerate().skip(r + 1) {
+            sum += number(&rows[r], c) * b;
         }
         b[r] -= sum * reciprocal[r];
     }

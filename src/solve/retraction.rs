@@ -112,8 +112,9 @@ impl Chain {
                 _ => (self.anchors[next - 1], self.anchors[next]),
             };
             let share = if right > left { (node - left) as f64 / (right - left) as f64 } else { 0.0 };
-            for d in 0..2 {
-                x[node][d] += at(node)[d] - ((1.0 - share) * at(left)[d] + share * at(right)[d]);
+            let (here, left, right) = (at(node), at(left), at(right));
+            for (d, x) in x[node][..2].iter_mut().enumerate() {
+                *x += here[d] - ((1.0 - share) * left[d] + share * right[d]);
             }
         }
     }

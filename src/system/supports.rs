@@ -9,8 +9,8 @@
 //! - a held direction θ lets (x', y') = a (cos θ, sin θ) with a free: in the frame turned by θ the second component is
 //!   fixed to zero.
 
-use crate::lanes::Real;
 use super::course::Course;
+use crate::lanes::Real;
 use crate::linear::Matrix;
 
 /// What is held of a pair of coordinates.

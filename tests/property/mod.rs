@@ -13,6 +13,7 @@ mod modal;
 mod parts;
 mod scene;
 mod supports;
+mod turning;
 
 use proptest::test_runner::{Config, FileFailurePersistence};
 

@@ -27,11 +27,11 @@ pub mod integrate;
 pub mod method;
 pub mod motion;
 mod record;
+pub mod stages;
 pub mod start;
 pub mod tableau;
 mod touch;
-pub mod stages;
-mod turns;
+pub mod turns;
 
 use super::newton::Failure;
 use crate::trajectory::{Statistics, StepRecord};

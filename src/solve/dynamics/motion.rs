@@ -21,11 +21,10 @@
 //! unknown, and the method integrates (y, ẏ); fixed axes are met here only, with the centrifugal and Coriolis terms of the turning direction
 //! ([`crate::system::supports::Supports::carry`]). The mass matrix in that frame turns too and is formed anew with each tangent.
 
-use super::stages::{self, Stages};
 use super::State;
 use super::turns::Turns;
 use crate::effect::{Earlier, Workspace};
-use crate::lanes::{self, Lanes, Real};
+use crate::lanes::Real;
 use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::isotropic::Inertia;
@@ -48,8 +47,8 @@ pub struct Rates<'r> {
 
 /// Forces, tangent and mass of a system in motion. Unknowns are the system's coordinates followed by the scaled multipliers.
 pub struct Motion<'a> {
-    system: &'a System,
-    mass: Inertia,
+    pub(super) system: &'a System,
+    pub(super) mass: Inertia,
     /// In the supports' frames, without the held coordinates.
     free_mass: Matrix,
     mass_factor: Factor,
@@ -59,14 +58,14 @@ pub struct Motion<'a> {
     /// Of the forces that depend on velocities, likewise; none where there are none.
     damping: Option<Matrix>,
     /// Whether supports move with time.
-    moves: bool,
+    pub(super) moves: bool,
     /// Whether the border follows the state.
     follows: bool,
     workspace: Workspace,
     force: Vec<f64>,
     scratch: Vec<f64>,
     /// What forces of several states at once put down in between.
-    side_by_side: [Vec<f64>; 2],
+    pub(super) side_by_side: [Vec<f64>; 2],
     /// Of the last accelerations.
     multipliers: Vec<f64>,
     /// Positions, velocities and accelerations in fixed axes, where supports move.
@@ -130,12 +129,6 @@ impl<'a> Motion<'a> {
     /// The scaled multipliers of the last accelerations.
     pub fn multipliers(&self) -> &[f64] {
         &self.multipliers
-    }
-
-    /// Room for the stages of a collocation method.
-    pub fn stages(&self) -> Stages {
-        let still = self.system.supports().half_held().collect();
-        Stages::new(self.coordinates(), self.unknowns(), self.needs_velocity() || self.moves, still)
     }
 
     /// Turns of the nodes, for a tangent that turns with them.
@@ -228,46 +221,6 @@ impl<'a> Motion<'a> {
             motion.system.force(rates.time, &x[..motion.coordinates()], &mut motion.force);
             motion.finish(x, rates, negative)
         })
-    }
-
-    /// The same for the stages of a step at their `times`, the first `count` lanes: writes the residuals of all, returns the largest.
-    pub fn residuals(&mut self, times: [f64; 4], count: usize, stages: &mut Stages) -> f64 {
-        let n = self.coordinates();
-        if self.moves || self.system.multipliers() > 0 {
-            let mut largest = 0.0_f64;
-            let mut rows: [Vec<f64>; 4] = Default::default();
-            for (lane, row) in rows.iter_mut().enumerate() {
-                if lane < count {
-                    let [x, v, a] =
-                        [&stages.x, &stages.velocity, &stages.acceleration].map(|of| stages::lane(of, lane));
-                    row.resize(x.len(), 0.0);
-                    let scaled = self.residual(&x, Rates { time: times[lane], v: &v, a: &a }, row);
-                    largest = if scaled.is_nan() { scaled } else { largest.max(scaled) };
-                }
-            }
-            stages::gather(&rows[..count], &mut stages.residual);
-            return largest;
-        }
-        self.statistics.residual_evaluations += count;
-        let Self { system, mass, side_by_side, .. } = self;
-        let force = &mut stages.residual;
-        system.forces(times, &stages.x, force, side_by_side);
-        if system.is_damped() {
-            let velocities: [Vec<f64>; 4] = std::array::from_fn(|lane| stages::lane(&stages.velocity, lane));
-            lanes::one_by_one(&stages.x, force, side_by_side, |lane, q, f| {
-                system.add_damping(q, &velocities[lane], f);
-            });
-        }
-        let inverse = 1.0 / system.length();
-        let units = [1.0, 1.0, inverse, inverse];
-        let scale = stages::largest(force, units);
-        mass.multiply_add_lanes(&stages.acceleration, force, side_by_side);
-        system.supports().to_frames(0.0, force);
-        let residual = (stages::largest(force, units) / (scale + Lanes::splat(equilibrium::floor(system)))).to_array();
-        force.iter_mut().for_each(|f| *f = -*f);
-        debug_assert_eq!(force.len(), n);
-        let larger = |m: f64, r: f64| if m > r || m.is_nan() { m } else { r };
-        residual[..count].iter().copied().fold(0.0, larger)
     }
 
     /// The same, and the tangent ∂f/∂q with stress resultants extrapolated from an earlier iterate.
@@ -523,14 +476,6 @@ impl<'a> Motion<'a> {
         let n = self.coordinates();
         let sum: f64 = change[..n].chunks_exact(4).map(|d| d[0] * d[0] + d[1] * d[1]).sum();
         (sum / (n / 4) as f64).sqrt() / self.system.length()
-    }
-
-    /// The largest of [`Self::size`] over the first `count` lanes.
-    pub fn size_of_stages(&self, increment: &[Lanes], count: usize) -> f64 {
-        let inverse = 1.0 / self.system.length();
-        let units = [inverse, inverse, 1.0, 1.0];
-        let sizes = stages::largest(&increment[..self.coordinates()], units).to_array();
-        sizes[..count].iter().copied().fold(0.0, |m, size| if m > size || m.is_nan() { m } else { size })
     }
 
     /// Largest nodal change: positions in beam lengths, gradients as they are.

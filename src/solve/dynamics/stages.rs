@@ -4,8 +4,10 @@
 //! last stage repeat it. Substitutions go through one vector after the other; between them and the lanes blocks of 4 × 4 numbers are transposed.
 
 use super::State;
+use super::motion::{Motion, Rates};
 use super::turns::Turn;
-use crate::lanes::Lanes;
+use crate::lanes::{self, Lanes};
+use crate::solve::equilibrium;
 use nalgebra::DMatrix;
 
 /// Stages that fit into a register and are in use: three at most.
@@ -80,8 +82,8 @@ pub fn largest(numbers: &[Lanes], units: [f64; 4]) -> Lanes {
         for (number, unit) in node.iter().zip(units) {
             let size = (*number * Lanes::splat(unit)).abs();
             sizes = size.fast_max(sizes);
-            // ∞ − ∞ and NaN leave a NaN, which a maximum may drop.
-            not_finite = not_finite + (size - size);
+            // Of ∞ and NaN a NaN is left, which a maximum may drop.
+            not_finite += size * Lanes::ZERO;
         }
     }
     sizes + not_finite
@@ -183,4 +185,63 @@ impl Stages {
         self.displacement.iter_mut().zip(&self.residual).for_each(|(y, d)| *y += *d);
         scatter(&self.displacement, displacements);
     }
+}
+
+impl Motion<'_> {
+    /// Room for the stages of a collocation method.
+    pub fn stages(&self) -> Stages {
+        let still = self.system.supports().half_held().collect();
+        Stages::new(self.coordinates(), self.unknowns(), self.needs_velocity() || self.moves, still)
+    }
+
+    /// [`Self::residual`] of the stages of a step at their `times`, the first `count` lanes: writes those of all, returns the largest.
+    pub fn residuals(&mut self, times: [f64; 4], count: usize, stages: &mut Stages) -> f64 {
+        if self.moves || self.system.multipliers() > 0 {
+            let mut largest = 0.0_f64;
+            let mut rows: [Vec<f64>; 4] = Default::default();
+            for (stage, row) in rows.iter_mut().enumerate() {
+                if stage < count {
+                    let [x, v, a] =
+                        [&stages.x, &stages.velocity, &stages.acceleration].map(|of| lane(of, stage));
+                    row.resize(x.len(), 0.0);
+                    let scaled = self.residual(&x, Rates { time: times[stage], v: &v, a: &a }, row);
+                    largest = larger(largest, scaled);
+                }
+            }
+            gather(&rows[..count], &mut stages.residual);
+            return largest;
+        }
+        self.statistics.residual_evaluations += count;
+        let Self { system, mass, side_by_side, .. } = self;
+        let force = &mut stages.residual;
+        system.forces(times, &stages.x, force, side_by_side);
+        if system.is_damped() {
+            let velocities: [Vec<f64>; 4] = std::array::from_fn(|stage| lane(&stages.velocity, stage));
+            lanes::one_by_one(&stages.x, force, side_by_side, |lane, q, f| {
+                system.add_damping(q, &velocities[lane], f);
+            });
+        }
+        let inverse = 1.0 / system.length();
+        let units = [1.0, 1.0, inverse, inverse];
+        let scale = largest(force, units);
+        mass.multiply_add_lanes(&stages.acceleration, force, side_by_side);
+        system.supports().to_frames(0.0, force);
+        let residual =
+            (largest(force, units) / (scale + Lanes::splat(equilibrium::floor(system)))).to_array();
+        force.iter_mut().for_each(|f| *f = -*f);
+        residual[..count].iter().copied().fold(0.0, larger)
+    }
+
+    /// The largest of [`Self::size`] over the first `count` lanes.
+    pub fn size_of_stages(&self, increment: &[Lanes], count: usize) -> f64 {
+        let inverse = 1.0 / self.system.length();
+        let units = [inverse, inverse, 1.0, 1.0];
+        let sizes = largest(&increment[..self.coordinates()], units).to_array();
+        sizes[..count].iter().copied().fold(0.0, larger)
+    }
+}
+
+/// The larger of two sizes; a NaN wins.
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
 }
