@@ -9,9 +9,9 @@
 //! side in the lanes of a register take the time of one and a half: 210 instructions an element with 5/3 points by fours, 520 alone. A tangent
 //! takes 1 400 (with 3/2 points); its tiles' 528 multiply–adds would take 0.02 µs at the machine's peak.
 //!
-//! A step of the trapezoidal rule (30 elements, 1 ms, two iterations with a kept tangent) takes 47 000 instructions, 76 000 before there were lanes:
-//! 31 % are forces, 15 % substitutions, 13 % new tangents, 7 % products with the mass matrix, the rest passes over vectors. A step of Radau's method
-//! (23 elements with Lobatto points, 2.5 iterations) takes 190 000: 32 % are the tangent and its two factorisations, 18 % forces, 16 % substitutions. In
+//! A step of the trapezoidal rule (30 elements, 1 ms, two iterations with a kept tangent) takes 44 000 instructions, 76 000 before there were lanes:
+//! 32 % are forces, 15 % substitutions, 13 % new tangents, 7 % products with the mass matrix, the rest passes over vectors. A step of Radau's method
+//! (23 elements with Lobatto points, 2.5 iterations) takes 190 000: 33 % are the tangent and its two factorisations, 16 % forces, 16 % substitutions. In
 //! substitutions it is not the count of instructions that decides but how long one waits for the other ([`crate::linear::symmetric::Ldl`]).
 
 use super::{Density, Earlier, Effect, Gradient, Hessian, Kind};
