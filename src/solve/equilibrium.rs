@@ -249,7 +249,7 @@ fn largest(numbers: &[f64], units: [f64; 4]) -> f64 {
 }
 
 /// The larger of two sizes. `f64::max` would drop a NaN.
-fn larger(a: f64, b: f64) -> f64 {
+pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }
 

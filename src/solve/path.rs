@@ -68,8 +68,8 @@ const UNEXPLAINED_PART: f64 = 0.5;
 const UNEXPLAINED_TURN: f64 = 0.02;
 /// The same as a part of the step's predicted turn: of a whole turn as much as a corrector may turn.
 const UNEXPLAINED_OF_STEP: f64 = 0.02;
-/// Predicted turn of any node in one step \[rad\].
-const LARGEST_STEP: f64 = 7.0;
+/// Predicted turn of any node in one step \[rad\], with finite turns and with increments that are added.
+const LARGEST_STEP: (f64, f64) = (7.0, 0.8);
 /// A corrector that turns no node by more than this stays on its side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
 /// Smallest step, relative to the first one that was to be tried.
@@ -185,8 +185,10 @@ impl<'e, 'a> Path<'e, 'a> {
                 step = 0.5 * left;
             }
             let turn = self.predicted_turn(step);
-            if turn > LARGEST_STEP {
-                self.step = step * (0.95 * LARGEST_STEP / turn);
+            let (turned, added) = LARGEST_STEP;
+            let largest = if self.equilibrium.retraction.turns() { turned } else { added };
+            if turn > largest {
+                self.step = step * (0.95 * largest / turn);
                 step = self.step;
             }
             let predicted = self.predict(here + step);
@@ -492,7 +494,16 @@ impl<'e, 'a> Path<'e, 'a> {
     pub fn between(&mut self, load: f64) -> Option<Point> {
         let [.., a, b] = &self.points[..] else { return None };
         let share = (load - a.load) / (b.load - a.load);
-        let mut x: Vec<f64> = a.x.iter().zip(&b.x).map(|(a, b)| a + share * (b - a)).collect();
+        // Along the tangent at the first, and of what that misses the second by a part that grows as its error does.
+        let led = |h: f64| {
+            let increment: Vec<f64> = a.rate[..a.x.len()].iter().map(|rate| h * rate).collect();
+            let mut x = a.x.clone();
+            self.equilibrium.retraction.apply(&increment, &mut x);
+            x
+        };
+        let h = b.parameter - a.parameter;
+        let (mut x, end) = (led(share * h), led(h));
+        x.iter_mut().zip(b.x.iter().zip(&end)).for_each(|(x, (b, end))| *x += share * share * (b - end));
         let (start, still) = (x.clone(), vec![0.0; x.len()]);
         let n = self.equilibrium.system().coordinates();
         self.equilibrium.system().supports().impose(load, &mut x[..n]);

@@ -11,8 +11,8 @@
 //! and the chords are put one behind the other from where the beam is held. A chord whose ends turn against it by α = φ₁ − ψ and β = φ₂ − ψ would,
 //! with its cubic between them, become longer by (2α² − αβ + 2β²)/30, and is shortened by that. Between two nodes that are held the chords would miss
 //! the second; what they miss by is distributed along the way. The result differs from q + Δq in the second order, so that Newton's convergence stays what
-//! it is (a retraction, in the language of Absil, Mahony, Sepulchre, *Optimization Algorithms on Matrix Manifolds*, 2008, ch. 4), but it is exact
-//! for a straight cantilever that is bent into a circle, whatever the angle.
+//! it is (a retraction, in the language of Absil, Mahony, Sepulchre, *Optimization Algorithms on Matrix Manifolds*, 2008, ch. 4), but a
+//! straight cantilever is bent into a circle of any angle but for the fourth order of that of a cell.
 
 use crate::system::System;
 

@@ -1,8 +1,12 @@
 //! Finite turns of nodes and chords, and forces of several states at once.
 
 use super::generators::{beam, clamp, free, noise, perturbed};
+use ancf::effect::Workspace;
 use ancf::lanes::Lanes;
-use ancf::model::{Beam, Centreline, Discretization, Load, Model, Nodes, Place, Support};
+use ancf::model::{
+    Analysis, ArcLength, Beam, Centreline, Discretization, Load, Model, Nodes, Place, Probe, Static, Support,
+};
+use ancf::run::{Control, run};
 use ancf::solve::retraction::Retraction;
 use ancf::system::{Needs, System};
 use proptest::prelude::*;
@@ -85,7 +89,7 @@ proptest! {
         prop_assert!((2.5..6.0).contains(&ratio), "half the increment divides the difference by {ratio}");
     }
 
-    /// Four states side by side feel what each feels alone: beams of all kinds, with loads that turn and springs.
+    /// Four states side by side feel what each feels alone: beams of all kinds, with loads that turn and loads that do not.
     #[test]
     fn forces_of_four_states_are_those_of_each(beam in beam(), noise in noise(), follower in any::<bool>()) {
         let s = 0.4 * free(&beam).beams()[0].basis.length();
@@ -111,23 +115,64 @@ proptest! {
         }
     }
 
-    /// Nothing but the order of sums tells whether cells are summed alone or by fours: a beam with even cells has the forces of the same beam with cells that
-    /// differ by round-off, which are never alike.
+    /// Forces by fours and the forces that come with a tangent, cell by cell, are the same: on a beam whose curvature without stress differs from cell to cell.
     #[test]
     fn cells_by_fours_are_cells(noise in noise()) {
-        let even: Vec<f64> = (0..=14).map(|i| f64::from(i) / 14.0).collect();
-        let uneven: Vec<f64> = even.iter().enumerate()
-            .map(|(i, s)| if i == 0 || i == 14 { *s } else { s + 1e-9 * (i % 3) as f64 }).collect();
-        let force = |nodes: Nodes| {
-            let system = held(ancf_beam(nodes), Vec::new());
-            let mut f = vec![0.0; system.coordinates()];
-            system.force(1.0, &perturbed(&system, 0.1, &noise), &mut f);
-            f
-        };
-        let (even, uneven) = (force(Nodes::Uniform(15)), force(Nodes::Given(uneven)));
-        let size = even.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-        for (a, b) in even.iter().zip(&uneven) {
-            prop_assert!((a - b).abs() < 1e-5 * size, "{a} {b}");
+        let curve = [[0.0, 0.0], [0.4, 0.3], [0.7, -0.1], [1.2, 0.4], [1.5, 0.2]];
+        let beam = Beam { centreline: Centreline::Points(curve.to_vec()), ..ancf_beam(Nodes::Uniform(15)) };
+        let system = held(beam, Vec::new());
+        let q = perturbed(&system, 0.02, &noise);
+        let (mut f, mut alone, mut k) = (vec![0.0; q.len()], vec![0.0; q.len()], system.matrix());
+        system.force(1.0, &q, &mut f);
+        system.force_and_tangent(1.0, &q, None, &mut alone, &mut k, &mut Workspace::default());
+        let size = alone.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        for (f, alone) in f.iter().zip(&alone) {
+            prop_assert!((f - alone).abs() <= 1e-11 * size, "{f}, not {alone}");
         }
+    }
+}
+
+/// One step winds the free end of a beam up by one and a half turns, whichever end is clamped.
+#[test]
+fn angles_count_the_turns_of_one_step() {
+    for clamped in [0.0, 1.0] {
+        let free = Place { beam: 0, s: 1.0 - clamped };
+        let model = Model {
+            beams: vec![ancf_beam(Nodes::Uniform(33))],
+            supports: vec![Support { at: Place { beam: 0, s: clamped }, ..clamp() }],
+            loads: vec![Load::Moment { at: free, value: 1.5 * TAU }],
+            probes: vec![Probe { name: "free".into(), at: free }],
+            ..Model::default()
+        };
+        let analysis = Analysis::Static(Static::default());
+        let trajectory = run(&model, &analysis, &mut |_| Control::Continue).expect("a wound-up beam");
+        let angle = trajectory.probes[0].samples.last().expect("a state").angle;
+        assert!(
+            (angle - 1.5 * TAU).abs() < 1e-3,
+            "clamped at {clamped}: {angle} in {} steps",
+            trajectory.parameter.len()
+        );
+    }
+}
+
+/// The end of a path at a load between two points of it that lie half a turn apart.
+#[test]
+fn a_path_ends_at_its_load_between_long_steps() {
+    let tip = Place { beam: 0, s: 1.0 };
+    let model = Model {
+        beams: vec![ancf_beam(Nodes::Uniform(97))],
+        supports: vec![clamp()],
+        loads: vec![Load::Moment { at: tip, value: 3.0 * TAU }],
+        probes: vec![Probe { name: "tip".into(), at: tip }],
+        ..Model::default()
+    };
+    for until in [0.5, 0.77, 0.93] {
+        let arc = ArcLength { until_load: Some(until), max_points: 1000, max_step: None, until_probe: None };
+        let settings = Static { arc_length: Some(arc), ..Static::default() };
+        let trajectory =
+            run(&model, &Analysis::Static(settings), &mut |_| Control::Continue).expect("a path");
+        assert_eq!(trajectory.parameter.last(), Some(&until), "{:?}", trajectory.parameter);
+        let angle = trajectory.probes[0].samples.last().expect("a state").angle;
+        assert!((angle - 3.0 * TAU * until).abs() < 1e-3, "{angle} at {until}");
     }
 }

@@ -7,7 +7,7 @@ use super::State;
 use super::motion::{Motion, Rates};
 use super::turns::Turn;
 use crate::lanes::{self, Lanes};
-use crate::solve::equilibrium;
+use crate::solve::equilibrium::{self, larger};
 use nalgebra::DMatrix;
 
 /// Stages that fit into a register and are in use: three at most.
@@ -239,9 +239,4 @@ impl Motion<'_> {
         let sizes = largest(&increment[..self.coordinates()], units).to_array();
         sizes[..count].iter().copied().fold(0.0, larger)
     }
-}
-
-/// The larger of two sizes; a NaN wins.
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b || a.is_nan() { a } else { b }
 }
