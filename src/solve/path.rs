@@ -494,7 +494,7 @@ impl<'e, 'a> Path<'e, 'a> {
     pub fn between(&mut self, load: f64) -> Option<Point> {
         let [.., a, b] = &self.points[..] else { return None };
         let share = (load - a.load) / (b.load - a.load);
-        // Along the tangent at the first, and of what that misses the second by a part that grows as its error does.
+        // Short steps are straight. Long ones go along the tangent at the first, and of what that misses the second by a part that grows as its error does.
         let led = |h: f64| {
             let increment: Vec<f64> = a.rate[..a.x.len()].iter().map(|rate| h * rate).collect();
             let mut x = a.x.clone();
@@ -503,7 +503,11 @@ impl<'e, 'a> Path<'e, 'a> {
         };
         let h = b.parameter - a.parameter;
         let (mut x, end) = (led(share * h), led(h));
-        x.iter_mut().zip(b.x.iter().zip(&end)).for_each(|(x, (b, end))| *x += share * share * (b - end));
+        if self.turn(&a.x, &b.x) > LARGEST_STEP.1 {
+            x.iter_mut().zip(b.x.iter().zip(&end)).for_each(|(x, (b, end))| *x += share * share * (b - end));
+        } else {
+            x.iter_mut().zip(a.x.iter().zip(&b.x)).for_each(|(x, (a, b))| *x = a + share * (b - a));
+        }
         let (start, still) = (x.clone(), vec![0.0; x.len()]);
         let n = self.equilibrium.system().coordinates();
         self.equilibrium.system().supports().impose(load, &mut x[..n]);
