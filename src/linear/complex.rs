@@ -5,7 +5,7 @@
 //! pivoting: with M positive definite and Im ζ ≠ 0, x*(K + ζM)x has an imaginary part different from zero for every x, hence no
 //! leading minor vanishes (George, Ikramov, Kucherov, *SIAM J. Matrix Anal. Appl.* 21, 2000, 377–387).
 //! Numbers are kept by fours, their real parts before their imaginary parts (`Four`), so that all inner loops are real multiply–adds over
-//! whole registers: four times as many as [`super::symmetric`] has, in the same order. Unsymmetric matrices and those bordered by many rows are
+//! whole registers. Unsymmetric matrices and those bordered by many rows are
 //! factorised with pivoting, as a band where the rows lie within it, else by faer's sparse LU.
 
 use super::bordered::{BorderRow, Bordered};
@@ -88,50 +88,78 @@ fn pairwise(re: &mut [f64], im: &mut [f64], solve: impl FnOnce(&mut [c64])) {
 /// Real and imaginary parts of four numbers: those of one node in a row.
 type Four = [Lanes; 2];
 
+/// Rows of 4 × 4 numbers.
+type Block = [Four; 4];
+
 const ZERO: Four = [Lanes::ZERO; 2];
 
-/// `l · source + target`.
+/// `target + l · source`.
 #[inline(always)]
-fn add(l: c64, [s_re, s_im]: &Four, [re, im]: &Four) -> Four {
+fn add(l: c64, [s_re, s_im]: Four, [re, im]: Four) -> Four {
     let (l_re, l_im) = (Lanes::splat(l.re), Lanes::splat(l.im));
-    [l_im.mul_neg_add(*s_im, l_re.mul_add(*s_re, *re)), l_im.mul_add(*s_re, l_re.mul_add(*s_im, *im))]
+    [l_im.mul_neg_add(s_im, l_re.mul_add(s_re, re)), l_im.mul_add(s_re, l_re.mul_add(s_im, im))]
+}
+
+/// `target − l · source`.
+#[inline(always)]
+fn subtract(l: c64, [s_re, s_im]: Four, [re, im]: Four) -> Four {
+    let (l_re, l_im) = (Lanes::splat(l.re), Lanes::splat(l.im));
+    [l_im.mul_add(s_im, l_re.mul_neg_add(s_re, re)), l_im.mul_neg_add(s_re, l_re.mul_neg_add(s_im, im))]
+}
+
+/// `Σ_r rows_r · factors_r`, in two chains.
+#[inline(always)]
+fn product(rows: &Block, factors: [c64; 4]) -> Four {
+    let one = add(factors[1], rows[1], add(factors[0], rows[0], ZERO));
+    let other = add(factors[3], rows[3], add(factors[2], rows[2], ZERO));
+    [one[0] + other[0], one[1] + other[1]]
 }
 
 #[inline(always)]
-fn number(four: &Four, lane: usize) -> c64 {
-    c64::new(four[0].to_array()[lane], four[1].to_array()[lane])
+fn numbers(four: Four) -> [c64; 4] {
+    let [re, im] = four.map(Lanes::to_array);
+    std::array::from_fn(|lane| c64::new(re[lane], im[lane]))
 }
 
-/// L D Lᵀ of a complex symmetric band, in blocks as [`super::symmetric::Ldl`] is.
+#[inline(always)]
+fn transpose(block: Block) -> Block {
+    let [re, im] = [0, 1].map(|part| Lanes::transpose(block.map(|row| row[part])));
+    std::array::from_fn(|r| [re[r], im[r]])
+}
+
+/// L D Lᵀ of a complex symmetric band, D of blocks of 4 × 4.
+///
+/// Kept are D⁻¹, by Gauss and Jordan's elimination, whose pivots are those of L D Lᵀ by single numbers, and the blocks W = D⁻¹ U and Wᵀ right of the
+/// diagonal, so that a substitution consists of products with blocks, none of which but the one with W or Wᵀ waits for the node before.
 #[derive(Clone, Debug)]
 pub struct ComplexLdl {
-    /// Blocks in a panel, the diagonal one included.
+    /// Blocks of a node, the diagonal one included.
     blocks: usize,
-    /// Panels of four rows of `blocks` blocks, one a node: d lᵀ, and right of it W.
-    rows: Vec<Four>,
+    /// D⁻¹ and W of each node.
+    rows: Vec<Block>,
     /// The blocks Wᵀ.
-    transposed: Vec<[Four; 4]>,
-    /// 1/d.
-    reciprocal: Vec<c64>,
+    transposed: Vec<Block>,
 }
 
 impl ComplexLdl {
     fn zeros(pattern: &SymmetricBand) -> Self {
-        let (size, blocks) = (pattern.size(), pattern.stride() / 4);
-        let transposed = vec![[ZERO; 4]; size / 4 * (blocks - 1)];
+        let (nodes, blocks) = (pattern.size() / 4, pattern.stride() / 4);
         Self {
             blocks,
-            rows: vec![ZERO; size * blocks],
-            transposed,
-            reciprocal: vec![c64::new(0.0, 0.0); size],
+            rows: vec![[ZERO; 4]; nodes * blocks],
+            transposed: vec![[ZERO; 4]; nodes * (blocks - 1)],
         }
     }
 
     fn factorize(&mut self, k: &SymmetricBand, m: &SymmetricBand, zeta: c64) -> Result<(), Singular> {
-        let sources = k.data().as_chunks::<4>().0.iter().zip(m.data().as_chunks::<4>().0);
-        for ([re, im], (k, m)) in self.rows.iter_mut().zip(sources) {
-            let m = Lanes::new(*m);
-            (*re, *im) = (m.mul_add(Lanes::splat(zeta.re), Lanes::new(*k)), m * Lanes::splat(zeta.im));
+        let [k, m] = [k, m].map(|matrix| matrix.data().as_chunks::<4>().0.chunks_exact(4 * self.blocks));
+        for (panel, (k, m)) in self.rows.chunks_exact_mut(self.blocks).zip(k.zip(m)) {
+            for (b, block) in panel.iter_mut().enumerate() {
+                for (r, [re, im]) in block.iter_mut().enumerate() {
+                    let [k, m] = [k, m].map(|rows| Lanes::new(rows[r * self.blocks + b]));
+                    (*re, *im) = (m.mul_add(Lanes::splat(zeta.re), k), m * Lanes::splat(zeta.im));
+                }
+            }
         }
         match self.blocks {
             2 => self.eliminate::<2>(),
@@ -144,48 +172,25 @@ impl ComplexLdl {
     /// With the number of blocks a compile-time constant, or 0.
     fn eliminate<const BLOCKS: usize>(&mut self) -> Result<(), Singular> {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
-        for (node, reciprocal) in self.reciprocal.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-            let (panel, later) = self.rows[node * 4 * blocks..].split_at_mut(4 * blocks);
-            for r in 0..4 {
-                let (done, below) = panel.split_at_mut((r + 1) * blocks);
-                let row = &done[r * blocks..];
-                let pivot = number(&row[0], r);
-                let size = pivot.re * pivot.re + pivot.im * pivot.im;
-                // Written so that a NaN fails too.
-                if !(size > 0.0 && size.is_finite()) {
-                    return Err(Singular { row: 4 * node + r });
-                }
-                reciprocal[r] = c64::new(pivot.re / size, -pivot.im / size);
-                for (c, target) in (r + 1..4).zip(below.chunks_exact_mut(blocks)) {
-                    let l = -number(&row[0], c) * reciprocal[r];
-                    for (t, s) in target.iter_mut().zip(row) {
-                        *t = add(l, s, t);
+        for node in 0..self.rows.len() / blocks {
+            let (panel, later) = self.rows[node * blocks..].split_at_mut(blocks);
+            let Some((diagonal, right)) = panel.split_first_mut() else { break };
+            *diagonal = inverse(*diagonal).map_err(|r| Singular { row: 4 * node + r })?;
+            let products = &mut self.transposed[node * (blocks - 1)..(node + 1) * (blocks - 1)];
+            for (w, u) in products.iter_mut().zip(&*right) {
+                *w = diagonal.map(|row| product(u, numbers(row)));
+            }
+            for (a, (u, later)) in right.iter().zip(later.chunks_exact_mut(blocks)).enumerate() {
+                for (target, w) in later.iter_mut().zip(&products[a..]) {
+                    for (source, w) in u.iter().zip(w) {
+                        for (target, u) in target.iter_mut().zip(numbers(*source)) {
+                            *target = subtract(u, *w, *target);
+                        }
                     }
                 }
             }
-            let (first, second) = panel.split_at(2 * blocks);
-            let ((a, b), (c, d)) = (first.split_at(blocks), second.split_at(blocks));
-            for (ahead, target) in later.chunks_exact_mut(4 * blocks).take(blocks - 1).enumerate() {
-                let (a, b, c, d) = (&a[ahead + 1..], &b[ahead + 1..], &c[ahead + 1..], &d[ahead + 1..]);
-                for (r, target) in target.chunks_exact_mut(blocks).enumerate() {
-                    let l0 = -number(&a[0], r) * reciprocal[0];
-                    let l1 = -number(&b[0], r) * reciprocal[1];
-                    let l2 = -number(&c[0], r) * reciprocal[2];
-                    let l3 = -number(&d[0], r) * reciprocal[3];
-                    let sources = a.iter().zip(b).zip(c.iter().zip(d));
-                    for (t, ((a, b), (c, d))) in target.iter_mut().zip(sources) {
-                        *t = add(l3, d, &add(l2, c, &add(l1, b, &add(l0, a, t))));
-                    }
-                }
-            }
-            let transposed = &mut self.transposed[node * (blocks - 1)..];
-            for (block, transposed) in (1..blocks).zip(transposed) {
-                let w = divide_by_pivots(panel, reciprocal, block);
-                for (row, w) in panel.chunks_exact_mut(blocks).zip(w) {
-                    row[block] = w;
-                }
-                let [re, im] = [0, 1].map(|part| Lanes::transpose(w.map(|w| w[part])));
-                *transposed = std::array::from_fn(|c| [re[c], im[c]]);
+            for (w, transposed) in right.iter_mut().zip(products) {
+                (*w, *transposed) = (*transposed, transpose(*transposed));
             }
         }
         Ok(())
@@ -205,69 +210,70 @@ impl ComplexLdl {
     fn substitute<const BLOCKS: usize>(&self, re: &mut [f64], im: &mut [f64]) {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
         let (re, im) = (re.as_chunks_mut::<4>().0, im.as_chunks_mut::<4>().0);
-        let panels = self.rows.chunks_exact(4 * blocks).zip(self.reciprocal.as_chunks::<4>().0);
-        for (node, (panel, reciprocal)) in panels.enumerate() {
-            let here: [c64; 4] = std::array::from_fn(|r| c64::new(re[node][r], im[node][r]));
-            let rows: [&[Four]; 4] = std::array::from_fn(|r| &panel[blocks * r..blocks * (r + 1)]);
-            for (ahead, (re, im)) in (1..blocks).zip(re[node + 1..].iter_mut().zip(&mut im[node + 1..])) {
-                subtract(rows.map(|row| row[ahead]), here, re, im);
+        for (node, panel) in self.rows.chunks_exact(blocks).enumerate() {
+            let ([re, re_later @ ..], [im, im_later @ ..]) = (&mut re[node..], &mut im[node..]) else {
+                break;
+            };
+            let here = numbers([*re, *im].map(Lanes::new));
+            for (w, (re, im)) in panel[1..].iter().zip(re_later.iter_mut().zip(im_later)) {
+                let change = product(w, here);
+                *re = (Lanes::new(*re) - change[0]).to_array();
+                *im = (Lanes::new(*im) - change[1]).to_array();
             }
-            let solved = solve_pivots(rows.map(|row| row[0]), reciprocal, here);
-            (re[node], im[node]) = (solved.map(|z| z.re), solved.map(|z| z.im));
+            // Symmetric: its rows are its columns.
+            [*re, *im] = product(&panel[0], here).map(Lanes::to_array);
         }
         for (node, transposed) in self.transposed.chunks_exact((blocks - 1).max(1)).enumerate().rev() {
             let ([re, re_later @ ..], [im, im_later @ ..]) = (&mut re[node..], &mut im[node..]) else {
-                continue;
+                break;
             };
-            for (w, (source_re, source_im)) in transposed.iter().zip(re_later.iter().zip(im_later)) {
-                let source = std::array::from_fn(|c| c64::new(source_re[c], source_im[c]));
-                subtract(*w, source, re, im);
+            let mut here = [*re, *im].map(Lanes::new);
+            for (w, (re, im)) in transposed.iter().zip(re_later.iter().zip(im_later)) {
+                let change = product(w, numbers([*re, *im].map(Lanes::new)));
+                here = [here[0] - change[0], here[1] - change[1]];
             }
+            [*re, *im] = here.map(Lanes::to_array);
         }
     }
 }
 
-/// Takes `Σ_r rows_r · factors_r` from four numbers, in two chains.
+/// The inverse of a symmetric block of which the part below the diagonal need not be there, or the row of a pivot that vanishes or is not finite.
 #[inline(always)]
-fn subtract(rows: [Four; 4], factors: [c64; 4], re: &mut [f64; 4], im: &mut [f64; 4]) {
-    let sum = add(factors[1], &rows[1], &add(factors[0], &rows[0], &ZERO));
-    let target = [Lanes::new(*re), Lanes::new(*im)];
-    let rest = add(-factors[3], &rows[3], &add(-factors[2], &rows[2], &target));
-    (*re, *im) = ((rest[0] - sum[0]).to_array(), (rest[1] - sum[1]).to_array());
+fn inverse(upper: Block) -> Result<Block, usize> {
+    let lower = transpose(upper);
+    let mut block: Block = std::array::from_fn(|r| {
+        std::array::from_fn(|part| {
+            let [lower, upper] = [lower, upper].map(|block| block[r][part].to_array());
+            Lanes::new(std::array::from_fn(|c| if c < r { lower[c] } else { upper[c] }))
+        })
+    });
+    exchange::<0>(&mut block)?;
+    exchange::<1>(&mut block)?;
+    exchange::<2>(&mut block)?;
+    exchange::<3>(&mut block)?;
+    Ok(block)
 }
 
-/// W = D⁻¹ U of a block, from the rows of d lᵀ and l⁻¹ U that elimination leaves.
+/// One step of Gauss and Jordan's elimination: exchanges unknown and right-hand side number `R`.
 #[inline(always)]
-fn divide_by_pivots(panel: &[Four], reciprocal: &[c64; 4], block: usize) -> [Four; 4] {
-    let blocks = panel.len() / 4;
-    let mut w = [ZERO; 4];
-    for r in (0..4).rev() {
-        let row = &panel[r * blocks..(r + 1) * blocks];
-        let mut sum = row[block];
-        for (c, w) in w.iter().enumerate().skip(r + 1) {
-            sum = add(-number(&row[0], c), w, &sum);
-        }
-        w[r] = add(reciprocal[r], &sum, &ZERO);
+fn exchange<const R: usize>(block: &mut Block) -> Result<(), usize> {
+    let with = |lanes: Lanes, value: f64| {
+        let mut numbers = lanes.to_array();
+        numbers[R] = value;
+        Lanes::new(numbers)
+    };
+    let pivot = numbers(block[R])[R];
+    let size = pivot.re * pivot.re + pivot.im * pivot.im;
+    // Written so that a NaN fails too.
+    if !(size > 0.0 && size.is_finite()) {
+        return Err(R);
     }
-    w
-}
-
-/// D⁻¹ b with the rows of d lᵀ.
-#[inline(always)]
-fn solve_pivots(rows: [Four; 4], reciprocal: &[c64; 4], mut b: [c64; 4]) -> [c64; 4] {
-    for r in 0..4 {
-        let z = b[r] * reciprocal[r];
-        for (c, b) in b.iter_mut().enumerate().skip(r + 1) {
-            *b -= z * number(&rows[r], c);
-        }
-        b[r] = z;
+    let row = [with(block[R][0], 1.0), with(block[R][1], 0.0)];
+    let scale = 1.0 / size;
+    let row = add(c64::new(pivot.re * scale, -pivot.im * scale), row, ZERO);
+    for (r, target) in block.iter_mut().enumerate() {
+        let rest = target.map(|part| with(part, 0.0));
+        *target = if r == R { row } else { subtract(numbers(*target)[R], row, rest) };
     }
-    for r in (0..4).rev() {
-        let mut sum = c64::new(0.0, 0.0);
-        for (c, b) in b.iter().enumerate().skip(r + 1) {
-            sum += number(&rows[r], c) * b;
-        }
-        b[r] -= sum * reciprocal[r];
-    }
-    b
+    Ok(())
 }
