@@ -4,6 +4,7 @@
 //! compiler keeps four points scalar, so that the lanes are named here, by `wide`'s registers (AVX where the target has it).
 
 use crate::linear::fma::fma;
+use nalgebra::Matrix2;
 use std::ops::{Add, Mul, Neg, Sub};
 use wide::f64x4;
 
@@ -12,6 +13,9 @@ pub type Lanes = f64x4;
 
 /// The components of a vector, or of four.
 pub type Pair<T> = [T; 2];
+
+/// A matrix of 2 × 2 numbers, row by row, or four of them.
+pub type Square<T> = [Pair<T>; 2];
 
 /// A number, or four of them.
 pub trait Real:
@@ -107,6 +111,30 @@ pub fn dot<T: Real>(a: Pair<T>, b: Pair<T>) -> T {
 #[inline(always)]
 pub fn cross<T: Real>(a: Pair<T>, b: Pair<T>) -> T {
     a[0].fma(b[1], -(a[1] * b[0]))
+}
+
+/// a bᵀ.
+#[inline(always)]
+pub fn outer<T: Real>(a: Pair<T>, b: Pair<T>) -> Square<T> {
+    a.map(|a| b.map(|b| a * b))
+}
+
+/// c A + B.
+#[inline(always)]
+pub fn add<T: Real>(c: T, a: Square<T>, b: Square<T>) -> Square<T> {
+    std::array::from_fn(|i| std::array::from_fn(|j| c.fma(a[i][j], b[i][j])))
+}
+
+/// Aᵀ.
+#[inline(always)]
+pub fn turned<T: Real>([[xx, xy], [yx, yy]]: Square<T>) -> Square<T> {
+    [[xx, yx], [xy, yy]]
+}
+
+/// As a matrix of nalgebra's.
+#[inline(always)]
+pub fn matrix([[xx, xy], [yx, yy]]: Square<f64>) -> Matrix2<f64> {
+    Matrix2::new(xx, xy, yx, yy)
 }
 
 /// Adds to every lane of `f` what `add` makes of it and of that lane of `q`; `scratch` has two vectors of their length.

@@ -4,6 +4,7 @@
 //! beam: a load with a potential, beside the elastic energy ½ EA ε², so that it can be switched on like any other load.
 
 use super::{Density, Engineering, Gradient, Green, Hessian, Kind, Strain, bend};
+use crate::lanes;
 use crate::model::{Law, StrainMeasure};
 use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Extent, Part};
@@ -87,8 +88,8 @@ impl<S: Strain> Density<1> for PreStrain<S> {
         _: &Gradient<1>,
         _: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
-        let (_, first, second) = S::second(&z[0]);
-        ([first * -self.force], [[second * -self.force]])
+        let (_, first, second) = S::second(z[0].into());
+        ([Vector2::from(first) * -self.force], [[lanes::matrix(second) * -self.force]])
     }
 }
 
@@ -107,7 +108,7 @@ impl Density<2> for PreCurvature {
     }
 
     fn gradient(&self, _: usize, z: &Gradient<2>) -> Gradient<2> {
-        let (_, [a, b], _) = bend::first_derivatives(z);
+        let [a, b] = bend::gradient(z);
         [a * -self.moment, b * -self.moment]
     }
 
@@ -118,7 +119,7 @@ impl Density<2> for PreCurvature {
         _: &Gradient<2>,
         _: &Gradient<2>,
     ) -> (Gradient<2>, Hessian<2>) {
-        let (aa, ab) = bend::second_derivatives(z);
+        let [aa, ab] = bend::hessian(z);
         let m = -self.moment;
         (self.gradient(point, z), [[aa * m, ab * m], [ab.transpose() * m, Matrix2::zeros()]])
     }

@@ -1,7 +1,7 @@
 //! Bending strain energy ½ EI κ².
 
 use super::{Density, Gradient, Hessian};
-use crate::lanes::{Lanes, Pair, Points, Real, cross, dot};
+use crate::lanes::{self, Lanes, Pair, Points, Real, Square, cross, dot, outer};
 use nalgebra::{Matrix2, Vector2};
 
 /// W = ½ EI (κ − κ₀)² with the material curvature κ = (r' × r'')/|r'|², κ₀ that of the stress-free shape as the
@@ -27,11 +27,6 @@ pub fn curvature(first: &Vector2<f64>, second: &Vector2<f64>) -> f64 {
     (first.x * second.y - first.y * second.x) / first.norm_squared()
 }
 
-#[inline(always)]
-fn quarter_turn(v: &Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(-v.y, v.x)
-}
-
 impl Bend {
     /// EI \[N m²\], and (r', r'') of the stress-free shape at the quadrature points (none: straight).
     pub fn new(bending_stiffness: f64, reference: &[[Vector2<f64>; 2]]) -> Self {
@@ -54,37 +49,70 @@ impl Bend {
         let by_first = [twice.fma(-first[0], second[1]) * moment, twice.fma(first[1], second[0]) * opposite];
         [by_first, [first[1] * opposite, first[0] * moment]]
     }
+
+    /// The same, and `factor` times its derivatives.
+    #[inline(always)]
+    fn force_and_tangent<T: Real>(
+        &self,
+        factor: f64,
+        reference: T,
+        [z, before, change]: [&[Pair<T>; 2]; 3],
+    ) -> ([Pair<T>; 2], [[Square<T>; 2]; 2]) {
+        let stiffness = T::of(factor * self.bending_stiffness);
+        let (kappa, [a, b], inverse) = first_derivatives(z);
+        let moment = stiffness * (kappa - reference);
+        let (kappa_before, [a_before, b_before], _) = first_derivatives(before);
+        let change = dot(a_before, change[0]) + dot(b_before, change[1]);
+        let extrapolated = stiffness * (change + (kappa_before - reference));
+        let [aa, ab] = second_derivatives(z[0], kappa, [a, b], inverse);
+        let stiff = |a: Pair<T>, b| outer(a.map(|a| a * stiffness), b);
+        let mixed = lanes::add(extrapolated, ab, stiff(a, b));
+        let tangent =
+            [[lanes::add(extrapolated, aa, stiff(a, a)), mixed], [lanes::turned(mixed), stiff(b, b)]];
+        ([a.map(|a| a * moment), b.map(|b| b * moment)], tangent)
+    }
+}
+
+/// (r', r'').
+#[inline(always)]
+fn pairs(z: &Gradient<2>) -> [Pair<f64>; 2] {
+    z.map(Into::into)
 }
 
 /// κ, ∂κ/∂r', ∂κ/∂r'' and 1/|r'|².
 #[inline(always)]
-pub(super) fn first_derivatives(z: &Gradient<2>) -> (f64, Gradient<2>, f64) {
-    let inverse = 1.0 / z[0].norm_squared();
-    let kappa = (z[0].x * z[1].y - z[0].y * z[1].x) * inverse;
-    let by_first = (quarter_turn(&z[1]) + z[0] * (2.0 * kappa)) * -inverse;
-    let by_second = quarter_turn(&z[0]) * inverse;
-    (kappa, [by_first, by_second], inverse)
+fn first_derivatives<T: Real>([first, second]: &[Pair<T>; 2]) -> (T, [Pair<T>; 2], T) {
+    let inverse = dot(*first, *first).inverse();
+    let kappa = cross(*first, *second) * inverse;
+    let (twice, opposite) = (kappa + kappa, -inverse);
+    let by_first = [twice.fma(-first[0], second[1]) * inverse, twice.fma(first[1], second[0]) * opposite];
+    (kappa, [by_first, [first[1] * opposite, first[0] * inverse]], inverse)
+}
+
+/// ∂κ/∂r' and ∂κ/∂r''.
+#[inline(always)]
+pub(super) fn gradient(z: &Gradient<2>) -> Gradient<2> {
+    first_derivatives(&pairs(z)).1.map(Vector2::from)
 }
 
 /// ∂²κ/∂r'∂r' and ∂²κ/∂r'∂r''.
 #[inline(always)]
-pub(super) fn second_derivatives(z: &Gradient<2>) -> (Matrix2<f64>, Matrix2<f64>) {
-    let (kappa, [a, b], inverse) = first_derivatives(z);
-    second_from(&z[0], kappa, &a, &b, inverse)
+pub(super) fn hessian(z: &Gradient<2>) -> [Matrix2<f64>; 2] {
+    let z = pairs(z);
+    let (kappa, derivatives, inverse) = first_derivatives(&z);
+    second_derivatives(z[0], kappa, derivatives, inverse).map(lanes::matrix)
 }
 
 #[inline(always)]
-fn second_from(
-    r: &Vector2<f64>,
-    kappa: f64,
-    a: &Vector2<f64>,
-    b: &Vector2<f64>,
-    inverse: f64,
-) -> (Matrix2<f64>, Matrix2<f64>) {
-    let curl = Matrix2::new(0.0, 1.0, -1.0, 0.0);
-    let aa = (a * r.transpose() + r * a.transpose() + Matrix2::identity() * kappa) * (-2.0 * inverse);
-    let ab = (curl - r * b.transpose() * 2.0) * inverse;
-    (aa, ab)
+fn second_derivatives<T: Real>(r: Pair<T>, kappa: T, [a, b]: [Pair<T>; 2], inverse: T) -> [Square<T>; 2] {
+    let twice = r.map(|r| r * (-(inverse + inverse)));
+    let corner = a[0].fma(twice[1], twice[0] * a[1]);
+    let on_diagonal = kappa * (-(inverse + inverse));
+    let entry = |i: usize| (a[i] + a[i]).fma(twice[i], on_diagonal);
+    let aa = [[entry(0), corner], [corner, entry(1)]];
+    let [x, y] = twice;
+    let ab = [[x * b[0], x.fma(b[1], inverse)], [y.fma(b[0], -inverse), y * b[1]]];
+    [aa, ab]
 }
 
 impl Density<2> for Bend {
@@ -98,7 +126,7 @@ impl Density<2> for Bend {
 
     #[inline(always)]
     fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
-        self.force(1.0, self.reference(point), [z[0].into(), z[1].into()]).map(Vector2::from)
+        self.force(1.0, self.reference(point), pairs(z)).map(Vector2::from)
     }
 
     const BY_FOURS: bool = true;
@@ -116,21 +144,18 @@ impl Density<2> for Bend {
         before: &Gradient<2>,
         change: &Gradient<2>,
     ) -> (Gradient<2>, Hessian<2>) {
-        let reference = self.reference(point);
-        let (kappa, [a, b], inverse) = first_derivatives(z);
-        let moment = self.bending_stiffness * (kappa - reference);
-        let (kappa_before, [a_before, b_before], _) = first_derivatives(before);
-        let extrapolated = self.bending_stiffness
-            * (kappa_before - reference + a_before.dot(&change[0]) + b_before.dot(&change[1]));
-        let (aa, ab) = second_from(&z[0], kappa, &a, &b, inverse);
-        let ei = self.bending_stiffness;
-        let mixed = a * b.transpose() * ei + ab * extrapolated;
-        (
-            [a * moment, b * moment],
-            [
-                [a * a.transpose() * ei + aa * extrapolated, mixed],
-                [mixed.transpose(), b * b.transpose() * ei],
-            ],
-        )
+        let [z, before, change] = [z, before, change].map(pairs);
+        let (force, tangent) = self.force_and_tangent(1.0, self.reference(point), [&z, &before, &change]);
+        (force.map(Vector2::from), tangent.map(|row| row.map(lanes::matrix)))
+    }
+
+    #[inline(always)]
+    fn gradients_and_hessians(
+        &self,
+        factor: f64,
+        points: Points,
+        states: [&[Pair<Lanes>; 2]; 3],
+    ) -> ([Pair<Lanes>; 2], [[Square<Lanes>; 2]; 2]) {
+        self.force_and_tangent(factor, points.of(&self.reference), states)
     }
 }

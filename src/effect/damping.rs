@@ -77,7 +77,7 @@ impl Dissipation<2> for BendDamping {
 
     #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<2>, rate: &Gradient<2>) -> Gradient<2> {
-        let (_, [a, b], _) = bend::first_derivatives(z);
+        let [a, b] = bend::gradient(z);
         let moment = self.coefficient * (a.dot(&rate[0]) + b.dot(&rate[1]));
         [a * moment, b * moment]
     }
@@ -89,7 +89,7 @@ impl Dissipation<2> for BendDamping {
         z: &Gradient<2>,
         rate: &Gradient<2>,
     ) -> (Gradient<2>, Hessian<2>) {
-        let (_, [a, b], _) = bend::first_derivatives(z);
+        let [a, b] = bend::gradient(z);
         let c = self.coefficient;
         let mixed = a * b.transpose() * c;
         let matrix = [[a * a.transpose() * c, mixed], [mixed.transpose(), b * b.transpose() * c]];

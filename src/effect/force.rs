@@ -4,7 +4,7 @@
 //! states that the stages of a collocation method are. With 5/3 points an element takes 210 instructions by fours, 520 alone, most of them the
 //! products with the rows; the compiler's own attempts at it stayed scalar.
 
-use super::{Density, Integral};
+use super::{Density, Gradient, Integral};
 use crate::lanes::{self, Lanes, Pair, Points};
 use crate::linear::fma::fma;
 use nalgebra::Vector2;
@@ -33,34 +33,20 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     fn force_of_cell<const W: usize>(&self, cell: usize, factor: f64, q: &[f64], f: &mut [f64]) {
         let (weights, rows) = self.table.block(self.table.cells[cell]);
         // Both stay in registers while the points go by.
-        let mut here = [[0.0; 2]; W];
+        let here = coefficients::<W>(q);
         let mut sums = [[0.0; 2]; W];
-        here.copy_from_slice(&q.as_chunks().0[..W]);
-        for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * W)).enumerate() {
-            let point = cell * weights.len() + p;
+        for (p, (weight, rows)) in weights.iter().zip(rows.as_chunks::<W>().0.chunks_exact(M)).enumerate() {
             let weight = factor * weight;
-            let rows = &rows.as_chunks::<W>().0[..M];
-            let mut z = [Vector2::zeros(); M];
-            for (z, row) in z.iter_mut().zip(rows) {
-                let mut sum = [0.0; 2];
-                for a in 0..W {
-                    sum[0] = fma(row[a], here[a][0], sum[0]);
-                    sum[1] = fma(row[a], here[a][1], sum[1]);
-                }
-                *z = Vector2::new(sum[0], sum[1]);
-            }
-            let gradient = self.density.gradient(point, &z);
+            let gradient = self.density.gradient(cell * weights.len() + p, &fields(rows, &here));
             for (g, row) in gradient.iter().zip(rows) {
                 let g = [weight * g.x, weight * g.y];
                 for a in 0..W {
-                    sums[a][0] = fma(row[a], g[0], sums[a][0]);
-                    sums[a][1] = fma(row[a], g[1], sums[a][1]);
+                    sums[a] = [fma(row[a], g[0], sums[a][0]), fma(row[a], g[1], sums[a][1])];
                 }
             }
         }
         for (f, sum) in f.as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
-            f[0] += sum[0];
-            f[1] += sum[1];
+            *f = [f[0] + sum[0], f[1] + sum[1]];
         }
     }
 
@@ -91,29 +77,12 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         // All points first: the sums would not fit into the registers beside the coefficients.
         let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
         for p in 0..P {
-            let mut z = [[Lanes::ZERO; 2]; M];
-            for m in 0..M {
-                for a in 0..W {
-                    let n = Lanes::splat(rows[p * M + m][a]);
-                    z[m] = [n.mul_add(here[a][0], z[m][0]), n.mul_add(here[a][1], z[m][1])];
-                }
-            }
+            let z = fields_of_four(&rows[p * M..(p + 1) * M], here);
             let points = Points { first: cell * P + p, stride };
             gradients[p] = self.density.gradients(factor * weights[p], points, &z);
         }
         // Loaded anew: carried on from above they would be stored to and loaded from the stack, as all registers are taken.
-        let rows = std::hint::black_box(rows);
-        let mut sums = [[Lanes::ZERO; 2]; W];
-        for a in 0..W {
-            for p in 0..P {
-                for m in 0..M {
-                    let n = Lanes::splat(rows[p * M + m][a]);
-                    let g = gradients[p][m];
-                    sums[a] = [n.mul_add(g[0], sums[a][0]), n.mul_add(g[1], sums[a][1])];
-                }
-            }
-        }
-        sums
+        sums_of_points(std::hint::black_box(rows), &gradients)
     }
 
     /// All cells in four states.
@@ -143,4 +112,61 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             }
         }
     }
+}
+
+/// The coefficients of a cell.
+#[inline(always)]
+pub(super) fn coefficients<const W: usize>(q: &[f64]) -> [Pair<f64>; W] {
+    let mut here = [[0.0; 2]; W];
+    here.copy_from_slice(&q.as_chunks().0[..W]);
+    here
+}
+
+/// The local fields at a point, from its `M` rows.
+#[inline(always)]
+pub(super) fn fields<const M: usize, const W: usize>(
+    rows: &[[f64; W]],
+    here: &[Pair<f64>; W],
+) -> Gradient<M> {
+    let mut z = [Vector2::zeros(); M];
+    for (z, row) in z.iter_mut().zip(rows) {
+        for a in 0..W {
+            *z = Vector2::new(fma(row[a], here[a][0], z.x), fma(row[a], here[a][1], z.y));
+        }
+    }
+    z
+}
+
+/// The same at four points.
+#[inline(always)]
+pub(super) fn fields_of_four<const M: usize, const W: usize>(
+    rows: &[[f64; W]],
+    here: &[Pair<Lanes>; W],
+) -> [Pair<Lanes>; M] {
+    let mut z = [[Lanes::ZERO; 2]; M];
+    for (z, row) in z.iter_mut().zip(rows) {
+        for (n, here) in row.iter().zip(here) {
+            let n = Lanes::splat(*n);
+            *z = [n.mul_add(here[0], z[0]), n.mul_add(here[1], z[1])];
+        }
+    }
+    z
+}
+
+/// Forces on the coefficients, from the gradients at all points.
+#[inline(always)]
+pub(super) fn sums_of_points<const M: usize, const W: usize, const P: usize>(
+    rows: &[[f64; W]],
+    gradients: &[[Pair<Lanes>; M]; P],
+) -> [Pair<Lanes>; W] {
+    std::array::from_fn(|a| {
+        let mut sum = [Lanes::ZERO; 2];
+        for (p, gradients) in gradients.iter().enumerate() {
+            for (m, g) in gradients.iter().enumerate() {
+                let n = Lanes::splat(rows[p * M + m][a]);
+                sum = [n.mul_add(g[0], sum[0]), n.mul_add(g[1], sum[1])];
+            }
+        }
+        sum
+    })
 }

@@ -55,7 +55,7 @@ pub use moving::{MovingForce, Travelling};
 pub use spring::{Dashpot, Spring, Strut, Tie, Torsion, TorsionDashpot, TorsionSpring};
 pub use stretch::{Engineering, Green, Strain, Stretch};
 
-use crate::lanes::{self, Lanes, Pair, Points};
+use crate::lanes::{self, Lanes, Pair, Points, Square};
 use crate::linear::Matrix;
 use nalgebra::{Matrix2, Vector2};
 
@@ -92,14 +92,34 @@ pub trait Density<const M: usize>: Send + Sync {
     #[inline(always)]
     fn gradients(&self, factor: f64, points: Points, z: &[Pair<Lanes>; M]) -> [Pair<Lanes>; M] {
         let numbers = points.numbers();
-        let gradients: [Gradient<M>; 4] = std::array::from_fn(|lane| {
-            let z = z.map(|[x, y]| Vector2::new(x.to_array()[lane], y.to_array()[lane]));
-            self.gradient(numbers[lane], &z).map(|g| g * factor)
-        });
+        let gradients: [Gradient<M>; 4] =
+            std::array::from_fn(|lane| self.gradient(numbers[lane], &lane_of(z, lane)).map(|g| g * factor));
         std::array::from_fn(|m| {
             let part = |d: usize| Lanes::new(std::array::from_fn(|lane| gradients[lane][m][d]));
             [part(0), part(1)]
         })
+    }
+
+    /// `factor` times what [`Self::gradient_and_hessian`] gives for the states z, before and change, at four points.
+    #[inline(always)]
+    fn gradients_and_hessians(
+        &self,
+        factor: f64,
+        points: Points,
+        states: [&[Pair<Lanes>; M]; 3],
+    ) -> ([Pair<Lanes>; M], [[Square<Lanes>; M]; M]) {
+        let numbers = points.numbers();
+        let of_lanes: [(Gradient<M>, Hessian<M>); 4] = std::array::from_fn(|lane| {
+            let [z, before, change] = states.map(|z| lane_of(z, lane));
+            self.gradient_and_hessian(numbers[lane], &z, &before, &change)
+        });
+        let in_lanes = |of: &dyn Fn(&(Gradient<M>, Hessian<M>)) -> f64| {
+            Lanes::new(std::array::from_fn(|lane| factor * of(&of_lanes[lane])))
+        };
+        use std::array::from_fn;
+        let gradient = from_fn(|m| from_fn(|d| in_lanes(&|(gradient, _)| gradient[m][d])));
+        let entry = |m: usize, n: usize, d: usize, e: usize| in_lanes(&|(_, hessian)| hessian[m][n][(d, e)]);
+        (gradient, from_fn(|m| from_fn(|n| from_fn(|d| from_fn(|e| entry(m, n, d, e))))))
     }
 
     /// ∂W/∂z and ∂²W/∂z∂z, stress resultants in the latter extrapolated from the iterate `before` by the `change` that was computed there.
@@ -110,6 +130,12 @@ pub trait Density<const M: usize>: Send + Sync {
         before: &Gradient<M>,
         change: &Gradient<M>,
     ) -> (Gradient<M>, Hessian<M>);
+}
+
+/// The local fields in one of four points.
+#[inline(always)]
+fn lane_of<const M: usize>(z: &[Pair<Lanes>; M], lane: usize) -> Gradient<M> {
+    z.map(|pair| Vector2::from(pair.map(|lanes| lanes.to_array()[lane])))
 }
 
 /// The iterate before the present one, from which stress resultants are extrapolated.

@@ -1,8 +1,8 @@
 //! Axial strain energy ½ EA ε².
 
 use super::{Density, Gradient, Hessian};
-use crate::lanes::{Lanes, Pair, Points, Real, dot};
-use nalgebra::{Matrix2, Vector2};
+use crate::lanes::{self, Lanes, Pair, Points, Real, Square, dot, outer};
+use nalgebra::Vector2;
 
 /// An axial strain as a function of the gradient r'.
 pub trait Strain: Copy + Send + Sync {
@@ -13,7 +13,7 @@ pub trait Strain: Copy + Send + Sync {
     fn first<T: Real>(r: Pair<T>) -> (T, Pair<T>);
 
     /// ε, ∂ε/∂r' and ∂²ε/∂r'∂r'.
-    fn second(r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>);
+    fn second<T: Real>(r: Pair<T>) -> (T, Pair<T>, Square<T>);
 }
 
 /// ε = ½ (r'·r' − 1): ∂ε/∂r' = r', ∂²ε/∂r'² = 1.
@@ -34,8 +34,10 @@ impl Strain for Green {
     }
 
     #[inline(always)]
-    fn second(r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>) {
-        (Self::strain(r), *r, Matrix2::identity())
+    fn second<T: Real>(r: Pair<T>) -> (T, Pair<T>, Square<T>) {
+        let (strain, first) = Self::first(r);
+        let (zero, one) = (T::of(0.0), T::of(1.0));
+        (strain, first, [[one, zero], [zero, one]])
     }
 }
 
@@ -57,11 +59,13 @@ impl Strain for Engineering {
     }
 
     #[inline(always)]
-    fn second(r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>) {
-        let length = r.norm_squared().sqrt();
-        let inverse = 1.0 / length;
-        let t = r * inverse;
-        (length - 1.0, t, (Matrix2::identity() - t * t.transpose()) * inverse)
+    fn second<T: Real>(r: Pair<T>) -> (T, Pair<T>, Square<T>) {
+        let length = dot(r, r).sqrt();
+        let inverse = length.inverse();
+        let [x, y] = [r[0] * inverse, r[1] * inverse];
+        let across = [-y, x];
+        // 1 − t tᵀ projects on the normal.
+        (length - T::of(1.0), [x, y], outer(across.map(|n| n * inverse), across))
     }
 }
 
@@ -95,6 +99,23 @@ impl<S: Strain> Stretch<S> {
         let force = T::of(factor * self.axial_stiffness) * (strain - reference);
         [x * force, y * force]
     }
+
+    /// The same, and `factor` times its derivative.
+    #[inline(always)]
+    fn force_and_tangent<T: Real>(
+        &self,
+        factor: f64,
+        reference: T,
+        [r, before, change]: [Pair<T>; 3],
+    ) -> (Pair<T>, Square<T>) {
+        let stiffness = T::of(factor * self.axial_stiffness);
+        let (strain, first, second) = S::second(r);
+        let (strain_before, first_before) = S::first(before);
+        let force = stiffness * (strain - reference);
+        let extrapolated = stiffness * (dot(first_before, change) + (strain_before - reference));
+        let tangent = lanes::add(extrapolated, second, outer(first.map(|t| t * stiffness), first));
+        (first.map(|t| t * force), tangent)
+    }
 }
 
 impl<S: Strain> Density<1> for Stretch<S> {
@@ -126,13 +147,20 @@ impl<S: Strain> Density<1> for Stretch<S> {
         before: &Gradient<1>,
         change: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
-        let reference = self.reference(point);
-        let (strain, first, second) = S::second(&z[0]);
-        let (strain_before, first_before) = S::first(before[0].into());
-        let first_before = Vector2::from(first_before);
-        let force = self.axial_stiffness * (strain - reference);
-        let extrapolated = strain_before + first_before.dot(&change[0]) - reference;
-        let hessian = (first * first.transpose() + second * extrapolated) * self.axial_stiffness;
-        ([first * force], [[hessian]])
+        let states = [z, before, change].map(|[r]| (*r).into());
+        let (force, tangent) = self.force_and_tangent(1.0, self.reference(point), states);
+        ([force.into()], [[lanes::matrix(tangent)]])
+    }
+
+    #[inline(always)]
+    fn gradients_and_hessians(
+        &self,
+        factor: f64,
+        points: Points,
+        states: [&[Pair<Lanes>; 1]; 3],
+    ) -> ([Pair<Lanes>; 1], [[Square<Lanes>; 1]; 1]) {
+        let reference = points.of(&self.reference);
+        let (force, tangent) = self.force_and_tangent(factor, reference, states.map(|[r]| *r));
+        ([force], [[tangent]])
     }
 }

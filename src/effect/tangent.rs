@@ -3,15 +3,19 @@
 //! Two passes a cell. The first evaluates the density at the cell's points and multiplies its second derivatives into the rows,
 //!
 //! ```text
-//! P_md = w Σ_n H_mn(d, ·) N⁽ᵒⁿ⁾        (2 M rows of 2 W numbers, x and y of two functions in a register, per point)
+//! P_md = w Σ_n H_mn(d, ·) N⁽ᵒⁿ⁾        (2 M rows of 2 W numbers per point)
 //! ```
 //!
 //! the second adds Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md to row (a, d) of the matrix, a tile of 4 × 4 numbers (two nodes) at a
 //! time, so that the tile stays in registers while the points go by and is loaded and stored once per cell. Of a
 //! symmetric matrix only the tiles on and above the diagonal are computed.
+//!
+//! Cable elements that are alike are summed four at a time, a number of each in a lane: what surrounds their few tiles costs more than the tiles. Wider cells, which
+//! have many, are summed one at a time with four columns of a tile in the lanes.
 
-use super::{Density, Earlier, Gradient, Integral, Workspace};
-use crate::lanes::Lanes;
+use super::force::{coefficients, fields, fields_of_four, sums_of_points};
+use super::{Density, Earlier, Integral, Workspace};
+use crate::lanes::{self, Lanes, Pair, Points};
 use crate::linear::Matrix;
 use crate::linear::fma::fma;
 use nalgebra::Vector2;
@@ -26,109 +30,170 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
+        if W > 4 || self.fours.is_empty() {
+            for cell in 0..self.table.cells.len() {
+                self.tangent_of_cell::<W>(cell, factor, q, earlier, f, k, workspace);
+            }
+            return;
+        }
+        match self.table.points_per_cell {
+            2 => self.tangents_of_fours::<W, 2>(factor, q, earlier, f, k),
+            3 => self.tangents_of_fours::<W, 3>(factor, q, earlier, f, k),
+            4 => self.tangents_of_fours::<W, 4>(factor, q, earlier, f, k),
+            5 => self.tangents_of_fours::<W, 5>(factor, q, earlier, f, k),
+            _ => {}
+        }
+        for &cell in &self.singles {
+            self.tangent_of_cell::<W>(cell as usize, factor, q, earlier, f, k, workspace);
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn tangent_of_cell<const W: usize>(
+        &self,
+        cell: usize,
+        factor: f64,
+        q: &[f64],
+        earlier: Option<Earlier<'_>>,
+        f: &mut [f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
         let points = self.table.points_per_cell;
         let products = &mut workspace.lanes;
         products.resize(points * 2 * M * (W / 2), Lanes::ZERO);
-        for (cell, entry) in self.table.cells.iter().enumerate() {
-            let (weights, rows) = self.table.block(*entry);
-            let rows = rows.as_chunks::<W>().0;
-            let first = self.first(cell);
-            let range = first..first + 2 * W;
-            let here = coefficients::<W>(&q[range.clone()]);
-            let earlier = earlier
-                .map(|earlier| [earlier.q, earlier.increment].map(|q| coefficients::<W>(&q[range.clone()])));
-            let mut sums = [[0.0; 2]; W];
-            let by_point = weights.iter().zip(rows.chunks_exact(M)).zip(products.chunks_exact_mut(M * W));
-            for (p, ((weight, rows), products)) in by_point.enumerate() {
-                let weight = factor * weight;
-                let z = fields::<M, W>(rows, &here);
-                let [before, change] = match &earlier {
-                    Some([before, increment]) => {
-                        [fields::<M, W>(rows, before), fields::<M, W>(rows, increment)]
-                    }
-                    None => [z, [Vector2::zeros(); M]],
-                };
-                let (gradient, hessian) =
-                    self.density.gradient_and_hessian(cell * points + p, &z, &before, &change);
-                for (g, row) in gradient.iter().zip(rows) {
-                    let g = [weight * g.x, weight * g.y];
-                    for a in 0..W {
-                        sums[a] = [fma(row[a], g[0], sums[a][0]), fma(row[a], g[1], sums[a][1])];
+        let (weights, rows) = self.table.block(self.table.cells[cell]);
+        let rows = rows.as_chunks::<W>().0;
+        let first = self.first(cell);
+        let range = first..first + 2 * W;
+        let here = coefficients::<W>(&q[range.clone()]);
+        let earlier = earlier
+            .map(|earlier| [earlier.q, earlier.increment].map(|q| coefficients::<W>(&q[range.clone()])));
+        let mut sums = [[0.0; 2]; W];
+        let by_point = weights.iter().zip(rows.chunks_exact(M)).zip(products.chunks_exact_mut(M * W));
+        for (p, ((weight, rows), products)) in by_point.enumerate() {
+            let weight = factor * weight;
+            let z = fields::<M, W>(rows, &here);
+            let [before, change] = earlier
+                .as_ref()
+                .map_or([z, [Vector2::zeros(); M]], |q| q.each_ref().map(|q| fields(rows, q)));
+            let (gradient, hessian) =
+                self.density.gradient_and_hessian(cell * points + p, &z, &before, &change);
+            for (g, row) in gradient.iter().zip(rows) {
+                let g = [weight * g.x, weight * g.y];
+                for a in 0..W {
+                    sums[a] = [fma(row[a], g[0], sums[a][0]), fma(row[a], g[1], sums[a][1])];
+                }
+            }
+            for m in 0..M {
+                for d in 0..2 {
+                    let h: [Lanes; M] = std::array::from_fn(|n| {
+                        let (x, y) = (weight * hessian[m][n][(d, 0)], weight * hessian[m][n][(d, 1)]);
+                        Lanes::new([x, y, x, y])
+                    });
+                    let out = &mut products[(2 * m + d) * (W / 2)..(2 * m + d + 1) * (W / 2)];
+                    for b in 0..W / 2 {
+                        let mut sum = Lanes::ZERO;
+                        for n in 0..M {
+                            let [one, other] = [rows[n][2 * b], rows[n][2 * b + 1]];
+                            sum = h[n].mul_add(Lanes::new([one, one, other, other]), sum);
+                        }
+                        out[b] = sum;
                     }
                 }
+            }
+        }
+        for (f, sum) in f[range].as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
+            *f = [f[0] + sum[0], f[1] + sum[1]];
+        }
+        for_tiles::<W>(k, |k, a, b| {
+            add_tile(k, first / 4 + a, first / 4 + b, &tile::<M, W>(rows, products, a, b))
+        });
+    }
+
+    /// All cells that come by fours, `P` points in each.
+    fn tangents_of_fours<const W: usize, const P: usize>(
+        &self,
+        factor: f64,
+        q: &[f64],
+        earlier: Option<Earlier<'_>>,
+        f: &mut [f64],
+        k: &mut Matrix,
+    ) {
+        for &cell in &self.fours {
+            let cell = cell as usize;
+            let first = self.first(cell);
+            let range = first..first + 2 * W + 12;
+            let (weights, rows) = self.table.block(self.table.cells[cell]);
+            let (weights, rows) = (&weights[..P], &rows.as_chunks::<W>().0[..P * M]);
+            let here = lanes::gather::<W>(&q[range.clone()]);
+            let earlier = earlier
+                .map(|earlier| [earlier.q, earlier.increment].map(|q| lanes::gather::<W>(&q[range.clone()])));
+            let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
+            let mut products = [[[[[Lanes::ZERO; 2]; W]; 2]; M]; P];
+            for p in 0..P {
+                let rows = &rows[p * M..(p + 1) * M];
+                let z = fields_of_four::<M, W>(rows, &here);
+                let [before, change] = earlier
+                    .as_ref()
+                    .map_or([z, [[Lanes::ZERO; 2]; M]], |q| q.each_ref().map(|q| fields_of_four(rows, q)));
+                let points = Points { first: cell * P + p, stride: P };
+                let states = [&z, &before, &change];
+                let (gradient, hessian) =
+                    self.density.gradients_and_hessians(factor * weights[p], points, states);
+                gradients[p] = gradient;
                 for m in 0..M {
                     for d in 0..2 {
-                        let h: [Lanes; M] = std::array::from_fn(|n| {
-                            let (x, y) = (weight * hessian[m][n][(d, 0)], weight * hessian[m][n][(d, 1)]);
-                            Lanes::new([x, y, x, y])
-                        });
-                        let out = &mut products[(2 * m + d) * (W / 2)..(2 * m + d + 1) * (W / 2)];
-                        for b in 0..W / 2 {
-                            let mut sum = Lanes::ZERO;
-                            for n in 0..M {
-                                let [one, other] = [rows[n][2 * b], rows[n][2 * b + 1]];
-                                sum = h[n].mul_add(Lanes::new([one, one, other, other]), sum);
+                        for b in 0..W {
+                            products[p][m][d][b] = hessian[m][0][d].map(|h| h * Lanes::splat(rows[0][b]));
+                            for n in 1..M {
+                                let shape = Lanes::splat(rows[n][b]);
+                                for e in 0..2 {
+                                    let sum = &mut products[p][m][d][b][e];
+                                    *sum = hessian[m][n][d][e].mul_add(shape, *sum);
+                                }
                             }
-                            out[b] = sum;
                         }
                     }
                 }
             }
-            for (f, sum) in f[range].as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
-                *f = [f[0] + sum[0], f[1] + sum[1]];
-            }
-            add_tiles::<M, W>(rows, products, first / 4, k);
+            lanes::scatter(&sums_of_points::<M, W, P>(rows, &gradients), &mut f[range]);
+            for_tiles::<W>(k, |k, a, b| {
+                let mut tiles = [[Lanes::ZERO; 4]; 4];
+                tiles_of_four(rows, &products, [a, b], &mut tiles);
+                for (node, tile) in (first / 4..).zip(&tiles) {
+                    add_tile(k, node + a, node + b, tile);
+                }
+            });
         }
     }
 }
 
-/// The coefficients of a cell.
+/// Calls `add` for the tiles of a cell that `k` needs, by the numbers of the nodes within the cell.
 #[inline(always)]
-fn coefficients<const W: usize>(q: &[f64]) -> [[f64; 2]; W] {
-    let mut here = [[0.0; 2]; W];
-    here.copy_from_slice(&q.as_chunks().0[..W]);
-    here
-}
-
-/// The local fields at a point.
-#[inline(always)]
-fn fields<const M: usize, const W: usize>(rows: &[[f64; W]], here: &[[f64; 2]; W]) -> Gradient<M> {
-    let mut z = [Vector2::zeros(); M];
-    for (z, row) in z.iter_mut().zip(rows) {
-        for a in 0..W {
-            *z = Vector2::new(fma(row[a], here[a][0], z.x), fma(row[a], here[a][1], z.y));
+fn for_tiles<const W: usize>(k: &mut Matrix, mut add: impl FnMut(&mut Matrix, usize, usize)) {
+    let below = matches!(k, Matrix::General(_));
+    for a in 0..W / 2 {
+        for b in if below { 0 } else { a }..W / 2 {
+            add(k, a, b);
         }
     }
-    z
 }
 
-/// Adds all tiles of a cell to the matrix; the cell's first node is `node` of the system.
+/// Adds a tile: the rows of node `a`, the columns of node `b`.
 #[inline(always)]
-fn add_tiles<const M: usize, const W: usize>(
-    rows: &[[f64; W]],
-    products: &[Lanes],
-    node: usize,
-    k: &mut Matrix,
-) {
+fn add_tile(k: &mut Matrix, a: usize, b: usize, tile: &[Lanes; 4]) {
     match k {
         Matrix::Symmetric(matrix) => {
             let stride = matrix.stride();
-            for a in 0..W / 2 {
-                let panel = matrix.panel_mut(node + a);
-                for b in a..W / 2 {
-                    for (r, values) in tile::<M, W>(rows, products, a, b).into_iter().enumerate() {
-                        add_to(&mut panel[r * stride + 4 * (b - a)..], values);
-                    }
-                }
+            let columns = &mut matrix.panel_mut(a)[4 * (b - a)..];
+            for (r, values) in tile.iter().enumerate() {
+                add_to(&mut columns[r * stride..], *values);
             }
         }
         Matrix::General(matrix) => {
-            for a in 0..W / 2 {
-                for b in 0..W / 2 {
-                    for (r, values) in tile::<M, W>(rows, products, a, b).into_iter().enumerate() {
-                        add_to(matrix.row_mut(4 * (node + a) + r, 4 * (node + b), 4), values);
-                    }
-                }
+            for (r, values) in tile.iter().enumerate() {
+                add_to(matrix.row_mut(4 * a + r, 4 * b, 4), *values);
             }
         }
     }
@@ -159,4 +224,35 @@ fn tile<const M: usize, const W: usize>(
         }
     }
     tile
+}
+
+/// The tiles of four cells, cell after cell.
+#[inline(always)]
+fn tiles_of_four<const M: usize, const W: usize, const P: usize>(
+    rows: &[[f64; W]],
+    products: &[[[[Pair<Lanes>; W]; 2]; M]; P],
+    [a, b]: [usize; 2],
+    tiles: &mut [[Lanes; 4]; 4],
+) {
+    for function in 0..2 {
+        for d in 0..2 {
+            let [mut x, mut y, mut along, mut across] = [Lanes::ZERO; 4];
+            for p in 0..P {
+                for m in 0..M {
+                    let shape = Lanes::splat(rows[p * M + m][2 * a + function]);
+                    let [one, other] = [&products[p][m][d][2 * b], &products[p][m][d][2 * b + 1]];
+                    x = shape.mul_add(one[0], x);
+                    y = shape.mul_add(one[1], y);
+                    along = shape.mul_add(other[0], along);
+                    across = shape.mul_add(other[1], across);
+                }
+            }
+            let [first, second, third, fourth] = Lanes::transpose([x, y, along, across]);
+            let r = 2 * function + d;
+            tiles[0][r] = first;
+            tiles[1][r] = second;
+            tiles[2][r] = third;
+            tiles[3][r] = fourth;
+        }
+    }
 }
