@@ -47,8 +47,10 @@ use super::turns::Turns;
 use crate::lanes::Lanes;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::{Factor, Singular};
+use crate::solve::equilibrium::larger;
 use crate::solve::newton::{Failure, Iterations};
 use crate::trajectory::Statistics;
+use nalgebra::{DMatrix, RowDVector};
 
 /// Error of the stages of a step of given length, relative to the displacement in the step: the velocity takes the same relative error.
 const TOLERANCE: f64 = 1e-11;
@@ -106,16 +108,13 @@ pub struct Collocation<'a> {
     motion: Motion<'a>,
     tableau: Tableau,
     factors: Vec<BlockFactor>,
-    /// Y_i and the multipliers, stage after stage.
-    displacements: Vec<Vec<f64>>,
     /// Q̈_i of the last accepted step, and its length.
-    accelerations: Vec<Vec<f64>>,
+    accelerations: Vec<Lanes>,
     last_step: f64,
     trial_step: f64,
     kept: Option<Kept>,
     /// Whether a polynomial predicts the stages better than a mean.
     smooth: bool,
-    stage: Vec<f64>,
     acceleration: Vec<f64>,
     stages: Stages,
     transformed: Vec<Vec<f64>>,
@@ -128,18 +127,15 @@ impl<'a> Collocation<'a> {
     /// The method of a tableau.
     pub fn new(motion: Motion<'a>, tableau: Tableau) -> Self {
         let (n, unknowns, s) = (motion.coordinates(), motion.unknowns(), tableau.stages());
-        let stages = vec![vec![0.0; unknowns]; s];
         Self {
             factors: Vec::new(),
-            displacements: stages.clone(),
-            accelerations: vec![vec![0.0; n]; s],
+            accelerations: vec![Lanes::ZERO; n],
             last_step: 0.0,
             trial_step: 0.0,
             kept: None,
             smooth: true,
-            stage: vec![0.0; unknowns],
             acceleration: vec![0.0; n],
-            transformed: stages,
+            transformed: vec![vec![0.0; unknowns]; s],
             increment: vec![0.0; unknowns],
             turns: motion.turns(),
             stages: motion.stages(),
@@ -148,66 +144,51 @@ impl<'a> Collocation<'a> {
         }
     }
 
-    /// The coordinates of Y_i from the accelerations of the last step: their polynomial, continued, or their mean.
-    fn extrapolate(&self, i: usize, h: f64, smooth: bool, target: &mut [f64]) {
+    /// What makes Y_i of the accelerations of the last step: their polynomial, continued, or their mean.
+    fn extrapolation(&self, h: f64, smooth: bool) -> DMatrix<f64> {
         let Tableau { nodes, a_squared, weights, .. } = &self.tableau;
         let (ratio, shift) = if self.last_step > 0.0 { (h / self.last_step, 1.0) } else { (0.0, 0.0) };
-        let continued: Vec<Vec<f64>> = nodes
-            .iter()
-            .map(|c| if smooth { self.tableau.lagrange(shift + ratio * c) } else { weights.clone() })
-            .collect();
-        let weights = (0..nodes.len()).map(|k| {
-            continued.iter().enumerate().map(|(j, c)| a_squared[(i, j)] * c[k]).sum::<f64>() * h * h
+        let continued = nodes.iter().map(|c| {
+            let at = if smooth { self.tableau.lagrange(shift + ratio * c) } else { weights.clone() };
+            RowDVector::from_vec(at)
         });
-        combine(target, weights, &self.accelerations);
+        a_squared * DMatrix::from_rows(&continued.collect::<Vec<_>>()) * (h * h)
     }
 
     /// Predicts the displacements of all stages.
-    fn predict(&mut self, h: f64) {
-        let n = self.motion.coordinates();
-        for i in 0..self.tableau.stages() {
-            let mut predicted = std::mem::take(&mut self.displacements[i]);
-            let (target, multipliers) = predicted.split_at_mut(n);
-            self.extrapolate(i, h, self.smooth, target);
-            // What an iteration that failed has left.
-            multipliers.iter_mut().filter(|mu| !mu.is_finite()).for_each(|mu| *mu = 0.0);
-            self.displacements[i] = predicted;
+    fn predict(&mut self, from: &State, h: f64) {
+        let mixture = Mixture::new(&self.extrapolation(h, self.smooth), 1.0);
+        let (displacement, multipliers) = self.stages.displacement.split_at_mut(self.motion.coordinates());
+        displacement.iter_mut().zip(&self.accelerations).for_each(|(y, a)| *y = mixture.of(*a));
+        // What an iteration that failed has left.
+        for mu in multipliers.iter_mut().filter(|mu| !mu.to_array().into_iter().all(f64::is_finite)) {
+            *mu = Lanes::ZERO;
         }
+        self.place(from, h);
     }
 
-    /// How far from the last stage of the last attempt it would have been predicted.
-    fn miss(&mut self, smooth: bool) -> f64 {
+    /// Q_i from Y_i.
+    fn place(&mut self, from: &State, h: f64) {
+        self.stages.place(from, self.in_lanes(|i| self.tableau.nodes[i] * h));
+    }
+
+    /// How far from the last stage of the last attempt it would have been predicted, by the polynomial and by the mean.
+    fn misses(&mut self) -> [f64; 2] {
         let last = self.tableau.stages() - 1;
-        let mut difference = std::mem::take(&mut self.increment);
-        self.extrapolate(last, self.trial_step, smooth, &mut difference[..self.motion.coordinates()]);
-        difference.iter_mut().zip(&self.displacements[last]).for_each(|(d, y)| *d -= y);
-        self.increment = difference;
-        self.motion.size(&self.increment)
-    }
-
-    /// Largest displacement of a node in the step, as predicted.
-    fn displacement(&mut self, from: &State, h: f64) -> f64 {
-        let last = self.tableau.stages() - 1;
-        self.stage(last, from, h);
-        self.stage.iter_mut().zip(&from.q).for_each(|(x, q)| *x -= q);
-        self.motion.size(&self.stage)
-    }
-
-    /// Q_i.
-    fn stage(&mut self, i: usize, from: &State, h: f64) {
-        let n = self.motion.coordinates();
-        let ch = self.tableau.nodes[i] * h;
-        let known = from.q.iter().zip(&from.v).zip(&self.displacements[i]);
-        for (x, ((q, v), y)) in self.stage.iter_mut().zip(known) {
-            *x = q + (ch * v + y);
+        let rows =
+            [true, false].map(|smooth| self.extrapolation(self.trial_step, smooth).row(last).into_owned());
+        let mixture = Mixture::new(&DMatrix::from_rows(&rows), 1.0);
+        let Stages { residual: difference, displacement, .. } = &mut self.stages;
+        for ((d, y), a) in difference.iter_mut().zip(&*displacement).zip(&self.accelerations) {
+            *d = mixture.of(*a) - Lanes::splat(y.to_array()[last]);
         }
-        self.stage[n..].copy_from_slice(&self.displacements[i][n..]);
+        let [smooth, mean, ..] = self.motion.sizes(difference);
+        [smooth, mean]
     }
 
     /// The scaled multipliers of the last stage.
     fn multipliers(&self) -> Vec<f64> {
-        let n = self.motion.coordinates();
-        self.displacements.last().map_or_else(Vec::new, |y| y[n..].to_vec())
+        stages::lane(&self.stages.displacement[self.motion.coordinates()..], self.tableau.stages() - 1)
     }
 
     /// Factorises the transformed systems with the tangent at `at` for steps of length `h`.
@@ -235,8 +216,7 @@ impl<'a> Collocation<'a> {
     }
 
     /// Turns the tangent with each node to where it is in each stage.
-    fn turn(&mut self, from: &State, h: f64) {
-        self.stages.place(from, self.in_lanes(|i| self.tableau.nodes[i] * h), &self.displacements);
+    fn turn(&mut self) {
         if let Some(Kept { at, .. }) = &self.kept {
             self.stages.measure_turns(&at.q);
         }
@@ -249,26 +229,22 @@ impl<'a> Collocation<'a> {
     }
 
     /// The mean of the stages.
-    fn mean(&mut self, from: &State, h: f64) -> State {
+    fn mean(&self, from: &State, h: f64) -> State {
         let s = self.tableau.stages();
-        let mut mean = vec![0.0; from.q.len()];
-        for i in 0..s {
-            self.stage(i, from, h);
-            mean.iter_mut().zip(&self.stage).for_each(|(mean, x)| *mean += x / s as f64);
-        }
-        State { time: from.time + 0.5 * h, q: mean, v: from.v.clone(), ..State::default() }
+        let of = |x: &Lanes| x.to_array()[..s].iter().sum::<f64>() / s as f64;
+        let q = self.stages.x[..from.q.len()].iter().map(of).collect();
+        State { time: from.time + 0.5 * h, q, v: from.v.clone(), ..State::default() }
     }
 
     /// One iteration; returns the scaled increment and residual.
     fn iterate(&mut self, from: &State, h: f64) -> (f64, f64) {
         let s = self.tableau.stages();
-        self.stages.place(from, self.in_lanes(|i| self.tableau.nodes[i] * h), &self.displacements);
         let acceleration = Mixture::new(&self.tableau.inverse_squared, (h * h).recip());
         self.stages.move_on(from, &acceleration, &Mixture::new(&self.tableau.inverse, h.recip()));
         let times = self.in_lanes(|i| from.time + self.tableau.nodes[i] * h).to_array();
         let residual = self.motion.residuals(times, s, &mut self.stages);
-        let apart = Mixture::new(&self.tableau.inverse_transformation, 1.0);
-        self.stages.take_apart(&apart, &mut self.transformed);
+        self.stages
+            .take_apart(&Mixture::new(&self.tableau.inverse_transformation, -1.0), &mut self.transformed);
         for (block, factor) in self.tableau.blocks.iter().zip(&self.factors) {
             match (block, factor) {
                 (Block::Real { row, .. }, BlockFactor::Real(factor)) => {
@@ -283,8 +259,9 @@ impl<'a> Collocation<'a> {
         }
         self.stages.put_together(&Mixture::new(&self.tableau.transformation, 1.0), &self.transformed);
         self.motion.from_frames(&mut self.stages.residual);
-        let size = self.motion.size_of_stages(&self.stages.residual, s);
-        self.stages.add_to(&mut self.displacements);
+        let size = self.motion.sizes(&self.stages.residual).into_iter().fold(0.0, larger);
+        self.stages.advance();
+        self.place(from, h);
         self.motion.statistics.newton_iterations += 1;
         (size, residual)
     }
@@ -305,7 +282,7 @@ impl<'a> Collocation<'a> {
             self.linearize(from, self.multipliers(), h)?;
             tangent = Taken::AtStart;
         }
-        self.turn(from, h);
+        self.turn();
         // Sizes of the last two increments with the present tangent; rates alternate, and two together tell more than one.
         let mut last = [0.0_f64; 2];
         // The rate of the last step tells how far the first increment is from the solution, unless it is too good: where steps take one iteration
@@ -337,7 +314,7 @@ impl<'a> Collocation<'a> {
             match tangent {
                 Taken::Before if !finite || (last[0] > 0.0 && slow) => {
                     if !(finite && rate < 1.0) {
-                        self.predict(h);
+                        self.predict(from, h);
                     }
                     self.linearize(from, self.multipliers(), h)?;
                     tangent = Taken::AtStart;
@@ -350,7 +327,7 @@ impl<'a> Collocation<'a> {
                 Taken::AtMean if known && hopeless => return Err(Failure::Diverging { last: size }),
                 _ => continue,
             }
-            self.turn(from, h);
+            self.turn();
             last = [0.0; 2];
         }
         Err(Failure::TooSlow { iterations: ITERATIONS, last: last[1] })
@@ -362,12 +339,12 @@ impl<'a> Collocation<'a> {
         let n = self.motion.coordinates();
         let h = self.trial_step;
         self.polynomial(x);
-        self.stage[..n].copy_from_slice(&state.q);
-        self.stage[n..].fill(0.0);
         // −M Σ ℓ_j(x) Q̈_j − f(q) is M times the defect but for the forces of supports and constraints, which the solution removes.
         let mut e = vec![0.0; self.motion.unknowns()];
         let rates = Rates { time: state.time, v: &state.v, a: &self.acceleration };
-        self.motion.residual(&self.stage, rates, &mut e);
+        let mut x = vec![0.0; self.motion.unknowns()];
+        x[..n].copy_from_slice(&state.q);
+        self.motion.residual(&x, rates, &mut e);
         e[n..].fill(0.0);
         if let Some(Kept { at, .. }) = &self.kept {
             self.turns.measure(&at.q, &state.q);
@@ -397,11 +374,11 @@ impl<'a> Collocation<'a> {
     fn polynomial(&mut self, x: f64) {
         let s = self.tableau.stages();
         let at = self.tableau.lagrange(x);
-        let weights = (0..s).map(|j| {
+        let weights = |j: usize| {
             (0..s).map(|i| at[i] * self.tableau.inverse_squared[(i, j)]).sum::<f64>()
                 / self.trial_step.powi(2)
-        });
-        combine(&mut self.acceleration, weights, &self.displacements);
+        };
+        self.stages.sum(|j| if j < s { weights(j) } else { 0.0 }, &mut self.acceleration);
     }
 
     /// q̈ at an end of the step without what oscillates faster than the step can follow: that part, however small its amplitude, would
@@ -410,14 +387,6 @@ impl<'a> Collocation<'a> {
         let state = &self.motion.unknowns_of(state);
         let (defect, factor) = self.defect(x, state);
         self.acceleration.iter().zip(defect).map(|(a, d)| a + factor * d).collect()
-    }
-}
-
-/// `target = Σ weight · vector`.
-fn combine(target: &mut [f64], weights: impl Iterator<Item = f64>, vectors: &[Vec<f64>]) {
-    target.fill(0.0);
-    for (weight, vector) in weights.zip(vectors) {
-        target.iter_mut().zip(vector).for_each(|(t, v)| *t += weight * v);
     }
 }
 
@@ -435,9 +404,9 @@ impl Method for Collocation<'_> {
         let mut acceleration = vec![0.0; state.q.len()];
         let unknowns = self.motion.unknowns_of(state);
         self.motion.acceleration(&unknowns, &mut acceleration)?;
-        self.accelerations.iter_mut().for_each(|a| a.copy_from_slice(&acceleration));
-        let n = acceleration.len();
-        self.displacements.iter_mut().for_each(|y| y[n..].copy_from_slice(self.motion.multipliers()));
+        self.accelerations.iter_mut().zip(&acceleration).for_each(|(all, a)| *all = Lanes::splat(*a));
+        let multipliers = self.stages.displacement[acceleration.len()..].iter_mut();
+        multipliers.zip(self.motion.multipliers()).for_each(|(all, mu)| *all = Lanes::splat(*mu));
         (self.last_step, self.kept, self.smooth) = (0.0, None, true);
         Ok(acceleration)
     }
@@ -453,8 +422,10 @@ impl Method for Collocation<'_> {
         let start = self.motion.unknowns_of(from);
         let from = &*start;
         self.smooth |= accuracy.is_none();
-        self.predict(h);
-        let tight = TOLERANCE * self.displacement(from, h);
+        self.predict(from, h);
+        self.stages.measure_displacements(from);
+        let [.., displacement] = self.motion.sizes(&self.stages.residual);
+        let tight = TOLERANCE * displacement;
         let (damped, undamped) = TOLERANCE_OF_ERROR;
         let part = if self.tableau.damps() { damped } else { undamped };
         let tolerance = accuracy.map_or(tight, |allowed| (part * allowed.min(LARGEST_ERROR)).max(tight));
@@ -465,15 +436,11 @@ impl Method for Collocation<'_> {
         solved?;
         self.trial_step = h;
         let s = self.tableau.stages();
-        for (i, (q, v)) in to.q.iter_mut().zip(&mut to.v).enumerate() {
-            let (mut position, mut velocity) = (0.0, 0.0);
-            for j in 0..s {
-                let y = self.displacements[j][i];
-                position += self.tableau.position_weights[j] * y;
-                velocity += self.tableau.velocity_weights[j] * y;
-            }
-            *q = from.q[i] + (h * from.v[i] + position);
-            *v = from.v[i] + velocity / h;
+        let end = Mixture::new(&self.tableau.end, 1.0);
+        for (i, y) in self.stages.displacement[..from.q.len()].iter().enumerate() {
+            let [position, velocity, ..] = end.of(*y).to_array();
+            to.q[i] = from.q[i] + (h * from.v[i] + position);
+            to.v[i] = from.v[i] + velocity / h;
         }
         to.time = from.time + h;
         self.motion.carry(to);
@@ -487,9 +454,11 @@ impl Method for Collocation<'_> {
     fn accept(&mut self) {
         let h = self.trial_step;
         // Round-off must not decide where both are as good.
-        self.smooth = self.miss(true) <= 2.0 * self.miss(false);
-        let acceleration = Mixture::new(&self.tableau.inverse_squared, (h * h).recip());
-        self.stages.accelerations(&acceleration, &mut self.accelerations);
+        let [smooth, mean] = self.misses();
+        self.smooth = smooth <= 2.0 * mean;
+        let mixture = Mixture::new(&self.tableau.inverse_squared, (h * h).recip());
+        let displacements = &self.stages.displacement;
+        self.accelerations.iter_mut().zip(displacements).for_each(|(a, y)| *a = mixture.of(*y));
         self.last_step = h;
     }
 
@@ -519,8 +488,9 @@ impl Method for Collocation<'_> {
         let Kept { at, multipliers, step, rate } = self.kept.clone().unwrap_or_default();
         let numbers = vec![self.last_step, at.time, step, rate, f64::from(self.smooth)];
         let mut memory = vec![numbers, at.q, at.v, multipliers];
-        memory.extend(self.accelerations.iter().cloned());
-        memory.extend(self.displacements.iter().map(|y| y[n..].to_vec()));
+        let s = self.tableau.stages();
+        memory.extend((0..s).map(|i| stages::lane(&self.accelerations, i)));
+        memory.extend((0..s).map(|i| stages::lane(&self.stages.displacement[n..], i)));
         memory
     }
 
@@ -535,10 +505,8 @@ impl Method for Collocation<'_> {
         if memory.iter().map(Vec::len).ne(expected) {
             return false;
         }
-        for i in 0..s {
-            self.accelerations[i].copy_from_slice(&memory[4 + i]);
-            self.displacements[i][n..].copy_from_slice(&memory[4 + s + i]);
-        }
+        stages::gather(&memory[4..4 + s], &mut self.accelerations);
+        stages::gather(&memory[4 + s..4 + 2 * s], &mut self.stages.displacement[n..]);
         let [last_step, time, step, rate] = [memory[0][0], memory[0][1], memory[0][2], memory[0][3]];
         (self.last_step, self.smooth) = (last_step, memory[0][4] > 0.5);
         if at == 0 {

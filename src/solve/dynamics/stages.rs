@@ -13,18 +13,18 @@ use nalgebra::DMatrix;
 /// Stages that fit into a register and are in use: three at most.
 const STAGES: usize = 3;
 
-/// A small matrix that mixes the stages of an unknown.
+/// A small matrix that takes the stages of an unknown to up to four other numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Mixture {
     columns: [Lanes; STAGES],
 }
 
 impl Mixture {
-    /// `factor` times `matrix`.
+    /// `factor` times `matrix`, which has a column a stage; lanes beyond its last row repeat that.
     pub fn new(matrix: &DMatrix<f64>, factor: f64) -> Self {
-        let s = matrix.nrows();
-        let column = |j: usize| Lanes::new(std::array::from_fn(|i| factor * matrix[(i.min(s - 1), j)]));
-        Self { columns: std::array::from_fn(|j| if j < s { column(j) } else { Lanes::ZERO }) }
+        let (rows, columns) = matrix.shape();
+        let column = |j: usize| Lanes::new(std::array::from_fn(|i| factor * matrix[(i.min(rows - 1), j)]));
+        Self { columns: std::array::from_fn(|j| if j < columns { column(j) } else { Lanes::ZERO }) }
     }
 
     /// The product with the stages of one unknown.
@@ -92,15 +92,15 @@ pub fn largest(numbers: &[Lanes], units: [f64; 4]) -> Lanes {
 /// What an iteration works with.
 #[derive(Clone, Debug)]
 pub struct Stages {
-    /// Y.
-    displacement: Vec<Lanes>,
+    /// Y, followed by the multipliers.
+    pub displacement: Vec<Lanes>,
     /// Q, followed by the multipliers.
     pub x: Vec<Lanes>,
     /// Q̈.
     pub acceleration: Vec<Lanes>,
     /// Q̇, where forces depend on it.
     pub velocity: Vec<Lanes>,
-    /// The negative residual, then the increment.
+    /// The residual, then the increment.
     pub residual: Vec<Lanes>,
     /// From where the tangent was taken.
     turns: Vec<Turn<Lanes>>,
@@ -122,8 +122,7 @@ impl Stages {
     }
 
     /// Q_i = q₀ + c_i h v₀ + Y_i.
-    pub fn place(&mut self, from: &State, ch: Lanes, displacements: &[Vec<f64>]) {
-        gather(displacements, &mut self.displacement);
+    pub fn place(&mut self, from: &State, ch: Lanes) {
         let n = from.q.len();
         let (x, y) = (&mut self.x[..n], &self.displacement[..n]);
         let (q, v) = (&from.q[..n], &from.v[..n]);
@@ -143,14 +142,6 @@ impl Stages {
         }
     }
 
-    /// Writes Q̈ to `vectors`, one a stage.
-    pub fn accelerations(&mut self, mixture: &Mixture, vectors: &mut [Vec<f64>]) {
-        for (a, y) in self.acceleration.iter_mut().zip(&self.displacement) {
-            *a = mixture.of(*y);
-        }
-        scatter(&self.acceleration, vectors);
-    }
-
     /// Measures how far every node has turned since `at`.
     pub fn measure_turns(&mut self, at: &[f64]) {
         let nodes = self.x.as_chunks::<4>().0.iter().zip(at.as_chunks::<4>().0);
@@ -164,26 +155,41 @@ impl Stages {
 
     /// Turns the residual back to where the tangent was taken, mixes the stages and writes them to `rows`.
     pub fn take_apart(&mut self, mixture: &Mixture, rows: &mut [Vec<f64>]) {
-        for (turn, node) in self.turns.iter().zip(self.residual.as_chunks_mut::<4>().0) {
+        let nodes = self.residual.as_chunks_mut::<4>().0;
+        for (turn, node) in self.turns.iter().zip(nodes) {
             turn.back(node);
+            *node = node.map(|r| mixture.of(r));
         }
-        self.residual.iter_mut().for_each(|r| *r = mixture.of(*r));
+        self.residual[4 * self.turns.len()..].iter_mut().for_each(|r| *r = mixture.of(*r));
         scatter(&self.residual, rows);
     }
 
     /// The increments of the stages from those of the rows.
     pub fn put_together(&mut self, mixture: &Mixture, rows: &[Vec<f64>]) {
         gather(rows, &mut self.residual);
-        self.residual.iter_mut().for_each(|r| *r = mixture.of(*r));
-        for (turn, node) in self.turns.iter().zip(self.residual.as_chunks_mut::<4>().0) {
+        let nodes = self.residual.as_chunks_mut::<4>().0;
+        for (turn, node) in self.turns.iter().zip(nodes) {
+            *node = node.map(|r| mixture.of(r));
             turn.forth(node);
         }
+        self.residual[4 * self.turns.len()..].iter_mut().for_each(|r| *r = mixture.of(*r));
     }
 
     /// Adds the increments to the displacements.
-    pub fn add_to(&mut self, displacements: &mut [Vec<f64>]) {
+    pub fn advance(&mut self) {
         self.displacement.iter_mut().zip(&self.residual).for_each(|(y, d)| *y += *d);
-        scatter(&self.displacement, displacements);
+    }
+
+    /// How far each stage is from `from`, as increments.
+    pub fn measure_displacements(&mut self, from: &State) {
+        let coordinates = self.x.iter().zip(&from.q);
+        self.residual.iter_mut().zip(coordinates).for_each(|(d, (x, q))| *d = *x - Lanes::splat(*q));
+    }
+
+    /// Σ_i `weights`_i Y_i.
+    pub fn sum(&self, weights: impl Fn(usize) -> f64, sum: &mut [f64]) {
+        let weights = Lanes::new(std::array::from_fn(weights));
+        sum.iter_mut().zip(&self.displacement).for_each(|(sum, y)| *sum = (*y * weights).reduce_add());
     }
 }
 
@@ -194,7 +200,7 @@ impl Motion<'_> {
         Stages::new(self.coordinates(), self.unknowns(), self.needs_velocity() || self.moves, still)
     }
 
-    /// [`Self::residual`] of the stages of a step at their `times`, the first `count` lanes: writes those of all, returns the largest.
+    /// [`Self::residual`] of the stages of a step at their `times`, the first `count` lanes: leaves those of all in `stages`, returns the largest.
     pub fn residuals(&mut self, times: [f64; 4], count: usize, stages: &mut Stages) -> f64 {
         if self.moves || self.system.multipliers() > 0 {
             let mut largest = 0.0_f64;
@@ -209,6 +215,7 @@ impl Motion<'_> {
                 }
             }
             gather(&rows[..count], &mut stages.residual);
+            stages.residual.iter_mut().for_each(|r| *r = -*r);
             return largest;
         }
         self.statistics.residual_evaluations += count;
@@ -228,15 +235,13 @@ impl Motion<'_> {
         system.supports().to_frames(0.0, force);
         let residual =
             (largest(force, units) / (scale + Lanes::splat(equilibrium::floor(system)))).to_array();
-        force.iter_mut().for_each(|f| *f = -*f);
-        residual[..count].iter().copied().fold(0.0, larger)
+        residual.into_iter().fold(0.0, larger)
     }
 
-    /// The largest of [`Self::size`] over the first `count` lanes.
-    pub fn size_of_stages(&self, increment: &[Lanes], count: usize) -> f64 {
+    /// [`Self::size`] of the increments of all stages.
+    pub fn sizes(&self, increment: &[Lanes]) -> [f64; 4] {
         let inverse = 1.0 / self.system.length();
         let units = [inverse, inverse, 1.0, 1.0];
-        let sizes = largest(&increment[..self.coordinates()], units).to_array();
-        sizes[..count].iter().copied().fold(0.0, larger)
+        largest(&increment[..self.coordinates()], units).to_array()
     }
 }

@@ -48,10 +48,8 @@ pub struct Tableau {
     pub inverse_squared: DMatrix<f64>,
     /// b.
     pub weights: Vec<f64>,
-    /// bᵀ A⁻¹: weights of the stage displacements in the position at the end.
-    pub position_weights: Vec<f64>,
-    /// bᵀ A⁻²: their weights in h times the velocity at the end.
-    pub velocity_weights: Vec<f64>,
+    /// bᵀ A⁻¹ and bᵀ A⁻²: weights of the stage displacements in the position at the end, and in h times the velocity there.
+    pub end: DMatrix<f64>,
     /// T of A⁻¹ = T Λ T⁻¹.
     pub transformation: DMatrix<f64>,
     /// T⁻¹.
@@ -97,8 +95,7 @@ impl Tableau {
             order,
             a_squared: &a * &a,
             weights: b.iter().copied().collect(),
-            position_weights: (&b * &inverse).iter().copied().collect(),
-            velocity_weights: (&b * &inverse_squared).iter().copied().collect(),
+            end: DMatrix::from_rows(&[&b * &inverse, &b * &inverse_squared]),
             inverse_transformation: invert(&transformation),
             transformation,
             inverse,
@@ -182,9 +179,8 @@ mod tests {
         {
             let s = tableau.stages();
             let inverse = invert(&tableau.a);
-            let b: Vec<f64> = (0..s)
-                .map(|j| (0..s).map(|i| tableau.position_weights[i] * tableau.a[(i, j)]).sum())
-                .collect();
+            let b: Vec<f64> =
+                (0..s).map(|j| (0..s).map(|i| tableau.end[(0, i)] * tableau.a[(i, j)]).sum()).collect();
             for degree in 0..tableau.order as i32 {
                 let sum: f64 = b.iter().zip(&tableau.nodes).map(|(b, c)| b * c.powi(degree)).sum();
                 assert!((sum - 1.0 / f64::from(degree + 1)).abs() < 1e-14, "{s} stages, degree {degree}");
