@@ -11,6 +11,7 @@
 use super::bordered::{BorderRow, Bordered};
 use super::condensed::{self, ComplexCondensed};
 use super::interleaved::{self, Interleaved};
+use super::order::Order;
 use super::symmetric::SymmetricBand;
 use super::{Matrix, Singular};
 use crate::lanes::Lanes;
@@ -152,13 +153,14 @@ impl ComplexLdl {
     }
 
     fn factorize(&mut self, k: &SymmetricBand, m: &SymmetricBand, zeta: c64) -> Result<(), Singular> {
-        let [k, m] = [k, m].map(|matrix| matrix.data().as_chunks::<4>().0.chunks_exact(4 * self.blocks));
-        for (panel, (k, m)) in self.rows.chunks_exact_mut(self.blocks).zip(k.zip(m)) {
-            for (b, block) in panel.iter_mut().enumerate() {
-                for (r, [re, im]) in block.iter_mut().enumerate() {
-                    let [k, m] = [k, m].map(|rows| Lanes::new(rows[r * self.blocks + b]));
-                    (*re, *im) = (m.mul_add(Lanes::splat(zeta.re), k), m * Lanes::splat(zeta.im));
-                }
+        let order = Order::new(self.rows.len() / self.blocks, self.blocks);
+        for (position, panel) in self.rows.chunks_exact_mut(self.blocks).enumerate() {
+            for (b, target) in panel.iter_mut().enumerate() {
+                let (node, turned) = order.source(position, b);
+                let [k, m] = [k, m].map(|matrix| matrix.block(node, b));
+                let [re, im] = [Lanes::splat(zeta.re), Lanes::splat(zeta.im)];
+                let block = std::array::from_fn(|r| [m[r].mul_add(re, k[r]), m[r] * im]);
+                *target = if turned { transpose(block) } else { block };
             }
         }
         match self.blocks {
@@ -172,16 +174,26 @@ impl ComplexLdl {
     /// With the number of blocks a compile-time constant, or 0.
     fn eliminate<const BLOCKS: usize>(&mut self) -> Result<(), Singular> {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
-        for node in 0..self.rows.len() / blocks {
-            let (panel, later) = self.rows[node * blocks..].split_at_mut(blocks);
+        let nodes = self.rows.len() / blocks;
+        let order = Order::new(nodes, blocks);
+        for position in 0..nodes {
+            let singular = |position, r| Singular { row: 4 * order.node(position) + r };
+            if order.is_pair(position) {
+                let (one, other) = self.rows[position * blocks..].split_at_mut(blocks);
+                invert([&mut one[0], &mut other[0]]).map_err(|(which, r)| singular(position + which, r))?;
+            } else if position == 0 || !order.is_pair(position - 1) {
+                invert([&mut self.rows[position * blocks]]).map_err(|(_, r)| singular(position, r))?;
+            }
+            let (panel, later) = self.rows[position * blocks..].split_at_mut(blocks);
             let Some((diagonal, right)) = panel.split_first_mut() else { break };
-            *diagonal = inverse(*diagonal).map_err(|r| Singular { row: 4 * node + r })?;
-            let products = &mut self.transposed[node * (blocks - 1)..(node + 1) * (blocks - 1)];
+            let products = &mut self.transposed[position * (blocks - 1)..(position + 1) * (blocks - 1)];
             for (w, u) in products.iter_mut().zip(&*right) {
                 *w = diagonal.map(|row| product(u, numbers(row)));
             }
-            for (a, (u, later)) in right.iter().zip(later.chunks_exact_mut(blocks)).enumerate() {
-                for (target, w) in later.iter_mut().zip(&products[a..]) {
+            for (a, u) in right.iter().enumerate() {
+                let Some(next) = order.next(position, a + 1) else { break };
+                let later = &mut later[(next - position - 1) * blocks..];
+                for (target, w) in later[..blocks].iter_mut().zip(&products[a..]) {
                     for (source, w) in u.iter().zip(w) {
                         for (target, u) in target.iter_mut().zip(numbers(*source)) {
                             *target = subtract(u, *w, *target);
@@ -210,48 +222,58 @@ impl ComplexLdl {
     fn substitute<const BLOCKS: usize>(&self, re: &mut [f64], im: &mut [f64]) {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
         let (re, im) = (re.as_chunks_mut::<4>().0, im.as_chunks_mut::<4>().0);
-        for (node, panel) in self.rows.chunks_exact(blocks).enumerate() {
-            let ([re, re_later @ ..], [im, im_later @ ..]) = (&mut re[node..], &mut im[node..]) else {
-                break;
-            };
-            let here = numbers([*re, *im].map(Lanes::new));
-            for (w, (re, im)) in panel[1..].iter().zip(re_later.iter_mut().zip(im_later)) {
-                let change = product(w, here);
-                *re = (Lanes::new(*re) - change[0]).to_array();
-                *im = (Lanes::new(*im) - change[1]).to_array();
+        let order = Order::new(re.len(), blocks);
+        for (position, panel) in self.rows.chunks_exact(blocks).enumerate() {
+            let node = order.node(position);
+            let here = numbers([re[node], im[node]].map(Lanes::new));
+            for (b, w) in panel.iter().enumerate().skip(1) {
+                let Some(next) = order.next(position, b) else { break };
+                let (change, next) = (product(w, here), order.node(next));
+                re[next] = (Lanes::new(re[next]) - change[0]).to_array();
+                im[next] = (Lanes::new(im[next]) - change[1]).to_array();
             }
             // Symmetric: its rows are its columns.
-            [*re, *im] = product(&panel[0], here).map(Lanes::to_array);
+            [re[node], im[node]] = product(&panel[0], here).map(Lanes::to_array);
         }
-        for (node, transposed) in self.transposed.chunks_exact((blocks - 1).max(1)).enumerate().rev() {
-            let ([re, re_later @ ..], [im, im_later @ ..]) = (&mut re[node..], &mut im[node..]) else {
-                break;
-            };
-            let mut here = [*re, *im].map(Lanes::new);
-            for (w, (re, im)) in transposed.iter().zip(re_later.iter().zip(im_later)) {
-                let change = product(w, numbers([*re, *im].map(Lanes::new)));
+        for (position, transposed) in self.transposed.chunks_exact((blocks - 1).max(1)).enumerate().rev() {
+            let node = order.node(position);
+            let mut here = [re[node], im[node]].map(Lanes::new);
+            for (b, w) in transposed.iter().enumerate() {
+                let Some(next) = order.next(position, b + 1).map(|next| order.node(next)) else { break };
+                let change = product(w, numbers([re[next], im[next]].map(Lanes::new)));
                 here = [here[0] - change[0], here[1] - change[1]];
             }
-            [*re, *im] = here.map(Lanes::to_array);
+            [re[node], im[node]] = here.map(Lanes::to_array);
         }
     }
 }
 
-/// The inverse of a symmetric block of which the part below the diagonal need not be there, or the row of a pivot that vanishes or is not finite.
+/// Inverts symmetric blocks of which the part below the diagonal need not be there, step by step, so that one waits while another goes on; or says which block has
+/// a pivot that vanishes or is not finite, and in which row.
 #[inline(always)]
-fn inverse(upper: Block) -> Result<Block, usize> {
-    let lower = transpose(upper);
-    let mut block: Block = std::array::from_fn(|r| {
-        std::array::from_fn(|part| {
-            let [lower, upper] = [lower, upper].map(|block| block[r][part].to_array());
-            Lanes::new(std::array::from_fn(|c| if c < r { lower[c] } else { upper[c] }))
-        })
-    });
-    exchange::<0>(&mut block)?;
-    exchange::<1>(&mut block)?;
-    exchange::<2>(&mut block)?;
-    exchange::<3>(&mut block)?;
-    Ok(block)
+fn invert<const N: usize>(mut blocks: [&mut Block; N]) -> Result<(), (usize, usize)> {
+    for block in &mut blocks {
+        let lower = transpose(**block);
+        for (r, (row, lower)) in block.iter_mut().zip(lower).enumerate() {
+            for (row, lower) in row.iter_mut().zip(lower) {
+                let (mut whole, lower) = (row.to_array(), lower.to_array());
+                whole[..r].copy_from_slice(&lower[..r]);
+                *row = Lanes::new(whole);
+            }
+        }
+    }
+    exchange_all::<0, N>(&mut blocks)?;
+    exchange_all::<1, N>(&mut blocks)?;
+    exchange_all::<2, N>(&mut blocks)?;
+    exchange_all::<3, N>(&mut blocks)
+}
+
+#[inline(always)]
+fn exchange_all<const R: usize, const N: usize>(blocks: &mut [&mut Block; N]) -> Result<(), (usize, usize)> {
+    for (which, block) in blocks.iter_mut().enumerate() {
+        exchange::<R>(block).map_err(|r| (which, r))?;
+    }
+    Ok(())
 }
 
 /// One step of Gauss and Jordan's elimination: exchanges unknown and right-hand side number `R`.

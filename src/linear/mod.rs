@@ -21,6 +21,7 @@ pub mod condensed;
 pub(crate) mod fma;
 pub mod interleaved;
 pub mod isotropic;
+mod order;
 pub mod symmetric;
 
 use band::{Band, BandLu};

@@ -13,6 +13,7 @@
 use super::Singular;
 use super::band::Band;
 use super::fma::fma;
+use super::order::Order;
 use crate::lanes::Lanes;
 
 /// Upper half of a symmetric matrix, banded by blocks.
@@ -53,9 +54,11 @@ impl SymmetricBand {
         &mut self.data[node * length..(node + 1) * length]
     }
 
-    /// All entries, panel after panel.
-    pub(super) fn data(&self) -> &[f64] {
-        &self.data
+    /// Rows of `node`, columns of the node `block` further on.
+    #[inline(always)]
+    pub(super) fn block(&self, node: usize, block: usize) -> [Lanes; 4] {
+        let rows = self.data.as_chunks::<4>().0;
+        std::array::from_fn(|r| Lanes::new(rows[(4 * node + r) * self.blocks + block]))
     }
 
     /// Numbers in a row of a panel.
@@ -192,18 +195,23 @@ impl SymmetricBand {
     }
 }
 
+/// Rows of 4 × 4 numbers.
+type Block = [Lanes; 4];
+
 /// A = L D Lᵀ without pivoting, D of blocks of 4 × 4, which are D = l d lᵀ in turn.
 ///
 /// The blocks right of the diagonal hold W = D⁻¹ U, so that a substitution is a product with W or Wᵀ from node to node: one after
 /// the other only as far as it must be, and by whole registers. Solving with the pivots themselves waits for nothing and is waited for by nothing.
 #[derive(Clone, Debug)]
 pub struct Ldl {
-    /// d lᵀ on the diagonal, W right of it.
-    rows: SymmetricBand,
+    /// Blocks of a node, the diagonal one included.
+    blocks: usize,
+    /// Of each node, in the order of elimination: d lᵀ, and the blocks W.
+    rows: Vec<Block>,
     /// The blocks Wᵀ.
-    transposed: Vec<[[f64; 4]; 4]>,
+    transposed: Vec<Block>,
     /// 1/d.
-    reciprocal: Vec<f64>,
+    reciprocal: Vec<[f64; 4]>,
     negative: usize,
 }
 
@@ -217,13 +225,19 @@ impl Ldl {
     /// [`Singular`] where a pivot vanishes against the diagonal entry it came from, or is not finite.
     pub fn new(matrix: &SymmetricBand) -> Result<Self, Singular> {
         let mut ldl = Self::of(matrix);
-        ldl.factorize()?;
+        ldl.refactorize(matrix, None)?;
         Ok(ldl)
     }
 
     fn of(matrix: &SymmetricBand) -> Self {
-        let transposed = vec![[[0.0; 4]; 4]; matrix.nodes * (matrix.blocks - 1)];
-        Self { rows: matrix.clone(), transposed, reciprocal: vec![0.0; matrix.size()], negative: 0 }
+        let SymmetricBand { nodes, blocks, .. } = *matrix;
+        Self {
+            blocks,
+            rows: vec![[Lanes::ZERO; 4]; nodes * blocks],
+            transposed: vec![[Lanes::ZERO; 4]; nodes * (blocks - 1)],
+            reciprocal: vec![[0.0; 4]; nodes],
+            negative: 0,
+        }
     }
 
     /// Factorises `matrix`, plus c M where `shift` is (c, M), in the memory of this factorisation of the same pattern.
@@ -235,89 +249,72 @@ impl Ldl {
         matrix: &SymmetricBand,
         shift: Option<(f64, &SymmetricBand)>,
     ) -> Result<(), Singular> {
-        if self.rows.data.len() != matrix.data.len() || self.rows.blocks != matrix.blocks {
+        if self.reciprocal.len() != matrix.nodes || self.blocks != matrix.blocks {
             *self = Self::of(matrix);
         }
-        match shift {
-            None => self.rows.data.copy_from_slice(&matrix.data),
-            // One pass over memory instead of three.
-            Some((c, m)) => {
-                let sources = matrix.data.iter().zip(&m.data);
-                self.rows.data.iter_mut().zip(sources).for_each(|(row, (k, m))| *row = fma(c, *m, *k));
+        match self.blocks {
+            2 => self.factorize::<2>(matrix, shift),
+            4 => self.factorize::<4>(matrix, shift),
+            6 => self.factorize::<6>(matrix, shift),
+            _ => self.factorize::<0>(matrix, shift),
+        }
+    }
+
+    /// With the number of blocks a compile-time constant, or 0.
+    fn factorize<const BLOCKS: usize>(
+        &mut self,
+        matrix: &SymmetricBand,
+        shift: Option<(f64, &SymmetricBand)>,
+    ) -> Result<(), Singular> {
+        let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
+        let order = Order::new(matrix.nodes, blocks);
+        for (position, panel) in self.rows.chunks_exact_mut(blocks).enumerate() {
+            for (b, target) in panel.iter_mut().enumerate() {
+                let (node, turned) = order.source(position, b);
+                let mut block = matrix.block(node, b);
+                if let Some((c, m)) = shift {
+                    let (c, m) = (Lanes::splat(c), m.block(node, b));
+                    block.iter_mut().zip(m).for_each(|(k, m)| *k = m.mul_add(c, *k));
+                }
+                *target = if turned { Lanes::transpose(block) } else { block };
             }
         }
-        self.factorize()
-    }
-
-    fn factorize(&mut self) -> Result<(), Singular> {
-        // Until its pivot is known, the place of a reciprocal holds the size of the diagonal entry.
-        let stride = self.rows.stride();
-        for (i, scale) in self.reciprocal.iter_mut().enumerate() {
-            *scale = self.rows.data[i * stride + i % 4].abs();
-        }
-        match self.rows.blocks {
-            2 => self.eliminate::<8>(),
-            4 => self.eliminate::<16>(),
-            6 => self.eliminate::<24>(),
-            _ => self.eliminate::<0>(),
-        }
-    }
-
-    /// `STRIDE` is the panel's row length where it is known at compile time, 0 otherwise.
-    fn eliminate<const STRIDE: usize>(&mut self) -> Result<(), Singular> {
-        let stride = if STRIDE == 0 { self.rows.stride() } else { STRIDE };
-        let nodes = self.rows.nodes;
         self.negative = 0;
-        for node in 0..nodes {
-            let (panel, later) = self.rows.data[node * 4 * stride..].split_at_mut(4 * stride);
-            let mut reciprocal = [0.0; 4];
-            for r in 0..4 {
-                let (done, rest) = panel.split_at_mut((r + 1) * stride);
-                let row = &done[r * stride..];
-                let pivot = row[r];
-                let i = 4 * node + r;
-                let scale = self.reciprocal[i];
-                // Written so that a NaN fails too.
-                if !(pivot.abs() > SMALLEST_PIVOT * scale && pivot.is_finite()) {
-                    return Err(Singular { row: i });
-                }
-                self.negative += usize::from(pivot < 0.0);
-                reciprocal[r] = 1.0 / pivot;
-                for (below, target) in rest.chunks_exact_mut(stride).enumerate() {
-                    let factor = row[r + 1 + below] * reciprocal[r];
-                    for (t, s) in target.iter_mut().zip(row) {
-                        *t = fma(-factor, *s, *t);
+        for position in 0..matrix.nodes {
+            let (panel, later) = self.rows[position * blocks..].split_at_mut(blocks);
+            let reciprocal = &mut self.reciprocal[position];
+            let node = order.node(position);
+            let singular = |r| Singular { row: 4 * node + r };
+            let scale = |r| {
+                matrix.get(4 * node + r, 4 * node + r)
+                    + shift.map_or(0.0, |(c, m)| c * m.get(4 * node + r, 4 * node + r))
+            };
+            *reciprocal = [
+                reduce::<0>(panel, scale(0)).ok_or_else(|| singular(0))?,
+                reduce::<1>(panel, scale(1)).ok_or_else(|| singular(1))?,
+                reduce::<2>(panel, scale(2)).ok_or_else(|| singular(2))?,
+                reduce::<3>(panel, scale(3)).ok_or_else(|| singular(3))?,
+            ];
+            self.negative += reciprocal.iter().filter(|d| **d < 0.0).count();
+            for a in 1..blocks {
+                let Some(next) = order.next(position, a) else { break };
+                let later = &mut later[(next - position - 1) * blocks..];
+                let mut l = panel[a];
+                l.iter_mut().zip(&*reciprocal).for_each(|(l, d)| *l = *l * Lanes::splat(*d));
+                for (target, u) in later.iter_mut().zip(&panel[a..]) {
+                    for (r, target) in target.iter_mut().enumerate() {
+                        let [l0, l1, l2, l3] = l.map(|l| Lanes::splat(l.to_array()[r]));
+                        let sum = l1.mul_neg_add(u[1], l0.mul_neg_add(u[0], *target));
+                        *target = l3.mul_neg_add(u[3], l2.mul_neg_add(u[2], sum));
                     }
                 }
             }
-            self.reciprocal[4 * node..4 * node + 4].copy_from_slice(&reciprocal);
-            let (u0, tail) = panel.split_at(stride);
-            let (u1, tail) = tail.split_at(stride);
-            let (u2, u3) = tail.split_at(stride);
-            let reach = (stride / 4 - 1).min(nodes - 1 - node);
-            for (ahead, target_panel) in later.chunks_exact_mut(4 * stride).take(reach).enumerate() {
-                let from = 4 * (ahead + 1);
-                for (r, target) in target_panel.chunks_exact_mut(stride).enumerate() {
-                    let c = from + r;
-                    let l = [
-                        -u0[c] * reciprocal[0],
-                        -u1[c] * reciprocal[1],
-                        -u2[c] * reciprocal[2],
-                        -u3[c] * reciprocal[3],
-                    ];
-                    let sources = u0[from..].iter().zip(&u1[from..]).zip(&u2[from..]).zip(&u3[from..]);
-                    for (t, (((a, b), c), d)) in target[..stride - from].iter_mut().zip(sources) {
-                        *t = fma(l[3], *d, fma(l[2], *c, fma(l[1], *b, fma(l[0], *a, *t))));
-                    }
+            if let Some((pivots, right)) = panel.split_first_mut() {
+                let transposed = &mut self.transposed[position * (blocks - 1)..];
+                for (u, transposed) in right.iter_mut().zip(transposed) {
+                    *u = divide_by_pivots(pivots, reciprocal, *u);
+                    *transposed = Lanes::transpose(*u);
                 }
-            }
-            let transposed = &mut self.transposed[node * (stride / 4 - 1)..];
-            for (block, transposed) in (1..stride / 4).zip(transposed) {
-                let w = divide_by_pivots(panel, &reciprocal, block);
-                for (row, w) in panel.chunks_exact_mut(stride).zip(w) {
-                    row[4 * block..4 * block + 4].copy_from_slice(&w.to_array());
-                }
-                *transposed = Lanes::transpose(w).map(Lanes::to_array);
             }
         }
         Ok(())
@@ -325,7 +322,7 @@ impl Ldl {
 
     /// Solves A x = b in place.
     pub fn solve(&self, b: &mut [f64]) {
-        match self.rows.blocks {
+        match self.blocks {
             2 => self.substitute::<2>(b),
             4 => self.substitute::<4>(b),
             6 => self.substitute::<6>(b),
@@ -335,25 +332,27 @@ impl Ldl {
 
     /// With the number of blocks a compile-time constant, or 0.
     fn substitute<const BLOCKS: usize>(&self, b: &mut [f64]) {
-        let blocks = if BLOCKS == 0 { self.rows.blocks } else { BLOCKS };
-        let panels = self.rows.data.chunks_exact(16 * blocks);
+        let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
         let x = b.as_chunks_mut::<4>().0;
-        for (node, (panel, reciprocal)) in panels.zip(self.reciprocal.as_chunks::<4>().0).enumerate() {
-            let Some((here, later)) = x[node..].split_first_mut() else { break };
-            let rows: [&[f64]; 4] = std::array::from_fn(|r| &panel[4 * blocks * r..4 * blocks * (r + 1)]);
-            let sources = here.map(Lanes::splat);
-            for (ahead, target) in (1..blocks).zip(later) {
-                let w = rows.map(|row| Lanes::new(four(row, ahead)));
-                *target = subtract(w, sources, *target);
+        let order = Order::new(x.len(), blocks);
+        for (position, (panel, reciprocal)) in
+            self.rows.chunks_exact(blocks).zip(&self.reciprocal).enumerate()
+        {
+            let here = x[order.node(position)];
+            for (block, w) in panel.iter().enumerate().skip(1) {
+                let Some(next) = order.next(position, block) else { break };
+                let target = &mut x[order.node(next)];
+                *target = subtract(w, here, *target);
             }
-            *here = solve_pivots(rows.map(|row| four(row, 0)), reciprocal, *here);
+            x[order.node(position)] = solve_pivots(&panel[0], reciprocal, here);
         }
-        let transposed = self.transposed.chunks_exact((blocks - 1).max(1));
-        for (node, transposed) in transposed.enumerate().rev() {
-            let Some((here, later)) = x[node..].split_first_mut() else { continue };
-            for (w, source) in transposed.iter().zip(later) {
-                *here = subtract(w.map(Lanes::new), source.map(Lanes::splat), *here);
+        for (position, transposed) in self.transposed.chunks_exact((blocks - 1).max(1)).enumerate().rev() {
+            let mut here = x[order.node(position)];
+            for (b, w) in transposed.iter().enumerate() {
+                let Some(next) = order.next(position, b + 1) else { break };
+                here = subtract(w, x[order.node(next)], here);
             }
+            x[order.node(position)] = here;
         }
     }
 
@@ -363,15 +362,28 @@ impl Ldl {
     }
 }
 
-/// The numbers of a row that belong to block `block`.
+/// Takes row `R` of the first block times what makes zeros below its pivot from the rows below; 1/pivot, or nothing where it is none against `scale`.
 #[inline(always)]
-fn four(row: &[f64], block: usize) -> [f64; 4] {
-    row[4 * block..].first_chunk().copied().unwrap_or_default()
+fn reduce<const R: usize>(panel: &mut [Block], scale: f64) -> Option<f64> {
+    let row = panel[0][R].to_array();
+    // Written so that a NaN fails too.
+    if !(row[R].abs() > SMALLEST_PIVOT * scale.abs() && row[R].is_finite()) {
+        return None;
+    }
+    let reciprocal = 1.0 / row[R];
+    for (c, entry) in row.iter().enumerate().skip(R + 1) {
+        let l = Lanes::splat(entry * reciprocal);
+        for block in panel.iter_mut() {
+            block[c] = l.mul_neg_add(block[R], block[c]);
+        }
+    }
+    Some(reciprocal)
 }
 
 /// `target − Σ_r rows_r · factors_r`, in two chains.
 #[inline(always)]
-fn subtract(rows: [Lanes; 4], factors: [Lanes; 4], target: [f64; 4]) -> [f64; 4] {
+fn subtract(rows: &Block, factors: [f64; 4], target: [f64; 4]) -> [f64; 4] {
+    let factors = factors.map(Lanes::splat);
     let sum = rows[1].mul_add(factors[1], rows[0] * factors[0]);
     let rest = rows[3].mul_neg_add(factors[3], rows[2].mul_neg_add(factors[2], Lanes::new(target)));
     (rest - sum).to_array()
@@ -379,23 +391,21 @@ fn subtract(rows: [Lanes; 4], factors: [Lanes; 4], target: [f64; 4]) -> [f64; 4]
 
 /// W = D⁻¹ U of a block, from the rows of d lᵀ and l⁻¹ U that elimination leaves.
 #[inline(always)]
-fn divide_by_pivots(panel: &[f64], reciprocal: &[f64; 4], block: usize) -> [Lanes; 4] {
-    let stride = panel.len() / 4;
-    let mut w = [Lanes::ZERO; 4];
+fn divide_by_pivots(pivots: &Block, reciprocal: &[f64; 4], mut u: Block) -> Block {
     for r in (0..4).rev() {
-        let row = &panel[r * stride..(r + 1) * stride];
-        let mut sum = Lanes::new(four(row, block));
+        let row = pivots[r].to_array();
         for c in r + 1..4 {
-            sum = Lanes::splat(row[c]).mul_neg_add(w[c], sum);
+            u[r] = Lanes::splat(row[c]).mul_neg_add(u[c], u[r]);
         }
-        w[r] = sum * Lanes::splat(reciprocal[r]);
+        u[r] = u[r] * Lanes::splat(reciprocal[r]);
     }
-    w
+    u
 }
 
 /// D⁻¹ b with the rows of d lᵀ.
 #[inline(always)]
-fn solve_pivots(rows: [[f64; 4]; 4], reciprocal: &[f64; 4], mut b: [f64; 4]) -> [f64; 4] {
+fn solve_pivots(rows: &Block, reciprocal: &[f64; 4], mut b: [f64; 4]) -> [f64; 4] {
+    let rows = rows.map(Lanes::to_array);
     for r in 0..4 {
         let z = b[r] * reciprocal[r];
         for c in r + 1..4 {

@@ -1,0 +1,85 @@
+//! In which order the nodes of a symmetric band are eliminated.
+//!
+//! Each elimination of a node and each step of a substitution waits for the one before, and the processor with it. A cable element couples
+//! neighbours only, so that its nodes can be eliminated from both ends towards the middle in turn,
+//!
+//! ```text
+//! 0, n − 1, 1, n − 2, 2, …        position k leads to position k + 2, the last two but one to the last
+//! ```
+//!
+//! two chains, each half as long, that do not wait for each other. Wider bands are eliminated from the first node to the last.
+
+/// The order for a number of nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct Order {
+    nodes: usize,
+    from_both_ends: bool,
+}
+
+impl Order {
+    /// For `nodes` nodes, each coupled with the `blocks` − 1 after it.
+    #[inline(always)]
+    pub fn new(nodes: usize, blocks: usize) -> Self {
+        Self { nodes, from_both_ends: blocks == 2 }
+    }
+
+    /// The node at a position.
+    #[inline(always)]
+    pub fn node(self, position: usize) -> usize {
+        match (self.from_both_ends, position % 2) {
+            (false, _) => position,
+            (true, 0) => position / 2,
+            (true, _) => self.nodes - 1 - position / 2,
+        }
+    }
+
+    /// The position of the `block`th node (from 1 on) with which that at `position` is coupled when it is eliminated.
+    #[inline(always)]
+    pub fn next(self, position: usize, block: usize) -> Option<usize> {
+        let next = if self.from_both_ends { (position + 2).min(self.nodes - 1) } else { position + block };
+        (next < self.nodes && next > position).then_some(next)
+    }
+
+    /// Whether the nodes at this position and the one after it do not wait for each other: the first of such a pair.
+    #[inline(always)]
+    pub fn is_pair(self, position: usize) -> bool {
+        self.from_both_ends && position % 2 == 0 && position + 2 < self.nodes
+    }
+
+    /// Where block number `block` of the node at `position` is in the matrix: in which node's panel, and whether transposed.
+    #[inline(always)]
+    pub fn source(self, position: usize, block: usize) -> (usize, bool) {
+        let node = self.node(position);
+        let before = self.from_both_ends && position % 2 == 1 && block == 1;
+        (node - usize::from(before), before)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_node_and_every_coupling_has_its_turn() {
+        for nodes in 1..9 {
+            for blocks in [2, 4] {
+                let order = Order::new(nodes, blocks);
+                let mut coupled = Vec::new();
+                for position in 0..nodes {
+                    for (block, next) in (1..blocks).filter_map(|b| Some((b, order.next(position, b)?))) {
+                        let (ours, theirs) = (order.node(position), order.node(next));
+                        let (panel, turned) = order.source(position, block);
+                        assert_eq!((panel, turned), (ours.min(theirs), theirs < ours));
+                        coupled.push((panel, ours.max(theirs)));
+                    }
+                }
+                coupled.sort_unstable();
+                let all = (0..nodes).flat_map(|i| (i + 1..nodes.min(i + blocks)).map(move |j| (i, j)));
+                assert_eq!(coupled, all.collect::<Vec<_>>(), "{nodes} nodes, {blocks} blocks");
+                let mut eliminated: Vec<usize> = (0..nodes).map(|k| order.node(k)).collect();
+                eliminated.sort_unstable();
+                assert_eq!(eliminated, (0..nodes).collect::<Vec<_>>());
+            }
+        }
+    }
+}
