@@ -235,6 +235,7 @@ fn tiles_of_four<const M: usize, const W: usize, const P: usize>(
     tiles: &mut [[Lanes; 4]; 4],
 ) {
     for function in 0..2 {
+        #[expect(clippy::needless_range_loop)]
         for d in 0..2 {
             let [mut x, mut y, mut along, mut across] = [Lanes::ZERO; 4];
             for p in 0..P {

@@ -153,7 +153,7 @@ impl ComplexLdl {
     }
 
     fn factorize(&mut self, k: &SymmetricBand, m: &SymmetricBand, zeta: c64) -> Result<(), Singular> {
-        let order = Order::new(self.rows.len() / self.blocks, self.blocks);
+        let order = Order::new(self.rows.len() / self.blocks, self.blocks == 2);
         for (position, panel) in self.rows.chunks_exact_mut(self.blocks).enumerate() {
             for (b, target) in panel.iter_mut().enumerate() {
                 let (node, turned) = order.source(position, b);
@@ -175,7 +175,7 @@ impl ComplexLdl {
     fn eliminate<const BLOCKS: usize>(&mut self) -> Result<(), Singular> {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
         let nodes = self.rows.len() / blocks;
-        let order = Order::new(nodes, blocks);
+        let order = Order::new(nodes, blocks == 2);
         for position in 0..nodes {
             let singular = |position, r| Singular { row: 4 * order.node(position) + r };
             if order.is_pair(position) {
@@ -222,7 +222,7 @@ impl ComplexLdl {
     fn substitute<const BLOCKS: usize>(&self, re: &mut [f64], im: &mut [f64]) {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
         let (re, im) = (re.as_chunks_mut::<4>().0, im.as_chunks_mut::<4>().0);
-        let order = Order::new(re.len(), blocks);
+        let order = Order::new(re.len(), blocks == 2);
         for (position, panel) in self.rows.chunks_exact(blocks).enumerate() {
             let node = order.node(position);
             let here = numbers([re[node], im[node]].map(Lanes::new));

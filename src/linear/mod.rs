@@ -254,11 +254,8 @@ impl Factor {
     /// As [`Self::new`].
     pub fn again(earlier: Option<Self>, matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
         match (earlier, matrix) {
-            (Some(Self::Ldl(mut ldl)), Matrix::Symmetric(symmetric)) if border.is_empty() => {
-                match ldl.refactorize(symmetric, None) {
-                    Ok(()) => Ok(Self::Ldl(ldl)),
-                    Err(_) => Self::new(matrix, border),
-                }
+            (Some(Self::Ldl(ldl)), Matrix::Symmetric(symmetric)) if border.is_empty() => {
+                Ldl::again(Some(ldl), symmetric, None).map(Self::Ldl).or_else(|_| Self::new(matrix, border))
             }
             (Some(Self::Bordered(earlier)), _) if !border.is_empty() => {
                 Self::bordered(Some(*earlier), matrix, border)
@@ -286,15 +283,7 @@ impl Factor {
         if let (Matrix::Symmetric(k), Matrix::Symmetric(m), true) =
             (matrix, mass, condensed::serves(matrix, border))
         {
-            let ldl = match kept {
-                Some(mut ldl) => ldl.refactorize(k, Some((c, m))).map(|()| ldl),
-                None => {
-                    let mut sum = k.clone();
-                    sum.add(c, m);
-                    Ldl::new(&sum)
-                }
-            };
-            match ldl {
+            match Ldl::again(kept, k, Some((c, m))) {
                 Ok(ldl) if border.is_empty() => return Ok(Self::Ldl(ldl)),
                 Ok(ldl) => {
                     if let Ok(condensed) = Condensed::new(ldl, k.size(), border) {

@@ -7,7 +7,11 @@
 //! 0, n − 1, 1, n − 2, 2, …        position k leads to position k + 2, the last two but one to the last
 //! ```
 //!
-//! two chains, each half as long, that do not wait for each other. Wider bands are eliminated from the first node to the last.
+//! two chains, each half as long, that do not wait for each other: a factorisation takes four fifths of the time, a substitution three fifths.
+//!
+//! That is for matrices with a mass in them. Without one, in equilibria, what is eliminated last decides how digits are lost, and from the first node to the last fewer
+//! are: from both ends the relaxation of a slack cable did not come to rest in 2000 iterations instead of 17, and a beam with EA L²/EI of 10¹⁴ took one more. Wider
+//! bands are eliminated from the first node to the last too.
 
 /// The order for a number of nodes.
 #[derive(Clone, Copy, Debug)]
@@ -17,10 +21,10 @@ pub struct Order {
 }
 
 impl Order {
-    /// For `nodes` nodes, each coupled with the `blocks` − 1 after it.
+    /// For `nodes` nodes, from both ends only if each is coupled with no more than its neighbours.
     #[inline(always)]
-    pub fn new(nodes: usize, blocks: usize) -> Self {
-        Self { nodes, from_both_ends: blocks == 2 }
+    pub fn new(nodes: usize, from_both_ends: bool) -> Self {
+        Self { nodes, from_both_ends }
     }
 
     /// The node at a position.
@@ -43,7 +47,7 @@ impl Order {
     /// Whether the nodes at this position and the one after it do not wait for each other: the first of such a pair.
     #[inline(always)]
     pub fn is_pair(self, position: usize) -> bool {
-        self.from_both_ends && position % 2 == 0 && position + 2 < self.nodes
+        self.from_both_ends && position.is_multiple_of(2) && position + 2 < self.nodes
     }
 
     /// Where block number `block` of the node at `position` is in the matrix: in which node's panel, and whether transposed.
@@ -62,8 +66,8 @@ mod tests {
     #[test]
     fn every_node_and_every_coupling_has_its_turn() {
         for nodes in 1..9 {
-            for blocks in [2, 4] {
-                let order = Order::new(nodes, blocks);
+            for (blocks, from_both_ends) in [(2, true), (2, false), (4, false)] {
+                let order = Order::new(nodes, from_both_ends);
                 let mut coupled = Vec::new();
                 for position in 0..nodes {
                     for (block, next) in (1..blocks).filter_map(|b| Some((b, order.next(position, b)?))) {

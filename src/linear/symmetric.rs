@@ -213,6 +213,7 @@ pub struct Ldl {
     /// 1/d.
     reciprocal: Vec<[f64; 4]>,
     negative: usize,
+    from_both_ends: bool,
 }
 
 /// A pivot smaller than this fraction of its diagonal entry carries no significant digit.
@@ -224,9 +225,7 @@ impl Ldl {
     /// # Errors
     /// [`Singular`] where a pivot vanishes against the diagonal entry it came from, or is not finite.
     pub fn new(matrix: &SymmetricBand) -> Result<Self, Singular> {
-        let mut ldl = Self::of(matrix);
-        ldl.refactorize(matrix, None)?;
-        Ok(ldl)
+        Self::again(None, matrix, None)
     }
 
     fn of(matrix: &SymmetricBand) -> Self {
@@ -237,37 +236,40 @@ impl Ldl {
             transposed: vec![[Lanes::ZERO; 4]; nodes * (blocks - 1)],
             reciprocal: vec![[0.0; 4]; nodes],
             negative: 0,
+            from_both_ends: false,
         }
     }
 
-    /// Factorises `matrix`, plus c M where `shift` is (c, M), in the memory of this factorisation of the same pattern.
+    /// Factorises `matrix`, plus c M where `shift` is (c, M), in the memory of an earlier factorisation of the same pattern.
     ///
     /// # Errors
-    /// As [`Self::new`]; the factorisation is then unusable.
-    pub fn refactorize(
-        &mut self,
+    /// As [`Self::new`].
+    pub fn again(
+        earlier: Option<Self>,
         matrix: &SymmetricBand,
         shift: Option<(f64, &SymmetricBand)>,
-    ) -> Result<(), Singular> {
-        if self.reciprocal.len() != matrix.nodes || self.blocks != matrix.blocks {
-            *self = Self::of(matrix);
-        }
-        match self.blocks {
-            2 => self.factorize::<2>(matrix, shift),
-            4 => self.factorize::<4>(matrix, shift),
-            6 => self.factorize::<6>(matrix, shift),
-            _ => self.factorize::<0>(matrix, shift),
-        }
+    ) -> Result<Self, Singular> {
+        let fits = |ldl: &Self| ldl.reciprocal.len() == matrix.nodes && ldl.blocks == matrix.blocks;
+        let mut ldl = earlier.filter(fits).unwrap_or_else(|| Self::of(matrix));
+        ldl.from_both_ends = shift.is_some() && matrix.blocks == 2;
+        match (ldl.blocks, ldl.from_both_ends) {
+            (2, true) => ldl.factorize::<2, true>(matrix, shift),
+            (2, false) => ldl.factorize::<2, false>(matrix, shift),
+            (4, _) => ldl.factorize::<4, false>(matrix, shift),
+            (6, _) => ldl.factorize::<6, false>(matrix, shift),
+            _ => ldl.factorize::<0, false>(matrix, shift),
+        }?;
+        Ok(ldl)
     }
 
     /// With the number of blocks a compile-time constant, or 0.
-    fn factorize<const BLOCKS: usize>(
+    fn factorize<const BLOCKS: usize, const FROM_BOTH_ENDS: bool>(
         &mut self,
         matrix: &SymmetricBand,
         shift: Option<(f64, &SymmetricBand)>,
     ) -> Result<(), Singular> {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
-        let order = Order::new(matrix.nodes, blocks);
+        let order = Order::new(matrix.nodes, FROM_BOTH_ENDS);
         for (position, panel) in self.rows.chunks_exact_mut(blocks).enumerate() {
             for (b, target) in panel.iter_mut().enumerate() {
                 let (node, turned) = order.source(position, b);
@@ -300,7 +302,7 @@ impl Ldl {
                 let Some(next) = order.next(position, a) else { break };
                 let later = &mut later[(next - position - 1) * blocks..];
                 let mut l = panel[a];
-                l.iter_mut().zip(&*reciprocal).for_each(|(l, d)| *l = *l * Lanes::splat(*d));
+                l.iter_mut().zip(&*reciprocal).for_each(|(l, d)| *l *= Lanes::splat(*d));
                 for (target, u) in later.iter_mut().zip(&panel[a..]) {
                     for (r, target) in target.iter_mut().enumerate() {
                         let [l0, l1, l2, l3] = l.map(|l| Lanes::splat(l.to_array()[r]));
@@ -322,19 +324,20 @@ impl Ldl {
 
     /// Solves A x = b in place.
     pub fn solve(&self, b: &mut [f64]) {
-        match self.blocks {
-            2 => self.substitute::<2>(b),
-            4 => self.substitute::<4>(b),
-            6 => self.substitute::<6>(b),
-            _ => self.substitute::<0>(b),
+        match (self.blocks, self.from_both_ends) {
+            (2, true) => self.substitute::<2, true>(b),
+            (2, false) => self.substitute::<2, false>(b),
+            (4, _) => self.substitute::<4, false>(b),
+            (6, _) => self.substitute::<6, false>(b),
+            _ => self.substitute::<0, false>(b),
         }
     }
 
     /// With the number of blocks a compile-time constant, or 0.
-    fn substitute<const BLOCKS: usize>(&self, b: &mut [f64]) {
+    fn substitute<const BLOCKS: usize, const FROM_BOTH_ENDS: bool>(&self, b: &mut [f64]) {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
         let x = b.as_chunks_mut::<4>().0;
-        let order = Order::new(x.len(), blocks);
+        let order = Order::new(x.len(), FROM_BOTH_ENDS);
         for (position, (panel, reciprocal)) in
             self.rows.chunks_exact(blocks).zip(&self.reciprocal).enumerate()
         {
@@ -397,7 +400,7 @@ fn divide_by_pivots(pivots: &Block, reciprocal: &[f64; 4], mut u: Block) -> Bloc
         for c in r + 1..4 {
             u[r] = Lanes::splat(row[c]).mul_neg_add(u[c], u[r]);
         }
-        u[r] = u[r] * Lanes::splat(reciprocal[r]);
+        u[r] *= Lanes::splat(reciprocal[r]);
     }
     u
 }
