@@ -159,14 +159,14 @@ pub(super) fn sums_of_points<const M: usize, const W: usize, const P: usize>(
     rows: &[[f64; W]],
     gradients: &[[Pair<Lanes>; M]; P],
 ) -> [Pair<Lanes>; W] {
-    std::array::from_fn(|a| {
-        let mut sum = [Lanes::ZERO; 2];
+    let mut sums = [[Lanes::ZERO; 2]; W];
+    for (a, sum) in sums.iter_mut().enumerate() {
         for (p, gradients) in gradients.iter().enumerate() {
             for (m, g) in gradients.iter().enumerate() {
                 let n = Lanes::splat(rows[p * M + m][a]);
-                sum = [n.mul_add(g[0], sum[0]), n.mul_add(g[1], sum[1])];
+                *sum = [n.mul_add(g[0], sum[0]), n.mul_add(g[1], sum[1])];
             }
         }
-        sum
-    })
+    }
+    sums
 }

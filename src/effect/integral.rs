@@ -16,7 +16,7 @@
 
 use super::{Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
-use crate::lanes::{self, Lanes};
+use crate::lanes::{self, Lanes, Pair};
 use crate::linear::Matrix;
 use crate::linear::fma::fma;
 use nalgebra::Vector2;
@@ -26,6 +26,7 @@ use nalgebra::Vector2;
 pub struct Workspace {
     products: Vec<f64>,
     pub(super) lanes: Vec<Lanes>,
+    pub(super) pairs: Vec<Pair<Lanes>>,
 }
 
 /// A density, the shape functions at its quadrature points, and the place of its beam among the coordinates.

@@ -37,10 +37,10 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             return;
         }
         match self.table.points_per_cell {
-            2 => self.tangents_of_fours::<W, 2>(factor, q, earlier, f, k),
-            3 => self.tangents_of_fours::<W, 3>(factor, q, earlier, f, k),
-            4 => self.tangents_of_fours::<W, 4>(factor, q, earlier, f, k),
-            5 => self.tangents_of_fours::<W, 5>(factor, q, earlier, f, k),
+            2 => self.tangents_of_fours::<W, 2>(factor, q, earlier, f, k, workspace),
+            3 => self.tangents_of_fours::<W, 3>(factor, q, earlier, f, k, workspace),
+            4 => self.tangents_of_fours::<W, 4>(factor, q, earlier, f, k, workspace),
+            5 => self.tangents_of_fours::<W, 5>(factor, q, earlier, f, k, workspace),
             _ => {}
         }
         for &cell in &self.singles {
@@ -112,6 +112,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     }
 
     /// All cells that come by fours, `P` points in each.
+    #[allow(clippy::too_many_arguments)]
     fn tangents_of_fours<const W: usize, const P: usize>(
         &self,
         factor: f64,
@@ -119,7 +120,11 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         earlier: Option<Earlier<'_>>,
         f: &mut [f64],
         k: &mut Matrix,
+        workspace: &mut Workspace,
     ) {
+        let products = &mut workspace.pairs;
+        products.resize(P * M * 2 * W, [Lanes::ZERO; 2]);
+        let products = products.as_chunks_mut::<W>().0.as_chunks_mut::<2>().0.as_chunks_mut::<M>().0;
         for &cell in &self.fours {
             let cell = cell as usize;
             let first = self.first(cell);
@@ -130,7 +135,6 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let earlier = earlier
                 .map(|earlier| [earlier.q, earlier.increment].map(|q| lanes::gather::<W>(&q[range.clone()])));
             let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
-            let mut products = [[[[[Lanes::ZERO; 2]; W]; 2]; M]; P];
             for p in 0..P {
                 let rows = &rows[p * M..(p + 1) * M];
                 let z = fields_of_four::<M, W>(rows, &here);
@@ -160,7 +164,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             lanes::scatter(&sums_of_points::<M, W, P>(rows, &gradients), &mut f[range]);
             for_tiles::<W>(k, |k, a, b| {
                 let mut tiles = [[Lanes::ZERO; 4]; 4];
-                tiles_of_four(rows, &products, [a, b], &mut tiles);
+                tiles_of_four::<M, W, P>(rows, products, [a, b], &mut tiles);
                 for (node, tile) in (first / 4..).zip(&tiles) {
                     add_tile(k, node + a, node + b, tile);
                 }
@@ -230,7 +234,7 @@ fn tile<const M: usize, const W: usize>(
 #[inline(always)]
 fn tiles_of_four<const M: usize, const W: usize, const P: usize>(
     rows: &[[f64; W]],
-    products: &[[[[Pair<Lanes>; W]; 2]; M]; P],
+    products: &[[[[Pair<Lanes>; W]; 2]; M]],
     [a, b]: [usize; 2],
     tiles: &mut [[Lanes; 4]; 4],
 ) {
