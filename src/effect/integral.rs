@@ -7,12 +7,16 @@
 //! # What was measured
 //! Forces of cable elements are bound by the short dependent sums of the local fields and by the divisions of the curvature, so that four of them side by
 //! side in the lanes of a register take the time of one and a half: 210 instructions an element with 5/3 points by fours, 520 alone. A tangent
-//! takes 1 400 (with 3/2 points); its tiles' 528 multiply–adds would take 0.02 µs at the machine's peak.
+//! (with 3/2 points) takes 1 000 by fours, 1 400 alone; its tiles' 528 multiply–adds would take 0.02 µs at the machine's peak.
 //!
 //! A step of the trapezoidal rule (30 elements, 1 ms, two iterations with a kept tangent) takes 44 000 instructions, 76 000 before there were lanes:
-//! 32 % are forces, 15 % substitutions, 13 % new tangents, 7 % products with the mass matrix, the rest passes over vectors. A step of Radau's method
-//! (23 elements with Lobatto points, 2.5 iterations) takes 190 000: 33 % are the tangent and its two factorisations, 16 % forces, 16 % substitutions. In
-//! substitutions it is not the count of instructions that decides but how long one waits for the other ([`crate::linear::symmetric::Ldl`]).
+//! 33 % are forces, 18 % substitutions, 8 % new tangents, 7 % products with the mass matrix, the rest passes over vectors. A step of Radau's method
+//! (23 elements with Lobatto points, 2.5 iterations) takes 158 000: 28 % are the tangent and its two factorisations, 17 % forces, 15 % substitutions. In
+//! factorisations and substitutions it is not the count of instructions that decides but how long one waits for the other: two chains from both ends
+//! (the private module `linear::order`) execute more of them and take three fifths of the time.
+//!
+//! With many elements memory decides. An iteration of the trapezoidal rule streams the 416 bytes a node of the factors and 1 kB of vectors: from a cache 10 000 elements take 1.6 times
+//! what 100 take an element, and from memory (13 GB/s) 100 000 take three times. The factors and what must be read and written once would alone make it 1.75 times.
 
 use super::{Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;

@@ -2,8 +2,8 @@
 //!
 //! Block row I is kept as a panel of four rows, each holding the columns of nodes I, I + 1, …, I + b contiguously
 //! (b + 1 blocks, 4(b + 1) numbers). Within the diagonal block the entries left of the diagonal are carried along but
-//! never read. Elimination works panel by panel: a panel is reduced by its own four pivots, and each row of a later
-//! panel then takes the four eliminated rows in one fused pass, 4 multiply–adds per number loaded and stored.
+//! never read. The factorisation keeps blocks, a row of one in a register, and works node by node: its blocks are reduced by its own four pivots, and each
+//! block of a later node then takes them in one pass, 4 multiply–adds per number loaded and stored.
 //!
 //! Cost per node: 4·4·(b + 1) + 16·(b)(b + 1)/2 · 4 multiply–adds, 112 for the cable element (b = 1) and 1 056 for
 //! six-node supports (b = 5); a pivoted LU of the same band takes 3.5 to 4 times as many. Another 40 b give the blocks W of [`Ldl`], which are
