@@ -16,7 +16,8 @@
 //! (the private module `linear::order`) execute more of them and take three fifths of the time.
 //!
 //! With many elements memory decides. An iteration of the trapezoidal rule streams the 416 bytes a node of the factors and 1 kB of vectors: from a cache 10 000 elements take 1.6 times
-//! what 100 take an element, and from memory (13 GB/s) 100 000 take three times. The factors and what must be read and written once would alone make it 1.75 times.
+//! what 100 take an element, and from memory (13 GB/s) 100 000 take three times. The factors and what must be read and
+//! written once, 700 bytes, would take 0.15 µs of a step from there, beside 0.2 µs of arithmetic.
 
 use super::{Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
