@@ -494,19 +494,19 @@ impl<'e, 'a> Path<'e, 'a> {
     pub fn between(&mut self, load: f64) -> Option<Point> {
         let [.., a, b] = &self.points[..] else { return None };
         let share = (load - a.load) / (b.load - a.load);
-        // Short steps are straight. Long ones go along the tangent at the first, and of what that misses the second by a part that grows as its error does.
-        let led = |h: f64| {
-            let increment: Vec<f64> = a.rate[..a.x.len()].iter().map(|rate| h * rate).collect();
-            let mut x = a.x.clone();
-            self.equilibrium.retraction.apply(&increment, &mut x);
-            x
-        };
-        let h = b.parameter - a.parameter;
-        let (mut x, end) = (led(share * h), led(h));
+        let mut x: Vec<f64> = a.x.iter().zip(&b.x).map(|(a, b)| a + share * (b - a)).collect();
+        // Long steps are not straight: they go along the tangent at the first, and of what that misses the second by a part that grows as its error does.
         if self.turn(&a.x, &b.x) > LARGEST_STEP.1 {
+            let led = |h: f64| {
+                let increment: Vec<f64> = a.rate[..a.x.len()].iter().map(|rate| h * rate).collect();
+                let mut x = a.x.clone();
+                self.equilibrium.retraction.apply(&increment, &mut x);
+                x
+            };
+            let h = b.parameter - a.parameter;
+            let end = led(h);
+            x = led(share * h);
             x.iter_mut().zip(b.x.iter().zip(&end)).for_each(|(x, (b, end))| *x += share * share * (b - end));
-        } else {
-            x.iter_mut().zip(a.x.iter().zip(&b.x)).for_each(|(x, (a, b))| *x = a + share * (b - a));
         }
         let (start, still) = (x.clone(), vec![0.0; x.len()]);
         let n = self.equilibrium.system().coordinates();

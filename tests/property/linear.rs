@@ -86,7 +86,7 @@ proptest! {
         agree(&back_im, &b[size..], 1e-9)?;
     }
 
-    /// K + c M, eliminated from both ends, is the sum eliminated from one.
+    /// K + c M in one pass is the sum factorised: to round-off where that is eliminated from one end and the other from both.
     #[test]
     fn shifted_systems_are_solved(
         nodes in 1..12_usize, blocks in 1..7_usize, numbers in numbers(), c in 0.0..5.0_f64,
@@ -99,7 +99,11 @@ proptest! {
         Factor::new(&sum, &[]).expect("definite").solve(&mut x);
         let earlier = Factor::new(&k, &[]).expect("definite");
         Factor::shifted(Some(earlier), &k, (c, &m), &[]).expect("definite").solve(&mut y);
-        agree(&x, &y, 1e-13)?;
+        if blocks.min(nodes) == 2 {
+            agree(&x, &y, 1e-13)?;
+        } else {
+            prop_assert_eq!(x, y);
+        }
     }
 
     #[test]

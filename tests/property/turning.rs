@@ -1,7 +1,8 @@
 //! Finite turns of nodes and chords, and forces of several states at once.
 
 use super::generators::{beam, clamp, free, noise, perturbed};
-use ancf::effect::Workspace;
+use ancf::basis::Quadrature;
+use ancf::effect::{Bend, Density, Earlier, Effect, Gradient, Hessian, Integral, Kind, Workspace};
 use ancf::lanes::Lanes;
 use ancf::model::{
     Analysis, ArcLength, Beam, Centreline, Discretization, Load, Model, Nodes, Place, Probe, Static, Support,
@@ -9,6 +10,7 @@ use ancf::model::{
 use ancf::run::{Control, run};
 use ancf::solve::retraction::Retraction;
 use ancf::system::{Needs, System};
+use nalgebra::Vector2;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
@@ -115,29 +117,65 @@ proptest! {
         }
     }
 
-    /// Tangents by fours are those that are multiplied from point to point, and the forces that come with them those that come alone: on a beam whose curvature
-    /// without stress differs from cell to cell.
+    /// Cells by fours are cells, whether their density knows four points or one: forces, and tangents after an iterate, where the curvature without stress differs from
+    /// point to point.
     #[test]
     fn cells_by_fours_are_cells(noise in noise()) {
-        let curve = [[0.0, 0.0], [0.4, 0.3], [0.7, -0.1], [1.2, 0.4], [1.5, 0.2]];
-        let beam = Beam { centreline: Centreline::Points(curve.to_vec()), ..ancf_beam(Nodes::Uniform(15)) };
-        let system = held(beam, Vec::new());
-        let q = perturbed(&system, 0.02, &noise);
-        let (mut f, mut alone, mut k) = (vec![0.0; q.len()], vec![0.0; q.len()], system.matrix());
-        system.force(1.0, &q, &mut f);
-        system.force_and_tangent(1.0, &q, None, &mut alone, &mut k, &mut Workspace::default());
-        let size = alone.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-        for (f, alone) in f.iter().zip(&alone) {
-            prop_assert!((f - alone).abs() <= 1e-11 * size, "{f}, not {alone}");
+        let system = held(ancf_beam(Nodes::Uniform(15)), Vec::new());
+        let table = || system.beams()[0].basis.table(Quadrature::Gauss(3), &[1, 2]).expect("a rule");
+        let mut numbers = noise.iter().copied().cycle();
+        let mut vector = || Vector2::new(numbers.next().unwrap_or_default(), 1.0);
+        let reference: Vec<[Vector2<f64>; 2]> = (0..3 * 14).map(|_| [vector(), vector()]).collect();
+        let bend = Bend::new(2.0, &reference);
+        let q = perturbed(&system, 0.1, &noise);
+        let increment: Vec<f64> = noise.iter().cycle().skip(5).take(q.len()).map(|x| 0.1 * x).collect();
+        let before = perturbed(&system, 0.2, &noise);
+        let found = |effect: &dyn Effect| {
+            let (mut f, mut with, mut product) = (vec![0.0; q.len()], vec![0.0; q.len()], vec![0.0; q.len()]);
+            let mut k = system.matrix();
+            effect.add_force(3.0, &q, &mut f);
+            let earlier = Earlier { q: &before, increment: &increment };
+            effect.add_force_and_tangent(3.0, &q, Some(earlier), &mut with, &mut k, &mut Workspace::default());
+            k.multiply_add(1.0, &increment, &mut product);
+            [f, with, product]
+        };
+        let one_by_one = found(&Integral::new(Kind::Bend, 0, 0, table(), OneByOne::<false>(bend.clone())));
+        let by_fours = found(&Integral::new(Kind::Bend, 0, 0, table(), OneByOne::<true>(bend.clone())));
+        let in_lanes = found(&Integral::new(Kind::Bend, 0, 0, table(), bend));
+        for (what, expected) in one_by_one.iter().enumerate() {
+            let size = expected.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            for ours in [&by_fours[what], &in_lanes[what]] {
+                for (ours, expected) in ours.iter().zip(expected) {
+                    prop_assert!((ours - expected).abs() <= 1e-11 * size, "{what}: {ours}, not {expected}");
+                }
+            }
         }
-        let v: Vec<f64> = noise.iter().cycle().skip(5).take(q.len()).copied().collect();
-        let (mut products, mut by_points) = (vec![0.0; q.len()], vec![0.0; q.len()]);
-        k.multiply_add(1.0, &v, &mut products);
-        system.tangent_product(1.0, &q, &v, &mut by_points);
-        let size = by_points.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-        for (product, by_points) in products.iter().zip(&by_points) {
-            prop_assert!((product - by_points).abs() <= 1e-11 * size, "{product}, not {by_points}");
-        }
+    }
+}
+
+/// A density that knows one point at a time, summed by fours or not.
+struct OneByOne<const BY_FOURS: bool>(Bend);
+
+impl<const BY_FOURS: bool> Density<2> for OneByOne<BY_FOURS> {
+    const ORDERS: [usize; 2] = Bend::ORDERS;
+    const BY_FOURS: bool = BY_FOURS;
+
+    fn energy(&self, point: usize, z: &Gradient<2>) -> f64 {
+        self.0.energy(point, z)
+    }
+
+    fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
+        self.0.gradient(point, z)
+    }
+
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<2>,
+        before: &Gradient<2>,
+        change: &Gradient<2>,
+    ) -> (Gradient<2>, Hessian<2>) {
+        self.0.gradient_and_hessian(point, z, before, change)
     }
 }
 
