@@ -54,15 +54,25 @@ impl IsotropicBand {
 
     /// `y += factor · A x`.
     pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
-        let (x, y) = (x.as_chunks::<4>().0, y.as_chunks_mut::<4>().0);
-        let done = match self.blocks {
-            2 => self.whole_rows::<2>(factor, x, y),
-            4 => self.whole_rows::<4>(factor, x, y),
-            6 => self.whole_rows::<6>(factor, x, y),
-            _ => 0,
-        };
-        for (node, row) in self.data.chunks_exact(self.blocks).enumerate().skip(done) {
-            add_row(factor, row, &x[node..], &mut y[node..]);
+        let x = x.as_chunks::<4>().0;
+        self.multiply_add_seen(factor, |node| x[node], y, |_| ());
+    }
+
+    /// The same with x given node by node; `see` is shown what is in y before, likewise.
+    #[inline(always)]
+    pub fn multiply_add_seen(
+        &self,
+        factor: f64,
+        x: impl Fn(usize) -> [f64; 4],
+        y: &mut [f64],
+        see: impl FnMut([f64; 4]),
+    ) {
+        let y = y.as_chunks_mut::<4>().0;
+        match self.blocks {
+            2 => self.add_rows::<2>(factor, x, y, see),
+            4 => self.add_rows::<4>(factor, x, y, see),
+            6 => self.add_rows::<6>(factor, x, y, see),
+            _ => self.add_rows_any(factor, x, y, see),
         }
     }
 
@@ -82,32 +92,61 @@ impl IsotropicBand {
         }
     }
 
-    /// The rows of which no block reaches beyond the last node, their number known at compile time; returns how many these are.
-    fn whole_rows<const BLOCKS: usize>(&self, factor: f64, x: &[[f64; 4]], y: &mut [[f64; 4]]) -> usize {
-        let whole = (self.nodes + 1).saturating_sub(BLOCKS);
-        for (node, row) in self.data.as_chunks::<BLOCKS>().0[..whole].iter().enumerate() {
-            if let (Some(x), Some(y)) =
-                (x[node..].first_chunk::<BLOCKS>(), y[node..].first_chunk_mut::<BLOCKS>())
-            {
-                add_row(factor, row, x, y);
+    /// With what a row needs of x, and what the rows before have left to it, in registers.
+    #[inline(always)]
+    fn add_rows<const BLOCKS: usize>(
+        &self,
+        factor: f64,
+        x: impl Fn(usize) -> [f64; 4],
+        y: &mut [[f64; 4]],
+        mut see: impl FnMut([f64; 4]),
+    ) {
+        let at = |node| if node < self.nodes { halves(x(node)) } else { [Lanes::ZERO; 2] };
+        let mut window = [[Lanes::ZERO; 2]; BLOCKS];
+        window.iter_mut().enumerate().for_each(|(node, window)| *window = at(node));
+        let mut left = [Lanes::ZERO; BLOCKS];
+        for (node, (row, y)) in self.data.as_chunks::<BLOCKS>().0.iter().zip(y).enumerate() {
+            see(*y);
+            let mut sum = product(row[0], window[0], left[0]);
+            for b in 1..BLOCKS {
+                sum = product(row[b], window[b], sum);
+                let before = if b + 1 < BLOCKS { left[b] } else { Lanes::ZERO };
+                left[b - 1] = product(transpose(row[b]), window[0], before);
             }
+            *y = sum.mul_add(Lanes::splat(factor), Lanes::new(*y)).to_array();
+            for b in 1..BLOCKS {
+                window[b - 1] = window[b];
+            }
+            window[BLOCKS - 1] = at(node + BLOCKS);
         }
-        whole
+    }
+
+    fn add_rows_any(
+        &self,
+        factor: f64,
+        x: impl Fn(usize) -> [f64; 4],
+        y: &mut [[f64; 4]],
+        mut see: impl FnMut([f64; 4]),
+    ) {
+        let block = |row: usize, ahead: usize| self.data[row * self.blocks + ahead];
+        for (node, y) in y.iter_mut().enumerate() {
+            see(*y);
+            let mut sum = product(block(node, 0), halves(x(node)), Lanes::ZERO);
+            for ahead in 1..self.blocks {
+                if node + ahead < self.nodes {
+                    sum = product(block(node, ahead), halves(x(node + ahead)), sum);
+                }
+                if let Some(before) = node.checked_sub(ahead) {
+                    sum = product(transpose(block(before, ahead)), halves(x(before)), sum);
+                }
+            }
+            *y = sum.mul_add(Lanes::splat(factor), Lanes::new(*y)).to_array();
+        }
     }
 }
 
-/// A row of blocks and its transpose, from the diagonal on.
-#[inline(always)]
-fn add_row(factor: f64, row: &[[f64; 4]], x: &[[f64; 4]], y: &mut [[f64; 4]]) {
-    let near = halves(x[0]);
-    let scaled = near.map(|half| half * Lanes::splat(factor));
-    let mut sum = product(row[0], near, Lanes::ZERO);
-    for ((block, x), y) in row[1..].iter().zip(&x[1..]).zip(&mut y[1..]) {
-        sum = product(*block, halves(*x), sum);
-        let [a, b, c, d] = *block;
-        *y = product([a, c, b, d], scaled, Lanes::new(*y)).to_array();
-    }
-    y[0] = sum.mul_add(Lanes::splat(factor), Lanes::new(y[0])).to_array();
+fn transpose([a, b, c, d]: [f64; 4]) -> [f64; 4] {
+    [a, c, b, d]
 }
 
 /// A block times the coefficients of a node in four states, plus `sum`.
@@ -162,6 +201,24 @@ impl Inertia {
         match self {
             Self::Isotropic(band) => band.multiply_add(factor, x, y),
             Self::Any(matrix) => matrix.multiply_add(factor, x, y),
+        }
+    }
+
+    /// `y += M x` with x given node by node; `see` is shown what is in y before, likewise.
+    #[inline(always)]
+    pub fn multiply_add_seen(
+        &self,
+        x: impl Fn(usize) -> [f64; 4],
+        y: &mut [f64],
+        see: impl FnMut([f64; 4]),
+    ) {
+        match self {
+            Self::Isotropic(band) => band.multiply_add_seen(1.0, x, y, see),
+            Self::Any(matrix) => {
+                y.as_chunks::<4>().0.iter().copied().for_each(see);
+                let x: Vec<f64> = (0..y.len() / 4).flat_map(x).collect();
+                matrix.multiply_add(1.0, &x, y);
+            }
         }
     }
 

@@ -21,7 +21,6 @@ pub struct Equilibrium<'a> {
     factor: Option<Factor>,
     border: Vec<BorderRow>,
     workspace: Workspace,
-    force: Vec<f64>,
     held_rate: Vec<f64>,
     /// Counts so far.
     pub statistics: Statistics,
@@ -38,7 +37,6 @@ impl<'a> Equilibrium<'a> {
             factor: None,
             border: Vec::new(),
             workspace: Workspace::default(),
-            force: vec![0.0; n],
             held_rate: vec![0.0; n],
             statistics: Statistics::default(),
         }
@@ -66,8 +64,16 @@ impl<'a> Equilibrium<'a> {
     pub fn residual(&mut self, load: f64, x: &[f64], negative: &mut [f64]) -> f64 {
         let n = self.system.coordinates();
         self.statistics.residual_evaluations += 1;
-        self.system.force(load, &x[..n], &mut self.force);
-        balance(self.system, load, x, &mut self.force, |_| (), negative)
+        self.system.force(load, &x[..n], &mut negative[..n]);
+        self.balanced(load, x, negative)
+    }
+
+    /// The residual of the forces that are in `negative`.
+    fn balanced(&self, load: f64, x: &[f64], negative: &mut [f64]) -> f64 {
+        let mut scale = Largest::force(self.system);
+        negative[..self.system.coordinates()].as_chunks().0.iter().for_each(|f| scale.see(f));
+        let scale = balance(self.system, load, x, scale.size(), negative);
+        negate(self.system, scale, negative, |_, _| ())
     }
 
     /// The same as [`Self::residual`]; also factorises the tangent at `x`, and to `rate` writes the right-hand side
@@ -89,8 +95,9 @@ impl<'a> Equilibrium<'a> {
         self.statistics.tangent_evaluations += 1;
         self.statistics.factorizations += 1;
         let q = &x[..n];
-        system.force_and_tangent(load, q, earlier, &mut self.force, &mut self.tangent, &mut self.workspace);
-        let residual = balance(self.system, load, x, &mut self.force, |_| (), negative);
+        let force = &mut negative[..n];
+        system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
+        let residual = self.balanced(load, x, negative);
         system.add_constraint_stiffness(&x[n..], &mut self.tangent);
         system.supports().turn_matrix(load, &mut self.tangent);
         self.rate_right_hand_side(load, x, rate);
@@ -118,8 +125,9 @@ impl<'a> Equilibrium<'a> {
         self.statistics.residual_evaluations += 1;
         self.statistics.tangent_evaluations += 1;
         self.statistics.factorizations += 1;
-        system.force_and_tangent(load, q, earlier, &mut self.force, &mut self.tangent, &mut self.workspace);
-        balance(self.system, load, x, &mut self.force, |_| (), negative);
+        let force = &mut negative[..n];
+        system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
+        self.balanced(load, x, negative);
         system.add_constraint_stiffness(&x[n..], &mut self.tangent);
         self.tangent.add_diagonal(sigma, diagonal);
         system.supports().turn_matrix(load, &mut self.tangent);
@@ -195,34 +203,41 @@ impl<'a> Equilibrium<'a> {
     }
 }
 
-/// Adds Bᵀμ to the force, turns it into the supports' frames as `−R` and appends `−g`; returns the scaled residual.
-/// `add_inertia` adds to the force what does not count in the scale.
-pub(super) fn balance(
-    system: &System,
-    load: f64,
-    x: &[f64],
-    force: &mut [f64],
-    add_inertia: impl FnOnce(&mut [f64]),
-    negative: &mut [f64],
-) -> f64 {
-    let n = system.coordinates();
-    let inverse = 1.0 / system.length();
-    let units = [1.0, 1.0, inverse, inverse];
-    let mut scale = largest(force, units);
-    add_inertia(force);
-    for (r, constraint) in system.constraints().iter().enumerate() {
+/// Adds Bᵀμ to the forces that are in `r`, turns them into the supports' frames and appends g. Returns the largest force, `scale` or larger.
+pub(super) fn balance(system: &System, load: f64, x: &[f64], mut scale: f64, r: &mut [f64]) -> f64 {
+    let (q, multipliers) = x.split_at(system.coordinates());
+    let (force, gaps) = r.split_at_mut(q.len());
+    for ((constraint, mu), gap) in system.constraints().iter().zip(multipliers).zip(gaps) {
         let unit = constraint.scale(system.stiffness(), system.length());
-        let mu = x[n + r] * unit;
-        for (i, value) in constraint.gradient(load, &x[..n]) {
+        let mu = mu * unit;
+        for (i, value) in constraint.gradient(load, q) {
             scale = scale.max((mu * value).abs() * if i % 4 < 2 { 1.0 } else { 1.0 / system.length() });
             force[i] += mu * value;
         }
-        // Newton's method satisfies what is linear in q to round-off at once, and lengths as soon as its increments vanish.
-        negative[n + r] = -unit * constraint.value(load, &x[..n]);
+        *gap = unit * constraint.value(load, q);
     }
     system.supports().to_frames(load, force);
-    negative.iter_mut().zip(&*force).for_each(|(negative, force)| *negative = -force);
-    let residual = largest(force, units);
+    scale
+}
+
+/// Makes −R of the R that [`balance`] left, which `turn` may turn node by node; returns the residual scaled by the largest force. Newton's method satisfies
+/// constraints that are linear in q to round-off at once, and lengths as soon as its increments vanish: they do not count.
+#[inline(always)]
+pub(super) fn negate(
+    system: &System,
+    scale: f64,
+    r: &mut [f64],
+    turn: impl Fn(usize, &mut [f64; 4]),
+) -> f64 {
+    let (force, gaps) = r.split_at_mut(system.coordinates());
+    let mut largest = Largest::force(system);
+    for (node, force) in force.as_chunks_mut().0.iter_mut().enumerate() {
+        largest.see(force);
+        *force = force.map(|force| -force);
+        turn(node, force);
+    }
+    gaps.iter_mut().for_each(|gap| *gap = -*gap);
+    let residual = largest.size();
     if residual == 0.0 { 0.0 } else { residual / (scale + floor(system)) }
 }
 
@@ -233,19 +248,43 @@ pub(super) fn floor(system: &System) -> f64 {
 
 /// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not count.
 pub(super) fn size(system: &System, increment: &[f64]) -> f64 {
-    let inverse = 1.0 / system.length();
-    largest(&increment[..system.coordinates()], [inverse, inverse, 1.0, 1.0])
+    let mut largest = Largest::change(system);
+    increment[..system.coordinates()].as_chunks().0.iter().for_each(|d| largest.see(d));
+    largest.size()
 }
 
-/// The largest size of any number, those of a node in `units`.
-fn largest(numbers: &[f64], units: [f64; 4]) -> f64 {
-    let mut sizes = [0.0; 4];
-    for node in numbers.as_chunks::<4>().0 {
-        for lane in 0..4 {
-            sizes[lane] = larger(sizes[lane], (units[lane] * node[lane]).abs());
+/// The largest of many nodes' numbers, those of a node in units of their own.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Largest {
+    units: [f64; 4],
+    sizes: [f64; 4],
+}
+
+impl Largest {
+    /// Of forces \[N\], and of what works on gradients per beam length.
+    pub fn force(system: &System) -> Self {
+        let inverse = 1.0 / system.length();
+        Self { units: [1.0, 1.0, inverse, inverse], sizes: [0.0; 4] }
+    }
+
+    /// Of changes of positions in beam lengths, and of gradients.
+    pub fn change(system: &System) -> Self {
+        let inverse = 1.0 / system.length();
+        Self { units: [inverse, inverse, 1.0, 1.0], sizes: [0.0; 4] }
+    }
+
+    /// Takes a node into account.
+    #[inline(always)]
+    pub fn see(&mut self, node: &[f64; 4]) {
+        for ((size, unit), value) in self.sizes.iter_mut().zip(self.units).zip(node) {
+            *size = larger(*size, (unit * value).abs());
         }
     }
-    sizes.into_iter().fold(0.0, larger)
+
+    /// The largest so far; NaN if there was one.
+    pub fn size(&self) -> f64 {
+        self.sizes.into_iter().fold(0.0, larger)
+    }
 }
 
 /// The larger of two sizes. `f64::max` would drop a NaN.

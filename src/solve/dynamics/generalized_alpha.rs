@@ -22,7 +22,7 @@
 
 use super::State;
 use super::method::Method;
-use super::motion::{Motion, Rates};
+use super::motion::{Accelerations as Affine, Motion, Rates};
 use super::turns::Turns;
 use crate::effect::Earlier;
 use crate::linear::{Factor, Singular};
@@ -79,22 +79,18 @@ struct Rule {
     d: f64,
     e: Vec<f64>,
     o: Vec<f64>,
-    acceleration: Vec<f64>,
     velocity: Vec<f64>,
 }
 
 impl Rule {
     /// The rates at the unknowns `x`; velocities only where forces depend on them.
     fn at(&mut self, x: &[f64], damped: bool) -> Rates<'_> {
-        for ((a, q), e) in self.acceleration.iter_mut().zip(x).zip(&self.e) {
-            *a = self.c.mul_add(*q, *e);
-        }
         if damped {
             for ((v, q), o) in self.velocity.iter_mut().zip(x).zip(&self.o) {
                 *v = self.d.mul_add(*q, *o);
             }
         }
-        Rates { time: self.time, v: &self.velocity, a: &self.acceleration }
+        Rates { time: self.time, v: &self.velocity, a: Affine { factor: self.c, rest: &self.e } }
     }
 }
 
@@ -109,7 +105,7 @@ pub struct GeneralizedAlpha<'a> {
     before: Option<(Vec<f64>, f64)>,
     trial_step: f64,
     x: Vec<f64>,
-    start: Vec<f64>,
+    predicted: Vec<f64>,
     rule: Rule,
     increment: Vec<f64>,
     factor: Option<Factor>,
@@ -149,11 +145,10 @@ impl<'a> GeneralizedAlpha<'a> {
             before: None,
             trial_step: 0.0,
             x: vec![0.0; unknowns],
-            start: vec![0.0; unknowns],
+            predicted: vec![0.0; unknowns],
             rule: Rule {
                 e: vec![0.0; n],
                 o: vec![0.0; n],
-                acceleration: vec![0.0; n],
                 velocity: vec![0.0; n],
                 ..Rule::default()
             },
@@ -188,7 +183,6 @@ impl<'a> GeneralizedAlpha<'a> {
         tolerance: f64,
         record: &mut Iterations,
     ) -> Result<bool, Singular> {
-        let predicted = self.x.clone();
         let mut fresh = self.kept.as_ref().is_none_or(|kept| kept.rate > KEEP);
         if fresh {
             self.keep(from, self.last.multipliers.clone(), 1.0)?;
@@ -204,14 +198,12 @@ impl<'a> GeneralizedAlpha<'a> {
             let mut last = 0.0;
             for _ in 0..ITERATIONS {
                 let rates = self.rule.at(&self.x, damped);
-                let residual = self.motion.residual(&self.x, rates, &mut self.increment);
-                self.turns.back(&mut self.increment[..n]);
+                let residual =
+                    self.motion.residual_turned_back(&self.x, rates, &self.turns, &mut self.increment);
                 if let Some(factor) = &self.factor {
                     factor.solve(&mut self.increment);
                 }
-                self.turns.forth(&mut self.increment[..n]);
-                self.motion.from_frames(&mut self.increment);
-                let size = self.motion.size(&self.increment);
+                let size = self.motion.update(&self.turns, &mut self.increment, &mut self.x);
                 self.motion.statistics.newton_iterations += 1;
                 record.residuals.push(residual);
                 record.increments.push(size);
@@ -219,7 +211,6 @@ impl<'a> GeneralizedAlpha<'a> {
                 if !(size <= LARGEST_CORRECTION && residual.is_finite()) {
                     break;
                 }
-                self.x.iter_mut().zip(&self.increment).for_each(|(x, d)| *x += d);
                 if last > 0.0 {
                     rate = size / last;
                 }
@@ -234,7 +225,7 @@ impl<'a> GeneralizedAlpha<'a> {
                 }
                 last = size;
             }
-            self.x.copy_from_slice(&predicted);
+            self.x.copy_from_slice(&self.predicted);
             if fresh {
                 self.kept = None;
                 return Ok(false);
@@ -255,8 +246,9 @@ impl<'a> GeneralizedAlpha<'a> {
             factor: &mut self.factor,
         };
         self.kept = None;
-        let change: Vec<f64> = self.x.iter().zip(&self.start).map(|(x, start)| x - start).collect();
-        let start = Earlier { q: &self.start, increment: &change };
+        let start: Vec<f64> = from.q.iter().chain(&self.last.multipliers).copied().collect();
+        let change: Vec<f64> = self.x.iter().zip(&start).map(|(x, start)| x - start).collect();
+        let start = Earlier { q: &start, increment: &change };
         newton::solve(&mut equations, &mut self.x, start, settings, record)?;
         let n = self.motion.coordinates();
         self.turns.measure(&self.x[..n], &self.x[..n]);
@@ -352,30 +344,32 @@ impl Method for GeneralizedAlpha<'_> {
         let Accelerations { physical, algorithmic, multipliers } = &self.last;
         // Slices of one length: loops over them are free of checks and vectorised.
         let (q, v, algorithmic, physical) = (&from.q[..n], &from.v[..n], &algorithmic[..n], &physical[..n]);
-        let (explicit, e, x) = (&mut to.q[..n], &mut self.rule.e[..n], &mut self.x[..n]);
+        let (e, x) = (&mut self.rule.e[..n], &mut self.x[..n]);
         let (ratio, before) = match &self.before {
             Some((before, step)) => (h / step, &before[..n]),
             None => (0.0, algorithmic),
         };
         let (of_algorithmic, of_physical) = (alpha_m / (1.0 - alpha_f), alpha_f / (1.0 - alpha_f));
+        // What is known of the position at the end. It is computed where it is needed: to keep it would be one pass over memory more.
+        let known = |q: f64, v: f64, a: f64| q + h * (v + h * (0.5 - beta) * a);
         for i in 0..n {
             let a = algorithmic[i];
-            explicit[i] = q[i] + h * (v[i] + h * (0.5 - beta) * a);
-            e[i] = of_algorithmic * a - of_physical * physical[i] - c * explicit[i];
-            x[i] = explicit[i] + h * h * beta * (a + ratio * (a - before[i]));
+            let known = known(q[i], v[i], a);
+            e[i] = of_algorithmic * a - of_physical * physical[i] - c * known;
+            x[i] = known + h * h * beta * (a + ratio * (a - before[i]));
         }
         if self.motion.needs_velocity() {
             let o = &mut self.rule.o[..n];
             for i in 0..n {
-                o[i] = v[i] + h * (1.0 - gamma) * algorithmic[i] - d * explicit[i];
+                let a = algorithmic[i];
+                o[i] = v[i] + h * (1.0 - gamma) * a - d * known(q[i], v[i], a);
             }
         }
         self.x[n..].copy_from_slice(multipliers);
-        self.start[..n].copy_from_slice(&from.q);
-        self.start[n..].copy_from_slice(multipliers);
         self.motion.impose(end, &mut self.x);
-        let moved: Vec<f64> = self.x.iter().zip(&self.start).map(|(x, start)| x - start).collect();
-        let tight = self.newton_tolerance * (RELATIVE_TOLERANCE * self.motion.size(&moved)).min(1.0);
+        self.predicted.copy_from_slice(&self.x);
+        let moved = self.motion.size_of_change(&from.q, &self.x);
+        let tight = self.newton_tolerance * (RELATIVE_TOLERANCE * moved).min(1.0);
         let settings = Settings {
             tolerance: accuracy.map_or(tight, |allowed| (TOLERANCE_OF_ERROR * allowed).max(tight)),
             // The tangent is exact, and inertia makes it well conditioned: the increments tell all.
@@ -384,11 +378,11 @@ impl Method for GeneralizedAlpha<'_> {
         };
         self.solve(from, &settings, record)?;
         self.trial_step = h;
-        let (v, e, x) = (&from.v[..n], &self.rule.e[..n], &self.x[..n]);
+        let (q, v, e, x) = (&from.q[..n], &from.v[..n], &self.rule.e[..n], &self.x[..n]);
         let (last, now) = (&self.last.algorithmic[..n], &mut self.trial.algorithmic[..n]);
         let (to_q, to_v, physical) = (&mut to.q[..n], &mut to.v[..n], &mut self.trial.physical[..n]);
         for i in 0..n {
-            now[i] = (x[i] - to_q[i]) * a_per_q;
+            now[i] = (x[i] - known(q[i], v[i], last[i])) * a_per_q;
             to_q[i] = x[i];
             to_v[i] = v[i] + h * ((1.0 - gamma) * last[i] + gamma * now[i]);
             physical[i] = c * x[i] + e[i];
@@ -401,10 +395,11 @@ impl Method for GeneralizedAlpha<'_> {
     }
 
     fn accept(&mut self) {
-        let mut oldest = self.before.take().map_or_else(Vec::new, |(a, _)| a);
-        oldest.clone_from(&self.last.algorithmic);
-        self.before = Some((oldest, self.trial_step));
+        let n = self.motion.coordinates();
+        let oldest = self.before.take().map_or_else(|| vec![0.0; n], |(a, _)| a);
         std::mem::swap(&mut self.last, &mut self.trial);
+        let before = std::mem::replace(&mut self.trial.algorithmic, oldest);
+        self.before = Some((before, self.trial_step));
     }
 
     fn end_accelerations(&mut self, _: &State, _: &State) -> Option<[Vec<f64>; 2]> {

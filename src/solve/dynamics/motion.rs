@@ -24,12 +24,12 @@
 use super::State;
 use super::turns::Turns;
 use crate::effect::{Earlier, Workspace};
-use crate::lanes::Real;
+use crate::lanes::{Lanes, Real};
 use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::isotropic::Inertia;
 use crate::linear::{Factor, Matrix, Singular};
-use crate::solve::equilibrium::{self, balance};
+use crate::solve::equilibrium::{self, Largest, balance, negate};
 use crate::system::{Reaction, System};
 use crate::trajectory::Statistics;
 use faer::c64;
@@ -42,7 +42,23 @@ pub struct Rates<'r> {
     /// Velocities; read only where [`Motion::needs_velocity`] says so.
     pub v: &'r [f64],
     /// Accelerations.
-    pub a: &'r [f64],
+    pub a: Accelerations<'r>,
+}
+
+/// Accelerations c q + e at the unknowns q, which no one needs to put down.
+#[derive(Clone, Copy, Debug)]
+pub struct Accelerations<'r> {
+    /// c \[1/s²\].
+    pub factor: f64,
+    /// e.
+    pub rest: &'r [f64],
+}
+
+impl<'r> Accelerations<'r> {
+    /// The same whatever the unknowns are.
+    pub fn constant(rest: &'r [f64]) -> Self {
+        Self { factor: 0.0, rest }
+    }
 }
 
 /// Forces, tangent and mass of a system in motion. Unknowns are the system's coordinates followed by the scaled multipliers.
@@ -177,7 +193,8 @@ impl<'a> Motion<'a> {
         acceleration.fill(0.0);
         let mut x = state.q.clone();
         x.resize(self.unknowns(), 0.0);
-        self.residual(&x, Rates { time: state.time, v: &state.v, a: acceleration }, &mut negative);
+        let a = Accelerations::constant(acceleration);
+        self.residual(&x, Rates { time: state.time, v: &state.v, a }, &mut negative);
         let supported: &[f64] = if self.moves { &self.carried[2] } else { acceleration };
         self.system.constraint_rates(state.time, &state.q, supported, &mut negative[n..]);
         self.system.add_constraint_curvatures(&state.v, &mut negative[n..]);
@@ -212,14 +229,33 @@ impl<'a> Motion<'a> {
 
     /// Writes −(M a + f(q) + Bᵀμ) and −g to `negative`, in the supports' frames; returns the scaled residual.
     pub fn residual(&mut self, x: &[f64], rates: Rates<'_>, negative: &mut [f64]) -> f64 {
+        let scale = self.balance(x, rates, negative);
+        negate(self.system, scale, negative, |_, _| ())
+    }
+
+    /// The same, and turned back node by node.
+    pub fn residual_turned_back(
+        &mut self,
+        x: &[f64],
+        rates: Rates<'_>,
+        turns: &Turns,
+        negative: &mut [f64],
+    ) -> f64 {
+        let scale = self.balance(x, rates, negative);
+        negate(self.system, scale, negative, |node, force| turns.of(node).back(force))
+    }
+
+    /// Writes M a + f(q) + Bᵀμ and g; returns the largest force beside the inertia.
+    fn balance(&mut self, x: &[f64], rates: Rates<'_>, r: &mut [f64]) -> f64 {
         self.statistics.residual_evaluations += 1;
+        let n = self.coordinates();
         if !self.moves {
-            self.system.force(rates.time, &x[..self.coordinates()], &mut self.force);
-            return self.finish(x, rates, negative);
+            self.system.force(rates.time, &x[..n], &mut r[..n]);
+            return self.finish(x, rates, r);
         }
         self.with_carried(x, rates, |motion, x, rates| {
-            motion.system.force(rates.time, &x[..motion.coordinates()], &mut motion.force);
-            motion.finish(x, rates, negative)
+            motion.system.force(rates.time, &x[..n], &mut r[..n]);
+            motion.finish(x, rates, r)
         })
     }
 
@@ -232,20 +268,23 @@ impl<'a> Motion<'a> {
         negative: &mut [f64],
     ) -> f64 {
         self.statistics.residual_evaluations += 1;
+        let n = self.coordinates();
         if !self.moves {
-            self.assemble(x, Some(earlier), rates);
-            return self.finish(x, rates, negative);
+            self.assemble(x, Some(earlier), rates, &mut negative[..n]);
+            let scale = self.finish(x, rates, negative);
+            return negate(self.system, scale, negative, |_, _| ());
         }
         let mut before = earlier.q.to_vec();
-        let n = self.coordinates();
         let mut idle = vec![0.0; n];
         let mut still = vec![0.0; n];
         self.system.supports().carry(rates.time, [&mut before[..n], &mut idle, &mut still]);
-        self.with_carried(x, rates, |motion, x, rates| {
+        let scale = self.with_carried(x, rates, |motion, x, rates| {
             let change: Vec<f64> = x.iter().zip(&before).map(|(x, before)| x - before).collect();
-            motion.assemble(x, Some(Earlier { q: &before, increment: &change }), rates);
+            let earlier = Earlier { q: &before, increment: &change };
+            motion.assemble(x, Some(earlier), rates, &mut negative[..n]);
             motion.finish(x, rates, negative)
-        })
+        });
+        negate(self.system, scale, negative, |_, _| ())
     }
 
     /// The tangent ∂f/∂q in the state `state` of unknowns, with the scaled `multipliers`.
@@ -256,14 +295,16 @@ impl<'a> Motion<'a> {
         if self.system.supports().turn_in_time() {
             self.mass_at(state.time, &state.q)?;
         }
-        let rates = Rates { time: state.time, v: &state.v, a: &state.v };
+        let rates = Rates { time: state.time, v: &state.v, a: Accelerations::constant(&state.v) };
         let mut x = state.q.clone();
         x.extend_from_slice(multipliers);
+        let mut force = std::mem::take(&mut self.force);
         if self.moves {
-            self.with_carried(&x, rates, |motion, x, rates| motion.assemble(x, None, rates));
+            self.with_carried(&x, rates, |motion, x, rates| motion.assemble(x, None, rates, &mut force));
         } else {
-            self.assemble(&x, None, rates);
+            self.assemble(&x, None, rates, &mut force);
         }
+        self.force = force;
         Ok(())
     }
 
@@ -279,17 +320,19 @@ impl<'a> Motion<'a> {
         q.clear();
         q.extend_from_slice(x);
         v.copy_from_slice(&rates.v[..n]);
-        a.copy_from_slice(&rates.a[..n]);
+        let Accelerations { factor, rest } = rates.a;
+        a.iter_mut().zip(x.iter().zip(rest)).for_each(|(a, (x, e))| *a = factor.mul_add(*x, *e));
         self.system.supports().carry(rates.time, [&mut q[..n], &mut v, &mut a]);
-        let result = f(self, &q, Rates { time: rates.time, v: &v, a: &a });
+        let carried = Rates { time: rates.time, v: &v, a: Accelerations::constant(&a) };
+        let result = f(self, &q, carried);
         self.carried = [q, v, a];
         result
     }
 
     /// Force, tangent and damping matrix, in fixed axes and in the supports' frames.
-    fn assemble(&mut self, x: &[f64], earlier: Option<Earlier<'_>>, rates: Rates<'_>) {
+    fn assemble(&mut self, x: &[f64], earlier: Option<Earlier<'_>>, rates: Rates<'_>, force: &mut [f64]) {
         let n = self.coordinates();
-        let Self { system, force, tangent, damping, workspace, scratch, .. } = self;
+        let Self { system, tangent, damping, workspace, scratch, .. } = self;
         let supports = system.supports();
         if let Some(damping) = damping {
             system.damping_matrix(&x[..n], rates.v, scratch, damping, workspace);
@@ -306,13 +349,21 @@ impl<'a> Motion<'a> {
         self.statistics.tangent_evaluations += 1;
     }
 
-    fn finish(&mut self, x: &[f64], rates: Rates<'_>, negative: &mut [f64]) -> f64 {
+    /// Adds to the forces in `r` what is left to add; returns the largest of them beside the inertia.
+    fn finish(&mut self, x: &[f64], rates: Rates<'_>, r: &mut [f64]) -> f64 {
         let n = self.coordinates();
         if self.damping.is_some() {
-            self.system.add_damping(&x[..n], rates.v, &mut self.force);
+            self.system.add_damping(&x[..n], rates.v, &mut r[..n]);
         }
-        let add_inertia = |force: &mut [f64]| self.mass.multiply_add(1.0, rates.a, force);
-        balance(self.system, rates.time, x, &mut self.force, add_inertia, negative)
+        let Accelerations { factor, rest } = rates.a;
+        let (q, rest) = (x[..n].as_chunks::<4>().0, rest[..n].as_chunks::<4>().0);
+        let acceleration = |node: usize| {
+            let (q, rest) = (Lanes::new(q[node]), Lanes::new(rest[node]));
+            q.mul_add(Lanes::splat(factor), rest).to_array()
+        };
+        let mut scale = Largest::force(self.system);
+        self.mass.multiply_add_seen(acceleration, &mut r[..n], |force| scale.see(&force));
+        balance(self.system, rates.time, x, scale.size(), r)
     }
 
     /// Factorises K + d D + c M with the last tangent K and damping matrix D.
@@ -481,5 +532,30 @@ impl<'a> Motion<'a> {
     /// Largest nodal change: positions in beam lengths, gradients as they are.
     pub fn size(&self, increment: &[f64]) -> f64 {
         equilibrium::size(self.system, increment)
+    }
+
+    /// The same of the change from `start` to `end`.
+    pub fn size_of_change(&self, start: &[f64], end: &[f64]) -> f64 {
+        let mut largest = Largest::change(self.system);
+        for (start, end) in start.as_chunks::<4>().0.iter().zip(end.as_chunks::<4>().0) {
+            largest.see(&std::array::from_fn(|i| end[i] - start[i]));
+        }
+        largest.size()
+    }
+
+    /// Turns an increment forth node by node and back from the supports' frames, and adds it to `x`; returns its size.
+    pub fn update(&self, turns: &Turns, increment: &mut [f64], x: &mut [f64]) -> f64 {
+        // Both turn in the plane: which is first does not matter.
+        self.from_frames(increment);
+        let n = self.coordinates();
+        let mut largest = Largest::change(self.system);
+        let nodes = increment.as_chunks_mut::<4>().0.iter_mut().zip(x.as_chunks_mut::<4>().0);
+        for (node, (d, x)) in nodes.take(n / 4).enumerate() {
+            turns.of(node).forth(d);
+            largest.see(d);
+            *x = (Lanes::new(*x) + Lanes::new(*d)).to_array();
+        }
+        x[n..].iter_mut().zip(&increment[n..]).for_each(|(x, d)| *x += d);
+        largest.size()
     }
 }

@@ -73,6 +73,12 @@ impl Turns {
         }
     }
 
+    /// The turn of a node.
+    #[inline(always)]
+    pub fn of(&self, node: usize) -> &Turn<f64> {
+        &self.turns[node]
+    }
+
     /// R v.
     pub fn forth(&self, v: &mut [f64]) {
         self.turns.iter().zip(v.as_chunks_mut::<4>().0).for_each(|(turn, v)| turn.forth(v));

@@ -16,8 +16,8 @@ const WANTED: f64 = 1.5;
 #[template(path = "scaling.html")]
 struct Body<'a> {
     measured: Option<&'a Scaling>,
-    /// Elements, time, memory, iterations.
-    rows: Vec<[String; 4]>,
+    /// Elements, time of a step and before it, memory, iterations.
+    rows: Vec<[String; 5]>,
     growth: String,
     wanted: f64,
     drawing: Result<String, String>,
@@ -46,6 +46,7 @@ pub fn page(file: &Path) -> Result<Page, Failure> {
                     [
                         row.elements.to_string(),
                         format!("{:.3}", 1e6 * row.seconds),
+                        format!("{:.2}", 1e6 * row.start),
                         row.megabytes.map_or("–".to_owned(), |m| format!("{m:.0}")),
                         format!("{:.1}", row.iterations),
                     ]
