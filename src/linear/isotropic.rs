@@ -206,12 +206,7 @@ impl Inertia {
 
     /// `y += M x` with x given node by node; `see` is shown what is in y before, likewise.
     #[inline(always)]
-    pub fn multiply_add_seen(
-        &self,
-        x: impl Fn(usize) -> [f64; 4],
-        y: &mut [f64],
-        see: impl FnMut([f64; 4]),
-    ) {
+    pub fn multiply_add_seen(&self, x: impl Fn(usize) -> [f64; 4], y: &mut [f64], see: impl FnMut([f64; 4])) {
         match self {
             Self::Isotropic(band) => band.multiply_add_seen(1.0, x, y, see),
             Self::Any(matrix) => {
@@ -255,7 +250,9 @@ mod tests {
             let band = IsotropicBand::new(&matrix).expect("isotropic");
             let x: Vec<f64> = (0..28).map(|i| f64::from(i * i % 11) - 3.0).collect();
             let (mut y, mut expected) = (vec![0.25; 28], vec![0.25; 28]);
-            band.multiply_add(-0.5, &x, &mut y);
+            let mut seen = Vec::new();
+            band.multiply_add_seen(-0.5, |node| x.as_chunks().0[node], &mut y, |before| seen.push(before));
+            assert_eq!(seen, [[0.25; 4]; 7]);
             matrix.multiply_add(-0.5, &x, &mut expected);
             for (y, expected) in y.iter().zip(&expected) {
                 assert!((y - expected).abs() <= 1e-13 * expected.abs().max(1.0), "{y} {expected}");

@@ -3,6 +3,7 @@
 use super::newton::{Equations, RESIDUAL_TOLERANCE};
 use super::retraction::Retraction;
 use crate::effect::{Earlier, Workspace};
+use crate::lanes::Lanes;
 use crate::linear::bordered::BorderRow;
 use crate::linear::{Factor, Matrix, Singular};
 use crate::system::System;
@@ -73,7 +74,7 @@ impl<'a> Equilibrium<'a> {
         let mut scale = Largest::force(self.system);
         negative[..self.system.coordinates()].as_chunks().0.iter().for_each(|f| scale.see(f));
         let scale = balance(self.system, load, x, scale.size(), negative);
-        negate(self.system, scale, negative, |_, _| ())
+        negate(self.system, scale, negative, |_| ())
     }
 
     /// The same as [`Self::residual`]; also factorises the tangent at `x`, and to `rate` writes the right-hand side
@@ -220,21 +221,16 @@ pub(super) fn balance(system: &System, load: f64, x: &[f64], mut scale: f64, r: 
     scale
 }
 
-/// Makes −R of the R that [`balance`] left, which `turn` may turn node by node; returns the residual scaled by the largest force. Newton's method satisfies
+/// Makes −R of the R that [`balance`] left, which `turn` may turn node after node; returns the residual scaled by the largest force. Newton's method satisfies
 /// constraints that are linear in q to round-off at once, and lengths as soon as its increments vanish: they do not count.
 #[inline(always)]
-pub(super) fn negate(
-    system: &System,
-    scale: f64,
-    r: &mut [f64],
-    turn: impl Fn(usize, &mut [f64; 4]),
-) -> f64 {
+pub(super) fn negate(system: &System, scale: f64, r: &mut [f64], mut turn: impl FnMut(&mut [f64; 4])) -> f64 {
     let (force, gaps) = r.split_at_mut(system.coordinates());
     let mut largest = Largest::force(system);
-    for (node, force) in force.as_chunks_mut().0.iter_mut().enumerate() {
+    for force in force.as_chunks_mut().0 {
         largest.see(force);
         *force = force.map(|force| -force);
-        turn(node, force);
+        turn(force);
     }
     gaps.iter_mut().for_each(|gap| *gap = -*gap);
     let residual = largest.size();
@@ -256,34 +252,40 @@ pub(super) fn size(system: &System, increment: &[f64]) -> f64 {
 /// The largest of many nodes' numbers, those of a node in units of their own.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Largest {
-    units: [f64; 4],
-    sizes: [f64; 4],
+    units: Lanes,
+    sizes: Lanes,
+    not_finite: Lanes,
 }
 
 impl Largest {
     /// Of forces \[N\], and of what works on gradients per beam length.
     pub fn force(system: &System) -> Self {
         let inverse = 1.0 / system.length();
-        Self { units: [1.0, 1.0, inverse, inverse], sizes: [0.0; 4] }
+        Self::new([1.0, 1.0, inverse, inverse])
     }
 
     /// Of changes of positions in beam lengths, and of gradients.
     pub fn change(system: &System) -> Self {
         let inverse = 1.0 / system.length();
-        Self { units: [inverse, inverse, 1.0, 1.0], sizes: [0.0; 4] }
+        Self::new([inverse, inverse, 1.0, 1.0])
+    }
+
+    fn new(units: [f64; 4]) -> Self {
+        Self { units: Lanes::new(units), sizes: Lanes::ZERO, not_finite: Lanes::ZERO }
     }
 
     /// Takes a node into account.
     #[inline(always)]
     pub fn see(&mut self, node: &[f64; 4]) {
-        for ((size, unit), value) in self.sizes.iter_mut().zip(self.units).zip(node) {
-            *size = larger(*size, (unit * value).abs());
-        }
+        let sizes = (Lanes::new(*node) * self.units).abs();
+        self.sizes = sizes.fast_max(self.sizes);
+        // Of ∞ and NaN a NaN is left, which a maximum may drop.
+        self.not_finite += sizes * Lanes::ZERO;
     }
 
-    /// The largest so far; NaN if there was one.
+    /// The largest so far; NaN if one was not finite.
     pub fn size(&self) -> f64 {
-        self.sizes.into_iter().fold(0.0, larger)
+        (self.sizes + self.not_finite).to_array().into_iter().fold(0.0, larger)
     }
 }
 

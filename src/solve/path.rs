@@ -13,7 +13,8 @@
 //!
 //! A step is redone, too, if the tangents at its two ends do not explain it. On a smooth path the trapezoidal rule for the angles of the nodes,
 //! φ₁ ≈ φ₀ + ½h (φ̇₀ + φ̇₁), errs by O(h³) and thus by a fraction of the corrector's own O(h²), or of the step's turn where the corrector has little left
-//! to do. A step to another branch misses it by all of the jump. Six thousand random cantilevers end where forty small steps end.
+//! to do. A step to another branch misses it by all of the jump. Twelve thousand random cantilevers end where two hundred small steps end. Two of ten thousand
+//! do not if few cable elements with full quadrature lock (four of them, EA L²/EI of 2·10⁶ and 7·10⁶): such meshes have branches of their own within a step.
 //!
 //! A step that passes no limit point and yet ends in an unstable equilibrium is redone smaller too, and so is one that ends opposite to
 //! where it was to go. The path of an imperfect column bends away from its critical load and stays stable; long steps, of which no

@@ -146,12 +146,7 @@ impl<'a> GeneralizedAlpha<'a> {
             trial_step: 0.0,
             x: vec![0.0; unknowns],
             predicted: vec![0.0; unknowns],
-            rule: Rule {
-                e: vec![0.0; n],
-                o: vec![0.0; n],
-                velocity: vec![0.0; n],
-                ..Rule::default()
-            },
+            rule: Rule { e: vec![0.0; n], o: vec![0.0; n], velocity: vec![0.0; n], ..Rule::default() },
             increment: vec![0.0; unknowns],
             factor: None,
             kept: None,

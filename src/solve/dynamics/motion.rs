@@ -230,7 +230,7 @@ impl<'a> Motion<'a> {
     /// Writes −(M a + f(q) + Bᵀμ) and −g to `negative`, in the supports' frames; returns the scaled residual.
     pub fn residual(&mut self, x: &[f64], rates: Rates<'_>, negative: &mut [f64]) -> f64 {
         let scale = self.balance(x, rates, negative);
-        negate(self.system, scale, negative, |_, _| ())
+        negate(self.system, scale, negative, |_| ())
     }
 
     /// The same, and turned back node by node.
@@ -242,7 +242,12 @@ impl<'a> Motion<'a> {
         negative: &mut [f64],
     ) -> f64 {
         let scale = self.balance(x, rates, negative);
-        negate(self.system, scale, negative, |node, force| turns.of(node).back(force))
+        let mut turns = turns.iter();
+        negate(self.system, scale, negative, |force| {
+            if let Some(turn) = turns.next() {
+                turn.back(force);
+            }
+        })
     }
 
     /// Writes M a + f(q) + Bᵀμ and g; returns the largest force beside the inertia.
@@ -272,7 +277,7 @@ impl<'a> Motion<'a> {
         if !self.moves {
             self.assemble(x, Some(earlier), rates, &mut negative[..n]);
             let scale = self.finish(x, rates, negative);
-            return negate(self.system, scale, negative, |_, _| ());
+            return negate(self.system, scale, negative, |_| ());
         }
         let mut before = earlier.q.to_vec();
         let mut idle = vec![0.0; n];
@@ -284,7 +289,7 @@ impl<'a> Motion<'a> {
             motion.assemble(x, Some(earlier), rates, &mut negative[..n]);
             motion.finish(x, rates, negative)
         });
-        negate(self.system, scale, negative, |_, _| ())
+        negate(self.system, scale, negative, |_| ())
     }
 
     /// The tangent ∂f/∂q in the state `state` of unknowns, with the scaled `multipliers`.
@@ -549,9 +554,9 @@ impl<'a> Motion<'a> {
         self.from_frames(increment);
         let n = self.coordinates();
         let mut largest = Largest::change(self.system);
-        let nodes = increment.as_chunks_mut::<4>().0.iter_mut().zip(x.as_chunks_mut::<4>().0);
-        for (node, (d, x)) in nodes.take(n / 4).enumerate() {
-            turns.of(node).forth(d);
+        let nodes = increment[..n].as_chunks_mut::<4>().0.iter_mut().zip(x[..n].as_chunks_mut::<4>().0);
+        for ((d, x), turn) in nodes.zip(turns.iter()) {
+            turn.forth(d);
             largest.see(d);
             *x = (Lanes::new(*x) + Lanes::new(*d)).to_array();
         }

@@ -73,10 +73,9 @@ impl Turns {
         }
     }
 
-    /// The turn of a node.
-    #[inline(always)]
-    pub fn of(&self, node: usize) -> &Turn<f64> {
-        &self.turns[node]
+    /// The turns, node by node.
+    pub fn iter(&self) -> std::slice::Iter<'_, Turn<f64>> {
+        self.turns.iter()
     }
 
     /// R v.
