@@ -9,15 +9,15 @@
 //! side in the lanes of a register take the time of one and a half: 210 instructions an element with 5/3 points by fours, 520 alone. A tangent
 //! (with 3/2 points) takes 1 000 by fours, 1 400 alone; its tiles' 528 multiply–adds would take 0.02 µs at the machine's peak.
 //!
-//! A step of the trapezoidal rule (30 elements, 1 ms, two iterations with a kept tangent) takes 44 000 instructions, 76 000 before there were lanes:
-//! 33 % are forces, 18 % substitutions, 8 % new tangents, 7 % products with the mass matrix, the rest passes over vectors. A step of Radau's method
+//! A step of the trapezoidal rule (30 elements, 1 ms, a kept tangent that is renewed every fourth step) takes 57 000 instructions:
+//! 35 % are forces, 25 % new tangents and their factorisations, 14 % substitutions, 9 % products with the mass matrix, the rest passes over vectors. A step of Radau's method
 //! (23 elements with Lobatto points, 2.5 iterations) takes 158 000: 28 % are the tangent and its two factorisations, 17 % forces, 15 % substitutions. In
 //! factorisations and substitutions it is not the count of instructions that decides but how long one waits for the other: two chains from both ends
 //! (the private module `linear::order`) execute more of them and take three fifths of the time.
 //!
-//! With many elements memory decides. An iteration of the trapezoidal rule moves 416 bytes a node of the factors and 0.8 kB of vectors, a step 1 kB more: from a
-//! cache a step of 10 000 elements takes 1.4 times what one of 100 takes an element (0.15 µs), and from memory, which gives 13 GB/s, one of 100 000 takes 2.4
-//! times. Forces cost the same there as anywhere: they compute longer than their vectors take to come. All else waits for memory, so that
+//! With many elements memory decides. An iteration of the trapezoidal rule moves 384 bytes a node of the factors and 0.8 kB of vectors, a step 1 kB
+//! more: from a cache a step of 10 000 elements takes 1.5 times what one of 100 takes an element (0.125 µs), and from memory, which gives 13 GB/s,
+//! one of 100 000 takes 2.6 times. Forces cost the same there as anywhere: they compute longer than their vectors take to come. All else waits for memory, so that
 //! passes over vectors are few: accelerations are never put down, the largest force is found where the inertia is added, the largest residual where it is
 //! turned, and an increment is turned, measured and added in one pass. Going over all of an iteration in sections of 32 to 2048 nodes that stay in a
 //! cache moves two thirds of the bytes and was slower (0.41 instead of 0.36 µs a step), for memory idles while forces are computed; fetching factors

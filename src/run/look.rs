@@ -481,6 +481,9 @@ impl<'a> Look<'a> {
         let (beam, s) = stuck.at;
         let advice = match settings.integrator.step_control() {
             _ if matches!(stuck.failure, Failure::Crushed { .. }) => TOO_SOFT,
+            _ if stuck.failure == Failure::NotFinite && stuck.step == 0.0 => {
+                "a velocity, a load or a stiffness is beyond what its products leave room for: start from another state, or use other units"
+            }
             StepControl::Fixed(_) => {
                 "give `tolerance` instead of `step`, so that steps are as short as the motion needs them; a smaller `step`; \
                  or more nodes where the beam bends most"

@@ -130,6 +130,15 @@ fn saved_states_that_are_no_numbers_are_refused() {
             assert_eq!(error.exit_status(), 2, "{error}");
             assert!(error.to_string().contains("from step to step"), "{error}");
         }
+        // Numbers whose squares are none.
+        for speed in [1e160, -1e300] {
+            let mut broken = state.clone();
+            *broken.pointer_mut("/checkpoint/state/v/5").expect("a place") = speed.into();
+            let error = resumed(&long, &broken).expect_err("no energy");
+            assert!(error.to_string().contains("not finite"), "{error}");
+            let RunError::NoStep { partial, advice, .. } = error else { panic!("{error}") };
+            assert!(partial.energy.is_empty() && advice.contains("start from another state"), "{advice}");
+        }
         // Steps counted from a time that was not: the motion goes on from its state all the same.
         for (start, taken) in [(0.0, 7_u64), (0.0, u64::MAX), (1e300, 0), (-1e300, 3)] {
             let mut broken = state.clone();

@@ -180,8 +180,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         kinks.retain(|kink| *kink > state.time && *kink < task.duration);
         kinks.sort_by(f64::total_cmp);
         let next_record = (state.time / task.output_every + 1.0 + SLACK).floor() as u64;
-        solution.states.push(state.clone());
-        Self {
+        let mut driver = Self {
             system,
             task,
             method,
@@ -198,7 +197,9 @@ impl<'t, 'a> Driver<'t, 'a> {
             kinks,
             touching,
             powers: [(f64::NAN, (0.0, 0.0)); 2],
-        }
+        };
+        driver.keep(driver.state.clone());
+        driver
     }
 
     fn run(&mut self, observe: &mut dyn FnMut(f64, f64, &Statistics) -> bool) {
@@ -230,7 +231,7 @@ impl<'t, 'a> Driver<'t, 'a> {
     fn finish(mut self) -> Solution {
         let last = self.solution.states.last().map_or(f64::NEG_INFINITY, |state| state.time);
         if self.state.time > last + SLACK * self.step {
-            self.solution.states.push(self.state.clone());
+            self.keep(self.state.clone());
         }
         self.solution.statistics = *self.method.statistics();
         self.solution.checkpoint = Some(self.checkpoint());
@@ -429,7 +430,7 @@ fn first_step(
 }
 
 /// The unknown that changed most.
-fn worst(increment: &[f64]) -> usize {
+pub(super) fn worst(increment: &[f64]) -> usize {
     let sizes = increment.iter().map(|d| d.abs()).enumerate();
     sizes.fold((0, 0.0), |worst, (i, d)| if d > worst.1 || d.is_nan() { (i, d) } else { worst }).0
 }

@@ -1,8 +1,9 @@
 //! What a motion leaves behind on its way: records at the requested times, crossings of probes.
 
-use super::State;
-use super::integrate::{Driver, SLACK};
+use super::integrate::{Driver, SLACK, worst};
+use super::{State, Stuck};
 use crate::model::Crossing;
+use crate::solve::newton::Failure;
 
 impl Driver<'_, '_> {
     /// Records and events of the step from the last state to `new`, which an event may cut short; true where the motion ends.
@@ -42,9 +43,25 @@ impl Driver<'_, '_> {
             } else {
                 self.between(new, time, accelerations)
             };
-            self.solution.states.push(state);
+            if !self.keep(state) {
+                return;
+            }
             self.next_record += 1;
         }
+    }
+
+    /// Keeps a state for the reader, if its energy is a number; else the motion ends.
+    pub(super) fn keep(&mut self, state: State) -> bool {
+        let energy = self.system.energy(state.time, &state.q, Some(&state.v)).total();
+        if !(energy + state.work + state.lost).is_finite() {
+            let at = self.system.place_of(worst(&state.v));
+            let (time, step) =
+                (self.state.time, if self.solution.states.is_empty() { 0.0 } else { self.step });
+            self.solution.stuck = Some(Stuck { time, step, failure: Failure::NotFinite, at });
+            return false;
+        }
+        self.solution.states.push(state);
+        true
     }
 
     pub(super) fn between(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> State {
