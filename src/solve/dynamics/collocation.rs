@@ -40,7 +40,7 @@
 
 use super::State;
 use super::method::Method;
-use super::motion::{Accelerations, Motion, Rates};
+use super::motion::{Acceleration, Motion, Rates};
 use super::stages::{self, Mixture, Stages};
 use super::tableau::{Block, Tableau};
 use super::turns::Turns;
@@ -341,7 +341,7 @@ impl<'a> Collocation<'a> {
         self.polynomial(x);
         // −M Σ ℓ_j(x) Q̈_j − f(q) is M times the defect but for the forces of supports and constraints, which the solution removes.
         let mut e = vec![0.0; self.motion.unknowns()];
-        let a = Accelerations::constant(&self.acceleration);
+        let a = Acceleration::constant(&self.acceleration);
         let rates = Rates { time: state.time, v: &state.v, a };
         let mut x = vec![0.0; self.motion.unknowns()];
         x[..n].copy_from_slice(&state.q);

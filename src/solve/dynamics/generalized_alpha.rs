@@ -22,7 +22,7 @@
 
 use super::State;
 use super::method::Method;
-use super::motion::{Accelerations as Affine, Motion, Rates};
+use super::motion::{Acceleration, Motion, Rates};
 use super::turns::Turns;
 use crate::effect::Earlier;
 use crate::linear::{Factor, Singular};
@@ -90,7 +90,7 @@ impl Rule {
                 *v = self.d.mul_add(*q, *o);
             }
         }
-        Rates { time: self.time, v: &self.velocity, a: Affine { factor: self.c, rest: &self.e } }
+        Rates { time: self.time, v: &self.velocity, a: Acceleration { factor: self.c, rest: &self.e } }
     }
 }
 

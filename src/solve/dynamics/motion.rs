@@ -42,19 +42,19 @@ pub struct Rates<'r> {
     /// Velocities; read only where [`Motion::needs_velocity`] says so.
     pub v: &'r [f64],
     /// Accelerations.
-    pub a: Accelerations<'r>,
+    pub a: Acceleration<'r>,
 }
 
-/// Accelerations c q + e at the unknowns q, which no one needs to put down.
+/// The acceleration c q + e at the unknowns q, which no one needs to put down.
 #[derive(Clone, Copy, Debug)]
-pub struct Accelerations<'r> {
+pub struct Acceleration<'r> {
     /// c \[1/s²\].
     pub factor: f64,
     /// e.
     pub rest: &'r [f64],
 }
 
-impl<'r> Accelerations<'r> {
+impl<'r> Acceleration<'r> {
     /// The same whatever the unknowns are.
     pub fn constant(rest: &'r [f64]) -> Self {
         Self { factor: 0.0, rest }
@@ -193,7 +193,7 @@ impl<'a> Motion<'a> {
         acceleration.fill(0.0);
         let mut x = state.q.clone();
         x.resize(self.unknowns(), 0.0);
-        let a = Accelerations::constant(acceleration);
+        let a = Acceleration::constant(acceleration);
         self.residual(&x, Rates { time: state.time, v: &state.v, a }, &mut negative);
         let supported: &[f64] = if self.moves { &self.carried[2] } else { acceleration };
         self.system.constraint_rates(state.time, &state.q, supported, &mut negative[n..]);
@@ -300,7 +300,7 @@ impl<'a> Motion<'a> {
         if self.system.supports().turn_in_time() {
             self.mass_at(state.time, &state.q)?;
         }
-        let rates = Rates { time: state.time, v: &state.v, a: Accelerations::constant(&state.v) };
+        let rates = Rates { time: state.time, v: &state.v, a: Acceleration::constant(&state.v) };
         let mut x = state.q.clone();
         x.extend_from_slice(multipliers);
         let mut force = std::mem::take(&mut self.force);
@@ -325,10 +325,10 @@ impl<'a> Motion<'a> {
         q.clear();
         q.extend_from_slice(x);
         v.copy_from_slice(&rates.v[..n]);
-        let Accelerations { factor, rest } = rates.a;
+        let Acceleration { factor, rest } = rates.a;
         a.iter_mut().zip(x.iter().zip(rest)).for_each(|(a, (x, e))| *a = factor.mul_add(*x, *e));
         self.system.supports().carry(rates.time, [&mut q[..n], &mut v, &mut a]);
-        let carried = Rates { time: rates.time, v: &v, a: Accelerations::constant(&a) };
+        let carried = Rates { time: rates.time, v: &v, a: Acceleration::constant(&a) };
         let result = f(self, &q, carried);
         self.carried = [q, v, a];
         result
@@ -360,7 +360,7 @@ impl<'a> Motion<'a> {
         if self.damping.is_some() {
             self.system.add_damping(&x[..n], rates.v, &mut r[..n]);
         }
-        let Accelerations { factor, rest } = rates.a;
+        let Acceleration { factor, rest } = rates.a;
         let (q, rest) = (x[..n].as_chunks::<4>().0, rest[..n].as_chunks::<4>().0);
         let acceleration = |node: usize| {
             let (q, rest) = (Lanes::new(q[node]), Lanes::new(rest[node]));

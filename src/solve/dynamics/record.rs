@@ -57,7 +57,7 @@ impl Driver<'_, '_> {
             let at = self.system.place_of(worst(&state.v));
             let (time, step) =
                 (self.state.time, if self.solution.states.is_empty() { 0.0 } else { self.step });
-            self.solution.stuck = Some(Stuck { time, step, failure: Failure::NotFinite, at });
+            self.solution.stuck.get_or_insert(Stuck { time, step, failure: Failure::NotFinite, at });
             return false;
         }
         self.solution.states.push(state);

@@ -4,7 +4,7 @@
 //! last stage repeat it. Substitutions go through one vector after the other; between them and the lanes blocks of 4 × 4 numbers are transposed.
 
 use super::State;
-use super::motion::{Accelerations, Motion, Rates};
+use super::motion::{Acceleration, Motion, Rates};
 use super::turns::Turn;
 use crate::lanes::{self, Lanes};
 use crate::solve::equilibrium::{self, larger};
@@ -210,7 +210,7 @@ impl Motion<'_> {
                     let [x, v, a] =
                         [&stages.x, &stages.velocity, &stages.acceleration].map(|of| lane(of, stage));
                     row.resize(x.len(), 0.0);
-                    let a = Accelerations::constant(&a);
+                    let a = Acceleration::constant(&a);
                     let scaled = self.residual(&x, Rates { time: times[stage], v: &v, a }, row);
                     largest = larger(largest, scaled);
                 }
