@@ -21,6 +21,8 @@
 //! unknown, and the method integrates (y, ẏ); fixed axes are met here only, with the centrifugal and Coriolis terms of the turning direction
 //! ([`crate::system::supports::Supports::carry`]). The mass matrix in that frame turns too and is formed anew with each tangent.
 
+mod reactions;
+
 use super::State;
 use super::turns::Turns;
 use crate::effect::{Earlier, Workspace};
@@ -30,7 +32,7 @@ use crate::linear::complex::ComplexFactor;
 use crate::linear::isotropic::Inertia;
 use crate::linear::{Factor, Matrix, Singular};
 use crate::solve::equilibrium::{self, Largest, balance, negate};
-use crate::system::{Reaction, System};
+use crate::system::System;
 use crate::trajectory::Statistics;
 use faer::c64;
 
@@ -485,46 +487,6 @@ impl<'a> Motion<'a> {
         supports.to_fixed_axes(state.time, &mut change[..n]);
         state.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);
         Ok(())
-    }
-
-    /// Forces of supports and joints on the beams in the state `state`.
-    ///
-    /// # Errors
-    /// [`Singular`] where a coordinate has no mass.
-    pub fn reactions(&mut self, state: &State) -> Result<Vec<Reaction>, Singular> {
-        let held = self.held_forces(state)?;
-        Ok(self.system.reactions(state.time, &state.q, &held, &self.multipliers))
-    }
-
-    /// Forces of the supports on the held coordinates, zero for all others: M q̈ + f in the state `state`, in fixed axes.
-    fn held_forces(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
-        let n = self.coordinates();
-        let unknowns = self.unknowns_of(state).into_owned();
-        let mut acceleration = vec![0.0; n];
-        self.acceleration(&unknowns, &mut acceleration)?;
-        let (mut q, mut v) = (unknowns.q, unknowns.v);
-        self.system.supports().carry(state.time, [&mut q, &mut v, &mut acceleration]);
-        let mut force = vec![0.0; n];
-        self.system.force(state.time, &q, &mut force);
-        self.system.add_damping(&q, &v, &mut force);
-        self.mass.multiply_add(1.0, &acceleration, &mut force);
-        self.system.add_constraint_forces(state.time, &q, &self.multipliers, &mut force);
-        self.system.supports().keep_held(state.time, &mut force);
-        Ok(force)
-    }
-
-    /// Power \[W\] that moving supports put in.
-    ///
-    /// # Errors
-    /// [`Singular`] where a coordinate has no mass.
-    pub fn support_power(&mut self, state: &State) -> Result<f64, Singular> {
-        if !self.moves {
-            return Ok(0.0);
-        }
-        let reactions = self.held_forces(state)?;
-        let mut velocity = vec![0.0; state.q.len()];
-        self.system.supports().prescribed_velocity(state.time, &state.q, &mut velocity);
-        Ok(reactions.iter().zip(&velocity).map(|(r, v)| r * v).sum())
     }
 
     /// Root mean square over the nodes of the change of their positions, in beam lengths.
