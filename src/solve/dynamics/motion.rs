@@ -80,6 +80,7 @@ pub struct Motion<'a> {
     /// Whether the border follows the state.
     follows: bool,
     workspace: Workspace,
+    /// The force that comes with a tangent, where none is asked for.
     force: Vec<f64>,
     scratch: Vec<f64>,
     /// What forces of several states at once put down in between.
