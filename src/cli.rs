@@ -63,7 +63,7 @@ struct RunArguments {
     /// Directory of the results [default: out/<stem of the scene file>]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Start a motion from the state that another run has saved (`state.json` in its directory)
+    /// Start a motion from the state that a motion or a static run has saved (`state.json` in its directory); it lasts for `duration` from there on
     #[arg(long, value_name = "STATE")]
     from: Option<PathBuf>,
     /// Save the state of a motion every so often by the clock, such as "10 min", into `state.json` of the directory, from which `--from` goes on should
@@ -227,7 +227,7 @@ fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
 /// Writes to standard output. A reader that closes the pipe early, as `head` does, is no failure.
 fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
+    match writeln!(out, "{}", terminal::visible(text.trim_end())).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::Print(error)),
         _ => Ok(()),
     }

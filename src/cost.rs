@@ -145,7 +145,12 @@ impl Study {
             ));
         }
         if self.best.is_none() && uncertainty < target {
-            warnings.push(format!("no setting that was tried meets the target {target:e}"));
+            warnings.push(format!("no setting that was tried meets the target {target:e} without a warning"));
+        }
+        warnings.extend(self.reference.warnings.iter().map(|warning| format!("the reference: {warning}")));
+        for Rung { family, cells, setting, measured } in &self.rungs {
+            let name = format!("{family}, {cells} cells, {}", setting.solver);
+            warnings.extend(measured.warnings.iter().map(|warning| format!("{name}: {warning}")));
         }
         warnings
     }
@@ -182,7 +187,10 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
     let task = Task { model, analysis, target, least, deadline: budget };
     let Climbed { rungs, left_out, interrupted } = ladder::climb(&task, &mut bench);
     let points = rung::points(&rungs, least);
-    let best = match rung::cheapest(&rung::points(&rungs, 0.0), target - uncertainty) {
+    let sound = rung::points(&rungs, 0.0).into_iter().zip(&rungs).map(|([seconds, error], rung)| {
+        [seconds, if rung.measured.warnings.is_empty() { error } else { f64::INFINITY }]
+    });
+    let best = match rung::cheapest(&sound.collect::<Vec<_>>(), target - uncertainty) {
         None => None,
         Some(rung) => {
             let lines = rungs[rung].setting.toml(model);

@@ -20,7 +20,7 @@
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | [`model`] |
 //! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part of a model that it is | [`basis`], [`linear`] |
 //! | [`system`] | coordinates, supports, joints, assembly of parts, sums over effects, inventory | the above |
-//! | [`linear`] | block-banded LDLᵀ, real and complex; banded LU, also with constraint rows; bordered sparse LU | – |
+//! | [`linear`] | block-banded LDLᵀ, real and complex; banded LU, also with constraint rows; bordered sparse LU; inertia | – |
 //! | [`solve`] | Newton, path following, buckling, vibrations, motion | [`system`], [`linear`] |
 //! | [`run`](mod@run), [`trajectory`] | one model, one analysis; what it leaves | [`solve`] |
 //! | [`restart`] | a saved state, from which a motion goes on | [`solve`] |
@@ -40,6 +40,7 @@
 //! | T | ½∫ ρA ṙ·ṙ ds | J |
 //! | M on the section at s | δW = M δθ, θ = atan2(y', x') | N m |
 //! | q | nodal coordinates \[x, y, x', y'\] | m, – |
+//! | N, Q, M | what a section passes on, by the balance of one side of the cut ([`system::Balanced`]) | N, N, N m |
 //! | λ | load factor: loads and prescribed displacements grow with it from 0 to 1 | – |
 //!
 //! No shear; rotary inertia where it is named. ε₀ and κ₀ are those of the stress-free shape as the discretisation sees it, so that a
@@ -61,12 +62,12 @@
 //! | `move` of a `[[support]]`, `in_time` of a load | [`model::Law`] | ramps, steps, sines, polynomials, tables, spin-up |
 //! | `[[effect.damping]]` | [`effect::BeamDamping`] | −α ρA ṙ; EA (ε + η ε̇), EI (κ + η κ̇) |
 //! | `[[effect.spring]]`, `[[effect.torsion_spring]]` | [`effect::Spring`], [`effect::TorsionSpring`] | ½ k (ℓ − ℓ₀)², ½ k (θ − θ₀)², dashpots beside them |
-//! | `[[effect.point_mass]]`, `[[effect.rotary_inertia]]` | [`effect::PointMass`], [`effect::SectionInertia`] | ½ m ṙ·ṙ + ½ J ṙ'·ṙ' |
+//! | `[[effect.point_mass]]`, `[[effect.rotary_inertia]]` | [`effect::PointMass`], [`effect::SectionInertia`] | ½ m ṙ·ṙ + ½ J θ̇² |
 //! | `[[effect.foundation]]` | [`effect::Foundation`] | ½ ∫ k u² ds |
 //! | `[[effect.actuation]]` | [`effect::Actuation`] | ½ EA (ε − ε₀)², ½ EI (κ − κ₀)² |
 //! | `[[effect.drag]]`, `[[effect.buoyancy]]` | [`effect::Drag`], [`effect::Buoyancy`] | −(c + C \|u\|) u along and across; −m g |
 //! | `[[effect.moving_force]]` | [`effect::MovingForce`] | −N(s₀ + v t) F |
-//! | `[[effect.contact]]` | [`effect::Contact`] | ½ ∫ k ⟨−g⟩² ds with circles, half-planes, boxes; friction |
+//! | `[[effect.contact]]` | [`effect::Contact`] | ½ ∫ k ⟨−g⟩² ds with circles, half-planes, boxes; friction ½ ∫ k_t e² ds, k_t \|e\| ≤ μ p |
 //!
 //! A beam without a bending stiffness is a string: nothing is computed of its curvature. One without an axial stiffness keeps its length
 //! ([`system::inextensible`]): ∫ N ½ (r'·r' − |r'₀|²) ds with the axial force N as an unknown.

@@ -4,6 +4,7 @@
 //! a program that uses the library can fill one directly.
 
 mod analysis;
+pub mod freedom;
 mod joint;
 mod law;
 mod velocity;
@@ -45,6 +46,29 @@ impl Model {
     /// Whether a beam names no axial stiffness, and so keeps its length.
     pub fn is_inextensible(&self) -> bool {
         self.beams.iter().any(|beam| beam.section.axial_stiffness.is_none())
+    }
+
+    /// Where along a beam there must be a node, over which no shape function reaches \[m\]: at joints, and where something takes or gives a couple, for there
+    /// the curvature jumps. A force only bends its course; nine nodes that do not meet it err by 3e-6 of the length.
+    pub fn breaks(&self, beam: usize) -> Vec<f64> {
+        let supports = self.supports.iter().filter(|support| support.fix.rotation != FixedRotation::Free);
+        let supports = supports.map(|support| support.at);
+        let joints = self.joints.iter().flat_map(Joint::places);
+        let loads = self.loads.iter().filter_map(Load::couple);
+        let parts = self.parts.iter().filter_map(|part| part.couple());
+        let places = supports.chain(joints).chain(loads).chain(parts);
+        places.filter(|at| at.beam == beam).map(|at| at.s).collect()
+    }
+}
+
+impl Load {
+    /// Where it gives a couple.
+    fn couple(&self) -> Option<Place> {
+        match self {
+            Self::Moment { at, .. } => Some(*at),
+            Self::InTime { load, .. } => load.couple(),
+            Self::Force { .. } | Self::DistributedForce { .. } | Self::Gravity { .. } => None,
+        }
     }
 }
 
@@ -114,9 +138,9 @@ pub struct Section {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StrainMeasure {
     /// ε = ½ (r'·r' − 1), the paper's.
-    #[default]
     Green,
     /// ε = |r'| − 1.
+    #[default]
     Engineering,
 }
 

@@ -1,27 +1,60 @@
-//! A state saved by one run, from which another may start.
+//! A state saved by one run, from which a motion may start.
 //!
-//! A run of the same scene goes on bit for bit as if it had not been interrupted: the file holds what the integrator carries from
-//! step to step, in decimal digits that give back the same numbers. Another scene may start from it too, with other loads,
-//! supports or another integrator, as long as its beams have the same names and nodes; what does not fit the new integrator is
-//! left out.
+//! A motion of the same model by the same integrator goes on bit for bit as if it had not been interrupted: the file holds what the integrator
+//! carries from step to step, in decimal digits that give back the same numbers. Where the end of a run, or an event, cut a step short, that is kept as it was
+//! before this step, which is taken once more as a whole; what the run has reported already is not reported again.
+//!
+//! Another scene may start from the state too, with other loads, supports or another integrator, and a motion may start at rest in the equilibrium that a
+//! static run found. Its beams must be the same: in name, centreline, discretisation, nodes, stiffness and, where both have one, mass.
+//!
+//! A checksum tells whether the file is as it was written.
 
-use crate::solve::dynamics::Checkpoint;
+use crate::model::{Beam, Integrator, Model};
+use crate::solve::dynamics::{Checkpoint, State};
 use crate::system::System;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 /// Version of the format.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
-/// A state of motion with the beams to which it belongs.
+/// A state with the beams to which it belongs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SavedState {
     /// Version of the format.
     format: u32,
-    /// Per beam its name and the arc lengths of its nodes \[m\].
-    beams: Vec<(String, Vec<f64>)>,
-    /// The state.
+    /// SHA-256 of what follows, as compact JSON.
+    sha256: String,
+    /// What is saved.
+    saved: Saved,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Saved {
+    beams: Vec<SavedBeam>,
+    /// SHA-256 of all that decides on the motion; empty where there was none.
+    motion: String,
+    /// Beam and arc length of each angle of the states.
+    directions: Vec<(usize, f64)>,
+    /// The state, and what the integrator carries.
     checkpoint: Checkpoint,
+}
+
+/// What must be the same where a state is taken up.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedBeam {
+    name: String,
+    centreline: String,
+    discretization: String,
+    /// EA \[N\] and EI \[N m²\].
+    stiffness: [Option<f64>; 2],
+    /// ρA \[kg/m\].
+    mass: Option<f64>,
+    /// Arc lengths \[m\].
+    nodes: Vec<f64>,
 }
 
 /// Why a saved state cannot be used.
@@ -48,16 +81,29 @@ pub enum RestartError {
         cause: serde_json::Error,
     },
     /// The format is another.
-    #[error("the saved state has format {found}, and this version reads format {FORMAT}")]
-    #[diagnostic(help("run the scene that made it again"))]
+    #[error(
+        "the saved state has format {found}, and this version reads format {FORMAT}, which has a checksum"
+    )]
+    #[diagnostic(help(
+        "run the scene that made it again with this version, to the same time: its directory then has a new `state.json`"
+    ))]
     Format {
         /// What was found.
         found: u32,
     },
+    /// The file is not as it was written.
+    #[error("{path} is not as it was written: its checksum is that of another content")]
+    #[diagnostic(help(
+        "a saved state cannot be edited: run the scene that made it again, or start from another copy of the file"
+    ))]
+    Altered {
+        /// The file.
+        path: PathBuf,
+    },
     /// The beams are others.
     #[error("the saved state does not fit this scene: {what}")]
     #[diagnostic(help(
-        "the beams must have the same names, lengths, discretisations and nodes in both scenes"
+        "the beams must have the same names, centrelines, discretisations, nodes and sections in both scenes; supports, loads, joints and the integrator may differ"
     ))]
     Mismatch {
         /// What differs.
@@ -70,79 +116,150 @@ pub enum RestartError {
         /// The analysis.
         analysis: &'static str,
     },
-    /// There is nothing left to do.
-    #[error("the saved state is at t = {time} s, and the motion ends at {duration} s")]
-    #[diagnostic(help("give a longer `duration`: it counts from time zero, not from the saved state"))]
-    Over {
-        /// Its time \[s\].
-        time: f64,
-        /// Where the motion is to end \[s\].
-        duration: f64,
-    },
 }
 
-fn layout(system: &System) -> Vec<(String, Vec<f64>)> {
-    system.beams().iter().map(|part| (part.name.clone(), part.basis.nodes().to_vec())).collect()
+fn layout(model: &Model, system: &System) -> Vec<SavedBeam> {
+    let beams = model.beams.iter().zip(system.beams());
+    let saved = beams.map(|(beam, part)| {
+        let Beam { name, centreline, section, discretization, .. } = beam;
+        SavedBeam {
+            name: name.clone(),
+            centreline: format!("{centreline:?}"),
+            discretization: format!("{discretization:?}"),
+            stiffness: [section.axial_stiffness, section.bending_stiffness],
+            mass: section.mass_per_length,
+            nodes: part.basis.nodes().to_vec(),
+        }
+    });
+    saved.collect()
+}
+
+fn directions(model: &Model) -> Vec<(usize, f64)> {
+    model.probes.iter().map(|probe| (probe.at.beam, probe.at.s)).collect()
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// A checksum of all of a model that decides on how a motion goes on, and of the integrator.
+pub(crate) fn fingerprint(model: &Model, integrator: Integrator) -> String {
+    let Model { beams, supports, joints, loads, parts, .. } = model;
+    sha256(format!("{beams:?} {supports:?} {joints:?} {loads:?} {parts:?} {integrator:?}").as_bytes())
+}
+
+impl Saved {
+    fn sha256(&self) -> String {
+        // A number that is none has no JSON, and no file.
+        sha256(&serde_json::to_vec(self).unwrap_or_default())
+    }
 }
 
 impl SavedState {
-    pub(crate) fn new(system: &System, checkpoint: Checkpoint) -> Self {
-        Self { format: FORMAT, beams: layout(system), checkpoint }
+    /// `motion` is the [`fingerprint`] of the motion, empty where there was none.
+    pub(crate) fn new(model: &Model, system: &System, motion: String, checkpoint: Checkpoint) -> Self {
+        let saved = Saved { beams: layout(model, system), motion, directions: directions(model), checkpoint };
+        Self { format: FORMAT, sha256: saved.sha256(), saved }
     }
 
     /// Its time \[s\].
     pub fn time(&self) -> f64 {
-        self.checkpoint.state.time
+        self.saved.checkpoint.reached().time
+    }
+
+    /// Whether it is an equilibrium that a static run found.
+    pub(crate) fn is_equilibrium(&self) -> bool {
+        self.saved.motion.is_empty()
     }
 
     /// Reads a file.
     ///
     /// # Errors
-    /// [`RestartError`] where there is no such file or it is something else.
+    /// [`RestartError`] where there is no such file, or it is something else or has been altered.
     pub fn load(path: &Path) -> Result<Self, RestartError> {
+        #[derive(Deserialize)]
+        struct Version {
+            format: u32,
+        }
         let text = std::fs::read_to_string(path)
             .map_err(|cause| RestartError::Read { path: path.to_path_buf(), cause })?;
-        let saved: Self = serde_json::from_str(&text)
-            .map_err(|cause| RestartError::Parse { path: path.to_path_buf(), cause })?;
-        if saved.format != FORMAT {
-            return Err(RestartError::Format { found: saved.format });
+        let no_state = |cause| RestartError::Parse { path: path.to_path_buf(), cause };
+        let Version { format } = serde_json::from_str(&text).map_err(no_state)?;
+        if format != FORMAT {
+            return Err(RestartError::Format { found: format });
         }
-        Ok(saved)
+        let state: Self = serde_json::from_str(&text).map_err(no_state)?;
+        if state.sha256 != state.saved.sha256() {
+            return Err(RestartError::Altered { path: path.to_path_buf() });
+        }
+        Ok(state)
     }
 
-    /// The state, if it belongs to the beams of `system`.
+    /// What is saved, if it belongs to the beams of `model`, and whether the motion of this `fingerprint` goes on: any other starts from
+    /// the state alone.
     ///
     /// # Errors
     /// [`RestartError::Mismatch`] naming the first difference.
-    pub(crate) fn checkpoint(&self, system: &System) -> Result<Checkpoint, RestartError> {
+    pub(crate) fn take_up(
+        &self,
+        model: &Model,
+        system: &System,
+        fingerprint: &str,
+    ) -> Result<(Checkpoint, bool), RestartError> {
         let mismatch = |what: String| Err(RestartError::Mismatch { what });
-        let (here, there) = (layout(system), &self.beams);
+        let (here, there) = (layout(model, system), &self.saved.beams);
         if here.len() != there.len() {
             return mismatch(format!("it has {} beams, the scene {}", there.len(), here.len()));
         }
-        for ((name, nodes), (saved_name, saved_nodes)) in here.iter().zip(there) {
-            if name != saved_name {
-                return mismatch(format!("its beam `{saved_name}` is called `{name}` in the scene"));
+        for (here, there) in here.iter().zip(there) {
+            let name = &here.name;
+            let masses = here.mass.zip(there.mass);
+            if *name != there.name {
+                return mismatch(format!("its beam `{}` is called `{name}` in the scene", there.name));
             }
-            if nodes != saved_nodes {
-                let (n, m) = (nodes.len(), saved_nodes.len());
+            if here.nodes != there.nodes {
+                let (n, m) = (here.nodes.len(), there.nodes.len());
                 return mismatch(format!(
                     "beam `{name}` had {m} nodes when it was saved and has {n} now, or they lie elsewhere"
                 ));
             }
+            if here.centreline != there.centreline {
+                return mismatch(format!("beam `{name}` had another centreline when it was saved"));
+            }
+            if here.discretization != there.discretization {
+                return mismatch(format!("beam `{name}` had another discretisation when it was saved"));
+            }
+            if here.stiffness != there.stiffness || masses.is_some_and(|(here, there)| here != there) {
+                return mismatch(format!("beam `{name}` had another section when it was saved"));
+            }
         }
-        let state = &self.checkpoint.state;
-        let finite = state.q.iter().chain(&state.v).chain([&state.time, &state.work]).all(|v| v.is_finite());
-        if state.q.len() != system.coordinates() || state.v.len() != system.coordinates() || !finite {
+        let mut checkpoint = self.saved.checkpoint.clone();
+        // Angles at the probes of this scene; one where none was before is counted from now on.
+        let there = &self.saved.directions;
+        for state in [&mut checkpoint.state].into_iter().chain(&mut checkpoint.cut) {
+            let known = |place| state.angles.get(there.iter().position(|there| *there == place)?).copied();
+            state.angles =
+                directions(model).into_iter().map(|place| known(place).unwrap_or(f64::NAN)).collect();
+        }
+        let fits = |state: &State| {
+            let numbers = state.q.iter().chain(&state.v).chain([&state.time, &state.work, &state.lost]);
+            [&state.q, &state.v].iter().all(|v| v.len() == system.coordinates())
+                && numbers.copied().all(f64::is_finite)
+        };
+        let state = checkpoint.reached();
+        if !fits(state) || !fits(&checkpoint.state) {
             return mismatch("its coordinates or velocities are incomplete".into());
         }
-        let Checkpoint { method, memory, step, last_ratio, origin: (origin, _), .. } = &self.checkpoint;
+        if self.saved.motion != fingerprint {
+            return Ok((Checkpoint { state: state.clone(), ..Checkpoint::default() }, false));
+        }
+        let Checkpoint { method, memory, step, last_ratio, origin: (origin, _), .. } = &checkpoint;
         let positive = |v: f64| v.is_finite() && v > 0.0;
         let sound = positive(*step) && positive(*last_ratio) && origin.is_finite();
         // Where no method is named none has left anything.
         if !(method.is_empty() || sound && memory.iter().flatten().all(|v| v.is_finite())) {
             return mismatch("what its integrator carries from step to step is no sound number".into());
         }
-        Ok(self.checkpoint.clone())
+        Ok((checkpoint, true))
     }
 }

@@ -2,19 +2,23 @@
 
 mod angle;
 mod error;
+mod locking;
 mod look;
+mod memory;
 mod modes;
+mod winding;
 
 pub use error::RunError;
 
-use crate::model::{Analysis, Dynamic, Model};
-use crate::restart::{RestartError, SavedState};
-use crate::solve::dynamics::start;
+use crate::model::{Analysis, Displacement, Dynamic, Model};
+use crate::restart::{self, RestartError, SavedState};
+use crate::solve::dynamics::{Checkpoint, start};
 use crate::solve::statics::{self, Target};
 use crate::solve::{buckling, dynamics};
 use crate::system::{Inventory, Needs, System};
 use crate::trajectory::{Statistics, Trajectory};
 use look::Look;
+use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 /// How far a computation is.
@@ -52,6 +56,7 @@ fn needs(analysis: &Analysis) -> Needs {
 /// # Errors
 /// [`RunError`] where the model contradicts itself.
 pub fn inspect(model: &Model, analysis: &Analysis) -> Result<Inventory, RunError> {
+    memory::check(model, analysis)?;
     Ok(System::build(model, needs(analysis))?.inventory())
 }
 
@@ -60,6 +65,7 @@ pub fn inspect(model: &Model, analysis: &Analysis) -> Result<Inventory, RunError
 /// # Errors
 /// As [`inspect`].
 pub fn measure(model: &Model, analysis: &Analysis) -> Result<Inventory, RunError> {
+    memory::check(model, analysis)?;
     Ok(System::build(model, needs(analysis))?.measured_inventory())
 }
 
@@ -71,7 +77,8 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
     run_from(model, analysis, None, observer)
 }
 
-/// The same, a motion starting from a saved state if one is given.
+/// The same, a motion starting from a saved state if one is given: it lasts for its duration from the time of that state on. Supports that follow no law
+/// of time hold a beam where the state has it.
 ///
 /// # Errors
 /// As [`run`], and where the saved state does not fit.
@@ -114,7 +121,14 @@ pub fn run_keeping(
         return Err(RestartError::Analysis { analysis }.into());
     }
     let start = Instant::now();
-    let system = System::build(model, needs(analysis))?;
+    let model = if saved.is_some() { left_where_it_is(model) } else { Cow::Borrowed(model) };
+    let model = &*model;
+    memory::check(model, analysis)?;
+    let mut system = System::build(model, needs(analysis))?;
+    let beginning = match analysis {
+        Analysis::Dynamic(settings) => Some(beginning(model, settings, &mut system, saved)?),
+        _ => None,
+    };
     let look = Look::new(model, &system)?;
     let build = start.elapsed().as_secs_f64();
     let start = Instant::now();
@@ -140,9 +154,14 @@ pub fn run_keeping(
             };
             let solution = statics::solve(&system, settings, target.as_ref(), report);
             solved = Some(start.elapsed());
-            match &solution.stuck {
-                None => Ok(look.statics(&solution)),
-                Some(stuck) => Err(look.stuck(stuck, &solution)),
+            match (&solution.stuck, &settings.arc_length) {
+                (Some(stuck), _) => Err(look.stuck(stuck, &solution)),
+                (None, Some(arc)) if solution.out_of_points => Err(look.out_of_points(arc, &solution)),
+                (None, _) => {
+                    let mut trajectory = look.statics(&solution);
+                    trajectory.saved = look.equilibrium(&solution, &trajectory);
+                    Ok(trajectory)
+                }
             }
         }
         Analysis::Buckling { count } => Ok(look.buckling(&buckling::solve(&system, *count)?)),
@@ -150,17 +169,21 @@ pub fn run_keeping(
         Analysis::Dynamic(settings) => {
             settings.integrator.suits(model)?;
             let watches = look.watches(settings)?;
+            let Beginning { start: begin, end, motion, told } = beginning.unwrap_or_default();
+            let directions = look.directions();
             let take = |checkpoint| {
                 if let Some(keep) = keep {
-                    (keep.take)(&SavedState::new(&system, checkpoint));
+                    (keep.take)(&SavedState::new(model, &system, motion.clone(), checkpoint));
                 }
             };
             let task = dynamics::Task {
-                duration: settings.duration,
+                duration: end,
                 output_every: settings.output_every,
                 integrator: settings.integrator,
-                start: beginning(model, settings, &system, saved)?,
+                start: begin,
                 watches: &watches,
+                reactions: model.outputs.reactions,
+                directions: &directions,
                 keep: keep.map(|keep| dynamics::Keep { every: keep.every, take: &take }),
             };
             let report = &mut |time: f64, step: f64, statistics: &Statistics| {
@@ -168,12 +191,23 @@ pub fn run_keeping(
                 observer(&Progress { parameter: time, target: task.duration, step, newton_iterations })
                     == Control::Continue
             };
-            let solution = dynamics::solve(&system, &task, report);
+            let mut solution = dynamics::solve(&system, &task, report);
             solved = Some(start.elapsed());
-            match &solution.stuck {
+            let saved = solution.checkpoint.take();
+            let saved = saved.map(|checkpoint| SavedState::new(model, &system, motion.clone(), checkpoint));
+            let mut outcome = match solution.stuck.clone() {
                 None => Ok(look.dynamics(settings, solution)),
-                Some(stuck) => Err(look.lost(settings, &stuck.clone(), solution)),
+                Some(stuck) => Err(look.lost(settings, &stuck, solution)),
+            };
+            let left = match &mut outcome {
+                Ok(trajectory) => Some(trajectory),
+                Err(error) => error.partial(),
+            };
+            if let Some(trajectory) = left {
+                trajectory.saved = saved;
+                trajectory.settings.extend(told.map(|told| ("continued".into(), told)));
             }
+            outcome
         }
     };
     let left = match &mut outcome {
@@ -195,18 +229,62 @@ fn follows_path(analysis: &Analysis) -> bool {
     matches!(analysis, Analysis::Static(settings) if settings.arc_length.is_some())
 }
 
-/// Where a motion begins.
+/// Where a motion begins, and when it ends.
+#[derive(Default)]
+struct Beginning {
+    start: Checkpoint,
+    /// \[s\]
+    end: f64,
+    /// The motion's fingerprint.
+    motion: String,
+    /// What the reader should know of it.
+    told: Option<String>,
+}
+
+/// Where a motion begins. Of a motion that is taken up, supports that follow no law hold the beams where the state has them.
 fn beginning(
     model: &Model,
     settings: &Dynamic,
-    system: &System,
+    system: &mut System,
     saved: Option<&SavedState>,
-) -> Result<dynamics::Checkpoint, RunError> {
-    match saved {
-        None => Ok(start::from_rest(system, &model.initial_velocities)?),
-        Some(saved) if saved.time() >= settings.duration => {
-            Err(RestartError::Over { time: saved.time(), duration: settings.duration }.into())
-        }
-        Some(saved) => Ok(saved.checkpoint(system)?),
+) -> Result<Beginning, RunError> {
+    let motion = restart::fingerprint(model, settings.integrator);
+    let Some(saved) = saved else {
+        let start = start::from_rest(system, &model.initial_velocities)?;
+        let end = settings.duration;
+        start::check_jumps(system, 0.0, end)?;
+        return Ok(Beginning { start, end, motion, told: None });
+    };
+    let (start, same) = saved.take_up(model, system, &motion)?;
+    system.hold_as_in(&start.state.q);
+    let (begin, end) = (saved.time(), later(saved.time(), settings.duration));
+    start::check_jumps(system, begin, end)?;
+    let start = match same {
+        true => start,
+        // Velocities of the scene start a motion; one that is under way has its own.
+        false if saved.is_equilibrium() => start::from_state(system, start.state, &model.initial_velocities)?,
+        false => start::from_state(system, start.state, &[])?,
+    };
+    let how = match same {
+        true => "as if it had not stopped",
+        false if saved.is_equilibrium() => "from a static equilibrium",
+        false => "from its positions and velocities alone, for the model or the integrator is another",
+    };
+    let told = format!("for {} s from t = {begin} s to {end} s, {how}", settings.duration);
+    Ok(Beginning { start, end, motion, told: Some(told) })
+}
+
+/// The sum of two times as decimals have it, so that a motion in parts ends when it does as a whole.
+fn later(time: f64, duration: f64) -> f64 {
+    let sum = time + duration;
+    if time == 0.0 { sum } else { format!("{sum:.14e}").parse().unwrap_or(sum) }
+}
+
+/// The model with supports that hold still unless they follow a law.
+fn left_where_it_is(model: &Model) -> Cow<'_, Model> {
+    let mut model = model.clone();
+    for support in model.supports.iter_mut().filter(|support| support.law.is_none()) {
+        support.displacement = Displacement::default();
     }
+    Cow::Owned(model)
 }

@@ -38,7 +38,7 @@ use std::time::Instant;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-pub use axis::{Axis, MAX_VALUES};
+pub use axis::{Axis, Lines, MAX_VALUES};
 pub use error::SweepError;
 pub use grid::{Grid, MAX_RUNS};
 pub use journal::Outcome;
@@ -90,10 +90,13 @@ impl Sweep {
         let scene = Scene::load(scene, set)?;
         let manifest = Manifest::new(&scene, set, &grid);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-        let illegal = |run: usize| scene.with(&grid.overrides(run)).err();
+        let illegal = |run: usize| Some((run, scene.with(&grid.overrides(run)).err()?));
         let first = pool.install(|| (1..=grid.runs()).into_par_iter().find_map_first(illegal));
         match first {
-            Some(error) => Err(error.into()),
+            Some((run, source)) => match grid.lines(run).as_slice() {
+                [] => Err(source.into()),
+                lines => Err(SweepError::Row { lines: lines.join(", "), source }),
+            },
             None => Ok(Self { scene, grid, manifest, pool }),
         }
     }

@@ -1,6 +1,7 @@
 //! What a computation leaves: states at the recorded times or load factors, seen through probes,
 //! energies and shapes. Output and verification read nothing else.
 
+use crate::effect::Slips;
 use crate::restart::SavedState;
 use crate::system::Reaction;
 use serde::Serialize;
@@ -126,9 +127,9 @@ pub struct EffectSeries {
 /// Energies \[J\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Energy {
-    /// ½∫ EA ε² ds.
+    /// ½∫ EA (ε − ε₀)² ds, ε₀ that of an actuation.
     pub stretch: f64,
-    /// ½∫ EI κ² ds.
+    /// ½∫ EI (κ − κ₀)² ds.
     pub bend: f64,
     /// Of springs, foundations and contacts.
     pub stored: f64,
@@ -136,13 +137,21 @@ pub struct Energy {
     pub kinetic: f64,
     /// −∫ ρA g·(r − r₀) ds, zero in the stress-free shape, and that of conservative loads.
     pub potential: f64,
-    /// Work that loads without a potential (moments, follower forces) have done since the start of a motion.
+    /// Work that loads without a potential (moments, follower forces), moving supports and actuators that follow a law have done since the start of a motion;
+    /// in statics that of actuators, by the trapezoidal rule over the records.
     pub work: f64,
     /// Energy that damping has taken since the start of a motion.
     pub lost: f64,
 }
 
 impl Energy {
+    /// With what the springs of friction hold.
+    #[must_use]
+    pub fn with(mut self, slips: &Slips) -> Self {
+        self.stored += slips.energy;
+        self
+    }
+
     /// Sum of all parts, less the work put in and with what was lost: constant.
     pub fn total(&self) -> f64 {
         self.stretch + self.bend + self.stored + self.kinetic + self.potential - self.work + self.lost
@@ -205,7 +214,7 @@ pub struct Frame {
     pub beams: Vec<Vec<[f64; 2]>>,
 }
 
-/// One beam sampled at 201 arc lengths or more.
+/// One beam sampled at 201 arc lengths or more. Of the last state a place where a force or a couple acts in a point is there twice: before and behind it.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Shape {
     /// Name of the beam.
@@ -222,9 +231,11 @@ pub struct Shape {
     pub strain: Vec<f64>,
     /// κ \[1/m\].
     pub curvature: Vec<f64>,
-    /// N \[N\]; of the last state alone, as is M.
+    /// N \[N\], positive in tension; of the last state alone, as are Q and M. All three balance what acts on the beam before the cut.
     pub axial_force: Vec<f64>,
-    /// M \[N m\].
+    /// Q \[N\], along the normal J r' on the side of the cut that looks to the beam's end.
+    pub shear_force: Vec<f64>,
+    /// M \[N m\], of the sign of EI κ.
     pub bending_moment: Vec<f64>,
     /// Positions of the nodes \[m\].
     pub nodes: Vec<[f64; 2]>,

@@ -33,9 +33,9 @@ pub use error::BasisError;
 pub use quadrature::Quadrature;
 pub use table::{BasisTable, Cell};
 
-use crate::model::Discretization;
+use crate::model::{Discretization, Nodes};
 
-use cells::{distinct_cells, support};
+use cells::{Supports, distinct_cells};
 use rpim::{Interpolation, Precisions, Quality, Shape, Wanted};
 
 /// Distance at which a point is taken to be a node, in units of the round-off of the beam's length.
@@ -49,6 +49,7 @@ const MOST_SUPPORT: usize = 64;
 pub struct Basis {
     length: f64,
     nodes: Vec<f64>,
+    supports: Supports,
     width: usize,
     /// Per cell: the number of its geometry.
     shape_of: Vec<u32>,
@@ -63,7 +64,6 @@ enum Shapes {
     Ancf,
     Rpim {
         interpolation: Interpolation,
-        neighbours: usize,
         /// Per geometry.
         shapes: Vec<Shape>,
     },
@@ -92,14 +92,26 @@ impl Basis {
     /// # Errors
     /// Unusable nodes or kernel parameters, and cells whose shape functions cannot be found to 13 digits.
     pub fn new(discretization: &Discretization, length: f64) -> Result<Self, BasisError> {
+        Self::broken(discretization, length, &[])
+    }
+
+    /// The same for a beam whose curvature or its slope jumps at the arc lengths `breaks` \[m\]: there is a node at each of them, and no shape function reaches
+    /// over it. Counted nodes keep their number: the nearest is shifted there, and those between breaks are spread as they were. Given nodes stay and are
+    /// joined by another.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn broken(discretization: &Discretization, length: f64, breaks: &[f64]) -> Result<Self, BasisError> {
+        let (Discretization::Ancf { nodes } | Discretization::Rpim { nodes, .. }) = discretization;
+        let places = nodes::arc_lengths(nodes, length)?;
+        let (nodes, breaks) = nodes::meet(places, matches!(nodes, Nodes::Given(_)), breaks);
         match discretization {
-            Discretization::Ancf { nodes } => {
-                let nodes = nodes::arc_lengths(nodes, length)?;
-                let (shape_of, representative) = distinct_cells(&nodes, 0);
-                Ok(Self { length, nodes, width: 4, shape_of, representative, shapes: Shapes::Ancf })
+            Discretization::Ancf { .. } => {
+                let supports = Supports::new(0, nodes.len(), &breaks);
+                let (shape_of, representative) = distinct_cells(&nodes, &supports);
+                Ok(Self { length, nodes, supports, width: 4, shape_of, representative, shapes: Shapes::Ancf })
             }
-            Discretization::Rpim { nodes, kernel, polynomial_terms, side_condition, neighbours } => {
-                let nodes = nodes::arc_lengths(nodes, length)?;
+            Discretization::Rpim { kernel, polynomial_terms, side_condition, neighbours, .. } => {
                 let interpolation = Interpolation {
                     kernel: *kernel,
                     terms: *polynomial_terms,
@@ -107,18 +119,19 @@ impl Basis {
                     length,
                     spacings: nodes.len() - 1,
                 };
-                Self::rpim(nodes, interpolation, *neighbours)
+                let supports = Supports::new(*neighbours, nodes.len(), &breaks);
+                Self::rpim(nodes, interpolation, supports)
             }
         }
     }
 
-    fn rpim(nodes: Vec<f64>, interpolation: Interpolation, neighbours: usize) -> Result<Self, BasisError> {
+    fn rpim(nodes: Vec<f64>, interpolation: Interpolation, supports: Supports) -> Result<Self, BasisError> {
         let Interpolation { length, spacings, terms, ref kernel, .. } = interpolation;
-        let widest = support(spacings / 2, neighbours.min(spacings), nodes.len()).len();
+        let widest = supports.widest();
         if widest > MOST_SUPPORT {
             return Err(BasisError::SupportTooWide { nodes: widest, limit: MOST_SUPPORT });
         }
-        let smallest = support(0, neighbours, nodes.len()).len();
+        let smallest = (0..spacings).map(|cell| supports.of(cell).len()).min().unwrap_or(2);
         if !(1..=2 * smallest).contains(&terms) {
             return Err(BasisError::PolynomialTerms { found: terms, limit: 2 * smallest });
         }
@@ -126,20 +139,19 @@ impl Basis {
             nodes.windows(2).map(|p| p[1] - p[0]).fold(0.0, f64::max) / length * spacings as f64;
         kernel::check(kernel, widest_cell)?;
 
-        let (shape_of, representative) = distinct_cells(&nodes, neighbours);
+        let (shape_of, representative) = distinct_cells(&nodes, &supports);
         let mut precisions = Precisions::default();
         let mut shapes = Vec::with_capacity(representative.len());
         for &cell in &representative {
             let cell = cell as usize;
-            let here = support(cell, neighbours, nodes.len());
+            let here = supports.of(cell);
             let place = rpim::place(&nodes, here.clone(), cell);
             let shape = Shape::solve(&interpolation, place, &mut precisions)
                 .map_err(|quality| ill_conditioned(cell, here.start, place.nodes, kernel, quality))?;
             shapes.push(shape);
         }
-        let width = 2 * neighbours.saturating_mul(2).saturating_add(2).min(nodes.len());
-        let shapes = Shapes::Rpim { interpolation, neighbours, shapes };
-        Ok(Self { length, nodes, width, shape_of, representative, shapes })
+        let shapes = Shapes::Rpim { interpolation, shapes };
+        Ok(Self { length, nodes, supports, width: 2 * widest, shape_of, representative, shapes })
     }
 
     /// Length of the beam \[m\].
@@ -150,6 +162,11 @@ impl Basis {
     /// Arc lengths of the nodes \[m\]: increasing, the first 0, the last the beam's length.
     pub fn nodes(&self) -> &[f64] {
         &self.nodes
+    }
+
+    /// Arc lengths of the nodes between the ends over which no shape function reaches \[m\].
+    pub fn breaks(&self) -> impl Iterator<Item = f64> + '_ {
+        self.supports.breaks().map(|node| self.nodes[node])
     }
 
     /// Coefficients that each row multiplies.
@@ -183,6 +200,7 @@ impl Basis {
             width: self.width,
             orders: orders.to_vec(),
             points_per_cell: xi.len(),
+            concentrated: false,
             cells: Vec::with_capacity(self.shape_of.len()),
             weights: Vec::with_capacity(self.representative.len() * xi.len()),
             rows: vec![0.0; self.representative.len() * xi.len() * orders.len() * self.width],
@@ -220,6 +238,7 @@ impl Basis {
             width: self.width,
             orders: orders.to_vec(),
             points_per_cell: 1,
+            concentrated: true,
             cells: Vec::with_capacity(s.len()),
             weights: vec![1.0; s.len()],
             rows: vec![0.0; s.len() * orders.len() * self.width],
@@ -283,13 +302,7 @@ impl Basis {
 
     /// Number of the first coefficient of a cell's rows.
     fn first(&self, cell: usize) -> u32 {
-        match &self.shapes {
-            Shapes::Ancf => 2 * cell as u32,
-            Shapes::Rpim { neighbours, .. } => {
-                let start = support(cell, *neighbours, self.nodes.len()).start;
-                2 * start.min(self.nodes.len() - self.width / 2) as u32
-            }
-        }
+        2 * self.supports.first(cell) as u32
     }
 
     /// Fills the zeroed rows of one point, ξ ∈ [0, 1] of a cell.
@@ -303,13 +316,12 @@ impl Basis {
                     row.copy_from_slice(&values);
                 }
             }
-            Shapes::Rpim { interpolation, neighbours, shapes } => {
+            Shapes::Rpim { interpolation, shapes } => {
                 let Some(shape) = shapes.get(self.shape_of[cell] as usize) else { return };
                 // The geometry was solved at its representative; there it is evaluated too.
                 let solved = self.representative[self.shape_of[cell] as usize] as usize;
-                let here = support(solved, *neighbours, self.nodes.len());
-                let padding =
-                    2 * support(cell, *neighbours, self.nodes.len()).start - self.first(cell) as usize;
+                let here = self.supports.of(solved);
+                let padding = 2 * self.supports.padding(cell);
                 let place = rpim::place(&self.nodes, here, solved);
                 if let Some(rows) = rows.get_mut(padding..) {
                     let wanted = Wanted { xi, orders, stride: self.width };

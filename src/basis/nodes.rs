@@ -2,6 +2,7 @@
 
 use crate::model::Nodes;
 
+use super::NODE_SNAP;
 use super::error::BasisError;
 
 /// Most nodes of one beam. Beyond, tables and unknowns take gigabytes and coefficient numbers outgrow their type.
@@ -64,6 +65,86 @@ pub fn arc_lengths(nodes: &Nodes, length: f64) -> Result<Vec<f64>, BasisError> {
     Ok(s)
 }
 
+/// A place that is nearer to an end or to another one, per length of the beam, is the same.
+const SAME_PLACE: f64 = 1e-9;
+
+/// A given node that is nearer to a break, in units of the spacing around it, is shifted there: a cell that short would serve nothing.
+const NEAR: f64 = 0.1;
+
+/// The nodes `s` with one at each of `breaks` \[m\] that lies between the ends, and the numbers of those.
+///
+/// Counted nodes keep their number: the stretches between breaks get cells so that the longest is as short as it can be, in units of the cells that were there,
+/// and their nodes are spread as they were; only where there are more breaks than nodes are there more nodes in the end. Nodes that are `given` stay where
+/// they are, and are joined by others.
+pub fn meet(mut s: Vec<f64>, given: bool, breaks: &[f64]) -> (Vec<f64>, Vec<usize>) {
+    let length = s[s.len() - 1];
+    let inside = |s: &f64| (SAME_PLACE * length..(1.0 - SAME_PLACE) * length).contains(s);
+    let mut breaks: Vec<f64> = breaks.iter().copied().filter(inside).collect();
+    breaks.sort_unstable_by(f64::total_cmp);
+    breaks.dedup_by(|b, a| *b - *a <= SAME_PLACE * length);
+    if given || breaks.len() + 2 > s.len() {
+        breaks.iter().for_each(|at| join(&mut s, *at, &breaks));
+        let numbers = breaks.iter().map(|at| s.partition_point(|node| node < at)).collect();
+        return (s, numbers);
+    }
+    let numbers = apportion(&s, &breaks);
+    let last = s.len() - 1;
+    let (mut first, mut from, mut old) = (0, 0.0, 0.0);
+    for (&end, &to) in numbers.iter().zip(&breaks).chain([(&last, &length)]) {
+        let old_end = s[end];
+        let stays = |a: f64, b: f64| (a - b).abs() <= NODE_SNAP * length;
+        if !(stays(from, old) && stays(to, old_end)) {
+            let scale = (to - from) / (old_end - old);
+            s[first + 1..end].iter_mut().for_each(|node| *node = from + (*node - old) * scale);
+        }
+        s[end] = to;
+        (first, from, old) = (end, to, old_end);
+    }
+    (s, numbers)
+}
+
+/// The numbers of the nodes that are to be at the breaks.
+fn apportion(s: &[f64], breaks: &[f64]) -> Vec<usize> {
+    let index = |at: &f64| {
+        let right = s.partition_point(|node| node < at);
+        right as f64 - (s[right] - at) / (s[right] - s[right - 1])
+    };
+    let last = s.len() - 1;
+    let ends: Vec<f64> = std::iter::once(0.0).chain(breaks.iter().map(index)).chain([last as f64]).collect();
+    let lengths: Vec<f64> = ends.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut cells: Vec<usize> = lengths.iter().map(|length| (*length as usize).max(1)).collect();
+    let size = |(j, cells): (usize, usize)| lengths[j] / cells as f64;
+    while cells.iter().sum::<usize>() != last {
+        let of = cells.iter().copied().enumerate();
+        if cells.iter().sum::<usize>() < last {
+            let Some((j, _)) = of.max_by(|a, b| size(*a).total_cmp(&size(*b))) else { break };
+            cells[j] += 1;
+        } else {
+            let fewer = of.filter(|(_, cells)| *cells > 1).map(|(j, cells)| (j, cells - 1));
+            let Some((j, _)) = fewer.min_by(|a, b| size(*a).total_cmp(&size(*b))) else { break };
+            cells[j] -= 1;
+        }
+    }
+    let sums = cells.iter().scan(0, |sum, cells| {
+        *sum += cells;
+        Some(*sum)
+    });
+    sums.take(breaks.len()).collect()
+}
+
+/// Puts a node to `at`: another one, or the nearest if that is very near, no end and no other break.
+fn join(s: &mut Vec<f64>, at: f64, breaks: &[f64]) {
+    let right = s.partition_point(|node| *node < at);
+    let spacing = s[right] - s[right - 1];
+    let nearest = if at - s[right - 1] < s[right] - at { right - 1 } else { right };
+    let free = nearest > 0 && nearest + 1 < s.len() && !breaks.contains(&s[nearest]);
+    if s[nearest] == at || free && (s[nearest] - at).abs() <= NEAR * spacing {
+        s[nearest] = at;
+    } else {
+        s.insert(right, at);
+    }
+}
+
 fn check_given(given: &[f64], length: f64) -> Result<(), BasisError> {
     if let Some((index, &value)) = given.iter().enumerate().find(|(_, s)| !s.is_finite()) {
         return Err(BasisError::NodeNotFinite { index, value, length });
@@ -89,6 +170,32 @@ mod tests {
                 let s = arc_lengths(&nodes, 1.8).unwrap();
                 assert_eq!((s.len(), s[0], s[n - 1]), (n, 0.0, 1.8));
             }
+        }
+    }
+
+    #[test]
+    fn nodes_meet_breaks() {
+        let uniform = |n| arc_lengths(&Nodes::Uniform(n), 1.0).unwrap();
+        let given = |s: &[f64], breaks: &[f64]| meet(s.to_vec(), true, breaks);
+        assert_eq!(meet(uniform(9), false, &[0.5, 0.0, 1.0]), (uniform(9), vec![4]));
+        assert_eq!(meet(uniform(5), false, &[0.4]), (vec![0.0, 0.2, 0.4, 0.7, 1.0], vec![2]));
+        for (n, breaks, numbers) in [
+            (9, &[0.8125][..], &[6][..]),
+            (9, &[0.2, 0.45, 0.7], &[2, 4, 6]),
+            (9, &[0.97], &[7]),
+            (5, &[0.01, 0.02], &[1, 2]),
+            (5, &[0.98, 0.99], &[2, 3]),
+            (1001, &[0.5, 0.501], &[500, 501]),
+        ] {
+            assert_eq!(meet(uniform(n), false, breaks).1, numbers, "{breaks:?}");
+        }
+        assert_eq!(meet(uniform(3), false, &[0.3, 0.6]), (vec![0.0, 0.3, 0.5, 0.6, 1.0], vec![1, 3]));
+        assert_eq!(given(&[0.0, 0.5, 1.0], &[0.3]), (vec![0.0, 0.3, 0.5, 1.0], vec![1]));
+        assert_eq!(given(&[0.0, 0.5, 1.0], &[0.49, 0.501]), (vec![0.0, 0.49, 0.501, 1.0], vec![1, 2]));
+        for (n, breaks) in [(7, vec![0.31, 0.33, 0.9]), (4, vec![0.1, 0.2, 0.3, 0.4]), (2, vec![0.7])] {
+            let (s, numbers) = meet(uniform(n), false, &breaks);
+            assert!(s.is_sorted_by(|a, b| a < b), "{s:?}");
+            assert_eq!(numbers.iter().map(|i| s[*i]).collect::<Vec<_>>(), breaks);
         }
     }
 

@@ -22,6 +22,8 @@ pub struct BasisTable {
     pub orders: Vec<usize>,
     /// Points in a cell.
     pub points_per_cell: usize,
+    /// Whether these are single points, and not the cells of a quadrature rule.
+    pub concentrated: bool,
     /// Cells, or points, in order.
     pub cells: Vec<Cell>,
     /// Per block, per point: the quadrature weight ds \[m\]; 1 for single points.

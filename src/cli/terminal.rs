@@ -1,5 +1,6 @@
 //! What people see on standard error: progress, a table of results, warnings, errors.
 
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::error::Error;
 use std::fmt::Write as _;
@@ -18,9 +19,19 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
 use super::failure::Failure;
 
-/// One line on standard error. That nobody reads it is no reason to fail.
+/// Lines on standard error, in which nothing commands the terminal. That nobody reads it is no reason to fail.
 pub fn note(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{}", visible(text));
+}
+
+/// The text with control characters, other than ends of lines and tabs, as they are written in a scene: a title or a name could move the cursor, or worse.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    let commands = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+    if !text.contains(commands) {
+        return text.into();
+    }
+    let shown = |c: char| if commands(c) { c.escape_default().to_string() } else { c.to_string() };
+    text.chars().map(shown).collect::<String>().into()
 }
 
 /// Prints a failure: with the lines of the scene on a terminal, else as plain text with everything in it.
@@ -28,10 +39,17 @@ pub fn report(failure: &Failure) {
     if io::stderr().is_terminal() {
         let plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let theme = if plain { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
-        let mut text = String::new();
-        let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(2);
-        if handler.render_report(&mut text, failure).is_ok() {
-            return note(&text);
+        let rendered = |theme| {
+            let mut text = String::new();
+            let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(2);
+            handler.render_report(&mut text, failure).is_ok().then_some(text)
+        };
+        // Colours are commands to the terminal, too; there must be no others.
+        let harmless = rendered(GraphicalTheme::unicode_nocolor())
+            .is_some_and(|text| matches!(visible(&text), Cow::Borrowed(_)));
+        if harmless && let Some(text) = rendered(theme) {
+            let _ = writeln!(io::stderr().lock(), "{text}");
+            return;
         }
     }
     note(&format!("error: {}", plain(failure)));

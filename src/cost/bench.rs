@@ -112,6 +112,7 @@ impl Bench for Measuring<'_> {
                 runs: seconds.len(),
                 statistics: trajectory.statistics,
                 deviation,
+                warnings: trajectory.warnings,
             });
         }
     }

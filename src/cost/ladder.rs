@@ -269,7 +269,7 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
                 let setting = Setting { beams: setting.beams.clone(), solver };
                 match attempt(bench, climbed, (family, cells), setting, task.deadline)? {
                     Ok(index) => {
-                        let found = climbed.rungs[index].measured;
+                        let found = climbed.rungs[index].measured.clone();
                         let (seconds, error) = (found.seconds, found.deviation.error);
                         if found.work() == measured.work() && same(error, measured.deviation.error) {
                             // Otherwise the noise of the clock would choose between two names of one thing.

@@ -68,7 +68,7 @@ pub struct ReportedRung {
     pub below_uncertainty: bool,
     /// No other one beats it in time and error.
     pub front: bool,
-    /// Its error plus the uncertainty of the reference is within the target.
+    /// Its error plus the uncertainty of the reference is within the target, and its run warned of nothing.
     pub meets_target: bool,
 }
 
@@ -81,10 +81,11 @@ impl Study {
             discretization: rung.family.to_string(),
             cells: rung.cells,
             solver: rung.setting.solver.to_string(),
-            measured: rung.measured,
+            measured: rung.measured.clone(),
             below_uncertainty: rung.measured.deviation.error < uncertainty.error,
             front: self.front.contains(&index),
-            meets_target: rung.measured.deviation.error <= target - uncertainty.error,
+            meets_target: rung.measured.warnings.is_empty()
+                && rung.measured.deviation.error <= target - uncertainty.error,
         };
         Report {
             title: &self.reference.trajectory.title,
@@ -171,7 +172,7 @@ fn table(report: &Report<'_>, out: &mut dyn io::Write) -> io::Result<()> {
         "meets_target",
     ])?;
     for rung in &report.rungs {
-        let Measured { degrees_of_freedom, seconds, runs, statistics, deviation } = rung.measured;
+        let Measured { degrees_of_freedom, seconds, runs, statistics, deviation, .. } = rung.measured;
         let optional = |value: Option<f64>| value.map(exact).unwrap_or_default();
         rows.write_record([
             rung.discretization.clone(),

@@ -26,6 +26,8 @@ pub struct Reference {
     pub trajectory: Trajectory,
     /// By how much the other run of the pair differs: the uncertainty of the reference.
     pub uncertainty: Deviation,
+    /// What either run warned of.
+    pub warnings: Vec<String>,
     /// The pair in words.
     pub pair: [String; 2],
     /// Wall time that it took to make \[s\].
@@ -73,18 +75,20 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
         let found = match pool.join(|| run(0), || run(1)) {
             (Err(Miss::Interrupted), _) | (_, Err(Miss::Interrupted)) => return Err(CostError::Interrupted),
             (Ok(a), Ok(b)) => {
-                Deviation::between(desk.model, desk.analysis, &b, &a).map(|d| (a, d)).map_err(Miss::Failed)
+                let warnings = [&a.warnings[..], &b.warnings].concat();
+                let deviation = Deviation::between(desk.model, desk.analysis, &b, &a);
+                deviation.map(|deviation| (a, deviation, warnings)).map_err(Miss::Failed)
             }
             (Err(miss), _) | (_, Err(miss)) => Err(miss),
         };
         match found {
-            Ok((trajectory, mut uncertainty)) => {
+            Ok((trajectory, mut uncertainty, warnings)) => {
                 if matches!(desk.analysis, Analysis::Dynamic(_)) {
                     // A drift is measured against nothing.
                     uncertainty.energy = None;
                 }
                 if agreement.is_none_or(|error| uncertainty.error < error) {
-                    best = Some(Reference { trajectory, uncertainty, pair: names, seconds: 0.0 });
+                    best = Some(Reference { trajectory, uncertainty, warnings, pair: names, seconds: 0.0 });
                 }
             }
             Err(Miss::Failed(why)) => reason = why,

@@ -20,7 +20,7 @@ pub struct Rung {
 }
 
 /// Cost and error of a setting.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Measured {
     /// Unknowns after supports are eliminated, plus multipliers.
     pub degrees_of_freedom: usize,
@@ -32,6 +32,8 @@ pub struct Measured {
     pub statistics: Statistics,
     /// Its errors.
     pub deviation: Deviation,
+    /// What its runs warned of; such a setting is recommended to nobody.
+    pub warnings: Vec<String>,
 }
 
 impl Measured {

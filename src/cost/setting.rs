@@ -10,7 +10,7 @@ use crate::model::{
 };
 use crate::scene::{
     ANCF_GAUSS_POINTS, RPIM_GAUSS_POINTS, RPIM_KERNEL, RPIM_NEIGHBOURS, RPIM_POLYNOMIAL_TERMS,
-    RPIM_SIDE_CONDITION, SPECTRAL_RADIUS,
+    RPIM_SIDE_CONDITION, SPECTRAL_RADIUS, STRING_GAUSS_POINTS,
 };
 
 /// A kind of discretisation, of any fineness.
@@ -33,9 +33,9 @@ pub enum Family {
 
 impl Family {
     /// Cable elements with the points that integrate Green's strain exactly.
-    pub const FULL: Self = Self::Ancf(ANCF_GAUSS_POINTS);
-    /// Cable elements with fewer points, which let membrane locking go.
-    pub const REDUCED: Self = Self::Ancf(GaussPoints { stretch: 4, bend: 2, lobatto: false });
+    pub const FULL: Self = Self::Ancf(GaussPoints { stretch: 5, bend: 3, lobatto: false });
+    /// Cable elements as scenes have them where they say no more: with fewer points, which let membrane locking go.
+    pub const REDUCED: Self = Self::Ancf(ANCF_GAUSS_POINTS);
 
     /// Radial point interpolation as scenes have it where they say no more, but for the Gauss points.
     pub fn usual(points: usize) -> Self {
@@ -65,6 +65,12 @@ impl Family {
             let nodes = graded(nodes_of(&beam.discretization), (share.round() as usize).max(1));
             match self {
                 Self::Scene => (beam.discretization.clone(), beam.gauss_points),
+                // What does not lock needs its points: a string folds where too few resist.
+                Self::Ancf(_)
+                    if beam.section.bending_stiffness.is_none() || beam.section.axial_stiffness.is_none() =>
+                {
+                    (Discretization::Ancf { nodes }, STRING_GAUSS_POINTS)
+                }
                 Self::Ancf(points) => (Discretization::Ancf { nodes }, points),
                 Self::Rpim { neighbours, shape, points } => {
                     let kernel = match RPIM_KERNEL {
@@ -100,7 +106,10 @@ impl fmt::Display for Family {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Scene => f.write_str("as the scene is"),
-            Self::Ancf(points) => write!(f, "ANCF, {}/{} points", points.stretch, points.bend),
+            Self::Ancf(points) => {
+                let rule = if points.lobatto { "L" } else { "" };
+                write!(f, "ANCF, {}{rule}/{} points", points.stretch, points.bend)
+            }
             Self::Rpim { shape, points, .. } => {
                 write!(f, "{}, shape {shape}", self.kind())?;
                 if *points == RPIM_GAUSS_POINTS.bend { Ok(()) } else { write!(f, ", {points} points") }

@@ -13,7 +13,7 @@
 //! out of the iteration matrix K + d D + c M: it is smaller than D/h, h being the step, by the rotation within that step, and would
 //! cost the symmetry.
 
-use super::{Density, Gradient, Hessian, Integral, Kind, Workspace};
+use super::{Actions, Density, Gradient, Hessian, Integral, Kind, Workspace};
 use crate::linear::Matrix;
 
 /// A dissipation function per unit of arc length that depends on `M` local fields and their rates.
@@ -48,6 +48,9 @@ pub trait Damping: Send + Sync {
 
     /// `d += ∂²R/∂q̇∂q̇`; `f` receives the force.
     fn add_matrix(&self, q: &[f64], v: &[f64], f: &mut [f64], d: &mut Matrix, workspace: &mut Workspace);
+
+    /// What it does to its beam in the state (q, v).
+    fn add_actions(&self, q: &[f64], v: &[f64], sum: &mut Actions);
 
     /// Quadrature points, and bytes of its tables and data.
     fn size(&self) -> (usize, usize);
@@ -97,6 +100,10 @@ impl<D: Dissipation<M>, const M: usize> Damping for Integral<Rayleigh<D>, M> {
     fn add_matrix(&self, q: &[f64], v: &[f64], f: &mut [f64], d: &mut Matrix, workspace: &mut Workspace) {
         let state = super::Earlier { q, increment: q };
         super::Effect::add_force_and_tangent(self, 1.0, v, Some(state), f, d, workspace);
+    }
+
+    fn add_actions(&self, q: &[f64], v: &[f64], sum: &mut Actions) {
+        self.actions_of_pairs(1.0, q, v, sum, |point, z, rate| self.density.0.force(point, z, rate));
     }
 
     fn size(&self) -> (usize, usize) {

@@ -1,6 +1,7 @@
 //! Resistance and lift of a fluid around a beam.
 
-use super::{DeadForce, Dissipation, Gradient, Hessian, Kind};
+use super::{DeadForce, Density, Dissipation, Gradient, Hessian, Kind};
+use crate::model::Law;
 use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Extent, Part};
 use nalgebra::{Matrix2, Vector2};
@@ -24,7 +25,58 @@ impl Part for Drag {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
         assembly.beam("drag", self.beam)?;
         let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
+        let (needs, flows) = (assembly.needs(), self.flow != [0.0; 2]);
+        if flows && !needs.motion {
+            assembly.load(Kind::Drag, extent, None, |_| SteadyDrag(*self))?;
+        }
+        // The flow is all that there is of it in equilibrium.
+        if flows && !needs.motion && !needs.inertia {
+            return Ok(());
+        }
         assembly.damping(Kind::Drag, extent, |_| *self)
+    }
+}
+
+/// The drag of a steady flow on a beam at rest, a load that follows the beam's direction: of the fluid's velocity −u with u = u_t t + u_n n,
+///
+/// ```text
+/// ∂W/∂r = Σ_d φ_d a_d,   φ_d = (c_d + C_d |u_d|) u_d,   a = (t, n),   ∂/∂r' of it = Σ_d (φ_d' (u·a_d') a_d + φ_d a_d') ⊗ n/|r'|,   t' = n, n' = −t.
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct SteadyDrag(pub Drag);
+
+impl Density<2> for SteadyDrag {
+    const ORDERS: [usize; 2] = [0, 1];
+    const SYMMETRIC: bool = false;
+    const CONSERVATIVE: bool = false;
+
+    fn energy(&self, _: usize, _: &Gradient<2>) -> f64 {
+        0.0
+    }
+
+    fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
+        self.0.force(point, z, &[Vector2::zeros(); 2])
+    }
+
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<2>,
+        _: &Gradient<2>,
+        _: &Gradient<2>,
+    ) -> (Gradient<2>, Hessian<2>) {
+        let length = z[1].norm();
+        let along = z[1] / length;
+        let across = Vector2::new(-along.y, along.x);
+        let u = -Vector2::from(self.0.flow);
+        let mut by_angle = Vector2::zeros();
+        for (d, (axis, turned)) in [(along, across), (across, -along)].into_iter().enumerate() {
+            let speed = u.dot(&axis);
+            let (c, quadratic) = (self.0.viscous[d], self.0.quadratic[d] * speed.abs());
+            by_angle += axis * ((c + 2.0 * quadratic) * u.dot(&turned)) + turned * ((c + quadratic) * speed);
+        }
+        let (zero, by_gradient) = (Matrix2::zeros(), by_angle * across.transpose() / length);
+        (self.gradient(point, z), [[zero, by_gradient], [zero, zero]])
     }
 }
 
@@ -53,7 +105,7 @@ impl Dissipation<2> for Drag {
 }
 
 /// Buoyancy of a beam in a heavy fluid: the dead force −m g per length, m the mass of the fluid that it displaces.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Buoyancy {
     /// Index of the beam.
     pub beam: usize,
@@ -61,6 +113,8 @@ pub struct Buoyancy {
     pub displaced: f64,
     /// g \[m/s²\].
     pub acceleration: [f64; 2],
+    /// How g follows time.
+    pub law: Option<Law>,
 }
 
 impl Part for Buoyancy {
@@ -68,7 +122,7 @@ impl Part for Buoyancy {
         assembly.beam("buoyancy", self.beam)?;
         let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
         let force = self.acceleration.map(|g| -self.displaced * g);
-        assembly.load(Kind::Buoyancy, extent, None, |z: Vec<[Vector2<f64>; 1]>| {
+        assembly.load(Kind::Buoyancy, extent, self.law.as_ref(), |z: Vec<[Vector2<f64>; 1]>| {
             DeadForce::new(force, z.into_iter().map(|[r]| r).collect())
         })
     }

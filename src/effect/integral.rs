@@ -23,7 +23,7 @@
 //! cache moves two thirds of the bytes and was slower (0.41 instead of 0.36 µs a step), for memory idles while forces are computed; fetching factors
 //! ahead by instruction and pages of 2 MB changed nothing.
 
-use super::{Density, Earlier, Effect, Gradient, Hessian, Kind};
+use super::{Action, Actions, Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
 use crate::lanes::{self, Lanes, Pair};
 use crate::linear::Matrix;
@@ -33,7 +33,7 @@ use nalgebra::Vector2;
 /// Memory that the assembly of a cell uses; kept by the caller so that nothing is allocated in the loops.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
-    products: Vec<f64>,
+    pub(super) products: Vec<f64>,
     pub(super) lanes: Vec<Lanes>,
     pub(super) pairs: Vec<Pair<Lanes>>,
 }
@@ -190,6 +190,35 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         }
     }
 
+    /// The actions of the forces Σ_m N⁽ᵒᵐ⁾ g_m(z, x) with the fields z of `q` and x of `other`.
+    pub(super) fn actions_of_pairs(
+        &self,
+        factor: f64,
+        q: &[f64],
+        other: &[f64],
+        sum: &mut Actions,
+        force: impl Fn(usize, &Gradient<M>, &Gradient<M>) -> Gradient<M>,
+    ) {
+        let (width, points) = (self.table.width, self.table.points_per_cell);
+        let mut values = Vec::with_capacity(self.table.s.len());
+        for (cell, (entry, s)) in self.table.cells.iter().zip(self.table.s.chunks(points)).enumerate() {
+            let (weights, rows) = self.table.block(*entry);
+            let first = 2 * (self.offset + entry.first as usize);
+            let (q, other) = (&q[first..], &other[first..]);
+            let rows = rows.chunks_exact(M * width);
+            for (p, ((s, weight), rows)) in s.iter().zip(weights).zip(rows).enumerate() {
+                let (z, x) = (self.fields::<0>(rows, q), self.fields::<0>(rows, other));
+                let gradient = force(cell * points + p, &z, &x);
+                values.push((*s, *weight, Action::of_density(D::ORDERS, &z, &gradient) * factor));
+            }
+        }
+        if self.table.concentrated {
+            values.into_iter().for_each(|(s, weight, action)| sum.add_point(s, action * weight));
+        } else {
+            sum.add_spread(points, values);
+        }
+    }
+
     fn product_of<const W: usize>(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
         let width = self.width::<W>();
         for (cell, entry) in self.table.cells.iter().enumerate() {
@@ -254,7 +283,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
 }
 
 /// `P_md[2b + e] = w Σ_n H_mn(d, e) N_b⁽ᵒⁿ⁾`.
-fn multiply_rows<const M: usize>(
+pub(super) fn multiply_rows<const M: usize>(
     weight: f64,
     hessian: &Hessian<M>,
     rows: &[f64],
@@ -282,7 +311,13 @@ fn multiply_rows<const M: usize>(
 }
 
 /// Adds all tiles of a cell to the matrix; the cell's first node is `node` of the system.
-fn add_tiles<const M: usize>(rows: &[f64], products: &[f64], width: usize, node: usize, k: &mut Matrix) {
+pub(super) fn add_tiles<const M: usize>(
+    rows: &[f64],
+    products: &[f64],
+    width: usize,
+    node: usize,
+    k: &mut Matrix,
+) {
     let nodes = width / 2;
     match k {
         Matrix::Symmetric(matrix) => {
@@ -407,6 +442,10 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
         if D::HAS_TANGENT {
             with_width!(self.product_of(factor, q, v, f));
         }
+    }
+
+    fn add_actions(&self, factor: f64, q: &[f64], a: &[f64], sum: &mut Actions) {
+        self.actions_of_pairs(factor, q, a, sum, |point, _, x| self.density.gradient(point, x));
     }
 
     fn size(&self) -> (usize, usize) {

@@ -1,12 +1,23 @@
 //! Masses on a beam, and the rotary inertia of points and sections.
+//!
+//! Rotary inertia belongs to the direction θ of the gradient alone, T = ½ J θ̇² with θ̇ = p·ṙ' and p = ∂θ/∂r' = J r'/|r'|² (J a quarter turn). With it the
+//! mass matrix J p pᵀ follows the direction, and the force of inertia is
+//!
+//! ```text
+//! J θ̈ p,   θ̈ = p·r̈' + ṙ'·∂²θ/∂r'∂r'·ṙ'
+//! ```
+//!
+//! ½ J ṙ'·ṙ', whose matrix is constant, would give |r'| an inertia too: a point's makes the stretch of the cells beside it swing, slower on finer meshes, and
+//! that of sections holds up axial waves.
 
-use super::{Density, Gradient, Hessian, Inertia, Kind};
+use super::spring::turn;
+use super::{Dissipation, Gradient, Hessian, Inertia, Kind};
 use crate::model::Place;
 use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Extent, Part};
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 
-/// A mass at a point: T = ½ m ṙ·ṙ + ½ J ṙ'·ṙ'.
+/// A mass at a point: T = ½ m ṙ·ṙ + ½ J θ̇².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointMass {
     /// The point.
@@ -24,9 +35,14 @@ impl Part for PointMass {
             assembly.inertia(Kind::PointMass, extent, Inertia { mass_per_length: mass })?;
         }
         if let Some(inertia) = self.rotary_inertia {
-            assembly.inertia(Kind::RotaryInertia, extent, RotaryInertia { inertia })?;
+            let momentum = RotaryInertia { inertia };
+            assembly.turning_inertia(Kind::RotaryInertia, extent, momentum.clone(), Gyration(momentum))?;
         }
         Ok(())
+    }
+
+    fn couple(&self) -> Option<Place> {
+        self.rotary_inertia.map(|_| self.at)
     }
 
     fn mass(&self) -> Option<(Place, f64)> {
@@ -34,7 +50,7 @@ impl Part for PointMass {
     }
 }
 
-/// The rotary inertia of a beam's sections, T = ½ ρI ∫ ṙ'·ṙ' ds.
+/// The rotary inertia of a beam's sections, T = ½ ρI ∫ θ̇² ds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionInertia {
     /// Index of the beam.
@@ -47,38 +63,56 @@ impl Part for SectionInertia {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
         assembly.beam("rotary inertia", self.beam)?;
         let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
-        assembly.inertia(Kind::RotaryInertia, extent, RotaryInertia { inertia: self.per_length })
+        let momentum = RotaryInertia { inertia: self.per_length };
+        assembly.turning_inertia(Kind::RotaryInertia, extent, momentum.clone(), Gyration(momentum))
     }
 }
 
-/// W = ½ J ṙ'·ṙ', a density of the velocity.
-///
-/// With ṙ' = |r'|˙ t + |r'| θ̇ n this is ½ J θ̇² |r'|² + ½ J (|r'|˙)²: the rotary inertia of a section up to the axial strain, which is small where rotary inertia is
-/// of any interest, and with a constant matrix.
+/// The kinetic energy ½ J θ̇² as a function of ṙ': its derivative is the momentum J θ̇ p, its second derivative the mass matrix J p pᵀ.
 #[derive(Clone, Debug)]
 pub struct RotaryInertia {
     /// J \[kg m²\], or per length ρI \[kg m\].
     pub inertia: f64,
 }
 
-impl Density<1> for RotaryInertia {
+impl Dissipation<1> for RotaryInertia {
     const ORDERS: [usize; 1] = [1];
 
-    fn energy(&self, _: usize, v: &Gradient<1>) -> f64 {
-        0.5 * self.inertia * v[0].norm_squared()
+    #[inline(always)]
+    fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
+        self.force_and_matrix(point, z, rate).0
     }
 
-    fn gradient(&self, _: usize, v: &Gradient<1>) -> Gradient<1> {
-        [v[0] * self.inertia]
+    #[inline(always)]
+    fn force_and_matrix(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+        let p = turn(&z[0]);
+        let matrix = p * p.transpose() * self.inertia;
+        ([matrix * rate[0]], [[matrix]])
+    }
+}
+
+/// The force of inertia of a gradient that does not accelerate, J (ṙ'·∂²θ/∂r'∂r'·ṙ') p.
+#[derive(Clone, Debug)]
+pub struct Gyration(pub RotaryInertia);
+
+impl Dissipation<1> for Gyration {
+    const ORDERS: [usize; 1] = [1];
+
+    #[inline(always)]
+    fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
+        self.force_and_matrix(point, z, rate).0
     }
 
-    fn gradient_and_hessian(
-        &self,
-        _: usize,
-        v: &Gradient<1>,
-        _: &Gradient<1>,
-        _: &Gradient<1>,
-    ) -> (Gradient<1>, Hessian<1>) {
-        ([v[0] * self.inertia], [[Matrix2::identity() * self.inertia]])
+    #[inline(always)]
+    fn force_and_matrix(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
+        let (p, half) = (turn(&z[0]), second_turn(&z[0]) * rate[0]);
+        let inertia = self.0.inertia;
+        ([p * (inertia * rate[0].dot(&half))], [[p * half.transpose() * (2.0 * inertia)]])
     }
+}
+
+/// ∂²θ/∂r'∂r'.
+fn second_turn(r: &Vector2<f64>) -> Matrix2<f64> {
+    let (x, y) = (r.x, r.y);
+    Matrix2::new(2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y) / r.norm_squared().powi(2)
 }

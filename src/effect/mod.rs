@@ -23,6 +23,7 @@
 //! converged rotation into an enormous axial force, so that steps can be many times longer. With z⁻ = z and Δz = 0 it is the
 //! ordinary tangent. Δz is that of the increment; the current iterate may have been moved along it with turns that are finite.
 
+mod action;
 mod actuation;
 mod bend;
 mod contact;
@@ -40,17 +41,18 @@ mod spring;
 mod stretch;
 mod tangent;
 
+pub use action::{Action, Actions, Side};
 pub use actuation::{Actuation, PreCurvature, PreStrain};
 pub use bend::{Bend, curvature};
-pub use contact::{Contact, Friction, Obstacle, Penalty, Rubbing};
+pub use contact::{Contact, Friction, Held, Obstacle, Penalty, Pressing, Rubbing, Slips};
 pub use damping::{BeamDamping, BendDamping, MassDamping, StretchDamping};
 pub use dissipation::{Damping, Dissipation, Rayleigh};
-pub use drag::{Buoyancy, Drag};
+pub use drag::{Buoyancy, Drag, SteadyDrag};
 pub use foundation::Foundation;
 pub use inertia::Inertia;
 pub use integral::{Integral, Workspace};
 pub use load::{DeadForce, FollowerForce, Moment};
-pub use mass::{PointMass, RotaryInertia, SectionInertia};
+pub use mass::{Gyration, PointMass, RotaryInertia, SectionInertia};
 pub use moving::{MovingForce, Travelling};
 pub use spring::{Dashpot, Spring, Strut, Tie, Torsion, TorsionDashpot, TorsionSpring};
 pub use stretch::{Engineering, Green, Strain, Stretch};
@@ -311,6 +313,69 @@ pub trait Effect: Send + Sync {
     /// is differentiated before it is multiplied by a large stiffness, so that fine meshes cost few digits.
     fn add_tangent_product(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]);
 
+    /// What it does to its beam in the state `q`, times `factor`; a kinetic energy with the accelerations `a` of the coordinates, all else with
+    /// `a` the same as `q`.
+    fn add_actions(&self, factor: f64, q: &[f64], a: &[f64], sum: &mut Actions);
+
     /// Quadrature points, and bytes of its tables and data.
     fn size(&self) -> (usize, usize);
+}
+
+/// An effect that is asked for more elsewhere.
+impl<E: Effect + ?Sized> Effect for std::sync::Arc<E> {
+    fn kind(&self) -> Kind {
+        (**self).kind()
+    }
+
+    fn beam(&self) -> usize {
+        (**self).beam()
+    }
+
+    fn is_symmetric(&self) -> bool {
+        (**self).is_symmetric()
+    }
+
+    fn is_constant(&self) -> bool {
+        (**self).is_constant()
+    }
+
+    fn is_conservative(&self) -> bool {
+        (**self).is_conservative()
+    }
+
+    fn energy(&self, q: &[f64]) -> f64 {
+        (**self).energy(q)
+    }
+
+    fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+        (**self).add_force(factor, q, f);
+    }
+
+    fn add_forces(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
+        (**self).add_forces(factors, q, f, scratch);
+    }
+
+    fn add_force_and_tangent(
+        &self,
+        factor: f64,
+        q: &[f64],
+        earlier: Option<Earlier<'_>>,
+        f: &mut [f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
+        (**self).add_force_and_tangent(factor, q, earlier, f, k, workspace);
+    }
+
+    fn add_tangent_product(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
+        (**self).add_tangent_product(factor, q, v, f);
+    }
+
+    fn add_actions(&self, factor: f64, q: &[f64], a: &[f64], sum: &mut Actions) {
+        (**self).add_actions(factor, q, a, sum);
+    }
+
+    fn size(&self) -> (usize, usize) {
+        (**self).size()
+    }
 }

@@ -3,13 +3,16 @@
 //! The generalised force f_a = −N_a(s(t)) F needs the shape functions at a place that changes with time. They are tabulated at Lobatto points of every cell and
 //! interpolated between them by Lagrange's polynomial of degree 7, which is exact for the cable element's cubics.
 
-use super::Kind;
+use super::{Action, Actions, Kind};
 use crate::basis::{Basis, BasisError, BasisTable, Quadrature};
 use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Part};
+use nalgebra::Vector2;
 
 /// Points a cell.
 const POINTS: usize = 8;
+/// Points of the rule by which a force is summed over the time that it takes for a cell.
+const RULE: usize = 5;
 
 /// A dead force at s(t) = s₀ + v t, acting while that is on the beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +43,8 @@ pub struct Travelling {
     table: BasisTable,
     offset: usize,
     length: f64,
+    /// Gauss' rule for a part of a step: abscissae and weights.
+    rule: (Vec<f64>, Vec<f64>),
 }
 
 impl Travelling {
@@ -49,7 +54,7 @@ impl Travelling {
     /// Where the shape functions cannot be tabulated.
     pub fn new(force: MovingForce, basis: &Basis, offset: usize) -> Result<Self, BasisError> {
         let table = basis.table(Quadrature::Lobatto(POINTS), &[0])?;
-        Ok(Self { force, table, offset, length: basis.length() })
+        Ok(Self { force, table, offset, length: basis.length(), rule: Quadrature::Gauss(RULE).rule()? })
     }
 
     /// What it is.
@@ -62,15 +67,17 @@ impl Travelling {
         self.force.beam
     }
 
-    /// `f −= N(s(t)) F`.
-    pub fn add_force(&self, time: f64, f: &mut [f64]) {
-        let s = self.force.speed.mul_add(time, self.force.start);
-        if !(0.0..=self.length).contains(&s) {
-            return;
-        }
-        let places = self.table.s.chunks_exact(POINTS);
-        let cell = places.clone().take_while(|places| places[0] <= s).count().max(1) - 1;
-        let (Some(places), Some(entry)) = (places.clone().nth(cell), self.table.cells.get(cell)) else {
+    /// Where it acts at `time`, if it is on the beam.
+    fn place(&self, time: f64) -> Option<f64> {
+        let [comes, goes] = self.kinks();
+        (comes..goes).contains(&time).then(|| self.force.speed.mul_add(time, self.force.start))
+    }
+
+    /// Calls `each` with the coordinates of every coefficient that the place `s` depends on, and its shape function there.
+    fn shape(&self, s: f64, mut each: impl FnMut(std::ops::Range<usize>, f64)) {
+        let cells = self.table.s.as_chunks::<POINTS>().0;
+        let cell = cells.partition_point(|places| places[0] <= s).max(1) - 1;
+        let (Some(places), Some(entry)) = (cells.get(cell), self.table.cells.get(cell)) else {
             return;
         };
         let (_, rows) = self.table.block(*entry);
@@ -78,16 +85,53 @@ impl Travelling {
         for (k, row) in rows.chunks_exact(self.table.width).enumerate() {
             let others = places.iter().enumerate().filter(|(j, _)| *j != k);
             let weight: f64 = others.map(|(_, other)| (s - other) / (places[k] - other)).product();
-            for (n, f) in row.iter().zip(f[first..].chunks_exact_mut(2)) {
-                f[0] -= weight * n * self.force.value[0];
-                f[1] -= weight * n * self.force.value[1];
+            row.iter().enumerate().for_each(|(a, n)| each(first + 2 * a..first + 2 * a + 2, weight * n));
+        }
+    }
+
+    /// `f −= N(s(t)) F`.
+    pub fn add_force(&self, time: f64, f: &mut [f64]) {
+        self.add_weighted(1.0, time, f);
+    }
+
+    /// `f −= factor · N(s(t)) F`.
+    pub fn add_weighted(&self, factor: f64, time: f64, f: &mut [f64]) {
+        let Some(s) = self.place(time) else { return };
+        self.shape(s, |pair, n| {
+            f[pair].iter_mut().zip(self.force.value).for_each(|(f, value)| *f -= factor * n * value);
+        });
+    }
+
+    /// Adds mean and first moment of the force from `start` to `end` ([`crate::model::Law::moments`]).
+    pub fn add_moments(&self, start: f64, end: f64, [mean, moment]: [&mut [f64]; 2]) {
+        let [comes, goes] = self.kinks();
+        if end <= comes || start >= goes {
+            return;
+        }
+        let cells = self.table.cells.len() as f64;
+        let parts = (cells * (end - start) / (goes - comes)).ceil().max(1.0);
+        for part in 0..parts as usize {
+            for (at, weight) in self.rule.0.iter().zip(&self.rule.1) {
+                let (x, weight) = ((part as f64 + at) / parts, weight / parts);
+                let time = (end - start).mul_add(x, start);
+                self.add_weighted(weight, time, mean);
+                self.add_weighted((1.0 - x) * weight, time, moment);
             }
         }
     }
 
+    /// What it does to its beam in the state `q`.
+    pub fn add_actions(&self, time: f64, q: &[f64], sum: &mut Actions) {
+        let Some(s) = self.place(time) else { return };
+        let mut r = Vector2::zeros();
+        self.shape(s, |pair, n| r += Vector2::from_column_slice(&q[pair]) * n);
+        sum.add_point(s, Action::at(r, self.force.value.into()));
+    }
+
     /// When it comes and goes.
     pub fn kinks(&self) -> [f64; 2] {
-        [0.0, self.length].map(|s| (s - self.force.start) / self.force.speed)
+        let [a, b] = [0.0, self.length].map(|s| (s - self.force.start) / self.force.speed);
+        [a.min(b), a.max(b)]
     }
 
     /// Points, and bytes of its tables.

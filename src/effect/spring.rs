@@ -47,7 +47,7 @@ impl Part for Spring {
 
 /// A torsional spring and dashpot on the direction of r': W = ½ k (θ − θ₀)², R = ½ c θ̇².
 ///
-/// θ − θ₀ is counted from −π to π, so that a spring that is wound up further jumps.
+/// θ − θ₀ is counted from −π to π, so that a spring that is wound up further jumps; a run says so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorsionSpring {
     /// The point.
@@ -71,6 +71,14 @@ impl Part for TorsionSpring {
             assembly.damping(Kind::TorsionDashpot, extent, |_| TorsionDashpot { coefficient })?;
         }
         Ok(())
+    }
+
+    fn torsion_spring(&self) -> Option<Place> {
+        self.stiffness.map(|_| self.at)
+    }
+
+    fn couple(&self) -> Option<Place> {
+        Some(self.at)
     }
 }
 
@@ -154,12 +162,19 @@ impl Density<1> for Strut {
         &self,
         point: usize,
         z: &Gradient<1>,
-        _: &Gradient<1>,
-        _: &Gradient<1>,
+        before: &Gradient<1>,
+        change: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
         let (d, length, ratio) = self.ratio(z);
-        let along = if ratio == 0.0 { Matrix2::zeros() } else { d * d.transpose() / (length * length) };
-        let hessian = (Matrix2::identity() * (1.0 - ratio) + along * ratio) * self.stiffness;
+        if ratio == 0.0 {
+            return (self.gradient(point, z), [[Matrix2::identity() * self.stiffness]]);
+        }
+        let along = d * d.transpose() / (length * length);
+        // The force is extrapolated: ℓ⁻ + e⁻·Δr in place of ℓ.
+        let (d_before, length_before, _) = self.ratio(before);
+        let stretch = length_before - self.length + d_before.dot(&change[0]) / length_before;
+        let across = stretch / length;
+        let hessian = (Matrix2::identity() * across + along * (1.0 - across)) * self.stiffness;
         (self.gradient(point, z), [[hessian]])
     }
 }
@@ -194,7 +209,7 @@ impl Dissipation<1> for Dashpot {
 }
 
 /// ∂θ/∂r' = J r'/|r'|².
-fn turn(r: &Vector2<f64>) -> Vector2<f64> {
+pub(super) fn turn(r: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-r.y, r.x) / r.norm_squared()
 }
 

@@ -83,6 +83,11 @@ impl<T: Number> Band<T> {
         size_of_val(&self.data[..])
     }
 
+    /// Multiplies all entries.
+    pub fn scale(&mut self, factor: T) {
+        self.data.iter_mut().for_each(|entry| *entry = *entry * factor);
+    }
+
     /// Sets all entries to zero.
     pub fn clear(&mut self) {
         self.data.fill(T::default());

@@ -12,13 +12,14 @@
 //! | band bordered by constraint rows within it | LU of a band in another order | [`interleaved`] |
 //! | band bordered by others, such as those of joints | sparse LU by faer | [`bordered`] |
 //!
-//! The complex matrices of collocation's stages are in [`complex`], the constant mass matrix in [`isotropic`].
+//! What of the inertia the rows leave is in `inertia`. The complex matrices of collocation's stages are in [`complex`], the constant mass matrix in [`isotropic`].
 
 pub mod band;
 pub mod bordered;
 pub mod complex;
 pub mod condensed;
 pub(crate) mod fma;
+pub(crate) mod inertia;
 pub mod interleaved;
 pub mod isotropic;
 mod order;
@@ -30,10 +31,6 @@ use condensed::Condensed;
 use fma::fma;
 use interleaved::Interleaved;
 use symmetric::{Ldl, SymmetricBand};
-
-/// How much stiffer than the structure a constraint is made where stability is judged: enough to dominate, and far from
-/// the reciprocal of round-off.
-const PENALTY: f64 = 1e4;
 
 /// A tangent matrix under assembly.
 #[derive(Clone, Debug)]
@@ -117,22 +114,27 @@ impl Matrix {
     /// Turns the unknowns `2 pair` and `2 pair + 1` into a frame at the angle with the given cosine and sine:
     /// rows and columns are replaced by their components along that frame's axes.
     pub fn rotate_pair(&mut self, pair: usize, cosine: f64, sine: f64) {
+        self.change_pair(pair, [[cosine, sine], [-sine, cosine]]);
+    }
+
+    /// T K Tᵀ with a T that mixes the unknowns `2 pair` and `2 pair + 1`.
+    pub fn change_pair(&mut self, pair: usize, [t, u]: [[f64; 2]; 2]) {
         let (x, y) = (2 * pair, 2 * pair + 1);
         for j in self.columns(x) {
             if j == x || j == y {
                 continue;
             }
             let (a, b) = (self.get(x, j), self.get(y, j));
-            self.set(x, j, cosine * a + sine * b);
-            self.set(y, j, cosine * b - sine * a);
+            self.set(x, j, t[0] * a + t[1] * b);
+            self.set(y, j, u[0] * a + u[1] * b);
             if let Self::General(matrix) = self {
                 let (a, b) = (matrix.get(j, x), matrix.get(j, y));
-                matrix.set(j, x, cosine * a + sine * b);
-                matrix.set(j, y, cosine * b - sine * a);
+                matrix.set(j, x, t[0] * a + t[1] * b);
+                matrix.set(j, y, u[0] * a + u[1] * b);
             }
         }
         let k = nalgebra::Matrix2::new(self.get(x, x), self.get(x, y), self.get(y, x), self.get(y, y));
-        let r = nalgebra::Matrix2::new(cosine, sine, -sine, cosine);
+        let r = nalgebra::Matrix2::new(t[0], t[1], u[0], u[1]);
         let k = r * k * r.transpose();
         self.set(x, x, k[(0, 0)]);
         self.set(x, y, k[(0, 1)]);
@@ -160,12 +162,11 @@ impl Matrix {
         }
     }
 
-    /// Adds `factor · vᵀ v` of a row `v` whose entries lie within one support, so that the band holds the product.
-    pub fn add_outer_product(&mut self, factor: f64, v: &BorderRow) {
-        for &(i, a) in v {
-            for &(j, b) in v {
-                self.add_at(i, j, factor * a * b);
-            }
+    /// Multiplies all entries.
+    pub fn scale(&mut self, factor: f64) {
+        match self {
+            Self::Symmetric(matrix) => matrix.scale(factor),
+            Self::General(matrix) => matrix.scale(factor),
         }
     }
 
@@ -333,22 +334,6 @@ impl Factor {
         if border.is_empty() {
             return self.negative_eigenvalues();
         }
-        if matches!(matrix, Matrix::General(_)) {
-            return None;
-        }
-        // What ties beams to each other lies outside the band.
-        if !interleaved::fits(matrix, border) {
-            return None;
-        }
-        // A penalty on the constraints leaves the allowed motions' inertia and makes all others positive. It is measured
-        // against the stiffness of the coordinate that the row holds most firmly, whatever the units.
-        let blocks = interleaved::reach(border).max(matrix.columns(0).len() / 4);
-        let mut penalised = Matrix::zeros(matrix.size() / 4, blocks, true);
-        penalised.add(1.0, matrix);
-        for row in border {
-            let firmest = row.iter().fold(0.0_f64, |m, &(i, b)| m.max(b * b / matrix.get(i, i).abs()));
-            penalised.add_outer_product(PENALTY / firmest, row);
-        }
-        Self::new(&penalised, &[]).ok()?.negative_eigenvalues()
+        inertia::negative_directions(matrix, border)
     }
 }

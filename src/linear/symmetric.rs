@@ -42,6 +42,11 @@ impl SymmetricBand {
         size_of_val(&self.data[..])
     }
 
+    /// Multiplies all entries.
+    pub fn scale(&mut self, factor: f64) {
+        self.data.iter_mut().for_each(|entry| *entry *= factor);
+    }
+
     /// Sets all entries to zero.
     pub fn clear(&mut self) {
         self.data.fill(0.0);
@@ -218,7 +223,7 @@ pub struct Ldl {
 }
 
 /// A pivot smaller than this fraction of its diagonal entry carries no significant digit.
-const SMALLEST_PIVOT: f64 = 1e-15;
+pub(super) const SMALLEST_PIVOT: f64 = 1e-15;
 
 impl Ldl {
     /// Factorises.

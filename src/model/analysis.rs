@@ -71,7 +71,7 @@ pub struct ProbeTarget {
 /// Settings of a dynamic analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dynamic {
-    /// Simulated time \[s\].
+    /// Simulated time \[s\], from time zero or from that of a saved state on.
     pub duration: f64,
     /// Time between records \[s\].
     pub output_every: f64,
@@ -81,7 +81,7 @@ pub struct Dynamic {
     pub events: Vec<Event>,
 }
 
-/// A probe's coordinate crosses a value.
+/// A probe's coordinate reaches a value from one side, also where it turns back there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     /// Which, and which value.
@@ -135,6 +135,12 @@ pub enum Integrator {
 impl Integrator {
     /// Newton tolerance of generalised-α where nothing is said: a thousand steps then add up to less than 1e-8.
     pub const NEWTON_TOLERANCE: f64 = 1e-11;
+
+    /// The method where nothing is said: Radau IIA collocation with three stages. It damps what is too fast to be followed, suits every model, and over the
+    /// motions of the suite with a tolerance it took fewer iterations than Gauss' methods for the same error.
+    pub fn usual(step: StepControl) -> Self {
+        Self::Radau { stages: 3, step }
+    }
 
     /// The most accurate method for a model: Gauss collocation with three stages, or Radau IIA where a beam is inextensible.
     pub fn accurate(model: &super::Model, step: StepControl) -> Self {

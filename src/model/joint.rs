@@ -12,8 +12,7 @@ pub enum Joint {
         /// A point of another beam, or of the same.
         second: Place,
     },
-    /// The two points coincide, and the gradients keep the angle at which they meet: r'_second = R(φ) r'_first with φ the angle in the stress-free
-    /// shape. Both beams have the same stretch at that point; see [`crate::system::joint`].
+    /// The two points coincide, and the directions keep the angle at which they meet in the stress-free shape; see [`crate::system::joint`].
     Weld {
         /// A point of a beam.
         first: Place,
@@ -27,4 +26,15 @@ pub enum Joint {
         /// Direction of the line.
         along: [f64; 2],
     },
+}
+
+impl Joint {
+    /// Where it is.
+    pub fn places(&self) -> impl Iterator<Item = Place> + use<> {
+        let (first, second) = match *self {
+            Self::Hinge { first, second } | Self::Weld { first, second } => (first, Some(second)),
+            Self::Slider { at, .. } => (at, None),
+        };
+        std::iter::once(first).chain(second)
+    }
 }

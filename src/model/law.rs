@@ -75,7 +75,7 @@ impl Table {
 
     fn at(&self, t: f64) -> [f64; 3] {
         let last = self.times.len() - 1;
-        if t <= self.times[0] {
+        if t < self.times[0] {
             return [self.values[0], 0.0, 0.0];
         }
         if t >= self.times[last] {
@@ -98,6 +98,24 @@ impl Table {
             y * a + x * b,
         ]
     }
+}
+
+/// Angle by which a harmonic turns in a step \[rad\] up to which Gauss' rule integrates it to round-off.
+const SLOW: f64 = 1.5;
+/// Gauss' rule with six points on (−1, 1): exact for what pieces of laws are, up to the eleventh degree.
+const GAUSS: [(f64, f64); 3] = [
+    (0.238_619_186_083_196_9, 0.467_913_934_572_691_05),
+    (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
+    (0.932_469_514_203_152, 0.171_324_492_379_170_35),
+];
+
+/// ∫₀¹ f dx and ∫₀¹ (1 − x) f dx.
+fn quadrature(time: impl Fn(f64) -> f64, f: impl Fn(f64) -> f64) -> [f64; 2] {
+    let points = GAUSS.iter().flat_map(|(x, w)| [(0.5 - 0.5 * x, 0.5 * w), (0.5 + 0.5 * x, 0.5 * w)]);
+    points.fold([0.0; 2], |[mean, moment], (x, w)| {
+        let term = w * f(time(x));
+        [mean + term, moment + (1.0 - x) * term]
+    })
 }
 
 /// Second derivatives of the cubic spline that is flat or not curved at its ends, by elimination in its tridiagonal system.
@@ -125,23 +143,22 @@ fn spline(t: &[f64], v: &[f64], [flat_start, flat_end]: [bool; 2]) -> Vec<f64> {
 }
 
 impl Law {
-    /// Value, rate \[1/s\] and second rate \[1/s²\] at time `t`.
+    /// Value, rate \[1/s\] and second rate \[1/s²\] at time `t`; at a kink those of what follows.
     pub fn at(&self, t: f64) -> [f64; 3] {
         match self {
-            Self::Ramp { start, duration } => match (t - start) / duration {
-                x if x < 0.0 => [0.0; 3],
-                x if x < 1.0 => [x, 1.0 / duration, 0.0],
-                _ => [1.0, 0.0, 0.0],
-            },
-            Self::SmoothRamp { start, duration } => match (t - start) / duration {
-                x if x < 0.0 => [0.0; 3],
-                x if x < 1.0 => [
+            Self::Ramp { start, .. } | Self::SmoothRamp { start, .. } if t < *start => [0.0; 3],
+            Self::Ramp { start, duration } if t < start + duration => {
+                [(t - start) / duration, 1.0 / duration, 0.0]
+            }
+            Self::SmoothRamp { start, duration } if t < start + duration => {
+                let x = (t - start) / duration;
+                [
                     x * x * x * (10.0 + x * (6.0 * x - 15.0)),
                     30.0 * (x * (1.0 - x)).powi(2) / duration,
                     60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (duration * duration),
-                ],
-                _ => [1.0, 0.0, 0.0],
-            },
+                ]
+            }
+            Self::Ramp { .. } | Self::SmoothRamp { .. } => [1.0, 0.0, 0.0],
             Self::Step { start } => [f64::from(t >= *start), 0.0, 0.0],
             Self::Harmonic { frequency: w, phase } => {
                 let (sine, cosine) = (w * t + phase).sin_cos();
@@ -164,6 +181,53 @@ impl Law {
                 ]
             }
             Self::SpinUp { speed, duration } => [speed * (t - 0.5 * duration), *speed, 0.0],
+        }
+    }
+
+    /// The time at which the value itself jumps, and by how much.
+    pub fn jump(&self) -> Option<(f64, f64)> {
+        match self {
+            Self::Step { start } => Some((*start, 1.0)),
+            Self::Ramp { .. }
+            | Self::SmoothRamp { .. }
+            | Self::Harmonic { .. }
+            | Self::Polynomial(_)
+            | Self::Table(_)
+            | Self::SpinUp { .. } => None,
+        }
+    }
+
+    /// Mean and first moment of the value f over the time from `start` to `end`, between which there is no kink:
+    ///
+    /// ```text
+    /// ∫₀¹ f(t₀ + x h) dx,   ∫₀¹ (1 − x) f(t₀ + x h) dx,   t₀ the start, h the time between
+    /// ```
+    ///
+    /// However fast the law oscillates: a mass that it drives alone changes its velocity by h times the first, and its position by h² times the second.
+    pub fn moments(&self, start: f64, end: f64) -> [f64; 2] {
+        let h = end - start;
+        match self {
+            Self::Harmonic { frequency, phase } if (frequency * h).abs() > SLOW => {
+                let (from, turn) = (frequency * start + phase, frequency * h);
+                let ((s0, c0), (s1, c1)) = (from.sin_cos(), (from + turn).sin_cos());
+                [(c0 - c1) / turn, (c0 - (s1 - s0) / turn) / turn]
+            }
+            Self::Polynomial(coefficients) => {
+                // Σ d_k τ^k with τ = t − t₀ has the moments Σ d_k h^k/(k + 1) and Σ d_k h^k/((k + 1) (k + 2)).
+                let mut shifted = coefficients.clone();
+                for first in 0..shifted.len() {
+                    for k in (first..shifted.len() - 1).rev() {
+                        shifted[k] = shifted[k + 1].mul_add(start, shifted[k]);
+                    }
+                }
+                let mut power = 1.0;
+                shifted.iter().zip(1..).fold([0.0; 2], |[mean, moment], (d, k)| {
+                    let term = d * power / f64::from(k);
+                    power *= h;
+                    [mean + term, moment + term / f64::from(k + 1)]
+                })
+            }
+            _ => quadrature(|x| h.mul_add(x, start), |t| self.at(t)[0]),
         }
     }
 
@@ -224,6 +288,50 @@ mod tests {
                     let ([a, ra, sa], [b, rb, sb]) = (law.at(t - 1e-9), law.at(t + 1e-9));
                     let jumps = (b - a).abs() + (rb - ra).abs() + (sb - sa).abs();
                     assert!(jumps < 1e-5, "{law:?} jumps by {jumps} at {t}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn values_jump_only_where_the_law_says_so() {
+        for law in laws() {
+            for kink in law.kinks() {
+                let jump = law.at(kink)[0] - law.at(kink - 1e-12)[0];
+                let said = law.jump().filter(|(time, _)| *time == kink).map_or(0.0, |(_, height)| height);
+                assert!((jump - said).abs() < 1e-9, "{law:?} jumps by {jump} at {kink}");
+            }
+        }
+    }
+
+    #[test]
+    fn moments_are_integrals_however_fast_the_law() {
+        let fast = [1e-3, 1.0, 30.0, 4e3].map(|frequency| Law::Harmonic { frequency, phase: 0.7 });
+        for law in laws().into_iter().chain(fast) {
+            for (start, end) in [(0.1, 0.3), (0.31, 0.38), (0.71, 1.4), (2.1, 2.9)] {
+                let n = 400_000;
+                let sums = (0..n).fold([0.0; 2], |[mean, moment], i| {
+                    let x = (f64::from(i) + 0.5) / f64::from(n);
+                    let f = law.at(start + x * (end - start))[0] / f64::from(n);
+                    [mean + f, moment + (1.0 - x) * f]
+                });
+                for (ours, sum) in law.moments(start, end).iter().zip(sums) {
+                    assert!((ours - sum).abs() < 1e-8, "{law:?} from {start} to {end}: {ours}, not {sum}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn at_a_kink_a_law_is_what_follows_and_just_before_what_was() {
+        for law in laws() {
+            for kink in law.kinks() {
+                let near = 1e-9;
+                let pairs = [(kink, kink + near), (kink.next_down(), kink - near)];
+                for (at, beside) in pairs {
+                    let ([a, ra, sa], [b, rb, sb]) = (law.at(at), law.at(beside));
+                    let apart = (a - b).abs() + (ra - rb).abs() + (sa - sb).abs();
+                    assert!(apart < 1e-5, "{law:?} at {at:?}: {apart} from {beside:?}");
                 }
             }
         }

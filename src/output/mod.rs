@@ -4,12 +4,14 @@
 //! |---|---|
 //! | `summary.json` | [`Summary`]: last values, energies, counts, times, whether the run came to its end |
 //! | `probes.csv`, `energy.csv` | one row per load factor or time; 17 significant digits, SI |
-//! | `shape.csv` | the last state along every beam |
-//! | `state.json` | the last state of a motion, from which another run can start |
+//! | `shape.csv` | the last state along every beam, with section forces; two rows where a force or a couple acts in a point |
+//! | `state.json` | the last state of a motion, or the equilibrium under the full loads, from which a motion can start |
 //! | `frequencies.csv` or `load_factors.csv`, `modes.csv` | modal analysis or buckling |
 //! | `report.html` | everything to look at, the moving beam included; needs no network |
 //! | `shape.svg`, `curvature.svg`, … | the page's plots, one each |
 //! | `states.csv`; `states.pvd`, `vtu/` | all recorded states as a table; for ParaView (both when asked for) |
+//!
+//! In tables a name that begins as a formula does (`=`, `+`, `-`, `@`) has an apostrophe before it, which spreadsheets take for the mark of a text.
 //!
 //! Files are written under temporary names and renamed when all of them are complete: a failure leaves no
 //! half-written file under a final name.
@@ -34,7 +36,7 @@ pub use summary::{EnergySummary, Summary};
 use crate::restart::SavedState;
 use crate::trajectory::{AnalysisKind, Trajectory};
 pub(crate) use stage::Stage;
-pub(crate) use tables::exact;
+pub(crate) use tables::{cell, exact};
 
 /// Which of the larger files to write.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -176,9 +178,8 @@ fn check(t: &Trajectory) -> Result<(), OutputError> {
     for shape in t.undeformed.iter().chain(&t.last).chain(t.modes.iter().flatten()) {
         let values = [&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
         // Section forces belong to states under load alone.
-        let forces =
-            [&shape.axial_force, &shape.bending_moment].into_iter().filter(|forces| !forces.is_empty());
-        for values in values.into_iter().chain(forces) {
+        let forces = [&shape.axial_force, &shape.shear_force, &shape.bending_moment];
+        for values in values.into_iter().chain(forces.into_iter().filter(|forces| !forces.is_empty())) {
             fits(&|| format!("values along beam `{}`", shape.beam), shape.s.len(), values.len())?;
         }
     }

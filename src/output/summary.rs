@@ -44,9 +44,9 @@ pub struct Summary {
 /// Energies \[J\] of the last record.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EnergySummary {
-    /// ½∫ EA ε² ds.
+    /// ½∫ EA (ε − ε₀)² ds, ε₀ that of an actuation.
     pub stretch: f64,
-    /// ½∫ EI κ² ds.
+    /// ½∫ EI (κ − κ₀)² ds.
     pub bend: f64,
     /// Of springs, foundations and contacts; left out where there are none.
     #[serde(skip_serializing_if = "is_zero")]
@@ -55,7 +55,7 @@ pub struct EnergySummary {
     pub kinetic: f64,
     /// Of gravity and conservative loads.
     pub potential: f64,
-    /// Done by loads without a potential since the start.
+    /// Done by loads without a potential, moving supports and actuators since the start.
     pub work: f64,
     /// Taken by damping since the start; left out where there is none.
     #[serde(skip_serializing_if = "is_zero")]

@@ -1,5 +1,6 @@
 //! The comma-separated files. Numbers have 17 significant digits, so that reading them back gives the same bits.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 use crate::trajectory::{AnalysisKind, Frame, ProbeSample, Shape, Trajectory};
@@ -19,18 +20,25 @@ pub(crate) fn exact(value: f64) -> String {
     format!("{value:.16e}")
 }
 
+/// A text as a cell of a table: what a spreadsheet would take for a formula has an apostrophe before it, which makes it text there. Numbers are as they are.
+pub(crate) fn cell(text: &str) -> Cow<'_, str> {
+    let signed =
+        text.starts_with(['+', '-']) && !text[1..].starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    if signed || text.starts_with(['=', '@', '\t', '\r']) { format!("'{text}").into() } else { text.into() }
+}
+
 struct Table<'a>(csv::Writer<&'a mut dyn Write>);
 
 impl<'a> Table<'a> {
     fn new(out: &'a mut dyn Write, header: &[String]) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(out);
-        writer.write_record(header)?;
+        writer.write_record(header.iter().map(|name| cell(name).into_owned()))?;
         Ok(Self(writer))
     }
 
     fn row(&mut self, words: &[&str], numbers: impl IntoIterator<Item = f64>) -> io::Result<()> {
         for word in words {
-            self.0.write_field(word)?;
+            self.0.write_field(cell(word).as_bytes())?;
         }
         for number in numbers {
             self.0.write_field(exact(number))?;
@@ -126,7 +134,7 @@ fn shape_rows(table: &mut Table<'_>, lead: &[&str], shape: &Shape, forces: bool)
     words.push(&shape.beam);
     let mut columns = vec![&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
     if forces {
-        columns.extend([&shape.axial_force, &shape.bending_moment]);
+        columns.extend([&shape.axial_force, &shape.shear_force, &shape.bending_moment]);
     }
     for (i, &s) in shape.s.iter().enumerate() {
         let values = columns.iter().map(|c| c.get(i).copied().unwrap_or(f64::NAN));
@@ -135,9 +143,20 @@ fn shape_rows(table: &mut Table<'_>, lead: &[&str], shape: &Shape, forces: bool)
     Ok(())
 }
 
-/// `shape.csv`: the last state, `beam, s, x, y, angle, strain, curvature, axial_force, bending_moment`.
+/// `shape.csv`: the last state, `beam, s, x, y, angle, strain, curvature, axial_force, shear_force, bending_moment`.
 pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let header = ["beam", "s", "x", "y", "angle", "strain", "curvature", "axial_force", "bending_moment"];
+    let header = [
+        "beam",
+        "s",
+        "x",
+        "y",
+        "angle",
+        "strain",
+        "curvature",
+        "axial_force",
+        "shear_force",
+        "bending_moment",
+    ];
     let mut table = Table::new(out, &words(&header))?;
     for shape in &t.last {
         shape_rows(&mut table, &[], shape, true)?;

@@ -1,12 +1,6 @@
 //! Angles that count turns: a tip that has gone round once stands at 2π, not at 0.
 
-use crate::system::BeamPart;
-use std::f64::consts::TAU;
-
-/// The representative of an angle nearest to `near`.
-pub(super) fn unfold(angle: f64, near: Option<f64>) -> f64 {
-    near.map_or(angle, |near| angle + TAU * ((near - angle) / TAU).round())
-}
+use crate::system::{BeamPart, unfold};
 
 /// By how much the node of a beam nearest to `s` has turned between two states. One load step may wind a beam up by whole turns; but some node has
 /// turned by less than half of one, such as one that is clamped, and the others follow from cell to cell.

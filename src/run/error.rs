@@ -36,6 +36,24 @@ pub enum RunError {
         /// What was computed until then.
         partial: Box<Trajectory>,
     },
+    /// A path has as many points as it may have, and has not reached its target.
+    #[error(
+        "the path ends after `max_points = {points}` at load factor {}, before {target}",
+        plain(*.load, 6)
+    )]
+    #[diagnostic(help(
+        "raise `max_points`, or `max_step` if there is one; a path that turns back may never get there: look at its states until here"
+    ))]
+    OutOfPoints {
+        /// Points on the path.
+        points: usize,
+        /// Load factor of the last equilibrium.
+        load: f64,
+        /// Which load factor or place of a probe was to be reached.
+        target: String,
+        /// What was computed until then.
+        partial: Box<Trajectory>,
+    },
     /// A setting refers to a probe that does not exist.
     #[error("there is no probe `{probe}`; the probes are: {known}")]
     NoSuchProbe {
@@ -83,6 +101,15 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Restart(#[from] RestartError),
+    /// There is not so much memory.
+    #[error("this needs about {:.3} GiB of memory, and {:.3} GiB are free", gib(*.needed), gib(*.free))]
+    #[diagnostic(help("ask for fewer nodes, records or modes, or end other programs"))]
+    Memory {
+        /// Bytes.
+        needed: f64,
+        /// Bytes.
+        free: f64,
+    },
     /// The scene is legal, but this version cannot compute it.
     #[error("{what} is not available in this version")]
     #[diagnostic(help("{instead}"))]
@@ -104,7 +131,11 @@ impl RunError {
             | Self::Restart(_)
             | Self::Undamped(_)
             | Self::Unavailable { .. } => 2,
-            Self::NoEquilibrium { .. } | Self::NoStep { .. } | Self::Eigen(_) => 1,
+            Self::NoEquilibrium { .. }
+            | Self::OutOfPoints { .. }
+            | Self::NoStep { .. }
+            | Self::Eigen(_)
+            | Self::Memory { .. } => 1,
         }
     }
 
@@ -116,10 +147,16 @@ impl RunError {
     /// What was computed before the failure.
     pub fn partial(&mut self) -> Option<&mut Trajectory> {
         match self {
-            Self::NoEquilibrium { partial, .. } | Self::NoStep { partial, .. } => Some(partial),
+            Self::NoEquilibrium { partial, .. }
+            | Self::OutOfPoints { partial, .. }
+            | Self::NoStep { partial, .. } => Some(partial),
             _ => None,
         }
     }
+}
+
+fn gib(bytes: f64) -> f64 {
+    bytes / 1024f64.powi(3)
 }
 
 /// A number with so many decimals, or in powers of ten where these would show too few digits of it or too many.

@@ -1,21 +1,27 @@
 //! Looking at the states of a system: probes, shapes, frames, and the trajectories made of them.
 
 use super::RunError;
-use super::angle::{self, unfold};
+use super::angle;
+use super::locking::Locking;
+use super::winding::Winding;
+use crate::effect::{Actions, Side, Slips};
 use crate::linear::Singular;
-use crate::model::{ArcLength, Beam, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
+use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
 use crate::solve::dynamics;
 use crate::solve::newton::Failure;
 use crate::solve::path::Stuck;
 use crate::solve::statics::Solution;
-use crate::system::{Fields, Reaction, System, SystemError, View};
+use crate::system::{Reaction, System, SystemError, View, unfold};
 use crate::trajectory::{
     AnalysisKind, EffectSeries, Energy, Event, Frame, ProbeSample, ProbeSeries, ReactionSeries, Shape,
     Trajectory,
 };
+use nalgebra::Vector2;
 use std::f64::consts::FRAC_PI_2;
 
+/// Distance of two places that are one, in beam lengths.
+const SAME_PLACE: f64 = 1e-9;
 /// Points at which shapes are sampled.
 const SHAPE_POINTS: usize = 201;
 /// Every so many of them are in a frame of the animation.
@@ -26,6 +32,12 @@ const DROWNED: f64 = 1e-2;
 const STALLED: f64 = 1e-6;
 /// What to try where a beam is crushed.
 const TOO_SOFT: &str = "a beam is a model for small strains: use smaller loads, or a larger axial stiffness";
+/// What to try where a beam is pushed through an obstacle.
+const PUSHED_THROUGH: &str = "the obstacle gives way by more than half its thickness: give the contact a larger `stiffness`, or the obstacle a larger size";
+/// Change of the total energy, relative to the largest energy, that is worth a warning.
+const LARGEST_DRIFT: f64 = 1e-2;
+/// Energies below this, in EA L, are those of the round-off of strains.
+const LEAST_ENERGY: f64 = 1e-20;
 /// Frames kept for the animation.
 const FRAMES: usize = 400;
 
@@ -35,6 +47,8 @@ pub(super) struct Look<'a> {
     pub(super) system: &'a System,
     shapes: Vec<View>,
     probes: Vec<Watched>,
+    locking: Locking,
+    winding: Winding,
 }
 
 /// A probe with the rows that see its point.
@@ -45,6 +59,54 @@ struct Watched {
     measure: StrainMeasure,
     /// ε of the stress-free state there.
     reference_strain: f64,
+}
+
+/// What there is to say about a motion whose balance of energy is off by more than a hundredth of its largest energy, where that is more than `least` \[J\].
+fn unbalanced(energy: &[Energy], least: f64) -> Option<String> {
+    let first = energy.first()?;
+    let change = |e: &Energy| e.total() - first.total();
+    let off = energy.iter().map(change).fold(0.0_f64, |m, c| if c.abs() > m.abs() { c } else { m });
+    let parts =
+        |e: &Energy| [e.stretch, e.bend, e.stored, e.kinetic, e.potential - first.potential, e.work, e.lost];
+    let largest = energy.iter().flat_map(parts).fold(0.0_f64, |m, part| m.max(part.abs()));
+    let share = off.abs() / largest;
+    (largest > least && share > LARGEST_DRIFT).then(|| {
+        let (what, meaning) = if off > 0.0 {
+            ("gained", "that nothing put in: it is not the motion of this beam")
+        } else {
+            (
+                "lost",
+                "that no damping took: vibrations that are too fast for the steps are missing, or more than these",
+            )
+        };
+        format!(
+            "the motion has {what} {:.2e} J, {:.2} of its largest energy, {meaning}; compare with a smaller `tolerance` or `step`, or with \
+             a finer mesh",
+            off.abs(),
+            share
+        )
+    })
+}
+
+/// The places `even`, and those of `jumps` twice; each with the side on which to cut there.
+fn stations(even: &[f64], jumps: &[f64]) -> (Vec<f64>, Vec<Side>) {
+    let end = even.last().copied().unwrap_or(0.0);
+    let apart = |s: &&f64| jumps.iter().all(|jump| (jump - **s).abs() > SAME_PLACE * end);
+    // At the beam's end what acts there is beyond the cut.
+    let plain = even.iter().filter(apart).map(|s| (*s, if *s == end { Side::Left } else { Side::Right }));
+    let mut stations: Vec<_> =
+        plain.chain(jumps.iter().flat_map(|s| [(*s, Side::Left), (*s, Side::Right)])).collect();
+    stations.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    stations.into_iter().unzip()
+}
+
+/// How often the directions have turned.
+#[derive(Clone, Copy)]
+pub(super) enum History<'h> {
+    /// As they have since this state, that of the record before.
+    Before(Option<&'h [f64]>),
+    /// Directions at all probes with their turns.
+    Angles(&'h [f64]),
 }
 
 fn evenly(length: f64, count: usize) -> Vec<f64> {
@@ -72,10 +134,11 @@ impl<'a> Look<'a> {
                 } else {
                     view.fields(system.reference()).strain(measure)
                 };
-                Ok(Watched { name: probe.name.clone(), beam: probe.at.beam, view, measure, reference_strain })
+                Ok(Watched { name: probe.name.clone(), beam, view, measure, reference_strain })
             })
             .collect::<Result<_, SystemError>>()?;
-        Ok(Self { model, system, shapes, probes })
+        let (locking, winding) = (Locking::new(model, system)?, Winding::new(model, system)?);
+        Ok(Self { model, system, shapes, probes, locking, winding })
     }
 
     /// The probe at which a path is to end, as (view, axis, value).
@@ -110,6 +173,7 @@ impl<'a> Look<'a> {
             analysis,
             complete: true,
             degrees_of_freedom: self.system.degrees_of_freedom(),
+            warnings: self.left_out(analysis).into_iter().collect(),
             settings: self.settings(),
             undeformed: self.shape(reference),
             outlines: self.outlines(),
@@ -121,6 +185,31 @@ impl<'a> Look<'a> {
                 .collect(),
             ..Trajectory::default()
         }
+    }
+
+    /// What the model names and the analysis leaves out.
+    fn left_out(&self, analysis: AnalysisKind) -> Option<String> {
+        let name = match analysis {
+            AnalysisKind::Static => "statics",
+            AnalysisKind::Modal => "a modal analysis",
+            AnalysisKind::Buckling => "a buckling analysis",
+            AnalysisKind::Dynamic => return None,
+        };
+        let mut names: Vec<String> = self
+            .system
+            .left_out()
+            .map(|(kind, beam)| format!("`{}` of beam `{beam}`", kind.name()))
+            .collect();
+        names.extend((!self.model.initial_velocities.is_empty()).then(|| "`initial_velocity`".to_owned()));
+        names.sort();
+        names.dedup();
+        let verb = if names.len() == 1 { "takes" } else { "take" };
+        (!names.is_empty()).then(|| {
+            format!(
+                "{} {verb} no part in {name}, which knows no velocities: [analysis.dynamic] computes the motion with all of it",
+                names.join(", ")
+            )
+        })
     }
 
     fn outlines(&self) -> Vec<Vec<[f64; 2]>> {
@@ -162,76 +251,62 @@ impl<'a> Look<'a> {
 
     /// All beams in the state `q`.
     pub(super) fn shape(&self, q: &[f64]) -> Vec<Shape> {
-        let beams = self.model.beams.iter().zip(self.system.beams()).zip(&self.shapes);
+        self.shapes.iter().enumerate().map(|(beam, view)| self.shape_of(beam, view, q)).collect()
+    }
+
+    /// One beam in the state `q`, as `view` sees it.
+    fn shape_of(&self, beam: usize, view: &View, q: &[f64]) -> Shape {
+        let (part, beam) = (&self.system.beams()[beam], &self.model.beams[beam]);
+        let mut shape = Shape { beam: beam.name.clone(), s: view.s().to_vec(), ..Shape::default() };
+        let mut angle = None;
+        for fields in view.all(q) {
+            shape.x.push(fields.position[0]);
+            shape.y.push(fields.position[1]);
+            let unfolded = unfold(fields.angle(), angle);
+            angle = Some(unfolded);
+            shape.angle.push(unfolded);
+            shape.strain.push(fields.strain(beam.strain));
+            shape.curvature.push(fields.curvature());
+        }
+        let first = 4 * part.first_node;
+        let nodes = q[first..first + 4 * part.basis.nodes().len()].chunks_exact(4);
+        shape.nodes = nodes.map(|n| [n[0], n[1]]).collect();
+        // A curved beam is free of stress with the strain that its interpolated shape has.
+        if !part.straight {
+            let reference = view.all(self.system.reference());
+            for (strain, reference) in shape.strain.iter_mut().zip(reference) {
+                *strain -= reference.strain(beam.strain);
+            }
+        }
+        shape
+    }
+
+    /// The same with section forces, from what acts on each beam; where that is a force or a couple in a point there are two rows, before and behind it.
+    pub(super) fn loaded(&self, q: &[f64], actions: &[Actions]) -> Vec<Shape> {
+        let beams = self.shapes.iter().zip(actions).enumerate();
         beams
-            .map(|((beam, part), view)| {
-                let mut shape = Shape { beam: beam.name.clone(), s: view.s().to_vec(), ..Shape::default() };
-                let mut angle = None;
-                for fields in view.all(q) {
-                    shape.x.push(fields.position[0]);
-                    shape.y.push(fields.position[1]);
-                    let unfolded = unfold(fields.angle(), angle);
-                    angle = Some(unfolded);
-                    shape.angle.push(unfolded);
-                    shape.strain.push(fields.strain(beam.strain));
-                    shape.curvature.push(fields.curvature());
-                }
-                let first = 4 * part.first_node;
-                let nodes = q[first..first + 4 * part.basis.nodes().len()].chunks_exact(4);
-                shape.nodes = nodes.map(|n| [n[0], n[1]]).collect();
-                // A curved beam is free of stress with the strain that its interpolated shape has.
-                if !part.straight {
-                    let reference = view.all(self.system.reference());
-                    for (strain, reference) in shape.strain.iter_mut().zip(reference) {
-                        *strain -= reference.strain(beam.strain);
-                    }
-                }
+            .map(|(beam, (even, actions))| {
+                let part = &self.system.beams()[beam];
+                let (s, sides) = stations(even.s(), &actions.jumps(part.basis.length()));
+                let view = View::points(&part.basis, part.offset(), &s);
+                let mut shape = self.shape_of(beam, view.as_ref().unwrap_or(even), q);
+                self.cut(beam, actions, &sides, &mut shape);
                 shape
             })
             .collect()
     }
 
-    /// The same with section forces, `x` being coordinates and scaled multipliers.
-    pub(super) fn loaded(&self, parameter: f64, x: &[f64]) -> Vec<Shape> {
-        let (q, multipliers) = x.split_at(self.system.coordinates());
-        let mut shapes = self.shape(q);
-        for (index, shape) in shapes.iter_mut().enumerate() {
-            self.section_forces(parameter, index, self.shapes[index].all(q), shape);
-            if let Some(forces) = self.system.axial_force(index, multipliers, &shape.s) {
-                shape.axial_force = forces;
-            }
-        }
-        shapes
-    }
-
-    /// N = ∂U/∂|r'| per length, EA ε for engineering strain and EA ε |r'| for Green's, and M = EI κ, each less what an actuation takes. N of an
-    /// inextensible beam is that of its constraints.
-    fn section_forces(
-        &self,
-        parameter: f64,
-        beam: usize,
-        fields: impl Iterator<Item = Fields>,
-        shape: &mut Shape,
-    ) {
-        let Beam { section, strain, .. } = &self.model.beams[beam];
-        let own = self.model.parts.iter().filter_map(|part| part.actuation(beam));
-        let (own_strain, own_curvature) = own.fold((0.0, 0.0), |(e, k), (strain, curvature, law)| {
-            let part = law.map_or_else(|| self.system.amplitude(parameter), |law| law.at(parameter)[0]);
-            (e + part * strain, k + part * curvature)
-        });
-        let (ea, ei) = (section.axial_stiffness.unwrap_or(0.0), section.bending_stiffness.unwrap_or(0.0));
-        let reference: Vec<f64> = if self.system.beams()[beam].straight {
-            vec![0.0; shape.s.len()]
-        } else {
-            self.shapes[beam].all(self.system.reference()).map(|fields| fields.curvature()).collect()
-        };
-        for (i, fields) in fields.enumerate() {
-            let stretch = match strain {
-                StrainMeasure::Green => fields.gradient[0].hypot(fields.gradient[1]),
-                StrainMeasure::Engineering => 1.0,
-            };
-            shape.axial_force.push(ea * (shape.strain[i] - own_strain) * stretch);
-            shape.bending_moment.push(ei * (shape.curvature[i] - reference[i] - own_curvature));
+    /// Adds the section forces; a string has no other than N.
+    fn cut(&self, beam: usize, actions: &Actions, sides: &[Side], shape: &mut Shape) {
+        let bends = self.model.beams[beam].section.bending_stiffness.is_some();
+        let length = self.system.beams()[beam].basis.length();
+        for (i, side) in sides.iter().enumerate() {
+            let before = actions.until(shape.s[i], *side, length);
+            let (r, (sine, cosine)) = (Vector2::new(shape.x[i], shape.y[i]), shape.angle[i].sin_cos());
+            let force = -before.force;
+            shape.axial_force.push(force.x * cosine + force.y * sine);
+            shape.shear_force.push(if bends { force.y * cosine - force.x * sine } else { 0.0 });
+            shape.bending_moment.push(if bends { r.perp(&before.force) - before.moment } else { 0.0 });
         }
     }
 
@@ -252,9 +327,9 @@ impl<'a> Look<'a> {
         trajectory: &mut Trajectory,
         parameter: f64,
         q: &[f64],
-        velocity: Option<&[f64]>,
+        (velocity, slips): (Option<&[f64]>, &Slips),
     ) {
-        let effects = self.system.effects(parameter, q, velocity);
+        let effects = self.system.effects(parameter, q, velocity, slips);
         if trajectory.effects.is_empty() {
             let series = |(name, energy, _): &(String, Option<f64>, [f64; 2])| EffectSeries {
                 name: name.clone(),
@@ -277,30 +352,35 @@ impl<'a> Look<'a> {
         &self,
         trajectory: &mut Trajectory,
         parameter: f64,
-        (before, q): (Option<&[f64]>, &[f64]),
-        velocity: Option<&[f64]>,
+        (history, q): (History<'_>, &[f64]),
+        (velocity, slips): (Option<&[f64]>, &Slips),
         energy: Energy,
     ) {
         trajectory.parameter.push(parameter);
         trajectory.energy.push(energy);
         if self.model.outputs.effects {
-            self.record_effects(trajectory, parameter, q, velocity);
+            self.record_effects(trajectory, parameter, q, (velocity, slips));
         }
-        for (Watched { beam, view, measure, reference_strain, .. }, series) in
-            self.probes.iter().zip(&mut trajectory.probes)
+        for (probe, (Watched { beam, view, measure, reference_strain, .. }, series)) in
+            self.probes.iter().zip(&mut trajectory.probes).enumerate()
         {
             let fields = view.fields(q);
-            let turned =
-                before.map_or(0.0, |before| angle::turn(&self.system.beams()[*beam], view.s()[0], before, q));
-            let angle = unfold(fields.angle(), series.samples.last().map(|s| s.angle + turned));
+            let angle = match history {
+                History::Angles(angles) => angles.get(probe).copied().unwrap_or_else(|| fields.angle()),
+                History::Before(before) => {
+                    let part = &self.system.beams()[*beam];
+                    let turned = before.map_or(0.0, |before| angle::turn(part, view.s()[0], before, q));
+                    unfold(fields.angle(), series.samples.last().map(|s| s.angle + turned))
+                }
+            };
             series.samples.push(ProbeSample {
                 x: fields.position[0],
                 y: fields.position[1],
                 angle,
                 curvature: fields.curvature(),
                 strain: fields.strain(*measure) - reference_strain,
-                vx: velocity.map(|v| view.velocity(v)[0]),
-                vy: velocity.map(|v| view.velocity(v)[1]),
+                vx: velocity.map(|v| view.at_point(v)[0]),
+                vy: velocity.map(|v| view.at_point(v)[1]),
             });
         }
     }
@@ -308,21 +388,33 @@ impl<'a> Look<'a> {
     pub(super) fn statics(&self, solution: &Solution) -> Trajectory {
         let mut trajectory = self.empty(AnalysisKind::Static);
         let every = solution.states.len().div_ceil(FRAMES).max(1);
-        for (i, (load, x)) in solution.states.iter().enumerate() {
+        let (mut locking, mut winding) = (self.locking.clone(), self.winding.clone());
+        // Of actuators, by the trapezoidal rule.
+        let (mut work, mut last) = (0.0, (0.0, 0.0));
+        for (i, ((load, x), slips)) in solution.states.iter().zip(&solution.slips).enumerate() {
             let q = self.coordinates_of(x);
             if self.model.outputs.reactions {
-                self.record_reactions(&mut trajectory, &self.system.static_reactions(*load, x));
+                self.record_reactions(&mut trajectory, &self.system.static_reactions(*load, x, slips));
             }
             let before = i.checked_sub(1).map(|i| self.coordinates_of(&solution.states[i].1));
-            self.record(&mut trajectory, *load, (before, q), None, self.system.energy(*load, q, None));
+            let rate = self.system.actuators_rate(*load, q);
+            work += 0.5 * (rate + last.1) * (load - last.0);
+            last = (*load, rate);
+            let energy = Energy { work, ..self.system.energy(*load, q, None).with(slips) };
+            self.record(&mut trajectory, *load, (History::Before(before), q), (None, slips), energy);
+            winding.see(self.system, before, q);
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(*load, q));
+                locking.see(q);
             }
         }
-        if let Some((load, x)) = solution.states.last() {
-            trajectory.last = self.loaded(*load, x);
+        if let (Some((load, x)), Some(slips)) = (solution.states.last(), solution.slips.last()) {
+            let actions = self.system.static_actions(*load, x, slips);
+            trajectory.last = self.loaded(self.coordinates_of(x), &actions);
         }
         trajectory.warnings.extend(self.folds(&trajectory.last));
+        trajectory.warnings.extend(locking.warnings());
+        trajectory.warnings.extend(winding.warnings(self.system));
         trajectory.history = solution.history.clone();
         trajectory.statistics = solution.statistics;
         for event in &solution.events {
@@ -340,6 +432,20 @@ impl<'a> Look<'a> {
             ));
         }
         trajectory
+    }
+
+    /// The last state, if it is the equilibrium under the full loads.
+    pub(super) fn equilibrium(&self, solution: &Solution, seen: &Trajectory) -> Option<SavedState> {
+        let (_, x) = solution.states.last().filter(|(load, _)| *load == 1.0)?;
+        let mut state = dynamics::State::at_rest(self.coordinates_of(x));
+        state.angles = seen.probes.iter().filter_map(|p| p.samples.last()).map(|s| s.angle).collect();
+        let checkpoint = dynamics::Checkpoint { state, ..dynamics::Checkpoint::default() };
+        Some(SavedState::new(self.model, self.system, String::new(), checkpoint))
+    }
+
+    /// Where directions are watched.
+    pub(super) fn directions(&self) -> Vec<View> {
+        self.probes.iter().map(|probe| probe.view.clone()).collect()
     }
 
     /// Strings that turn back within a cell. Nothing resists such a fold but the string's length, so that it may stay where a large step has left it.
@@ -384,6 +490,11 @@ impl<'a> Look<'a> {
                 "supports between nodes hold the same motion more than once: leave some out, or use more nodes"
             }
             Failure::Crushed { .. } => TOO_SOFT,
+            Failure::Crossed { .. } => PUSHED_THROUGH,
+            _ if self.system.is_floppy() => {
+                "strings and beams on hinges come to rest where loads of fixed direction hold them: let such a load act on all \
+                 that can move, add a support, or begin nearer to the equilibrium"
+            }
             Failure::NotFinite if stuck.step == 0.0 => {
                 "a load or a stiffness is no number, or beyond what its products leave room for: use other units"
             }
@@ -406,6 +517,20 @@ impl<'a> Look<'a> {
         }
     }
 
+    /// Of a path that has not reached its target.
+    pub(super) fn out_of_points(&self, arc: &ArcLength, solution: &Solution) -> RunError {
+        let load = arc.until_load.map(|load| format!("load factor {load}"));
+        let probe = arc.until_probe.as_ref().map(|ProbeTarget { probe, axis, value }| {
+            format!("{} = {value} m of probe `{probe}`", if *axis == 0 { "x" } else { "y" })
+        });
+        RunError::OutOfPoints {
+            points: arc.max_points,
+            load: solution.states.last().map_or(0.0, |(load, _)| *load),
+            target: load.into_iter().chain(probe).collect::<Vec<_>>().join(" or "),
+            partial: Box::new(Trajectory { complete: false, ..self.statics(solution) }),
+        }
+    }
+
     /// Whether increments are small but do not vanish, or the round-off of internal forces compares with the loads, so that there is nothing
     /// to converge to.
     fn limited_by_round_off(&self, failure: &Failure) -> bool {
@@ -421,54 +546,66 @@ impl<'a> Look<'a> {
         let mut trajectory = self.empty(AnalysisKind::Dynamic);
         trajectory.settings.push(("integrator".into(), settings.integrator.to_string()));
         let every = solution.states.len().div_ceil(FRAMES).max(1);
-        let mut motion =
-            if self.model.outputs.reactions { dynamics::motion::Motion::new(self.system).ok() } else { None };
+        let (mut locking, mut winding) = (self.locking.clone(), self.winding.clone());
+        for reactions in &solution.reactions {
+            self.record_reactions(&mut trajectory, reactions);
+        }
         for (i, state) in solution.states.iter().enumerate() {
-            if let Some(motion) = &mut motion {
-                let reactions = motion.reactions(state).unwrap_or_default();
-                self.record_reactions(&mut trajectory, &reactions);
-            }
             let (q, v) = (&state.q[..], Some(&state.v[..]));
-            let energy = self.system.energy(state.time, q, v);
-            let energy = Energy { work: state.work, lost: state.lost, ..energy };
-            self.record(&mut trajectory, state.time, (None, q), v, energy);
+            let energy = self.system.energy(state.time, q, v).with(&state.slips);
+            let energy = Energy { work: state.work + energy.work, lost: state.lost, ..energy };
+            self.record(
+                &mut trajectory,
+                state.time,
+                (History::Angles(&state.angles), q),
+                (v, &state.slips),
+                energy,
+            );
+            winding.see(self.system, None, q);
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(state.time, q));
+                locking.see(q);
             }
         }
+        let least = LEAST_ENERGY * self.system.stiffness() * self.system.length();
+        trajectory.warnings.extend(unbalanced(&trajectory.energy, least));
         if let Some(state) = solution.states.last() {
-            let mut x = state.q.clone();
-            if self.system.has_nonlinear_constraints()
-                && let Ok(mut motion) = dynamics::motion::Motion::new(self.system)
-                && motion.reactions(state).is_ok()
-            {
-                x.extend_from_slice(motion.multipliers());
-            }
-            trajectory.last = self.loaded(state.time, &x);
+            trajectory.last = match &solution.end {
+                Some(balance) => self.loaded(&state.q, &self.system.actions(balance.view())),
+                None => self.shape(&state.q),
+            };
         }
         for (watch, state) in &solution.events {
             let ProbeTarget { probe, axis, value } = settings.events[*watch].target.clone();
             let axis = ["x", "y"][axis].into();
             trajectory.events.push(Event::Crossing { time: state.time, probe, axis, value });
         }
-        let contacts: Vec<String> = self.system.contacts().collect();
+        let contacts: Vec<String> = self.system.contact_names().collect();
         for dynamics::Change { contact, touches, time, blow } in solution.contacts.iter().copied() {
             let contact = contacts.get(contact).cloned().unwrap_or_default();
             trajectory.events.push(Event::Contact { time, contact, touches, blow });
         }
         trajectory.events.sort_by(|a, b| a.time().total_cmp(&b.time()));
+        for (contact, time) in &solution.crossings {
+            trajectory.warnings.push(format!(
+                "contact {} gave way at t = {time:.6} s: the beam was pushed past the middle of the obstacle, which its `stiffness` \
+                 is too small to prevent",
+                contacts.get(*contact).cloned().unwrap_or_default()
+            ));
+        }
+        trajectory.warnings.extend(locking.warnings());
+        trajectory.warnings.extend(winding.warnings(self.system));
         let divided = solution.statistics.rejected_steps;
         if divided > 0 && matches!(settings.integrator.step_control(), StepControl::Fixed(_)) {
             let smallest = solution.history.iter().map(|r| r.step).fold(f64::INFINITY, f64::min);
             trajectory.warnings.push(format!(
-                "the step was divided {divided} time{}, down to {smallest:.1e} s, because its equations could not be solved: \
+                "the step was divided {divided} time{}, down to {smallest:.1e} s, because its equations could not be solved or a contact would not have been seen: \
                  give `tolerance` instead of `step`, or a smaller `step`",
                 if divided == 1 { "" } else { "s" }
             ));
         }
         trajectory.history = solution.history;
         trajectory.statistics = solution.statistics;
-        trajectory.saved = solution.checkpoint.map(|checkpoint| SavedState::new(self.system, checkpoint));
         trajectory
     }
 
@@ -481,6 +618,7 @@ impl<'a> Look<'a> {
         let (beam, s) = stuck.at;
         let advice = match settings.integrator.step_control() {
             _ if matches!(stuck.failure, Failure::Crushed { .. }) => TOO_SOFT,
+            _ if matches!(stuck.failure, Failure::Crossed { .. }) => PUSHED_THROUGH,
             _ if stuck.failure == Failure::NotFinite && stuck.step == 0.0 => {
                 "a velocity, a load or a stiffness is beyond what its products leave room for: start from another state, or use other units"
             }

@@ -2,6 +2,7 @@
 
 use super::look::Look;
 use super::{Control, Observer, Progress, RunError};
+use crate::effect::Slips;
 use crate::model::{About, Static};
 use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};
@@ -13,6 +14,8 @@ const TO_THE_END: f64 = 1e-14;
 /// A long step past the critical load of a nearly perfect structure may end on the unstable branch of a perfect one.
 /// Before a state is refused as unstable, its path is followed again in so many parts of the load.
 const FINER: [usize; 2] = [20, 200];
+/// Turn of a node before buckling to which the linear solution is trusted \[rad\].
+const STRAIGHT: f64 = 0.1;
 /// Largest displacement of a drawn mode, in beam lengths.
 const DRAWN: f64 = 0.1;
 
@@ -26,7 +29,7 @@ impl Look<'_> {
     ) -> Result<Trajectory, RunError> {
         if about == About::Reference {
             let mut trajectory = self.empty(AnalysisKind::Modal);
-            trajectory.last = self.loaded(0.0, self.system.reference());
+            trajectory.last = self.unloaded();
             let mut x = self.system.reference().to_vec();
             x.resize(x.len() + self.system.multipliers(), 0.0);
             return self.modal(trajectory, 0.0, &x, count);
@@ -44,6 +47,7 @@ impl Look<'_> {
             }
             // The way there is of no interest, only that it led there.
             solution.states.drain(..solution.states.len().saturating_sub(1));
+            solution.slips.drain(..solution.slips.len().saturating_sub(1));
             let trajectory = Trajectory { analysis: AnalysisKind::Modal, ..self.statics(&solution) };
             let vibrations = match solution.states.last() {
                 Some((load, x)) if *load == 1.0 => self.modal(trajectory, *load, x, count),
@@ -64,6 +68,13 @@ impl Look<'_> {
         x: &[f64],
         count: usize,
     ) -> Result<Trajectory, RunError> {
+        if load == 0.0 && self.system.has_loads() {
+            trajectory.warnings.push(
+                "loads take no part in vibrations about the stress-free state: `about = \"equilibrium\"` in [analysis.modal] finds those about the \
+                 equilibrium under them"
+                    .into(),
+            );
+        }
         let about = if load == 0.0 { "the stress-free state" } else { "the equilibrium under all loads" };
         trajectory.settings.push(("vibrations about".into(), about.into()));
         let modes = modal::solve(self.system, load, x, count)?;
@@ -76,12 +87,25 @@ impl Look<'_> {
 
     pub(super) fn buckling(&self, modes: &buckling::Modes) -> Trajectory {
         let mut trajectory = self.empty(AnalysisKind::Buckling);
-        trajectory.last = self.loaded(0.0, self.system.reference());
+        trajectory.last = self.unloaded();
         trajectory.load_factors = modes.load_factors.clone();
         let reference = self.system.reference();
         trajectory.modes = modes.shapes.iter().map(|mode| self.mode_shape(reference, mode)).collect();
         trajectory.statistics.factorizations = modes.factorizations;
+        if let (true, Some(load)) = (modes.turn > STRAIGHT, modes.load_factors.first()) {
+            trajectory.warnings.push(format!(
+                "the loads turn the beam by {:.2} rad before it buckles at load factor {load:.6}, by the linear solution, which holds for small turns only: \
+                 follow the path with `arc_length` in [analysis.static], which finds limit points and bifurcations of the bent structure",
+                modes.turn
+            ));
+        }
         trajectory
+    }
+
+    /// The stress-free state.
+    fn unloaded(&self) -> Vec<Shape> {
+        let reference = self.system.reference();
+        self.loaded(reference, &self.system.static_actions(0.0, reference, &Slips::default()))
     }
 
     /// The state `q` with a mode added, its largest displacement a tenth of a beam length.

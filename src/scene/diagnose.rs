@@ -64,8 +64,27 @@ pub(super) fn data(error: &toml::de::Error, document: &DeTable<'_>) -> Fault {
         }
     };
     let place = if path.is_empty() { String::new() } else { format!("`{path}`: ") };
+    let help = list_form(&path, &message).or((!rest.is_empty()).then(|| rest.to_owned()));
     let fault = Fault::new(span, format!("{place}{message}"));
-    if rest.is_empty() { fault } else { fault.help(rest) }
+    match help {
+        Some(help) => fault.help(help),
+        None => fault,
+    }
+}
+
+/// How to write a list, where one is expected and something else was found: an array of tables takes two brackets, though there be one table.
+fn list_form(path: &str, message: &str) -> Option<String> {
+    let found = message.strip_prefix("found ")?.strip_suffix(", expected a sequence")?;
+    let key = path.rsplit('.').next().unwrap_or(path);
+    if found == "map" {
+        let form = format!("write `[[{path}]]`, with two brackets, as often as there is one");
+        return Some(format!("{form}; within a line `{key} = [{{ … }}]`"));
+    }
+    let value = match found.strip_prefix("string ") {
+        Some(text) => text.to_owned(),
+        None => found.split('`').nth(1).unwrap_or("…").to_owned(),
+    };
+    Some(format!("write a list, also of one: `{key} = [{value}]`"))
 }
 
 /// The first word in backticks, and all that follow it.

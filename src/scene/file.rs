@@ -97,9 +97,9 @@ pub struct BeamTable {
 #[serde(rename_all = "lowercase")]
 pub enum StrainName {
     /// ½ (r'·r' − 1).
-    #[default]
     Green,
     /// |r'| − 1.
+    #[default]
     Engineering,
 }
 
@@ -138,7 +138,7 @@ pub struct AncfTable {
     pub nodes: Option<Located<NodeList>>,
     /// How counted nodes are spaced.
     pub spacing: Option<Located<SpacingName>>,
-    /// Gauss points in every element; 5 and 3 when left out.
+    /// Points in every element; Lobatto's three (stretch) and Gauss' two (bend) when left out, Gauss' 5/3 where nothing can lock.
     pub gauss_points: Option<GaussPointsTable>,
 }
 

@@ -1,6 +1,7 @@
 //! What supports hold: nothing twice, no more than a mesh can give, and in statics every rigid motion of every beam.
 
-use crate::model::{FixedRotation, Joint, Model, Place, Support};
+use crate::model::freedom::{Freedom, Motion};
+use crate::model::{FixedRotation, Joint, Load, Model, Place};
 
 use super::error::Fault;
 use super::file::SceneTable;
@@ -41,63 +42,47 @@ pub(super) fn check_duplicates(file: &SceneTable, model: &Model, built: &[Built]
     Ok(())
 }
 
-/// Refuses a structure that can move without deforming. A planar rigid motion of a beam is (t_x, t_y, ω); a support at r₀ holds
-/// t_x − ω (y₀ − ȳ), t_y + ω (x₀ − x̄) and ω, and a joint equals those of two beams. All motions are held when the rows have full rank. The direction of
-/// a string is found with its shape, from the load that it carries.
-pub(super) fn check_rigid_motions(model: &Model, built: &[Built]) -> Result<(), Fault> {
+/// What takes part in an equilibrium that no elasticity gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Resisting {
+    /// Nothing: the analysis asks for the stiffness of the unloaded structure.
+    Nothing,
+    /// Weight, under which a pendulum hangs still, and the loads of fixed direction beside it.
+    Weight,
+}
+
+/// Refuses a structure that can move without deforming. The direction of a string is found with its shape, from the load that it carries; and
+/// weight gives a direction to the beams that it pulls straight.
+pub(super) fn check_rigid_motions(model: &Model, built: &[Built], resisting: Resisting) -> Result<(), Fault> {
     let length = built.iter().map(|beam| beam.curve.length()).fold(0.0, f64::max);
-    let origins: Vec<[f64; 2]> = built.iter().map(|beam| beam.curve.position(0.0)).collect();
-    let columns = 3 * built.len();
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    // A row of Σ n·u over points, and one of Σ ω.
-    let displacement = |terms: &[(Place, [f64; 2])]| {
-        let mut row = vec![0.0; columns];
-        for (place, n) in terms {
-            let ([x, y], [ox, oy]) = (built[place.beam].curve.position(place.s), origins[place.beam]);
-            let lever = (n[1] * (x - ox) - n[0] * (y - oy)) / length;
-            for (i, value) in [n[0], n[1], lever].into_iter().enumerate() {
-                row[3 * place.beam + i] += value;
-            }
-        }
-        row
-    };
-    let rotation = |terms: &[(Place, f64)]| {
-        let mut row = vec![0.0; columns];
-        terms.iter().for_each(|(place, sign)| row[3 * place.beam + 2] += sign);
-        row
-    };
-    for Support { at, fix, .. } in &model.supports {
-        if fix.x {
-            rows.push(displacement(&[(*at, [1.0, 0.0])]));
-        }
-        if fix.y {
-            rows.push(displacement(&[(*at, [0.0, 1.0])]));
-        }
-        if fix.rotation != FixedRotation::Free {
-            rows.push(rotation(&[(*at, 1.0)]));
-        }
-    }
+    let position = |place: Place| built[place.beam].curve.position(place.s);
+    let mut held = Freedom::new(model, length, position);
     for (beam, _) in model.beams.iter().enumerate().filter(|(_, b)| b.section.bending_stiffness.is_none()) {
-        rows.push(rotation(&[(Place { beam, s: 0.0 }, 1.0)]));
+        held.hold_direction(beam);
     }
-    for joint in &model.joints {
-        match *joint {
-            Joint::Slider { at, along: [x, y] } => rows.push(displacement(&[(at, [-y, x])])),
-            Joint::Hinge { first, second } | Joint::Weld { first, second } => {
-                rows.push(displacement(&[(first, [-1.0, 0.0]), (second, [1.0, 0.0])]));
-                rows.push(displacement(&[(first, [0.0, -1.0]), (second, [0.0, 1.0])]));
-                if matches!(joint, Joint::Weld { .. }) {
-                    rows.push(rotation(&[(first, -1.0), (second, 1.0)]));
-                }
+    let left = held.motions();
+    if resisting == Resisting::Weight && !left.is_empty() {
+        for (beam, taut) in taut(model, built).into_iter().enumerate() {
+            if taut {
+                held.hold_direction(beam);
             }
         }
+        if held.motions().is_empty() {
+            return Ok(());
+        }
     }
-    let Some(motion) = free_motion(rows, columns) else { return Ok(()) };
+    let Some(first) = left.first() else { return Ok(()) };
     // The beam that moves most.
-    let size = |beam: usize| motion[3 * beam..3 * beam + 3].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let index = (0..built.len()).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or(0);
-    let of_beam = [0, 1, 2].map(|i| motion[3 * index + i] / size(index));
-    let words = describe(of_beam, origins[index], length);
+    let size = |motion: &Motion, beam: usize| motion[beam].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let index = (0..built.len()).max_by(|a, b| size(first, *a).total_cmp(&size(first, *b))).unwrap_or(0);
+    let moving = left.iter().filter(|motion| size(motion, index) > 1e-9);
+    let words: Vec<String> = moving
+        .map(|motion| describe(motion[index].map(|v| v / size(motion, index)), held.origin(index), length))
+        .collect();
+    let words = match &words[..] {
+        [all @ .., last] if !all.is_empty() => format!("{} and {last}", all.join(", ")),
+        _ => words.concat(),
+    };
     let beam = &built[index];
     Err(Fault::new(
         beam.name.span(),
@@ -109,41 +94,73 @@ pub(super) fn check_rigid_motions(model: &Model, built: &[Built]) -> Result<(), 
     ))
 }
 
-/// A motion that every row leaves free, if there is one: Gauss–Jordan elimination with full pivoting.
-fn free_motion(mut rows: Vec<Vec<f64>>, columns: usize) -> Option<Vec<f64>> {
-    let mut pivots: Vec<usize> = Vec::with_capacity(columns);
-    while pivots.len() < columns {
-        let done = pivots.len();
-        let best = rows
-            .iter()
-            .enumerate()
-            .skip(done)
-            .flat_map(|(r, row)| row.iter().enumerate().map(move |(c, value)| (value.abs(), r, c)))
-            .filter(|(_, _, c)| !pivots.contains(c))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, r, c)) = best.filter(|(size, ..)| *size > 1e-9) else { break };
-        rows.swap(done, r);
-        let by = rows[done][c];
-        let pivot: Vec<f64> = rows[done].iter().map(|value| value / by).collect();
-        for (other, row) in rows.iter_mut().enumerate() {
-            let factor = row[c];
-            if other != done {
-                for (value, p) in row.iter_mut().zip(&pivot) {
-                    *value -= factor * p;
-                }
-            }
+/// Per beam, whether weight, and loads of fixed direction beside it, may pull on it at one point and something else at another, so that they give it a direction: whether it
+/// is joined to a beam on which they act, itself perhaps, and does not dangle.
+fn taut(model: &Model, built: &[Built]) -> Vec<bool> {
+    let length = built.iter().map(|beam| beam.curve.length()).fold(0.0, f64::max);
+    let loads = acted_upon(model, built);
+    let pairs: Vec<[Place; 2]> = model
+        .joints
+        .iter()
+        .filter_map(|joint| match *joint {
+            Joint::Hinge { first, second } | Joint::Weld { first, second } => Some([first, second]),
+            Joint::Slider { .. } => None,
+        })
+        .collect();
+    let mut reached = vec![false; built.len()];
+    loads.iter().for_each(|place| reached[place.beam] = true);
+    for _ in 0..built.len() {
+        for [first, second] in &pairs {
+            let either = reached[first.beam] || reached[second.beam];
+            (reached[first.beam], reached[second.beam]) = (either, either);
         }
-        rows[done] = pivot;
-        pivots.push(c);
     }
-    // The last column without a pivot; rotation is named in preference to a shift.
-    let free = (0..columns).rev().find(|c| !pivots.contains(c))?;
-    let mut motion = vec![0.0; columns];
-    motion[free] = 1.0;
-    for (row, c) in rows.iter().zip(pivots) {
-        motion[c] = -row[free];
+    let mut taut = reached;
+    loop {
+        let dangles = |beam: &usize| {
+            let joined = pairs.iter().filter(|pair| pair.iter().all(|place| taut[place.beam])).flatten();
+            let sliders = model.joints.iter().filter_map(|joint| match joint {
+                Joint::Slider { at, .. } => Some(at),
+                _ => None,
+            });
+            let supports = model.supports.iter().map(|support| &support.at);
+            let pulled = loads.iter().chain(joined).chain(sliders).chain(supports);
+            let places = pulled.filter(|place| place.beam == *beam).map(|place| place.s);
+            let (from, to) =
+                places.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(s), b.max(s)));
+            to - from <= NEAR * length
+        };
+        let dangling: Vec<usize> = (0..built.len()).filter(|beam| taut[*beam]).filter(dangles).collect();
+        if dangling.is_empty() {
+            return taut;
+        }
+        dangling.into_iter().for_each(|beam| taut[beam] = false);
     }
-    Some(motion)
+}
+
+/// Points on which loads of fixed direction act: of weight and of distributed forces both ends, where a mass per length or a force acts.
+fn acted_upon(model: &Model, built: &[Built]) -> Vec<Place> {
+    let ends = |beam: usize| [0.0, built[beam].curve.length()].map(|s| Place { beam, s });
+    let acts = |value: &[f64; 2]| value.iter().any(|component| *component != 0.0);
+    let (mut places, mut weighs) = (Vec::new(), false);
+    for load in &model.loads {
+        match load {
+            Load::Gravity { acceleration } if acts(acceleration) => {
+                weighs = true;
+                let heavy =
+                    |beam: &usize| model.beams[*beam].section.mass_per_length.is_some_and(|mass| mass > 0.0);
+                places.extend((0..model.beams.len()).filter(heavy).flat_map(ends));
+                places.extend(model.parts.iter().filter_map(|part| part.mass()).map(|(place, _)| place));
+            }
+            Load::Force { at, value, follower: false } if acts(value) => places.push(*at),
+            Load::DistributedForce { beam, value, follower: false } if acts(value) => {
+                places.extend(ends(*beam));
+            }
+            _ => {}
+        }
+    }
+    // Without weight a beam on a hinge is more likely one that lacks a support.
+    if weighs { places } else { Vec::new() }
 }
 
 fn describe([tx, ty, turn]: [f64; 3], origin: [f64; 2], length: f64) -> String {

@@ -45,7 +45,7 @@ pub use to_analysis::{
 };
 pub use to_basis::{
     ANCF_GAUSS_POINTS, MAX_GAUSS_POINTS, MAX_MEMORY, MAX_NEIGHBOURS, MAX_NODES, RPIM_GAUSS_POINTS,
-    RPIM_KERNEL, RPIM_NEIGHBOURS, RPIM_POLYNOMIAL_TERMS, RPIM_SIDE_CONDITION,
+    RPIM_KERNEL, RPIM_NEIGHBOURS, RPIM_POLYNOMIAL_TERMS, RPIM_SIDE_CONDITION, STRING_GAUSS_POINTS,
 };
 
 /// Longest scene file that is read \[bytes\]: more than 10⁷ node places, and a bound for what is no file at all.

@@ -199,9 +199,9 @@ fn dynamic(located: &Located<DynamicTable>, model: &Model, size: Size) -> Result
         None => duration / DYNAMIC_RECORDS,
     };
     const ONE: &str = "give one of `[analysis.dynamic.generalized_alpha]`, `[analysis.dynamic.gauss]`, \
-                       `[analysis.dynamic.radau]`, or none for collocation with its default accuracy";
+                       `[analysis.dynamic.radau]`, or none for Radau IIA collocation with its default accuracy";
     let integrator = match (&table.generalized_alpha, &table.gauss, &table.radau) {
-        (None, None, None) => Integrator::accurate(model, STEP_CONTROL),
+        (None, None, None) => Integrator::usual(STEP_CONTROL),
         (Some(alpha), None, None) => {
             let t = alpha.get();
             let spectral_radius = match &t.spectral_radius {

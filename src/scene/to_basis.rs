@@ -8,19 +8,37 @@ use super::file::{
 };
 use super::value::{Located, NodeList};
 
-/// Gauss points of ANCF elements unless the scene says otherwise: five integrate the square of Green's strain, a
-/// polynomial of degree 8, exactly; three serve for bending.
-pub const ANCF_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 5, bend: 3, lobatto: false };
+/// Points of ANCF elements unless the scene says otherwise: three of Lobatto's for stretching, which neighbours share at the nodes, two of Gauss' for bending.
+///
+/// Distance of the tip from the exact place, per length, at EA L²/EI = 6e5 in the units of [`RPIM_KERNEL`]'s table; the limit load of the deep arch at 1e8
+/// (right: 8.973), by `ancf run verification/cases/deep-arch/scene.toml --set beam.arch.axial_stiffness=7.1e6 --set 'beam.arch.basis={ ancf = { elements = 20 } }'`:
+///
+/// | stretch/bend | M = πEI/L, n = 6 | 10 | 20 | dead load PL²/EI = 10, n = 6 | 10 | 20 | deep arch, n = 20 | 40 |
+/// |---|---|---|---|---|---|---|---|---|
+/// | Gauss 5/3, exact for Green's strain | 1e-3 | 6e-5 | 3e-6 | 5e-3 | 1e-3 | 7e-5 | 10.29 | 9.02 |
+/// | Gauss 4/2 | 8e-4 | 1e-4 | 6e-6 | 5e-3 | 1e-3 | 8e-5 | 9.28 | |
+/// | **Lobatto 3, Gauss 2** | 7e-4 | 1e-4 | 6e-6 | 6e-4 | 9e-5 | 6e-6 | 9.02 | 8.98 |
+pub const ANCF_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 3, bend: 2, lobatto: true };
+/// Points of ANCF elements of a string, or of a beam that keeps its length, unless the scene says otherwise: neither locks, nothing but its stretch keeps a cell of
+/// a string from folding, and a third point for bending makes the error of an inextensible beam four times smaller.
+pub const STRING_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 5, bend: 3, lobatto: false };
 /// Radial function of RPIM unless the scene says otherwise.
 ///
-/// Distance of the tip from the exact place, per length, uniform nodes, q = 1.03, m = 2, four Gauss points a cell:
+/// Distance of the tip from the exact place, per length, of a cantilever at EA L²/EI = 6e5 with uniform nodes, q = 1.03, m = 2, two neighbours, four Gauss points
+/// a cell where the row does not say otherwise; `ancf cost SCENE` makes such a table of any scene:
 ///
 /// | shape, sign | M = πEI/L, n = 6 | 10 | 20 | dead load PL²/EI = 10, n = 6 | 10 | 20 |
 /// |---|---|---|---|---|---|---|
-/// | 3.3, + | 1e-6 | 2e-6 | 4e-7 | 1e-2 | 1e-4 | 3e-6 |
-/// | **5, +** | 7e-7 | 2e-8 | 4e-9 | 4e-4 | 2e-6 | 3e-7 |
-/// | 6, − | 1e-7 | 2e-8 | 2e-9 | 7e-5 | 1e-6 | 1e-7 |
-/// | 10, + | 1e-9 | 2e-10 | 5e-11 | 1e-4 | 3e-7 | 7e-9 |
+/// | 3.3, + | 1e-6 | 2e-6 | 4e-7 | 7e-5 | 8e-6 | 9e-7 |
+/// | **5, +** | 7e-7 | 2e-8 | 4e-9 | 6e-6 | 4e-7 | 3e-8 |
+/// | 6, − | 1e-7 | 1e-8 | 2e-9 | 6e-6 | 1e-7 | 7e-9 |
+/// | 10, + | 1e-9 | 2e-10 | 2e-11 | 1e-5 | 5e-8 | 2e-10 |
+/// | one neighbour | 2e-6 | 2e-7 | 1e-7 | 1e-4 | 9e-6 | 5e-7 |
+/// | three | 1e-8 | 1e-9 | 1e-9 | 6e-6 | 4e-8 | 3e-9 |
+/// | m = 4 | 5e-8 | 1e-9 | 5e-10 | 8e-6 | 2e-8 | 3e-10 |
+/// | Gauss 3/3 (stretch/bend) | 3e-6 | 4e-7 | 2e-7 | 2e-5 | 4e-7 | 6e-7 |
+/// | Gauss 3/4 | 2e-7 | 6e-9 | 5e-9 | 6e-6 | 9e-8 | 8e-9 |
+/// | Gauss 5/5, 8/8 | 2e-6 | 4e-8 | 8e-9 | 1e-5 | 4e-7 | 3e-8 |
 ///
 /// Flatter functions win in statics, but not in motion, where the curvature of 14 nodes at shape 20 errs twice as much as
 /// at 3.3; and up to about 6 the moment matrices can be solved in double-double arithmetic, ten times faster than beyond.
@@ -31,8 +49,7 @@ pub const RPIM_POLYNOMIAL_TERMS: usize = 2;
 pub const RPIM_SIDE_CONDITION: SideCondition = SideCondition::Plus;
 /// Support width of RPIM unless the scene says otherwise.
 pub const RPIM_NEIGHBOURS: usize = 2;
-/// Gauss points of RPIM cells unless the scene says otherwise: five and eight give the same error for even nodes and a
-/// larger one on coarse meshes under a tip load; three double it.
+/// Gauss points of RPIM cells unless the scene says otherwise; compared in the table of [`RPIM_KERNEL`].
 pub const RPIM_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 4, bend: 4, lobatto: false };
 
 /// Most nodes of a scene.
@@ -52,16 +69,18 @@ pub(super) struct Size {
     pub memory: f64,
 }
 
-/// The discretisation that `basis` asks for, on a beam of the given length \[m\].
+/// The discretisation that `basis` asks for, on a beam of the given length \[m\], which may lock if it resists both stretch and
+/// bending.
 pub(super) fn discretization(
     beam: &str,
     basis: &Located<BasisTable>,
     length: f64,
+    locks: bool,
 ) -> Result<(Discretization, GaussPoints, Size), Fault> {
     let table = basis.get();
     let (discretization, gauss, nodes, width) = match (&table.ancf, &table.rpim) {
         (Some(ancf), None) => {
-            let (nodes, gauss) = ancf_table(beam, ancf, length)?;
+            let (nodes, gauss) = ancf_table(beam, ancf, length, locks)?;
             let count = nodes.count() as f64;
             (Discretization::Ancf { nodes }, gauss, count, 4.0)
         }
@@ -106,7 +125,12 @@ fn to_usize(count: u64) -> usize {
     usize::try_from(count).unwrap_or(usize::MAX)
 }
 
-fn ancf_table(beam: &str, ancf: &Located<AncfTable>, length: f64) -> Result<(Nodes, GaussPoints), Fault> {
+fn ancf_table(
+    beam: &str,
+    ancf: &Located<AncfTable>,
+    length: f64,
+    locks: bool,
+) -> Result<(Nodes, GaussPoints), Fault> {
     let table = ancf.get();
     let spacing = table.spacing.as_ref();
     let nodes = match (&table.elements, &table.nodes) {
@@ -124,7 +148,8 @@ fn ancf_table(beam: &str, ancf: &Located<AncfTable>, length: f64) -> Result<(Nod
                 .help("such as `elements = 10`, or `nodes = [0.0, \"45 cm\", 1.8]`"));
         }
     };
-    Ok((nodes, gauss_points(table.gauss_points.as_ref(), ANCF_GAUSS_POINTS)?))
+    let usual = if locks { ANCF_GAUSS_POINTS } else { STRING_GAUSS_POINTS };
+    Ok((nodes, gauss_points(table.gauss_points.as_ref(), usual)?))
 }
 
 fn rpim_table(

@@ -5,12 +5,13 @@ use std::ops::Range;
 use crate::centreline::Curve;
 use crate::model::{
     About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Law, Load, Model, Outputs, Place,
-    Probe, Section, StrainMeasure, Support,
+    Probe, Section, Static, StrainMeasure, Support,
 };
 
 use super::diagnose::choices;
 use super::error::Fault;
 use super::file::{BeamTable, FixName, LawTable, MoveTable, SceneTable, StrainName, SupportTable};
+use super::held::Resisting;
 use super::to_basis::{self, Size};
 use super::value::{At, Located};
 use super::{held, to_analysis, to_law, to_parts, to_velocity};
@@ -54,17 +55,20 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
     probes(file, &built, &mut model)?;
     let analysis = to_analysis::analysis(file, &model, size)?;
     check_needs(file, &model, &built, &analysis)?;
-    let from_equilibrium = match analysis {
-        Analysis::Static(_) | Analysis::Buckling { .. } => true,
-        Analysis::Modal { about, .. } => about == About::Equilibrium,
-        Analysis::Dynamic(_) => false,
+    let resisting = match &analysis {
+        Analysis::Static(Static { arc_length: Some(_), .. }) | Analysis::Buckling { .. } => {
+            Some(Resisting::Nothing)
+        }
+        Analysis::Static(_) => Some(Resisting::Weight),
+        Analysis::Modal { about, .. } => (*about == About::Equilibrium).then_some(Resisting::Weight),
+        Analysis::Dynamic(_) => None,
     };
     // What springs and foundations hold depends on their stiffness.
     let elastic = !(file.effect.spring.is_empty()
         && file.effect.foundation.is_empty()
         && file.effect.torsion_spring.is_empty());
-    if from_equilibrium && !elastic {
-        held::check_rigid_motions(&model, &built)?;
+    if let (Some(resisting), false) = (resisting, elastic) {
+        held::check_rigid_motions(&model, &built, resisting)?;
     }
     Ok((model, analysis))
 }
@@ -77,11 +81,14 @@ fn beam(name: &Located<String>, table: &BeamTable) -> Result<(Beam, Curve, Size)
             "ends and neighbouring points must differ, points must not double back, and an arc needs an angle",
         )
     })?;
-    let (discretization, gauss_points, size) = to_basis::discretization(label, &table.basis, curve.length())?;
+    let section = section(label, table)?;
+    let locks = section.bending_stiffness.is_some() && section.axial_stiffness.is_some();
+    let (discretization, gauss_points, size) =
+        to_basis::discretization(label, &table.basis, curve.length(), locks)?;
     let beam = Beam {
         name: label.clone(),
         centreline,
-        section: section(label, table)?,
+        section,
         strain: match table.strain {
             StrainName::Green => StrainMeasure::Green,
             StrainName::Engineering => StrainMeasure::Engineering,

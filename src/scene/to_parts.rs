@@ -9,7 +9,7 @@ use crate::effect::{
 use crate::model::{Joint, Model};
 
 use super::error::Fault;
-use super::file::{ContactTable, JointName, JointTable, PointTable, SceneTable};
+use super::file::{ContactTable, FrictionTable, GravityTable, JointName, JointTable, PointTable, SceneTable};
 use super::to_law;
 use super::to_model::{Built, beam_index, place};
 use super::value::Located;
@@ -140,9 +140,10 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
             return Err(Fault::new(t.beam.span(), "there is no buoyancy without gravity")
                 .help("add `[effect.gravity]` with `acceleration = [0.0, -9.81]`"));
         };
-        let acceleration = gravity.get().acceleration.si;
+        let GravityTable { acceleration, in_time } = gravity.get();
+        let law = in_time.as_ref().map(to_law::law).transpose()?;
         let (beam, displaced) = (beam_index(&t.beam, built)?, t.displaced_mass_per_length.si);
-        parts.push(Arc::new(Buoyancy { beam, displaced, acceleration }));
+        parts.push(Arc::new(Buoyancy { beam, displaced, acceleration: acceleration.si, law }));
     }
     for t in &effects.moving_force {
         let (beam, speed) = (beam_index(&t.beam, built)?, t.speed.get().si);
@@ -201,11 +202,16 @@ fn contact(t: &ContactTable, built: &[Built]) -> Result<Contact, Fault> {
         obstacle,
         stiffness: t.stiffness.si,
         half_thickness: t.half_thickness.map_or(0.0, |h| h.si),
-        friction: t
-            .friction
-            .as_ref()
-            .map(|f| Friction { coefficient: f.coefficient.si, velocity: f.velocity.si }),
+        friction: t.friction.as_ref().map(|f| friction(f, t.stiffness.si)).transpose()?,
     })
+}
+
+fn friction(t: &FrictionTable, stiffness: f64) -> Result<Friction, Fault> {
+    if let Some(velocity) = &t.velocity {
+        return Err(Fault::new(velocity.span(), "friction has no `velocity`: it sticks by elastic springs")
+            .help("leave `velocity` out; `stiffness` is that of the springs, and that of the contact when left out"));
+    }
+    Ok(Friction { coefficient: t.coefficient.si, stiffness: t.stiffness.map_or(stiffness, |k| k.si) })
 }
 
 fn unit([x, y]: &[f64; 2]) -> Option<[f64; 2]> {

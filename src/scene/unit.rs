@@ -167,11 +167,27 @@ pub fn split_number(text: &str) -> Result<(f64, &str), String> {
 /// An unknown name, an ambiguous or incomplete product, or a power out of range, in words.
 pub fn parse_unit(text: &str) -> Result<Unit, String> {
     let mut parser = Parser { rest: text.trim(), depth: 0 };
-    let unit = parser.product()?;
+    let unit = parser.product().map_err(|reason| match with_powers(text) {
+        Some(form) => format!("powers are written with `^`: `{form}`"),
+        None => reason,
+    })?;
     if !parser.rest.is_empty() {
         return Err(format!("`{}` in the unit `{text}` has no meaning there", parser.rest));
     }
     Ok(unit)
+}
+
+/// The text with `^` before digits that follow a letter, where it is a unit then: `kg/m3` was meant to be `kg/m^3`.
+fn with_powers(text: &str) -> Option<String> {
+    let mut form = String::new();
+    for c in text.trim().chars() {
+        let power = c.is_ascii_digit() || c == '-';
+        if power && form.ends_with(char::is_alphabetic) {
+            form.push('^');
+        }
+        form.push(c);
+    }
+    (form != text.trim() && parse_unit(&form).is_ok()).then_some(form)
 }
 
 struct Parser<'a> {
@@ -318,19 +334,30 @@ fn lookup(name: &str) -> Option<(f64, [i16; 4], bool)> {
         .map(|&(_, factor, powers, prefix)| (factor, powers, prefix))
 }
 
-fn named(name: &str) -> Result<Unit, String> {
+fn named_alone(name: &str) -> Option<Unit> {
     let unit = |factor, [metre, kilogram, second, radian]: [i16; 4]| Unit {
         factor,
         dimension: Dimension { metre, kilogram, second, radian },
     };
     if let Some((factor, powers, _)) = lookup(name) {
-        return Ok(unit(factor, powers));
+        return Some(unit(factor, powers));
     }
-    for (prefix, scale) in PREFIXES {
-        if let Some((factor, powers, true)) = name.strip_prefix(prefix).and_then(lookup) {
-            // kg is exactly one; other prefixes of the gram follow suit.
-            return Ok(unit(if name == "kg" { 1.0 } else { scale * factor }, powers));
-        }
+    PREFIXES.iter().find_map(|(prefix, scale)| match name.strip_prefix(prefix).and_then(lookup)? {
+        // kg is exactly one; other prefixes of the gram follow suit.
+        (factor, powers, true) => Some(unit(if name == "kg" { 1.0 } else { scale * factor }, powers)),
+        _ => None,
+    })
+}
+
+fn named(name: &str) -> Result<Unit, String> {
+    if let Some(unit) = named_alone(name) {
+        return Ok(unit);
+    }
+    // Names that were run together: `Nm` is `N m`.
+    let cuts = name.char_indices().skip(1).map(|(at, _)| name.split_at(at));
+    let apart = cuts.into_iter().find(|(a, b)| named_alone(a).is_some() && named_alone(b).is_some());
+    if let Some((a, b)) = apart {
+        return Err(format!("`{name}` is no unit; a product is written with a space: `{a} {b}`"));
     }
     let known = NAMED.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
     Err(format!("`{name}` is no unit known here; there are {known}, with SI prefixes where usual"))
@@ -396,6 +423,17 @@ mod tests {
             "((((((((((m",
         ] {
             assert!(parse_unit(text).is_err(), "{text}");
+        }
+        for (text, form) in [
+            ("cm2", "`cm^2`"),
+            ("kg/m3", "`kg/m^3`"),
+            ("N/mm2", "`N/mm^2`"),
+            ("Nm", "`N m`"),
+            ("kNm", "`kN m`"),
+            ("m s-2", "`m s^-2`"),
+        ] {
+            let message = parse_unit(text).unwrap_err();
+            assert!(message.contains(form), "{text}: {message}");
         }
         for text in ["", "m", "nan m", "inf", "1e999 m", ".", "-", "e5"] {
             assert!(split_number(text).is_err(), "{text}");

@@ -1,18 +1,16 @@
-//! Linear buckling: the load factors λ at which the tangent, linearised along the initial path, becomes singular,
+//! Linear buckling: the load factors λ at which the tangent, with the stress resultants of the linear solution, becomes singular,
 //!
 //! ```text
-//! (K₀ + λ K₁) φ = 0,   K₁ = d/dλ K(q₀ + λ u, λ) at λ = 0,   K₀ u = −f_load
+//! (K₀ + λ K₁) φ = 0,   K₁ = ∫ N₁ ∂²ε/∂q∂q + M₁ ∂²κ/∂q∂q ds + …,   N₁ = EA ∂ε/∂q·u,  M₁ = EI ∂κ/∂q·u,   K₀ u = −f_load
 //! ```
 //!
-//! K₁ is the total derivative of the tangent along the linear solution u (stress and rotation effects of the initial
-//! path alike), by central differences with one step of Richardson's extrapolation: the tangent is smooth, so that the
-//! error is of the order of round-off over the difference step, about 1e-12.
+//! with all derivatives in the stress-free state. The directions in which a beam resists stretch are those of that state too: that they turn with the
+//! rotations of u is a term of the first order which one of the second cancels, and alone it would let a stiff beam that bends buckle at once. An effect whose
+//! tangent extrapolates its resultants ([`crate::effect`]) gives K₀ + λ K₁ when it is asked for the tangent one increment λ u ahead.
 
 use super::eigen::{EigenError, Pencil, largest_reciprocals};
 use super::equilibrium::Equilibrium;
-use crate::effect::Workspace;
-use crate::linear::Matrix;
-use crate::linear::symmetric::SymmetricBand;
+use crate::effect::{Earlier, Workspace};
 use crate::system::System;
 
 /// Critical loads, lowest first.
@@ -22,14 +20,17 @@ pub struct Modes {
     pub load_factors: Vec<f64>,
     /// Buckling shapes as changes of the coordinates.
     pub shapes: Vec<Vec<f64>>,
+    /// Largest turn of a node in the linear solution at the lowest of them \[rad\].
+    pub turn: f64,
     /// Factorisations made.
     pub factorizations: usize,
 }
 
-/// Displacement, in beam lengths, that round-off leaves to an inextensible beam that its load does not move.
-const NOTHING_MOVES: f64 = 1e-9;
-/// Turn of a node by which the tangent is differenced \[rad\].
-const DIFFERENCE: f64 = 1e-3;
+/// Load factor at which K₀ + λ K₁ is K₁ to round-off: it is linear in λ, and so no digit is lost when K₀ is taken away.
+const FAR_AHEAD: f64 = 1e18;
+
+/// Reciprocal of a load factor, in units of the load on the structure's stiffness, that round-off may leave.
+const ROUND_OFF: f64 = 1e-11;
 
 /// The `count` lowest positive critical load factors.
 ///
@@ -49,43 +50,44 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     if size == 0.0 && rate[n..].iter().all(|force| *force == 0.0) {
         return Ok(Modes::default());
     }
-    // Multipliers enter the tangent in proportion: where nothing moves, any difference is exact.
-    let h = if size > NOTHING_MOVES { DIFFERENCE / size } else { 1.0 };
-    if h != 1.0 && system.has_nonlinear_constraints() {
-        return Err(EigenError::Deforms);
-    }
+    let reference = system.reference();
     let mut workspace = Workspace::default();
-    let mut tangent_at = |load: f64| {
-        let x: Vec<f64> = x.iter().zip(&rate).map(|(x, r)| x + load * r).collect();
-        let (q, multipliers) = x.split_at(n);
-        let mut k = system.matrix();
-        let mut force = vec![0.0; n];
-        system.force_and_tangent(load, q, None, &mut force, &mut k, &mut workspace);
-        system.add_constraint_stiffness(multipliers, &mut k);
+    let mut tangent = |load: f64, increment: Option<&[f64]>, multipliers: &[f64]| {
+        let (mut k, mut force) = (system.matrix(), vec![0.0; n]);
+        let earlier = increment.map(|increment| Earlier { q: reference, increment });
+        system.force_and_tangent(load, reference, earlier, &mut force, &mut k, &mut workspace);
+        system.add_constraint_stiffness(reference, multipliers, &mut k);
         system.supports().turn_matrix(0.0, &mut k);
         k
     };
-    let mut geometric = tangent_at(0.0);
-    geometric.clear();
-    // −(4 D(h/2) − D(h))/3 with D the central difference quotient.
-    for (at, weight) in [(0.5, -4.0 / 3.0), (-0.5, 4.0 / 3.0), (1.0, 1.0 / 6.0), (-1.0, -1.0 / 6.0)] {
-        if let (Matrix::Symmetric(sum), Matrix::Symmetric(k)) = (&mut geometric, &tangent_at(at * h)) {
-            SymmetricBand::add(sum, weight / h, k);
-        }
-    }
+    let mut stiffness = tangent(0.0, None, &x[n..]);
+    let ahead: Vec<f64> = rate.iter().map(|rate| FAR_AHEAD * rate).collect();
+    let mut geometric = tangent(FAR_AHEAD, Some(&ahead[..n]), &ahead[n..]);
+    geometric.add(-1.0, &stiffness);
+    geometric.scale(-1.0 / FAR_AHEAD);
     system.supports().eliminate(0.0, &mut geometric);
     system.supports().clear_held(0.0, &mut geometric);
-    let mut stiffness = tangent_at(0.0);
     system.supports().eliminate(0.0, &mut stiffness);
     let (border, held) = (system.border(0.0, system.reference()), system.held());
     let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, held: &held };
-    let pairs = largest_reciprocals(&pencil, count)?;
+    let mut pairs = largest_reciprocals(&pencil, count)?;
+    // A load that compresses nothing leaves round-off.
+    let mut load = vec![0.0; n];
+    system.add_load_rate(1.0, reference, &mut load);
+    let least = ROUND_OFF * system.norm(&load) / system.stiffness();
+    let real = pairs.reciprocals.iter().take_while(|reciprocal| **reciprocal > least).count();
+    pairs.reciprocals.truncate(real);
+    pairs.vectors.truncate(real);
     let shapes = pairs.vectors.into_iter().map(|mut v| {
         system.supports().from_frames(0.0, &mut v);
         v
     });
+    let load_factors: Vec<f64> = pairs.reciprocals.iter().map(|r| 1.0 / r).collect();
+    let turns = rate[..n].chunks_exact(4).zip(reference.chunks_exact(4));
+    let turn = turns.fold(0.0_f64, |turn, (d, q)| turn.max((q[2] * d[3] - q[3] * d[2]).abs()));
     Ok(Modes {
-        load_factors: pairs.reciprocals.iter().map(|r| 1.0 / r).collect(),
+        turn: load_factors.first().map_or(0.0, |load| load * turn),
+        load_factors,
         shapes: shapes.collect(),
         factorizations: 2,
     })

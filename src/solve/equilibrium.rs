@@ -2,7 +2,7 @@
 
 use super::newton::{Equations, RESIDUAL_TOLERANCE};
 use super::retraction::Retraction;
-use crate::effect::{Earlier, Workspace};
+use crate::effect::{Earlier, Held, Slips, Workspace};
 use crate::lanes::Lanes;
 use crate::linear::bordered::BorderRow;
 use crate::linear::{Factor, Matrix, Singular};
@@ -23,6 +23,8 @@ pub struct Equilibrium<'a> {
     border: Vec<BorderRow>,
     workspace: Workspace,
     held_rate: Vec<f64>,
+    /// The last accepted state, for friction.
+    held: Held,
     /// Counts so far.
     pub statistics: Statistics,
 }
@@ -39,6 +41,7 @@ impl<'a> Equilibrium<'a> {
             border: Vec::new(),
             workspace: Workspace::default(),
             held_rate: vec![0.0; n],
+            held: Held { q: system.reference().to_vec(), ..Held::default() },
             statistics: Statistics::default(),
         }
     }
@@ -46,6 +49,19 @@ impl<'a> Equilibrium<'a> {
     /// The system whose equations these are.
     pub fn system(&self) -> &'a System {
         self.system
+    }
+
+    /// Takes `x` for the last accepted state, from which friction counts slips.
+    pub fn hold(&mut self, x: &[f64]) {
+        if self.system.has_friction() {
+            let slips = self.slips(x);
+            self.held = Held { q: x[..self.system.coordinates()].to_vec(), slips };
+        }
+    }
+
+    /// What friction remembers of the state `x`.
+    pub fn slips(&self, x: &[f64]) -> Slips {
+        self.system.slips(&self.held, &x[..self.system.coordinates()])
     }
 
     /// Number of unknowns.
@@ -66,6 +82,7 @@ impl<'a> Equilibrium<'a> {
         let n = self.system.coordinates();
         self.statistics.residual_evaluations += 1;
         self.system.force(load, &x[..n], &mut negative[..n]);
+        self.system.add_friction(&self.held, &x[..n], &mut negative[..n]);
         self.balanced(load, x, negative)
     }
 
@@ -98,8 +115,9 @@ impl<'a> Equilibrium<'a> {
         let q = &x[..n];
         let force = &mut negative[..n];
         system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
+        system.add_friction_and_tangent(&self.held, q, force, &mut self.tangent, &mut self.workspace);
         let residual = self.balanced(load, x, negative);
-        system.add_constraint_stiffness(&x[n..], &mut self.tangent);
+        system.add_constraint_stiffness(q, &x[n..], &mut self.tangent);
         system.supports().turn_matrix(load, &mut self.tangent);
         self.rate_right_hand_side(load, x, rate);
         system.supports().eliminate(load, &mut self.tangent);
@@ -128,8 +146,9 @@ impl<'a> Equilibrium<'a> {
         self.statistics.factorizations += 1;
         let force = &mut negative[..n];
         system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
+        system.add_friction_and_tangent(&self.held, q, force, &mut self.tangent, &mut self.workspace);
         self.balanced(load, x, negative);
-        system.add_constraint_stiffness(&x[n..], &mut self.tangent);
+        system.add_constraint_stiffness(q, &x[n..], &mut self.tangent);
         self.tangent.add_diagonal(sigma, diagonal);
         system.supports().turn_matrix(load, &mut self.tangent);
         system.supports().eliminate(load, &mut self.tangent);

@@ -46,8 +46,9 @@ pub fn solve(system: &System, load: f64, x: &[f64], count: usize) -> Result<Mode
     } else {
         return Err(EigenError::NotSymmetric { analysis: "modal" });
     };
-    system.add_constraint_stiffness(multipliers, &mut stiffness);
+    system.add_constraint_stiffness(q, multipliers, &mut stiffness);
     let mut mass = system.mass_matrix();
+    system.add_turning_mass(q, &mut mass);
     for matrix in [&mut stiffness, &mut mass] {
         supports.turn_matrix(load, matrix);
         supports.eliminate(load, matrix);
@@ -69,19 +70,19 @@ pub fn solve(system: &System, load: f64, x: &[f64], count: usize) -> Result<Mode
             let (mut v, mut f) = (vector.clone(), vec![0.0; q.len()]);
             supports.from_frames(load, &mut v);
             system.tangent_product(load, q, &v, &mut f);
-            system.add_constraint_stiffness_product(multipliers, &v, &mut f);
+            system.add_constraint_stiffness_product(q, multipliers, &v, &mut f);
             supports.to_frames(load, &mut f);
             f
         })
         .collect();
-    let (squares, mut shapes) = ritz(&pairs.vectors, &stiff, &mass)?;
+    let mut found = ritz(&pairs.vectors, &stiff, &mass)?;
     let mut modes = Modes { factorizations: 1, ..Modes::default() };
     let mut unstable = 0;
-    shapes.truncate(count);
-    for (square, mut shape) in squares.into_iter().zip(shapes) {
+    found.truncate(count);
+    for (square, mut shape) in found {
         // Digits of K; and of the state, whose stress may be off by that much.
-        let zero =
-            round_off(&stiffness, &shape) + system.round_off() * system.length() * slope(&shape).powi(2);
+        let zero = CERTAIN * round_off(&stiffness, &shape)
+            + system.round_off() * system.length() * slope(&shape).powi(2);
         unstable += usize::from(square < -zero);
         point_up(&mut shape);
         supports.from_frames(load, &mut shape);
@@ -95,16 +96,14 @@ pub fn solve(system: &System, load: f64, x: &[f64], count: usize) -> Result<Mode
 const SHIFT: f64 = 10.0;
 /// Vectors sought beyond those wanted, which the wanted ones may be mixed with.
 const GUARD: usize = 4;
+/// Standard deviations of its round-off that an ω² must have to be none.
+const CERTAIN: f64 = 10.0;
 /// How far the shift stands out of what round-off makes of a zero ω².
 const STAND_OUT: f64 = 1e3;
 
 /// ω² and M-orthonormal shapes of the stiffness K restricted to the span of `vectors`, of which `stiff` are the products
 /// with K (Rayleigh and Ritz); lowest first.
-fn ritz(
-    vectors: &[Vec<f64>],
-    stiff: &[Vec<f64>],
-    mass: &Matrix,
-) -> Result<(Vec<f64>, Vec<Vec<f64>>), EigenError> {
+fn ritz(vectors: &[Vec<f64>], stiff: &[Vec<f64>], mass: &Matrix) -> Result<Vec<(f64, Vec<f64>)>, EigenError> {
     let c = vectors.len();
     let heavy: Vec<Vec<f64>> = vectors
         .iter()
@@ -126,14 +125,23 @@ fn ritz(
     let eigen = k.self_adjoint_eigen(Side::Lower).map_err(|_| EigenError::Projection)?;
     let mut shares = eigen.U().to_owned();
     solve_upper_triangular_in_place(lower.transpose(), shares.as_mut(), Par::Seq);
-    let shapes = (0..c).map(|k| {
-        let mut shape = vec![0.0; mass.size()];
-        for (i, vector) in vectors.iter().enumerate() {
-            shape.iter_mut().zip(vector).for_each(|(s, v)| *s += shares[(i, k)] * v);
+    let combined = |of: &[Vec<f64>], k: usize| {
+        let mut sum = vec![0.0; mass.size()];
+        for (i, vector) in of.iter().enumerate() {
+            sum.iter_mut().zip(vector).for_each(|(s, v)| *s += shares[(i, k)] * v);
         }
-        shape
-    });
-    Ok(((0..c).map(|i| eigen.S().column_vector()[i]).collect(), shapes.collect()))
+        sum
+    };
+    // The eigenvalues have the round-off of the largest one. Rayleigh's quotients have each their own, for they err by the square of what the shapes do.
+    let mut modes: Vec<(f64, Vec<f64>)> = (0..c)
+        .map(|k| {
+            let shape = combined(vectors, k);
+            let square = dot(&shape, &combined(stiff, k)) / dot(&shape, &combined(&heavy, k));
+            (square, shape)
+        })
+        .collect();
+    modes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(modes)
 }
 
 /// Turns the largest displacement towards positive x or y.

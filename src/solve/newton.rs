@@ -109,6 +109,20 @@ pub enum Failure {
         /// The node.
         node: usize,
     },
+    /// The way of the step leads through an obstacle, or into it too far for its force to be seen.
+    #[error("the step would carry the beam through the obstacle of contact {}", contact + 1)]
+    Crossed {
+        /// Number of the contact.
+        contact: usize,
+        /// Part of the step that is clear of it.
+        part: f64,
+    },
+    /// The step touches an obstacle on its way, and neither its start nor its end does.
+    #[error("the step would touch the obstacle of contact {} and leave it again, unseen", contact + 1)]
+    Unseen {
+        /// Number of the contact.
+        contact: usize,
+    },
     /// Converged, but to an equilibrium that lies beyond a bifurcation, where a path that bends away may still be stable.
     #[error("the step ends beyond a bifurcation, perhaps on another branch")]
     Bifurcation,

@@ -71,6 +71,8 @@ const UNEXPLAINED_TURN: f64 = 0.02;
 const UNEXPLAINED_OF_STEP: f64 = 0.02;
 /// Predicted turn of any node in one step \[rad\], with finite turns and with increments that are added.
 const LARGEST_STEP: (f64, f64) = (7.0, 0.8);
+/// The same where there are contacts: the way between two points is then looked at.
+const WITH_CONTACTS: f64 = 0.5;
 /// A corrector that turns no node by more than this stays on its side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
 /// Smallest step, relative to the first one that was to be tried.
@@ -174,7 +176,9 @@ impl<'e, 'a> Path<'e, 'a> {
     /// # Errors
     /// [`Stuck`] where no step converges.
     pub fn advance(&mut self, end: f64) -> Result<&Point, Stuck> {
-        if self.last().rate.is_empty() {
+        let last = &self.points[self.points.len() - 1];
+        self.equilibrium.hold(&last.x);
+        if last.rate.is_empty() {
             self.set_out()?;
         }
         let here = self.last().parameter;
@@ -187,7 +191,12 @@ impl<'e, 'a> Path<'e, 'a> {
             }
             let turn = self.predicted_turn(step);
             let (turned, added) = LARGEST_STEP;
-            let largest = if self.equilibrium.retraction.turns() { turned } else { added };
+            let largest =
+                match (self.equilibrium.system().has_contacts(), self.equilibrium.retraction.turns()) {
+                    (true, _) => WITH_CONTACTS,
+                    (false, true) => turned,
+                    (false, false) => added,
+                };
             if turn > largest {
                 self.step = step * (0.95 * largest / turn);
                 step = self.step;
@@ -453,6 +462,7 @@ impl<'e, 'a> Path<'e, 'a> {
                 let n = self.equilibrium.system().coordinates();
                 let since = if self.equilibrium.retraction.turns() { &predicted } else { &before };
                 newton::not_crushed_since(&since.x[..n], &point.x[..n])
+                    .and_then(|()| self.not_crossed(&before, &point))
                     .map(|()| turn)
                     .map_err(|failure| (failure, self.worst(&point.x, &predicted.x)))
             }
@@ -475,6 +485,24 @@ impl<'e, 'a> Path<'e, 'a> {
         point.unstable = self.equilibrium.unstable_directions();
         point.negative = self.equilibrium.determinant_is_negative();
         Ok((point, turn))
+    }
+
+    /// Refuses a step whose way leads through an obstacle: the cubic with the rates at both ends.
+    fn not_crossed(&self, before: &Point, point: &Point) -> Result<(), Failure> {
+        let system = self.equilibrium.system();
+        if !system.has_contacts() {
+            return Ok(());
+        }
+        let n = system.coordinates();
+        let third = (point.parameter - before.parameter) / 3.0;
+        let moved = |point: &Point, by: f64| -> Vec<f64> {
+            point.x[..n].iter().zip(&point.rate).map(|(x, rate)| x + by * rate).collect()
+        };
+        let (first, second) = (moved(before, third), moved(point, -third));
+        match system.conflict([&before.x[..n], &first, &second, &point.x[..n]], false) {
+            Some((part, contact)) => Err(Failure::Crossed { contact, part }),
+            None => Ok(()),
+        }
     }
 
     /// Beam and arc length of the node that changed most.

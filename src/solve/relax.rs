@@ -1,7 +1,7 @@
-//! Equilibria of what has no stiffness before it is loaded: strings and cables.
+//! Equilibria of what has no stiffness before it is loaded: strings and cables, and beams that hang on hinges.
 //!
-//! A slack string under ever so small a load takes a shape far from its stress-free one, so that no path of load steps leads there. It is found as the
-//! rest of a creeping motion, σ D ẋ = −R(x), by implicit Euler steps (pseudo-transient continuation; Kelley & Keyes, *SIAM J. Numer. Anal.* 35, 1998,
+//! A slack string or a pendulum under ever so small a load takes a shape far from its stress-free one, so that no path of load steps leads there. It is found
+//! as the rest of a creeping motion, σ D ẋ = −R(x), by implicit Euler steps (pseudo-transient continuation; Kelley & Keyes, *SIAM J. Numer. Anal.* 35, 1998,
 //! 508–523):
 //!
 //! ```text
@@ -16,9 +16,12 @@
 use super::equilibrium::Equilibrium;
 use super::newton::{Failure, Iterations, Settings};
 use crate::effect::Earlier;
+use crate::system::System;
 
 /// Largest change of an iterate: positions in beam lengths, gradients as they are.
 const LARGEST: f64 = 0.3;
+/// Smallest part of a change that may be clear where all of it leads through an obstacle.
+const SHORTEST: f64 = 1e-3;
 /// σ changes at most by these factors in an iteration.
 const LIMITS: (f64, f64) = (0.3, 4.0);
 /// Change of an iterate that is aimed at.
@@ -30,6 +33,15 @@ const SETTLED: f64 = 1e-3;
 /// Most iterations.
 const ITERATIONS: usize = 2000;
 
+/// Whereto the creeping motion may lead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rest {
+    /// Any equilibrium: σ follows the increments alone.
+    Any,
+    /// A minimum of the energy only: K + σ D is kept definite, so that every increment leads downhill.
+    Stable,
+}
+
 /// Relaxes `x` to the equilibrium at load factor `load`.
 ///
 /// # Errors
@@ -38,6 +50,7 @@ pub fn relax(
     equilibrium: &mut Equilibrium<'_>,
     load: f64,
     x: &mut [f64],
+    rest: Rest,
     settings: &Settings,
     record: &mut Iterations,
 ) -> Result<(), Failure> {
@@ -66,6 +79,13 @@ pub fn relax(
         let shift = if sigma < NONE { 0.0 } else { sigma };
         let earlier = Earlier { q: &before, increment: &change };
         match equilibrium.linearize_shifted(load, x, earlier, (shift, &weights), &mut increment) {
+            Ok(())
+                if rest == Rest::Stable
+                    && equilibrium.unstable_directions().is_some_and(|count| count > 0) =>
+            {
+                sigma = sigma.max(NONE) * LIMITS.1;
+                continue;
+            }
             Ok(()) => {}
             Err(singular) if shift == 0.0 => return Err(singular.into()),
             Err(_) => {
@@ -80,7 +100,10 @@ pub fn relax(
         record.increments.push(size);
         sigma *= (size / WANTED).clamp(LIMITS.0, LIMITS.1);
         before.copy_from_slice(x);
-        let part = if size > LARGEST { LARGEST / size } else { 1.0 };
+        let mut part = if size > LARGEST { LARGEST / size } else { 1.0 };
+        if equilibrium.system().has_contacts() {
+            part *= clear(equilibrium.system(), &x[..n], &increment, part)?;
+        }
         change.iter_mut().zip(&increment).for_each(|(change, d)| *change = part * d);
         x.iter_mut().zip(&change).for_each(|(x, d)| *x += d);
         if size <= settings.tolerance && sigma < SETTLED * first && residual <= settings.residual_tolerance {
@@ -88,4 +111,15 @@ pub fn relax(
         }
     }
     Err(Failure::TooSlow { iterations: ITERATIONS, last: size })
+}
+
+/// The part of the straight way by `part` of an increment from `q` that does not lead through an obstacle.
+fn clear(system: &System, q: &[f64], increment: &[f64], part: f64) -> Result<f64, Failure> {
+    let moved = |part: f64| -> Vec<f64> { q.iter().zip(increment).map(|(q, d)| q + part * d).collect() };
+    let (first, second, end) = (moved(part / 3.0), moved(part / 1.5), moved(part));
+    match system.conflict([q, &first, &second, &end], false) {
+        Some((part, contact)) if part < SHORTEST => Err(Failure::Crossed { contact, part }),
+        Some((part, _)) => Ok(part),
+        None => Ok(1.0),
+    }
 }

@@ -3,7 +3,8 @@
 use super::equilibrium::Equilibrium;
 use super::newton::{Iterations, Settings};
 use super::path::{Parameter, Path, Stuck};
-use super::relax::relax;
+use super::relax::{Rest, relax};
+use crate::effect::Slips;
 use crate::model::{ArcLength, Static};
 use crate::system::{System, View};
 use crate::trajectory::{Statistics, StepRecord};
@@ -13,11 +14,16 @@ use crate::trajectory::{Statistics, StepRecord};
 /// change the signs.
 const LAST_INCREMENT: f64 = 1e-6;
 
+/// Largest push that takes a structure from a crest of its energy: positions in beam lengths, gradients as they are.
+const PUSH: f64 = 1e-3;
+
 /// What a static analysis found.
 #[derive(Clone, Debug, Default)]
 pub struct Solution {
     /// (load factor, coordinates and scaled multipliers) of the recorded equilibria, the stress-free state first.
     pub states: Vec<(f64, Vec<f64>)>,
+    /// What friction remembers of each of them.
+    pub slips: Vec<Slips>,
     /// Attempted steps.
     pub history: Vec<StepRecord>,
     /// Instabilities met.
@@ -26,6 +32,15 @@ pub struct Solution {
     pub statistics: Statistics,
     /// Why the path ends before its target, if it does.
     pub stuck: Option<Stuck>,
+    /// Whether the path has a target and as many points as it may have, but has not reached it.
+    pub out_of_points: bool,
+}
+
+impl Solution {
+    fn record(&mut self, equilibrium: &Equilibrium<'_>, load: f64, x: &[f64]) {
+        self.states.push((load, x.to_vec()));
+        self.slips.push(equilibrium.slips(x));
+    }
 }
 
 /// The tangent lost or regained definiteness.
@@ -62,7 +77,7 @@ pub fn solve(
     let mut solution = Solution::default();
     let newton = newton_settings(settings);
     let outcome = match target {
-        None if system.has_strings() => relaxed(&mut equilibrium, settings, newton, &mut solution, observe),
+        None if system.is_floppy() => relaxed(&mut equilibrium, settings, newton, &mut solution, observe),
         None => along_load(&mut equilibrium, settings, newton, &mut solution, observe),
         Some(target) => along_arc(&mut equilibrium, target, newton, &mut solution, observe),
     };
@@ -88,7 +103,7 @@ fn along_load(
     observe: Observer<'_>,
 ) -> Result<(), Stuck> {
     let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0)?;
-    solution.states.push((0.0, path.last().x.clone()));
+    solution.record(path.equilibrium, 0.0, &path.last().x);
     let parts = settings.steps.unwrap_or(1).max(1);
     let mut part = 1;
     let outcome = loop {
@@ -101,7 +116,7 @@ fn along_load(
         notice(&mut path, &mut solution.events);
         let at_end = point.load >= end;
         if settings.steps.is_none() || at_end {
-            solution.states.push((point.load, point.x.clone()));
+            solution.record(path.equilibrium, point.load, &point.x);
         }
         part += usize::from(at_end);
         let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
@@ -112,7 +127,7 @@ fn along_load(
     // Where the path ends early, its end is worth a record too.
     let last = path.last();
     if solution.states.last().is_none_or(|(load, _)| *load != last.load) {
-        solution.states.push((last.load, last.x.clone()));
+        solution.record(path.equilibrium, last.load, &last.x);
     }
     solution.history = std::mem::take(&mut path.history);
     outcome
@@ -127,12 +142,23 @@ fn relaxed(
     observe: Observer<'_>,
 ) -> Result<(), Stuck> {
     let mut x = equilibrium.start();
-    solution.states.push((0.0, x.clone()));
+    solution.record(equilibrium, 0.0, &x);
     let parts = settings.steps.unwrap_or(1).max(1);
+    let mut before = 0;
     for part in 1..=parts {
         let load = part as f64 / parts as f64;
         let mut record = Iterations::default();
-        let outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
+        let mut outcome = relax(equilibrium, load, &mut x, Rest::Any, &newton, &mut record);
+        if outcome.is_ok() && unstable(equilibrium, load, &x) > 0 {
+            // On a crest, such as a pendulum that stands on its head.
+            push(equilibrium, &mut x);
+            outcome = relax(equilibrium, load, &mut x, Rest::Stable, &newton, &mut record);
+            let after = unstable(equilibrium, load, &x);
+            if outcome.is_ok() && after > before {
+                solution.events.push(Event { load, before, after });
+                before = after;
+            }
+        }
         let at = equilibrium.system().place_of(0);
         let step = 1.0 / parts as f64;
         solution.history.push(StepRecord {
@@ -144,12 +170,34 @@ fn relaxed(
         });
         outcome.map_err(|failure| Stuck { load: load - step, step, failure, at })?;
         equilibrium.statistics.load_steps += 1;
-        solution.states.push((load, x.clone()));
+        solution.record(equilibrium, load, &x);
+        equilibrium.hold(&x);
         if !observe(load, step, &equilibrium.statistics) {
             break;
         }
     }
     Ok(())
+}
+
+/// Unstable directions in the state `x`, 0 where the factorisation does not tell.
+fn unstable(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> usize {
+    let (mut residual, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    let linearized = equilibrium.linearize(load, x, None, &mut residual, &mut rate);
+    linearized.ok().and_then(|_| equilibrium.unstable_directions()).unwrap_or(0)
+}
+
+/// Moves every free coordinate a little and unevenly, the same in every run.
+fn push(equilibrium: &Equilibrium<'_>, x: &mut [f64]) {
+    let system = equilibrium.system();
+    let mut push: Vec<f64> = (1..=system.coordinates())
+        .map(|i| {
+            let unit = if i % 4 == 1 || i % 4 == 2 { system.length() } else { 1.0 };
+            PUSH * unit * ((i as f64 * 0.618_033_988_749_895).fract() - 0.4)
+        })
+        .collect();
+    system.supports().to_frames(0.0, &mut push);
+    system.supports().from_frames(0.0, &mut push);
+    x.iter_mut().zip(&push).for_each(|(x, push)| *x += push);
 }
 
 /// Records a change of stability in the last step and locates it by bisection.
@@ -181,14 +229,15 @@ fn along_arc(
     let n = equilibrium.system().coordinates();
     let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
     let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05))?;
-    solution.states.push((0.0, path.last().x.clone()));
+    solution.record(path.equilibrium, 0.0, &path.last().x);
     let mut outcome = Ok(());
+    let mut ends = target.arc.until_load.is_none() && target.probe.is_none();
     for _ in 0..target.arc.max_points {
         path.limit_step(largest);
         let previous = path.last().clone();
         match path.advance(f64::INFINITY) {
             Err(stuck) => {
-                outcome = Err(stuck);
+                (outcome, ends) = (Err(stuck), true);
                 break;
             }
             Ok(point) => {
@@ -216,14 +265,16 @@ fn along_arc(
                     None
                 };
                 let point = end.unwrap_or(point);
-                solution.states.push((point.load, point.x.clone()));
+                solution.record(path.equilibrium, point.load, &point.x);
                 let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
                 if load_reached || probe_reached || !go_on {
+                    ends = true;
                     break;
                 }
             }
         }
     }
     solution.history = std::mem::take(&mut path.history);
+    solution.out_of_points = !ends;
     outcome
 }

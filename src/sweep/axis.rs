@@ -1,6 +1,6 @@
 //! What varies in a sweep, as the command line and lists write it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +17,29 @@ pub struct Axis {
     pub paths: Vec<String>,
     /// Per value of the axis, one text per path: a TOML value, or else text.
     pub values: Vec<Vec<String>>,
+    /// Per value where it was read from, if that was a file.
+    #[serde(skip)]
+    pub lines: Lines,
+}
+
+/// A file, and a line of it for each value; of no weight in comparisons.
+#[derive(Clone, Debug, Default)]
+pub struct Lines(Option<(PathBuf, Vec<u64>)>);
+
+impl PartialEq for Lines {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Eq for Lines {}
+
+impl Lines {
+    /// `FILE:LINE` of the value with this number.
+    pub fn place(&self, value: usize) -> Option<String> {
+        let (path, lines) = self.0.as_ref()?;
+        Some(format!("{}:{}", path.display(), lines.get(value)?))
+    }
 }
 
 impl Axis {
@@ -45,7 +68,8 @@ impl Axis {
         if texts.iter().any(String::is_empty) {
             return Err(wrong("a value is empty".into()));
         }
-        Ok(Self { paths: vec![path.to_owned()], values: texts.into_iter().map(|text| vec![text]).collect() })
+        let values = texts.into_iter().map(|text| vec![text]).collect();
+        Ok(Self { paths: vec![path.to_owned()], values, lines: Lines::default() })
     }
 
     /// Reads a CSV file: the header names paths, every line is one value of the axis.
@@ -54,14 +78,33 @@ impl Axis {
     /// [`SweepError::List`] where the file cannot be read, is no table, or has no line.
     pub fn list(path: &Path) -> Result<Self, SweepError> {
         let wrong = |reason: String| SweepError::List { path: path.to_owned(), reason };
-        let read = || -> Result<Self, csv::Error> {
-            let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path)?;
-            let paths = reader.headers()?.iter().map(str::to_owned).collect();
-            let row = |record: csv::StringRecord| record.iter().map(str::to_owned).collect();
-            let values = reader.records().take(MAX_VALUES + 1).map(|record| record.map(row));
-            Ok(Self { paths, values: values.collect::<Result<_, _>>()? })
+        let at = |line: u64, reason: String| SweepError::List {
+            path: format!("{}:{line}", path.display()).into(),
+            reason,
         };
-        let axis = read().map_err(|error| wrong(error.to_string()))?;
+        let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+        // The reader counts empty lines before a record to it.
+        let line = |position: Option<&csv::Position>| {
+            let (line, byte) = position.map_or((1, 0), |at| (at.line(), at.byte() as usize));
+            let empty = text.bytes().skip(byte).take_while(|byte| matches!(byte, b'\n' | b'\r'));
+            line + empty.filter(|byte| *byte == b'\n').count() as u64
+        };
+        let read = |error: &csv::Error| match error.kind() {
+            csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+                let values = if *len == 1 { "value" } else { "values" };
+                at(line(pos.as_ref()), format!("found {len} {values}, and the header names {expected_len}"))
+            }
+            _ => wrong(error.to_string()),
+        };
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+        let paths = reader.headers().map_err(|error| read(&error))?.iter().map(str::to_owned).collect();
+        let (mut values, mut lines) = (Vec::new(), Vec::new());
+        for record in reader.records().take(MAX_VALUES + 1) {
+            let record = record.map_err(|error| read(&error))?;
+            values.push(record.iter().map(str::to_owned).collect());
+            lines.push(line(record.position()));
+        }
+        let axis = Self { paths, values, lines: Lines(Some((path.to_owned(), lines))) };
         if axis.values.is_empty() {
             return Err(wrong("found no line below the header".into()));
         }

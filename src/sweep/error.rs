@@ -34,6 +34,17 @@ pub enum SweepError {
         /// What is wrong with it.
         reason: String,
     },
+    /// A line of a list makes no legal scene.
+    #[error("{lines}: {source}")]
+    #[diagnostic(help(
+        "every line of a list gives each path of the header a value that is legal in the scene"
+    ))]
+    Row {
+        /// The file and the line of every list that takes part.
+        lines: String,
+        /// What is wrong with the scene.
+        source: SceneError,
+    },
     /// The axes do not make a grid.
     #[error("these runs are no sweep: {reason}")]
     #[diagnostic(help(
@@ -135,6 +146,7 @@ impl SweepError {
         match self {
             Self::Vary { .. }
             | Self::List { .. }
+            | Self::Row { .. }
             | Self::Grid { .. }
             | Self::Scene(_)
             | Self::Another { .. }

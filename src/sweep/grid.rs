@@ -48,15 +48,30 @@ impl Grid {
         self.axes.iter().flat_map(|axis| &axis.paths).map(String::as_str)
     }
 
-    /// What the paths are set to in `run` (from 1), in their order.
-    pub fn values(&self, run: usize) -> Vec<&str> {
+    /// Every axis with the number of its value in `run` (from 1).
+    fn chosen(&self, run: usize) -> Vec<(&Axis, usize)> {
         let mut rest = run - 1;
-        let mut chosen: Vec<&[String]> = Vec::with_capacity(self.axes.len());
+        let mut chosen = Vec::with_capacity(self.axes.len());
         for axis in self.axes.iter().rev() {
-            chosen.push(&axis.values[rest % axis.values.len()]);
+            chosen.push((axis, rest % axis.values.len()));
             rest /= axis.values.len();
         }
-        chosen.into_iter().rev().flatten().map(String::as_str).collect()
+        chosen.reverse();
+        chosen
+    }
+
+    /// What the paths are set to in `run` (from 1), in their order.
+    pub fn values(&self, run: usize) -> Vec<&str> {
+        self.chosen(run)
+            .into_iter()
+            .flat_map(|(axis, value)| &axis.values[value])
+            .map(String::as_str)
+            .collect()
+    }
+
+    /// The lines of files from which `run` (from 1) takes its values, as `FILE:LINE`.
+    pub fn lines(&self, run: usize) -> Vec<String> {
+        self.chosen(run).into_iter().filter_map(|(axis, value)| axis.lines.place(value)).collect()
     }
 
     /// The overrides `PATH=VALUE` of `run` (from 1).

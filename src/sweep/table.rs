@@ -5,6 +5,7 @@ use std::io::{self, Write};
 
 use super::Grid;
 use super::journal::Record;
+use crate::output::cell;
 
 /// Keys of a summary that are no results of a run.
 const LEFT_OUT: [&str; 3] = ["title.", "version.", "seconds."];
@@ -55,7 +56,7 @@ impl<'a> Table<'a> {
     pub fn new(out: &'a mut dyn Write, grid: &'a Grid, columns: &'a Columns) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(out);
         writer.write_field("run")?;
-        grid.paths().try_for_each(|path| writer.write_field(path))?;
+        grid.paths().try_for_each(|path| writer.write_field(cell(path).as_bytes()))?;
         writer.write_field("outcome")?;
         writer.write_field("message")?;
         columns.0.iter().try_for_each(|column| writer.write_field(column))?;
@@ -75,9 +76,12 @@ impl<'a> Table<'a> {
         }
         let writer = &mut self.writer;
         writer.write_field(record.run.to_string())?;
-        self.grid.values(record.run).into_iter().try_for_each(|value| writer.write_field(value))?;
+        self.grid
+            .values(record.run)
+            .into_iter()
+            .try_for_each(|value| writer.write_field(cell(value).as_bytes()))?;
         writer.write_field(record.outcome.name())?;
-        writer.write_field(record.message.as_deref().unwrap_or(""))?;
+        writer.write_field(cell(record.message.as_deref().unwrap_or("")).as_bytes())?;
         row.iter().try_for_each(|text| writer.write_field(text))?;
         writer.write_field(format!("{:.6}", record.seconds))?;
         writer.write_record(None::<&[u8]>)?;

@@ -4,13 +4,16 @@
 //! lengths, stiffnesses) and, asked once when the system is built, hands densities to the [`Assembly`], which tabulates the shape
 //! functions where the density is to be summed.
 
-use super::{Acting, BeamPart, Needs, SystemError};
+use super::{Acting, BeamPart, Needs, SystemError, Turning};
 use crate::basis::{Basis, BasisTable, Quadrature};
-use crate::effect::{Damping, Density, Dissipation, Effect, Integral, Kind, Rayleigh, Travelling};
+use crate::effect::{
+    Damping, Density, Dissipation, Effect, Friction, Integral, Kind, Pressing, Rayleigh, Rubbing, Travelling,
+};
 use crate::model::{Beam, Law, Model, Place};
 use crate::system::course::Amplitude;
 use nalgebra::Vector2;
 use std::fmt;
+use std::sync::Arc;
 
 /// What takes part in the mechanics besides beams, supports and loads.
 pub trait Part: fmt::Debug + Send + Sync {
@@ -28,6 +31,16 @@ pub trait Part: fmt::Debug + Send + Sync {
     /// What it looks like on the ground, as a line for pictures; `size` is that of the beams \[m\].
     fn outline(&self, _size: f64) -> Vec<[f64; 2]> {
         Vec::new()
+    }
+
+    /// Where it is a spring on the direction of r'.
+    fn torsion_spring(&self) -> Option<Place> {
+        None
+    }
+
+    /// Where it takes or gives a couple.
+    fn couple(&self) -> Option<Place> {
+        None
     }
 
     /// A mass \[kg\] on which gravity acts.
@@ -52,6 +65,16 @@ pub enum Extent {
     Point(Place),
 }
 
+impl Extent {
+    /// Index of the beam.
+    fn beam(self) -> usize {
+        match self {
+            Self::Beam(beam, _) => beam,
+            Self::Point(place) => place.beam,
+        }
+    }
+}
+
 /// The equations under assembly.
 pub struct Assembly<'a> {
     model: &'a Model,
@@ -61,8 +84,12 @@ pub struct Assembly<'a> {
     pub(super) internal: Vec<Box<dyn Effect>>,
     pub(super) loads: Vec<Acting>,
     pub(super) inertia: Vec<Box<dyn Effect>>,
+    pub(super) turning: Vec<Turning>,
     pub(super) damping: Vec<Box<dyn Damping>>,
     pub(super) travelling: Vec<Travelling>,
+    pub(super) contacts: Vec<Arc<Pressing>>,
+    pub(super) friction: Vec<Rubbing>,
+    pub(super) left_out: Vec<(Kind, usize)>,
 }
 
 impl<'a> Assembly<'a> {
@@ -75,8 +102,12 @@ impl<'a> Assembly<'a> {
             internal: Vec::new(),
             loads: Vec::new(),
             inertia: Vec::new(),
+            turning: Vec::new(),
             damping: Vec::new(),
             travelling: Vec::new(),
+            contacts: Vec::new(),
+            friction: Vec::new(),
+            left_out: Vec::new(),
         }
     }
 
@@ -158,11 +189,38 @@ impl<'a> Assembly<'a> {
         if self.needs.inertia {
             let effect = self.integral(kind, extent, D::ORDERS, |_| density)?;
             self.inertia.push(Box::new(effect));
+        } else if !matches!(kind, Kind::Inertia | Kind::PointMass) {
+            // Of masses there is the weight.
+            self.left_out.push((kind, extent.beam()));
         }
         Ok(())
     }
 
-    /// A dissipation function; nothing in an analysis without motion.
+    /// A kinetic energy, quadratic in the velocities, with a matrix that follows the state: `momentum` is its derivative by the rates of the fields, and
+    /// `rate` the force of inertia of fields that do not accelerate. Nothing in an analysis without inertia.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`].
+    pub fn turning_inertia<D, E, const M: usize>(
+        &mut self,
+        kind: Kind,
+        extent: Extent,
+        momentum: D,
+        rate: E,
+    ) -> Result<(), SystemError>
+    where
+        D: Dissipation<M> + 'static,
+        E: Dissipation<M> + 'static,
+    {
+        if self.needs.inertia {
+            let momentum = Box::new(self.integral(kind, extent, D::ORDERS, |_| Rayleigh(momentum))?);
+            let rate = Box::new(self.integral(kind, extent, E::ORDERS, |_| Rayleigh(rate))?);
+            self.turning.push(Turning { momentum, rate });
+        }
+        Ok(())
+    }
+
+    /// A dissipation function; nothing in an analysis without motion, which says so.
     ///
     /// # Errors
     /// As [`Self::elastic`].
@@ -175,8 +233,20 @@ impl<'a> Assembly<'a> {
         if self.needs.motion {
             let effect = self.integral(kind, extent, D::ORDERS, |fields| Rayleigh(density(fields)))?;
             self.damping.push(Box::new(effect));
+        } else {
+            self.left_out.push((kind, extent.beam()));
         }
         Ok(())
+    }
+
+    /// A contact: an energy that is asked, besides, where it touches; and its friction.
+    pub fn contact(&mut self, contact: Pressing, friction: Option<Friction>) {
+        let contact = Arc::new(contact);
+        self.internal.push(Box::new(Arc::clone(&contact)));
+        if let Some(friction) = friction {
+            self.friction.push(Rubbing::new(Arc::clone(&contact), friction, self.friction.len()));
+        }
+        self.contacts.push(contact);
     }
 
     /// A force whose place moves.
@@ -201,10 +271,7 @@ impl<'a> Assembly<'a> {
     where
         D: Density<M>,
     {
-        let index = match extent {
-            Extent::Beam(beam, _) => beam,
-            Extent::Point(place) => place.beam,
-        };
+        let index = extent.beam();
         let beam = self.beam(kind.name(), index)?;
         let part = &self.beams[index];
         let table = match extent {

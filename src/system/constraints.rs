@@ -3,10 +3,13 @@
 //! At an arc length between nodes a support holds a combination of coordinates, g = n(λ)·Σ_a N_a q_a − c(λ) = 0, with the
 //! rows N of r or of r' there: a component of the position, a component of the gradient, or, for a held direction θ, the
 //! gradient's component across it, n = (−sin θ, cos θ). A joint ties the fields of two points, each with a normal of its own. These rows are linear in q.
-//! The length of the gradient, which an inextensible beam keeps ([`super::inextensible`]), is quadratic: its row's normal follows the gradient.
+//! The length of the gradient, which an inextensible beam keeps ([`super::inextensible`]), is quadratic: its row's normal follows the gradient. So does that of the
+//! angle from one direction to another, which a weld keeps.
 
 use super::course::Course;
 use crate::basis::BasisTable;
+use crate::effect::Action;
+use nalgebra::Vector2;
 use std::ops::Range;
 
 /// What a row holds.
@@ -39,6 +42,8 @@ pub enum Row {
         /// What the sum is.
         value: f64,
     },
+    /// The angle from the direction of the first gradient to that of the second, θ_b − θ_a \[rad\].
+    Angle(f64),
     /// The gradient's length over part of a beam, Σ_p ½ w_p (r'_p·r'_p − |r'_p|₀²).
     Length {
         /// w_p \[m\].
@@ -75,6 +80,8 @@ impl Field {
 #[derive(Clone, Debug)]
 pub struct Constraint {
     fields: Vec<Field>,
+    /// Arc lengths of the fields \[m\]; of a length, which is no force on the beam from without, none.
+    places: Vec<f64>,
     row: Row,
 }
 
@@ -82,7 +89,7 @@ impl Constraint {
     /// `table` holds one point with the single row that `row` needs (order 0 for a position, 1 otherwise); `offset` is the
     /// beam's first coefficient.
     pub fn new(table: &BasisTable, offset: usize, row: Row) -> Self {
-        Self { fields: vec![Field::new(table, offset)], row }
+        Self { fields: vec![Field::new(table, offset)], places: vec![table.s[0]], row }
     }
 
     /// The length of the gradient as in the state `reference`, weighted over several points: of each (first coordinate that its shape
@@ -91,7 +98,7 @@ impl Constraint {
         let field = |&(first, shape, _): &(usize, &[f64], f64)| Field { first, shape: shape.to_vec() };
         let fields = points.iter().map(field).collect();
         let weights = points.iter().map(|(.., weight)| *weight).collect();
-        let mut row = Self { fields, row: Row::Length { weights, value: 0.0 } };
+        let mut row = Self { fields, places: Vec::new(), row: Row::Length { weights, value: 0.0 } };
         let held = row.value(0.0, reference);
         if let Row::Length { value, .. } = &mut row.row {
             *value = held;
@@ -105,8 +112,15 @@ impl Constraint {
         order: usize,
         normals: Vec<[f64; 2]>,
     ) -> Self {
-        let fields = points.map(|(table, offset)| Field::new(table, offset)).collect();
-        Self { fields, row: Row::Joint { order, normals, value: 0.0 } }
+        let (fields, places) = points.map(|(table, offset)| (Field::new(table, offset), table.s[0])).unzip();
+        Self { fields, places, row: Row::Joint { order, normals, value: 0.0 } }
+    }
+
+    /// The angle from the direction of the first of two gradients to that of the second, from tables of one row each with the first coefficient of its beam.
+    pub fn angle(points: [(&BasisTable, usize); 2], angle: f64) -> Self {
+        let (fields, places) =
+            points.into_iter().map(|(table, offset)| (Field::new(table, offset), table.s[0])).unzip();
+        Self { fields, places, row: Row::Angle(angle) }
     }
 
     /// Sets what the sum of a joint is.
@@ -132,7 +146,32 @@ impl Constraint {
 
     /// Whether ∂g/∂q depends on q.
     pub fn is_nonlinear(&self) -> bool {
-        matches!(self.row, Row::Length { .. })
+        matches!(self.row, Row::Length { .. } | Row::Angle(_))
+    }
+
+    /// The first coordinate that it combines.
+    pub fn first(&self) -> usize {
+        self.fields.first().map_or(0, |field| field.first)
+    }
+
+    /// |g(q, λ)|: positions in units of `length`, gradients as they are.
+    pub fn miss(&self, load: f64, q: &[f64], length: f64) -> f64 {
+        let value = self.value(load, q).abs();
+        match self.row {
+            Row::Position { .. } | Row::Length { .. } | Row::Joint { order: 0, .. } => value / length,
+            Row::Gradient { .. } | Row::Direction(_) | Row::Joint { .. } | Row::Angle(_) => value,
+        }
+    }
+
+    /// What follows no law holds what it holds in the state `q`.
+    pub fn hold_as_in(&mut self, q: &[f64], length: f64) {
+        let Some(field) = self.fields.first().map(|field| field.at(q)) else { return };
+        match &mut self.row {
+            Row::Position { axis, value } => value.hold(field[*axis], length),
+            Row::Gradient { reference, rotation, .. } => rotation.hold_angle(*reference, field),
+            Row::Direction(angle) => angle.hold_angle([1.0, 0.0], field),
+            Row::Joint { .. } | Row::Length { .. } | Row::Angle(_) => {}
+        }
     }
 
     /// The coordinates that it combines, where they belong to one point.
@@ -159,7 +198,7 @@ impl Constraint {
                 ([-sine, cosine], 0.0, [-cosine * angle.change, -sine * angle.change], 0.0)
             }
             Row::Joint { value, .. } => ([0.0; 2], *value, [0.0; 2], 0.0),
-            Row::Length { value, .. } => ([0.0; 2], *value, [0.0; 2], 0.0),
+            Row::Length { value, .. } | Row::Angle(value) => ([0.0; 2], *value, [0.0; 2], 0.0),
         }
     }
 
@@ -168,8 +207,18 @@ impl Constraint {
         match &self.row {
             Row::Joint { normals, .. } => normals.get(k).copied().unwrap_or(n),
             Row::Length { weights, .. } => self.fields[k].at(q).map(|r| weights[k] * r),
+            Row::Angle(_) => {
+                let [x, y] = self.fields[k].at(q);
+                let inverse = Self::sign(k) / (x * x + y * y);
+                [-y * inverse, x * inverse]
+            }
             _ => n,
         }
+    }
+
+    /// Of the direction of field `k` in an angle.
+    fn sign(k: usize) -> f64 {
+        if k == 0 { -1.0 } else { 1.0 }
     }
 
     fn combine(&self, n: impl Fn(usize) -> [f64; 2], q: &[f64]) -> f64 {
@@ -185,12 +234,21 @@ impl Constraint {
     pub fn scale(&self, stiffness: f64, length: f64) -> f64 {
         match self.row {
             Row::Position { .. } | Row::Length { .. } | Row::Joint { order: 0, .. } => stiffness / length,
-            Row::Gradient { .. } | Row::Direction(_) | Row::Joint { .. } => stiffness * length,
+            Row::Gradient { .. } | Row::Direction(_) | Row::Joint { .. } | Row::Angle(_) => {
+                stiffness * length
+            }
         }
     }
 
     /// g(q, λ).
     pub fn value(&self, load: f64, q: &[f64]) -> f64 {
+        if let (Row::Angle(angle), [a, b]) = (&self.row, &self.fields[..]) {
+            let ([ax, ay], [bx, by]) = (a.at(q), b.at(q));
+            let (sine, cosine) = angle.sin_cos();
+            // From where the first direction should have the second, so that no full turn is counted.
+            let (wx, wy) = (cosine * ax - sine * ay, sine * ax + cosine * ay);
+            return (wx * by - wy * bx).atan2(wx * bx + wy * by);
+        }
         let (n, c, _, _) = self.normal(load);
         let degree = if self.is_nonlinear() { 0.5 } else { 1.0 };
         degree * self.combine(|k| self.normal_of(k, n, q), q) - c
@@ -199,7 +257,7 @@ impl Constraint {
     /// ∂g/∂λ.
     pub fn rate(&self, load: f64, q: &[f64]) -> f64 {
         match &self.row {
-            Row::Joint { .. } | Row::Length { .. } => 0.0,
+            Row::Joint { .. } | Row::Length { .. } | Row::Angle(_) => 0.0,
             _ => {
                 let (_, _, n, c) = self.normal(load);
                 self.combine(|_| n, q) - c
@@ -212,10 +270,31 @@ impl Constraint {
         let (n, _, _, _) = self.normal(load);
         let k = self.fields.len().saturating_sub(1);
         let normal = self.normal_of(k, n, q);
-        if matches!(self.row, Row::Position { .. } | Row::Joint { order: 0, .. }) {
+        if self.is_of_positions() {
             return (normal, None);
         }
         (normal, Some(self.fields[k].at(q)))
+    }
+
+    /// What a support or joint with the multiplier `mu` does in the state `q`: per point its first coordinate, its arc length, and the action.
+    pub fn actions<'q>(
+        &'q self,
+        load: f64,
+        q: &'q [f64],
+        mu: f64,
+    ) -> impl Iterator<Item = (usize, f64, Action)> + 'q {
+        let (n, _, _, _) = self.normal(load);
+        let fields = self.fields.iter().zip(&self.places).enumerate();
+        fields.map(move |(k, (field, s))| {
+            let force = Vector2::from(self.normal_of(k, n, q)) * -mu;
+            let action = Action::at(field.at(q).into(), force);
+            (field.first, *s, if self.is_of_positions() { action } else { Action::couple(action.moment) })
+        })
+    }
+
+    /// Whether it holds positions, and not gradients.
+    fn is_of_positions(&self) -> bool {
+        matches!(self.row, Row::Position { .. } | Row::Joint { order: 0, .. })
     }
 
     /// (coordinate, ∂g/∂q) in the state `q`.
@@ -228,30 +307,43 @@ impl Constraint {
         })
     }
 
-    /// (coordinate, coordinate, ∂²g/∂q∂q), symmetric; nothing for what is linear.
-    pub fn second_derivative(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
-        let weights = match &self.row {
-            Row::Length { weights, .. } => &weights[..],
-            _ => &[],
-        };
-        self.fields.iter().zip(weights).flat_map(|(field, weight)| {
+    /// ∂²g/∂r'∂r' of field `k` in the state `q`; none of what is linear. No row mixes fields.
+    fn hessian(&self, k: usize, q: &[f64]) -> Option<[[f64; 2]; 2]> {
+        match &self.row {
+            Row::Length { weights, .. } => Some([[weights[k], 0.0], [0.0, weights[k]]]),
+            Row::Angle(_) => {
+                let [x, y] = self.fields[k].at(q);
+                let factor = Self::sign(k) / (x * x + y * y).powi(2);
+                let (same, mixed) = (2.0 * x * y * factor, (y * y - x * x) * factor);
+                Some([[same, mixed], [mixed, -same]])
+            }
+            _ => None,
+        }
+    }
+
+    /// (coordinate, coordinate, ∂²g/∂q∂q) in the state `q`, symmetric; nothing for what is linear.
+    pub fn second_derivative<'q>(&'q self, q: &'q [f64]) -> impl Iterator<Item = (usize, usize, f64)> + 'q {
+        let hessians =
+            self.fields.iter().enumerate().filter_map(|(k, field)| Some((field, self.hessian(k, q)?)));
+        hessians.flat_map(|(field, hessian)| {
             let at = move |a: usize, d: usize| field.first + 2 * a + d;
             let rows = field.shape.iter().enumerate();
             rows.flat_map(move |(a, na)| {
                 let columns = field.shape.iter().enumerate();
-                columns.flat_map(move |(b, nb)| (0..2).map(move |d| (at(a, d), at(b, d), weight * na * nb)))
+                columns.flat_map(move |(b, nb)| {
+                    let entry = move |(d, e): (usize, usize)| (at(a, d), at(b, e), hessian[d][e] * na * nb);
+                    [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().map(entry)
+                })
             })
         })
     }
 
-    /// v·∂²g/∂q∂q·v.
-    pub fn curvature(&self, v: &[f64]) -> f64 {
-        match &self.row {
-            Row::Length { weights, .. } => {
-                let rates = self.fields.iter().map(|field| field.at(v));
-                rates.zip(weights).map(|([x, y], weight)| weight * (x * x + y * y)).sum()
-            }
-            _ => 0.0,
-        }
+    /// v·∂²g/∂q∂q·v in the state `q`.
+    pub fn curvature(&self, q: &[f64], v: &[f64]) -> f64 {
+        let of = |(k, field): (usize, &Field)| {
+            let ([[a, b], [c, d]], [x, y]) = (self.hessian(k, q)?, field.at(v));
+            Some(x * (a * x + b * y) + y * (c * x + d * y))
+        };
+        self.fields.iter().enumerate().filter_map(of).sum()
     }
 }

@@ -117,6 +117,23 @@ pub enum SystemError {
         /// Coordinates that no support at a node holds.
         free: usize,
     },
+    /// A joint of a point with itself.
+    #[error("{joint} ties a point to itself")]
+    #[diagnostic(help("let a joint tie two points of different beams, or leave it out"))]
+    ToItself {
+        /// The joint, with the places that it ties.
+        joint: String,
+    },
+    /// Joints, supports between nodes or lengths hold one motion more than once.
+    #[error("{parts} hold the same motion more than once")]
+    #[diagnostic(help(
+        "the forces between them have no values: leave one of them out, or let one hold less, such as a support that slides; \
+         a beam with an `axial_stiffness` may be held at both ends"
+    ))]
+    Redundant {
+        /// What holds it, with places.
+        parts: String,
+    },
     /// The shape functions could not be built.
     #[error("beam `{beam}`: {cause}")]
     Basis {

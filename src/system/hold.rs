@@ -7,6 +7,15 @@ use super::supports::{Held, Hold, Supports};
 use super::{Needs, System, SystemError, View};
 use crate::model::{Displacement, FixedRotation, Support};
 
+impl System {
+    /// Supports that follow no law of time hold the beams where they are in the state `q`.
+    pub fn hold_as_in(&mut self, q: &[f64]) {
+        let length = self.length;
+        self.supports.hold_as_in(q, length);
+        self.constraints.iter_mut().for_each(|row| row.hold_as_in(q, length));
+    }
+}
+
 /// Eliminated supports and constraint rows.
 pub(super) fn hold(
     system: &System,

@@ -15,7 +15,7 @@
 //! an arc (membrane locking). The n + 1 nodes and n cells hold the 2n + 2 coordinates of a straight beam along its axis but for the translation; two
 //! rows a cell without continuity would hold one less, and all nodal gradients could shrink together: those of a pendulum do, to nothing.
 //!
-//! Where a support holds a gradient wholly, or a weld ties it to one that is held or has its rows, one row would be too many: N is linear in a cell there.
+//! Where a support holds a gradient wholly one row would be too many: N is linear in a cell there.
 //!
 //! # Why integrals
 //! Rows at the nodes and midpoints themselves, |r'| = 1, give the same motion. But their multipliers are no axial force where shape functions
@@ -25,7 +25,7 @@
 use super::constraints::Constraint;
 use super::{System, SystemError};
 use crate::basis::Quadrature;
-use crate::model::{FixedRotation, Joint, Model, Place};
+use crate::model::{FixedRotation, Model, Place};
 
 /// Gauss points a cell: exact for cubic shape functions and quadratic forces.
 const POINTS: usize = 4;
@@ -92,34 +92,14 @@ fn functions(xi: f64, linear: bool) -> [f64; 3] {
     }
 }
 
-/// Nodes whose gradient keeps its length already: supports hold all of it, or a weld ties it to another that keeps its own.
+/// Nodes whose gradient keeps its length already, since supports hold all of it.
 fn held_lengths(system: &System, model: &Model) -> Vec<usize> {
     let node_at = |at: Place| {
         let part = system.beams.get(at.beam)?;
         Some(part.first_node + part.basis.node_at(part.arc_length("a support", at.s).ok()?)?)
     };
     let supports = model.supports.iter().filter(|support| support.fix.rotation == FixedRotation::Gradient);
-    let mut held: Vec<usize> = supports.filter_map(|support| node_at(support.at)).collect();
-    // Nodes that are welded to each other, directly or not.
-    let mut groups: Vec<Vec<usize>> = Vec::new();
-    for joint in &model.joints {
-        let Joint::Weld { first, second } = *joint else { continue };
-        let (Some(a), Some(b)) = (node_at(first), node_at(second)) else { continue };
-        let (touched, others): (Vec<_>, Vec<_>) =
-            groups.into_iter().partition(|group| group.contains(&a) || group.contains(&b));
-        let mut group: Vec<usize> = touched.into_iter().flatten().chain([a, b]).collect();
-        group.sort_unstable();
-        group.dedup();
-        groups = others;
-        groups.push(group);
-    }
-    let inextensible =
-        |node: &usize| model.beams[system.place_of(4 * node).0].section.axial_stiffness.is_none();
-    for group in groups {
-        let keeps = if group.iter().any(|node| held.contains(node)) { 0 } else { 1 };
-        held.extend(group.into_iter().filter(inextensible).skip(keeps));
-    }
-    held
+    supports.filter_map(|support| node_at(support.at)).collect()
 }
 
 impl System {

@@ -68,6 +68,9 @@ pub struct BeamEntry {
     pub nodes: usize,
     /// Length \[m\].
     pub length: f64,
+    /// Arc lengths between the ends to which nodes were put because something holds, joins or turns the beam there \[m\].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub breaks: Vec<f64>,
     /// Functions that are different from zero at a point.
     pub width: usize,
     /// Distinct cells whose shape functions were solved.
@@ -83,10 +86,19 @@ impl System {
         let loads = self.loads.iter().map(|load| &load.effect);
         let effects = self.internal.iter().chain(&self.inertia).chain(loads);
         let effects = effects.map(|effect| (effect.beam(), effect.kind(), effect.size()));
-        let damping = self.damping.iter().map(|damping| (damping.beam(), damping.kind(), damping.size()));
+        let turning = self.turning.iter().map(|turning| &turning.momentum);
+        let damping = self
+            .damping
+            .iter()
+            .chain(turning)
+            .map(|damping| (damping.beam(), damping.kind(), damping.size()));
         let travelling = self.travelling.iter().map(|force| (force.beam(), force.kind(), force.size()));
+        let friction =
+            self.friction.iter().map(|friction| (friction.beam(), Kind::Friction, friction.size()));
         let lengths = self.lengths().map(|(beam, bytes)| (beam, Kind::Inextensibility, (1, bytes)));
-        for (beam, kind, (points, bytes)) in effects.chain(damping).chain(travelling).chain(lengths) {
+        for (beam, kind, (points, bytes)) in
+            effects.chain(damping).chain(travelling).chain(friction).chain(lengths)
+        {
             let entry = entries.entry((beam, kind)).or_default();
             entry.0 += points;
             entry.1 += bytes;
@@ -111,6 +123,7 @@ impl System {
                     name: part.name.clone(),
                     nodes: part.basis.nodes().len(),
                     length: part.basis.length(),
+                    breaks: part.basis.breaks().collect(),
                     width: part.basis.width(),
                     distinct_cells: defects.distinct_cells,
                     bits: defects.bits,
@@ -162,6 +175,12 @@ impl fmt::Display for Inventory {
                 "beam {:<16} {} nodes, {} m, {} functions a point, {} distinct cells solved with {} bits",
                 beam.name, beam.nodes, beam.length, beam.width, beam.distinct_cells, beam.bits
             )?;
+            if !beam.breaks.is_empty() {
+                let places: Vec<String> = beam.breaks.iter().map(|s| format!("{s:.6}")).collect();
+                let at =
+                    "nodes put, and shape functions ended, where something holds, joins or turns it: s =";
+                writeln!(f, "beam {:<16} {at} {} m", beam.name, places.join(", "))?;
+            }
         }
         let share = |seconds: f64| match &self.measured {
             Some(measured) => {

@@ -3,19 +3,18 @@
 //! | joint | rows |
 //! |---|---|
 //! | hinge | r_b − r_a = 0 |
-//! | weld | r_b − r_a = 0 and r'_b − R(φ) r'_a = 0 |
+//! | weld | r_b − r_a = 0 and θ_b − θ_a − φ = 0, θ = atan2(y', x') |
 //! | slider along d | (J d)·(r − r₀) = 0 |
 //!
-//! with φ the angle between the gradients of the stress-free shapes. All rows are linear in q and constant, so that a motion stays an ordinary
-//! differential equation on the subspace that they leave ([`crate::solve::dynamics::motion`]).
-//!
-//! # Stretch at a weld
-//! A weld could hold the angle alone; it holds both components of the gradient and with them |r'_b| = |r'_a|, as the clamp of a cable element does.
-//! Where the axial forces of the two beams differ, that stress is balanced within the adjoining cells. Its energy is that of a strain ε = N/EA over
-//! one cell, less than the bending energy by EI/(EA L²): 1e-5 for a beam of slenderness 100.
+//! with φ the angle between the gradients of the stress-free shapes. A weld leaves the lengths of the gradients free: the axial strains of the two beams jump where
+//! their stiffnesses do. Its direction is not linear in q; in statics its row follows the state, and in motion the gradients of both points are
+//! polar ([`super::polar`]), in which all rows are linear and constant, so that a motion stays an ordinary differential equation on the subspace that they
+//! leave ([`crate::solve::dynamics::motion`]). There are nodes where joints are ([`crate::model::Model::breaks`]).
 
 use super::constraints::Constraint;
+use super::polar::Polar;
 use super::{System, SystemError};
+use crate::basis::BasisTable;
 use crate::model::{Joint, Place};
 
 /// Distance of two points that are one \[beam lengths\].
@@ -28,7 +27,7 @@ pub(super) fn rows(system: &System, joint: Joint) -> Result<Vec<Constraint>, Sys
         Joint::Hinge { first, second } => rows.extend(coincide(system, first, second)?),
         Joint::Weld { first, second } => {
             rows.extend(coincide(system, first, second)?);
-            rows.extend(keep_angle(system, first, second)?);
+            rows.push(keep_angle(system, first, second)?);
         }
         Joint::Slider { at, along: [x, y] } => {
             let length = x.hypot(y);
@@ -60,18 +59,11 @@ fn coincide(system: &System, first: Place, second: Place) -> Result<[Constraint;
     Ok(rows.map(|row| row.closed()))
 }
 
-fn keep_angle(system: &System, first: Place, second: Place) -> Result<[Constraint; 2], SystemError> {
-    let [a, b] = [first, second].map(|place| system.gradient_of(place));
-    let ([ax, ay], [bx, by]) = (a?, b?);
-    // R(φ) r'_a = r'_b but for the lengths, which are 1.
-    let (cosine, sine) = (ax * bx + ay * by, ax * by - ay * bx);
-    let length = cosine.hypot(sine);
-    let (cosine, sine) = (cosine / length, sine / length);
-    // Rows of R(φ).
-    let turned = [[cosine, -sine], [sine, cosine]];
-    let axes = [0, 1].map(|i| (AXES[i], turned[i]));
-    let rows = axes.map(|(axis, turned)| row(system, 1, &[(first, turned.map(|n| -n)), (second, axis)]));
-    Ok(transpose(rows)?.map(|row| row.closed()))
+fn keep_angle(system: &System, first: Place, second: Place) -> Result<Constraint, SystemError> {
+    let ([ax, ay], [bx, by]) = (system.gradient_of(first)?, system.gradient_of(second)?);
+    let angle = (ax * by - ay * bx).atan2(ax * bx + ay * by);
+    let [(a, of_a), (b, of_b)] = transpose([first, second].map(|place| table(system, 1, place)))?;
+    Ok(Constraint::angle([(&a, of_a), (&b, of_b)], angle))
 }
 
 fn transpose<T, E>(results: [Result<T, E>; 2]) -> Result<[T; 2], E> {
@@ -83,12 +75,33 @@ fn transpose<T, E>(results: [Result<T, E>; 2]) -> Result<[T; 2], E> {
 fn row(system: &System, order: usize, terms: &[(Place, [f64; 2])]) -> Result<Constraint, SystemError> {
     let mut parts = Vec::with_capacity(terms.len());
     for (place, normal) in terms {
-        let (part, s) = system.part("a joint", *place)?;
-        let table = part.basis.points(&[s], &[order]).map_err(|e| SystemError::basis(&part.name, e))?;
-        parts.push((table, part.offset(), *normal));
+        let (table, offset) = table(system, order, *place)?;
+        parts.push((table, offset, *normal));
     }
     let normals = parts.iter().map(|(.., normal)| *normal).collect();
     let mut row = Constraint::joint(parts.iter().map(|(table, offset, _)| (table, *offset)), order, normals);
     row.hold(row.value(0.0, system.reference()));
     Ok(row)
+}
+
+/// The shape functions of r⁽ᵒ⁾ at a place, and the first coefficient of its beam.
+fn table(system: &System, order: usize, place: Place) -> Result<(BasisTable, usize), SystemError> {
+    let (part, s) = system.part("a joint", place)?;
+    let table = part.basis.points(&[s], &[order]).map_err(|e| SystemError::basis(&part.name, e))?;
+    Ok((table, part.offset()))
+}
+
+/// The gradients that a motion has in polar coordinates: those of welded nodes of which supports hold nothing.
+pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, SystemError> {
+    let held: Vec<usize> = system.supports.eliminated().map(|i| i / 2).collect();
+    let mut pairs = Vec::new();
+    for joint in joints {
+        let Joint::Weld { first, second } = *joint else { continue };
+        for place in [first, second] {
+            let (part, s) = system.part("a joint", place)?;
+            pairs.extend(part.basis.node_at(s).map(|node| 2 * (part.first_node + node) + 1));
+        }
+    }
+    pairs.retain(|pair| !held.contains(pair));
+    Ok(Polar::new(pairs))
 }

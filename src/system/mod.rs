@@ -11,36 +11,46 @@
 //! ```
 //! with the load factor λ ∈ [0, 1]. Loads count as densities of negative work, hence the plus sign.
 
+mod actuation;
 pub mod assembly;
 pub mod constraints;
+mod contacts;
 pub mod course;
+mod cut;
 mod effects;
 mod error;
 mod hold;
 pub mod inextensible;
 mod inventory;
 pub mod joint;
+pub mod laws;
 mod measure;
+pub mod polar;
 mod reaction;
+mod redundancy;
 mod rows;
 mod sums;
 pub mod supports;
 mod view;
 
+pub use cut::Balanced;
 pub use error::SystemError;
 pub use inventory::{EffectEntry, Inventory};
 pub use measure::Measured;
 pub use reaction::Reaction;
-pub use view::{Fields, View};
+pub use view::{Fields, View, unfold};
 
 use crate::basis::Basis;
 use crate::centreline::Curve;
-use crate::effect::{Damping, Effect, Travelling};
+use crate::effect::{Damping, Effect, Kind, Pressing, Rubbing, Travelling};
 use crate::linear::Matrix;
-use crate::model::{Centreline, Discretization, Model, Place};
+use crate::model::freedom::Freedom;
+use crate::model::{Centreline, Discretization, Joint, Model, Place};
 use constraints::Constraint;
 use course::Amplitude;
+use polar::Polar;
 use reaction::Source;
+use std::sync::Arc;
 use supports::Supports;
 
 /// What an analysis asks of the system; nothing else is built.
@@ -59,10 +69,18 @@ struct Acting {
     amplitude: Option<Amplitude>,
 }
 
+/// An inertia whose matrix follows the state.
+struct Turning {
+    /// Its momentum as a function of state and velocity; and so its force as a function of state and acceleration, but for what velocities add.
+    momentum: Box<dyn Damping>,
+    /// What velocities add.
+    rate: Box<dyn Damping>,
+}
+
 /// ω² of a hanging chain, in units of its weight on ρA L²; the lowest is 1.45.
 const CHAIN: f64 = 0.1;
 
-/// Distance beyond an end, per length, that counts as round-off.
+/// Distance beyond an end or beside a node, per length, that counts as round-off.
 const PLACE_ROUND_OFF: f64 = 1e-9;
 
 /// A beam's part of the system.
@@ -84,7 +102,7 @@ impl BeamPart {
         2 * self.first_node
     }
 
-    /// The arc length `s`, where `what` stands; round-off beyond an end is cut off.
+    /// The arc length `s`, where `what` stands; round-off beyond an end and beside a node is cut off.
     ///
     /// # Errors
     /// [`SystemError::OffBeam`].
@@ -92,7 +110,11 @@ impl BeamPart {
         let length = self.basis.length();
         // A length computed elsewhere may differ by round-off.
         if s >= -PLACE_ROUND_OFF * length && s <= (1.0 + PLACE_ROUND_OFF) * length {
-            Ok(s.clamp(0.0, length))
+            let nodes = self.basis.nodes();
+            let right = nodes.partition_point(|node| *node < s).min(nodes.len() - 1);
+            let near = |node: &&f64| (**node - s).abs() <= PLACE_ROUND_OFF * length;
+            let node = nodes[right.saturating_sub(1)..=right].iter().find(near);
+            Ok(node.copied().unwrap_or_else(|| s.clamp(0.0, length)))
         } else {
             Err(SystemError::OffBeam { what, beam: self.name.clone(), s, length })
         }
@@ -111,10 +133,19 @@ pub struct System {
     /// The sum of those of them that are the same in every state.
     constant_load: Vec<f64>,
     inertia: Vec<Box<dyn Effect>>,
+    turning: Vec<Turning>,
     damping: Vec<Box<dyn Damping>>,
     travelling: Vec<Travelling>,
+    /// The contacts, which are among the internal effects.
+    contacts: Vec<Arc<Pressing>>,
+    friction: Vec<Rubbing>,
+    left_out: Vec<(Kind, usize)>,
     supports: Supports,
+    /// Gradients that a motion has in polar coordinates.
+    polar: Polar,
     constraints: Vec<Constraint>,
+    /// Beams that would be strained or curved by themselves.
+    actuated: Vec<actuation::Actuated>,
     /// Where supports and joints act.
     sources: Vec<Source>,
     /// Where the last constraints keep the length of inextensible beams.
@@ -124,7 +155,7 @@ pub struct System {
     stiffness: f64,
     round_off: f64,
     lowest_vibration: f64,
-    strings: bool,
+    floppy: bool,
 }
 
 impl System {
@@ -139,11 +170,12 @@ impl System {
         let mut beams: Vec<BeamPart> = Vec::with_capacity(model.beams.len());
         let mut reference = Vec::new();
         let (mut stiffness, mut round_off) = (0.0_f64, 0.0_f64);
-        for beam in &model.beams {
+        for (index, beam) in model.beams.iter().enumerate() {
             let in_curve = |cause| SystemError::Curve { beam: beam.name.clone(), cause };
             let in_basis = |e| SystemError::basis(&beam.name, e);
             let curve = Curve::new(&beam.centreline).map_err(in_curve)?;
-            let basis = Basis::new(&beam.discretization, curve.length()).map_err(in_basis)?;
+            let basis = Basis::broken(&beam.discretization, curve.length(), &model.breaks(index));
+            let basis = basis.map_err(in_basis)?;
             let first_node = reference.len() / 4;
             for &s in basis.nodes() {
                 let ([x, y], [tx, ty]) = (curve.position(s), curve.tangent(s));
@@ -176,24 +208,43 @@ impl System {
             amplitude: if needs.motion { Amplitude::Full } else { Amplitude::Proportional },
             constant_load: Vec::new(),
             inertia: Vec::new(),
+            turning: Vec::new(),
             damping: Vec::new(),
             travelling: Vec::new(),
+            contacts: Vec::new(),
+            friction: Vec::new(),
+            left_out: Vec::new(),
             supports: Supports::default(),
+            polar: Polar::default(),
             constraints: Vec::new(),
+            actuated: Vec::new(),
             sources: Vec::new(),
             lengths: Vec::new(),
             reference,
             length,
             stiffness,
             round_off,
-            strings: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
+            floppy: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
             lowest_vibration: lowest_vibration_scale(model, length),
         };
         let mut assembly = assembly::Assembly::new(model, &system.beams, &system.reference, needs);
         effects::add(&mut assembly)?;
-        let assembly::Assembly { internal, loads, inertia, damping, travelling, .. } = assembly;
+        let assembly::Assembly {
+            internal,
+            loads,
+            inertia,
+            turning,
+            damping,
+            travelling,
+            contacts,
+            friction,
+            left_out,
+            ..
+        } = assembly;
         (system.internal, system.loads, system.inertia) = (internal, loads, inertia);
-        (system.damping, system.travelling) = (damping, travelling);
+        (system.turning, system.damping, system.travelling) = (turning, damping, travelling);
+        (system.contacts, system.friction, system.left_out) = (contacts, friction, left_out);
+        system.actuated = actuation::actuated(model, &system);
         system.constant_load = vec![0.0; system.coordinates()];
         for load in system.loads.iter().filter(|load| load.is_summed()) {
             load.effect.add_force(1.0, &system.reference, &mut system.constant_load);
@@ -205,6 +256,7 @@ impl System {
             system.constraints.extend(rows);
             system.sources.push(Source::Rows(first..system.constraints.len()));
         }
+        system.polar = joint::polar(&system, &model.joints)?;
         let (lengths, rows) = inextensible::rows(&system, model)?;
         system.lengths = lengths;
         system.constraints.extend(rows);
@@ -217,6 +269,8 @@ impl System {
             system.lowest_vibration = CHAIN * system.stiffness / (mass * length);
         }
         system.check_room()?;
+        system.check_rows(model)?;
+        system.floppy |= !needs.motion && system.is_mechanism(model)?;
         Ok(system)
     }
 
@@ -246,15 +300,43 @@ impl System {
 
     /// The gradient of the stress-free shape at a place.
     fn gradient_of(&self, at: Place) -> Result<[f64; 2], SystemError> {
+        Ok(self.fields_of(at)?.gradient)
+    }
+
+    fn fields_of(&self, at: Place) -> Result<Fields, SystemError> {
         let (part, s) = self.part("a joint", at)?;
         let view =
             View::point(&part.basis, part.offset(), s).map_err(|e| SystemError::basis(&part.name, e))?;
-        Ok(view.fields(&self.reference).gradient)
+        Ok(view.fields(&self.reference))
+    }
+
+    /// Whether supports and joints leave the beams a rigid motion that no spring resists.
+    fn is_mechanism(&self, model: &Model) -> Result<bool, SystemError> {
+        let of_beams = |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Contact);
+        if !self.internal.iter().all(|effect| of_beams(effect.kind())) {
+            return Ok(false);
+        }
+        let supports = model.supports.iter().map(|support| support.at);
+        let joints = model.joints.iter().flat_map(Joint::places);
+        let starts = (0..model.beams.len()).map(|beam| Place { beam, s: 0.0 });
+        let mut positions = Vec::new();
+        for place in supports.chain(joints).chain(starts) {
+            positions.push((place, self.fields_of(place)?.position));
+        }
+        let position = |place: Place| {
+            positions.iter().find(|(at, _)| *at == place).map_or([0.0; 2], |(_, position)| *position)
+        };
+        Ok(!Freedom::new(model, self.length, position).motions().is_empty())
     }
 
     /// The beams' parts.
     pub fn beams(&self) -> &[BeamPart] {
         &self.beams
+    }
+
+    /// Effects that the model names and that cannot take part in the analysis, with their beams' names.
+    pub fn left_out(&self) -> impl Iterator<Item = (Kind, &str)> {
+        self.left_out.iter().map(|(kind, beam)| (*kind, self.beams[*beam].name.as_str()))
     }
 
     /// Number of coordinates, held ones included.
@@ -304,9 +386,14 @@ impl System {
         &self.supports
     }
 
-    /// Whether a beam has no bending stiffness.
-    pub fn has_strings(&self) -> bool {
-        self.strings
+    /// The gradients that are polar in a motion.
+    pub fn polar(&self) -> &Polar {
+        &self.polar
+    }
+
+    /// Whether the stress-free structure can move without resistance: strings, and beams that supports and joints leave a rigid motion.
+    pub fn is_floppy(&self) -> bool {
+        self.floppy
     }
 
     /// Per coordinate EA/L² times the share w of the length that is the node's, for gradients times w²/10: a mass matrix's diagonal \[N/m, N m\].
@@ -348,7 +435,7 @@ impl System {
     /// Whether tangents are symmetric.
     pub fn is_symmetric(&self) -> bool {
         let loads = self.loads.iter().map(|load| &load.effect);
-        self.internal.iter().chain(loads).all(|effect| effect.is_symmetric())
+        self.friction.is_empty() && self.internal.iter().chain(loads).all(|effect| effect.is_symmetric())
     }
 
     /// A zero tangent of the right pattern.

@@ -4,7 +4,9 @@
 //! moment r' × F' on the section, for δW = F'·δr' = M δθ with δr' = δθ J r'.
 
 use super::System;
+use crate::effect::Slips;
 use crate::model::{FixedRotation, Support};
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// A force \[N\] and a moment \[N m\] on a beam, in fixed axes.
@@ -71,14 +73,21 @@ impl System {
         self.sources.iter().map(of).collect()
     }
 
-    /// The same in equilibrium, `x` being coordinates and scaled multipliers.
-    pub fn static_reactions(&self, load: f64, x: &[f64]) -> Vec<Reaction> {
+    /// The same in equilibrium, `x` being coordinates and scaled multipliers, with the slips of friction.
+    pub fn static_reactions(&self, load: f64, x: &[f64], slips: &Slips) -> Vec<Reaction> {
+        let (q, multipliers) = x.split_at(self.coordinates());
+        self.reactions(load, q, &self.static_held_forces(load, x, slips), multipliers)
+    }
+
+    /// Forces of supports on the held coordinates in equilibrium, in fixed axes.
+    pub(super) fn static_held_forces(&self, load: f64, x: &[f64], slips: &Slips) -> Vec<f64> {
         let (q, multipliers) = x.split_at(self.coordinates());
         let mut force = vec![0.0; q.len()];
         self.force(load, q, &mut force);
+        self.add_held_friction(slips, q, &mut force);
         self.add_constraint_forces(load, q, multipliers, &mut force);
         self.supports.keep_held(load, &mut force);
-        self.reactions(load, q, &force, multipliers)
+        force
     }
 
     /// Per effect with an energy or a load its kind, its beam's name, its energy \[J\] and the resultant \[N\] of its forces on the beam. Of damping the
@@ -88,6 +97,7 @@ impl System {
         parameter: f64,
         q: &[f64],
         velocity: Option<&[f64]>,
+        slips: &Slips,
     ) -> Vec<(String, Option<f64>, [f64; 2])> {
         let mut f = vec![0.0; q.len()];
         let resultant = |f: &mut Vec<f64>| {
@@ -112,15 +122,38 @@ impl System {
             force.add_force(parameter, &mut f);
             out.push((name(force.kind(), force.beam()), None, resultant(&mut f)));
         }
+        for friction in &self.friction {
+            friction.add_held_force(slips, q, &mut f);
+            out.push((name(crate::effect::Kind::Friction, friction.beam()), None, resultant(&mut f)));
+        }
         if let Some(v) = velocity {
             for effect in &self.inertia {
                 out.push((name(effect.kind(), effect.beam()), Some(effect.energy(v)), [0.0; 2]));
+            }
+            for (kind, beam, energy) in self.turning_energies(q, v) {
+                out.push((name(kind, beam), Some(energy), [0.0; 2]));
             }
             for damping in &self.damping {
                 damping.add_force(q, v, &mut f);
                 out.push((name(damping.kind(), damping.beam()), None, resultant(&mut f)));
             }
         }
+        number(&mut out);
         out
+    }
+}
+
+/// Numbers those that share a name: `force.arm.1`, `force.arm.2`.
+fn number<T>(effects: &mut [(String, Option<f64>, T)]) {
+    let mut count: HashMap<String, usize> = HashMap::new();
+    for (name, ..) in effects.iter() {
+        *count.entry(name.clone()).or_default() += 1;
+    }
+    count.retain(|_, count| *count > 1);
+    for (name, ..) in effects.iter_mut().rev() {
+        if let Some(left) = count.get_mut(name) {
+            *name = format!("{name}.{left}");
+            *left -= 1;
+        }
     }
 }

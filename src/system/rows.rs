@@ -1,6 +1,7 @@
 //! The rows of supports between nodes, of joints and of inextensible beams, all together.
 
 use super::constraints::Constraint;
+use super::polar::Polar;
 use super::{System, SystemError};
 use crate::linear::Matrix;
 use crate::linear::bordered::BorderRow;
@@ -9,6 +10,15 @@ use std::collections::BTreeMap;
 impl System {
     /// Scaled rows of ∂g/∂q in the supports' frames, without the held coordinates. An entry that happens to vanish stays, so that the pattern does.
     pub fn border(&self, load: f64, q: &[f64]) -> Vec<BorderRow> {
+        self.border_of(&Polar::default(), load, q)
+    }
+
+    /// The same of the unknowns of a motion.
+    pub fn border_in_motion(&self, time: f64, q: &[f64]) -> Vec<BorderRow> {
+        self.border_of(&self.polar, time, q)
+    }
+
+    fn border_of(&self, polar: &Polar, load: f64, q: &[f64]) -> Vec<BorderRow> {
         let mut dense = vec![0.0; self.coordinates()];
         let held = self.held();
         let mut rows = Vec::with_capacity(self.constraints.len());
@@ -23,6 +33,7 @@ impl System {
             touched.sort_unstable();
             touched.dedup();
             self.supports.to_frames(load, &mut dense);
+            polar.forces(q, &mut dense);
             let keep = |i: &usize| !held[*i] && (constraint.is_nonlinear() || dense[*i] != 0.0);
             rows.push(touched.iter().filter(|i| keep(i)).map(|&i| (i, dense[i])).collect());
             touched.iter().for_each(|&i| dense[i] = 0.0);
@@ -35,20 +46,26 @@ impl System {
         self.constraints.iter().any(Constraint::is_nonlinear)
     }
 
-    /// `k += Σ μ ∂²g/∂q∂q` with the scaled multipliers μ.
-    pub fn add_constraint_stiffness(&self, multipliers: &[f64], k: &mut Matrix) {
+    /// `k += Σ μ ∂²g/∂q∂q` with the scaled multipliers μ, in the state `q`.
+    pub fn add_constraint_stiffness(&self, q: &[f64], multipliers: &[f64], k: &mut Matrix) {
         for (mu, constraint) in multipliers.iter().zip(&self.constraints) {
             let mu = mu * constraint.scale(self.stiffness, self.length);
-            constraint.second_derivative().for_each(|(i, j, value)| k.add_at(i, j, mu * value));
+            constraint.second_derivative(q).for_each(|(i, j, value)| k.add_at(i, j, mu * value));
         }
     }
 
-    /// `f += Σ μ ∂²g/∂q∂q·v` with the scaled multipliers μ.
-    pub fn add_constraint_stiffness_product(&self, multipliers: &[f64], v: &[f64], f: &mut [f64]) {
+    /// `f += Σ μ ∂²g/∂q∂q·v` with the scaled multipliers μ, in the state `q`.
+    pub fn add_constraint_stiffness_product(&self, q: &[f64], multipliers: &[f64], v: &[f64], f: &mut [f64]) {
         for (mu, constraint) in multipliers.iter().zip(&self.constraints) {
             let mu = mu * constraint.scale(self.stiffness, self.length);
-            constraint.second_derivative().for_each(|(i, j, value)| f[i] += mu * value * v[j]);
+            constraint.second_derivative(q).for_each(|(i, j, value)| f[i] += mu * value * v[j]);
         }
+    }
+
+    /// The row that the state `q` misses most: a coordinate of it, and by how much (beam lengths; of directions rad).
+    pub fn missed(&self, parameter: f64, q: &[f64]) -> Option<(usize, f64)> {
+        let missed = self.constraints.iter().map(|row| (row.first(), row.miss(parameter, q, self.length)));
+        missed.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Writes −g(q), scaled.
@@ -66,10 +83,10 @@ impl System {
         }
     }
 
-    /// Adds −v·∂²g/∂q∂q·v, scaled: the part of −g̈ that velocities have.
-    pub fn add_constraint_curvatures(&self, v: &[f64], rates: &mut [f64]) {
+    /// Adds −v·∂²g/∂q∂q·v in the state `q`, scaled: the part of −g̈ that velocities have.
+    pub fn add_constraint_curvatures(&self, q: &[f64], v: &[f64], rates: &mut [f64]) {
         for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
-            *rate -= constraint.scale(self.stiffness, self.length) * constraint.curvature(v);
+            *rate -= constraint.scale(self.stiffness, self.length) * constraint.curvature(q, v);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::course::Amplitude;
 use super::{Acting, System};
-use crate::effect::{Earlier, Effect, Kind, Travelling, Workspace};
+use crate::effect::{Earlier, Effect, Kind, Workspace};
 use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 use crate::trajectory::Energy;
@@ -70,6 +70,11 @@ impl System {
         self.amplitude.at(parameter)
     }
 
+    /// Whether there is any load that grows with the load factor or acts in a motion.
+    pub fn has_loads(&self) -> bool {
+        !self.loads.is_empty()
+    }
+
     /// Whether a load does work that no potential counts.
     pub fn has_work(&self) -> bool {
         !self.travelling.is_empty() || self.loads.iter().any(|load| !load.has_potential())
@@ -119,16 +124,6 @@ impl System {
         scratch.iter().zip(v).map(|(f, v)| f * v).sum()
     }
 
-    /// Times at which a load or the motion of a support is not smooth, in no order.
-    pub fn kinks(&self) -> Vec<f64> {
-        let laws = self.loads.iter().filter_map(|load| match &load.amplitude {
-            Some(Amplitude::Law(law)) => Some(law.kinks()),
-            _ => None,
-        });
-        let travelling = self.travelling.iter().flat_map(Travelling::kinks);
-        laws.flatten().chain(self.supports.kinks()).chain(travelling).collect()
-    }
-
     /// The same force as [`Self::force`], and its derivative by q; stress resultants in the tangent are extrapolated
     /// from an earlier iterate, if there is one (see [`crate::effect`]).
     pub fn force_and_tangent(
@@ -167,7 +162,49 @@ impl System {
         self.sum_of_tangents(&self.internal, q)
     }
 
-    /// The constant mass matrix, if inertia was asked for.
+    /// Whether the mass matrix follows the state, as that of rotary inertia follows directions.
+    pub fn has_turning_inertia(&self) -> bool {
+        !self.turning.is_empty()
+    }
+
+    /// `m += ` the part of the mass matrix that follows the state `q`.
+    pub fn add_turning_mass(&self, q: &[f64], m: &mut Matrix) {
+        if self.turning.is_empty() {
+            return;
+        }
+        let (mut workspace, mut idle) = (Workspace::default(), vec![0.0; q.len()]);
+        let still = idle.clone();
+        for turning in &self.turning {
+            turning.momentum.add_matrix(q, &still, &mut idle, m, &mut workspace);
+        }
+    }
+
+    /// `f += ` that part times `v`.
+    pub fn add_turning_momentum(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
+        self.turning.iter().for_each(|turning| turning.momentum.add_force(q, v, f));
+    }
+
+    /// `f += ` its force of inertia at the velocities `v` and accelerations `a`.
+    pub fn add_turning_force(&self, q: &[f64], v: &[f64], a: &[f64], f: &mut [f64]) {
+        self.add_turning_momentum(q, a, f);
+        self.turning.iter().for_each(|turning| turning.rate.add_force(q, v, f));
+    }
+
+    /// Kinetic energy \[J\] of each inertia whose matrix follows the state: its kind, its beam's index and ½ v·M v.
+    pub(super) fn turning_energies<'q>(
+        &'q self,
+        q: &'q [f64],
+        v: &'q [f64],
+    ) -> impl Iterator<Item = (Kind, usize, f64)> + 'q {
+        self.turning.iter().map(move |turning| {
+            let mut momentum = vec![0.0; q.len()];
+            turning.momentum.add_force(q, v, &mut momentum);
+            let twice: f64 = momentum.iter().zip(v).map(|(p, v)| p * v).sum();
+            (turning.momentum.kind(), turning.momentum.beam(), 0.5 * twice)
+        })
+    }
+
+    /// The constant part of the mass matrix, if inertia was asked for.
     pub fn mass_matrix(&self) -> Matrix {
         self.sum_of_tangents(&self.inertia, &vec![0.0; self.coordinates()])
     }
@@ -187,21 +224,27 @@ impl System {
         sum
     }
 
-    /// Energies at load factor or time `parameter`; `velocity` where there is motion.
+    /// Energies at load factor or time `parameter`; `velocity` where there is motion. Of the work here is what actuation by laws of time has put into the elastic
+    /// energy beyond what [`Self::power`] counts.
     pub fn energy(&self, parameter: f64, q: &[f64], velocity: Option<&[f64]>) -> Energy {
         let sum = |effects: &[Box<dyn Effect>], kind: Kind, q: &[f64]| -> f64 {
             // `sum` of nothing is −0.
             effects.iter().filter(|e| e.kind() == kind).fold(0.0, |sum, e| sum + e.energy(q))
         };
-        let with_potential = self.loads.iter().filter(|load| load.has_potential());
+        let actuates = |load: &Acting| matches!(load.effect.kind(), Kind::PreStrain | Kind::PreCurvature);
+        let with_potential = self.loads.iter().filter(|load| load.has_potential() && !actuates(load));
         let potential = with_potential.map(|load| load.effect.energy(q)).sum::<f64>();
+        let ([stretch, bend], work) = self.actuation_energy(parameter, q);
         Energy {
-            stretch: sum(&self.internal, Kind::Stretch, q),
-            bend: sum(&self.internal, Kind::Bend, q),
+            stretch: sum(&self.internal, Kind::Stretch, q) + stretch,
+            bend: sum(&self.internal, Kind::Bend, q) + bend,
             stored: self.stored_energy(q),
-            kinetic: velocity.map_or(0.0, |v| self.inertia.iter().map(|e| e.energy(v)).sum()),
+            kinetic: velocity.map_or(0.0, |v| {
+                let turning = self.turning_energies(q, v).map(|(.., energy)| energy);
+                self.inertia.iter().map(|e| e.energy(v)).chain(turning).sum()
+            }),
             potential: self.amplitude.at(parameter) * potential,
-            work: 0.0,
+            work,
             lost: 0.0,
         }
     }
@@ -210,36 +253,6 @@ impl System {
     fn stored_energy(&self, q: &[f64]) -> f64 {
         let others = self.internal.iter().filter(|e| !matches!(e.kind(), Kind::Stretch | Kind::Bend));
         others.map(|e| e.energy(q)).sum()
-    }
-
-    fn contact_effects(&self) -> impl Iterator<Item = &dyn Effect> {
-        self.internal.iter().map(|effect| &**effect).filter(|effect| effect.kind() == Kind::Contact)
-    }
-
-    /// Per contact, whether it touches in the state `q`: whether it has an energy.
-    pub fn touching<'q>(&'q self, q: &'q [f64]) -> impl Iterator<Item = bool> + 'q {
-        self.contact_effects().map(|effect| effect.energy(q) > 0.0)
-    }
-
-    /// The same of contact number `contact` alone.
-    pub fn touches(&self, contact: usize, q: &[f64]) -> bool {
-        self.contact_effects().nth(contact).is_some_and(|effect| effect.energy(q) > 0.0)
-    }
-
-    /// The resultant \[N\] of contact number `contact` on its beam in the state `q`, without friction; `scratch` is overwritten.
-    pub fn contact_force(&self, contact: usize, q: &[f64], scratch: &mut [f64]) -> [f64; 2] {
-        scratch.fill(0.0);
-        if let Some(effect) = self.contact_effects().nth(contact) {
-            effect.add_force(1.0, q, scratch);
-        }
-        resultant(scratch)
-    }
-
-    /// Names of the contacts: the beam and a number, such as `arm.1`.
-    pub fn contacts(&self) -> impl Iterator<Item = String> + '_ {
-        self.contact_effects()
-            .enumerate()
-            .map(|(i, effect)| format!("{}.{}", self.beams[effect.beam()].name, i + 1))
     }
 }
 

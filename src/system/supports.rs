@@ -117,9 +117,12 @@ impl Supports {
         })
     }
 
-    /// Nodes of which one component of the position is held and the other free.
+    /// Nodes of which one component of a pair is held and the other free, in the support's frame.
     pub fn half_held(&self) -> impl Iterator<Item = usize> + '_ {
-        let half = |held: &&Held| matches!(&held.hold, Hold::Position([a, b]) if a.is_some() != b.is_some());
+        let half = |held: &&Held| {
+            let (_, [first, second]) = held.frame(0.0);
+            first != second
+        };
         self.held.iter().filter(half).map(|held| held.pair / 2)
     }
 
@@ -137,6 +140,25 @@ impl Supports {
     pub fn impose(&self, load: f64, q: &mut [f64]) {
         for held in &self.held {
             held.impose(load, &mut q[2 * held.pair..2 * held.pair + 2]);
+        }
+    }
+
+    /// What follows no law holds what it holds in the state `q` of a system of this `length`.
+    pub fn hold_as_in(&mut self, q: &[f64], length: f64) {
+        for Held { pair, hold } in &mut self.held {
+            let field = [q[2 * *pair], q[2 * *pair + 1]];
+            match hold {
+                Hold::Position(components) => {
+                    let components = components.iter_mut().zip(field);
+                    components.for_each(|(course, value)| {
+                        if let Some(course) = course {
+                            course.hold(value, length);
+                        }
+                    });
+                }
+                Hold::Gradient { reference, rotation } => rotation.hold_angle(*reference, field),
+                Hold::Direction(angle) => angle.hold_angle([1.0, 0.0], field),
+            }
         }
     }
 
@@ -213,6 +235,14 @@ impl Supports {
         self.held.iter().flat_map(Held::courses).any(Course::moves_in_time)
     }
 
+    /// What moves by a law of time, each with the unit by which it is measured: `per_length` for positions, 1 for angles.
+    pub fn moving(&self, per_length: f64) -> impl Iterator<Item = (&Course, f64)> {
+        let of = move |held: &Held| if matches!(held.hold, Hold::Position(_)) { per_length } else { 1.0 };
+        let courses =
+            self.held.iter().flat_map(move |held| held.courses().map(move |course| (course, of(held))));
+        courses.filter(|(course, _)| course.moves_in_time())
+    }
+
     /// Whether a held direction turns by a law of time.
     pub fn turn_in_time(&self) -> bool {
         self.held.iter().any(Held::turns)
@@ -232,6 +262,17 @@ impl Supports {
             .flat_map(|law| law.kinks())
     }
 
+    /// What jumps by a law: a coordinate, when, and by how much (m, or rad).
+    pub fn jumps(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
+        self.held.iter().flat_map(|held| {
+            let jump = |course: &Course| {
+                let (time, height) = course.law.as_ref()?.jump()?;
+                course.moves().then_some((2 * held.pair, time, height * course.change))
+            };
+            held.courses().filter_map(jump)
+        })
+    }
+
     /// Turns changes of a motion's unknowns into the frames of the supports and clears what is held.
     pub fn unknowns_to_frames(&self, v: &mut [f64]) {
         for held in &self.held {
@@ -241,6 +282,24 @@ impl Supports {
                 rotate(frame, pair);
             }
             clear(pair, fixed);
+        }
+    }
+
+    /// Takes what is held out of changes or rates of a motion's unknowns.
+    ///
+    /// In a frame that is no axis of the coordinates round-off leaves something of the held component in every sum. A solution never touches it, so
+    /// that whatever is continued from step to step must be freed from it: a polynomial of stages multiplies it with every step.
+    pub fn release<T: Real>(&self, v: &mut [T]) {
+        for held in &self.held {
+            let ([cosine, sine], fixed) = held.frame(0.0);
+            let pair = &mut v[2 * held.pair..2 * held.pair + 2];
+            if held.turns() {
+                clear(pair, fixed);
+            } else {
+                rotate([cosine, sine], pair);
+                clear(pair, fixed);
+                rotate([cosine, -sine], pair);
+            }
         }
     }
 

@@ -4,6 +4,7 @@ use crate::basis::{Basis, BasisError, BasisTable};
 use crate::effect::{Engineering, Green, Strain, curvature};
 use crate::model::StrainMeasure;
 use nalgebra::Vector2;
+use std::f64::consts::TAU;
 
 /// Local fields at one arc length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +36,11 @@ impl Fields {
     pub fn angle(&self) -> f64 {
         self.gradient[1].atan2(self.gradient[0])
     }
+}
+
+/// The representative of an angle nearest to `near`.
+pub fn unfold(angle: f64, near: Option<f64>) -> f64 {
+    near.map_or(angle, |near| angle + TAU * ((near - angle) / TAU).round())
 }
 
 /// Rows of r, r', r'' at one point or several of a beam.
@@ -80,9 +86,9 @@ impl View {
         Fields { position, gradient, second }
     }
 
-    /// The velocity at the first point, from the coordinates' velocities.
-    pub fn velocity(&self, v: &[f64]) -> [f64; 2] {
-        self.combine(0, 0, v)
+    /// What the first point has of a vector of coordinates: its position, of their velocities its velocity.
+    pub fn at_point(&self, vector: &[f64]) -> [f64; 2] {
+        self.combine(0, 0, vector)
     }
 
     fn combine(&self, point: usize, row: usize, q: &[f64]) -> [f64; 2] {

@@ -104,7 +104,11 @@ fn a_motion_that_was_told_to_end_goes_on_bit_for_bit() {
         let arguments = ["run", "scene.toml", "-o", "first"];
         let output = signalled(signal, || first.is_dir(), folder.path(), &arguments, 1);
         assert_eq!(status(&output), 1, "{}", stderr(&output));
-        run(&["-o", "second", "--from", "first/state.json"]);
+        let text = fs::read_to_string(first.join("state.json")).expect("a state");
+        let saved: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let time = saved["saved"]["checkpoint"]["state"]["time"].as_f64().expect("a time");
+        let rest = format!("analysis.dynamic.duration={}", 8.0 - time);
+        run(&["-o", "second", "--from", "first/state.json", "--set", &rest]);
         let state = |name: &str| fs::read(folder.path().join(name).join("state.json")).expect("a state");
         assert!(state("whole") == state("second"), "{signal}");
         fs::remove_dir_all(&first).expect("a directory");

@@ -2,6 +2,7 @@
 
 pub(crate) mod commands;
 mod cost;
+mod hygiene;
 mod interrupt;
 mod messages;
 mod motion;

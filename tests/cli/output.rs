@@ -21,6 +21,7 @@ fn line(beam: &str, slope: f64) -> Shape {
         strain: s.iter().map(|s| 1e-7 * s.sin()).collect(),
         curvature: s.iter().map(third).collect(),
         axial_force: s.iter().map(|s| 3e4 * s).collect(),
+        shear_force: s.iter().map(|s| 0.3 * s).collect(),
         bending_moment: s.iter().map(|s| -0.7 * s).collect(),
         nodes: vec![[0.0, 0.0], [1.8, 1.8 * slope]],
         s,
@@ -161,7 +162,18 @@ fn tables_read_back_to_the_same_bits() {
     let (header, rows) = table(&directory.path().join("shape.csv"));
     assert_eq!(
         header,
-        ["beam", "s", "x", "y", "angle", "strain", "curvature", "axial_force", "bending_moment"]
+        [
+            "beam",
+            "s",
+            "x",
+            "y",
+            "angle",
+            "strain",
+            "curvature",
+            "axial_force",
+            "shear_force",
+            "bending_moment"
+        ]
     );
     assert_eq!(rows.len(), 201);
     let b = &t.last[0];
@@ -177,6 +189,7 @@ fn tables_read_back_to_the_same_bits() {
                 b.strain[i],
                 b.curvature[i],
                 b.axial_force[i],
+                b.shear_force[i],
                 b.bending_moment[i]
             ])
         );

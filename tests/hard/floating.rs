@@ -5,7 +5,6 @@ use ancf::restart::SavedState;
 use ancf::run::{Control, RunError, run, run_from};
 use ancf::scene::{self, Scene};
 use ancf::trajectory::{Seconds, Trajectory};
-use std::path::Path;
 
 const TIP_LOAD: &str = include_str!("../scenes/tip-load.toml");
 const PENDULUM: &str = include_str!("../scenes/soft-pendulum.toml");
@@ -84,15 +83,22 @@ fn subnormal_loads_are_no_load() {
     assert!((tip.x - 1.0).abs() < 1e-15 && tip.y.abs() < 1e-15, "{tip:?}");
 }
 
+/// Goes on from a state whatever its checksum says.
 fn resumed(scene: &Scene, state: &serde_json::Value) -> Result<Trajectory, RunError> {
-    let file = tempfile::NamedTempFile::new().expect("a file");
-    std::fs::write(file.path(), state.to_string()).expect("a file");
-    loaded(scene, file.path())
+    let saved: SavedState = serde_json::from_str(&state.to_string()).expect("a state");
+    run_from(scene.model(), scene.analysis(), Some(&saved), &mut |_| Control::Continue)
 }
 
-fn loaded(scene: &Scene, path: &Path) -> Result<Trajectory, RunError> {
-    let saved = SavedState::load(path)?;
-    run_from(scene.model(), scene.analysis(), Some(&saved), &mut |_| Control::Continue)
+/// The state with a value elsewhere, both before and after a step that was cut short.
+fn broken(state: &serde_json::Value, place: &str, value: &serde_json::Value) -> serde_json::Value {
+    let mut broken = state.clone();
+    for part in ["checkpoint", "checkpoint/state", "checkpoint/cut"] {
+        if let Some(place) = broken.pointer_mut(&format!("/saved/{part}/{place}")) {
+            *place = value.clone();
+        }
+    }
+    assert_ne!(broken, *state, "{place}");
+    broken
 }
 
 #[test]
@@ -102,48 +108,33 @@ fn saved_states_that_are_no_numbers_are_refused() {
         let long = parsed(&text.replace("\"2.5 s\"", "0.1"));
         let trajectory = outcome(short.model(), short.analysis()).expect("a motion");
         let state = serde_json::to_value(trajectory.saved.expect("a saved state")).expect("JSON");
-        let whole = resumed(&long, &state).expect("a sound state");
+        let whole = resumed(&short, &state).expect("a sound state");
         assert!(whole.complete);
         let reference = outcome(long.model(), long.analysis()).expect("a motion");
 
-        for (place, value) in [
-            ("/checkpoint/state/time", "-1e400"),
-            ("/checkpoint/state/q/5", "1e999"),
-            ("/checkpoint/state/v/5", "NaN"),
-            ("/checkpoint/state/q/5", "null"),
-        ] {
-            let mark = "\"a mark\"";
-            let mut broken = state.clone();
-            *broken.pointer_mut(place).expect("a place") = serde_json::Value::from("a mark");
+        for (place, value) in [("time", "-1e400"), ("q/5", "1e999"), ("v/5", "NaN"), ("q/5", "null")] {
+            let marked = broken(&state, place, &"a mark".into()).to_string();
             let file = tempfile::NamedTempFile::new().expect("a file");
-            std::fs::write(file.path(), broken.to_string().replace(mark, value)).expect("a file");
-            let error = loaded(&long, file.path()).expect_err(value);
-            assert_eq!(error.exit_status(), 2, "{error}");
+            std::fs::write(file.path(), marked.replace("\"a mark\"", value)).expect("a file");
+            let error = SavedState::load(file.path()).expect_err(value);
             assert!(error.to_string().contains("not a saved state"), "{error}");
         }
-        for (place, value) in
-            [("/checkpoint/step", 0.0), ("/checkpoint/step", -1e-3), ("/checkpoint/last_ratio", -1.0)]
-        {
-            let mut broken = state.clone();
-            *broken.pointer_mut(place).expect("a place") = value.into();
-            let error = resumed(&long, &broken).expect_err(place);
+        for (place, value) in [("step", 0.0), ("step", -1e-3), ("last_ratio", -1.0)] {
+            let error = resumed(&short, &broken(&state, place, &value.into())).expect_err(place);
             assert_eq!(error.exit_status(), 2, "{error}");
             assert!(error.to_string().contains("from step to step"), "{error}");
         }
         // Numbers whose squares are none.
         for speed in [1e160, -1e300] {
-            let mut broken = state.clone();
-            *broken.pointer_mut("/checkpoint/state/v/5").expect("a place") = speed.into();
-            let error = resumed(&long, &broken).expect_err("no energy");
+            let error = resumed(&short, &broken(&state, "v/5", &speed.into())).expect_err("no energy");
             assert!(error.to_string().contains("not finite"), "{error}");
             let RunError::NoStep { partial, advice, .. } = error else { panic!("{error}") };
             assert!(partial.energy.is_empty() && advice.contains("start from another state"), "{advice}");
         }
         // Steps counted from a time that was not: the motion goes on from its state all the same.
         for (start, taken) in [(0.0, 7_u64), (0.0, u64::MAX), (1e300, 0), (-1e300, 3)] {
-            let mut broken = state.clone();
-            *broken.pointer_mut("/checkpoint/origin").expect("a place") = serde_json::json!([start, taken]);
-            let trajectory = resumed(&long, &broken).expect("a state");
+            let elsewhere = broken(&state, "origin", &serde_json::json!([start, taken]));
+            let trajectory = resumed(&short, &elsewhere).expect("a state");
             let last = |t: &Trajectory| *t.probes[0].samples.last().expect("a state");
             let (a, b) = (last(&trajectory), last(&reference));
             assert!((a.x - b.x).hypot(a.y - b.y) < 1e-6, "{start} {taken}: {a:?} {b:?}");

@@ -6,4 +6,5 @@ mod degenerate;
 mod floating;
 #[cfg(unix)]
 mod killed;
+mod motions;
 mod scale;

@@ -13,6 +13,7 @@ end = [1.0, 0.0]
 axial_stiffness = 1e4
 mass_per_length = 0.5
 basis.ancf.elements = 4
+basis.ancf.gauss_points = { stretch = 5, bend = 3 }
 [[support]]
 beam = "arm"
 at = "start"
@@ -44,7 +45,7 @@ fn blocks() -> Vec<(&'static str, Vec<Kind>)> {
         ("[[effect.moving_force]]\nbeam = 'arm'\nvalue = [0.0, 1.0]\nspeed = 2.0", vec![Kind::MovingForce]),
         (
             "[[effect.contact]]\nbeam = 'arm'\nstiffness = 1e3\ncircle = { center = [0.5, -1.0], radius = 0.5 }\n\
-             friction = { coefficient = 0.2, velocity = 0.1 }",
+             friction = { coefficient = 0.2 }",
             vec![Kind::Contact, Kind::Friction],
         ),
     ]

@@ -59,7 +59,7 @@ proptest! {
         let (before, here, after) = (values(-1.0), values(0.0), values(1.0));
         let (mut rates, mut curvatures) = (vec![0.0; here.len()], vec![0.0; here.len()]);
         system.constraint_rates(0.0, &q, &d, &mut rates);
-        system.add_constraint_curvatures(&d, &mut curvatures);
+        system.add_constraint_curvatures(&q, &d, &mut curvatures);
         let scale = here.iter().chain(&after).chain(&before).fold(1e-12_f64, |m, g| m.max(g.abs()));
         for r in 0..here.len() {
             prop_assert!((after[r] - before[r] - 2.0 * rates[r]).abs() < 1e-11 * scale, "B of row {r}");
@@ -74,16 +74,16 @@ proptest! {
         let sum: f64 = mu.iter().zip(&rates).map(|(mu, rate)| (mu * rate).abs()).sum();
         prop_assert!((work - expected).abs() < 1e-12 * sum.max(1e-300), "{work}, not {expected}");
         let (mut k, mut by_matrix, mut by_rows) = (system.matrix(), vec![0.0; n], vec![0.0; n]);
-        system.add_constraint_stiffness(&mu, &mut k);
+        system.add_constraint_stiffness(&q, &mu, &mut k);
         k.multiply_add(1.0, &v, &mut by_matrix);
-        system.add_constraint_stiffness_product(&mu, &v, &mut by_rows);
+        system.add_constraint_stiffness_product(&q, &mu, &v, &mut by_rows);
         let largest = by_rows.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         for (a, b) in by_matrix.iter().zip(&by_rows) {
             prop_assert!((a - b).abs() <= 1e-12 * largest, "{a}, not {b}");
         }
         let energy: f64 = by_rows.iter().zip(&v).map(|(f, v)| f * v).sum();
         let mut of_rows = vec![0.0; mu.len()];
-        system.add_constraint_curvatures(&v, &mut of_rows);
+        system.add_constraint_curvatures(&q, &v, &mut of_rows);
         let expected: f64 = mu.iter().zip(&of_rows).map(|(mu, c)| -mu * c).sum();
         prop_assert!((energy - expected).abs() < 1e-11 * of_rows.iter().fold(1e-300_f64, |m, c| m.max(c.abs())) * n as f64);
     }
@@ -136,7 +136,7 @@ fn it_is_the_limit_of_large_axial_stiffness() {
 #[test]
 fn a_half_circle_keeps_its_length() {
     let rest = "[[effect.moment]]\nbeam = 'arm'\nat = 'end'\nvalue = 3.141592653589793\n[analysis.static]\n";
-    for (basis, allowed) in [(ANCF, 5e-6), (RPIM, 1e-4)] {
+    for (basis, allowed) in [(&ANCF.replace("20", "24")[..], 5e-6), (RPIM, 1e-4)] {
         let trajectory = solve(&scene(basis, CLAMP, rest));
         let tip = trajectory.probes[0].samples.last().expect("an equilibrium");
         let error = tip.x.hypot(tip.y - 2.0 / std::f64::consts::PI);
@@ -212,8 +212,7 @@ fn a_motion_goes_on_as_if_it_had_not_stopped() {
         )
         .expect("a scene");
         let saved: SavedState = solve(&half).saved.expect("a state");
-        let scene = fall(RPIM, method);
-        let rest = run_from(scene.model(), scene.analysis(), Some(&saved), &mut |_| Control::Continue)
+        let rest = run_from(half.model(), half.analysis(), Some(&saved), &mut |_| Control::Continue)
             .expect("a motion");
         assert_eq!(whole.probes[0].samples.last(), rest.probes[0].samples.last(), "{method}");
     }
@@ -243,7 +242,7 @@ fn a_bar_that_rotates_pulls_at_its_hinge() {
 
 /// A corner of two beams that cannot stretch, against one whose beams nearly cannot.
 #[test]
-fn welded_corners_need_one_row_for_both_gradients() {
+fn welded_corners_are_the_limit_of_stiff_ones() {
     let frame = |stiffness: &str, basis: &str| {
         let text = format!(
             "[beam.post]\nstart = [0.0, 0.0]\nend = [0.0, 1.0]\nbending_stiffness = 1.0\n{stiffness}basis = {basis}\n\
@@ -284,9 +283,9 @@ fn a_chain_on_one_hook_finds_its_way_down() {
     assert!(parse("arm.toml", &text).expect_err("refused").to_string().contains("under-supported"));
 }
 
-/// Two beams that cannot stretch, welded to one that can: one of them holds the length of both gradients.
+/// Two beams that cannot stretch, welded to one that can: each keeps the length of its own gradient.
 #[test]
-fn of_gradients_welded_to_an_elastic_one_a_single_row_is_kept() {
+fn what_is_welded_keeps_its_own_length() {
     let beam = |name: &str, start: &str, end: &str, more: &str| {
         format!(
             "[beam.{name}]\nstart = {start}\nend = {end}\nbending_stiffness = 1.0\n{more}basis = {ANCF}\n"
@@ -312,7 +311,7 @@ fn of_gradients_welded_to_an_elastic_one_a_single_row_is_kept() {
         let mut of_beam = inventory.effects.iter().filter(|e| e.beam == beam);
         of_beam.find(|e| e.kind == Kind::Inextensibility).map(|e| e.points)
     };
-    assert_eq!((rows("post"), rows("left"), rows("right")), (None, Some(41), Some(40)));
+    assert_eq!((rows("post"), rows("left"), rows("right")), (None, Some(41), Some(41)));
     let trajectory = solve(&scene);
     assert!(trajectory.last.iter().flat_map(|shape| &shape.strain).all(|e| e.abs() < 1e-3));
 }
@@ -333,7 +332,5 @@ fn what_cannot_be_done_is_refused_with_what_to_try() {
         "[[support]]\nbeam = 'arm'\nat = 'end'\nfix = {CLAMP}\n{}",
         TIP_FORCE.replace("'end'", "0.5")
     );
-    assert!(refused(&scene(ANCF, CLAMP, &held)).contains("singular"));
-    let bent = TIP_FORCE.replace("[analysis.static]", "[analysis.buckling]\ncount = 1");
-    assert!(refused(&scene(ANCF, CLAMP, &bent)).contains("bend an inextensible beam before it buckles"));
+    assert!(refused(&scene(ANCF, CLAMP, &held)).contains("the length that beam `arm` keeps"));
 }

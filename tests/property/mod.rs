@@ -2,18 +2,31 @@
 
 mod absence;
 mod agreement;
+mod balances;
 mod basis;
+mod breaks;
+mod buoyancy;
+mod contact;
 mod derivatives;
 mod dynamics;
+mod events;
+mod frames;
+mod friction;
 pub mod generators;
 mod inextensible;
 mod invariance;
+mod laws;
 mod linear;
 mod modal;
 mod parts;
+mod restart;
 mod scene;
+mod section_forces;
+mod stability;
 mod supports;
 mod turning;
+mod weld;
+mod winding;
 
 use proptest::test_runner::{Config, FileFailurePersistence};
 

@@ -2,8 +2,8 @@
 
 use ancf::effect::{
     Actuation, BeamDamping, BendDamping, Contact, Dashpot, Density, Dissipation, Drag, Engineering,
-    Foundation, Friction, Green, Inertia, Obstacle, Penalty, PointMass, PreCurvature, PreStrain,
-    RotaryInertia, Rubbing, SectionInertia, Spring, StretchDamping, Strut, Tie, Torsion, TorsionDashpot,
+    Foundation, Friction, Green, Gyration, Inertia, Obstacle, Penalty, PointMass, PreCurvature, PreStrain,
+    RotaryInertia, SectionInertia, Spring, StretchDamping, Strut, Tie, Torsion, TorsionDashpot,
     TorsionSpring,
 };
 use ancf::model::*;
@@ -135,7 +135,6 @@ proptest! {
         derivatives(&PreCurvature { moment: 0.7 }, [g, c], |z| {
             cross(&z[0], &z[1]) / dot(&z[0], &z[0]) * -0.7
         });
-        derivatives(&RotaryInertia { inertia: 0.3 }, [c], |z| dot(&z[0], &z[0]) * 0.15);
         derivatives(&Inertia { mass_per_length: 0.3 }, [c], |z| dot(&z[0], &z[0]) * 0.15);
     }
 
@@ -195,6 +194,16 @@ proptest! {
         let anchor = Vector2::new(0.1, 0.3);
         let e = (r - anchor).normalize();
         rates(&Dashpot { coefficient: 2.0, anchor: Some(anchor) }, [r], [v], |v| square(dot(&dual(&e), &v[0])));
+        rates(&RotaryInertia { inertia: 0.6 }, [g], [w], |v| {
+            square(cross(&g_dual, &v[0]) / g.norm_squared()) * 0.3
+        });
+        // J θ̈ ∂θ/∂r' along a straight line of gradients.
+        let along = |h: f64| g + w * h;
+        let turn = |h: f64| (g.x * along(h).y - g.y * along(h).x).atan2(g.dot(&along(h)));
+        let second = (turn(1e-4) + turn(-1e-4)) / 1e-8;
+        let [force] = Gyration(RotaryInertia { inertia: 0.6 }).force(0, &[g], &[w]);
+        let expected = Vector2::new(-g.y, g.x) * (0.6 * second / g.norm_squared());
+        prop_assert!((force - expected).amax() < 1e-5 * (1.0 + expected.amax()), "{force} and {expected}");
         rates(&TorsionDashpot { coefficient: 0.6 }, [g], [w], |v| {
             square(cross(&g_dual, &v[0]) / g.norm_squared()) * 0.3
         });
@@ -205,16 +214,6 @@ proptest! {
             let across = cross(&g_dual, &u) / g.norm();
             square(along.clone()) * 0.1 + square(across.clone()) * 0.25
                 + abs(along).powi(3) * (0.1 / 3.0) + abs(across).powi(3)
-        });
-        let normal = Penalty {
-            obstacle: Obstacle::Circle { center: [0.0, 0.0], radius: 1.5, inside: false }, stiffness: 10.0, gap: 0.0,
-        };
-        let rubbing = Rubbing { normal, friction: Friction { coefficient: 0.4, velocity: 0.05 } };
-        rates(&rubbing, [r], [v], |rate| {
-            let pressure = 10.0 * (1.5 - r.norm()).max(0.0);
-            let n = r.normalize();
-            let slip = cross(&dual(&n), &rate[0]);
-            ((square(slip) + 0.0025).sqrt() - 0.05) * (0.4 * pressure)
         });
     }
 }
@@ -439,32 +438,41 @@ fn a_hub_of_constant_speed_keeps_a_rigid_rotation_in_its_equilibrium() {
     assert!((found - exact).abs() < 1e-4 * exact, "{found} N and not {exact} N");
 }
 
-/// One beam and two that are welded have the same equations.
+/// One beam and two that are welded are the same but for the stretch at the weld, which is free to jump there: with finer meshes they become one.
 #[test]
 fn a_weld_makes_one_beam_of_two() {
-    let whole = one(vec![support(0.0, FixedRotation::Angle)], vec![]);
     let half = 0.5 * LENGTH;
-    let mut parts = Model {
-        beams: vec![
-            beam("left", [0.0, 0.0], [half, 0.0], ancf(3)),
-            beam("right", [half, 0.0], [LENGTH, 0.0], ancf(3)),
-        ],
-        joints: vec![Joint::Weld { first: Place { beam: 0, s: half }, second: Place { beam: 1, s: 0.0 } }],
-        probes: tip(1, half),
-        ..whole.clone()
+    let apart = |compute: &dyn Fn(&Model) -> Trajectory, elements: usize| {
+        let mut whole = one(vec![support(0.0, FixedRotation::Angle)], vec![]);
+        whole.beams = vec![beam("arm", [0.0, 0.0], [LENGTH, 0.0], ancf(2 * elements))];
+        let mut parts = Model {
+            beams: vec![
+                beam("left", [0.0, 0.0], [half, 0.0], ancf(elements)),
+                beam("right", [half, 0.0], [LENGTH, 0.0], ancf(elements)),
+            ],
+            joints: vec![Joint::Weld {
+                first: Place { beam: 0, s: half },
+                second: Place { beam: 1, s: 0.0 },
+            }],
+            probes: tip(1, half),
+            ..whole.clone()
+        };
+        whole.loads =
+            vec![Load::Force { at: Place { beam: 0, s: LENGTH }, value: [-0.1, 0.6], follower: true }];
+        parts.loads =
+            vec![Load::Force { at: Place { beam: 1, s: half }, value: [-0.1, 0.6], follower: true }];
+        let [a, b] =
+            [&whole, &parts].map(|model| *compute(model).probes[0].samples.last().expect("a record"));
+        assert!((a.y).abs() > 0.05, "it bends");
+        (a.x - b.x).hypot(a.y - b.y)
     };
-    let mut whole = whole;
-    whole.loads = vec![Load::Force { at: Place { beam: 0, s: LENGTH }, value: [-0.1, 0.6], follower: true }];
-    parts.loads = vec![Load::Force { at: Place { beam: 1, s: half }, value: [-0.1, 0.6], follower: true }];
     for compute in [
         &(|model: &Model| still(model)) as &dyn Fn(&Model) -> Trajectory,
         &|model: &Model| moved(model, 0.3, gauss(1e-3)),
-        &|model: &Model| moved(model, 0.3, methods(2e-4)[1].0),
+        &|model: &Model| moved(model, 0.3, methods(1e-3)[1].0),
     ] {
-        let [a, b] =
-            [&whole, &parts].map(|model| *compute(model).probes[0].samples.last().expect("a record"));
-        assert!((a.x - b.x).hypot(a.y - b.y) < 1e-8, "({}, {}) and ({}, {})", a.x, a.y, b.x, b.y);
-        assert!((a.y).abs() > 0.05, "it bends");
+        let [coarse, fine] = [3, 6].map(|elements| apart(compute, elements));
+        assert!(fine < (coarse / 8.0).max(2e-7), "{coarse:.2e} and {fine:.2e}");
     }
 }
 
@@ -574,7 +582,7 @@ fn a_beam_bounces_from_a_plane() {
         friction,
     };
     let tolerance = Integrator::Gauss { stages: 2, step: StepControl::Tolerance(1e-7) };
-    for friction in [None, Some(Friction { coefficient: 0.3, velocity: 0.01 })] {
+    for friction in [None, Some(Friction { coefficient: 0.3, stiffness: 1e4 })] {
         let mut model = one(vec![], vec![Arc::new(contact(friction))]);
         model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
         model.initial_velocities =

@@ -1,22 +1,19 @@
 """A rod that falls flat on a plane by penalty, with and without regularised friction.
 
 Above the plane y'' = -g; below it y'' = -g - w^2 y with w^2 = k / rho A, so that a contact that begins with the speed v lasts
-(2 pi - 2 phi) / w with phi = atan2(v w, g) and ends with the speed -v: every bounce is like the first. Friction takes the speed u along the plane by
-u' = -mu p u / sqrt(u^2 + c^2) with the pressure p = w^2 <-y> per mass, so that
-
-    F(u) = sqrt(u^2 + c^2) - c asinh(c / u)
-
-falls by mu times the impulse y' + v + g t of the contact until then. A flat rod stays flat: all of it has one depth and one speed.
+(2 pi - 2 phi) / w with phi = atan2(v w, g) and ends with the speed -v: every bounce is like the first. Friction slides
+throughout: it takes mu times the impulse y' + v + g t of the contact from the speed along the plane. Its springs, as stiff as the contact, hold
+k (mu <-y>)^2 / 2 of that; the rest is lost. A flat rod stays flat: all of it has one depth and one speed.
 
     python3 bounce.py
 """
 
-from mpmath import asinh, atan2, cos, exp, findroot, floor, log, mp, mpf, nstr, pi, sin, sqrt
+from mpmath import atan2, cos, floor, mp, mpf, nstr, pi, sin, sqrt
 
 mp.dps = 30
 
 GRAVITY, HEIGHT, STIFFNESS, MASS = mpf("9.81"), mpf("0.2"), mpf(10000), mpf(1)
-ALONG, FRICTION, SMOOTH = mpf(2), mpf("0.1"), mpf("0.05")
+ALONG, FRICTION = mpf(2), mpf("0.1")
 
 OMEGA = sqrt(STIFFNESS / MASS)
 SPEED = sqrt(2 * GRAVITY * HEIGHT)
@@ -42,25 +39,13 @@ def normal(t):
     return SPEED * t - GRAVITY * t**2 / 2, SPEED - GRAVITY * t, (count + 1) * IMPULSE
 
 
-def along(impulse, friction):
-    """The speed along the plane that an impulse leaves."""
-
-    def measure(u):
-        return sqrt(u**2 + SMOOTH**2) - SMOOTH * asinh(SMOOTH / u)
-
-    if friction == 0 or impulse == 0:
-        return ALONG
-    wanted = measure(ALONG) - friction * impulse
-    # Friction that acts in full is the first guess.
-    return exp(findroot(lambda z: measure(exp(z)) - wanted, log(ALONG - friction * impulse)))
-
-
 if __name__ == "__main__":
     print("ground,t,y,vy,vx,lost")
     for ground, friction in (("smooth", mpf(0)), ("rough", FRICTION)):
         for i in range(51):
             t = mpf(i) / 50
             y, vy, impulse = normal(t)
-            vx = along(impulse, friction)
-            lost = MASS * (ALONG**2 - vx**2) / 2
+            vx = ALONG - friction * impulse
+            held = STIFFNESS * (friction * max(-y, mpf(0))) ** 2 / 2
+            lost = MASS * (ALONG**2 - vx**2) / 2 - held
             print(",".join([ground, *(nstr(value, 15) for value in (t, y, vy, vx, lost))]))

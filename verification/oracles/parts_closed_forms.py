@@ -1,4 +1,4 @@
-"""Closed forms of single parts: hubs, strings, foundations, masses, springs, damping, travelling forces, fluids, friction, actuation.
+"""Closed forms of single parts: hubs, strings, foundations, masses, springs, damping, travelling forces, fluids, actuation.
 
 Each subcommand states its formula and prints one CSV table.
 
@@ -155,26 +155,6 @@ def actuation():
             s = mpf(i) / 20
             rows.append((k, e, s, (1 + e) * sin(k * s) / k, (1 + e) * (1 - cos(k * s)) / k))
     table(("curvature", "strain", "s", "x", "y"), rows)
-
-
-def sliding():
-    """A rod slides to rest on rough ground: v' = -mu g v / sqrt(v^2 + w^2), so that mu g t and mu g x grow by the decrease of
-    sqrt(v^2 + w^2) - w asinh(w/v) and of (v sqrt(v^2 + w^2) + w^2 asinh(v/w)) / 2."""
-    start, friction, smooth = mpf(2), mpf("0.4") * mpf("9.81"), mpf("0.05")
-
-    def time(v):
-        return sqrt(v**2 + smooth**2) - smooth * asinh(smooth / v)
-
-    def way(v):
-        return (v * sqrt(v**2 + smooth**2) + smooth**2 * asinh(v / smooth)) / 2
-
-    rows, v = [(0, 0, start)], start
-    for i in range(1, 17):
-        t = mpf(i) / 20
-        # In log v the time is smooth where v becomes small.
-        v = exp(findroot(lambda z: time(start) - time(exp(z)) - friction * t, (log(v), log(v) - 1), solver="anderson"))
-        rows.append((t, (way(start) - way(v)) / friction, v))
-    table(("t", "x", "vx"), rows)
 
 
 if __name__ == "__main__":

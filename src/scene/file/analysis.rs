@@ -40,7 +40,7 @@ pub struct StaticTable {
 pub struct ArcLengthTable {
     /// Stop when the load factor first reaches this value.
     pub until_load: Option<Quantity<Ratio>>,
-    /// Stop after this many points on the path; 1000 when left out.
+    /// Stop after this many points on the path; 1000 when left out. A path that has not reached its `until` by then is incomplete.
     pub max_points: Option<Located<Count<1>>>,
     /// Longest step, as a fraction of the beam's length.
     pub max_step: Option<Quantity<Ratio, Positive>>,
@@ -61,26 +61,26 @@ pub struct UntilProbeTable {
     pub y: Option<Quantity<Length>>,
 }
 
-/// Motion in time; at most one integrator.
+/// Motion in time; at most one integrator, `radau` with three stages and a tolerance of 1e-6 when left out.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DynamicTable {
-    /// Simulated time.
+    /// Simulated time, from time zero or from that of a saved state on.
     pub duration: Quantity<Time, Positive>,
     /// Time between records; a two-hundredth of the duration when left out.
     pub output_every: Option<Located<Quantity<Time, Positive>>>,
     /// Chung and Hulbert's generalised-α method.
     pub generalized_alpha: Option<Located<GeneralizedAlphaTable>>,
-    /// Gauss collocation: symplectic, of order 2, 4 or 6.
+    /// Gauss collocation, of order 2, 4 or 6: symplectic with a fixed `step`; with a `tolerance` it damps what is too fast to be followed.
     pub gauss: Option<Located<GaussTable>>,
-    /// Radau IIA collocation: for stiff motion, of order 3 or 5.
+    /// Radau IIA collocation, of order 3 or 5: damps what is too fast to be followed; the one that is taken when none is named.
     pub radau: Option<Located<RadauTable>>,
     /// Probes' coordinates that cross a value.
     #[serde(default)]
     pub event: Vec<EventTable>,
 }
 
-/// A probe's coordinate crosses a value, `x` or `y`.
+/// A probe's coordinate reaches a value, `x` or `y`, from one side: also where it turns back there, and as often as it does within a step.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["x"] }, { "required": ["y"] }]))]
@@ -91,7 +91,7 @@ pub struct EventTable {
     pub x: Option<Quantity<Length>>,
     /// Value of its y.
     pub y: Option<Quantity<Length>>,
-    /// Which way; either when left out.
+    /// From which side it comes; from either when left out.
     #[serde(default)]
     pub crossing: CrossingName,
     /// Whether the motion ends there.

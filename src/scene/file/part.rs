@@ -121,7 +121,7 @@ pub struct DragTable {
     pub viscous_normal: Option<Quantity<ViscousDamping, Positive>>,
     /// The same along the beam.
     pub viscous_tangential: Option<Quantity<ViscousDamping, Positive>>,
-    /// Velocity of the fluid.
+    /// Velocity of the fluid. In statics its force is a load, which grows with the load factor.
     pub flow: Option<Vector<Velocity>>,
 }
 
@@ -206,14 +206,17 @@ pub struct BoxTable {
     pub angle: Option<Quantity<Angle>>,
 }
 
-/// Dry friction, regularised.
+/// Dry friction: points that touch stick by elastic springs along the surface, up to Coulomb's limit.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionTable {
     /// Friction force against contact force.
     pub coefficient: Quantity<Ratio, Positive>,
-    /// Sliding velocity about which the force changes its sign smoothly.
-    pub velocity: Quantity<Velocity, Positive>,
+    /// Force per length of beam and elastic slip; that of the contact when left out.
+    pub stiffness: Option<Quantity<Stress, Positive>>,
+    /// Not in use any more: friction sticks, and needs no velocity.
+    #[schemars(skip)]
+    pub velocity: Option<Located<Quantity<Velocity>>>,
 }
 
 /// How beams are joined: exactly one kind, with the points that it joins.

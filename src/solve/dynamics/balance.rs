@@ -20,7 +20,8 @@ impl Driver<'_, '_> {
         let energy = |state: &State| self.system.energy(state.time, &state.q, Some(&state.v));
         let (before, after) = (energy(&self.state), energy(new));
         let (work, _) = self.work(new, new.time, None);
-        let put_in = work - self.state.work - self.taken_at_least(new);
+        // Springs of friction give back what they hold at most.
+        let put_in = work - self.state.work - self.taken_at_least(new) + self.state.slips.energy;
         let gain = (after.total() - before.total() - put_in) / before.kinetic.max(after.kinetic);
         match gain {
             _ if gain <= LARGEST_GAIN => Ok(()),
@@ -43,16 +44,28 @@ impl Driver<'_, '_> {
 
     /// Whether energy enters or leaves by other ways than potentials.
     pub(super) fn has_work(&self) -> bool {
-        self.system.has_work() || self.system.is_damped() || self.system.supports().moves_in_time()
+        self.system.has_work()
+            || self.system.is_damped()
+            || self.system.has_friction()
+            || self.system.supports().moves_in_time()
     }
 
-    /// Work of the loads without potential and of moving supports, and what damping took, until `time` in the step to `new`: by the trapezoidal
-    /// rule where the method itself is of second order, and else by three Gauss points.
+    /// Gives a state of the present step the slips of friction. What their springs hold is not lost.
+    pub(super) fn settle(&self, state: &mut State) {
+        if self.system.has_friction() {
+            state.slips = self.system.slips(&self.held, &state.q);
+            state.lost -= state.slips.energy - self.state.slips.energy;
+        }
+    }
+
+    /// Work of the loads without potential and of moving supports, and what damping took, until `time` in the step to `new`: of what a state tells by the
+    /// trapezoidal rule where the method itself is of second order, and else by three Gauss points.
     pub(super) fn work(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> (f64, f64) {
         let (mut work, mut lost) = (self.state.work, self.state.lost);
         if !self.has_work() {
             return (work, lost);
         }
+        work += self.work_of_supports(new, time);
         let h = time - self.state.time;
         if self.method.order() <= 2.0 {
             let before = self.power_at_start();
@@ -78,10 +91,10 @@ impl Driver<'_, '_> {
         (work, lost)
     }
 
-    /// Power at the start of the step, which was its end before, unless an attempt since then ended elsewhere.
+    /// Power at the start of the step, which was its end before, unless an attempt since then ended elsewhere. Friction counts from another state since.
     pub(super) fn power_at_start(&mut self) -> (f64, f64) {
         let known = self.powers.iter().find(|(time, _)| *time == self.state.time).map(|(_, power)| *power);
-        let power = known.unwrap_or_else(|| {
+        let power = known.filter(|_| !self.system.has_friction()).unwrap_or_else(|| {
             let state = self.state.clone();
             self.power(&state)
         });
@@ -89,15 +102,20 @@ impl Driver<'_, '_> {
         power
     }
 
-    /// Power \[W\] put in by loads without potential and by moving supports, and taken by damping.
-    pub(super) fn power(&mut self, state: &State) -> (f64, f64) {
+    /// Power \[W\] put in by loads without potential, and taken by damping.
+    pub(super) fn power(&self, state: &State) -> (f64, f64) {
         let mut scratch = vec![0.0; state.q.len()];
         let loads = self.system.power(state.time, &state.q, &state.v, &mut scratch);
-        let taken = if self.system.is_damped() {
+        let mut taken = if self.system.is_damped() {
             self.system.lost_power(&state.q, &state.v, &mut scratch)
         } else {
             0.0
         };
-        (loads + self.method.support_power(state), taken)
+        if self.system.has_friction() {
+            scratch.fill(0.0);
+            self.system.add_friction(&self.held, &state.q, &mut scratch);
+            taken += scratch.iter().zip(&state.v).map(|(f, v)| f * v).sum::<f64>();
+        }
+        (loads, taken)
     }
 }

@@ -13,7 +13,8 @@
 //! # Error of a step
 //! a lies (α_m − α_f) h away from q̈ in time, so that the position errs by h³ q⃛ (β + (α_m − α_f)/2 − 1/6) in a step. With
 //! h q⃛ ≈ q̈₁ − q̈₀ that is known at no cost; multiplied by (K + cM)⁻¹ cM it leaves out what lies above the step's own
-//! frequency and would not be followed anyway.
+//! frequency and would not be followed anyway. What loads and supports do between the ends of the step ([`crate::system::laws`]) is added to it, and made up
+//! for, through the same matrix.
 //!
 //! # A tangent for many steps
 //! The tangent is kept, turned with the nodes ([`super::turns`]), as long as the increments shrink to 0.6 % and less from one iteration to the next; then it is
@@ -22,7 +23,7 @@
 
 use super::State;
 use super::method::Method;
-use super::motion::{Acceleration, Motion, Rates};
+use super::motion::{Acceleration, Motion, Rates, Stage};
 use super::turns::Turns;
 use crate::effect::Earlier;
 use crate::linear::{Factor, Singular};
@@ -43,6 +44,8 @@ const SLOW: f64 = 0.5;
 const LARGEST_CORRECTION: f64 = 0.05;
 /// Relative change of the step's length that is none.
 const ROUND_OFF: f64 = 1e-6;
+/// Steps by which the acceleration of the last one is continued, at most.
+const LONGEST: f64 = 4.0;
 /// Most iterations with a kept tangent.
 const ITERATIONS: usize = 12;
 
@@ -69,6 +72,13 @@ struct Accelerations {
     physical: Vec<f64>,
     algorithmic: Vec<f64>,
     multipliers: Vec<f64>,
+}
+
+impl Accelerations {
+    /// q̈ and the multipliers.
+    fn rates(&self) -> Vec<f64> {
+        self.physical.iter().chain(&self.multipliers).copied().collect()
+    }
 }
 
 /// The formulas of a step, solved for the rates at its end: q̈ = c q + e, q̇ = d q + o.
@@ -259,13 +269,34 @@ impl<'a> GeneralizedAlpha<'a> {
         self.motion.to_frames(&mut change);
         let mut error = vec![0.0; self.motion.unknowns()];
         self.motion.multiply_free_mass(c, &change, &mut error);
-        let n = change.len();
-        self.turns.back(&mut error[..n]);
+        self.filtered(&mut error)
+    }
+
+    /// The size of (K + cM)⁻¹ e.
+    fn filtered(&self, e: &mut [f64]) -> f64 {
+        let n = self.motion.coordinates();
+        self.turns.back(&mut e[..n]);
         if let Some(factor) = &self.factor {
-            factor.solve(&mut error);
+            factor.solve(e);
         }
-        self.turns.forth(&mut error[..n]);
-        self.motion.distance(&error)
+        self.turns.forth(&mut e[..n]);
+        self.motion.distance(e)
+    }
+
+    /// Makes up in `to` for what both ends of a step do not see of loads, as far as what they drive can be followed, so that it does not add up; returns by how
+    /// much the position would err for it, and for what they do not see of supports.
+    fn make_up(&mut self, from: &State, to: &mut State, c: f64) -> f64 {
+        let h = to.time - from.time;
+        // What varies evenly between the ends has these moments.
+        let looks = [(from.time, [0.5, 1.0 / 3.0]), (to.time, [0.5, 1.0 / 6.0])];
+        let mut error = self.motion.unseen_motion(from.time, to.time, &looks);
+        let Some(moments) = self.motion.unseen_loads(from, to.time, &looks) else { return error };
+        for (mut force, (unknowns, unit)) in moments.into_iter().zip([(&mut to.v, h), (&mut to.q, h * h)]) {
+            error = error.max(c * h * h * self.filtered(&mut force));
+            self.motion.from_frames(&mut force);
+            unknowns.iter_mut().zip(&force).for_each(|(x, e)| *x -= c * unit * e);
+        }
+        error
     }
 }
 
@@ -311,6 +342,7 @@ impl Method for GeneralizedAlpha<'_> {
     }
 
     fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
+        self.motion.hold(state);
         let unknowns = self.motion.unknowns_of(state);
         self.motion.acceleration(&unknowns, &mut self.last.physical)?;
         self.last.algorithmic.copy_from_slice(&self.last.physical);
@@ -321,16 +353,21 @@ impl Method for GeneralizedAlpha<'_> {
 
     fn attempt(
         &mut self,
-        from: &State,
-        h: f64,
+        state: &State,
+        end: f64,
         accuracy: Option<f64>,
         to: &mut State,
         record: &mut Iterations,
     ) -> Result<f64, Failure> {
+        self.motion.hold(state);
+        if self.motion.system().has_friction() {
+            // What a kept tangent is of depends on the state that friction held then.
+            self.kept = None;
+        }
         let Coefficients { alpha_m, alpha_f, beta, gamma } = self.coefficients;
         let n = self.motion.coordinates();
-        let (start, end) = (self.motion.unknowns_of(from), from.time + h);
-        let from = &*start;
+        let start = self.motion.unknowns_of(state);
+        let (from, h) = (&*start, end - state.time);
         // q̈ = c q + e and q̇ = d q + o from the three formulas above.
         let a_per_q = 1.0 / (beta * h * h);
         let c = (1.0 - alpha_m) / (1.0 - alpha_f) * a_per_q;
@@ -341,8 +378,8 @@ impl Method for GeneralizedAlpha<'_> {
         let (q, v, algorithmic, physical) = (&from.q[..n], &from.v[..n], &algorithmic[..n], &physical[..n]);
         let (e, x) = (&mut self.rule.e[..n], &mut self.x[..n]);
         let (ratio, before) = match &self.before {
-            Some((before, step)) => (h / step, &before[..n]),
-            None => (0.0, algorithmic),
+            Some((before, step)) if h <= LONGEST * step => (h / step, &before[..n]),
+            _ => (0.0, algorithmic),
         };
         let (of_algorithmic, of_physical) = (alpha_m / (1.0 - alpha_f), alpha_f / (1.0 - alpha_f));
         // What is known of the position at the end. It is computed where it is needed: to keep it would be one pass over memory more.
@@ -382,11 +419,14 @@ impl Method for GeneralizedAlpha<'_> {
             to_v[i] = v[i] + h * ((1.0 - gamma) * last[i] + gamma * now[i]);
             physical[i] = c * x[i] + e[i];
         }
+        self.motion.release(now);
+        self.motion.release(physical);
         self.trial.multipliers.copy_from_slice(&self.x[n..]);
         to.time = end;
+        let unseen = if accuracy.is_some() { self.make_up(state, to, c) } else { 0.0 };
         self.motion.carry(to);
         self.motion.project(to)?;
-        Ok(if accuracy.is_some() { self.error(h, c) } else { 0.0 })
+        Ok(if accuracy.is_some() { self.error(h, c) + unseen } else { 0.0 })
     }
 
     fn accept(&mut self) {
@@ -397,12 +437,32 @@ impl Method for GeneralizedAlpha<'_> {
         self.before = Some((before, self.trial_step));
     }
 
+    fn pass(&mut self, before: f64, state: &mut State) -> Result<Vec<f64>, Singular> {
+        let jump = self.motion.pass(before, state)?;
+        let n = self.motion.coordinates();
+        let Accelerations { physical, algorithmic, multipliers } = &mut self.last;
+        let before = self.before.iter_mut().map(|(before, _)| before);
+        for acceleration in [physical, algorithmic].into_iter().chain(before) {
+            acceleration.iter_mut().zip(&jump).for_each(|(a, jump)| *a += jump);
+        }
+        multipliers.iter_mut().zip(&jump[n..]).for_each(|(mu, jump)| *mu += jump);
+        Ok(jump)
+    }
+
     fn end_accelerations(&mut self, _: &State, _: &State) -> Option<[Vec<f64>; 2]> {
         None
     }
 
-    fn support_power(&mut self, state: &State) -> f64 {
-        self.motion.support_power(state).unwrap_or(f64::NAN)
+    fn stages(&self, from: &State, to: &State) -> Vec<Stage> {
+        let stage = |state: &State, accelerations: &Accelerations| Stage {
+            state: self.motion.unknowns_of(state).into_owned(),
+            rates: accelerations.rates(),
+        };
+        vec![stage(from, &self.last), stage(to, &self.trial)]
+    }
+
+    fn end_rates(&self) -> Vec<f64> {
+        self.last.rates()
     }
 
     fn last_increment(&self) -> &[f64] {
@@ -450,6 +510,7 @@ impl Method for GeneralizedAlpha<'_> {
         let [step, c, rate, time, d] = [numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]];
         self.last = Accelerations { physical, algorithmic, multipliers };
         self.before = (!before.is_empty()).then_some((before, step));
+        self.rule.d = d;
         let at = State { time, q, v, ..State::default() };
         at.q.is_empty() || (self.keep(&at, with, rate).is_ok() && (c == 0.0 || self.factorize(c, d).is_ok()))
     }

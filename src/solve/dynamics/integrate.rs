@@ -10,10 +10,16 @@
 //! whose share in the error does not add up. The largest change of any gradient, in place of positions, sees the shortest waves most, which the
 //! sudden release of a beam excites: steps were then four times as many as needed, and not fewer for looser tolerances.
 //!
+//! # Kinks
+//! Where a load or a support's motion is not smooth a step ends, whatever the method and however steps are chosen: the last stage sees what was just before,
+//! the next step begins with what is just after (`Driver::pass_kinks`), and no interpolation reaches over it. A step of fixed length is divided there, and all
+//! later ones end where they would have.
+//!
 //! # Steps of fixed length
 //! Where the equations of a step cannot be solved, that step is divided, which the counts of rejected steps and a warning tell; all others
 //! keep their length and their places. The equations of a step in which nodes turn far have several solutions, and the trapezoidal
-//! rule pumps energy into a stiff beam there; so a step that turns a node by more than 0.1 rad is divided too if it gains energy.
+//! rule pumps energy into a stiff beam there; so a step that turns a node by more than 0.1 rad is divided too if it gains energy, and one whose
+//! way leads through an obstacle (the private module `touch`).
 
 use super::collocation::Collocation;
 use super::generalized_alpha::GeneralizedAlpha;
@@ -22,10 +28,11 @@ use super::motion::Motion;
 use super::tableau::Tableau;
 use super::touch::Touch;
 use super::{Checkpoint, Solution, State, Stuck};
+use crate::effect::Held;
 use crate::linear::Singular;
 use crate::model::{Crossing, Integrator, StepControl};
 use crate::solve::newton::{Failure, Iterations, not_crushed};
-use crate::system::{System, View};
+use crate::system::{System, View, unfold};
 use crate::trajectory::{Statistics, StepRecord};
 use std::time::{Duration, Instant};
 
@@ -39,8 +46,12 @@ pub struct Task<'t> {
     pub integrator: Integrator,
     /// Where it starts.
     pub start: Checkpoint,
+    /// Whether forces of supports and joints are wanted.
+    pub reactions: bool,
     /// What to watch for.
     pub watches: &'t [Watch],
+    /// Where to watch directions, whose turns are counted from step to step.
+    pub directions: &'t [View],
     /// Where to leave checkpoints on the way.
     pub keep: Option<Keep<'t>>,
 }
@@ -68,8 +79,10 @@ pub struct Watch {
     pub stop: bool,
 }
 
-/// Part of the tolerance that a step may err by: as if ten thousand errors added up. Measured on the soft pendulum (2.5 s) with all
-/// methods and tolerances from 1e-3 to 1e-6, the largest error of the tip is then 0.1 to 6 times the tolerance, mostly about one.
+/// Part of the tolerance that a step may err by: as if ten thousand errors added up; a shorter step by its part of the time until its end, so that steps do
+/// not depend on when the motion ends. Measured on
+/// the soft pendulum (2.5 s) with all methods and tolerances from 1e-3 to 1e-6, the largest error of the tip is then 0.1 to 6 times the tolerance, mostly
+/// about one.
 const STEP_PART: f64 = 1e-4;
 /// Part of the wanted step that is taken, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -80,7 +93,9 @@ const SHRINK: f64 = 0.3;
 /// Smallest step, relative to the duration.
 const SMALLEST_STEP: f64 = 1e-12;
 /// Smallest part of a step of fixed length into which it is divided where its equations cannot be solved.
-const SMALLEST_PART: f64 = 1e-3;
+pub(super) const SMALLEST_PART: f64 = 1e-3;
+/// Part of a step of fixed length by which its end is moved to a kink, so that no sliver is left: round-off in accelerations grows with its inverse square.
+const NEAR: f64 = 1e-3;
 /// Iterations beyond which a step does not grow: the next tangent would be worse.
 const MANY_ITERATIONS: usize = 10;
 /// How often a step may end earlier because a contact begins or ends in it.
@@ -136,15 +151,25 @@ pub(super) struct Driver<'t, 'a> {
     pub(super) next_record: u64,
     pub(super) last_ratio: f64,
     pub(super) rejected: bool,
-    /// Whether an event ended the motion within a step, whose end is what the method remembers.
-    pub(super) cut: bool,
+    /// The state in which the motion was taken up: what happened until then has been reported.
+    pub(super) first: State,
+    /// What there was before the step that the end of the motion or an event cuts short, once it is taken.
+    whole: Option<Checkpoint>,
     pub(super) stride: usize,
     /// Times at which loads or supports are not smooth, rising.
     pub(super) kinks: Vec<f64>,
+    /// The last state, for friction.
+    pub(super) held: Held,
     /// Per contact, how it is.
     pub(super) touching: Vec<Touch>,
     /// Times and powers at the start and the end of the last step.
     pub(super) powers: [(f64, (f64, f64)); 2],
+    /// Times and powers of moving supports in the stages of the last attempt; empty before they are asked for.
+    pub(super) support_powers: Vec<(f64, f64)>,
+    /// Length of the last accepted step \[s\].
+    pub(super) last_step: f64,
+    /// What looks at forces.
+    pub(super) observer: Option<Motion<'a>>,
 }
 
 impl<'t, 'a> Driver<'t, 'a> {
@@ -154,7 +179,10 @@ impl<'t, 'a> Driver<'t, 'a> {
         mut method: Box<dyn Method + 'a>,
         mut solution: Solution,
     ) -> Self {
-        let Checkpoint { state, method: name, memory, step, last_ratio, origin } = task.start.clone();
+        let mut first = task.start.reached().clone();
+        first.angles = turned(task.directions, &first);
+        let Checkpoint { state, method: name, memory, step, last_ratio, origin, .. } = task.start.clone();
+        let state = State { angles: turned(task.directions, &state), ..state };
         let control = task.integrator.step_control();
         let mut lost = |unknown: usize, failure: Failure| {
             let at = system.place_of(unknown);
@@ -175,11 +203,11 @@ impl<'t, 'a> Driver<'t, 'a> {
                 (first_step(system, task, &*method, [&state.v, &acceleration], tolerance), (state.time, 0))
             }
         };
-        let touching = system.touching(&state.q).map(Touch::new).collect();
+        let touching = system.intervals(&state.q).map(|intervals| Touch::new(intervals > 0)).collect();
         let mut kinks = system.kinks();
-        kinks.retain(|kink| *kink > state.time && *kink < task.duration);
+        kinks.retain(|kink| *kink > state.time && *kink <= task.duration);
         kinks.sort_by(f64::total_cmp);
-        let next_record = (state.time / task.output_every + 1.0 + SLACK).floor() as u64;
+        let next_record = (first.time / task.output_every + 1.0 + SLACK).floor() as u64;
         let mut driver = Self {
             system,
             task,
@@ -192,13 +220,23 @@ impl<'t, 'a> Driver<'t, 'a> {
             next_record,
             last_ratio: if continued { last_ratio } else { 1.0 },
             rejected: false,
-            cut: false,
+            first: first.clone(),
+            whole: None,
             stride: 1,
             kinks,
+            held: Held::default(),
             touching,
             powers: [(f64::NAN, (0.0, 0.0)); 2],
+            support_powers: Vec::new(),
+            last_step: step,
+            observer: None,
         };
-        driver.keep(driver.state.clone());
+        driver.hold();
+        if driver.task.reactions {
+            let balance = driver.balance_at_start(&first);
+            driver.keep_reactions(balance);
+        }
+        driver.keep(first);
         driver
     }
 
@@ -208,19 +246,29 @@ impl<'t, 'a> Driver<'t, 'a> {
         while self.solution.stuck.is_none()
             && self.task.duration - self.state.time > SMALLEST_STEP * self.task.duration
         {
+            let before = self.may_be_cut().then(|| self.checkpoint());
+            let ends_early = self.end_cuts();
             match self.advance(&mut new) {
                 Err(stuck) => self.solution.stuck = Some(stuck),
                 Ok(()) => {
-                    self.cut = self.look(&mut new);
+                    self.last_step = new.time - self.state.time;
+                    let stopped = self.look(&mut new);
+                    if (stopped || ends_early) && self.whole.is_none() {
+                        self.whole = before;
+                    }
                     self.method.accept();
                     std::mem::swap(&mut self.state, &mut new);
+                    if !stopped {
+                        self.pass_kinks();
+                    }
+                    self.hold();
                     if let Some(Keep { every, take }) = self.task.keep
                         && kept.elapsed() >= every
                     {
                         take(self.checkpoint());
                         kept = Instant::now();
                     }
-                    if self.cut || !observe(self.state.time, self.step, self.method.statistics()) {
+                    if stopped || !observe(self.state.time, self.step, self.method.statistics()) {
                         return;
                     }
                 }
@@ -228,48 +276,90 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
+    /// Takes the state for the one from which friction counts slips.
+    fn hold(&mut self) {
+        if self.system.has_friction() {
+            self.held = Held { q: self.state.q.clone(), slips: self.state.slips.clone() };
+        }
+    }
+
     fn finish(mut self) -> Solution {
         let last = self.solution.states.last().map_or(f64::NEG_INFINITY, |state| state.time);
+        if self.solution.end.is_none() {
+            self.solution.end = self.balance_at_end();
+        }
         if self.state.time > last + SLACK * self.step {
             self.keep(self.state.clone());
+            if self.task.reactions {
+                self.keep_reactions(self.solution.end.clone());
+            }
         }
+        self.solution.contacts.retain(|change| change.time > self.first.time);
         self.solution.statistics = *self.method.statistics();
         self.solution.checkpoint = Some(self.checkpoint());
         self.solution
     }
 
+    /// From which the motion goes on.
     fn checkpoint(&self) -> Checkpoint {
-        let state = self.state.clone();
-        if self.cut {
-            return Checkpoint { state, ..Checkpoint::default() };
+        // A motion that was ended before it was where it was taken up goes on from there.
+        let reached = if self.state.time < self.first.time { &self.first } else { &self.state };
+        if let Some(whole) = &self.whole {
+            return Checkpoint { cut: Some(reached.clone()), ..whole.clone() };
         }
         Checkpoint {
-            state,
+            state: self.state.clone(),
             method: self.task.integrator.to_string(),
             memory: self.method.memory(),
             step: self.step,
             last_ratio: self.last_ratio,
             origin: self.origin,
+            cut: (reached.time > self.state.time).then(|| reached.clone()),
         }
+    }
+
+    /// Whether the next step is shorter for the end of the motion, which another duration would have elsewhere.
+    fn end_cuts(&self) -> bool {
+        match self.control {
+            StepControl::Fixed(step) => {
+                self.origin.0 + step * (self.origin.1 + 1) as f64 != self.grid_end(step)
+            }
+            StepControl::Tolerance(_) => {
+                let left = self.task.duration - self.state.time;
+                let now = self.state.time;
+                let kinks = || self.kinks.iter().filter(|kink| **kink > now);
+                2.0 * self.step > left && kinks().all(|kink| *kink >= self.task.duration)
+            }
+        }
+    }
+
+    /// Whether the end of the motion or an event may cut the next step short, and none has before.
+    fn may_be_cut(&self) -> bool {
+        self.whole.is_none() && (self.end_cuts() || self.task.watches.iter().any(|watch| watch.stop))
     }
 
     /// Takes one step, smaller as often as needed, to `new`.
     fn advance(&mut self, new: &mut State) -> Result<(), Stuck> {
         let (mut touch, mut cuts) = (f64::INFINITY, 0);
         loop {
-            let (end, h) = self.next_end(touch);
+            let end = self.next_end(touch);
+            // Of a load that jumps the step sees what is before.
+            let until = if self.kinks.contains(&end) { end.next_down() } else { end };
+            let h = until - self.state.time;
             let accuracy = match self.control {
                 StepControl::Fixed(_) => None,
-                StepControl::Tolerance(tolerance) => Some(STEP_PART * tolerance),
+                StepControl::Tolerance(tolerance) => Some(tolerance * STEP_PART.min(h / until)),
             };
             let mut record = Iterations::default();
-            let result = self.method.attempt(&self.state, h, accuracy, new, &mut record);
-            new.time = end;
+            let result = self.method.attempt(&self.state, until, accuracy, new, &mut record);
+            self.support_powers.clear();
+            new.time = until;
             let result = match accuracy {
                 None => result.and_then(|error| self.without_gain(new).map(|()| error)),
                 Some(_) => result,
             };
             let result = result.and_then(|error| not_crushed(&new.q).map(|()| error));
+            let result = result.and_then(|error| self.not_crossed(new).map(|()| error));
             let iterations = record.increments.len();
             let ratio = match (&result, accuracy) {
                 (Ok(error), Some(accuracy)) => error / accuracy,
@@ -291,7 +381,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                 self.method.statistics().steps += 1;
                 (new.work, new.lost) = (self.state.work, self.state.lost);
                 if let StepControl::Fixed(step) = self.control
-                    && end >= self.grid_end(step)
+                    && end >= self.grid_end(step) - NEAR * step
                 {
                     self.origin.1 += 1;
                     self.step = step;
@@ -304,8 +394,10 @@ impl<'t, 'a> Driver<'t, 'a> {
                     if (1.0..self.method.hold()).contains(&factor) {
                         factor = 1.0;
                     }
-                    // A step that was cut at the end says nothing about the next.
-                    self.step = self.step.max(h) * factor.clamp(LIMITS.0, LIMITS.1);
+                    let next = h * factor.clamp(LIMITS.0, LIMITS.1);
+                    // A step that was cut says little about the next.
+                    let cut = h < (1.0 - NEAR) * self.step;
+                    self.step = if cut { self.step.max(next) } else { next };
                     (self.last_ratio, self.rejected) = (ratio, false);
                 }
                 return Ok(());
@@ -325,11 +417,16 @@ impl<'t, 'a> Driver<'t, 'a> {
             }
             match (result, accuracy) {
                 (Err(failure), _) => {
-                    let smallest = match self.control {
-                        StepControl::Fixed(step) => SMALLEST_PART * step,
-                        StepControl::Tolerance(_) => SMALLEST_STEP * self.task.duration,
+                    let smallest = match (self.control, failure) {
+                        (StepControl::Fixed(step), Failure::Crossed { .. }) => SMALLEST_PART.powi(2) * step,
+                        (StepControl::Fixed(step), _) => SMALLEST_PART * step,
+                        (StepControl::Tolerance(_), _) => SMALLEST_STEP * self.task.duration,
                     };
-                    self.step = if accuracy.is_some() { SHRINK * h } else { 0.5 * h };
+                    self.step = h * match (accuracy, failure) {
+                        (None, _) => 0.5,
+                        (Some(_), Failure::Crossed { part, .. }) => part.clamp(LIMITS.0, SAFETY),
+                        (Some(_), _) => SHRINK,
+                    };
                     if self.step < smallest {
                         return Err(stuck(&*self.method, failure));
                     }
@@ -352,29 +449,53 @@ impl<'t, 'a> Driver<'t, 'a> {
         if end > self.task.duration - SLACK * step { self.task.duration } else { end }
     }
 
-    /// Where the next step ends, and its length; not beyond `touch` if steps are chosen.
-    fn next_end(&self, touch: f64) -> (f64, f64) {
+    /// Where the next step ends; not beyond `touch` if steps are chosen.
+    fn next_end(&self, touch: f64) -> f64 {
         let now = self.state.time;
+        let kink = self.kinks.iter().copied().find(|kink| *kink > now);
         let (end, sliver) = match self.control {
-            StepControl::Fixed(step) => (self.grid_end(step), 1.0 + SLACK),
+            StepControl::Fixed(step) => {
+                let end = self.grid_end(step);
+                (kink.filter(|kink| *kink <= end + NEAR * step).unwrap_or(end), 1.0 + SLACK)
+            }
             // The last two steps share what is left.
-            StepControl::Tolerance(_) => (self.next_kink().min(touch), 2.0),
+            StepControl::Tolerance(_) => (kink.unwrap_or(self.task.duration).min(touch), 2.0),
         };
         let left = end - now;
         if self.step * (1.0 + SLACK) >= left {
-            (end, left)
+            end
         } else if self.step * sliver > left {
-            (now + 0.5 * left, 0.5 * left)
+            now + 0.5 * left
         } else {
-            (now + self.step, self.step)
+            now + self.step
         }
     }
 
-    /// Where loads or supports are next not smooth, or the motion ends.
-    fn next_kink(&self) -> f64 {
+    /// Goes on just after the kinks at which the last step ended, if it did.
+    fn pass_kinks(&mut self) {
+        let before = self.state.time;
         let slack = SMALLEST_STEP * self.task.duration;
-        let next = self.kinks.iter().find(|kink| **kink > self.state.time + slack);
-        next.copied().unwrap_or(self.task.duration)
+        let passed = |kink: &&f64| **kink > before && **kink - before <= slack;
+        let Some(kink) = self.kinks.iter().rfind(passed).copied() else { return };
+        let kinetic =
+            |driver: &Self| driver.system.energy(kink, &driver.state.q, Some(&driver.state.v)).kinetic;
+        let earlier = kinetic(self);
+        self.state.time = kink;
+        match self.method.pass(before, &mut self.state) {
+            Ok(jump) => {
+                // An impulse of supports whose velocity jumps.
+                self.state.work += kinetic(self) - earlier;
+                if let StepControl::Tolerance(tolerance) = self.control {
+                    let n = self.state.q.len();
+                    self.step = self.step.min(step_by(self.system, &*self.method, tolerance, 2, &jump[..n]));
+                }
+            }
+            Err(singular) => {
+                let at = self.system.place_of(singular.row);
+                self.solution.stuck =
+                    Some(Stuck { time: kink, step: self.step, failure: singular.into(), at });
+            }
+        }
     }
 
     /// Keeps every second record of the past where there are too many; rejected ones stay unless they are the most.
@@ -399,12 +520,19 @@ impl<'t, 'a> Driver<'t, 'a> {
     }
 }
 
+/// Directions in a state at a place each, as near as can be to those that it says it has.
+pub(super) fn turned(directions: &[View], state: &State) -> Vec<f64> {
+    let known = state.angles.iter().copied().chain(std::iter::repeat(f64::NAN));
+    let angles = directions.iter().map(|view| view.fields(&state.q).angle()).zip(known);
+    angles.map(|(angle, near)| unfold(angle, near.is_finite().then_some(near))).collect()
+}
+
 /// Whether a time lies in the step of fixed length that is to be taken next; a saved state may say otherwise.
 fn on_grid(control: StepControl, (start, taken): (f64, u64), time: f64) -> bool {
     match control {
         StepControl::Fixed(step) => {
             let parts = (time - start) / step - taken as f64;
-            (-SLACK..1.0 + SLACK).contains(&parts)
+            (-2.0 * NEAR..1.0 + 2.0 * NEAR).contains(&parts)
         }
         StepControl::Tolerance(_) => true,
     }
@@ -418,15 +546,21 @@ fn first_step(
     [velocity, acceleration]: [&[f64]; 2],
     tolerance: f64,
 ) -> f64 {
-    let largest = |v: &[f64]| {
-        v.chunks_exact(4)
-            .fold(0.0_f64, |m, v| m.max(v[0].hypot(v[1]) / system.length()).max(v[2].hypot(v[3])))
-    };
+    let by_speed = step_by(system, method, tolerance, 1, velocity);
+    let by_acceleration = step_by(system, method, tolerance, 2, acceleration);
+    let step = by_speed.min(by_acceleration);
+    let left = task.duration - task.start.state.time;
+    // A motion that is interrupted has the steps of one that is not: they do not depend on when it ends, unless nothing moves.
+    if step < left { step } else { 0.01 * left }
+}
+
+/// The same by the derivative of positions of the given order alone.
+fn step_by(system: &System, method: &dyn Method, tolerance: f64, order: i32, derivative: &[f64]) -> f64 {
+    let largest = derivative
+        .chunks_exact(4)
+        .fold(0.0_f64, |m, v| m.max(v[0].hypot(v[1]) / system.length()).max(v[2].hypot(v[3])));
     let part = 0.3 * tolerance.powf(1.0 / (method.order() + 1.0));
-    let by_speed = part / largest(velocity);
-    let by_acceleration = (2.0 * part / largest(acceleration)).sqrt();
-    let remaining = 0.01 * (task.duration - task.start.state.time);
-    by_speed.min(by_acceleration).min(remaining)
+    (f64::from(order) * part / largest).powf(1.0 / f64::from(order))
 }
 
 /// The unknown that changed most.

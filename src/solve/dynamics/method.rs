@@ -1,6 +1,7 @@
 //! What a method of time integration is, for the driver that takes its steps.
 
 use super::State;
+use super::motion::Stage;
 use crate::linear::Singular;
 use crate::solve::newton::{Failure, Iterations};
 use crate::trajectory::Statistics;
@@ -21,7 +22,7 @@ pub trait Method {
     /// [`Singular`] where a coordinate has no mass.
     fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular>;
 
-    /// Tries a step of length `h` from `from` and writes the state that it leads to. `accuracy` is the error that the step
+    /// Tries a step from `from` to the time `end` and writes the state that it leads to; loads and supports are smooth between. `accuracy` is the error that the step
     /// may make, relative to the beam length, where the caller controls it; the method then returns an estimate of it, and
     /// otherwise zero.
     ///
@@ -30,7 +31,7 @@ pub trait Method {
     fn attempt(
         &mut self,
         from: &State,
-        h: f64,
+        end: f64,
         accuracy: Option<f64>,
         to: &mut State,
         record: &mut Iterations,
@@ -39,12 +40,22 @@ pub trait Method {
     /// Takes over what the last attempt found.
     fn accept(&mut self);
 
+    /// Goes on from `state`, at a time at which loads or supports are not smooth, instead of from the end of the last step at `before`, just before it. Returns by
+    /// how much the accelerations jump.
+    ///
+    /// # Errors
+    /// [`Singular`] where a coordinate has no mass.
+    fn pass(&mut self, before: f64, state: &mut State) -> Result<Vec<f64>, Singular>;
+
     /// The accelerations at both ends of the last attempt by which it is to be interpolated; none where positions and velocities
     /// alone match the order of the method.
     fn end_accelerations(&mut self, from: &State, to: &State) -> Option<[Vec<f64>; 2]>;
 
-    /// Power \[W\] of supports that move with time, in the state `state`.
-    fn support_power(&mut self, state: &State) -> f64;
+    /// The stages of the last attempt, which led from `from` to `to`, in the order of their times.
+    fn stages(&self, from: &State, to: &State) -> Vec<Stage>;
+
+    /// Accelerations of the unknowns and scaled multipliers at the end of the last accepted step.
+    fn end_rates(&self) -> Vec<f64>;
 
     /// The last Newton increment, by which the place of a failure is told.
     fn last_increment(&self) -> &[f64];

@@ -7,7 +7,7 @@
 //! | [`generalized_alpha`] | second order, numerical damping by choice |
 //! | [`collocation`], [`tableau`] | Gauss (order 2, 4, 6; symplectic), Radau IIA (order 3, 5; stiff) |
 //! | [`start`] | initial velocities |
-//! | [`integrate`] | the driver: steps, restart; with its records and events in `record`, the balance of energy in `balance`, contacts in `touch` |
+//! | [`integrate`] | the driver: steps, restart; with its records and events in `record` and `crossing`, forces and powers in `forces`, steps that gain energy in `balance`, contacts in `touch` |
 //!
 //! # No explicit method
 //! Störmer's and Verlet's rule and the six-stage method of order 4 of Blanes and Moan were built and measured on the soft pendulum (E = 68.95 MPa, the least stiff
@@ -22,6 +22,8 @@
 
 mod balance;
 pub mod collocation;
+mod crossing;
+mod forces;
 pub mod generalized_alpha;
 pub mod integrate;
 pub mod method;
@@ -34,6 +36,8 @@ mod touch;
 pub mod turns;
 
 use super::newton::Failure;
+use crate::effect::Slips;
+use crate::system::Reaction;
 use crate::trajectory::{Statistics, StepRecord};
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +46,7 @@ pub use touch::Change;
 
 /// A state of motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct State {
     /// Time \[s\].
     pub time: f64,
@@ -52,18 +57,31 @@ pub struct State {
     /// Work of the loads without potential since the start \[J\].
     pub work: f64,
     /// Energy that damping has taken since the start \[J\].
-    #[serde(default)]
     pub lost: f64,
+    /// What friction remembers.
+    #[serde(default)]
+    pub slips: Slips,
+    /// Directions of r' at the places where they are watched \[rad\], with all turns.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub angles: Vec<f64>,
 }
 
 impl State {
-    /// A state at rest.
+    /// A state at rest at the time zero.
     pub fn at_rest(q: &[f64]) -> Self {
         Self { q: q.to_vec(), v: vec![0.0; q.len()], ..Self::default() }
     }
 
+    /// The two inner control states of the cubic that has positions and velocities of this state and a later one.
+    pub fn controls(&self, later: &Self) -> [Vec<f64>; 2] {
+        let third = (later.time - self.time) / 3.0;
+        let moved =
+            |state: &Self, time: f64| state.q.iter().zip(&state.v).map(|(q, v)| q + time * v).collect();
+        [moved(self, third), moved(later, -third)]
+    }
+
     /// The state at `time` between this one and a later one, by the polynomial that has positions and velocities of both (cubic, error
-    /// of the fourth order in the step), and with `accelerations` those too (quintic, sixth order). Work and loss are this state's.
+    /// of the fourth order in the step), and with `accelerations` those too (quintic, sixth order). Work, loss and angles are this state's.
     pub fn between(&self, later: &Self, time: f64, accelerations: Option<[&[f64]; 2]>) -> Self {
         let h = later.time - self.time;
         let x = (time - self.time) / h;
@@ -73,6 +91,8 @@ impl State {
             v: vec![0.0; self.q.len()],
             work: self.work,
             lost: self.lost,
+            slips: Slips::default(),
+            angles: self.angles.clone(),
         };
         // From the start: q = q₀ + x h v₀ + x² …; the end's data enter through their defects against the lower terms.
         for i in 0..self.q.len() {
@@ -107,10 +127,16 @@ impl State {
 pub struct Solution {
     /// States at the requested times.
     pub states: Vec<State>,
+    /// Forces of supports and joints in each of them, where they were asked for.
+    pub reactions: Vec<Vec<Reaction>>,
+    /// All forces in the last of them.
+    pub end: Option<motion::Balance>,
     /// Attempted steps, thinned out where there are very many.
     pub history: Vec<StepRecord>,
     /// Events in the order of their times: (number of the watch, state).
     pub events: Vec<(usize, State)>,
+    /// Contacts that gave way, by number, and when they first did \[s\].
+    pub crossings: Vec<(usize, f64)>,
     /// Contacts that began or ended, in order.
     pub contacts: Vec<Change>,
     /// Counts.
@@ -123,6 +149,7 @@ pub struct Solution {
 
 /// A state with all that a method carries from step to step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Checkpoint {
     /// The state.
     pub state: State,
@@ -136,6 +163,16 @@ pub struct Checkpoint {
     pub last_ratio: f64,
     /// Where steps of fixed length are counted from \[s\], and how many were taken.
     pub origin: (f64, u64),
+    /// The state that was reached, where the motion's end or an event cut the step from `state` short: this step is taken once more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cut: Option<State>,
+}
+
+impl Checkpoint {
+    /// The last state that was reached.
+    pub fn reached(&self) -> &State {
+        self.cut.as_ref().unwrap_or(&self.state)
+    }
 }
 
 /// Why a step could not be taken.

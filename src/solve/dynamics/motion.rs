@@ -15,17 +15,24 @@
 //! damp infinite frequencies serve: Radau IIA, and generalised-α with ρ∞ < 1. Gauss' methods and the trapezoidal rule carry an error of the axial
 //! force on from step to step, undamped, and are refused.
 //!
+//! # Welds
+//! The gradients of welded nodes are polar: length y and direction θ are the unknowns, in which a weld's rows are linear and constant
+//! ([`crate::system::polar`]). Rows and forces are computed in fixed axes and turned into these unknowns; the mass matrix follows the state there.
+//!
 //! # Supports that move
 //! A coordinate that moves by a law of time has its exact value, velocity and acceleration in every stage, whatever a method makes of them; what is left is
 //! again an ordinary differential equation for the others. Of a gradient whose *direction* θ(t) is prescribed the length y along that direction is the
 //! unknown, and the method integrates (y, ẏ); fixed axes are met here only, with the centrifugal and Coriolis terms of the turning direction
 //! ([`crate::system::supports::Supports::carry`]). The mass matrix in that frame turns too and is formed anew with each tangent.
 
+mod laws;
 mod reactions;
+
+pub use reactions::{Balance, Stage};
 
 use super::State;
 use super::turns::Turns;
-use crate::effect::{Earlier, Workspace};
+use crate::effect::{Earlier, Held, Workspace};
 use crate::lanes::{Lanes, Real};
 use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
@@ -75,14 +82,16 @@ pub struct Motion<'a> {
     tangent: Matrix,
     /// Of the forces that depend on velocities, likewise; none where there are none.
     damping: Option<Matrix>,
-    /// Whether supports move with time.
-    pub(super) moves: bool,
+    /// Whether unknowns are not all coordinates in fixed axes with rates of their own: where supports move with time, and where gradients are polar.
+    pub(super) carries: bool,
     /// Whether the border follows the state.
     follows: bool,
     workspace: Workspace,
     /// The force that comes with a tangent, where none is asked for.
     force: Vec<f64>,
     scratch: Vec<f64>,
+    /// The last accepted state, for friction.
+    pub(super) held: Held,
     /// What forces of several states at once put down in between.
     pub(super) side_by_side: [Vec<f64>; 2],
     /// Of the last accelerations.
@@ -93,19 +102,16 @@ pub struct Motion<'a> {
     pub statistics: Statistics,
 }
 
-/// The mass matrix without the held coordinates, in the supports' frames: with zeros for them, and factorised.
-fn free_mass(
-    system: &System,
-    time: f64,
-    mass: &Inertia,
-    border: &[BorderRow],
-) -> Result<(Matrix, Factor), Singular> {
+/// The mass matrix of the unknowns in the state `q` in fixed axes: with zeros for the held coordinates, and with their diagonal.
+fn free_mass(system: &System, time: f64, q: &[f64], mass: &Inertia) -> [Matrix; 2] {
     let mut free = mass.to_matrix();
+    system.add_turning_mass(q, &mut free);
     system.supports().turn_matrix(time, &mut free);
+    system.polar().matrix(q, &mut free);
     let mut eliminated = free.clone();
     system.supports().eliminate(time, &mut eliminated);
     system.supports().clear_held(time, &mut free);
-    Ok((free, Factor::definite(&eliminated, border)?))
+    [free, eliminated]
 }
 
 impl<'a> Motion<'a> {
@@ -116,10 +122,11 @@ impl<'a> Motion<'a> {
     pub fn new(system: &'a System) -> Result<Self, Singular> {
         let n = system.coordinates();
         let mass = Inertia::new(system.mass_matrix());
-        let border = system.border(0.0, system.reference());
-        let (free_mass, mass_factor) = free_mass(system, 0.0, &mass, &border)?;
-        let moves = system.supports().moves_in_time();
-        let carried = if moves { n } else { 0 };
+        let border = system.border_in_motion(0.0, system.reference());
+        let [free_mass, eliminated] = free_mass(system, 0.0, system.reference(), &mass);
+        let mass_factor = Factor::definite(&eliminated, &border)?;
+        let carries = system.carries();
+        let carried = if carries { n } else { 0 };
         Ok(Self {
             system,
             mass,
@@ -128,16 +135,24 @@ impl<'a> Motion<'a> {
             border,
             tangent: system.matrix(),
             damping: system.is_damped().then(|| system.damping_pattern()),
-            moves,
+            carries,
             follows: system.has_nonlinear_constraints(),
             workspace: Workspace::default(),
             force: vec![0.0; n],
             side_by_side: [0; 2].map(|_| vec![0.0; n]),
+            held: Held { q: system.reference().to_vec(), ..Held::default() },
             scratch: vec![0.0; if system.is_damped() { n } else { 0 }],
             multipliers: vec![0.0; system.multipliers()],
             carried: [0; 3].map(|_| vec![0.0; carried]),
             statistics: Statistics { factorizations: 1, ..Statistics::default() },
         })
+    }
+
+    /// Takes a state for the last accepted one, from which friction counts slips.
+    pub fn hold(&mut self, state: &State) {
+        if self.system.has_friction() {
+            self.held = Held { q: state.q.clone(), slips: state.slips.clone() };
+        }
     }
 
     /// The system that moves.
@@ -152,7 +167,12 @@ impl<'a> Motion<'a> {
 
     /// Turns of the nodes, for a tangent that turns with them.
     pub fn turns(&self) -> Turns {
-        Turns::new(self.coordinates() / 4, self.system.supports().half_held().collect())
+        Turns::new(self.coordinates() / 4, self.still())
+    }
+
+    /// Nodes that a tangent does not turn with: a held component of a position must stay what it is, and polar gradients turn by themselves.
+    pub fn still(&self) -> Vec<usize> {
+        self.system.supports().half_held().chain(self.system.polar().nodes()).collect()
     }
 
     /// Number of coordinates.
@@ -165,17 +185,17 @@ impl<'a> Motion<'a> {
         self.system.coordinates() + self.system.multipliers()
     }
 
-    /// Whether a residual depends on velocities: by damping, or by the terms of a frame that turns.
+    /// Whether a residual depends on velocities: by damping, or by the terms of a frame, a gradient or an inertia that turns.
     pub fn needs_velocity(&self) -> bool {
-        self.damping.is_some() || self.system.supports().turn_in_time()
+        self.damping.is_some() || self.system.has_turning_inertia() || self.system.turns()
     }
 
-    /// Forms the mass matrix in the supports' frames at `time`, if these turn, with the constraints' rows in the state `q`, if they follow it.
+    /// Forms the mass matrix of the unknowns at `time` in the state `q` in fixed axes, if it is not constant, with the constraints' rows, if they follow it.
     fn mass_at(&mut self, time: f64, q: &[f64]) -> Result<(), Singular> {
-        let turns = self.system.supports().turn_in_time();
-        if turns || self.follows {
-            let border = self.system.border(time, q);
-            (self.free_mass, self.mass_factor) = free_mass(self.system, time, &self.mass, &border)?;
+        if self.system.turns() || self.system.has_turning_inertia() || self.follows {
+            let border = self.system.border_in_motion(time, q);
+            let [free, eliminated] = free_mass(self.system, time, q, &self.mass);
+            (self.free_mass, self.mass_factor) = (free, Factor::definite(&eliminated, &border)?);
             // Rows that follow the state are those of the tangent until it is taken anew.
             if !self.follows {
                 self.border = border;
@@ -189,22 +209,42 @@ impl<'a> Motion<'a> {
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
     pub fn acceleration(&mut self, state: &State, acceleration: &mut [f64]) -> Result<(), Singular> {
+        let mut forces = self.free_forces(state);
+        self.accelerate(state, &mut forces)?;
         let n = self.coordinates();
-        self.mass_at(state.time, &state.q)?;
-        let mut negative = vec![0.0; self.unknowns()];
-        // With no acceleration of the unknowns: what is left is that of the supports.
-        acceleration.fill(0.0);
+        acceleration.copy_from_slice(&forces[..n]);
+        self.multipliers.copy_from_slice(&forces[n..]);
+        Ok(())
+    }
+
+    /// −f, and −B q̈ of supports that move and directions that turn, as if no unknown had an acceleration.
+    fn free_forces(&mut self, state: &State) -> Vec<f64> {
+        let n = self.coordinates();
+        let mut forces = vec![0.0; self.unknowns()];
+        let still = vec![0.0; n];
         let mut x = state.q.clone();
         x.resize(self.unknowns(), 0.0);
-        let a = Acceleration::constant(acceleration);
-        self.residual(&x, Rates { time: state.time, v: &state.v, a }, &mut negative);
-        let supported: &[f64] = if self.moves { &self.carried[2] } else { acceleration };
-        self.system.constraint_rates(state.time, &state.q, supported, &mut negative[n..]);
-        self.system.add_constraint_curvatures(&state.v, &mut negative[n..]);
-        self.mass_factor.solve(&mut negative);
-        self.from_frames(&mut negative);
-        acceleration.copy_from_slice(&negative[..n]);
-        self.multipliers.copy_from_slice(&negative[n..]);
+        let a = Acceleration::constant(&still);
+        self.residual(&x, Rates { time: state.time, v: &state.v, a }, &mut forces);
+        let [q, v, supported] = match &self.carried {
+            [q, v, a] if self.carries => [&q[..n], &v[..], &a[..]],
+            _ => [&state.q[..], &state.v[..], &still[..]],
+        };
+        self.system.constraint_rates(state.time, q, supported, &mut forces[n..]);
+        self.system.add_constraint_curvatures(q, v, &mut forces[n..]);
+        forces
+    }
+
+    /// Turns such forces into the accelerations of the unknowns and the multipliers.
+    fn accelerate(&mut self, state: &State, forces: &mut [f64]) -> Result<(), Singular> {
+        let mut fixed = std::borrow::Cow::Borrowed(state);
+        if self.carries {
+            self.carry(fixed.to_mut());
+        }
+        self.mass_at(state.time, &fixed.q)?;
+        self.mass_factor.solve(forces);
+        self.from_frames(forces);
+        self.release(forces);
         Ok(())
     }
 
@@ -222,10 +262,13 @@ impl<'a> Motion<'a> {
         let mut wanted: Vec<f64> = v.iter().zip(&prescribed).map(|(v, p)| v - p).collect();
         let mut momentum = vec![0.0; self.unknowns()];
         self.mass.multiply_add(1.0, &wanted, &mut momentum[..n]);
+        self.system.add_turning_momentum(q, &wanted, &mut momentum[..n]);
         supports.to_frames(time, &mut momentum[..n]);
+        self.system.polar().forces(q, &mut momentum[..n]);
         self.system.constraint_rates(time, q, &prescribed, &mut momentum[n..]);
         self.mass_factor.solve(&mut momentum);
         supports.to_fixed_axes(time, &mut momentum[..n]);
+        self.system.polar().changes(q, &mut momentum[..n]);
         wanted.iter_mut().zip(&momentum).zip(&prescribed).for_each(|((v, w), p)| *v = w + p);
         Ok(wanted)
     }
@@ -257,12 +300,14 @@ impl<'a> Motion<'a> {
     fn balance(&mut self, x: &[f64], rates: Rates<'_>, r: &mut [f64]) -> f64 {
         self.statistics.residual_evaluations += 1;
         let n = self.coordinates();
-        if !self.moves {
+        if !self.carries {
             self.system.force(rates.time, &x[..n], &mut r[..n]);
+            self.system.add_friction(&self.held, &x[..n], &mut r[..n]);
             return self.finish(x, rates, r);
         }
         self.with_carried(x, rates, |motion, x, rates| {
             motion.system.force(rates.time, &x[..n], &mut r[..n]);
+            motion.system.add_friction(&motion.held, &x[..n], &mut r[..n]);
             motion.finish(x, rates, r)
         })
     }
@@ -277,7 +322,7 @@ impl<'a> Motion<'a> {
     ) -> f64 {
         self.statistics.residual_evaluations += 1;
         let n = self.coordinates();
-        if !self.moves {
+        if !self.carries {
             self.assemble(x, Some(earlier), rates, &mut negative[..n]);
             let scale = self.finish(x, rates, negative);
             return negate(self.system, scale, negative, |_| ());
@@ -285,7 +330,7 @@ impl<'a> Motion<'a> {
         let mut before = earlier.q.to_vec();
         let mut idle = vec![0.0; n];
         let mut still = vec![0.0; n];
-        self.system.supports().carry(rates.time, [&mut before[..n], &mut idle, &mut still]);
+        self.system.carry(rates.time, [&mut before[..n], &mut idle, &mut still]);
         let scale = self.with_carried(x, rates, |motion, x, rates| {
             let change: Vec<f64> = x.iter().zip(&before).map(|(x, before)| x - before).collect();
             let earlier = Earlier { q: &before, increment: &change };
@@ -300,14 +345,16 @@ impl<'a> Motion<'a> {
     /// # Errors
     /// [`Singular`] where a coordinate has no mass in a frame that turns.
     pub fn tangent_at(&mut self, state: &State, multipliers: &[f64]) -> Result<(), Singular> {
-        if self.system.supports().turn_in_time() {
-            self.mass_at(state.time, &state.q)?;
+        if self.system.turns() {
+            let (mut q, mut v) = (state.q.clone(), state.v.clone());
+            self.system.carry(state.time, [&mut q, &mut v, &mut vec![0.0; state.q.len()]]);
+            self.mass_at(state.time, &q)?;
         }
         let rates = Rates { time: state.time, v: &state.v, a: Acceleration::constant(&state.v) };
         let mut x = state.q.clone();
         x.extend_from_slice(multipliers);
         let mut force = std::mem::take(&mut self.force);
-        if self.moves {
+        if self.carries {
             self.with_carried(&x, rates, |motion, x, rates| motion.assemble(x, None, rates, &mut force));
         } else {
             self.assemble(&x, None, rates, &mut force);
@@ -330,7 +377,7 @@ impl<'a> Motion<'a> {
         v.copy_from_slice(&rates.v[..n]);
         let Acceleration { factor, rest } = rates.a;
         a.iter_mut().zip(x.iter().zip(rest)).for_each(|(a, (x, e))| *a = factor.mul_add(*x, *e));
-        self.system.supports().carry(rates.time, [&mut q[..n], &mut v, &mut a]);
+        self.system.carry(rates.time, [&mut q[..n], &mut v, &mut a]);
         let carried = Rates { time: rates.time, v: &v, a: Acceleration::constant(&a) };
         let result = f(self, &q, carried);
         self.carried = [q, v, a];
@@ -340,19 +387,25 @@ impl<'a> Motion<'a> {
     /// Force, tangent and damping matrix, in fixed axes and in the supports' frames.
     fn assemble(&mut self, x: &[f64], earlier: Option<Earlier<'_>>, rates: Rates<'_>, force: &mut [f64]) {
         let n = self.coordinates();
-        let Self { system, tangent, damping, workspace, scratch, .. } = self;
+        let Self { system, tangent, damping, workspace, scratch, held, .. } = self;
         let supports = system.supports();
         if let Some(damping) = damping {
             system.damping_matrix(&x[..n], rates.v, scratch, damping, workspace);
             supports.turn_matrix(rates.time, damping);
+            system.polar().matrix(&x[..n], damping);
             supports.clear_held(rates.time, damping);
         }
         system.force_and_tangent(rates.time, &x[..n], earlier, force, tangent, workspace);
-        system.add_constraint_stiffness(&x[n..], tangent);
+        system.add_friction_and_tangent(held, &x[..n], force, tangent, workspace);
+        system.add_constraint_stiffness(&x[..n], &x[n..], tangent);
         supports.turn_matrix(rates.time, tangent);
+        system.polar().matrix(&x[..n], tangent);
         supports.eliminate(rates.time, tangent);
         if self.follows {
-            self.border = system.border(rates.time, &x[..n]);
+            self.border = system.border_in_motion(rates.time, &x[..n]);
+        }
+        if system.has_turning_inertia() {
+            [self.free_mass, _] = free_mass(system, rates.time, &x[..n], &self.mass);
         }
         self.statistics.tangent_evaluations += 1;
     }
@@ -371,7 +424,32 @@ impl<'a> Motion<'a> {
         };
         let mut scale = Largest::force(self.system);
         self.mass.multiply_add_seen(acceleration, &mut r[..n], |force| scale.see(&force));
-        balance(self.system, rates.time, x, scale.size(), r)
+        if self.system.has_turning_inertia() {
+            let a: Vec<f64> = (0..n / 4).flat_map(acceleration).collect();
+            self.system.add_turning_force(&x[..n], rates.v, &a, &mut r[..n]);
+        }
+        let scale = balance(self.system, rates.time, x, scale.size(), r);
+        self.system.polar().forces(x, &mut r[..n]);
+        scale
+    }
+
+    /// K q̇ in the unknowns `earlier` less that in the unknowns `later`: by how much the forces' rates differ, in the supports' frames.
+    pub fn rate_of_forces(&mut self, earlier: &State, later: &State) -> Vec<f64> {
+        let n = self.coordinates();
+        let mut product = vec![0.0; n];
+        let mut difference = vec![0.0; self.unknowns()];
+        for (state, sign) in [(earlier, 1.0), (later, -1.0)] {
+            let (mut q, mut v) = (state.q.clone(), state.v.clone());
+            if self.carries {
+                let mut idle = vec![0.0; n];
+                self.system.carry(state.time, [&mut q, &mut v, &mut idle]);
+            }
+            self.system.tangent_product(state.time, &q, &v, &mut product);
+            self.system.polar().forces(&q, &mut product);
+            difference.iter_mut().zip(&product).for_each(|(d, p)| *d += sign * p);
+        }
+        self.system.supports().to_frames(later.time, &mut difference[..n]);
+        difference
     }
 
     /// Factorises K + d D + c M with the last tangent K and damping matrix D.
@@ -431,6 +509,12 @@ impl<'a> Motion<'a> {
         self.system.supports().from_frames(0.0, &mut v[..n]);
     }
 
+    /// Takes what is held out of changes or rates of the unknowns.
+    pub fn release<T: Real>(&self, v: &mut [T]) {
+        let n = self.coordinates();
+        self.system.supports().release(&mut v[..n]);
+    }
+
     /// Sets the held coordinates to their values at `time`.
     pub fn impose(&self, time: f64, x: &mut [f64]) {
         let n = self.coordinates();
@@ -439,27 +523,29 @@ impl<'a> Motion<'a> {
 
     /// The unknowns and their velocities of a state in fixed axes.
     pub fn unknowns_of<'s>(&self, state: &'s State) -> std::borrow::Cow<'s, State> {
-        if !self.system.supports().turn_in_time() {
+        if !self.system.turns() {
             return std::borrow::Cow::Borrowed(state);
         }
         let mut state = state.clone();
-        self.system.supports().uncarry(state.time, &mut state.q, &mut state.v);
+        self.system.uncarry(state.time, &mut state.q, &mut state.v);
         std::borrow::Cow::Owned(state)
     }
 
-    /// Turns a state of unknowns into fixed axes; moving supports receive their prescribed values.
+    /// Turns the state of unknowns at the end of a step into fixed axes; what is held receives its prescribed values.
     pub fn carry(&self, state: &mut State) {
-        if self.moves {
+        self.impose(state.time, &mut state.q);
+        self.release(&mut state.v);
+        if self.carries {
             let mut acceleration = vec![0.0; state.q.len()];
-            self.system.supports().carry(state.time, [&mut state.q, &mut state.v, &mut acceleration]);
+            self.system.carry(state.time, [&mut state.q, &mut state.v, &mut acceleration]);
         }
     }
 
     /// Accelerations in fixed axes from those of the unknowns in the state `state`, which is in fixed axes.
     pub fn carried_acceleration(&self, state: &State, mut acceleration: Vec<f64>) -> Vec<f64> {
-        if self.moves {
+        if self.carries {
             let mut state = self.unknowns_of(state).into_owned();
-            self.system.supports().carry(state.time, [&mut state.q, &mut state.v, &mut acceleration]);
+            self.system.carry(state.time, [&mut state.q, &mut state.v, &mut acceleration]);
         }
         acceleration
     }
@@ -481,11 +567,13 @@ impl<'a> Motion<'a> {
         self.system.constraint_values(state.time, &state.q, &mut change[n..]);
         self.mass_factor.solve(&mut change);
         supports.to_fixed_axes(state.time, &mut change[..n]);
+        self.system.polar().changes(&state.q, &mut change[..n]);
         state.q.iter_mut().zip(&change).for_each(|(q, d)| *q += d);
         change[..n].fill(0.0);
         self.system.constraint_rates(state.time, &state.q, &state.v, &mut change[n..]);
         self.mass_factor.solve(&mut change);
         supports.to_fixed_axes(state.time, &mut change[..n]);
+        self.system.polar().changes(&state.q, &mut change[..n]);
         state.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! What a motion leaves behind on its way: records at the requested times, crossings of probes.
 
-use super::integrate::{Driver, SLACK, worst};
+use super::crossing::{NEAR, Polynomial};
+use super::integrate::{Driver, SLACK, turned, worst};
 use super::{State, Stuck};
 use crate::model::Crossing;
 use crate::solve::newton::Failure;
@@ -9,42 +10,45 @@ impl Driver<'_, '_> {
     /// Records and events of the step from the last state to `new`, which an event may cut short; true where the motion ends.
     pub(super) fn look(&mut self, new: &mut State) -> bool {
         let slack = SLACK * (new.time - self.state.time);
-        let crossed = (0..self.task.watches.len()).any(|w| self.crosses(w, &self.state, new));
         let due = self.next_record as f64 * self.task.output_every < new.time - slack;
+        let between = due || self.has_work() || !self.task.watches.is_empty();
+        let accelerations = if between { self.method.end_accelerations(&self.state, new) } else { None };
+        let pair = accelerations.as_ref().map(|[a, b]| [&a[..], &b[..]]);
+        (new.work, new.lost) = self.work(new, new.time, pair);
+        new.angles.clone_from(&self.state.angles);
+        new.angles = turned(self.task.directions, new);
+        self.settle(new);
+        let stop = self.note_events(new, pair);
+        self.record_until(new, stop.as_ref().unwrap_or(new), pair);
+        let stops = stop.is_some();
+        if let Some(state) = stop {
+            self.solution.end = self.balance_within(new, &state);
+            *new = state;
+        }
         if !self.touching.is_empty() {
             self.notice_contacts(new);
         }
-        if !(crossed || due || self.has_work()) {
-            self.record_until(new, None);
-            return false;
-        }
-        let accelerations = self.method.end_accelerations(&self.state, new);
-        let pair = accelerations.as_ref().map(|[a, b]| [&a[..], &b[..]]);
-        let stop = self.locate(new, pair);
-        if let Some(state) = stop {
-            self.record_until(&state, pair);
-            *new = state;
-            return true;
-        }
-        (new.work, new.lost) = self.work(new, new.time, pair);
-        self.record_until(new, pair);
-        false
+        stops
     }
 
-    pub(super) fn record_until(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) {
-        let slack = SLACK * (new.time - self.state.time);
+    /// Records the step to `new` as far as `end`.
+    fn record_until(&mut self, new: &State, end: &State, accelerations: Option<[&[f64]; 2]>) {
+        let slack = SLACK * (end.time - self.state.time);
         loop {
             let time = self.next_record as f64 * self.task.output_every;
-            if time > new.time + slack || time > self.task.duration + slack {
+            if time > end.time + slack || time > self.task.duration + slack {
                 return;
             }
-            let state = if (time - new.time).abs() <= slack {
-                new.clone()
-            } else {
-                self.between(new, time, accelerations)
-            };
-            if !self.keep(state) {
+            let at_end = (time - end.time).abs() <= slack;
+            let state =
+                if at_end { State { time, ..end.clone() } } else { self.between(new, time, accelerations) };
+            let balance = if self.settles() { self.balance_within(new, &state) } else { None };
+            let settled = balance.as_ref().filter(|_| !at_end).map(|balance| balance.state.clone());
+            if !self.keep(settled.unwrap_or(state)) {
                 return;
+            }
+            if self.task.reactions {
+                self.keep_reactions(balance);
             }
             self.next_record += 1;
         }
@@ -67,56 +71,46 @@ impl Driver<'_, '_> {
     pub(super) fn between(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> State {
         let mut state = self.state.between(new, time, accelerations);
         (state.work, state.lost) = self.work(new, time, accelerations);
+        state.angles = turned(self.task.directions, &state);
+        self.settle(&mut state);
         state
     }
 
-    pub(super) fn crosses(&self, watch: usize, a: &State, b: &State) -> bool {
-        let watch = &self.task.watches[watch];
-        let distance = |state: &State| watch.view.fields(&state.q).position[watch.axis] - watch.value;
-        let (before, after) = (distance(a), distance(b));
-        let rising = before < 0.0 && after >= 0.0;
-        let falling = before > 0.0 && after <= 0.0;
-        match watch.crossing {
-            Crossing::Rising => rising,
-            Crossing::Falling => falling,
-            Crossing::Any => rising || falling,
+    /// Notes the events of the step to `new` in the order of time; returns the state of the first that ends the motion.
+    fn note_events(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) -> Option<State> {
+        let h = new.time - self.state.time;
+        let near = NEAR * self.system.length();
+        let mut found: Vec<(f64, usize)> = Vec::new();
+        for (number, watch) in self.task.watches.iter().enumerate() {
+            let of = |scale: f64, vectors: [&[f64]; 2]| {
+                vectors.map(|v| scale * watch.view.at_point(v)[watch.axis])
+            };
+            let positions = of(1.0, [&self.state.q, &new.q]).map(|position| position - watch.value);
+            let halves = accelerations.map(|pair| of(0.5 * h * h, pair));
+            let polynomial = Polynomial::hermite(positions, of(h, [&self.state.v, &new.v]), halves);
+            let reached = polynomial.reaches_zero(near).into_iter().filter(|reached| match watch.crossing {
+                Crossing::Any => true,
+                Crossing::Rising => reached.rising,
+                Crossing::Falling => !reached.rising,
+            });
+            let new = reached.filter(|reached| self.state.time + reached.at * h > self.first.time);
+            found.extend(new.map(|reached| (reached.at, number)));
         }
-    }
-
-    /// Locates the events of the step to `new`; returns the state of the first that ends the motion.
-    pub(super) fn locate(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) -> Option<State> {
-        let crossed: Vec<usize> =
-            (0..self.task.watches.len()).filter(|w| self.crosses(*w, &self.state, new)).collect();
-        let mut found: Vec<(usize, State)> =
-            crossed.into_iter().map(|w| (w, self.crossing(w, new, accelerations))).collect();
-        found.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
-        for (watch, state) in found {
-            let stop = self.task.watches[watch].stop;
-            self.solution.events.push((watch, state.clone()));
-            if stop {
+        // Of those at once one that ends the motion comes last.
+        found.sort_by(|a, b| {
+            a.0.total_cmp(&b.0).then(self.task.watches[a.1].stop.cmp(&self.task.watches[b.1].stop))
+        });
+        for (at, number) in found {
+            let state = if at < 1.0 {
+                self.between(new, self.state.time + at * h, accelerations)
+            } else {
+                new.clone()
+            };
+            self.solution.events.push((number, state.clone()));
+            if self.task.watches[number].stop {
                 return Some(state);
             }
         }
         None
-    }
-
-    /// The state at which a watch crosses its value: bisection of the interpolated motion, to the last bit but a few of the step.
-    pub(super) fn crossing(
-        &mut self,
-        watch: usize,
-        new: &State,
-        accelerations: Option<[&[f64]; 2]>,
-    ) -> State {
-        let (mut before, mut after) = (self.state.time, new.time);
-        for _ in 0..50 {
-            let middle = 0.5 * (before + after);
-            let state = self.state.between(new, middle, accelerations);
-            if self.crosses(watch, &self.state, &state) {
-                after = middle;
-            } else {
-                before = middle;
-            }
-        }
-        self.between(new, after, accelerations)
     }
 }

@@ -196,13 +196,12 @@ impl Stages {
 impl Motion<'_> {
     /// Room for the stages of a collocation method.
     pub fn stages(&self) -> Stages {
-        let still = self.system.supports().half_held().collect();
-        Stages::new(self.coordinates(), self.unknowns(), self.needs_velocity() || self.moves, still)
+        Stages::new(self.coordinates(), self.unknowns(), self.needs_velocity() || self.carries, self.still())
     }
 
     /// [`Self::residual`] of the stages of a step at their `times`, the first `count` lanes: leaves those of all in `stages`, returns the largest.
     pub fn residuals(&mut self, times: [f64; 4], count: usize, stages: &mut Stages) -> f64 {
-        if self.moves || self.system.multipliers() > 0 {
+        if self.carries || self.system.multipliers() > 0 || self.system.has_turning_inertia() {
             let mut largest = 0.0_f64;
             let mut rows: [Vec<f64>; 4] = Default::default();
             for (stage, row) in rows.iter_mut().enumerate() {
@@ -220,9 +219,12 @@ impl Motion<'_> {
             return largest;
         }
         self.statistics.residual_evaluations += count;
-        let Self { system, mass, side_by_side, .. } = self;
+        let Self { system, mass, side_by_side, held, .. } = self;
         let force = &mut stages.residual;
         system.forces(times, &stages.x, force, side_by_side);
+        if system.has_friction() {
+            lanes::one_by_one(&stages.x, force, side_by_side, |_, q, f| system.add_friction(held, q, f));
+        }
         if system.is_damped() {
             let velocities: [Vec<f64>; 4] = std::array::from_fn(|stage| lane(&stages.velocity, stage));
             lanes::one_by_one(&stages.x, force, side_by_side, |lane, q, f| {

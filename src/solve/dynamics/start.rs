@@ -1,4 +1,4 @@
-//! Where a motion starts: at rest, or with given velocities.
+//! Where a motion starts: at rest, with given velocities, or in a state that another analysis has left.
 
 use super::{Checkpoint, State};
 use crate::linear::Singular;
@@ -6,15 +6,17 @@ use crate::model::InitialVelocity;
 use crate::solve::dynamics::motion::Motion;
 use crate::system::System;
 
-/// Difference between given and admissible velocities, relative to the largest, that counts as round-off.
+/// Difference between given and admissible velocities, relative to the largest, and between places in beam lengths, that counts as round-off.
 const ROUND_OFF: f64 = 1e-9;
+/// The same of joints, which equations keep.
+const JOINED: f64 = 1e-6;
 
 /// Why a motion cannot start so.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
 pub enum StartError {
     /// A support does not allow the velocity.
     #[error(
-        "the initial velocity moves what a support holds: near s = {s:.6} m of beam `{beam}` the supports change it by {change:.3e} m/s"
+        "the velocity at the start moves what a support holds: near s = {s:.6} m of beam `{beam}` the supports change it by {change:.3e} m/s"
     )]
     #[diagnostic(help(
         "let the velocity vanish where the beam is held, such as by a rotation about a hinge: `rotation = \"2 rad/s\"`, `about = [0, 0]`; \
@@ -28,16 +30,36 @@ pub enum StartError {
         /// By how much the supports change the velocity \[m/s\].
         change: f64,
     },
-    /// A law of a support is not zero at the start.
+    /// A joint of the scene is open in a saved state.
     #[error(
-        "a support moves beam `{beam}` near s = {s:.6} m by {change:.3e} (m, or rad) at the start, all at once"
+        "a joint or a support holds beam `{beam}` near s = {s:.6} m, where the saved state misses it by {miss:.3e} beam lengths, or rad"
     )]
-    #[diagnostic(help("let its law begin with zero, such as `smooth_ramp` or a harmonic of phase 0"))]
+    #[diagnostic(help(
+        "the joints of a motion that starts from a saved state must be closed in it: begin with the joints that it had"
+    ))]
+    Open {
+        /// The beam.
+        beam: String,
+        /// Where \[m\].
+        s: f64,
+        /// By how much.
+        miss: f64,
+    },
+    /// A support jumps.
+    #[error(
+        "a support moves beam `{beam}` near s = {s:.6} m by {change:.3e} (m, or rad) at t = {time} s, all at once"
+    )]
+    #[diagnostic(help(
+        "what jumps has no velocity, and its energy no bound: let the law begin where the beam is and take a time, such as \
+         `smooth_ramp = {{ start = \"{time} s\", duration = \"10 ms\" }}`, a `table` with `smooth = true`, or a harmonic of phase 0"
+    ))]
     Jump {
         /// The beam.
         beam: String,
         /// Where \[m\].
         s: f64,
+        /// When \[s\].
+        time: f64,
         /// By how much.
         change: f64,
     },
@@ -46,10 +68,28 @@ pub enum StartError {
     Singular(#[from] Singular),
 }
 
-/// The place and size of the largest difference of two vectors.
-fn largest_difference(a: &[f64], b: &[f64]) -> (usize, f64) {
-    let changes = a.iter().zip(b).map(|(a, b)| (a - b).abs()).enumerate();
-    changes.fold((0, 0.0), |w, c| if c.1 > w.1 { c } else { w })
+/// The largest of a vector of coordinates, those of positions in beam lengths: its place and size.
+fn largest(system: &System, of: impl Fn(usize) -> f64) -> (usize, f64) {
+    let unit = |i: usize| if i % 4 < 2 { system.length() } else { 1.0 };
+    let sizes = (0..system.coordinates()).map(|i| (i, of(i).abs() / unit(i)));
+    sizes.fold((0, 0.0), |w, c| if c.1 > w.1 { c } else { w })
+}
+
+/// Refuses supports that jump between `start` and `end` \[s\].
+///
+/// # Errors
+/// [`StartError::Jump`] naming the first that does.
+pub fn check_jumps(system: &System, start: f64, end: f64) -> Result<(), StartError> {
+    let within = system.supports().jumps().filter(|(_, time, _)| *time > start && *time <= end);
+    match within.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        None => Ok(()),
+        Some((at, time, change)) => Err(jump(system, at, time, change)),
+    }
+}
+
+fn jump(system: &System, at: usize, time: f64, change: f64) -> StartError {
+    let (beam, s) = system.place_of(at);
+    StartError::Jump { beam: system.beams()[beam].name.clone(), s, time, change }
 }
 
 /// The stress-free state with the given velocities.
@@ -57,14 +97,32 @@ fn largest_difference(a: &[f64], b: &[f64]) -> (usize, f64) {
 /// # Errors
 /// [`StartError::Held`] where supports do not allow them, [`StartError::Jump`] where a support starts elsewhere.
 pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Checkpoint, StartError> {
-    let mut state = State::at_rest(system.reference());
-    system.supports().impose(0.0, &mut state.q);
-    let (at, change) = largest_difference(&state.q, system.reference());
-    if change > ROUND_OFF * system.length().max(1.0) {
-        let (beam, s) = system.place_of(at);
-        return Err(StartError::Jump { beam: system.beams()[beam].name.clone(), s, change });
+    from_state(system, State::at_rest(system.reference()), velocities)
+}
+
+/// A state with the given velocities added to its own. What supports that move at once make of them is work.
+///
+/// # Errors
+/// [`StartError::Held`] where supports do not allow the velocities, [`StartError::Jump`] where a support is elsewhere, [`StartError::Open`] where a
+/// joint is open.
+pub fn from_state(
+    system: &System,
+    mut state: State,
+    velocities: &[InitialVelocity],
+) -> Result<Checkpoint, StartError> {
+    let mut imposed = state.q.clone();
+    system.supports().impose(state.time, &mut imposed);
+    let (at, change) = largest(system, |i| imposed[i] - state.q[i]);
+    if change > ROUND_OFF {
+        return Err(jump(system, at, state.time, (imposed[at] - state.q[at]).abs()));
     }
-    if velocities.is_empty() && !system.supports().moves_in_time() {
+    if let Some((at, miss)) = system.missed(state.time, &state.q).filter(|(_, miss)| *miss > JOINED) {
+        let (beam, s) = system.place_of(at);
+        return Err(StartError::Open { beam: system.beams()[beam].name.clone(), s, miss });
+    }
+    state.q = imposed;
+    let at_rest = velocities.is_empty() && state.v.iter().all(|v| *v == 0.0);
+    if at_rest && !system.supports().moves_in_time() {
         return Ok(Checkpoint { state, ..Checkpoint::default() });
     }
     for velocity in velocities {
@@ -78,7 +136,6 @@ pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Chec
         }
     }
     let admissible = Motion::new(system)?.admissible_velocity(state.time, &state.q, &state.v)?;
-    let largest = state.v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     // A support that moves gives the beam its velocity.
     let moves = system.supports().moves_in_time();
     let mut given = state.v.clone();
@@ -87,11 +144,14 @@ pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Chec
             *given = *admissible;
         }
     }
-    let (worst, change) = largest_difference(&given, &admissible);
-    if change > ROUND_OFF * largest {
+    let (worst, change) = largest(system, |i| given[i] - admissible[i]);
+    if change > ROUND_OFF * largest(system, |i| state.v[i]).1 {
         let (beam, s) = system.place_of(worst);
+        let change = (given[worst] - admissible[worst]).abs();
         return Err(StartError::Held { beam: system.beams()[beam].name.clone(), s, change });
     }
+    let kinetic = |v: &[f64]| system.energy(state.time, &state.q, Some(v)).kinetic;
+    state.work += kinetic(&admissible) - kinetic(&state.v);
     state.v = admissible;
     Ok(Checkpoint { state, ..Checkpoint::default() })
 }

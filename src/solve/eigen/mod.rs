@@ -44,14 +44,6 @@ pub enum EigenError {
         /// The analysis.
         analysis: &'static str,
     },
-    /// An inextensible beam whose rows change along the initial path.
-    #[error(
-        "the loads bend an inextensible beam before it buckles, which a linear buckling analysis does not cover"
-    )]
-    #[diagnostic(help(
-        "give the beam an `axial_stiffness`, or follow the path with [analysis.static], which reports where stability is lost"
-    ))]
-    Deforms,
     /// Supports and constraints leave no motion.
     #[error("the supports hold every coordinate of the mesh: nothing is left that could move")]
     #[diagnostic(help("use more elements or nodes, or fewer supports"))]

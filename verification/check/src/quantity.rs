@@ -7,7 +7,7 @@
 //! | `reaction.<name>.x` (`y`, `moment`) | forces of a support or joint, where `output.reactions` asks for them | time or load factor |
 //! | `energy.drift` | max abs(total − initial) / max kinetic | – |
 //! | `parameter` | load factor or time \[s\] itself | time or load factor |
-//! | `shape.x` (`s`, `y`, `angle`, `strain`, `curvature`, `axial_force`, `bending_moment`), `shape.<beam>.x` | the last state | s \[m\] |
+//! | `shape.x` (`s`, `y`, `angle`, `strain`, `curvature`, `axial_force`, `shear_force`, `bending_moment`), `shape.<beam>.x` | the last state | s \[m\] |
 //! | `frequency.<k>`, `load-factor.<k>` | k-th from 1, \[Hz\] or – | – |
 //! | `statistics.<name>` | counts, as in `summary.json`; `most_iterations` of an accepted step | – |
 //! | `interpolated.stretch` (`bend`) | ½∫EA ε² ds, ½∫EI κ² ds of exact nodal values \[J\] | – |
@@ -204,10 +204,12 @@ fn shape(shape: &Shape, field: &str) -> std::result::Result<Values, String> {
         "strain" => &shape.strain,
         "curvature" => &shape.curvature,
         "axial_force" => &shape.axial_force,
+        "shear_force" => &shape.shear_force,
         "bending_moment" => &shape.bending_moment,
         _ => {
             return Err(
-                "a shape has s, x, y, angle, strain, curvature, axial_force, bending_moment".to_owned()
+                "a shape has s, x, y, angle, strain, curvature, axial_force, shear_force, bending_moment"
+                    .to_owned(),
             );
         }
     };

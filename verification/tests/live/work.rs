@@ -29,13 +29,13 @@ why = "Exact."
 [method.ours]
 code = "ours"
 label = "ours"
-set = ["beam.cantilever.basis={ ancf = { elements = {elements} } }", "analysis.static={ tolerance = 1e-10 }"]
+set = ["beam.cantilever.basis={ ancf = { elements = {elements}, gauss_points = { stretch = 5, bend = 3 } } }", "analysis.static={ tolerance = 1e-10 }"]
 over.mesh.elements = [8, 16]
 
 [method.exudyn]
 code = "exudyn"
 label = "Exudyn"
-set = ["beam.cantilever.basis={ ancf = { elements = {elements} } }", "analysis.static={ steps = 4 }"]
+set = ["beam.cantilever.basis={ ancf = { elements = {elements}, gauss_points = { stretch = 5, bend = 3 } } }", "analysis.static={ steps = 4 }"]
 settings = { newton = "{newton}", quadrature = "5/3" }
 over.mesh.elements = [8, 16]
 over.newton.newton = ["full", "modified"]
@@ -43,13 +43,13 @@ over.newton.newton = ["full", "modified"]
 [method.lobatto]
 code = "exudyn"
 label = "Lobatto"
-set = ["beam.cantilever.basis={ ancf = { elements = 16 } }", "analysis.static={ steps = 4 }"]
+set = ["beam.cantilever.basis={ ancf = { elements = 16, gauss_points = { stretch = 5, bend = 3 } } }", "analysis.static={ steps = 4 }"]
 settings = { quadrature = "Lobatto" }
 
 [method.wrong]
 code = "exudyn"
 label = "wrong"
-set = ["beam.cantilever.basis={ ancf = { elements = 16 } }"]
+set = ["beam.cantilever.basis={ ancf = { elements = 16, gauss_points = { stretch = 5, bend = 3 } } }"]
 settings = { colour = "red" }
 
 [method.slow]

@@ -1,48 +1,206 @@
 //! What supports and joints do to a motion: their forces, and the power that moving ones put in.
+//!
+//! # Forces in a recorded state
+//! Positions of a recorded state err by a part of the tolerance, and stiffness times such an error is no force. What a step knows of forces is
+//! the inertia in its stages. Their accelerations a, continued to the record, are first freed of what would strain the beam faster than a step of
+//! length h can follow, then the state is moved by a δ of the size of its error until it balances them:
+//!
+//! ```text
+//! (K + c M) w + Bᵀν = −(K a + D²f[v, v])            B w = −B a − Ḃ v         a ← a + w       c = (4/h)², d = 4/h
+//! (K + d D + c M) δ + Bᵀμ = −(M a + f(q) + f_d(q, v))      B c δ = −B a − Ḃ v      q ← q + δ, v ← v + d δ, a ← a + c δ
+//! ```
+//!
+//! K a + D²f[v, v] is f̈: what is stiff moves as a constraint would let it. What moves slowly gets the acceleration of its forces, what
+//! is too fast to be followed the quasi-static force under the inertia of the rest.
 
 use super::super::State;
-use super::Motion;
+use super::{Acceleration, Motion, Rates};
+use crate::effect::Slips;
 use crate::linear::Singular;
-use crate::system::Reaction;
+use crate::system::{Balanced, Reaction};
+
+/// A state of a motion's unknowns in which its equations hold.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stage {
+    /// Unknowns and their velocities.
+    pub state: State,
+    /// Accelerations of the unknowns, followed by the scaled multipliers.
+    pub rates: Vec<f64>,
+}
+
+/// A state of motion in fixed axes with all that acts in it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Balance {
+    /// The state.
+    pub state: State,
+    /// Accelerations.
+    pub acceleration: Vec<f64>,
+    /// Forces of supports on the held coordinates.
+    pub held: Vec<f64>,
+    /// Scaled multipliers.
+    pub multipliers: Vec<f64>,
+}
+
+impl Balance {
+    /// The same, for the sums of a system.
+    pub fn view(&self) -> Balanced<'_> {
+        let State { time, q, v, slips, .. } = &self.state;
+        let motion = Some([&v[..], &self.acceleration]);
+        Balanced { parameter: *time, q, motion, held: &self.held, multipliers: &self.multipliers, slips }
+    }
+}
+
+/// ω h beyond which a vibration is too fast for steps of length h.
+const FAST: f64 = 4.0;
+/// How often a state is moved: the tangent of the state found first has the stress of its error.
+const PASSES: usize = 2;
+/// Change of a gradient, or of a position in beam lengths, over which a tangent is differenced.
+const DIFFERENCE: f64 = 1e-4;
 
 impl Motion<'_> {
-    /// Forces of supports and joints on the beams in the state `state`.
+    /// Forces of supports and joints on the beams in the state `state`, whose positions are taken to be exact.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
     pub fn reactions(&mut self, state: &State) -> Result<Vec<Reaction>, Singular> {
-        let held = self.held_forces(state)?;
-        Ok(self.system.reactions(state.time, &state.q, &held, &self.multipliers))
+        let balance = self.exact_balance(state)?;
+        Ok(self.reactions_in(&balance))
     }
 
-    /// Forces of the supports on the held coordinates, zero for all others: M q̈ + f in the state `state`, in fixed axes.
-    fn held_forces(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
-        let n = self.coordinates();
-        let unknowns = self.unknowns_of(state).into_owned();
-        let mut acceleration = vec![0.0; n];
-        self.acceleration(&unknowns, &mut acceleration)?;
-        let (mut q, mut v) = (unknowns.q, unknowns.v);
-        self.system.supports().carry(state.time, [&mut q, &mut v, &mut acceleration]);
-        let mut force = vec![0.0; n];
-        self.system.force(state.time, &q, &mut force);
-        self.system.add_damping(&q, &v, &mut force);
-        self.mass.multiply_add(1.0, &acceleration, &mut force);
-        self.system.add_constraint_forces(state.time, &q, &self.multipliers, &mut force);
-        self.system.supports().keep_held(state.time, &mut force);
-        Ok(force)
-    }
-
-    /// Power \[W\] that moving supports put in.
+    /// All forces in the state `state`, whose positions are taken to be exact.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
-    pub fn support_power(&mut self, state: &State) -> Result<f64, Singular> {
-        if !self.moves {
-            return Ok(0.0);
+    pub fn exact_balance(&mut self, state: &State) -> Result<Balance, Singular> {
+        let stage = self.stage_of(state)?;
+        Ok(self.balance_of(stage))
+    }
+
+    /// The same in a balance.
+    pub fn reactions_in(&self, balance: &Balance) -> Vec<Reaction> {
+        let Balance { state, held, multipliers, .. } = balance;
+        self.system.reactions(state.time, &state.q, held, multipliers)
+    }
+
+    /// The unknowns of a state with the accelerations that its forces give.
+    fn stage_of(&mut self, state: &State) -> Result<Stage, Singular> {
+        let state = self.unknowns_of(state).into_owned();
+        let mut rates = vec![0.0; self.coordinates()];
+        self.acceleration(&state, &mut rates)?;
+        rates.extend_from_slice(&self.multipliers);
+        Ok(Stage { state, rates })
+    }
+
+    /// The state `state`, to which a step of length `h` has led with the accelerations and multipliers `rates` of the unknowns, moved into balance.
+    ///
+    /// # Errors
+    /// [`Singular`] where the step's matrix has no inverse.
+    pub fn settle(&mut self, state: &State, rates: Vec<f64>, h: f64) -> Result<Balance, Singular> {
+        let n = self.coordinates();
+        let state = self.unknowns_of(state).into_owned();
+        let mut stage = Stage { state, rates };
+        let (d, c) = (FAST / h, (FAST / h).powi(2));
+        for pass in 0..PASSES {
+            self.tangent_at(&stage.state, &stage.rates[n..])?;
+            let factor = self.factorize(c, d, None)?;
+            if pass == 0 {
+                let mut change = self.rate_of_rates(&stage);
+                self.constraint_defects(&stage, 1.0, &mut change[n..]);
+                factor.solve(&mut change);
+                self.from_frames(&mut change);
+                stage.rates[..n].iter_mut().zip(&change).for_each(|(a, w)| *a += w);
+            }
+            let mut change = vec![0.0; self.unknowns()];
+            let (mut x, a) = (stage.state.q.clone(), Acceleration::constant(&stage.rates[..n]));
+            x.extend_from_slice(&stage.rates[n..]);
+            self.residual(&x, Rates { time: stage.state.time, v: &stage.state.v, a }, &mut change);
+            self.constraint_defects(&stage, c.recip(), &mut change[n..]);
+            let Stage { state, rates } = &mut stage;
+            factor.solve(&mut change);
+            self.from_frames(&mut change);
+            for (i, change) in change[..n].iter().enumerate() {
+                state.q[i] += change;
+                state.v[i] += d * change;
+                rates[i] += c * change;
+            }
+            rates[n..].iter_mut().zip(&change[n..]).for_each(|(mu, change)| *mu += change);
         }
-        let reactions = self.held_forces(state)?;
-        let mut velocity = vec![0.0; state.q.len()];
-        self.system.supports().prescribed_velocity(state.time, &state.q, &mut velocity);
-        Ok(reactions.iter().zip(&velocity).map(|(r, v)| r * v).sum())
+        Ok(self.balance_of(stage))
+    }
+
+    /// −f̈ = −(K a + D²f\[v, v\]) of the elastic forces in the supports' frames, and zeros for the multipliers.
+    fn rate_of_rates(&self, Stage { state, rates }: &Stage) -> Vec<f64> {
+        let (n, time) = (self.coordinates(), state.time);
+        let [q, v, a] = self.in_fixed_axes(state, &rates[..n]);
+        let mut sum = vec![0.0; self.unknowns()];
+        self.system.tangent_product(time, &q, &a, &mut sum[..n]);
+        self.system.add_constraint_stiffness_product(&q, &rates[n..], &a, &mut sum[..n]);
+        // K v a little before and a little after.
+        let speed = self.size(&v);
+        if speed > 0.0 {
+            let ahead = DIFFERENCE / speed;
+            let mut product = vec![0.0; n];
+            for step in [ahead, -ahead] {
+                let there: Vec<f64> = q.iter().zip(&v).map(|(q, v)| step.mul_add(*v, *q)).collect();
+                self.system.tangent_product(time, &there, &v, &mut product);
+                sum.iter_mut().zip(&product).for_each(|(sum, kv)| *sum += kv / (2.0 * step));
+            }
+        }
+        sum[..n].iter_mut().for_each(|f| *f = -*f);
+        self.system.supports().to_frames(time, &mut sum[..n]);
+        self.system.polar().forces(&q, &mut sum[..n]);
+        sum
+    }
+
+    /// Writes `factor` times −(B a + Ḃ v), scaled.
+    fn constraint_defects(&self, Stage { state, rates }: &Stage, factor: f64, defects: &mut [f64]) {
+        let [q, v, a] = self.in_fixed_axes(state, &rates[..self.coordinates()]);
+        self.system.constraint_rates(state.time, &q, &a, defects);
+        self.system.add_constraint_curvatures(&q, &v, defects);
+        defects.iter_mut().for_each(|defect| *defect *= factor);
+    }
+
+    fn in_fixed_axes(&self, state: &State, acceleration: &[f64]) -> [Vec<f64>; 3] {
+        let [mut q, mut v, mut a] = [&state.q[..], &state.v, acceleration].map(<[f64]>::to_vec);
+        self.system.carry(state.time, [&mut q, &mut v, &mut a]);
+        [q, v, a]
+    }
+
+    /// All forces in a state in which the equations hold.
+    pub fn balance_of(&self, stage: Stage) -> Balance {
+        let (mut balance, force) = self.forces_of(stage);
+        balance.held = force;
+        let (time, q) = (balance.state.time, &balance.state.q);
+        self.system.add_constraint_forces(time, q, &balance.multipliers, &mut balance.held);
+        self.system.supports().keep_held(time, &mut balance.held);
+        balance
+    }
+
+    /// A state in fixed axes, and M q̈ + f there.
+    fn forces_of(&self, stage: Stage) -> (Balance, Vec<f64>) {
+        let Stage { state, mut rates } = stage;
+        let State { time, work, lost, .. } = state;
+        let angles = state.angles.clone();
+        let multipliers = rates.split_off(self.coordinates());
+        let [q, v, acceleration] = self.in_fixed_axes(&state, &rates);
+        let mut force = vec![0.0; q.len()];
+        self.system.force(time, &q, &mut force);
+        self.system.add_friction(&self.held, &q, &mut force);
+        self.system.add_damping(&q, &v, &mut force);
+        self.mass.multiply_add(1.0, &acceleration, &mut force);
+        self.system.add_turning_force(&q, &v, &acceleration, &mut force);
+        let slips =
+            if self.system.has_friction() { self.system.slips(&self.held, &q) } else { Slips::default() };
+        let state = State { time, q, v, work, lost, slips, angles };
+        (Balance { state, acceleration, held: Vec::new(), multipliers }, force)
+    }
+
+    /// Power \[W\] that moving supports put in, in a stage.
+    ///
+    /// It is R·v with their velocities v, and with those of all else as well, for M q̈ + f vanishes there. It does so only as far as the stages were
+    /// solved. The beam follows its supports, so that the stiff forces, in which that shows, do no work on the latter velocities.
+    pub fn support_power(&self, stage: Stage) -> f64 {
+        let (balance, force) = self.forces_of(stage);
+        force.iter().zip(&balance.state.v).map(|(force, v)| force * v).sum()
     }
 }

@@ -1,0 +1,169 @@
+//! What acts on a beam, by arc length: forces and couples, concentrated and spread, and their sum up to a cut.
+//!
+//! A density W(r, r', r'') acts on a rigid motion δr = δa + δθ J r of the piece of the beam where it is summed by
+//!
+//! ```text
+//! force   −∂W/∂r        moment about the origin   −(r × ∂W/∂r + r' × ∂W/∂r' + r'' × ∂W/∂r'')
+//! ```
+//!
+//! per length. Of what does not change when the beam is turned and moved both vanish in every point: elasticity, its actuation and damping
+//! take no part, without having to be named. What is left balances the section forces at the cut.
+
+use nalgebra::Vector2;
+use std::ops::{AddAssign, Mul};
+
+/// A force \[N\] and its moment about the origin \[N m\], or both per length.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Action {
+    /// The force.
+    pub force: Vector2<f64>,
+    /// The moment about the origin, counter-clockwise, couples included.
+    pub moment: f64,
+}
+
+impl Action {
+    /// A force at a place.
+    pub fn at(place: Vector2<f64>, force: Vector2<f64>) -> Self {
+        Self { force, moment: place.perp(&force) }
+    }
+
+    /// A couple.
+    pub fn couple(moment: f64) -> Self {
+        Self { moment, ..Self::default() }
+    }
+
+    /// What the derivatives `gradient` of a density by the fields of the given `orders` do, which are `fields` in the present state.
+    pub fn of_density<const M: usize>(
+        orders: [usize; M],
+        fields: &[Vector2<f64>; M],
+        gradient: &[Vector2<f64>; M],
+    ) -> Self {
+        let mut sum = Self::default();
+        for ((order, z), g) in orders.into_iter().zip(fields).zip(gradient) {
+            sum.moment -= z.perp(g);
+            if order == 0 {
+                sum.force -= g;
+            }
+        }
+        sum
+    }
+}
+
+impl AddAssign for Action {
+    fn add_assign(&mut self, other: Self) {
+        self.force += other.force;
+        self.moment += other.moment;
+    }
+}
+
+impl Mul<f64> for Action {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        Self { force: self.force * factor, moment: self.moment * factor }
+    }
+}
+
+/// On which side of a point a cut is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Just before it: what acts at the point is beyond the cut.
+    Left,
+    /// Just behind it.
+    Right,
+}
+
+/// What acts on one beam.
+#[derive(Clone, Debug, Default)]
+pub struct Actions {
+    points: Vec<(f64, Action)>,
+    spread: Vec<Spread>,
+}
+
+/// What one density does, from cell to cell in the order of their arc lengths.
+#[derive(Clone, Debug, Default)]
+struct Spread {
+    cells: Vec<Cell>,
+    points: usize,
+    /// Per cell, per point: arc length, weight, action per length.
+    values: Vec<(f64, f64, Action)>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    start: f64,
+    end: f64,
+    /// Of all cells before.
+    before: Action,
+}
+
+/// Distance of two places that are one, in beam lengths.
+const SAME: f64 = 1e-9;
+
+impl Actions {
+    /// A force or a couple at `s`.
+    pub fn add_point(&mut self, s: f64, action: Action) {
+        self.points.push((s, action));
+    }
+
+    /// Actions per length at the points of a quadrature rule, cell after cell: (s, weight, action), `points` of them in a cell.
+    pub fn add_spread(&mut self, points: usize, values: Vec<(f64, f64, Action)>) {
+        let mut before = Action::default();
+        let cells = values.chunks(points.max(1)).map(|cell| {
+            // A rule that is exact for 1 and s tells where its cell begins and ends.
+            let length: f64 = cell.iter().map(|(_, weight, _)| weight).sum();
+            let middle = cell.iter().map(|(s, weight, _)| s * weight).sum::<f64>() / length;
+            let here = Cell { start: middle - 0.5 * length, end: middle + 0.5 * length, before };
+            cell.iter().for_each(|(_, weight, action)| before += *action * *weight);
+            here
+        });
+        let cells = cells.collect();
+        self.spread.push(Spread { cells, points: points.max(1), values });
+    }
+
+    /// Places between the ends 0 and `length` where something acts in a point, rising.
+    pub fn jumps(&self, length: f64) -> Vec<f64> {
+        let inner = SAME * length..(1.0 - SAME) * length;
+        let acting = self.points.iter().filter(|(_, action)| *action != Action::default());
+        let mut places: Vec<f64> = acting.map(|(s, _)| *s).filter(|s| inner.contains(s)).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup_by(|a, b| *a - *b <= SAME * length);
+        places
+    }
+
+    /// The sum of all that acts between the beam's start and a cut on one side of `s`; `length` is that of the beam.
+    pub fn until(&self, s: f64, side: Side, length: f64) -> Action {
+        let mut sum = Action::default();
+        let same = SAME * length;
+        let cut = if side == Side::Left { s - same } else { s + same };
+        self.points.iter().filter(|(at, _)| *at <= cut).for_each(|(_, action)| sum += *action);
+        self.spread.iter().for_each(|spread| sum += spread.until(s));
+        sum
+    }
+}
+
+impl Spread {
+    fn until(&self, s: f64) -> Action {
+        let cell = self.cells.partition_point(|cell| cell.start <= s).saturating_sub(1);
+        let (Some(Cell { start, end, before }), Some(values)) =
+            (self.cells.get(cell), self.values.chunks(self.points).nth(cell))
+        else {
+            return Action::default();
+        };
+        let mut sum = *before;
+        let part = ((s - start) / (end - start)).clamp(0.0, 1.0);
+        if part == 1.0 {
+            values.iter().for_each(|(_, weight, action)| sum += *action * *weight);
+            return sum;
+        }
+        // The rule on the part of the cell before the cut, for the polynomial through the values at the cell's points.
+        for (s, weight, _) in values {
+            let at = start + part * (s - start);
+            for (k, (here, _, action)) in values.iter().enumerate() {
+                let others = values.iter().enumerate().filter(|(j, _)| *j != k);
+                let share: f64 = others.map(|(_, (other, ..))| (at - other) / (here - other)).product();
+                sum += *action * (part * weight * share);
+            }
+        }
+        sum
+    }
+}

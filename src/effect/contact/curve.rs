@@ -1,0 +1,356 @@
+//! The curve of a cell as a polynomial in Bernstein's form, r(ξ) = Σ_j B_j(ξ) P_j with ξ ∈ [0, 1].
+//!
+//! The curve lies within the convex hull of its control points P_j, which tells in one look what is far from an obstacle; and a polynomial has at most as many
+//! roots as its coefficients have changes of sign (Farin, *Curves and Surfaces for CAGD*, 2002, ch. 5), which finds all places where a curve crosses a border.
+//!
+//! Control points are linear in the beam's coordinates. The cable element's cubic is exact; shape functions that are no polynomials are interpolated between
+//! Lobatto points, by as high a degree as they need.
+
+use crate::basis::{Basis, BasisError, Quadrature};
+use nalgebra::{DMatrix, Vector2};
+
+/// Degrees that are tried, in this order.
+const DEGREES: [usize; 3] = [3, 7, 11];
+/// Most control points of a curve.
+pub const MOST: usize = 12;
+/// Most coefficients of the square of a distance.
+const MOST_COEFFICIENTS: usize = 2 * MOST - 1;
+/// What interpolation may leave of a shape function.
+const EXACT: f64 = 1e-9;
+/// Coefficients this small beside the largest numbers that they were made of are zero.
+const ROUND_OFF: f64 = 1e-14;
+/// Length of ξ below which roots are not told apart.
+const APART: f64 = 1e-10;
+
+/// C(n, k).
+fn binomial(n: usize, k: usize) -> f64 {
+    (1..=k.min(n - k)).fold(1.0, |c, i| c * (n + 1 - i) as f64 / i as f64)
+}
+
+/// B_j(ξ) of degree `degree`, into the first places of `values`.
+pub fn bernstein(degree: usize, xi: f64, values: &mut [f64]) {
+    values[0] = 1.0;
+    for d in 1..=degree {
+        values[d] = xi * values[d - 1];
+        for j in (1..d).rev() {
+            values[j] = xi * values[j - 1] + (1.0 - xi) * values[j];
+        }
+        values[0] *= 1.0 - xi;
+    }
+}
+
+/// Control points of a curve.
+#[derive(Clone, Copy, Debug)]
+pub struct Curve {
+    points: [Vector2<f64>; MOST],
+    count: usize,
+}
+
+impl Curve {
+    /// The control points.
+    pub fn points(&self) -> &[Vector2<f64>] {
+        &self.points[..self.count]
+    }
+
+    /// The point with the Bernstein polynomials `values`.
+    pub fn at(&self, values: &[f64]) -> Vector2<f64> {
+        self.points().iter().zip(values).fold(Vector2::zeros(), |sum, (p, b)| sum + p * *b)
+    }
+
+    /// The point half way.
+    pub fn middle(&self) -> Vector2<f64> {
+        self.halves()[1].points[0]
+    }
+
+    /// Both halves, by de Casteljau's algorithm.
+    pub fn halves(&self) -> [Self; 2] {
+        let (mut first, mut second) = (*self, *self);
+        let last = self.count - 1;
+        for d in 1..=last {
+            for j in 0..=last - d {
+                second.points[j] = 0.5 * (second.points[j] + second.points[j + 1]);
+            }
+            first.points[d] = second.points[0];
+        }
+        [first, second]
+    }
+
+    /// Point by point `f` of this curve and others.
+    pub fn combine<const N: usize>(
+        curves: [&Self; N],
+        f: impl Fn([Vector2<f64>; N]) -> Vector2<f64>,
+    ) -> Self {
+        let mut result = *curves[0];
+        for j in 0..result.count {
+            result.points[j] = f(curves.map(|curve| curve.points[j]));
+        }
+        result
+    }
+}
+
+/// A border of the plane that a curve may cross: a line n · r = c, or a circle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Border {
+    /// Normal and distance from the origin along it \[m\].
+    Line(Vector2<f64>, f64),
+    /// Centre and radius \[m\].
+    Circle(Vector2<f64>, f64),
+}
+
+impl Border {
+    /// Adds the parameters ξ in (0, 1) at which `curve` crosses the border, in no order.
+    pub fn crossings(&self, curve: &Curve, roots: &mut Vec<f64>) {
+        let points = curve.points();
+        let mut polynomial = Polynomial { coefficients: [0.0; MOST_COEFFICIENTS], count: points.len() };
+        let mut scale = 0.0_f64;
+        match *self {
+            Self::Line(normal, offset) => {
+                for (b, p) in polynomial.coefficients.iter_mut().zip(points) {
+                    *b = normal.dot(p) - offset;
+                    scale = scale.max(p.x.abs() + p.y.abs() + offset.abs());
+                }
+            }
+            Self::Circle(center, radius) => {
+                let degree = points.len() - 1;
+                polynomial.count = 2 * degree + 1;
+                for (i, p) in points.iter().enumerate() {
+                    for (j, q) in points.iter().enumerate() {
+                        let weight = binomial(degree, i) * binomial(degree, j) / binomial(2 * degree, i + j);
+                        let product = (p - center).dot(&(q - center)) - radius * radius;
+                        polynomial.coefficients[i + j] += weight * product;
+                    }
+                    scale =
+                        scale.max((p - center).norm_squared() + radius * radius + center.norm() * p.norm());
+                }
+            }
+        }
+        polynomial.roots(ROUND_OFF * scale, [0.0, 1.0], roots);
+    }
+}
+
+/// A polynomial in Bernstein's form.
+#[derive(Clone, Copy, Debug)]
+struct Polynomial {
+    coefficients: [f64; MOST_COEFFICIENTS],
+    count: usize,
+}
+
+impl Polynomial {
+    fn halves(&self) -> [Self; 2] {
+        let (mut first, mut second) = (*self, *self);
+        let last = self.count - 1;
+        for d in 1..=last {
+            for j in 0..=last - d {
+                second.coefficients[j] = 0.5 * (second.coefficients[j] + second.coefficients[j + 1]);
+            }
+            first.coefficients[d] = second.coefficients[0];
+        }
+        [first, second]
+    }
+
+    fn at(&self, x: f64) -> f64 {
+        let mut b = self.coefficients;
+        for d in (1..self.count).rev() {
+            for j in 0..d {
+                b[j] += x * (b[j + 1] - b[j]);
+            }
+        }
+        b[0]
+    }
+
+    /// Adds the places in `[from, to]`, which [0, 1] stands for, where the sign changes.
+    fn roots(&self, zero: f64, [from, to]: [f64; 2], roots: &mut Vec<f64>) {
+        let coefficients = &self.coefficients[..self.count];
+        let signs = coefficients.iter().filter(|b| b.abs() > zero).map(|b| *b > 0.0);
+        let changes = signs.clone().zip(signs.skip(1)).filter(|(a, b)| a != b).count();
+        if changes == 0 || to - from < APART {
+            return;
+        }
+        let ends = [coefficients[0], coefficients[self.count - 1]];
+        if changes == 1 && ends.iter().all(|end| end.abs() > zero) {
+            roots.push(from + (to - from) * self.root(ends));
+            return;
+        }
+        let middle = 0.5 * (from + to);
+        let [first, second] = self.halves();
+        first.roots(zero, [from, middle], roots);
+        // A root at the very middle belongs to neither half.
+        let next = second.coefficients[0];
+        if next.abs() <= zero && self.at(0.5 - 0.5 * APART) * self.at(0.5 + 0.5 * APART) < 0.0 {
+            roots.push(middle);
+        }
+        second.roots(zero, [middle, to], roots);
+    }
+
+    /// The only root, by false position that halves the value at an end that stays (the Illinois rule).
+    fn root(&self, [mut low, mut high]: [f64; 2]) -> f64 {
+        let (mut from, mut to, mut side) = (0.0, 1.0, 0_i8);
+        let mut x = 0.0;
+        for _ in 0..60 {
+            let next = from - low * (to - from) / (high - low);
+            if (next - x).abs() < 1e-16 {
+                return next;
+            }
+            x = next;
+            let value = self.at(x);
+            if value == 0.0 {
+                return x;
+            }
+            if (value > 0.0) == (high > 0.0) {
+                (to, high) = (x, value);
+                low *= if side == 1 { 0.5 } else { 1.0 };
+                side = 1;
+            } else {
+                (from, low) = (x, value);
+                high *= if side == -1 { 0.5 } else { 1.0 };
+                side = -1;
+            }
+        }
+        x
+    }
+}
+
+/// A cell of a beam.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    /// The first of its coordinates in the system.
+    first: usize,
+    /// Number of its control rows.
+    block: usize,
+    /// Arc length at its start \[m\].
+    start: f64,
+    /// Its length \[m\].
+    length: f64,
+}
+
+/// The cells of a beam as polynomials: rows that make control points of coordinates.
+#[derive(Clone, Debug)]
+pub struct Cells {
+    cells: Vec<Cell>,
+    width: usize,
+    degree: usize,
+    rows: Vec<f64>,
+}
+
+impl Cells {
+    /// `offset` is the beam's first coefficient in the system.
+    ///
+    /// # Errors
+    /// Where the shape functions cannot be tabulated.
+    pub fn new(basis: &Basis, offset: usize) -> Result<Self, BasisError> {
+        let width = basis.width();
+        let probe = basis.table(Quadrature::Gauss(8), &[0])?;
+        let (places, _) = Quadrature::Gauss(8).rule()?;
+        let mut last = None;
+        for degree in DEGREES {
+            let rule = Quadrature::Lobatto(degree + 1);
+            let (xi, _) = rule.rule()?;
+            let table = basis.table(rule, &[0])?;
+            let mut values = DMatrix::zeros(degree + 1, degree + 1);
+            let mut row = [0.0; MOST];
+            for (i, xi) in xi.iter().enumerate() {
+                bernstein(degree, *xi, &mut row);
+                (0..=degree).for_each(|j| values[(i, j)] = row[j]);
+            }
+            let inverse = values.lu();
+            let mut rows = Vec::with_capacity(table.rows.len());
+            for samples in table.rows.chunks_exact(((degree + 1) * width).max(1)) {
+                let samples = DMatrix::from_row_slice(degree + 1, width, samples);
+                let control = inverse.solve(&samples).unwrap_or(samples);
+                rows.extend(control.transpose().iter());
+            }
+            let mut start = 0.0;
+            let cells = table.cells.iter().map(|cell| {
+                let (weights, _) = table.block(*cell);
+                let first = 2 * (offset + cell.first as usize);
+                let length = weights.iter().sum();
+                let cell = Cell { first, block: cell.block as usize, start, length };
+                start += length;
+                cell
+            });
+            let cells = Self { cells: cells.collect(), width, degree, rows };
+            // The same at other points.
+            let mut missed = 0.0_f64;
+            let mut found = vec![0.0; width];
+            for (number, entry) in probe.cells.iter().enumerate() {
+                let (_, exact) = probe.block(*entry);
+                for (xi, exact) in places.iter().zip(exact.chunks_exact(width)) {
+                    bernstein(degree, *xi, &mut row);
+                    cells.row(number, &row, &mut found);
+                    let length = cells.length(number);
+                    let units = [1.0, length].into_iter().cycle();
+                    let apart = found.iter().zip(exact).zip(units).map(|((a, b), unit)| (a - b).abs() / unit);
+                    missed = apart.fold(missed, f64::max);
+                }
+            }
+            last = Some(cells);
+            if missed <= EXACT {
+                break;
+            }
+        }
+        last.ok_or(BasisError::Order { order: 0 })
+    }
+
+    /// Number of cells.
+    pub fn count(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Degree of the polynomials.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Coefficients that a row multiplies.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Length of a cell \[m\].
+    pub fn length(&self, cell: usize) -> f64 {
+        self.cells[cell].length
+    }
+
+    /// Arc length at ξ of a cell \[m\].
+    pub fn arc_length(&self, cell: usize, xi: f64) -> f64 {
+        let Cell { start, length, .. } = self.cells[cell];
+        start + xi * length
+    }
+
+    /// The coordinates of a cell.
+    pub fn coordinates(&self, cell: usize) -> std::ops::Range<usize> {
+        let first = self.cells[cell].first;
+        first..first + 2 * self.width
+    }
+
+    /// The rows of the control points of a cell.
+    pub fn control(&self, cell: usize) -> impl Iterator<Item = &[f64]> {
+        let size = (self.degree + 1) * self.width;
+        let start = self.cells[cell].block * size;
+        self.rows[start..start + size].chunks_exact(self.width)
+    }
+
+    /// A cell in the state `q`.
+    pub fn curve(&self, cell: usize, q: &[f64]) -> Curve {
+        let q = q[self.coordinates(cell)].as_chunks::<2>().0;
+        let mut curve = Curve { points: [Vector2::zeros(); MOST], count: self.degree + 1 };
+        for (point, row) in curve.points.iter_mut().zip(self.control(cell)) {
+            let sum = row.iter().zip(q).fold([0.0; 2], |s, (n, q)| [s[0] + n * q[0], s[1] + n * q[1]]);
+            *point = Vector2::from(sum);
+        }
+        curve
+    }
+
+    /// The row of shape functions where the Bernstein polynomials are `values`.
+    pub fn row(&self, cell: usize, values: &[f64], row: &mut [f64]) {
+        row.fill(0.0);
+        for (control, value) in self.control(cell).zip(values) {
+            row.iter_mut().zip(control).for_each(|(row, n)| *row += value * n);
+        }
+    }
+
+    /// Memory held on the heap \[bytes\].
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.cells.as_slice()) + size_of_val(self.rows.as_slice())
+    }
+}

@@ -1,0 +1,317 @@
+//! Dry friction of a contact: elastic tangential springs with Coulomb's limit.
+//!
+//! Every point of the beam that touches is held to the obstacle by a spring of its own along the surface. With the elastic slip eₙ that it had in the last accepted
+//! state and the way Δσ that it has gone along the surface since,
+//!
+//! ```text
+//! trial     e' = eₙ + Δσ
+//! sticks    e = e'                        where k_t |e'| ≤ μ p
+//! slides    e = sign(e') μ p / k_t        else
+//! traction  t = −k_t e                    per length, stored ½ k_t e², lost the rest of its work
+//! ```
+//!
+//! (the return mapping of elastoplasticity; Wriggers, *Computational Contact Mechanics*, 2006, ch. 5 and 10). σ counts along the surface of the obstacle at the beam's distance, so
+//! that the spring turns with the surface's normal. A point that has come to touch since the last state counts the part of its way that it touched.
+//!
+//! The tangent is that of the mapping: with sliding it is not symmetric. Newton's method leaves a concave force behind if it starts far in the sliding range, so that
+//! points that have only come to touch take the secant μ p/|e'| instead.
+
+use super::Pressing;
+use super::curve::{Curve, MOST};
+use crate::effect::integral::{add_tiles, multiply_rows};
+use crate::effect::{Action, Actions, Effect, Workspace};
+use crate::linear::Matrix;
+use nalgebra::{Matrix2, Vector2};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Part of the limit from which on a point counts as sliding: one that slid in the last state goes on, as the tangent there has to know.
+const AT_LIMIT: f64 = 1e-9;
+
+/// Parts of a cell in each of which friction is summed and remembered by two points. What is remembered moves with the edges of a contact only in the parts
+/// where these are, in which little is borne.
+const PARTS: f64 = 4.0;
+/// The rule of Gauss with two points on (0, 1).
+const RULE: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
+
+/// Dry friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// μ.
+    pub coefficient: f64,
+    /// k_t \[N/m²\]: traction per length and elastic slip.
+    pub stiffness: f64,
+}
+
+/// A piece of a cell that touches, with the elastic slip at the points of its rule \[m\].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Piece {
+    cell: usize,
+    from: f64,
+    to: f64,
+    slip: Vec<f64>,
+}
+
+/// What the friction of all contacts of a system remembers of a state.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Slips {
+    /// Energy that the springs hold \[J\].
+    pub energy: f64,
+    /// Per contact with friction its pieces, in order.
+    pub contacts: Vec<Vec<Piece>>,
+}
+
+/// The last accepted state, from which slips are counted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Held {
+    /// Its coordinates.
+    pub q: Vec<f64>,
+    /// Its slips.
+    pub slips: Slips,
+}
+
+/// A point that touches.
+struct Touching {
+    /// Weight \[m\], with the Bernstein polynomials of the point.
+    weight: f64,
+    values: [f64; MOST],
+    /// e after the mapping.
+    slip: f64,
+    /// ∂σ/∂r.
+    along: Vector2<f64>,
+    /// The largest e.
+    limit: f64,
+    /// Whether it slides.
+    slides: bool,
+    /// k_t ∂(e ∂σ/∂r)/∂r.
+    stiffness: Matrix2<f64>,
+}
+
+/// The friction of a contact.
+#[derive(Clone, Debug)]
+pub struct Rubbing {
+    contact: Arc<Pressing>,
+    friction: Friction,
+    /// Its number among the contacts with friction.
+    number: usize,
+}
+
+impl Rubbing {
+    /// The friction of `contact`, number `number` of those with friction.
+    pub fn new(contact: Arc<Pressing>, friction: Friction, number: usize) -> Self {
+        Self { contact, friction, number }
+    }
+
+    /// Index of the beam.
+    pub fn beam(&self) -> usize {
+        self.contact.beam()
+    }
+
+    /// Points; its tables are those of its contact.
+    pub fn size(&self) -> (usize, usize) {
+        (self.contact.cells.count() * PARTS as usize * RULE.len(), 0)
+    }
+
+    /// Calls `visit` with the points of the pieces that touch in the state `q`: cell, piece, and points in the order of the rule.
+    fn for_touching(&self, held: &Held, q: &[f64], mut visit: impl FnMut(usize, [f64; 2], &Touching)) {
+        let contact = &*self.contact;
+        let empty = Vec::new();
+        let pieces = held.slips.contacts.get(self.number).unwrap_or(&empty);
+        for (cell, curve) in contact.near(q) {
+            let before = contact.cells.curve(cell, &held.q);
+            let first = pieces.partition_point(|piece| piece.cell < cell);
+            let known = &pieces[first..first + pieces[first..].partition_point(|piece| piece.cell == cell)];
+            self.for_pieces(&curve, |piece| {
+                for spot in contact.spots_of(&RULE, cell, &curve, piece) {
+                    let slip = known.iter().find_map(|piece| slip_at(piece, spot.place));
+                    let touching = self.map(spot.weight, spot.values, [&before, &curve], slip);
+                    visit(cell, piece, &touching);
+                }
+            });
+        }
+    }
+
+    /// Calls `visit` with the pieces of a cell that touch, divided at places that do not move with the edges of the contact.
+    fn for_pieces(&self, curve: &Curve, mut visit: impl FnMut([f64; 2])) {
+        self.contact.for_pieces(curve, |mut from, to| {
+            while from < to {
+                let next = ((from * PARTS).floor() + 1.0) / PARTS;
+                let end = next.min(to);
+                visit([from, end]);
+                from = end;
+            }
+        });
+    }
+
+    /// The return mapping at a point.
+    fn map(
+        &self,
+        weight: f64,
+        values: [f64; MOST],
+        [before, now]: [&Curve; 2],
+        slip: Option<f64>,
+    ) -> Touching {
+        let penalty = &self.contact.penalty;
+        let Friction { coefficient, stiffness } = self.friction;
+        let (start, r) = (before.at(&values), now.at(&values));
+        let (distance, normal, _) = penalty.obstacle.distance(&r);
+        let depth = penalty.gap - distance;
+        let (way, along, bend) = penalty.obstacle.travel(penalty.gap, &start, &r);
+        // Of a point that did not touch before: the part of the way on which it does, and how that part grows.
+        let away = penalty.gap_at(&start).max(0.0);
+        let new = slip.is_none();
+        let (share, growth) = match depth + away {
+            sum if new && sum > 0.0 => (depth / sum, normal * (-away / (sum * sum))),
+            _ => (1.0, Vector2::zeros()),
+        };
+        let trial = slip.unwrap_or(0.0) + share * way;
+        let per_depth = coefficient * penalty.stiffness / stiffness;
+        let limit = per_depth * depth;
+        let slides = trial.abs() > limit * (1.0 - AT_LIMIT);
+        let (slip, change) = match slides {
+            false => (trial, along * share + growth * way),
+            true if new => (limit * trial.signum(), along * (limit / trial.abs().max(f64::MIN_POSITIVE))),
+            true => (limit * trial.signum(), normal * (-per_depth * trial.signum())),
+        };
+        let stiffness = (along * change.transpose() + bend * slip) * stiffness;
+        Touching { weight, values, slip, along, limit, slides, stiffness }
+    }
+
+    /// `f += ` the forces ∂U/∂q that the springs would have in the state `q`, where `held` was the last.
+    pub fn add_force(&self, held: &Held, q: &[f64], f: &mut [f64]) {
+        let mut sum = ControlForces::default();
+        self.for_touching(held, q, |cell, _, point| {
+            let force = point.along * (self.friction.stiffness * point.slip * point.weight);
+            sum.add(&self.contact, cell, force, &point.values, f);
+        });
+        sum.finish(&self.contact, f);
+    }
+
+    /// The same, and `k += ` its derivative.
+    pub fn add_force_and_tangent(
+        &self,
+        held: &Held,
+        q: &[f64],
+        f: &mut [f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
+        self.add_force(held, q, f);
+        let cells = &self.contact.cells;
+        let width = cells.width();
+        let products = &mut workspace.products;
+        products.resize(4 * width, 0.0);
+        let mut row = vec![0.0; width];
+        self.for_touching(held, q, |cell, _, point| {
+            cells.row(cell, &point.values, &mut row);
+            multiply_rows::<1>(point.weight, &[[point.stiffness]], &row, width, &mut products[..4 * width]);
+            add_tiles::<1>(&row, &products[..4 * width], width, cells.coordinates(cell).start / 4, k);
+        });
+    }
+
+    /// The pieces that touch in the state `q` with their slips, and the energy of their springs.
+    pub fn slips(&self, held: &Held, q: &[f64]) -> (Vec<Piece>, f64) {
+        let (mut pieces, mut energy) = (Vec::<Piece>::new(), 0.0);
+        self.for_touching(held, q, |cell, [from, to], point| {
+            energy += 0.5 * point.weight * self.friction.stiffness * point.slip * point.slip;
+            match pieces.last_mut() {
+                Some(piece) if (piece.cell, piece.from, piece.to) == (cell, from, to) => {
+                    piece.slip.push(point.slip)
+                }
+                _ => pieces.push(Piece { cell, from, to, slip: vec![point.slip] }),
+            }
+        });
+        (pieces, energy)
+    }
+
+    /// `f += ` the forces of springs whose slips are known in the state `q`.
+    pub fn add_held_force(&self, slips: &Slips, q: &[f64], f: &mut [f64]) {
+        let contact = &*self.contact;
+        // A saved state may be that of another scene.
+        let pieces = slips.contacts.get(self.number).into_iter().flatten();
+        for piece in pieces.filter(|piece| piece.cell < contact.cells.count()) {
+            let curve = contact.cells.curve(piece.cell, q);
+            let mut sum = ControlForces::default();
+            let spots = contact.spots_of(&RULE, piece.cell, &curve, [piece.from, piece.to]);
+            for (spot, slip) in spots.zip(&piece.slip) {
+                let (_, along, _) = contact.penalty.obstacle.travel(contact.penalty.gap, &spot.r, &spot.r);
+                let force = along * (self.friction.stiffness * slip * spot.weight);
+                sum.add(contact, piece.cell, force, &spot.values, f);
+            }
+            sum.finish(contact, f);
+        }
+    }
+
+    /// What these springs do to their beam in the state `q`.
+    pub fn add_held_actions(&self, slips: &Slips, q: &[f64], sum: &mut Actions) {
+        let contact = &*self.contact;
+        let pieces = slips.contacts.get(self.number).into_iter().flatten();
+        let mut values = Vec::new();
+        for piece in pieces.filter(|piece| piece.cell < contact.cells.count()) {
+            let curve = contact.cells.curve(piece.cell, q);
+            let spots = contact.spots_of(&RULE, piece.cell, &curve, [piece.from, piece.to]);
+            for (spot, slip) in spots.zip(&piece.slip) {
+                let (_, along, _) = contact.penalty.obstacle.travel(contact.penalty.gap, &spot.r, &spot.r);
+                let s = contact.cells.arc_length(piece.cell, spot.place);
+                values.push((s, spot.weight, Action::at(spot.r, along * (self.friction.stiffness * slip))));
+            }
+        }
+        sum.add_spread(RULE.len(), values);
+    }
+
+    /// Whether points slide that can bear more than half of what all can, and then whether against friction; `v` are the velocities.
+    pub fn sliding(&self, held: &Held, q: &[f64], v: &[f64]) -> Option<bool> {
+        let (mut power, mut balance) = (0.0, 0.0);
+        self.for_touching(held, q, |cell, _, point| {
+            if point.slides {
+                let speed = point.along.dot(&self.contact.cells.curve(cell, v).at(&point.values));
+                power += point.slip * point.weight * speed;
+            }
+            balance += point.weight * if point.slides { point.limit } else { -point.limit };
+        });
+        (balance > 0.0).then_some(power >= 0.0)
+    }
+}
+
+/// Forces on the control points of one cell after another.
+#[derive(Default)]
+struct ControlForces {
+    cell: Option<usize>,
+    forces: [Vector2<f64>; MOST],
+}
+
+impl ControlForces {
+    fn add(
+        &mut self,
+        contact: &Pressing,
+        cell: usize,
+        force: Vector2<f64>,
+        values: &[f64; MOST],
+        f: &mut [f64],
+    ) {
+        if self.cell != Some(cell) {
+            self.finish(contact, f);
+            self.cell = Some(cell);
+        }
+        self.forces.iter_mut().zip(values).for_each(|(sum, value)| *sum += force * *value);
+    }
+
+    fn finish(&mut self, contact: &Pressing, f: &mut [f64]) {
+        if let Some(cell) = self.cell.take() {
+            contact.add_control_forces(cell, &self.forces, f);
+            self.forces = [Vector2::zeros(); MOST];
+        }
+    }
+}
+
+/// The elastic slip at ξ of a cell, from that at the points of a piece that has it.
+fn slip_at(piece: &Piece, place: f64) -> Option<f64> {
+    if !(piece.from..=piece.to).contains(&place) {
+        return None;
+    }
+    let [(first, _), (second, _)] = RULE;
+    let [start, end] = *piece.slip.first_chunk()?;
+    let share = ((place - piece.from) / (piece.to - piece.from) - first) / (second - first);
+    // No point slips more than its neighbours.
+    Some((start + share * (end - start)).max(start.min(end)).min(start.max(end)))
+}

@@ -1,0 +1,236 @@
+//! The penalty of a contact, integrated over the pieces of a beam that touch.
+
+use super::Penalty;
+use super::curve::{self, Border, Cells, Curve, MOST};
+use crate::basis::{Basis, BasisError, Quadrature};
+use crate::effect::integral::{add_tiles, multiply_rows};
+use crate::effect::{Action, Actions, Density, Earlier, Effect, Kind, Workspace};
+use crate::linear::Matrix;
+use nalgebra::Vector2;
+
+/// Points of the rule on a piece, beyond the polynomial's degree: with a straight border forces are then exact.
+const MORE_POINTS: usize = 2;
+/// Pieces shorter than this part of a cell are none.
+const SHORTEST: f64 = 1e-12;
+
+/// A point at which a contact is summed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    /// Where it is on its cell, from 0 to 1.
+    pub place: f64,
+    /// Its weight \[m\].
+    pub weight: f64,
+    /// Its Bernstein polynomials.
+    pub values: [f64; MOST],
+    /// Where it is \[m\].
+    pub r: Vector2<f64>,
+}
+
+/// A contact of one beam with one obstacle, as an effect.
+#[derive(Clone, Debug)]
+pub struct Pressing {
+    pub(super) penalty: Penalty,
+    pub(super) cells: Cells,
+    beam: usize,
+    borders: Vec<Border>,
+    /// Places on (0, 1) and weights.
+    rule: Vec<(f64, f64)>,
+}
+
+impl Pressing {
+    /// `offset` is the first coefficient of beam number `beam` in the system.
+    ///
+    /// # Errors
+    /// Where the shape functions cannot be tabulated.
+    pub fn new(penalty: Penalty, beam: usize, basis: &Basis, offset: usize) -> Result<Self, BasisError> {
+        let cells = Cells::new(basis, offset)?;
+        let (places, weights) = Quadrature::Gauss(cells.degree() + MORE_POINTS).rule()?;
+        let rule = places.into_iter().zip(weights).collect();
+        Ok(Self { borders: penalty.obstacle.borders(penalty.gap), penalty, cells, beam, rule })
+    }
+
+    /// The cells that may touch in the state `q`.
+    pub(super) fn near<'q>(&'q self, q: &'q [f64]) -> impl Iterator<Item = (usize, Curve)> + 'q {
+        let cells = (0..self.cells.count()).map(|cell| (cell, self.cells.curve(cell, q)));
+        cells.filter(|(_, curve)| self.penalty.obstacle.clearance(curve.points().iter()) < self.penalty.gap)
+    }
+
+    /// Calls `visit` with the pieces of a cell that touch, in order: intervals of ξ in which the distance is smooth.
+    pub(super) fn for_pieces(&self, curve: &Curve, mut visit: impl FnMut(f64, f64)) {
+        let mut roots = Vec::new();
+        self.borders.iter().for_each(|border| border.crossings(curve, &mut roots));
+        roots.sort_by(f64::total_cmp);
+        let mut from = 0.0;
+        let mut values = [0.0; MOST];
+        for to in roots.into_iter().chain([1.0]) {
+            if to - from < SHORTEST {
+                continue;
+            }
+            curve::bernstein(self.cells.degree(), 0.5 * (from + to), &mut values);
+            if self.penalty.gap_at(&curve.at(&values)) < 0.0 {
+                visit(from, to);
+            }
+            from = to;
+        }
+    }
+
+    /// Calls `visit` with the points of a cell at which the contact is summed.
+    pub(super) fn for_spots(&self, cell: usize, curve: &Curve, mut visit: impl FnMut(&Spot)) {
+        self.for_pieces(curve, |from, to| {
+            self.spots_of(&self.rule, cell, curve, [from, to]).for_each(|spot| visit(&spot));
+        });
+    }
+
+    /// The points of a rule on a piece of a cell.
+    pub(super) fn spots_of(
+        &self,
+        rule: &[(f64, f64)],
+        cell: usize,
+        curve: &Curve,
+        piece: [f64; 2],
+    ) -> impl Iterator<Item = Spot> {
+        let [from, to] = piece;
+        let length = (to - from) * self.cells.length(cell);
+        rule.iter().map(move |(place, weight)| {
+            let (mut values, place) = ([0.0; MOST], from + (to - from) * place);
+            curve::bernstein(self.cells.degree(), place, &mut values);
+            Spot { place, weight: length * weight, values, r: curve.at(&values) }
+        })
+    }
+
+    /// Whether anything touches in the state `q`.
+    pub fn touches(&self, q: &[f64]) -> bool {
+        self.intervals(q) > 0
+    }
+
+    /// Number of separate intervals of the beam that touch in the state `q`.
+    pub fn intervals(&self, q: &[f64]) -> usize {
+        let (mut count, mut last) = (0, f64::NEG_INFINITY);
+        for (cell, curve) in self.near(q) {
+            self.for_pieces(&curve, |from, to| {
+                let start = cell as f64 + from;
+                count += usize::from(start - last > SHORTEST * self.cells.count() as f64);
+                last = cell as f64 + to;
+            });
+        }
+        count
+    }
+
+    /// How deep the deepest of the points is at which the contact is summed in the state `q` \[m\].
+    pub fn depth(&self, q: &[f64]) -> f64 {
+        let mut depth = 0.0_f64;
+        for (cell, curve) in self.near(q) {
+            self.for_spots(cell, &curve, |spot| depth = depth.max(-self.penalty.gap_at(&spot.r)));
+        }
+        depth
+    }
+
+    /// `f += Σ_j C_j F_j` with forces on the control points of a cell.
+    pub(super) fn add_control_forces(&self, cell: usize, forces: &[Vector2<f64>; MOST], f: &mut [f64]) {
+        let f = f[self.cells.coordinates(cell)].as_chunks_mut::<2>().0;
+        for (row, force) in self.cells.control(cell).zip(forces) {
+            for (n, f) in row.iter().zip(&mut *f) {
+                *f = [f[0] + n * force.x, f[1] + n * force.y];
+            }
+        }
+    }
+}
+
+impl Effect for Pressing {
+    fn kind(&self) -> Kind {
+        Kind::Contact
+    }
+
+    fn beam(&self) -> usize {
+        self.beam
+    }
+
+    fn is_symmetric(&self) -> bool {
+        true
+    }
+
+    fn is_constant(&self) -> bool {
+        false
+    }
+
+    fn is_conservative(&self) -> bool {
+        true
+    }
+
+    fn energy(&self, q: &[f64]) -> f64 {
+        let mut energy = 0.0;
+        for (cell, curve) in self.near(q) {
+            self.for_spots(cell, &curve, |spot| energy += spot.weight * self.penalty.energy(0, &[spot.r]));
+        }
+        energy
+    }
+
+    fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+        for (cell, curve) in self.near(q) {
+            let mut forces = [Vector2::zeros(); MOST];
+            self.for_spots(cell, &curve, |spot| {
+                let [force] = self.penalty.gradient(0, &[spot.r]);
+                let force = force * (factor * spot.weight);
+                forces.iter_mut().zip(spot.values).for_each(|(f, value)| *f += force * value);
+            });
+            self.add_control_forces(cell, &forces, f);
+        }
+    }
+
+    fn add_force_and_tangent(
+        &self,
+        factor: f64,
+        q: &[f64],
+        _: Option<Earlier<'_>>,
+        f: &mut [f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
+        self.add_force(factor, q, f);
+        let width = self.cells.width();
+        let products = &mut workspace.products;
+        products.resize(4 * width, 0.0);
+        let mut row = vec![0.0; width];
+        for (cell, curve) in self.near(q) {
+            let first = self.cells.coordinates(cell).start / 4;
+            self.for_spots(cell, &curve, |spot| {
+                let z = [spot.r];
+                let (_, hessian) = self.penalty.gradient_and_hessian(0, &z, &z, &z);
+                self.cells.row(cell, &spot.values, &mut row);
+                multiply_rows::<1>(factor * spot.weight, &hessian, &row, width, &mut products[..4 * width]);
+                add_tiles::<1>(&row, &products[..4 * width], width, first, k);
+            });
+        }
+    }
+
+    fn add_tangent_product(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
+        for (cell, curve) in self.near(q) {
+            let change = self.cells.curve(cell, v);
+            let mut forces = [Vector2::zeros(); MOST];
+            self.for_spots(cell, &curve, |spot| {
+                let z = [spot.r];
+                let (_, [[hessian]]) = self.penalty.gradient_and_hessian(0, &z, &z, &z);
+                let force = hessian * change.at(&spot.values) * (factor * spot.weight);
+                forces.iter_mut().zip(spot.values).for_each(|(f, value)| *f += force * value);
+            });
+            self.add_control_forces(cell, &forces, f);
+        }
+    }
+
+    fn add_actions(&self, factor: f64, q: &[f64], _: &[f64], sum: &mut Actions) {
+        let mut values = Vec::new();
+        for (cell, curve) in self.near(q) {
+            self.for_spots(cell, &curve, |spot| {
+                let [force] = self.penalty.gradient(0, &[spot.r]);
+                let s = self.cells.arc_length(cell, spot.place);
+                values.push((s, spot.weight, Action::at(spot.r, force * factor)));
+            });
+        }
+        sum.add_spread(self.rule.len(), values);
+    }
+
+    fn size(&self) -> (usize, usize) {
+        let data = size_of_val(self.borders.as_slice()) + size_of_val(self.rule.as_slice());
+        (self.cells.count() * self.rule.len(), self.cells.bytes() + data)
+    }
+}

@@ -1,0 +1,132 @@
+//! What a beam passes on its way from one state to another.
+//!
+//! Between two states coordinates are taken to move along a cubic of a parameter θ ∈ [0, 1]. A cell then sweeps a patch r(ξ, θ), a polynomial in both, which lies in the
+//! convex hull of its control points. Patches that this shows to be clear of the obstacle are done with; others are divided, in θ or in ξ, and the
+//! earlier half is looked at first. So the first θ is found at which any point of the curve is deeper than a given level, however thin the
+//! obstacle and however long the way.
+
+use super::Pressing;
+use super::curve::Curve;
+
+/// Control states of a cubic: θ = 0, two between, θ = 1.
+pub type Way<'q> = [&'q [f64]; 4];
+
+/// Most patches that are looked at; what is not clear by then counts as met.
+const PATCHES: usize = 20_000;
+/// Part of the way that is not divided further.
+const SHORTEST: f64 = 1e-9;
+
+/// The part of a patch over `[from, to]` of the way.
+struct Patch {
+    rows: [Curve; 4],
+    from: f64,
+    to: f64,
+}
+
+impl Patch {
+    /// Both halves of the way.
+    fn halves(&self) -> [Self; 2] {
+        let [a, b, c, d] = &self.rows;
+        let half = |a: &Curve, b: &Curve| Curve::combine([a, b], |[a, b]| 0.5 * (a + b));
+        let (ab, bc, cd) = (half(a, b), half(b, c), half(c, d));
+        let (abc, bcd) = (half(&ab, &bc), half(&bc, &cd));
+        let middle = half(&abc, &bcd);
+        let time = 0.5 * (self.from + self.to);
+        [
+            Self { rows: [*a, ab, abc, middle], from: self.from, to: time },
+            Self { rows: [middle, bcd, cd, *d], from: time, to: self.to },
+        ]
+    }
+
+    /// Both halves of the cell.
+    fn parts(&self) -> [Self; 2] {
+        let halves = self.rows.each_ref().map(Curve::halves);
+        [0, 1].map(|i| Self { rows: halves.each_ref().map(|half| half[i]), from: self.from, to: self.to })
+    }
+
+    /// How far its control points reach along the way, and along the cell.
+    fn extents(&self) -> (f64, f64) {
+        let apart = |a: &Curve, b: &Curve| {
+            let pairs = a.points().iter().zip(b.points());
+            pairs.fold(0.0_f64, |m, (a, b)| m.max((a - b).norm()))
+        };
+        let length = |curve: &Curve| curve.points().windows(2).map(|p| (p[1] - p[0]).norm()).sum::<f64>();
+        (
+            self.rows.windows(2).map(|pair| apart(&pair[0], &pair[1])).sum(),
+            self.rows.iter().map(length).fold(0.0, f64::max),
+        )
+    }
+}
+
+impl Pressing {
+    /// The first θ at which a point of the beam is deeper than `level` \[m\] on its way, if there is one. Depths are found to `fine` \[m\].
+    pub fn first_deeper(&self, way: Way<'_>, level: f64, fine: f64) -> Option<f64> {
+        let mut first = f64::INFINITY;
+        let (mut patches, mut left) = (0, Vec::new());
+        for cell in 0..self.cells.count() {
+            let rows = way.map(|q| self.cells.curve(cell, q));
+            left.push(Patch { rows, from: 0.0, to: 1.0 });
+            while let Some(patch) = left.pop() {
+                if patch.from >= first {
+                    continue;
+                }
+                patches += 1;
+                let points = patch.rows.iter().flat_map(|curve| curve.points());
+                let clear = self.penalty.obstacle.clearance(points) - self.penalty.gap + level;
+                if clear > 0.0 {
+                    continue;
+                }
+                let here = patch.rows[0].middle();
+                let gap = self.penalty.gap_at(&here) + level;
+                if gap < 0.0 {
+                    first = patch.from;
+                    continue;
+                }
+                if patches > PATCHES {
+                    first = patch.from;
+                } else if gap - clear > fine && patch.to - patch.from > SHORTEST {
+                    let (along_way, along_cell) = patch.extents();
+                    let [early, late] = if along_way > along_cell { patch.halves() } else { patch.parts() };
+                    left.extend([late, early]);
+                }
+            }
+        }
+        first.is_finite().then_some(first)
+    }
+
+    /// The first θ at which the beam touches by more than round-off, if it does.
+    pub fn first_touch(&self, way: Way<'_>) -> Option<f64> {
+        let shortest =
+            (0..self.cells.count()).map(|cell| self.cells.length(cell)).fold(f64::INFINITY, f64::min);
+        self.first_deeper(way, GRAZE * shortest, GRAZE * shortest)
+    }
+
+    /// The first θ at which the beam is deeper than before by so much of the obstacle's thickness that the force on the way is not seen; and, unless it
+    /// `may_cross`, at which it might leave the obstacle on the other side.
+    pub fn conflict(&self, way: Way<'_>, may_cross: bool) -> Option<f64> {
+        let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
+        if deepest.is_infinite() {
+            return None;
+        }
+        // Most states are far away or stay where they are.
+        self.first_deeper(way, DEEPER * deepest, FINE * deepest)?;
+        let largest = if may_cross { f64::INFINITY } else { MIDDLE * deepest };
+        let level = (self.depth(way[0]) + DEEPER * deepest).min(largest);
+        self.first_deeper(way, level, FINE * deepest)
+    }
+
+    /// Whether the beam might leave the obstacle on the other side.
+    pub fn crosses(&self, way: Way<'_>) -> bool {
+        let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
+        deepest.is_finite() && self.first_deeper(way, MIDDLE * deepest, FINE * deepest).is_some()
+    }
+}
+
+/// Part of a cell's length to which it is found whether the beam touches on the way.
+const GRAZE: f64 = 1e-6;
+/// By which part of half an obstacle's thickness a step may carry a beam deeper into it.
+const DEEPER: f64 = 0.25;
+/// Part of half an obstacle's thickness at which the beam counts as crossing it.
+const MIDDLE: f64 = 0.95;
+/// Part of half an obstacle's thickness to which the depth on the way is found.
+const FINE: f64 = 1e-2;

@@ -1,0 +1,131 @@
+//! How many directions a tangent is negative in, among the motions that constraint rows allow.
+//!
+//! On the motions that m independent rows B allow, K has as many negative eigenvalues as the bordered matrix has beyond m (Sylvester's law of inertia;
+//! Gould, *Math. Programming* 32, 1985, 90–99). An LDLᵀ without pivoting tells them by the signs of its pivots,
+//!
+//! ```text
+//! [ K + BᵀWB  Bᵀ ]
+//! [ B         0  ]
+//! ```
+//!
+//! where the positive diagonal W changes nothing on those motions, so that the number is exact whatever W is, and yet keeps pivots away from zero that only
+//! the rows hold: beams that hang on nothing but their joints, the axis of an inextensible beam. A multiplier is eliminated as soon as all unknowns of its
+//! row are; these are ordered for little fill by faer, which also does the elimination.
+
+use super::bordered::BorderRow;
+use super::symmetric::SMALLEST_PIVOT;
+use super::{Matrix, Singular};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization};
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::linalg::{SupernodalThreshold, amd};
+use faer::sparse::{SparseColMat, Triplet};
+use faer::{Par, Side};
+
+type Entry = Triplet<usize, usize, f64>;
+
+/// Factors of W that are tried until two agree: without pivoting a small pivot may grow round-off to the size of what is eliminated after it.
+const TRIES: [f64; 5] = [1.0, 30.0, 0.03, 7.0, 0.2];
+
+/// Number of negative eigenvalues of the symmetric `k` on the motions that the rows of `border` allow; `None` without symmetry, where a pivot vanishes, or
+/// where no two eliminations agree.
+pub fn negative_directions(k: &Matrix, border: &[BorderRow]) -> Option<usize> {
+    if matches!(k, Matrix::General(_)) {
+        return None;
+    }
+    let mut counts = Vec::with_capacity(TRIES.len());
+    for factor in TRIES {
+        let Some(count) = count(k, border, factor) else { continue };
+        if counts.contains(&count) {
+            return Some(count);
+        }
+        counts.push(count);
+    }
+    None
+}
+
+/// That number, with `factor` W.
+fn count(k: &Matrix, border: &[BorderRow], factor: f64) -> Option<usize> {
+    let n = k.size();
+    let mut entries: Vec<Entry> = Vec::new();
+    for i in 0..n {
+        let right = k.columns(i).filter(|j| *j >= i).map(|j| Triplet::new(i, j, k.get(i, j)));
+        entries.extend(right.filter(|entry| entry.val != 0.0 || entry.row == entry.col));
+    }
+    for row in border {
+        let weight = factor * weight(k, row);
+        for (a, &(i, x)) in row.iter().enumerate() {
+            entries.extend(row[a..].iter().map(|&(j, y)| Triplet::new(i, j, weight * x * y)));
+        }
+    }
+    let place = places(n, &entries, border)?;
+    for (r, row) in border.iter().enumerate() {
+        entries.extend(row.iter().map(|&(i, value)| Triplet::new(i, n + r, value)));
+        entries.push(Triplet::new(n + r, n + r, 0.0));
+    }
+    for entry in &mut entries {
+        let (row, col) = (place[entry.row], place[entry.col]);
+        (entry.row, entry.col) = (row.min(col), row.max(col));
+    }
+    let pivots = pivots(place.len(), &entries).ok()?;
+    let mut diagonal = vec![0.0; place.len()];
+    entries.iter().filter(|entry| entry.row == entry.col).for_each(|entry| diagonal[entry.row] += entry.val);
+    let vanishes = |(pivot, diagonal): (&f64, &f64)| pivot.abs() <= SMALLEST_PIVOT * diagonal.abs();
+    if pivots.iter().zip(&diagonal).any(vanishes) {
+        return None;
+    }
+    pivots.iter().filter(|pivot| **pivot < 0.0).count().checked_sub(border.len())
+}
+
+/// What makes a row as stiff as the softest of the unknowns that it holds. Those of a beam's axis may have no stiffness where those across it have.
+fn weight(k: &Matrix, row: &BorderRow) -> f64 {
+    let of_pair = |i: usize| k.get(i & !1, i & !1).abs().max(k.get(i | 1, i | 1).abs());
+    let held = row.iter().filter(|(i, value)| *value != 0.0 && of_pair(*i) > 0.0);
+    let weight = held.fold(f64::INFINITY, |weight, &(i, value)| weight.min(of_pair(i) / (value * value)));
+    if weight.is_finite() { weight } else { 0.0 }
+}
+
+/// Where each unknown and multiplier stands in the order of elimination.
+fn places(n: usize, entries: &[Entry], border: &[BorderRow]) -> Option<Vec<usize>> {
+    let pattern = SparseColMat::try_new_from_triplets(n, n, entries).ok()?;
+    let (mut order, mut position) = (vec![0; n], vec![0; n]);
+    let mut memory = MemBuffer::try_new(amd::order_scratch::<usize>(n, pattern.compute_nnz())).ok()?;
+    let control = amd::Control::default();
+    amd::order(&mut order, &mut position, pattern.symbolic(), control, MemStack::new(&mut memory)).ok()?;
+    let last = |row: &BorderRow| row.iter().map(|(i, _)| position[*i]).max().unwrap_or(0);
+    let mut all: Vec<(usize, usize)> = (0..n).map(|i| (position[i], i)).collect();
+    all.extend(border.iter().enumerate().map(|(r, row)| (last(row), n + r)));
+    all.sort_unstable();
+    let mut place = vec![0; all.len()];
+    all.iter().enumerate().for_each(|(at, (_, index))| place[*index] = at);
+    Some(place)
+}
+
+/// The pivots of a symmetric matrix, eliminated row by row in its order, from its upper entries; those in the same place are summed.
+///
+/// # Errors
+/// [`Singular`] with the row whose pivot is zero.
+pub fn pivots(size: usize, upper: &[Entry]) -> Result<Vec<f64>, Singular> {
+    let none = Singular { row: size };
+    let matrix = SparseColMat::try_new_from_triplets(size, size, upper).map_err(|_| none)?;
+    let parameters = CholeskySymbolicParams {
+        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SIMPLICIAL,
+        ..CholeskySymbolicParams::default()
+    };
+    let symbolic =
+        factorize_symbolic_cholesky(matrix.symbolic(), Side::Upper, SymmetricOrdering::Identity, parameters)
+            .map_err(|_| none)?;
+    let mut values = vec![0.0; symbolic.len_val()];
+    let scratch = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
+    let mut memory = MemBuffer::try_new(scratch).map_err(|_| none)?;
+    let (plain, stack) = (LdltRegularization::default(), MemStack::new(&mut memory));
+    let (matrix, upper, sequential) = (matrix.as_ref(), Side::Upper, Par::Seq);
+    symbolic
+        .factorize_numeric_ldlt(&mut values, matrix, upper, plain, sequential, stack, Default::default())
+        .map_err(|LdltError::ZeroPivot { index }| Singular { row: index - 1 })?;
+    let SymbolicCholeskyRaw::Simplicial(columns) = symbolic.raw() else { return Err(none) };
+    // A column of L begins with its pivot.
+    Ok(columns.col_ptr()[..size].iter().map(|first| values[*first]).collect())
+}

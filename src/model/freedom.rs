@@ -1,0 +1,132 @@
+//! Which rigid motions supports and joints leave to the beams of a model.
+//!
+//! A planar rigid motion of a beam is (t_x, t_y, ω): the displacement of its start, and its turn per length. A support at r₀ holds t_x − ω (y₀ − ȳ),
+//! t_y + ω (x₀ − x̄) and ω, and a joint equals those of two beams: one row each. What the rows leave is their null space, by Gauss and Jordan's elimination.
+
+use super::{FixedRotation, Joint, Model, Place};
+
+/// Residual of a row against its size at which it is a combination of others.
+const DEPENDENT: f64 = 1e-9;
+
+/// Rows that motions must satisfy, reduced: each is 1 in a column in which all others vanish.
+#[derive(Clone, Debug)]
+pub struct Freedom {
+    length: f64,
+    origins: Vec<[f64; 2]>,
+    rows: Vec<(usize, Vec<f64>)>,
+}
+
+/// Of every beam (t_x, t_y, ω) per length.
+pub type Motion = Vec<[f64; 3]>;
+
+impl Freedom {
+    /// What supports and joints of `model` leave. `position` is where a place is in the stress-free shape, `length` the scale of lengths \[m\].
+    pub fn new(model: &Model, length: f64, position: impl Fn(Place) -> [f64; 2]) -> Self {
+        let origins = (0..model.beams.len()).map(|beam| position(Place { beam, s: 0.0 })).collect();
+        let mut freedom = Self { length, origins, rows: Vec::new() };
+        for support in &model.supports {
+            let (at, fix) = (support.at, support.fix);
+            let axes = [(fix.x, [1.0, 0.0]), (fix.y, [0.0, 1.0])];
+            for (_, axis) in axes.into_iter().filter(|(fixed, _)| *fixed) {
+                freedom.hold_displacement(&[(at.beam, position(at), axis)]);
+            }
+            if fix.rotation != FixedRotation::Free {
+                freedom.hold_direction(at.beam);
+            }
+        }
+        for joint in &model.joints {
+            match *joint {
+                Joint::Slider { at, along: [x, y] } => {
+                    freedom.hold_displacement(&[(at.beam, position(at), [-y, x])]);
+                }
+                Joint::Hinge { first, second } | Joint::Weld { first, second } => {
+                    let (a, b) = (position(first), position(second));
+                    for [x, y] in [[1.0, 0.0], [0.0, 1.0]] {
+                        freedom.hold_displacement(&[(first.beam, a, [-x, -y]), (second.beam, b, [x, y])]);
+                    }
+                    if matches!(joint, Joint::Weld { .. }) {
+                        freedom.hold_turns(&[(first.beam, -1.0), (second.beam, 1.0)]);
+                    }
+                }
+            }
+        }
+        freedom
+    }
+
+    /// Holds the direction of a beam.
+    pub fn hold_direction(&mut self, beam: usize) {
+        self.hold_turns(&[(beam, 1.0)]);
+    }
+
+    /// Holds the point of a beam that is at `position`.
+    pub fn hold_point(&mut self, beam: usize, position: [f64; 2]) {
+        for axis in [[1.0, 0.0], [0.0, 1.0]] {
+            self.hold_displacement(&[(beam, position, axis)]);
+        }
+    }
+
+    /// Σ n·u = 0 over points.
+    fn hold_displacement(&mut self, terms: &[(usize, [f64; 2], [f64; 2])]) {
+        let mut row = vec![0.0; 3 * self.origins.len()];
+        for &(beam, [x, y], n) in terms {
+            let [ox, oy] = self.origins[beam];
+            let lever = (n[1] * (x - ox) - n[0] * (y - oy)) / self.length;
+            for (i, value) in [n[0], n[1], lever].into_iter().enumerate() {
+                row[3 * beam + i] += value;
+            }
+        }
+        self.add(row);
+    }
+
+    /// Σ ω = 0.
+    fn hold_turns(&mut self, terms: &[(usize, f64)]) {
+        let mut row = vec![0.0; 3 * self.origins.len()];
+        terms.iter().for_each(|(beam, sign)| row[3 * beam + 2] += sign);
+        self.add(row);
+    }
+
+    fn add(&mut self, mut row: Vec<f64>) {
+        let largest = |row: &[f64]| {
+            let sizes = row.iter().map(|value| value.abs()).enumerate();
+            sizes.fold((0, 0.0), |best, (i, size)| if size > best.1 { (i, size) } else { best })
+        };
+        let (_, size) = largest(&row);
+        for (column, reduced) in &self.rows {
+            subtract(row[*column], reduced, &mut row);
+        }
+        let (column, left) = largest(&row);
+        if left <= DEPENDENT * size {
+            return;
+        }
+        let by = row[column];
+        row.iter_mut().for_each(|value| *value /= by);
+        self.rows.iter_mut().for_each(|(_, other)| subtract(other[column], &row, other));
+        self.rows.push((column, row));
+    }
+
+    /// A basis of the motions that are left.
+    pub fn motions(&self) -> Vec<Motion> {
+        let columns = 3 * self.origins.len();
+        let mut pivots = vec![false; columns];
+        self.rows.iter().for_each(|(column, _)| pivots[*column] = true);
+        let free = (0..columns).filter(|column| !pivots[*column]);
+        free.map(|free| {
+            let mut motion = vec![0.0; columns];
+            motion[free] = 1.0;
+            self.rows.iter().for_each(|(column, row)| motion[*column] = -row[free]);
+            motion.as_chunks().0.to_vec()
+        })
+        .collect()
+    }
+
+    /// Where a beam starts, from which its displacement is taken.
+    pub fn origin(&self, beam: usize) -> [f64; 2] {
+        self.origins[beam]
+    }
+}
+
+fn subtract(factor: f64, from: &[f64], row: &mut [f64]) {
+    if factor != 0.0 {
+        row.iter_mut().zip(from).for_each(|(value, other)| *value -= factor * other);
+    }
+}

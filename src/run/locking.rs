@@ -1,0 +1,179 @@
+//! Membrane locking, measured on the states of a run.
+//!
+//! A cell whose shape functions cannot follow a bent axis stretches where it only should bend, up and down within the cell. What a load stretches is smooth there,
+//! so that the part of ε that is not linear in a cell tells the two apart:
+//!
+//! ```text
+//! ½ ∫ EA (ε − ε_linear)² ds / ½ ∫ EI (κ − κ₀)² ds
+//! ```
+//!
+//! is the energy that bending costs beyond its own: by so much a beam is too stiff.
+
+use crate::basis::BasisTable;
+use crate::effect::curvature;
+use crate::model::{GaussPoints, Model, StrainMeasure};
+use crate::system::{Fields, System, SystemError};
+use nalgebra::Vector2;
+
+/// Part of the bending energy beyond which it is said.
+const TOLERATED: f64 = 0.005;
+/// States that bend less, per energy of the one that bends most, are not looked at.
+const STRAIGHT: f64 = 0.1;
+/// Part of a beam's whole elastic energy below which nothing depends on it.
+const IRRELEVANT: f64 = 1e-3;
+
+/// The beams of a model that may lock, and what was seen of them.
+#[derive(Clone)]
+pub(super) struct Locking {
+    beams: Vec<Watched>,
+}
+
+#[derive(Clone)]
+struct Watched {
+    name: String,
+    points: GaussPoints,
+    cable: bool,
+    measure: StrainMeasure,
+    /// EA \[N\] and EI \[N m²\].
+    stiffness: [f64; 2],
+    offset: usize,
+    /// r' at the points for stretching, r' and r'' at those for bending.
+    tables: [BasisTable; 2],
+    /// ε and κ of the stress-free state there.
+    reference: [Vec<f64>; 2],
+    /// Energies \[J\] of each state: of bending, of all stretch, and of that which bending causes.
+    seen: Vec<[f64; 3]>,
+}
+
+impl Locking {
+    /// Watches all beams but those that resist stretch at no more points than a cell can follow.
+    pub fn new(model: &Model, system: &System) -> Result<Self, SystemError> {
+        let mut beams = Vec::new();
+        for (beam, part) in model.beams.iter().zip(system.beams()) {
+            let points = beam.gauss_points;
+            let (Some(axial), Some(bending)) = (beam.section.axial_stiffness, beam.section.bending_stiffness)
+            else {
+                continue;
+            };
+            if points.stretch <= if points.lobatto { 3 } else { 2 } {
+                continue;
+            }
+            let table = |rule, orders: &[usize]| {
+                part.basis.table(rule, orders).map_err(|e| SystemError::basis(&part.name, e))
+            };
+            let tables = [table(points.stretch_rule(), &[1])?, table(points.bend_rule(), &[1, 2])?];
+            let mut watched = Watched {
+                name: beam.name.clone(),
+                points,
+                cable: matches!(beam.discretization, crate::model::Discretization::Ancf { .. }),
+                measure: beam.strain,
+                stiffness: [axial, bending],
+                offset: part.offset(),
+                tables,
+                reference: [Vec::new(), Vec::new()],
+                seen: Vec::new(),
+            };
+            watched.reference = [watched.strains(system.reference()), watched.curvatures(system.reference())];
+            beams.push(watched);
+        }
+        Ok(Self { beams })
+    }
+
+    /// Takes a state into account.
+    pub fn see(&mut self, q: &[f64]) {
+        for beam in &mut self.beams {
+            beam.seen.push(beam.energies(q));
+        }
+    }
+
+    /// What there is to say.
+    pub fn warnings(&self) -> impl Iterator<Item = String> + '_ {
+        self.beams.iter().filter_map(Watched::warning)
+    }
+}
+
+impl Watched {
+    /// A field at all points, of the rows of each.
+    fn at_points(&self, table: &BasisTable, q: &[f64], of: impl Fn(&[[f64; 2]]) -> f64) -> Vec<f64> {
+        let mut values = Vec::with_capacity(table.points());
+        for cell in &table.cells {
+            let (_, rows) = table.block(*cell);
+            let q = &q[2 * (self.offset + cell.first as usize)..];
+            for rows in rows.chunks_exact(table.row_stride()) {
+                let mut fields = [[0.0; 2]; 2];
+                for (field, row) in fields.iter_mut().zip(rows.chunks_exact(table.width)) {
+                    for (n, q) in row.iter().zip(q.chunks_exact(2)) {
+                        field[0] += n * q[0];
+                        field[1] += n * q[1];
+                    }
+                }
+                values.push(of(&fields));
+            }
+        }
+        values
+    }
+
+    fn strains(&self, q: &[f64]) -> Vec<f64> {
+        let strain = |z: &[[f64; 2]]| {
+            let fields = Fields { position: [0.0; 2], gradient: z[0], second: [0.0; 2] };
+            fields.strain(self.measure)
+        };
+        self.at_points(&self.tables[0], q, strain)
+    }
+
+    fn curvatures(&self, q: &[f64]) -> Vec<f64> {
+        self.at_points(&self.tables[1], q, |z| curvature(&Vector2::from(z[0]), &Vector2::from(z[1])))
+    }
+
+    fn energies(&self, q: &[f64]) -> [f64; 3] {
+        let [of_stretch, of_bend] = &self.tables;
+        let changes = |now: Vec<f64>, before: &[f64]| -> Vec<f64> {
+            now.iter().zip(before).map(|(a, b)| a - b).collect()
+        };
+        let strains = changes(self.strains(q), &self.reference[0]);
+        let curvatures = changes(self.curvatures(q), &self.reference[1]);
+        let [ea, ei] = self.stiffness;
+        let mut energies = [0.0; 3];
+        for (cell, kappa) in of_bend.cells.iter().zip(curvatures.chunks_exact(of_bend.points_per_cell)) {
+            let (weights, _) = of_bend.block(*cell);
+            energies[0] +=
+                0.5 * ei * weights.iter().zip(kappa).map(|(w, kappa)| w * kappa * kappa).sum::<f64>();
+        }
+        let points = of_stretch.points_per_cell;
+        let cells =
+            of_stretch.cells.iter().zip(strains.chunks_exact(points)).zip(of_stretch.s.chunks_exact(points));
+        for ((cell, strain), s) in cells {
+            let (w, _) = of_stretch.block(*cell);
+            let sum = |f: &dyn Fn(usize) -> f64| (0..points).map(|i| w[i] * f(i)).sum::<f64>();
+            let length = sum(&|_| 1.0);
+            let (centre, mean) = (sum(&|i| s[i]) / length, sum(&|i| strain[i]) / length);
+            let spread = sum(&|i| (s[i] - centre).powi(2));
+            let slope = sum(&|i| (s[i] - centre) * (strain[i] - mean)) / spread;
+            energies[1] += 0.5 * ea * sum(&|i| strain[i].powi(2));
+            energies[2] += 0.5 * ea * sum(&|i| (strain[i] - mean - slope * (s[i] - centre)).powi(2));
+        }
+        energies
+    }
+
+    fn warning(&self) -> Option<String> {
+        let most = self.seen.iter().fold(0.0_f64, |most, [bend, ..]| most.max(*bend));
+        let bent = self.seen.iter().filter(|[bend, ..]| *bend > STRAIGHT * most);
+        let relevant = bent.filter(|[bend, stretch, locked]| *locked > IRRELEVANT * (bend + stretch));
+        let too_stiff = relevant.fold(0.0_f64, |worst, [bend, _, locked]| worst.max(locked / bend));
+        if too_stiff <= TOLERATED {
+            return None;
+        }
+        let advice = if self.cable {
+            "leave `gauss_points` out, or use more elements"
+        } else {
+            "use more nodes, or fewer `gauss_points` for stretching"
+        };
+        Some(format!(
+            "beam `{}` locks: stretch that bending alone causes within its cells takes {:.1} % of the energy of bending, by so much the beam is too \
+             stiff, and near a limit of its load by several times more; {} points a cell resist it: {advice}",
+            self.name,
+            100.0 * too_stiff,
+            self.points.stretch,
+        ))
+    }
+}

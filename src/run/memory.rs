@@ -1,0 +1,90 @@
+//! Whether there is memory for what a model needs, before it is asked for: an allocation that fails ends a program without a word.
+
+use super::RunError;
+use crate::model::{About, Analysis, Beam, Discretization, Model};
+
+/// Bytes of a number.
+const NUMBER: f64 = 8.0;
+/// Vectors of all coordinates that solvers keep beside states and matrices, at most.
+const VECTORS: f64 = 40.0;
+
+/// Refuses what the machine cannot give.
+///
+/// # Errors
+/// [`RunError::Memory`] where less is free than is needed.
+pub(super) fn check(model: &Model, analysis: &Analysis) -> Result<(), RunError> {
+    let needed = needed(model, analysis);
+    match free() {
+        Some(free) if needed > free => Err(RunError::Memory { needed, free }),
+        _ => Ok(()),
+    }
+}
+
+/// About how many bytes tables, matrices and states take.
+fn needed(model: &Model, analysis: &Analysis) -> f64 {
+    let coordinates: f64 = model.beams.iter().map(|beam| 4.0 * nodes(beam)).sum();
+    let state = coordinates * NUMBER;
+    let equilibria = |steps: Option<usize>| steps.unwrap_or(0) as f64 * state;
+    // Matrices as large as the tangent, factors included, and states that are kept.
+    let (matrices, states) = match analysis {
+        Analysis::Static(settings) => {
+            (2.0, equilibria(settings.steps.or(settings.arc_length.as_ref().map(|arc| arc.max_points))))
+        }
+        Analysis::Buckling { count } => (4.0, 4.0 * *count as f64 * state),
+        Analysis::Modal { count, about } => {
+            (if *about == About::Equilibrium { 5.0 } else { 4.0 }, 4.0 * *count as f64 * state)
+        }
+        Analysis::Dynamic(settings) => (4.0, 2.0 * settings.duration / settings.output_every * state),
+    };
+    let tables: f64 = model.beams.iter().map(|beam| table(beam) + matrices * tangent(beam)).sum();
+    tables + states + VECTORS * state
+}
+
+fn nodes(beam: &Beam) -> f64 {
+    match &beam.discretization {
+        Discretization::Ancf { nodes } | Discretization::Rpim { nodes, .. } => nodes.count() as f64,
+    }
+}
+
+/// Shape functions over a cell.
+fn width(beam: &Beam) -> f64 {
+    match &beam.discretization {
+        Discretization::Ancf { .. } => 4.0,
+        Discretization::Rpim { neighbours, .. } => 2.0 * (2 * neighbours + 2) as f64,
+    }
+}
+
+/// Bytes of shape functions: r, r' and r'' at every point, of which uniform meshes share most.
+fn table(beam: &Beam) -> f64 {
+    let points = (beam.gauss_points.stretch + beam.gauss_points.bend) as f64;
+    nodes(beam) * points * width(beam) * NUMBER
+}
+
+/// Bytes of a banded symmetric matrix.
+fn tangent(beam: &Beam) -> f64 {
+    4.0 * nodes(beam) * 2.0 * width(beam) * NUMBER
+}
+
+/// Bytes that this process may still take; none where the system does not say.
+fn free() -> Option<f64> {
+    let read = |path: &str| std::fs::read_to_string(path).ok();
+    let number = |text: &str| text.split_whitespace().next()?.parse::<f64>().ok();
+    // `Name:   123 kB`.
+    let entry = |text: &str, name: &str| {
+        Some(1024.0 * number(text.lines().find_map(|line| line.strip_prefix(name))?)?)
+    };
+    let memory = read("/proc/meminfo");
+    let memory = memory
+        .as_deref()
+        .and_then(|text| Some(entry(text, "MemAvailable:")? + entry(text, "SwapFree:").unwrap_or(0.0)));
+    let limit = || {
+        let limits = read("/proc/self/limits")?;
+        let most = number(limits.lines().find_map(|line| line.strip_prefix("Max address space"))?)?;
+        Some(most - entry(&read("/proc/self/status")?, "VmSize:")?)
+    };
+    let group = || {
+        let of = |name: &str| number(&read(&format!("/sys/fs/cgroup/memory.{name}"))?);
+        Some(of("max")? - of("current")?)
+    };
+    [memory, limit(), group()].into_iter().flatten().reduce(f64::min)
+}

@@ -1,0 +1,174 @@
+//! Where in a step a coordinate of a probe reaches a value.
+//!
+//! A coordinate is linear in q, so that in a step it is one polynomial of time, the Hermite interpolation of what is known at both ends: positions and
+//! velocities (cubic), and accelerations (quintic). Between the zeros of its derivative a polynomial rises or falls throughout and has at most one zero, and
+//! the derivative's zeros are found in the same way: so none is missed, and none is looked for by sampling.
+//!
+//! A value is reached from below (rising) or from above (falling). A coordinate that turns back at the value has reached it too, once; within round-off
+//! it cannot be told from one that turns just before or just beyond. So a coordinate is *at* the value within [`NEAR`] beam lengths where it turns or a
+//! step ends, and must leave it by more to reach it again.
+
+/// Distance from a value that is none, in beam lengths: what round-off leaves of positions.
+pub(super) const NEAR: f64 = 1e-9;
+/// Bisections, to the last bits of a step.
+const BISECTIONS: u32 = 55;
+/// Largest degree of an interpolation.
+const DEGREE: usize = 5;
+
+/// Σ c_k xᵏ, x from 0 at the start of a step to 1 at its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Polynomial([f64; DEGREE + 1]);
+
+/// A value that is reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Reached {
+    /// Part of the step.
+    pub at: f64,
+    /// From below.
+    pub rising: bool,
+}
+
+impl Polynomial {
+    /// With the value, h times the velocity and, if they are given, h²/2 times the acceleration at both ends of a step of length h.
+    pub(super) fn hermite([q0, q1]: [f64; 2], [v0, v1]: [f64; 2], halves: Option<[f64; 2]>) -> Self {
+        let rise = q1 - q0;
+        let Some([a0, a1]) = halves else {
+            return Self([q0, v0, 3.0 * rise - 2.0 * v0 - v1, v0 + v1 - 2.0 * rise, 0.0, 0.0]);
+        };
+        // The end's data enter through their defects against the lower terms.
+        let (d, s, c) = (rise - v0 - a0, v1 - v0 - 2.0 * a0, a1 - a0);
+        let [third, fourth, fifth] =
+            [10.0 * d - 4.0 * s + c, -15.0 * d + 7.0 * s - 2.0 * c, 6.0 * d - 3.0 * s + c];
+        Self([q0, v0, a0, third, fourth, fifth])
+    }
+
+    /// Value and derivative at `x`.
+    pub(super) fn at(&self, x: f64) -> [f64; 2] {
+        let [start, rest @ ..] = &self.0;
+        let (p, dp) = rest.iter().rev().fold((0.0, 0.0), |(p, dp), c| (x * p + c, x * dp + p));
+        [start + x * p, p + x * dp]
+    }
+
+    fn derivative(&self) -> Self {
+        let mut derivative = [0.0; DEGREE + 1];
+        for (k, c) in self.0.iter().enumerate().skip(1) {
+            derivative[k - 1] = k as f64 * c;
+        }
+        Self(derivative)
+    }
+
+    fn is_constant(&self) -> bool {
+        self.0[1..].iter().all(|c| *c == 0.0)
+    }
+
+    /// Where the polynomial turns in (0, 1), rising; flat places without a turn may be left out.
+    fn turns(&self) -> Vec<f64> {
+        let slope = self.derivative();
+        if slope.is_constant() {
+            return Vec::new();
+        }
+        let ends = slope.turns().into_iter().chain([1.0]);
+        let mut from = 0.0;
+        let turns = ends.filter_map(|to| {
+            let start = std::mem::replace(&mut from, to);
+            let side = slope.at(start)[0].signum();
+            let beyond = |x: f64| slope.at(x)[0] * side <= 0.0;
+            (!beyond(start) && beyond(to)).then(|| bisect([start, to], beyond))
+        });
+        turns.filter(|x| *x < 1.0).collect()
+    }
+
+    /// Where in the step zero is reached, in order of time; what is nearer to zero than `near` is there already.
+    pub(super) fn reaches_zero(&self, near: f64) -> Vec<Reached> {
+        let mut found = Vec::new();
+        // On which side it last was; zero where it was on none.
+        let side = |value: f64| if value.abs() > near { value.signum() } else { 0.0 };
+        let (mut from, mut on) = (0.0, side(self.at(0.0)[0]));
+        for to in self.turns().into_iter().chain([1.0]) {
+            let there = side(self.at(to)[0]);
+            if on * there <= 0.0 && on != 0.0 {
+                let at = bisect([from, to], |x| self.at(x)[0] * on <= 0.0);
+                found.push(Reached { at, rising: on < 0.0 });
+            }
+            (from, on) = (to, there);
+        }
+        found
+    }
+}
+
+/// Where `beyond` becomes true between the ends, to the last bits; the later end where it does not.
+fn bisect([mut before, mut after]: [f64; 2], beyond: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (before + after);
+        if beyond(middle) { after = middle } else { before = middle }
+    }
+    after
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// c Π (x − root), and what is made of its values, slopes and half second derivatives at both ends.
+    fn with_roots(scale: f64, roots: &[f64]) -> Polynomial {
+        let mut c = [0.0; DEGREE + 1];
+        c[0] = scale;
+        for root in roots {
+            for k in (0..=DEGREE).rev() {
+                c[k] = if k > 0 { c[k - 1] } else { 0.0 } - root * c[k];
+            }
+        }
+        let exact = Polynomial(c);
+        let slope = exact.derivative();
+        let ends = |p: &Polynomial| [p.at(0.0)[0], p.at(1.0)[0]];
+        let halves = ends(&slope.derivative()).map(|a| 0.5 * a);
+        Polynomial::hermite(ends(&exact), ends(&slope), Some(halves))
+    }
+
+    proptest! {
+        /// Every zero is found, in order, with its direction.
+        #[test]
+        fn all_zeros_are_found(roots in prop::collection::vec(-0.5..1.5_f64, 1..=5), scale in prop_oneof![-3.0..-0.1, 0.1..3.0_f64]) {
+            let mut roots = roots;
+            roots.sort_by(f64::total_cmp);
+            let apart = roots.windows(2).all(|r| r[1] - r[0] > 0.02);
+            let clear = roots.iter().all(|r| r.abs() > 0.01 && (r - 1.0).abs() > 0.01);
+            prop_assume!(apart && clear);
+            let polynomial = with_roots(scale, &roots);
+            let inside: Vec<f64> = roots.iter().copied().filter(|r| (0.0..1.0).contains(r)).collect();
+            let found = polynomial.reaches_zero(1e-12);
+            prop_assert_eq!(found.len(), inside.len(), "{:?} of {:?}", found, roots);
+            for (found, root) in found.iter().zip(inside) {
+                prop_assert!((found.at - root).abs() < 1e-6, "{:?} of {:?}", found, roots);
+                prop_assert_eq!(found.rising, polynomial.at(found.at)[1] > 0.0);
+            }
+        }
+
+        /// One that turns back at the value reaches it once, one that goes through it flatly too.
+        #[test]
+        fn touches_count_once(root in 0.05..0.95_f64, outside in 1.5..3.0_f64, scale in prop_oneof![-3.0..-0.1, 0.1..3.0_f64]) {
+            let touching = with_roots(scale, &[root, root, outside]).reaches_zero(1e-9);
+            prop_assert_eq!(touching.len(), 1);
+            prop_assert!((touching[0].at - root).abs() < 1e-4);
+            // (x − outside) is negative.
+            prop_assert_eq!(touching[0].rising, scale > 0.0);
+            let flat = with_roots(scale, &[root, root, root]).reaches_zero(1e-9);
+            prop_assert_eq!(flat.len(), 1);
+            prop_assert_eq!(flat[0].rising, scale > 0.0);
+        }
+    }
+
+    #[test]
+    fn what_is_at_the_value_must_leave_it_first() {
+        let cubic = |q, v| Polynomial::hermite(q, v, None);
+        assert_eq!(cubic([0.0, 1.0], [1.0, 1.0]).reaches_zero(1e-9), []);
+        assert_eq!(cubic([1e-12, -1.0], [0.0, -1.0]).reaches_zero(1e-9), []);
+        let end = cubic([-1.0, -1e-12], [1.0, 1.0]).reaches_zero(1e-9);
+        assert_eq!(end, [Reached { at: 1.0, rising: true }]);
+        assert_eq!(cubic([0.0, 0.0], [0.0, 0.0]).reaches_zero(1e-9), []);
+        // It leaves the value and comes back within the step.
+        let back = cubic([0.0, 0.0], [1.0, -1.0]).reaches_zero(1e-9);
+        assert_eq!(back, [Reached { at: 1.0, rising: false }]);
+    }
+}

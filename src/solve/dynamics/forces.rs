@@ -1,0 +1,102 @@
+//! Forces and powers of a motion from the stages of its steps, in which the equations of motion hold.
+
+use super::State;
+use super::integrate::Driver;
+use super::motion::{Balance, Motion, Stage};
+use crate::system::Reaction;
+
+/// Lagrange's polynomials on `times`, at the time `at`.
+fn lagrange(times: &[f64], at: f64) -> Vec<f64> {
+    let share = |k: usize| {
+        let others = times.iter().enumerate().filter(|(j, _)| *j != k);
+        others.map(|(_, other)| (at - other) / (times[k] - other)).product()
+    };
+    (0..times.len()).map(share).collect()
+}
+
+/// Their integrals from `start` to `end`, of up to four times.
+fn integrals(times: &[f64], start: f64, end: f64) -> Vec<f64> {
+    let (middle, half) = (0.5 * (start + end), 0.5 * (end - start));
+    let offset = half / 3.0_f64.sqrt();
+    let [a, b] = [middle - offset, middle + offset].map(|at| lagrange(times, at));
+    a.iter().zip(&b).map(|(a, b)| half * (a + b)).collect()
+}
+
+impl<'a> Driver<'_, 'a> {
+    /// Work of moving supports until `time` in the step to `new`, by the quadrature that the method itself is.
+    pub(super) fn work_of_supports(&mut self, new: &State, time: f64) -> f64 {
+        if !self.system.supports().moves_in_time() {
+            return 0.0;
+        }
+        if self.support_powers.is_empty() {
+            let stages = self.method.stages(&self.state, new);
+            let power = |stage: Stage| {
+                (stage.state.time, self.observer().map_or(f64::NAN, |m| m.support_power(stage)))
+            };
+            self.support_powers = stages.into_iter().map(power).collect();
+        }
+        let times: Vec<f64> = self.support_powers.iter().map(|(time, _)| *time).collect();
+        let weights = integrals(&times, self.state.time, time);
+        weights.iter().zip(&self.support_powers).map(|(weight, (_, power))| weight * power).sum()
+    }
+
+    /// The equations of motion for looking at states, apart from those of the method and its counts; friction counts from the last state.
+    fn observer(&mut self) -> Option<&mut Motion<'a>> {
+        if self.observer.is_none() {
+            self.observer = Motion::new(self.system).ok();
+        }
+        let motion = self.observer.as_mut()?;
+        motion.hold(&self.state);
+        Some(motion)
+    }
+
+    /// The state `state` within the step to `new`, with all forces.
+    pub(super) fn balance_within(&mut self, new: &State, state: &State) -> Option<Balance> {
+        let stages = self.method.stages(&self.state, new);
+        let times: Vec<f64> = stages.iter().map(|stage| stage.state.time).collect();
+        let shares = lagrange(&times, state.time);
+        let mut rates = vec![0.0; stages.first()?.rates.len()];
+        for (share, stage) in shares.iter().zip(&stages) {
+            rates.iter_mut().zip(&stage.rates).for_each(|(sum, rate)| *sum += share * rate);
+        }
+        let h = new.time - self.state.time;
+        self.settled(state, rates, h)
+    }
+
+    /// All forces in the first record `first`: exact where nothing has led to it, and otherwise a part of a step after the last state.
+    pub(super) fn balance_at_start(&mut self, first: &State) -> Option<Balance> {
+        if self.state.time > 0.0 {
+            let (rates, h) = (self.method.end_rates(), self.last_step);
+            return self.settled(first, rates, h);
+        }
+        let first = first.clone();
+        self.observer()?.exact_balance(&first).ok()
+    }
+
+    /// All forces in the last state.
+    pub(super) fn balance_at_end(&mut self) -> Option<Balance> {
+        let (state, rates, h) = (self.state.clone(), self.method.end_rates(), self.last_step);
+        self.settled(&state, rates, h)
+    }
+
+    fn settled(&mut self, state: &State, rates: Vec<f64>, h: f64) -> Option<Balance> {
+        let balance = self.observer()?.settle(state, rates, h).ok()?;
+        let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
+        (finite(&balance.state.q) && finite(&balance.state.v)).then_some(balance)
+    }
+
+    /// Whether states between the ends of steps are moved into balance: where forces are wanted, and where moving supports ask for the balance of energy,
+    /// in which the strain of an interpolated state would count.
+    pub(super) fn settles(&self) -> bool {
+        self.task.reactions || self.system.supports().moves_in_time()
+    }
+
+    /// Keeps the forces of supports and joints in a record.
+    pub(super) fn keep_reactions(&mut self, balance: Option<Balance>) {
+        let reactions = match (balance, self.observer()) {
+            (Some(balance), Some(motion)) => motion.reactions_in(&balance),
+            _ => vec![Reaction { fx: f64::NAN, fy: f64::NAN, moment: f64::NAN }],
+        };
+        self.solution.reactions.push(reactions);
+    }
+}

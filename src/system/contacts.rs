@@ -1,0 +1,99 @@
+//! The contacts of a system: which touch, how hard, and what they meet between two states.
+
+use super::System;
+use super::sums::resultant;
+use crate::effect::{Effect, Held, Slips, Workspace};
+use crate::linear::Matrix;
+
+impl System {
+    /// Whether there are any.
+    pub fn has_contacts(&self) -> bool {
+        !self.contacts.is_empty()
+    }
+
+    /// Per contact, how many separate intervals of the beam touch in the state `q`.
+    pub fn intervals<'q>(&'q self, q: &'q [f64]) -> impl Iterator<Item = usize> + 'q {
+        self.contacts.iter().map(|contact| contact.intervals(q))
+    }
+
+    /// Whether contact number `contact` touches in the state `q`.
+    pub fn touches(&self, contact: usize, q: &[f64]) -> bool {
+        self.contacts.get(contact).is_some_and(|contact| contact.touches(q))
+    }
+
+    /// The resultant \[N\] of contact number `contact` on its beam in the state `q`, without friction; `scratch` is overwritten.
+    pub fn contact_force(&self, contact: usize, q: &[f64], scratch: &mut [f64]) -> [f64; 2] {
+        scratch.fill(0.0);
+        if let Some(contact) = self.contacts.get(contact) {
+            contact.add_force(1.0, q, scratch);
+        }
+        resultant(scratch)
+    }
+
+    /// Names of the contacts: the beam and a number, such as `arm.1`.
+    pub fn contact_names(&self) -> impl Iterator<Item = String> + '_ {
+        let names = self.contacts.iter().enumerate();
+        names.map(|(i, contact)| format!("{}.{}", self.beams[contact.beam()].name, i + 1))
+    }
+
+    /// Where on the cubic with the control states `way` a contact would be crossed, and which: the part of the way that is clear, and the number of the contact.
+    /// With `may_cross` only what goes too fast for its force to be seen is in conflict.
+    pub fn conflict(&self, way: [&[f64]; 4], may_cross: bool) -> Option<(f64, usize)> {
+        let contacts = self.contacts.iter().enumerate();
+        let met = contacts.filter_map(|(i, contact)| contact.conflict(way, may_cross).map(|part| (part, i)));
+        met.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Whether contact number `contact` is crossed on the way.
+    pub fn crosses(&self, contact: usize, way: [&[f64]; 4]) -> bool {
+        self.contacts.get(contact).is_some_and(|contact| contact.crosses(way))
+    }
+
+    /// The part of the way until contact number `contact`, which does not touch at its start, begins to, if it does.
+    pub fn first_touch(&self, contact: usize, way: [&[f64]; 4]) -> Option<f64> {
+        self.contacts.get(contact).and_then(|contact| contact.first_touch(way))
+    }
+
+    /// Whether any contact has friction.
+    pub fn has_friction(&self) -> bool {
+        !self.friction.is_empty()
+    }
+
+    /// `f += ` the forces of friction in the state `q`, where `held` was the last accepted one.
+    pub fn add_friction(&self, held: &Held, q: &[f64], f: &mut [f64]) {
+        self.friction.iter().for_each(|friction| friction.add_force(held, q, f));
+    }
+
+    /// The same, and `k += ` their derivative.
+    pub fn add_friction_and_tangent(
+        &self,
+        held: &Held,
+        q: &[f64],
+        f: &mut [f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
+        self.friction.iter().for_each(|friction| friction.add_force_and_tangent(held, q, f, k, workspace));
+    }
+
+    /// The slips in the state `q`, where `held` was the last accepted one.
+    pub fn slips(&self, held: &Held, q: &[f64]) -> Slips {
+        let mut slips = Slips::default();
+        for friction in &self.friction {
+            let (pieces, energy) = friction.slips(held, q);
+            slips.energy += energy;
+            slips.contacts.push(pieces);
+        }
+        slips
+    }
+
+    /// `f += ` the forces of friction in the state `q` that has the slips `slips`.
+    pub fn add_held_friction(&self, slips: &Slips, q: &[f64], f: &mut [f64]) {
+        self.friction.iter().for_each(|friction| friction.add_held_force(slips, q, f));
+    }
+
+    /// Per contact with friction whether the larger part of it slides, and whether against friction.
+    pub fn sliding(&self, held: &Held, q: &[f64], v: &[f64]) -> Vec<Option<bool>> {
+        self.friction.iter().map(|friction| friction.sliding(held, q, v)).collect()
+    }
+}

@@ -1,0 +1,85 @@
+//! What follows laws of time: when it is not smooth, and what of it the points of a step do not see.
+//!
+//! A method of integration looks at loads and supports at a few times of a step, and takes them for what is interpolated between these. What they do
+//! beside that is known exactly, for it does not depend on the motion: of every law the mean over the step and the first moment
+//! ([`crate::model::Law::moments`]). Less the same of what the method sees, they are the change of velocity and of position that it misses,
+//! however fast a law oscillates against the step.
+
+use super::course::Amplitude;
+use super::{Acting, System};
+use crate::effect::Travelling;
+use crate::model::Law;
+
+/// A time at which a method looks, and its weights in the mean over the step and in the first moment.
+pub type Look = (f64, [f64; 2]);
+
+fn law(load: &Acting) -> Option<&Law> {
+    match &load.amplitude {
+        Some(Amplitude::Law(law)) => Some(law),
+        _ => None,
+    }
+}
+
+/// Moments of `f` as the looks have them.
+fn seen(looks: &[Look], f: impl Fn(f64) -> f64) -> [f64; 2] {
+    looks.iter().fold([0.0; 2], |[mean, moment], (time, [a, b])| {
+        let f = f(*time);
+        [mean + a * f, moment + b * f]
+    })
+}
+
+impl System {
+    /// Times at which a load or the motion of a support is not smooth, in no order.
+    pub fn kinks(&self) -> Vec<f64> {
+        let laws = self.loads.iter().filter_map(law).map(Law::kinks);
+        let travelling = self.travelling.iter().flat_map(Travelling::kinks);
+        laws.flatten().chain(self.supports.kinks()).chain(travelling).collect()
+    }
+
+    /// Whether a load follows a law of time or moves.
+    pub fn loads_follow_time(&self) -> bool {
+        !self.travelling.is_empty() || self.loads.iter().any(|load| law(load).is_some())
+    }
+
+    /// Adds to `mean` and `moment` those of the loads from `start` to `end`, less what `looks` have of them, in the state `q`. `scratch` is overwritten.
+    pub fn add_unseen_loads(
+        &self,
+        [start, end]: [f64; 2],
+        looks: &[Look],
+        q: &[f64],
+        [mean, moment]: [&mut [f64]; 2],
+        scratch: &mut [f64],
+    ) {
+        let following = self.loads.iter().filter_map(|load| Some((load, law(load)?)));
+        for (load, law) in following {
+            let seen = seen(looks, |time| law.at(time)[0]);
+            let unseen = law.moments(start, end);
+            scratch.fill(0.0);
+            load.effect.add_force(1.0, q, scratch);
+            for (i, force) in scratch.iter().enumerate() {
+                mean[i] += (unseen[0] - seen[0]) * force;
+                moment[i] += (unseen[1] - seen[1]) * force;
+            }
+        }
+        for force in &self.travelling {
+            force.add_moments(start, end, [mean, moment]);
+            for (time, [a, b]) in looks {
+                force.add_weighted(-a, *time, mean);
+                force.add_weighted(-b, *time, moment);
+            }
+        }
+    }
+
+    /// By how much the supports' motions from `start` to `end` differ from what `looks` at their accelerations make of them: the largest, positions in beam
+    /// lengths, angles as they are.
+    pub fn unseen_motion(&self, [start, end]: [f64; 2], looks: &[Look]) -> f64 {
+        let h = end - start;
+        let miss = |(course, unit): (&super::course::Course, f64)| {
+            let ([u0, v0, _], [u1, v1, _]) = (course.prescribed(start), course.prescribed(end));
+            let [mean, moment] = seen(looks, |time| h * h * course.prescribed(time)[2]);
+            let misses = [h * (v1 - v0) - mean, (u1 - u0) - h * v0 - moment];
+            misses.into_iter().fold(0.0_f64, |m, miss| m.max((unit * miss).abs()))
+        };
+        self.supports.moving(1.0 / self.length()).map(miss).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,237 @@
+//! Going on: a motion in parts is the motion as a whole, to the last bit; what starts elsewhere is at rest where it should be, or refused.
+
+use ancf::restart::SavedState;
+use ancf::run::{Control, RunError, run, run_from};
+use ancf::scene::{Scene, parse};
+use ancf::trajectory::{Event, Trajectory};
+
+fn scene(text: &str) -> Scene {
+    parse("scene.toml", text).unwrap_or_else(|error| panic!("{error:?}\n{text}"))
+}
+
+fn solve(text: &str) -> Trajectory {
+    let scene = scene(text);
+    run(scene.model(), scene.analysis(), &mut |_| Control::Continue).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What a file holds of a state.
+fn filed(saved: &SavedState) -> SavedState {
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    std::fs::write(file.path(), serde_json::to_string(saved).expect("finite numbers")).expect("a file");
+    SavedState::load(file.path()).expect("what was written")
+}
+
+fn go_on(text: &str, from: &Trajectory) -> Result<Trajectory, RunError> {
+    let (scene, saved) = (scene(text), filed(from.saved.as_ref().expect("a state")));
+    run_from(scene.model(), scene.analysis(), Some(&saved), &mut |_| Control::Continue)
+}
+
+/// Everything that has a memory: loads without potential, damping, contact, a support that turns, a beam that keeps its length.
+const MOTIONS: [&str; 4] = [
+    "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 0.1, mass_per_length = 1, basis.ancf.elements = 4 }
+     support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]
+     effect.gravity.acceleration = [0, -9.81]
+     effect.moment = [{ beam = 'arm', at = 'end', value = 0.1 }]
+     effect.force = [{ beam = 'arm', at = 'end', value = [0, 0.5], in_time = { harmonic = { frequency = 3 } } }]
+     effect.damping = [{ beam = 'arm', mass_proportional = 0.3 }]",
+    "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 0.1, mass_per_length = 1, basis.rpim.nodes = 5 }
+     effect.gravity.acceleration = [0.5, -9.81]
+     effect.contact = [{ beam = 'arm', half_plane = { point = [0, -0.05], normal = [0, 1] }, stiffness = 1e4 }]",
+    "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 3 }
+     support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'], move = { spin_up = { speed = '12 rad/s', duration = 0.3 } } }]
+     effect.gravity.acceleration = [0, -9.81]",
+    "beam.arm = { start = [0, 0], end = [1, 0], bending_stiffness = 0.1, mass_per_length = 1, basis.ancf.elements = 4 }
+     support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]
+     effect.gravity.acceleration = [0, -9.81]",
+];
+
+fn motion(system: &str, duration: f64, integrator: &str, event: &str) -> String {
+    format!(
+        "{system}\nprobe = [{{ name = 'tip', beam = 'arm', at = 'end' }}]
+         analysis.dynamic = {{ duration = {duration}, output_every = 0.01, {integrator}{event} }}"
+    )
+}
+
+/// Records and events of the second part are those of the whole.
+fn agree(whole: &Trajectory, second: &Trajectory, since: f64, what: &str) {
+    assert_eq!(second.parameter[0], since, "{what}");
+    for (i, time) in second.parameter.iter().enumerate().skip(1) {
+        let j = whole.parameter.iter().position(|t| t == time).unwrap_or_else(|| panic!("{what}: {time} s"));
+        assert_eq!(second.probes[0].samples[i], whole.probes[0].samples[j], "{what}, {time} s");
+        assert_eq!(second.energy[i], whole.energy[j], "{what}, {time} s");
+    }
+    assert_eq!(second.parameter.last(), whole.parameter.last(), "{what}");
+    let times = |t: &Trajectory| t.events.iter().map(Event::time).collect::<Vec<_>>();
+    let later: Vec<f64> = times(whole).into_iter().filter(|time| *time > since).collect();
+    assert_eq!(times(second), later, "{what}");
+    assert_eq!(second.saved, whole.saved, "{what}: another stop would leave the same");
+}
+
+#[test]
+fn a_motion_in_parts_is_the_whole_motion() {
+    for (number, system) in MOTIONS.iter().enumerate() {
+        for integrator in [
+            "gauss = { tolerance = 1e-4 }",
+            "radau = { tolerance = 1e-4 }",
+            "generalized_alpha = { tolerance = 1e-3 }",
+            "radau = { step = 7e-3 }",
+        ] {
+            // Gauss' method takes no beam that keeps its length; where a support turns, generalised-α factorises with a mass matrix of a time that it does not save.
+            let left_out = [(3, "gauss"), (2, "generalized_alpha")];
+            if left_out.iter().any(|(left, method)| *left == number && integrator.starts_with(method)) {
+                continue;
+            }
+            let whole = solve(&motion(system, 0.5, integrator, ""));
+            let first = solve(&motion(system, 0.213, integrator, ""));
+            let second = go_on(&motion(system, 0.287, integrator, ""), &first).expect("a motion");
+            agree(&whole, &second, 0.213, &format!("motion {number}, {integrator}"));
+            let told = second.settings.iter().find(|(name, _)| name == "continued").expect("is told");
+            assert!(
+                told.1.contains("for 0.287 s from t = 0.213 s to 0.5 s, as if it had not stopped"),
+                "{told:?}"
+            );
+        }
+    }
+}
+
+/// An event ends the first part in the middle of a step; it is not told again.
+#[test]
+fn a_motion_that_an_event_ended_goes_on() {
+    for integrator in ["gauss = { tolerance = 1e-4 }", "generalized_alpha = { step = 3e-3 }"] {
+        let events = |stop| format!(", event = [{{ probe = 'tip', y = -0.3, stop = {stop} }}]");
+        let whole = solve(&motion(MOTIONS[0], 0.5, integrator, &events(false)));
+        let first = solve(&motion(MOTIONS[0], 0.5, integrator, &events(true)));
+        let since = *first.parameter.last().expect("a time");
+        assert_eq!((first.events.len(), first.events[0].time()), (1, since));
+        let rest = motion(MOTIONS[0], 0.5 - since, integrator, &events(false));
+        agree(&whole, &go_on(&rest, &first).expect("a motion"), since, integrator);
+    }
+}
+
+/// An equilibrium that a static run found is one of the motion: bent by a force and a moment, clamped or with a clamp that was moved; and a cable.
+#[test]
+fn a_motion_from_an_equilibrium_stays_there() {
+    let beam = "beam.arm = { start = [0, 0], end = [0.6, 0.8], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.BASIS }
+         effect.gravity.acceleration = [0, -3]
+         effect.force = [{ beam = 'arm', at = 'end', value = [1.5, -2] }]
+         effect.moment = [{ beam = 'arm', at = 'end', value = 0.3 }]";
+    let cable = "beam.arm = { arc = { center = [0, 1], radius = 1, from = '210 deg', to = '330 deg' }, axial_stiffness = 1e3, mass_per_length = 1, basis.ancf.elements = 8 }
+         effect.gravity.acceleration = [0, -9.81]
+         effect.force = [{ beam = 'arm', at = 0.3, value = [0.1, -0.5] }]
+         support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }, { beam = 'arm', at = 'end', fix = ['x', 'y'], move = { x = -0.1 } }]";
+    let clamp = "support = [{ beam = 'arm', at = AT, fix = ['x', 'y', 'HOW']MOVE }]";
+    let mut systems = vec![cable.to_owned()];
+    for basis in ["ancf.elements = 6", "rpim.nodes = 6"] {
+        for at in ["'start'", "0.31"] {
+            for how in ["angle", "gradient"] {
+                for moved in ["", ", move = { x = 0.1, y = -0.2, angle = '50 deg' }"] {
+                    let clamp = clamp.replace("AT", at).replace("HOW", how).replace("MOVE", moved);
+                    systems.push(format!("{}\n{clamp}", beam.replace("BASIS", basis)));
+                }
+            }
+        }
+    }
+    for system in systems {
+        let with = |analysis: &str| {
+            format!(
+                "{system}\nprobe = [{{ name = 'tip', beam = 'arm', at = 'end' }}, {{ name = 'middle', beam = 'arm', at = 0.5 }}]\n{analysis}"
+            )
+        };
+        let still = solve(&with("analysis.static = { tolerance = 1e-11 }"));
+        for integrator in
+            ["gauss = { tolerance = 1e-5 }", "radau = { step = 0.02 }", "generalized_alpha = { step = 0.02 }"]
+        {
+            let dynamic = format!("analysis.dynamic = {{ duration = 0.5, {integrator} }}");
+            let moved = go_on(&with(&dynamic), &still).unwrap_or_else(|error| panic!("{error}\n{system}"));
+            assert_eq!((moved.parameter[0], *moved.parameter.last().expect("a time")), (0.0, 0.5));
+            for (here, there) in moved.probes.iter().zip(&still.probes) {
+                let rest = there.samples.last().expect("an equilibrium");
+                for sample in &here.samples {
+                    let apart =
+                        (sample.x - rest.x).hypot(sample.y - rest.y).max((sample.angle - rest.angle).abs());
+                    assert!(apart < 1e-6, "{apart}: {sample:?}, not {rest:?}, {integrator}\n{system}");
+                }
+            }
+        }
+    }
+}
+
+/// With other loads it leaves the equilibrium, with a velocity of the scene too; work counts from there.
+#[test]
+fn a_motion_from_an_equilibrium_may_have_other_loads_and_a_velocity() {
+    let arm = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 6 }
+         support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]
+         probe = [{ name = 'tip', beam = 'arm', at = 'end' }]";
+    let bent = solve(&format!(
+        "{arm}\neffect.force = [{{ beam = 'arm', at = 'end', value = [0, 1e-3] }}]\nanalysis.static = {{}}"
+    ));
+    let dynamic =
+        "analysis.dynamic = { duration = 1.79, output_every = 0.001, gauss = { tolerance = 1e-7 } }";
+    // Released, it swings to the other side within half of its longest period, 2π/3.516 s.
+    let released = go_on(&format!("{arm}\n{dynamic}"), &bent).expect("a motion");
+    let lowest = released.probes[0].samples.iter().fold(0.0_f64, |low, sample| low.min(sample.y));
+    assert!((lowest / 3.333e-4 + 1.0).abs() < 0.1, "{lowest}");
+    let pushed = format!(
+        "{arm}\ninitial_velocity = [{{ beam = 'arm', polynomial = {{ vy = [0, 0, 0.1] }} }}]\n{dynamic}"
+    );
+    let pushed = go_on(&pushed, &bent).expect("a motion");
+    assert!((pushed.probes[0].samples[0].vy.expect("a velocity") - 0.1).abs() < 1e-12);
+    assert!((pushed.probes[0].samples[0].y - 3.333e-4).abs() < 1e-6);
+}
+
+/// A support that is elsewhere than the state, or jumps later, has no finite work.
+#[test]
+fn supports_that_jump_are_refused_at_any_time() {
+    let with = |law: &str, duration: f64| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [0, 2], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }}
+             support = [{{ beam = 'arm', at = 'end', fix = ['x', 'y', 'angle'], move = {{ {law} }} }}]
+             effect.force = [{{ beam = 'arm', at = 'start', value = [0.1, 0], in_time = {{ step = {{ start = 0.05 }} }} }}]
+             analysis.dynamic = {{ duration = {duration} }}"
+        )
+    };
+    let jump = "y = '0.1 m', in_time = { step = { start = '0.1 s' } }";
+    let turn = "angle = '90 deg', in_time = { step = { start = '0.1 s' } }";
+    for (law, size) in [(jump, "1.000e-1"), (turn, "1.571e0")] {
+        let scene = scene(&with(law, 0.2));
+        let error = run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect_err("a jump");
+        assert_eq!(error.exit_status(), 2);
+        let text = error.to_string();
+        for part in ["beam `arm` near s = 2.000000 m", "t = 0.1 s", size] {
+            assert!(text.contains(part), "{part} in {text}");
+        }
+    }
+    // What does not happen within the motion does no harm.
+    let first = solve(&with(jump, 0.08));
+    assert!(go_on(&with(jump, 0.01), &first).is_ok());
+    let error = go_on(&with(jump, 0.03), &first).expect_err("a jump at 0.1 s");
+    assert!(error.to_string().contains("t = 0.1 s"), "{error}");
+    // A law that is elsewhere when another motion starts from the state.
+    let ramp = "y = '0.1 m', in_time = { ramp = { duration = 0.1 } }";
+    let error = go_on(&with(ramp, 0.01), &first).expect_err("a jump by 0.08 m");
+    assert!(error.to_string().contains("8.000e-2") && error.exit_status() == 2, "{error}");
+}
+
+/// What a new support holds must be at rest; a state of other beams is none of this scene.
+#[test]
+fn what_does_not_fit_is_refused() {
+    let with = |more: &str| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 0.1, mass_per_length = 1, basis.ancf.elements = 4 }}
+             effect.gravity.acceleration = [0, -9.81]
+             analysis.dynamic = {{ duration = 0.2 }}\n{more}"
+        )
+    };
+    let first = solve(&with(""));
+    let error = go_on(&with("support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]"), &first)
+        .expect_err("it falls");
+    assert!(error.to_string().contains("the velocity at the start moves what a support holds"), "{error}");
+    let slider = "joint = [{ type = 'slider', first = { beam = 'arm', at = 'end' }, along = [1, 0] }]";
+    let error = go_on(&with(slider), &first).expect_err("it has fallen");
+    assert!(error.to_string().contains("misses it by 1.9"), "{error}");
+    let heavier = with("").replace("mass_per_length = 1", "mass_per_length = 2");
+    let error = go_on(&heavier, &first).expect_err("another beam");
+    assert!(error.to_string().contains("another section"), "{error}");
+    let moved = with("").replace("end = [1, 0]", "end = [0, 1]");
+    assert!(go_on(&moved, &first).expect_err("another beam").to_string().contains("another centreline"));
+}

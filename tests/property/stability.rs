@@ -1,0 +1,510 @@
+//! Inertia of bordered matrices, stability of paths, buckling after bending, equilibria of mechanisms, redundant joints.
+
+use ancf::linear::bordered::BorderRow;
+use ancf::linear::{Factor, Matrix};
+use ancf::run::{Control, RunError, run};
+use ancf::scene::{Scene, parse};
+use ancf::system::{Needs, System};
+use ancf::trajectory::Trajectory;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Mat, Par, Side};
+use proptest::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+fn scene(text: &str) -> Scene {
+    parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn attempt(text: &str) -> Result<Trajectory, RunError> {
+    let scene = scene(text);
+    run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
+}
+
+fn solve(text: &str) -> Trajectory {
+    attempt(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn tip(trajectory: &Trajectory) -> [f64; 2] {
+    let last = trajectory.probes[0].samples.last().expect("a state");
+    [last.x, last.y]
+}
+
+fn beam(name: &str, [a, b]: [[f64; 2]; 2], section: &str, basis: &str) -> String {
+    format!("[beam.{name}]\nstart = {a:?}\nend = {b:?}\nbasis = {basis}\n{section}\n")
+}
+
+fn joint(kind: &str, first: (&str, &str), second: (&str, &str)) -> String {
+    let place = |(beam, at): (&str, &str)| format!("{{ beam = '{beam}', at = {at} }}");
+    format!("[[joint]]\ntype = '{kind}'\nfirst = {}\nsecond = {}\n", place(first), place(second))
+}
+
+fn support(beam: &str, at: &str, fix: &str) -> String {
+    format!("[[support]]\nbeam = '{beam}'\nat = {at}\nfix = {fix}\n")
+}
+
+fn force(beam: &str, value: [f64; 2]) -> String {
+    format!("[[effect.force]]\nbeam = '{beam}'\nat = 'end'\nvalue = {value:?}\n")
+}
+
+fn probe(beam: &str) -> String {
+    format!("[[probe]]\nname = 'tip'\nbeam = '{beam}'\nat = 'end'\n")
+}
+
+const CLAMP: &str = "['x', 'y', 'angle']";
+const PIN: &str = "['x', 'y']";
+const ANCF: &str =
+    "{ ancf = { elements = 16, gauss_points = { stretch = 3, bend = 2, stretch_rule = 'lobatto' } } }";
+const RPIM: &str = "{ rpim = { nodes = 10 } }";
+
+/// An orthonormal basis of what the rows leave of the coordinates `free`; nothing if they depend on each other.
+fn allowed(rows: &[BorderRow], free: &[usize]) -> Option<Mat<f64>> {
+    let (n, m) = (free.len(), rows.len());
+    if m == 0 {
+        return Some(Mat::identity(n, n));
+    }
+    let mut b = Mat::zeros(n, m);
+    for (r, row) in rows.iter().enumerate() {
+        let size = row.iter().map(|(_, value)| value * value).sum::<f64>().sqrt();
+        for (i, value) in row {
+            b[(free.iter().position(|f| f == i).expect("a free coordinate"), r)] = value / size;
+        }
+    }
+    let qr = b.qr();
+    let upper = qr.thin_R();
+    (0..m).all(|r| upper[(r, r)].abs() > 1e-6).then(|| qr.compute_Q().get(.., m..).to_owned())
+}
+
+fn dense(matrix: &Matrix, of: &[usize]) -> Mat<f64> {
+    Mat::from_fn(of.len(), of.len(), |i, j| matrix.get(of[i], of[j]))
+}
+
+proptest! {
+    #![proptest_config(super::cases(12))]
+
+    /// The number of negative eigenvalues on the allowed motions, whether K is regular, singular or indefinite beyond them, and however far rows reach.
+    #[test]
+    fn directions_are_counted_as_a_dense_solution_counts_them(
+        entries in proptest::collection::vec(-1.0..1.0_f64, 24 * 24),
+        shift in -1.0..3.0_f64,
+        soft in 0..4_usize,
+        rows in 1..7_usize,
+        reach in 1..24_usize,
+        rough in any::<bool>(),
+    ) {
+        let n = 24;
+        let mut k = Matrix::zeros(n / 4, 2, true);
+        for i in 0..n {
+            for j in k.columns(i).filter(|j| *j >= i) {
+                let of_soft = i / 4 == soft || j / 4 == soft;
+                let value = entries[n * i + j] + if i == j { shift } else { 0.0 };
+                // A node that nothing but rows holds: its block is zero.
+                k.add_at(i, j, if of_soft { 0.0 } else { value });
+            }
+        }
+        let unit = |i: usize| if rough && i % 4 > 1 { 1e-3 } else { 1.0 };
+        let mut border: Vec<BorderRow> = (0..4).map(|d| vec![(4 * soft + d, unit(d)), ((4 * soft + 8 + d) % n, -unit(d))]).collect();
+        border.iter_mut().for_each(|row| row.sort_by_key(|(i, _)| *i));
+        for r in 0..rows {
+            let from = (7 * r) % (n - reach).max(1);
+            border.push((from..=(from + reach).min(n - 1)).map(|i| (i, unit(i) * entries[n * r + i])).collect());
+        }
+        let all: Vec<usize> = (0..n).collect();
+        let z = allowed(&border, &all);
+        prop_assume!(z.is_some());
+        let z = z.expect("independent rows");
+        let eigen = (z.transpose() * dense(&k, &all) * &z).self_adjoint_eigenvalues(Side::Lower).expect("eigenvalues");
+        prop_assume!(eigen.iter().all(|value| value.abs() > 1e-6));
+        let expected = eigen.iter().filter(|value| **value < 0.0).count();
+        let factor = Factor::new(&k, &border).expect("regular");
+        prop_assert_eq!(factor.negative_directions(&k, &border), Some(expected));
+    }
+
+    /// A structure's frequencies are the same however many are asked for, by either method, and those of a dense solution: also with strings, which nothing
+    /// resists across, and with masses and stiffnesses of all sizes.
+    #[test]
+    fn frequencies_do_not_depend_on_how_many_are_wanted(
+        columns in 1..4_usize,
+        elements in 1..7_usize,
+        feet in proptest::collection::vec(any::<bool>(), 4),
+        kinds in proptest::collection::vec(0..3_usize, 3),
+        logs in proptest::collection::vec(0.0..1.0_f64, 24),
+        bases in proptest::collection::vec(any::<bool>(), 4),
+    ) {
+        let size = |i: usize, from: f64, to: f64| 10f64.powf(from + (to - from) * logs[i]);
+        let mut text = String::new();
+        for c in 0..=columns {
+            let x = c as f64;
+            let ei = size(3 * c, 0.0, 3.0);
+            let section = format!(
+                "axial_stiffness = {:e}\nbending_stiffness = {ei:e}\nmass_per_length = {:e}",
+                ei * size(3 * c + 1, 2.0, 6.0), size(3 * c + 2, -1.0, 1.0)
+            );
+            let basis = if bases[c] { format!("{{ ancf = {{ elements = {elements} }} }}") } else { format!("{{ rpim = {{ nodes = {} }} }}", elements + 2) };
+            text += &beam(&format!("c{c}"), [[x, 0.0], [x, 1.0]], &section, &basis);
+            text += &support(&format!("c{c}"), "'start'", if feet[c] { CLAMP } else { PIN });
+        }
+        for (c, kind) in kinds.iter().enumerate().take(columns) {
+            let (x, i) = (c as f64, 12 + 3 * c);
+            let (section, kind) = match kind {
+                0 => (format!("axial_stiffness = {:e}\nmass_per_length = {:e}", size(i, 0.0, 4.0), size(i + 1, -6.0, 0.0)), "hinge"),
+                k => (
+                    format!("axial_stiffness = {:e}\nbending_stiffness = {:e}\nmass_per_length = {:e}", size(i, 4.0, 8.0), size(i + 1, 0.0, 3.0), size(i + 2, -1.0, 1.0)),
+                    if *k == 1 { "hinge" } else { "weld" },
+                ),
+            };
+            text += &beam(&format!("b{c}"), [[x, 1.0], [x + 1.0, 1.0]], &section, "{ ancf = { elements = 1 } }");
+            text += &joint(kind, (&format!("c{c}"), "'end'"), (&format!("b{c}"), "'start'"));
+            text += &joint("hinge", (&format!("c{}", c + 1), "'end'"), (&format!("b{c}"), "'end'"));
+        }
+        let with = |count: usize| format!("{text}[analysis.modal]\ncount = {count}\n");
+        let model = scene(&with(1));
+        let system = System::build(model.model(), Needs { inertia: true, motion: false }).expect("a legal model");
+        let held = system.held();
+        let free: Vec<usize> = (0..held.len()).filter(|i| !held[*i]).collect();
+        let (mut k, mut m) = (system.internal_tangent(system.reference()), system.mass_matrix());
+        for matrix in [&mut k, &mut m] {
+            system.supports().turn_matrix(0.0, matrix);
+        }
+        let z = allowed(&system.border(0.0, system.reference()), &free).expect("independent rows");
+        let (k, m) = (z.transpose() * dense(&k, &free) * &z, z.transpose() * dense(&m, &free) * &z);
+        let (factor, mut k) = (m.llt(Side::Lower).expect("masses"), k);
+        for _ in 0..2 {
+            solve_lower_triangular_in_place(factor.L(), k.as_mut(), Par::Seq);
+            k = k.transpose().to_owned();
+        }
+        let squares = k.self_adjoint_eigenvalues(Side::Lower).expect("eigenvalues");
+        let largest = squares[squares.len() - 1];
+        let all = squares.len().min(24);
+        let found = solve(&with(all)).frequencies;
+        prop_assert_eq!(found.len(), all);
+        for (f, square) in found.iter().zip(&squares) {
+            let omega = TAU * f;
+            prop_assert!((omega * omega - square).abs() < 1e-7 * square.abs() + 1e-13 * largest, "{omega}² and {square} of {squares:?}");
+        }
+        for count in (1..all).step_by(2) {
+            let fewer = solve(&with(count)).frequencies;
+            prop_assert_eq!(fewer.len(), count);
+            for (a, b) in fewer.iter().zip(&found) {
+                prop_assert!((a - b).abs() <= 1e-7 * b && (*a == 0.0) == (*b == 0.0), "{count} of {all}: {fewer:?} and {found:?}");
+            }
+        }
+    }
+}
+
+/// A column of one beam or two, with axial stiffness or without, on supports at nodes: all reach the same equilibrium beside their bifurcation, and all say
+/// where a perfect one passes it.
+#[test]
+fn columns_of_every_kind_leave_the_unstable_branch_or_say_where_it_begins() {
+    let (ea, none) = ("bending_stiffness = 1.0\naxial_stiffness = 1e6", "bending_stiffness = 1.0");
+    for (section, basis) in [(ea, ANCF), (none, ANCF), (ea, RPIM), (none, RPIM)] {
+        let one = beam("a", [[0.0, 0.0], [1.0, 0.0]], section, basis) + &probe("a");
+        let two = beam("b", [[0.0, 0.0], [0.4, 0.0]], section, basis)
+            + &beam("a", [[0.4, 0.0], [1.0, 0.0]], section, basis)
+            + &joint("weld", ("b", "'end'"), ("a", "'start'"))
+            + &probe("a");
+        for (column, foot) in [(one, "a"), (two, "b")] {
+            let column = column + &support(foot, "'start'", CLAMP);
+            for steps in ["", "steps = 3"] {
+                let [x, y] = tip(&solve(&format!(
+                    "{column}{}[analysis.static]\n{steps}\n",
+                    force("a", [-6.2728, 6.2728e-3])
+                )));
+                assert!((x + 0.10668).hypot(y - 0.75055) < 1e-3, "{basis} {section}: {x} {y}");
+            }
+            let perfect =
+                solve(&format!("{column}{}[analysis.static]\n", force("a", [-2.5 * PI * PI / 4.0, 0.0])));
+            let [warning] = &perfect.warnings[..] else {
+                panic!("{basis} {section}: {:?}", perfect.warnings)
+            };
+            assert!(warning.contains("loses definiteness at load factor 0.400"), "{warning}");
+        }
+        let mass = format!("{section}\nmass_per_length = 1.0");
+        let heavy = beam("a", [[0.0, 0.0], [0.0, 1.0]], &mass, basis) + &support("a", "'start'", CLAMP);
+        let heavy = solve(&format!(
+            "effect.gravity.acceleration = [0.0, {}]\n{heavy}[analysis.static]\n",
+            -2.5 * 7.8373
+        ));
+        assert!(heavy.warnings[0].contains("at load factor 0.400"), "{:?}", heavy.warnings);
+    }
+}
+
+/// A frame whose legs are pinned and hinged to a beam that a load presses: P = π² EI of a leg whose top a brace holds.
+#[test]
+fn a_hinged_leg_buckles_with_a_warning() {
+    let leg = "axial_stiffness = 1e6\nbending_stiffness = 1.0";
+    for stiff in ["axial_stiffness = 1e6\nbending_stiffness = 1e3", "bending_stiffness = 1e3"] {
+        let text = beam("leg", [[0.0, 0.0], [0.0, 1.0]], leg, ANCF)
+            + &beam("arm", [[1.0, 1.0], [0.0, 1.0]], stiff, ANCF)
+            + &joint("hinge", ("leg", "'end'"), ("arm", "'end'"))
+            + &support("leg", "'start'", PIN)
+            + &support("arm", "'start'", PIN)
+            + &force("arm", [0.0, -2.0 * PI * PI])
+            + "[analysis.static]\n";
+        let found = solve(&text);
+        assert!(found.warnings[0].contains("loses definiteness at load factor 0.50"), "{:?}", found.warnings);
+    }
+}
+
+proptest! {
+    #![proptest_config(super::cases(8))]
+
+    /// π²/4, whatever the axial stiffness, the direction, the basis, and a little force across; and bending alone is told from buckling.
+    #[test]
+    fn a_little_bending_does_not_change_a_critical_load(
+        log in 3.0..9.0_f64,
+        extensible in any::<bool>(),
+        turn in -PI..PI,
+        across in -0.02..0.02_f64,
+        basis in prop_oneof![Just(ANCF), Just(RPIM), Just("{ ancf = { elements = 9 } }")],
+    ) {
+        let section = if extensible { format!("bending_stiffness = 1.0\naxial_stiffness = {:e}", 10f64.powf(log)) } else { "bending_stiffness = 1.0".into() };
+        let (s, c) = turn.sin_cos();
+        let turned = |[x, y]: [f64; 2]| [c * x - s * y, s * x + c * y];
+        let buckling = |load| {
+            solve(&(beam("a", [[0.0, 0.0], [c, s]], &section, basis)
+                + &support("a", "'start'", CLAMP)
+                + &force("a", turned(load))
+                + "[analysis.buckling]\ncount = 2\n"))
+        };
+        let found = buckling([-1.0, across]);
+        prop_assert!((found.load_factors[0] / (PI * PI / 4.0) - 1.0).abs() < 5e-4, "{:?}", found.load_factors);
+        prop_assert!((found.load_factors[1] / (PI * PI * 2.25) - 1.0).abs() < 2e-3, "{:?}", found.load_factors);
+        prop_assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+        let bent = buckling([-1.0, 0.5]);
+        prop_assert!(bent.warnings[0].contains("arc_length"), "{:?}", bent.warnings);
+        // A force across compresses nothing.
+        let bent = buckling([0.0, 1.0]);
+        prop_assert!(bent.load_factors.iter().all(|load| *load > 20.0), "{:?}", bent.load_factors);
+        prop_assert!(bent.load_factors.is_empty() || bent.warnings[0].contains("arc_length"), "{:?}", bent.warnings);
+    }
+
+    /// One stiff rod on a hinge swings by 3g/2L, two by the frequencies of the double pendulum, from wherever they start, upright included.
+    #[test]
+    fn hinged_rods_hang_still_and_swing_by_closed_forms(
+        starts in proptest::collection::vec(-PI..PI, 2),
+        upright in any::<bool>(),
+        log in 3.0..6.0_f64,
+        length in prop_oneof![Just(1e-3), Just(1.0), Just(100.0)],
+        extensible in any::<bool>(),
+        bases in proptest::collection::vec(any::<bool>(), 2),
+    ) {
+        let weight = 9.81 * length;
+        let ei = 10f64.powf(log) * weight * length * length;
+        let section = format!("bending_stiffness = {ei:e}\nmass_per_length = 1.0\n{}", if extensible { format!("axial_stiffness = {:e}", 100.0 * ei / (length * length)) } else { String::new() });
+        let basis = |rpim: bool| if rpim { "{ rpim = { nodes = 6 } }" } else { "{ ancf = { elements = 4 } }" };
+        let along = |start: f64| { let (s, c) = if upright { (1.0, 0.0) } else { start.sin_cos() }; [length * c, length * s] };
+        let (a, b) = (along(starts[0]), along(starts[1]));
+        let rod = "effect.gravity.acceleration = [0.0, -9.81]\n".to_string()
+            + &beam("a", [[0.0, 0.0], a], &section, basis(bases[0])) + &support("a", "'start'", PIN) + &probe("a");
+        let two = rod.clone() + &beam("b", [a, [a[0] + b[0], a[1] + b[1]]], &section, basis(bases[1])) + &joint("hinge", ("a", "'end'"), ("b", "'start'"));
+        let unit = (9.81 / length).sqrt() / TAU;
+        // M = [4/3 1/2; 1/2 1/3], K = diag(3/2, 1/2).
+        let expected = [1.5f64.sqrt(), (3.0 - 6.0 / 7f64.sqrt()).sqrt(), (3.0 + 6.0 / 7f64.sqrt()).sqrt()];
+        let [x, y] = tip(&solve(&format!("{rod}[analysis.static]\n")));
+        prop_assert!(x.abs() < 1e-6 * length && (y / length + 1.0).abs() < 1e-3, "{x} {y}");
+        let about = "[analysis.modal]\nabout = 'equilibrium'\ncount = ";
+        let one = solve(&format!("{rod}{about}1\n")).frequencies;
+        prop_assert!((one[0] / (expected[0] * unit) - 1.0).abs() < 2e-3, "{one:?}, {}", expected[0] * unit);
+        let both = solve(&format!("{two}{about}2\n")).frequencies;
+        for (found, expected) in both.iter().zip(&expected[1..]) {
+            prop_assert!((found / (expected * unit) - 1.0).abs() < 5e-3, "{both:?}, {expected} {unit}");
+        }
+    }
+}
+
+/// What no load of fixed direction holds is refused, with all the motions that are free.
+#[test]
+fn mechanisms_that_nothing_holds_are_refused() {
+    let section = "axial_stiffness = 1e5\nbending_stiffness = 1e3\nmass_per_length = 1.0";
+    let rod = beam("a", [[0.0, 0.0], [1.0, 0.0]], section, ANCF);
+    let next = beam("b", [[1.0, 0.0], [2.0, 0.0]], section, ANCF)
+        + &joint("hinge", ("a", "'end'"), ("b", "'start'"));
+    let weight = "effect.gravity.acceleration = [0.0, -9.81]\n";
+    let pinned = rod.clone() + &support("a", "'start'", PIN);
+    let moment = "[[effect.moment]]\nbeam = 'a'\nat = 'end'\nvalue = 1.0\n";
+    let refused = |text: String, words: &[&str]| {
+        let error =
+            parse("scene.toml", &text).err().unwrap_or_else(|| panic!("not refused:\n{text}")).to_string();
+        assert!(words.iter().all(|words| error.contains(words)), "{error}");
+    };
+    for analysis in ["[analysis.static]\n", "[analysis.modal]\nabout = 'equilibrium'\ncount = 1\n"] {
+        let turn = ["under-supported: it is free for rotation about the point (0, 0)"];
+        refused(format!("{pinned}{analysis}"), &turn);
+        refused(format!("{pinned}{moment}{analysis}"), &turn);
+        for load in ["", weight] {
+            let all = ["translation along x, translation along y and rotation about the point (0, 0)"];
+            refused(format!("{load}{rod}{analysis}"), &all);
+            let rolls = rod.clone() + &support("a", "'start'", "['y']");
+            refused(
+                format!("{load}{rolls}{analysis}"),
+                &["translation along x and rotation about the point (0, 0)"],
+            );
+        }
+        // The lower rod carries nothing.
+        refused(
+            format!("{pinned}{next}{}{analysis}", force("a", [0.0, -1.0])),
+            &["beam `b`", "about the point (1, 0)"],
+        );
+    }
+    refused(format!("{weight}{pinned}[analysis.buckling]\ncount = 1\n"), &["under-supported"]);
+    // With weight, other loads of fixed direction take part: 10 N each way at the end of the lower rod, and 9.81 N of each rod.
+    let [x, y] = tip(&solve(&format!(
+        "{weight}{pinned}{next}{}{}[analysis.static]\n",
+        probe("b"),
+        force("b", [10.0, -10.0])
+    )));
+    let rods = [1.5 * 9.81 + 10.0, 0.5 * 9.81 + 10.0]
+        .map(|down: f64| [10.0 / down.hypot(10.0), -down / down.hypot(10.0)]);
+    assert!((x - rods[0][0] - rods[1][0]).hypot(y - rods[0][1] - rods[1][1]) < 2e-3, "{x} {y}");
+}
+
+/// Joints that hold one motion twice are named.
+#[test]
+fn redundant_joints_are_named() {
+    let beams = |section: &str| {
+        beam("a", [[0.0, 0.0], [1.0, 0.0]], section, ANCF)
+            + &beam("b", [[1.0, 0.0], [2.0, 0.0]], section, RPIM)
+            + &support("a", "'start'", CLAMP)
+            + &force("b", [0.0, 1.0])
+            + "[analysis.static]\n"
+    };
+    let (elastic, inextensible) =
+        ("axial_stiffness = 1e5\nbending_stiffness = 1.0", "bending_stiffness = 1.0");
+    let (end, start) = (("a", "'end'"), ("b", "'start'"));
+    let at = "s = 1.0000 m of beam `a` and s = 0.0000 m of beam `b`";
+    let refused = |text: String, parts: &[&str]| {
+        let error = attempt(&text).err().unwrap_or_else(|| panic!("not refused:\n{text}"));
+        assert_eq!(error.exit_status(), 2, "{error}");
+        let error = error.to_string();
+        assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+    };
+    let (weld, hinge) = (joint("weld", end, start), joint("hinge", end, start));
+    let (named_weld, named_hinge) = (format!("the weld of {at}"), format!("the hinge of {at}"));
+    for section in [elastic, inextensible] {
+        let beams = beams(section);
+        refused(
+            format!("{beams}{weld}{weld}"),
+            &[&format!("{named_weld} and {named_weld} hold the same motion")],
+        );
+        refused(format!("{beams}{weld}{hinge}"), &[&named_weld, &named_hinge]);
+        refused(format!("{beams}{hinge}{}", joint("weld", start, end)), &[&named_hinge, "the weld of"]);
+        refused(
+            format!("{beams}{weld}{}", joint("hinge", ("a", "0.5"), ("a", "0.5"))),
+            &["ties a point to itself"],
+        );
+        let both = support("b", "'start'", CLAMP) + &support("a", "'end'", PIN);
+        refused(format!("{beams}{hinge}{both}"), &[&named_hinge, "the support at s = 0.0000 m of beam `b`"]);
+    }
+    let far = support("b", "'end'", PIN);
+    refused(
+        format!("{}{weld}{far}", beams(inextensible)),
+        &[&named_weld, "the length that beam `a` keeps", "the support at s = 1.0000 m of beam `b`"],
+    );
+    solve(&format!("{}{weld}{far}", beams(elastic)));
+    // Held once more than it needs to be, but not twice alike: a square with one diagonal, a ring, an arch of straight rods.
+    let corner = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let mut square = String::new();
+    for i in 0..4 {
+        square += &beam(
+            &format!("e{i}"),
+            [corner[i], corner[(i + 1) % 4]],
+            inextensible,
+            "{ ancf = { elements = 2 } }",
+        );
+        square += &joint("hinge", (&format!("e{i}"), "'end'"), (&format!("e{}", (i + 1) % 4), "'start'"));
+    }
+    square += &beam("d", [corner[0], corner[2]], inextensible, "{ ancf = { elements = 2 } }");
+    square += &joint("hinge", ("d", "'start'"), ("e0", "'start'"));
+    square += &joint("hinge", ("d", "'end'"), ("e2", "'start'"));
+    square += &(support("e0", "'start'", PIN) + &support("e0", "'end'", "['y']"));
+    solve(&format!("{square}{}[analysis.static]\n", force("e1", [1.0, 0.5])));
+    let second = beam("f", [corner[1], corner[3]], inextensible, "{ ancf = { elements = 2 } }")
+        + &joint("hinge", ("f", "'start'"), ("e1", "'start'"))
+        + &joint("hinge", ("f", "'end'"), ("e3", "'start'"));
+    refused(
+        format!("{square}{second}{}[analysis.static]\n", force("e1", [1.0, 0.5])),
+        &[
+            "the length that beam `e0` keeps",
+            "the length that beam `d` keeps",
+            "the length that beam `f` keeps",
+        ],
+    );
+}
+
+/// A path that may not have as many points as it needs is incomplete, and says how far it came.
+#[test]
+fn a_path_that_does_not_reach_its_target_is_incomplete() {
+    let arm = beam("a", [[0.0, 0.0], [1.0, 0.0]], "axial_stiffness = 1e5\nbending_stiffness = 1.0", ANCF)
+        + &support("a", "'start'", CLAMP)
+        + &probe("a")
+        + &force("a", [0.0, 4.0]);
+    let path =
+        |until: &str| attempt(&format!("{arm}[analysis.static.arc_length]\nmax_step = 0.05\n{until}\n"));
+    for (until, target) in [
+        ("until_load = 1.0\nmax_points = 4", "before load factor 1"),
+        ("until_probe = { probe = 'tip', y = 0.5 }\nmax_points = 4", "before y = 0.5 m of probe `tip`"),
+    ] {
+        let mut error = path(until).expect_err("not reached");
+        assert_eq!(error.exit_status(), 1);
+        let message = error.to_string();
+        assert!(
+            message.contains("`max_points = 4` at load factor 0.") && message.contains(target),
+            "{message}"
+        );
+        let partial = error.take_partial().expect("five states");
+        assert!(!partial.complete && partial.parameter.len() == 5);
+    }
+    for until in ["max_points = 4", "until_load = 1.0", "until_load = 0.01\nmax_points = 4"] {
+        assert!(path(until).expect("reached").complete);
+    }
+}
+
+/// Exact roots of a clamped beam with a mass and a rotary inertia at its tip, and no frequency between them on any mesh.
+#[test]
+fn rotary_inertia_of_a_point_makes_no_mode_of_its_own() {
+    let arm = |basis: &str| {
+        beam(
+            "a",
+            [[0.0, 0.0], [0.02223, 0.0]],
+            "axial_stiffness = 14942\nbending_stiffness = 1.1307e-3\nmass_per_length = 9.3049",
+            basis,
+        ) + &support("a", "'start'", CLAMP)
+            + "[[effect.point_mass]]\nbeam = 'a'\nat = 'end'\nmass = 0.03429\nrotary_inertia = 2.3387e-5\n[analysis.modal]\ncount = 4\n"
+    };
+    for basis in ["{ ancf = { elements = 8 } }", "{ ancf = { elements = 96 } }", "{ rpim = { nodes = 25 } }"]
+    {
+        let found = solve(&arm(basis)).frequencies;
+        for (found, exact) in found.iter().zip([6.1437, 19.8814, 97.189, 242.15]) {
+            assert!((found / exact - 1.0).abs() < 1e-3, "{basis}: {found} and {exact}");
+        }
+    }
+}
+
+/// A flywheel on a free stiff rod, off its middle: by every integrator energy and angular momentum stay, and the rod turns at the speed at which it starts.
+#[test]
+fn a_flywheel_keeps_energy_and_momentum() {
+    for method in [
+        "gauss = { tolerance = 1e-6 }",
+        "radau = { tolerance = 1e-6 }",
+        "generalized_alpha = { step = 5e-4, spectral_radius = 1.0 }",
+    ] {
+        let text = beam(
+            "a",
+            [[0.0, 0.0], [1.0, 0.0]],
+            "axial_stiffness = 1e4\nbending_stiffness = 10.0\nmass_per_length = 1.0",
+            ANCF,
+        ) + &support("a", "'start'", PIN)
+            + &probe("a")
+            + "[[effect.point_mass]]\nbeam = 'a'\nat = 0.75\nrotary_inertia = 0.5\n\
+               [[initial_velocity]]\nbeam = 'a'\nrotation = 3.0\nabout = [0, 0]\n"
+            + &format!("[analysis.dynamic]\nduration = 2.0\noutput_every = 0.1\n{method}\n");
+        let found = solve(&text);
+        let energies: Vec<f64> = found.energy.iter().map(|energy| energy.total()).collect();
+        // ½ (1/3 + 1/2) 3²
+        assert!((energies[0] - 3.75).abs() < 1e-3, "{method}: {}", energies[0]);
+        let worst = energies.iter().fold(0.0_f64, |worst, e| worst.max((e - energies[0]).abs()));
+        assert!(worst < 2e-3 * energies[0], "{method}: {worst} of {energies:?}");
+        let angle = found.probes[0].samples.last().expect("a state").angle;
+        assert!((angle - 6.0).abs() < 0.06, "{method}: {angle}");
+    }
+}
