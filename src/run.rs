@@ -6,7 +6,6 @@ mod locking;
 mod look;
 mod memory;
 mod modes;
-mod winding;
 
 pub use error::RunError;
 

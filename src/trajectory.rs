@@ -1,7 +1,7 @@
 //! What a computation leaves: states at the recorded times or load factors, seen through probes,
 //! energies and shapes. Output and verification read nothing else.
 
-use crate::effect::Slips;
+use crate::effect::InternalVariables;
 use crate::restart::SavedState;
 use crate::system::Reaction;
 use serde::Serialize;
@@ -145,10 +145,10 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// With what the springs of friction hold.
+    /// With what no function of the coordinates counts.
     #[must_use]
-    pub fn with(mut self, slips: &Slips) -> Self {
-        self.stored += slips.energy;
+    pub fn with(mut self, variables: &InternalVariables) -> Self {
+        self.stored += variables.energy();
         self
     }
 

@@ -15,7 +15,7 @@ mod obstacle;
 mod pressing;
 mod sweep;
 
-pub use friction::{Friction, Held, Rubbing, Slips};
+pub use friction::{Friction, Piece, Rubbing};
 pub use obstacle::Obstacle;
 pub use pressing::Pressing;
 

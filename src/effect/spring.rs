@@ -1,5 +1,6 @@
 //! Springs and dashpots between a point of a beam and the ground.
 
+use super::winding::{angle, bend};
 use super::{Density, Dissipation, Gradient, Hessian, Kind};
 use crate::model::Place;
 use crate::system::SystemError;
@@ -47,7 +48,7 @@ impl Part for Spring {
 
 /// A torsional spring and dashpot on the direction of r': W = ½ k (θ − θ₀)², R = ½ c θ̇².
 ///
-/// θ − θ₀ is counted from −π to π, so that a spring that is wound up further jumps; a run says so.
+/// θ counts all turns: those beyond half a turn by [`super::Winding`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorsionSpring {
     /// The point.
@@ -66,15 +67,12 @@ impl Part for TorsionSpring {
                 let reference = z.first().map_or(Vector2::x(), |[r]| *r);
                 Torsion { stiffness, reference }
             })?;
+            assembly.winding(self.at, stiffness)?;
         }
         if let Some(coefficient) = self.damping {
             assembly.damping(Kind::TorsionDashpot, extent, |_| TorsionDashpot { coefficient })?;
         }
         Ok(())
-    }
-
-    fn torsion_spring(&self) -> Option<Place> {
-        self.stiffness.map(|_| self.at)
     }
 
     fn couple(&self) -> Option<Place> {
@@ -213,7 +211,7 @@ pub(super) fn turn(r: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-r.y, r.x) / r.norm_squared()
 }
 
-/// W = ½ k (θ − θ₀)².
+/// W = ½ k (θ − θ₀)², θ − θ₀ from −π to π.
 #[derive(Clone, Debug)]
 pub struct Torsion {
     stiffness: f64,
@@ -227,8 +225,7 @@ impl Torsion {
     }
 
     fn angle(&self, r: &Vector2<f64>) -> f64 {
-        let t = &self.reference;
-        (t.x * r.y - t.y * r.x).atan2(t.dot(r))
+        angle(&self.reference, r)
     }
 }
 
@@ -250,12 +247,8 @@ impl Density<1> for Torsion {
         _: &Gradient<1>,
         _: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
-        let (x, y) = (z[0].x, z[0].y);
-        let inverse = 1.0 / z[0].norm_squared();
-        let second =
-            Matrix2::new(2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y) * (inverse * inverse);
         let first = turn(&z[0]);
-        let hessian = (first * first.transpose() + second * self.angle(&z[0])) * self.stiffness;
+        let hessian = (first * first.transpose() + bend(&z[0]) * self.angle(&z[0])) * self.stiffness;
         (self.gradient(point, z), [[hessian]])
     }
 }

@@ -3,8 +3,7 @@
 use super::RunError;
 use super::angle;
 use super::locking::Locking;
-use super::winding::Winding;
-use crate::effect::{Actions, Side, Slips};
+use crate::effect::{Actions, Side, InternalVariables};
 use crate::linear::Singular;
 use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
@@ -48,7 +47,6 @@ pub(super) struct Look<'a> {
     shapes: Vec<View>,
     probes: Vec<Watched>,
     locking: Locking,
-    winding: Winding,
 }
 
 /// A probe with the rows that see its point.
@@ -137,8 +135,8 @@ impl<'a> Look<'a> {
                 Ok(Watched { name: probe.name.clone(), beam, view, measure, reference_strain })
             })
             .collect::<Result<_, SystemError>>()?;
-        let (locking, winding) = (Locking::new(model, system)?, Winding::new(model, system)?);
-        Ok(Self { model, system, shapes, probes, locking, winding })
+        let locking = Locking::new(model, system)?;
+        Ok(Self { model, system, shapes, probes, locking })
     }
 
     /// The probe at which a path is to end, as (view, axis, value).
@@ -327,9 +325,9 @@ impl<'a> Look<'a> {
         trajectory: &mut Trajectory,
         parameter: f64,
         q: &[f64],
-        (velocity, slips): (Option<&[f64]>, &Slips),
+        (velocity, variables): (Option<&[f64]>, &InternalVariables),
     ) {
-        let effects = self.system.effects(parameter, q, velocity, slips);
+        let effects = self.system.effects(parameter, q, velocity, variables);
         if trajectory.effects.is_empty() {
             let series = |(name, energy, _): &(String, Option<f64>, [f64; 2])| EffectSeries {
                 name: name.clone(),
@@ -353,13 +351,13 @@ impl<'a> Look<'a> {
         trajectory: &mut Trajectory,
         parameter: f64,
         (history, q): (History<'_>, &[f64]),
-        (velocity, slips): (Option<&[f64]>, &Slips),
+        (velocity, variables): (Option<&[f64]>, &InternalVariables),
         energy: Energy,
     ) {
         trajectory.parameter.push(parameter);
         trajectory.energy.push(energy);
         if self.model.outputs.effects {
-            self.record_effects(trajectory, parameter, q, (velocity, slips));
+            self.record_effects(trajectory, parameter, q, (velocity, variables));
         }
         for (probe, (Watched { beam, view, measure, reference_strain, .. }, series)) in
             self.probes.iter().zip(&mut trajectory.probes).enumerate()
@@ -388,33 +386,31 @@ impl<'a> Look<'a> {
     pub(super) fn statics(&self, solution: &Solution) -> Trajectory {
         let mut trajectory = self.empty(AnalysisKind::Static);
         let every = solution.states.len().div_ceil(FRAMES).max(1);
-        let (mut locking, mut winding) = (self.locking.clone(), self.winding.clone());
+        let mut locking = self.locking.clone();
         // Of actuators, by the trapezoidal rule.
         let (mut work, mut last) = (0.0, (0.0, 0.0));
-        for (i, ((load, x), slips)) in solution.states.iter().zip(&solution.slips).enumerate() {
+        for (i, ((load, x), variables)) in solution.states.iter().zip(&solution.variables).enumerate() {
             let q = self.coordinates_of(x);
             if self.model.outputs.reactions {
-                self.record_reactions(&mut trajectory, &self.system.static_reactions(*load, x, slips));
+                self.record_reactions(&mut trajectory, &self.system.static_reactions(*load, x, variables));
             }
             let before = i.checked_sub(1).map(|i| self.coordinates_of(&solution.states[i].1));
             let rate = self.system.actuators_rate(*load, q);
             work += 0.5 * (rate + last.1) * (load - last.0);
             last = (*load, rate);
-            let energy = Energy { work, ..self.system.energy(*load, q, None).with(slips) };
-            self.record(&mut trajectory, *load, (History::Before(before), q), (None, slips), energy);
-            winding.see(self.system, before, q);
+            let energy = Energy { work, ..self.system.energy(*load, q, None).with(variables) };
+            self.record(&mut trajectory, *load, (History::Before(before), q), (None, variables), energy);
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(*load, q));
                 locking.see(q);
             }
         }
-        if let (Some((load, x)), Some(slips)) = (solution.states.last(), solution.slips.last()) {
-            let actions = self.system.static_actions(*load, x, slips);
+        if let (Some((load, x)), Some(variables)) = (solution.states.last(), solution.variables.last()) {
+            let actions = self.system.static_actions(*load, x, variables);
             trajectory.last = self.loaded(self.coordinates_of(x), &actions);
         }
         trajectory.warnings.extend(self.folds(&trajectory.last));
         trajectory.warnings.extend(locking.warnings());
-        trajectory.warnings.extend(winding.warnings(self.system));
         trajectory.history = solution.history.clone();
         trajectory.statistics = solution.statistics;
         for event in &solution.events {
@@ -546,22 +542,21 @@ impl<'a> Look<'a> {
         let mut trajectory = self.empty(AnalysisKind::Dynamic);
         trajectory.settings.push(("integrator".into(), settings.integrator.to_string()));
         let every = solution.states.len().div_ceil(FRAMES).max(1);
-        let (mut locking, mut winding) = (self.locking.clone(), self.winding.clone());
+        let mut locking = self.locking.clone();
         for reactions in &solution.reactions {
             self.record_reactions(&mut trajectory, reactions);
         }
         for (i, state) in solution.states.iter().enumerate() {
             let (q, v) = (&state.q[..], Some(&state.v[..]));
-            let energy = self.system.energy(state.time, q, v).with(&state.slips);
+            let energy = self.system.energy(state.time, q, v).with(&state.variables);
             let energy = Energy { work: state.work + energy.work, lost: state.lost, ..energy };
             self.record(
                 &mut trajectory,
                 state.time,
                 (History::Angles(&state.angles), q),
-                (v, &state.slips),
+                (v, &state.variables),
                 energy,
             );
-            winding.see(self.system, None, q);
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(state.time, q));
                 locking.see(q);
@@ -594,7 +589,6 @@ impl<'a> Look<'a> {
             ));
         }
         trajectory.warnings.extend(locking.warnings());
-        trajectory.warnings.extend(winding.warnings(self.system));
         let divided = solution.statistics.rejected_steps;
         if divided > 0 && matches!(settings.integrator.step_control(), StepControl::Fixed(_)) {
             let smallest = solution.history.iter().map(|r| r.step).fold(f64::INFINITY, f64::min);

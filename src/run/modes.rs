@@ -2,7 +2,7 @@
 
 use super::look::Look;
 use super::{Control, Observer, Progress, RunError};
-use crate::effect::Slips;
+use crate::effect::InternalVariables;
 use crate::model::{About, Static};
 use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};
@@ -32,7 +32,7 @@ impl Look<'_> {
             trajectory.last = self.unloaded();
             let mut x = self.system.reference().to_vec();
             x.resize(x.len() + self.system.multipliers(), 0.0);
-            return self.modal(trajectory, 0.0, &x, count);
+            return self.modal(trajectory, (0.0, &x, &InternalVariables::default()), count);
         }
         let report = &mut |load: f64, step: f64, statistics: &Statistics| {
             let newton_iterations = statistics.newton_iterations;
@@ -47,10 +47,11 @@ impl Look<'_> {
             }
             // The way there is of no interest, only that it led there.
             solution.states.drain(..solution.states.len().saturating_sub(1));
-            solution.slips.drain(..solution.slips.len().saturating_sub(1));
+            solution.variables.drain(..solution.variables.len().saturating_sub(1));
             let trajectory = Trajectory { analysis: AnalysisKind::Modal, ..self.statics(&solution) };
+            let variables = solution.variables.last().cloned().unwrap_or_default();
             let vibrations = match solution.states.last() {
-                Some((load, x)) if *load == 1.0 => self.modal(trajectory, *load, x, count),
+                Some((load, x)) if *load == 1.0 => self.modal(trajectory, (*load, x, &variables), count),
                 // Stopped on the way.
                 _ => Ok(trajectory),
             };
@@ -64,8 +65,7 @@ impl Look<'_> {
     fn modal(
         &self,
         mut trajectory: Trajectory,
-        load: f64,
-        x: &[f64],
+        (load, x, variables): (f64, &[f64], &InternalVariables),
         count: usize,
     ) -> Result<Trajectory, RunError> {
         if load == 0.0 && self.system.has_loads() {
@@ -77,7 +77,7 @@ impl Look<'_> {
         }
         let about = if load == 0.0 { "the stress-free state" } else { "the equilibrium under all loads" };
         trajectory.settings.push(("vibrations about".into(), about.into()));
-        let modes = modal::solve(self.system, load, x, count)?;
+        let modes = modal::solve(self.system, load, x, variables, count)?;
         let q = self.coordinates_of(x);
         trajectory.modes = modes.shapes.iter().map(|mode| self.mode_shape(q, mode)).collect();
         trajectory.statistics.factorizations += modes.factorizations;
@@ -105,7 +105,7 @@ impl Look<'_> {
     /// The stress-free state.
     fn unloaded(&self) -> Vec<Shape> {
         let reference = self.system.reference();
-        self.loaded(reference, &self.system.static_actions(0.0, reference, &Slips::default()))
+        self.loaded(reference, &self.system.static_actions(0.0, reference, &InternalVariables::default()))
     }
 
     /// The state `q` with a mode added, its largest displacement a tenth of a beam length.

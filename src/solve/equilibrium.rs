@@ -2,7 +2,7 @@
 
 use super::newton::{Equations, RESIDUAL_TOLERANCE};
 use super::retraction::Retraction;
-use crate::effect::{Earlier, Held, Slips, Workspace};
+use crate::effect::{Earlier, Held, InternalVariables, Workspace};
 use crate::lanes::Lanes;
 use crate::linear::bordered::BorderRow;
 use crate::linear::{Factor, Matrix, Singular};
@@ -23,7 +23,7 @@ pub struct Equilibrium<'a> {
     border: Vec<BorderRow>,
     workspace: Workspace,
     held_rate: Vec<f64>,
-    /// The last accepted state, for friction.
+    /// The last accepted state, for what depends on the way.
     held: Held,
     /// Counts so far.
     pub statistics: Statistics,
@@ -51,17 +51,24 @@ impl<'a> Equilibrium<'a> {
         self.system
     }
 
-    /// Takes `x` for the last accepted state, from which friction counts slips.
+    /// Takes `x` for the last accepted state, from which internal variables are counted.
     pub fn hold(&mut self, x: &[f64]) {
-        if self.system.has_friction() {
-            let slips = self.slips(x);
-            self.held = Held { q: x[..self.system.coordinates()].to_vec(), slips };
+        if self.system.has_history() {
+            let variables = self.internal_variables(x);
+            self.held = Held { q: x[..self.system.coordinates()].to_vec(), variables };
         }
     }
 
-    /// What friction remembers of the state `x`.
-    pub fn slips(&self, x: &[f64]) -> Slips {
-        self.system.slips(&self.held, &x[..self.system.coordinates()])
+    /// Counts the turns of torsion springs on to `x`, which need not be accepted, on a way of many small changes.
+    pub fn follow_windings(&mut self, x: &[f64]) {
+        if self.system.has_windings() {
+            self.held.variables.angles = self.internal_variables(x).angles;
+        }
+    }
+
+    /// The internal variables of the state `x`.
+    pub fn internal_variables(&self, x: &[f64]) -> InternalVariables {
+        self.system.internal_variables(&self.held, &x[..self.system.coordinates()])
     }
 
     /// Number of unknowns.
@@ -82,7 +89,7 @@ impl<'a> Equilibrium<'a> {
         let n = self.system.coordinates();
         self.statistics.residual_evaluations += 1;
         self.system.force(load, &x[..n], &mut negative[..n]);
-        self.system.add_friction(&self.held, &x[..n], &mut negative[..n]);
+        self.system.add_history(&self.held, &x[..n], &mut negative[..n]);
         self.balanced(load, x, negative)
     }
 
@@ -115,7 +122,7 @@ impl<'a> Equilibrium<'a> {
         let q = &x[..n];
         let force = &mut negative[..n];
         system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
-        system.add_friction_and_tangent(&self.held, q, force, &mut self.tangent, &mut self.workspace);
+        system.add_history_and_tangent(&self.held, q, force, &mut self.tangent, &mut self.workspace);
         let residual = self.balanced(load, x, negative);
         system.add_constraint_stiffness(q, &x[n..], &mut self.tangent);
         system.supports().turn_matrix(load, &mut self.tangent);
@@ -146,7 +153,7 @@ impl<'a> Equilibrium<'a> {
         self.statistics.factorizations += 1;
         let force = &mut negative[..n];
         system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
-        system.add_friction_and_tangent(&self.held, q, force, &mut self.tangent, &mut self.workspace);
+        system.add_history_and_tangent(&self.held, q, force, &mut self.tangent, &mut self.workspace);
         self.balanced(load, x, negative);
         system.add_constraint_stiffness(q, &x[n..], &mut self.tangent);
         self.tangent.add_diagonal(sigma, diagonal);

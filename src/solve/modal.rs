@@ -11,7 +11,7 @@
 //! frequency of a clamped beam, where the matrix alone leaves 5e-2. What cannot be told from zero is zero.
 
 use super::eigen::{EigenError, Pencil, dot, largest_reciprocals};
-use crate::effect::Workspace;
+use crate::effect::{InternalVariables, Workspace};
 use crate::linear::Matrix;
 use crate::system::System;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
@@ -30,11 +30,17 @@ pub struct Modes {
 }
 
 /// The `count` lowest vibrations about the equilibrium `x` (coordinates, then scaled multipliers) at load factor `load`, motions
-/// without resistance included. At load factor 0 the loads are absent.
+/// without resistance included. At load factor 0 the loads are absent. `variables` are those of the equilibrium; friction takes no part.
 ///
 /// # Errors
 /// [`EigenError`] where the state is unstable or the loads have no symmetric tangent.
-pub fn solve(system: &System, load: f64, x: &[f64], count: usize) -> Result<Modes, EigenError> {
+pub fn solve(
+    system: &System,
+    load: f64,
+    x: &[f64],
+    variables: &InternalVariables,
+    count: usize,
+) -> Result<Modes, EigenError> {
     let supports = system.supports();
     let (q, multipliers) = x.split_at(system.coordinates());
     let mut stiffness = if load == 0.0 {
@@ -46,6 +52,7 @@ pub fn solve(system: &System, load: f64, x: &[f64], count: usize) -> Result<Mode
     } else {
         return Err(EigenError::NotSymmetric { analysis: "modal" });
     };
+    system.add_winding_tangent(variables, q, &mut stiffness);
     system.add_constraint_stiffness(q, multipliers, &mut stiffness);
     let mut mass = system.mass_matrix();
     system.add_turning_mass(q, &mut mass);
@@ -70,6 +77,7 @@ pub fn solve(system: &System, load: f64, x: &[f64], count: usize) -> Result<Mode
             let (mut v, mut f) = (vector.clone(), vec![0.0; q.len()]);
             supports.from_frames(load, &mut v);
             system.tangent_product(load, q, &v, &mut f);
+            system.add_winding_tangent_product(variables, q, &v, &mut f);
             system.add_constraint_stiffness_product(q, multipliers, &v, &mut f);
             supports.to_frames(load, &mut f);
             f

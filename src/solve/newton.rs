@@ -132,6 +132,12 @@ pub enum Failure {
         /// Energy gained, relative to the kinetic energy.
         gain: f64,
     },
+    /// A torsion spring turns so far in a step that it could have turned the other way.
+    #[error("a torsion spring turns by {turn:.1} rad in one step, so that its turns cannot be counted; take smaller steps")]
+    Overwound {
+        /// The turn \[rad\].
+        turn: f64,
+    },
     /// The limit of iterations was reached.
     #[error(
         "no convergence within {iterations} iterations (the last increment is {last:.1e} of a beam length)"

@@ -71,8 +71,8 @@ const UNEXPLAINED_TURN: f64 = 0.02;
 const UNEXPLAINED_OF_STEP: f64 = 0.02;
 /// Predicted turn of any node in one step \[rad\], with finite turns and with increments that are added.
 const LARGEST_STEP: (f64, f64) = (7.0, 0.8);
-/// The same where there are contacts: the way between two points is then looked at.
-const WITH_CONTACTS: f64 = 0.5;
+/// The same where the way between two points counts, as it does for contacts and for springs that are wound up.
+const BY_SMALL_STEPS: f64 = 0.5;
 /// A corrector that turns no node by more than this stays on its side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
 /// Smallest step, relative to the first one that was to be tried.
@@ -191,12 +191,13 @@ impl<'e, 'a> Path<'e, 'a> {
             }
             let turn = self.predicted_turn(step);
             let (turned, added) = LARGEST_STEP;
-            let largest =
-                match (self.equilibrium.system().has_contacts(), self.equilibrium.retraction.turns()) {
-                    (true, _) => WITH_CONTACTS,
-                    (false, true) => turned,
-                    (false, false) => added,
-                };
+            let system = self.equilibrium.system();
+            let by_small_steps = system.has_contacts() || system.has_windings();
+            let largest = match (by_small_steps, self.equilibrium.retraction.turns()) {
+                (true, _) => BY_SMALL_STEPS,
+                (false, true) => turned,
+                (false, false) => added,
+            };
             if turn > largest {
                 self.step = step * (0.95 * largest / turn);
                 step = self.step;

@@ -106,6 +106,7 @@ pub fn relax(
         }
         change.iter_mut().zip(&increment).for_each(|(change, d)| *change = part * d);
         x.iter_mut().zip(&change).for_each(|(x, d)| *x += d);
+        equilibrium.follow_windings(x);
         if size <= settings.tolerance && sigma < SETTLED * first && residual <= settings.residual_tolerance {
             return Ok(());
         }

@@ -4,7 +4,7 @@ use super::equilibrium::Equilibrium;
 use super::newton::{Iterations, Settings};
 use super::path::{Parameter, Path, Stuck};
 use super::relax::{Rest, relax};
-use crate::effect::Slips;
+use crate::effect::InternalVariables;
 use crate::model::{ArcLength, Static};
 use crate::system::{System, View};
 use crate::trajectory::{Statistics, StepRecord};
@@ -22,8 +22,8 @@ const PUSH: f64 = 1e-3;
 pub struct Solution {
     /// (load factor, coordinates and scaled multipliers) of the recorded equilibria, the stress-free state first.
     pub states: Vec<(f64, Vec<f64>)>,
-    /// What friction remembers of each of them.
-    pub slips: Vec<Slips>,
+    /// The internal variables of each of them.
+    pub variables: Vec<InternalVariables>,
     /// Attempted steps.
     pub history: Vec<StepRecord>,
     /// Instabilities met.
@@ -39,7 +39,7 @@ pub struct Solution {
 impl Solution {
     fn record(&mut self, equilibrium: &Equilibrium<'_>, load: f64, x: &[f64]) {
         self.states.push((load, x.to_vec()));
-        self.slips.push(equilibrium.slips(x));
+        self.variables.push(equilibrium.internal_variables(x));
     }
 }
 

@@ -7,7 +7,8 @@
 use super::{Acting, BeamPart, Needs, SystemError, Turning};
 use crate::basis::{Basis, BasisTable, Quadrature};
 use crate::effect::{
-    Damping, Density, Dissipation, Effect, Friction, Integral, Kind, Pressing, Rayleigh, Rubbing, Travelling,
+    Damping, Density, Direction, Dissipation, Effect, Friction, Integral, Kind, Pressing, Rayleigh, Rubbing,
+    Travelling, Winding,
 };
 use crate::model::{Beam, Law, Model, Place};
 use crate::system::course::Amplitude;
@@ -31,11 +32,6 @@ pub trait Part: fmt::Debug + Send + Sync {
     /// What it looks like on the ground, as a line for pictures; `size` is that of the beams \[m\].
     fn outline(&self, _size: f64) -> Vec<[f64; 2]> {
         Vec::new()
-    }
-
-    /// Where it is a spring on the direction of r'.
-    fn torsion_spring(&self) -> Option<Place> {
-        None
     }
 
     /// Where it takes or gives a couple.
@@ -89,6 +85,7 @@ pub struct Assembly<'a> {
     pub(super) travelling: Vec<Travelling>,
     pub(super) contacts: Vec<Arc<Pressing>>,
     pub(super) friction: Vec<Rubbing>,
+    pub(super) windings: Vec<Winding>,
     pub(super) left_out: Vec<(Kind, usize)>,
 }
 
@@ -107,6 +104,7 @@ impl<'a> Assembly<'a> {
             travelling: Vec::new(),
             contacts: Vec::new(),
             friction: Vec::new(),
+            windings: Vec::new(),
             left_out: Vec::new(),
         }
     }
@@ -247,6 +245,18 @@ impl<'a> Assembly<'a> {
             self.friction.push(Rubbing::new(Arc::clone(&contact), friction, self.friction.len()));
         }
         self.contacts.push(contact);
+    }
+
+    /// The turns of a torsion spring.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`].
+    pub fn winding(&mut self, at: Place, stiffness: f64) -> Result<(), SystemError> {
+        let direction = |z: Vec<[Vector2<f64>; 1]>| Direction::new(z.first().map_or(Vector2::x(), |[r]| *r));
+        let direction =
+            self.integral(Kind::TorsionSpring, Extent::Point(at), Direction::ORDERS, direction)?;
+        self.windings.push(Winding::new(Box::new(direction), stiffness, self.windings.len()));
+        Ok(())
     }
 
     /// A force whose place moves.

@@ -2,8 +2,7 @@
 
 use super::System;
 use super::sums::resultant;
-use crate::effect::{Effect, Held, Slips, Workspace};
-use crate::linear::Matrix;
+use crate::effect::{Effect, Held};
 
 impl System {
     /// Whether there are any.
@@ -57,39 +56,6 @@ impl System {
     /// Whether any contact has friction.
     pub fn has_friction(&self) -> bool {
         !self.friction.is_empty()
-    }
-
-    /// `f += ` the forces of friction in the state `q`, where `held` was the last accepted one.
-    pub fn add_friction(&self, held: &Held, q: &[f64], f: &mut [f64]) {
-        self.friction.iter().for_each(|friction| friction.add_force(held, q, f));
-    }
-
-    /// The same, and `k += ` their derivative.
-    pub fn add_friction_and_tangent(
-        &self,
-        held: &Held,
-        q: &[f64],
-        f: &mut [f64],
-        k: &mut Matrix,
-        workspace: &mut Workspace,
-    ) {
-        self.friction.iter().for_each(|friction| friction.add_force_and_tangent(held, q, f, k, workspace));
-    }
-
-    /// The slips in the state `q`, where `held` was the last accepted one.
-    pub fn slips(&self, held: &Held, q: &[f64]) -> Slips {
-        let mut slips = Slips::default();
-        for friction in &self.friction {
-            let (pieces, energy) = friction.slips(held, q);
-            slips.energy += energy;
-            slips.contacts.push(pieces);
-        }
-        slips
-    }
-
-    /// `f += ` the forces of friction in the state `q` that has the slips `slips`.
-    pub fn add_held_friction(&self, slips: &Slips, q: &[f64], f: &mut [f64]) {
-        self.friction.iter().for_each(|friction| friction.add_held_force(slips, q, f));
     }
 
     /// Per contact with friction whether the larger part of it slides, and whether against friction.

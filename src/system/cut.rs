@@ -12,7 +12,7 @@
 //! is another thing: its error is that of the strain times EA, of any size against a load that bends a slender beam.
 
 use super::{System, Turning};
-use crate::effect::{Action, Actions, Slips};
+use crate::effect::{Action, Actions, InternalVariables};
 use nalgebra::Vector2;
 
 /// A state in which all forces balance.
@@ -28,14 +28,14 @@ pub struct Balanced<'b> {
     pub held: &'b [f64],
     /// Scaled multipliers.
     pub multipliers: &'b [f64],
-    /// Slips of friction.
-    pub slips: &'b Slips,
+    /// The internal variables.
+    pub variables: &'b InternalVariables,
 }
 
 impl System {
     /// What acts on each beam.
     pub fn actions(&self, state: Balanced<'_>) -> Vec<Actions> {
-        let Balanced { parameter, q, motion, held, multipliers, slips } = state;
+        let Balanced { parameter, q, motion, held, multipliers, variables } = state;
         let mut actions = vec![Actions::default(); self.beams.len()];
         for effect in &self.internal {
             effect.add_actions(1.0, q, q, &mut actions[effect.beam()]);
@@ -60,7 +60,10 @@ impl System {
             }
         }
         for friction in &self.friction {
-            friction.add_held_actions(slips, q, &mut actions[friction.beam()]);
+            friction.add_held_actions(variables, q, &mut actions[friction.beam()]);
+        }
+        for winding in &self.windings {
+            winding.add_actions(variables, q, &mut actions[winding.beam()]);
         }
         for (part, actions) in self.beams.iter().zip(&mut actions) {
             let range = 4 * part.first_node..4 * (part.first_node + part.basis.nodes().len());
@@ -82,9 +85,9 @@ impl System {
     }
 
     /// The same in equilibrium, `x` being coordinates and scaled multipliers.
-    pub fn static_actions(&self, load: f64, x: &[f64], slips: &Slips) -> Vec<Actions> {
+    pub fn static_actions(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<Actions> {
         let (q, multipliers) = x.split_at(self.coordinates());
-        let held = self.static_held_forces(load, x, slips);
-        self.actions(Balanced { parameter: load, q, motion: None, held: &held, multipliers, slips })
+        let held = self.static_held_forces(load, x, variables);
+        self.actions(Balanced { parameter: load, q, motion: None, held: &held, multipliers, variables })
     }
 }

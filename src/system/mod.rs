@@ -19,6 +19,7 @@ pub mod course;
 mod cut;
 mod effects;
 mod error;
+mod history;
 mod hold;
 pub mod inextensible;
 mod inventory;
@@ -42,7 +43,7 @@ pub use view::{Fields, View, unfold};
 
 use crate::basis::Basis;
 use crate::centreline::Curve;
-use crate::effect::{Damping, Effect, Kind, Pressing, Rubbing, Travelling};
+use crate::effect::{Damping, Effect, Kind, Pressing, Rubbing, Travelling, Winding};
 use crate::linear::Matrix;
 use crate::model::freedom::Freedom;
 use crate::model::{Centreline, Discretization, Joint, Model, Place};
@@ -139,6 +140,7 @@ pub struct System {
     /// The contacts, which are among the internal effects.
     contacts: Vec<Arc<Pressing>>,
     friction: Vec<Rubbing>,
+    windings: Vec<Winding>,
     left_out: Vec<(Kind, usize)>,
     supports: Supports,
     /// Gradients that a motion has in polar coordinates.
@@ -213,6 +215,7 @@ impl System {
             travelling: Vec::new(),
             contacts: Vec::new(),
             friction: Vec::new(),
+            windings: Vec::new(),
             left_out: Vec::new(),
             supports: Supports::default(),
             polar: Polar::default(),
@@ -238,12 +241,14 @@ impl System {
             travelling,
             contacts,
             friction,
+            windings,
             left_out,
             ..
         } = assembly;
         (system.internal, system.loads, system.inertia) = (internal, loads, inertia);
         (system.turning, system.damping, system.travelling) = (turning, damping, travelling);
         (system.contacts, system.friction, system.left_out) = (contacts, friction, left_out);
+        system.windings = windings;
         system.actuated = actuation::actuated(model, &system);
         system.constant_load = vec![0.0; system.coordinates()];
         for load in system.loads.iter().filter(|load| load.is_summed()) {

@@ -4,7 +4,7 @@
 //! moment r' × F' on the section, for δW = F'·δr' = M δθ with δr' = δθ J r'.
 
 use super::System;
-use crate::effect::Slips;
+use crate::effect::InternalVariables;
 use crate::model::{FixedRotation, Support};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -73,18 +73,18 @@ impl System {
         self.sources.iter().map(of).collect()
     }
 
-    /// The same in equilibrium, `x` being coordinates and scaled multipliers, with the slips of friction.
-    pub fn static_reactions(&self, load: f64, x: &[f64], slips: &Slips) -> Vec<Reaction> {
+    /// The same in equilibrium, `x` being coordinates and scaled multipliers, with the internal variables.
+    pub fn static_reactions(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<Reaction> {
         let (q, multipliers) = x.split_at(self.coordinates());
-        self.reactions(load, q, &self.static_held_forces(load, x, slips), multipliers)
+        self.reactions(load, q, &self.static_held_forces(load, x, variables), multipliers)
     }
 
     /// Forces of supports on the held coordinates in equilibrium, in fixed axes.
-    pub(super) fn static_held_forces(&self, load: f64, x: &[f64], slips: &Slips) -> Vec<f64> {
+    pub(super) fn static_held_forces(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<f64> {
         let (q, multipliers) = x.split_at(self.coordinates());
         let mut force = vec![0.0; q.len()];
         self.force(load, q, &mut force);
-        self.add_held_friction(slips, q, &mut force);
+        self.add_known_history(variables, q, &mut force);
         self.add_constraint_forces(load, q, multipliers, &mut force);
         self.supports.keep_held(load, &mut force);
         force
@@ -97,7 +97,7 @@ impl System {
         parameter: f64,
         q: &[f64],
         velocity: Option<&[f64]>,
-        slips: &Slips,
+        variables: &InternalVariables,
     ) -> Vec<(String, Option<f64>, [f64; 2])> {
         let mut f = vec![0.0; q.len()];
         let resultant = |f: &mut Vec<f64>| {
@@ -123,8 +123,12 @@ impl System {
             out.push((name(force.kind(), force.beam()), None, resultant(&mut f)));
         }
         for friction in &self.friction {
-            friction.add_held_force(slips, q, &mut f);
+            friction.add_held_force(variables, q, &mut f);
             out.push((name(crate::effect::Kind::Friction, friction.beam()), None, resultant(&mut f)));
+        }
+        for (winding, angle) in self.windings.iter().zip(&variables.angles) {
+            let kind = crate::effect::Kind::TorsionSpring;
+            out.push((name(kind, winding.beam()), Some(winding.energy(*angle)), [0.0; 2]));
         }
         if let Some(v) = velocity {
             for effect in &self.inertia {

@@ -1,6 +1,6 @@
 //! Dry friction: what sticks rests, what slides is slowed as Coulomb says, and what is lost is friction's work.
 
-use ancf::effect::{Contact, Friction, Held, Obstacle, Slips, Workspace};
+use ancf::effect::{Contact, Friction, Held, InternalVariables, Obstacle, Workspace};
 use ancf::linear::Matrix;
 use ancf::model::{
     Analysis, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Section, SideCondition,
@@ -63,10 +63,10 @@ proptest! {
             q.iter().zip(noise[from..].iter().cycle()).map(|(q, n)| q + size * n).collect()
         };
         let start = moved(system.reference(), 0.02, 0);
-        let rest = Held { q: start.clone(), slips: Slips::default() };
+        let rest = Held { q: start.clone(), variables: InternalVariables::default() };
         let mut first = start.clone();
         first.chunks_exact_mut(4).for_each(|node| node[0] += push);
-        let held = Held { slips: system.slips(&rest, &first), q: first.clone() };
+        let held = Held { variables: system.internal_variables(&rest, &first), q: first.clone() };
         let mut q = moved(&first, 1e-4, 10);
         q.chunks_exact_mut(4).for_each(|node| node[0] += 0.2 * push);
         prop_assume!(push.abs() > 2e-3);
@@ -77,7 +77,7 @@ proptest! {
         };
         let (mut f, mut k): (_, Matrix) = (vec![0.0; q.len()], system.matrix());
         k.clear();
-        system.add_friction_and_tangent(&held, &q, &mut f, &mut k, &mut Workspace::default());
+        system.add_history_and_tangent(&held, &q, &mut f, &mut k, &mut Workspace::default());
         prop_assert_eq!(&f, &force(&q));
         let direction = moved(&vec![0.0; q.len()], 1.0, 20);
         let step = |h: f64| -> Vec<f64> { q.iter().zip(&direction).map(|(q, d)| q + h * d).collect() };
@@ -93,7 +93,7 @@ proptest! {
         }
         // What is remembered of a state gives its force.
         let mut again = vec![0.0; q.len()];
-        system.add_held_friction(&system.slips(&held, &q), &q, &mut again);
+        system.add_known_history(&system.internal_variables(&held, &q), &q, &mut again);
         let size = f.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
         for (a, b) in f.iter().zip(&again) {
             prop_assert!((a - b).abs() <= 1e-9 * size + 1e-15, "{a}, not {b}");
@@ -203,7 +203,7 @@ fn a_restart_goes_on_bit_for_bit() {
         let last = |solution: &Solution| solution.states.last().cloned().expect("a state");
         assert!(last(&first).time < 0.9 * last(&whole).time, "{integrator}: stopped on the way");
         assert_eq!(last(&second), last(&whole), "{integrator}");
-        assert!(last(&whole).slips.energy > 0.0, "{integrator}: the springs of friction are stretched");
+        assert!(last(&whole).variables.friction > 0.0, "{integrator}: the springs of friction are stretched");
     }
 }
 

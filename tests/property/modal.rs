@@ -1,6 +1,7 @@
 //! Vibrations about the stress-free state and about equilibria, by both methods for eigenpairs.
 
 use super::generators::clamp;
+use ancf::effect::InternalVariables;
 use ancf::linear::Matrix;
 use ancf::model::{
     About, Analysis, Beam, Centreline, Discretization, Displacement, Fixed, FixedRotation, GaussPoints,
@@ -194,7 +195,7 @@ proptest! {
         let settings = Static { steps: Some(100), ..Static::default() };
         let states = statics::solve(&system, &settings, None, &mut |_, _, _| true).states;
         let (load, q) = states.last().expect("an equilibrium");
-        let modes = modal::solve(&system, *load, q, 3).expect("a stable state");
+        let modes = modal::solve(&system, *load, q, &InternalVariables::default(), 3).expect("a stable state");
         let mass = system.mass_matrix();
         let view = View::point(&system.beams()[0].basis, 0, 0.0).expect("on the beam");
         for (i, shape) in modes.shapes.iter().enumerate() {

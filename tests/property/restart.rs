@@ -27,7 +27,7 @@ fn go_on(text: &str, from: &Trajectory) -> Result<Trajectory, RunError> {
 }
 
 /// Everything that has a memory: loads without potential, damping, contact, a support that turns, a beam that keeps its length.
-const MOTIONS: [&str; 4] = [
+const MOTIONS: [&str; 5] = [
     "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 0.1, mass_per_length = 1, basis.ancf.elements = 4 }
      support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]
      effect.gravity.acceleration = [0, -9.81]
@@ -43,6 +43,11 @@ const MOTIONS: [&str; 4] = [
     "beam.arm = { start = [0, 0], end = [1, 0], bending_stiffness = 0.1, mass_per_length = 1, basis.ancf.elements = 4 }
      support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]
      effect.gravity.acceleration = [0, -9.81]",
+    // A torsion spring that is wound up.
+    "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1e3, mass_per_length = 3, basis.ancf.elements = 4 }
+     support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]
+     initial_velocity = [{ beam = 'arm', rotation = 40, about = [0, 0] }]
+     effect.torsion_spring = [{ beam = 'arm', at = 'start', stiffness = 2 }]",
 ];
 
 fn motion(system: &str, duration: f64, integrator: &str, event: &str) -> String {

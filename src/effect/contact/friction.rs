@@ -19,7 +19,7 @@
 use super::Pressing;
 use super::curve::{Curve, MOST};
 use crate::effect::integral::{add_tiles, multiply_rows};
-use crate::effect::{Action, Actions, Effect, Workspace};
+use crate::effect::{Action, Actions, Effect, Held, InternalVariables, Workspace};
 use crate::linear::Matrix;
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -50,24 +50,6 @@ pub struct Piece {
     from: f64,
     to: f64,
     slip: Vec<f64>,
-}
-
-/// What the friction of all contacts of a system remembers of a state.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Slips {
-    /// Energy that the springs hold \[J\].
-    pub energy: f64,
-    /// Per contact with friction its pieces, in order.
-    pub contacts: Vec<Vec<Piece>>,
-}
-
-/// The last accepted state, from which slips are counted.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Held {
-    /// Its coordinates.
-    pub q: Vec<f64>,
-    /// Its slips.
-    pub slips: Slips,
 }
 
 /// A point that touches.
@@ -116,7 +98,7 @@ impl Rubbing {
     fn for_touching(&self, held: &Held, q: &[f64], mut visit: impl FnMut(usize, [f64; 2], &Touching)) {
         let contact = &*self.contact;
         let empty = Vec::new();
-        let pieces = held.slips.contacts.get(self.number).unwrap_or(&empty);
+        let pieces = held.variables.contacts.get(self.number).unwrap_or(&empty);
         for (cell, curve) in contact.near(q) {
             let before = contact.cells.curve(cell, &held.q);
             let first = pieces.partition_point(|piece| piece.cell < cell);
@@ -225,10 +207,10 @@ impl Rubbing {
     }
 
     /// `f += ` the forces of springs whose slips are known in the state `q`.
-    pub fn add_held_force(&self, slips: &Slips, q: &[f64], f: &mut [f64]) {
+    pub fn add_held_force(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]) {
         let contact = &*self.contact;
         // A saved state may be that of another scene.
-        let pieces = slips.contacts.get(self.number).into_iter().flatten();
+        let pieces = variables.contacts.get(self.number).into_iter().flatten();
         for piece in pieces.filter(|piece| piece.cell < contact.cells.count()) {
             let curve = contact.cells.curve(piece.cell, q);
             let mut sum = ControlForces::default();
@@ -243,9 +225,9 @@ impl Rubbing {
     }
 
     /// What these springs do to their beam in the state `q`.
-    pub fn add_held_actions(&self, slips: &Slips, q: &[f64], sum: &mut Actions) {
+    pub fn add_held_actions(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions) {
         let contact = &*self.contact;
-        let pieces = slips.contacts.get(self.number).into_iter().flatten();
+        let pieces = variables.contacts.get(self.number).into_iter().flatten();
         let mut values = Vec::new();
         for piece in pieces.filter(|piece| piece.cell < contact.cells.count()) {
             let curve = contact.cells.curve(piece.cell, q);

@@ -101,6 +101,26 @@ impl Obstacle {
         [Vector2::new(cosine, sine), Vector2::new(-sine, cosine)]
     }
 
+    /// The point from which the distance of `r` is measured, if it is one.
+    pub fn middle(&self, r: &Vector2<f64>) -> Option<Vector2<f64>> {
+        match *self {
+            Self::Circle { center, .. } => Some(center.into()),
+            Self::HalfPlane { .. } => None,
+            Self::Box { center, half, angle } => {
+                let center = Vector2::from(center);
+                let mut corner = center;
+                for (axis, half) in Self::axes(angle).into_iter().zip(half) {
+                    let place = axis.dot(&(r - center));
+                    if place.abs() <= half {
+                        return None;
+                    }
+                    corner += axis * half.copysign(place);
+                }
+                Some(corner)
+            }
+        }
+    }
+
     /// How deep a point can be within what begins at the distance `gap`: infinite where there is no other side.
     pub fn deepest(&self, gap: f64) -> f64 {
         match *self {

@@ -10,6 +10,11 @@ use nalgebra::Vector2;
 
 /// Points of the rule on a piece, beyond the polynomial's degree: with a straight border forces are then exact.
 const MORE_POINTS: usize = 2;
+/// Length of a part of a piece against its distance from the point that the obstacle's distance is measured from, at most. That distance is a root of a polynomial, which
+/// the rule sums the worse the nearer its branch points are: with this length to 1e-5 (3.3⁻¹⁰ for five points).
+const LENGTH_TO_MIDDLE: f64 = 4.0 / 3.0;
+/// Most parts of a piece: beyond them the beam has come too near to the obstacle's middle, which analyses refuse or report.
+const MOST_PARTS: f64 = 16.0;
 /// Pieces shorter than this part of a cell are none.
 const SHORTEST: f64 = 1e-12;
 
@@ -77,8 +82,32 @@ impl Pressing {
     /// Calls `visit` with the points of a cell at which the contact is summed.
     pub(super) fn for_spots(&self, cell: usize, curve: &Curve, mut visit: impl FnMut(&Spot)) {
         self.for_pieces(curve, |from, to| {
-            self.spots_of(&self.rule, cell, curve, [from, to]).for_each(|spot| visit(&spot));
+            let parts = self.parts(curve, from, to);
+            let place = |part: usize| from + (to - from) * part as f64 / parts as f64;
+            for part in 0..parts {
+                let piece = [place(part), if part + 1 == parts { to } else { place(part + 1) }];
+                self.spots_of(&self.rule, cell, curve, piece).for_each(|spot| visit(&spot));
+            }
         });
+    }
+
+    /// In how many parts a piece is summed.
+    fn parts(&self, curve: &Curve, from: f64, to: f64) -> usize {
+        let mut values = [0.0; MOST];
+        let [start, half, end] = [from, 0.5 * (from + to), to].map(|place| {
+            curve::bernstein(self.cells.degree(), place, &mut values);
+            curve.at(&values)
+        });
+        let Some(middle) = self.penalty.obstacle.middle(&half) else { return 1 };
+        let away = |a: &Vector2<f64>, b: &Vector2<f64>| {
+            let (chord, to_middle) = (b - a, middle - a);
+            let along = to_middle.dot(&chord) / chord.norm_squared();
+            (to_middle - chord * along.clamp(0.0, 1.0)).norm()
+        };
+        let distance = away(&start, &half).min(away(&half, &end));
+        let length = (half - start).norm() + (end - half).norm();
+        let parts = length / (LENGTH_TO_MIDDLE * distance);
+        if parts > 1.0 { parts.min(MOST_PARTS).ceil() as usize } else { 1 }
     }
 
     /// The points of a rule on a piece of a cell.

@@ -6,6 +6,8 @@ use crate::solve::newton::Failure;
 
 /// Turn of a node beyond which a step of fixed length is asked what it does to the energy \[rad\].
 const COARSE_TURN: f64 = 0.1;
+/// Turn of a torsion spring in one step \[rad\].
+const LARGEST_WINDING: f64 = 2.0;
 /// Energy that such a step may gain, relative to the kinetic energy.
 const LARGEST_GAIN: f64 = 1e-3;
 
@@ -21,8 +23,9 @@ impl Driver<'_, '_> {
         let (before, after) = (energy(&self.state), energy(new));
         let (work, _) = self.work(new, new.time, None);
         // Springs of friction give back what they hold at most.
-        let put_in = work - self.state.work - self.taken_at_least(new) + self.state.slips.energy;
-        let gain = (after.total() - before.total() - put_in) / before.kinetic.max(after.kinetic);
+        let put_in = work - self.state.work - self.taken_at_least(new) + self.state.variables.friction;
+        let wound = self.system.winding_energy(&self.held, &new.q) - self.state.variables.winding;
+        let gain = (after.total() + wound - before.total() - put_in) / before.kinetic.max(after.kinetic);
         match gain {
             _ if gain <= LARGEST_GAIN => Ok(()),
             _ if gain.is_nan() => Err(Failure::NotFinite),
@@ -50,12 +53,18 @@ impl Driver<'_, '_> {
             || self.system.supports().moves_in_time()
     }
 
-    /// Gives a state of the present step the slips of friction. What their springs hold is not lost.
+    /// Gives a state of the present step its internal variables. What the springs of friction hold is not lost.
     pub(super) fn settle(&self, state: &mut State) {
-        if self.system.has_friction() {
-            state.slips = self.system.slips(&self.held, &state.q);
-            state.lost -= state.slips.energy - self.state.slips.energy;
+        if self.system.has_history() {
+            state.variables = self.system.internal_variables(&self.held, &state.q);
+            state.lost -= state.variables.friction - self.state.variables.friction;
         }
+    }
+
+    /// Refuses a step in which a torsion spring turns so far that it could have turned the other way.
+    pub(super) fn not_overwound(&self, new: &State) -> Result<(), Failure> {
+        let turn = self.system.winding_turn(&self.held, &new.q);
+        if turn > LARGEST_WINDING { Err(Failure::Overwound { turn }) } else { Ok(()) }
     }
 
     /// Work of the loads without potential and of moving supports, and what damping took, until `time` in the step to `new`: of what a state tells by the

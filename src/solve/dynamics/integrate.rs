@@ -158,7 +158,7 @@ pub(super) struct Driver<'t, 'a> {
     pub(super) stride: usize,
     /// Times at which loads or supports are not smooth, rising.
     pub(super) kinks: Vec<f64>,
-    /// The last state, for friction.
+    /// The last state, for what depends on the way.
     pub(super) held: Held,
     /// Per contact, how it is.
     pub(super) touching: Vec<Touch>,
@@ -276,10 +276,10 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
-    /// Takes the state for the one from which friction counts slips.
+    /// Takes the state for the one from which internal variables are counted.
     fn hold(&mut self) {
-        if self.system.has_friction() {
-            self.held = Held { q: self.state.q.clone(), slips: self.state.slips.clone() };
+        if self.system.has_history() {
+            self.held = Held { q: self.state.q.clone(), variables: self.state.variables.clone() };
         }
     }
 
@@ -360,6 +360,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             };
             let result = result.and_then(|error| not_crushed(&new.q).map(|()| error));
             let result = result.and_then(|error| self.not_crossed(new).map(|()| error));
+            let result = result.and_then(|error| self.not_overwound(new).map(|()| error));
             let iterations = record.increments.len();
             let ratio = match (&result, accuracy) {
                 (Ok(error), Some(accuracy)) => error / accuracy,

@@ -36,7 +36,7 @@ mod touch;
 pub mod turns;
 
 use super::newton::Failure;
-use crate::effect::Slips;
+use crate::effect::InternalVariables;
 use crate::system::Reaction;
 use crate::trajectory::{Statistics, StepRecord};
 use serde::{Deserialize, Serialize};
@@ -58,9 +58,9 @@ pub struct State {
     pub work: f64,
     /// Energy that damping has taken since the start \[J\].
     pub lost: f64,
-    /// What friction remembers.
+    /// What friction and torsion springs remember.
     #[serde(default)]
-    pub slips: Slips,
+    pub variables: InternalVariables,
     /// Directions of r' at the places where they are watched \[rad\], with all turns.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub angles: Vec<f64>,
@@ -91,7 +91,7 @@ impl State {
             v: vec![0.0; self.q.len()],
             work: self.work,
             lost: self.lost,
-            slips: Slips::default(),
+            variables: InternalVariables::default(),
             angles: self.angles.clone(),
         };
         // From the start: q = q₀ + x h v₀ + x² …; the end's data enter through their defects against the lower terms.

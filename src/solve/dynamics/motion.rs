@@ -148,10 +148,10 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// Takes a state for the last accepted one, from which friction counts slips.
+    /// Takes a state for the last accepted one, from which internal variables are counted.
     pub fn hold(&mut self, state: &State) {
-        if self.system.has_friction() {
-            self.held = Held { q: state.q.clone(), slips: state.slips.clone() };
+        if self.system.has_history() {
+            self.held = Held { q: state.q.clone(), variables: state.variables.clone() };
         }
     }
 
@@ -302,12 +302,12 @@ impl<'a> Motion<'a> {
         let n = self.coordinates();
         if !self.carries {
             self.system.force(rates.time, &x[..n], &mut r[..n]);
-            self.system.add_friction(&self.held, &x[..n], &mut r[..n]);
+            self.system.add_history(&self.held, &x[..n], &mut r[..n]);
             return self.finish(x, rates, r);
         }
         self.with_carried(x, rates, |motion, x, rates| {
             motion.system.force(rates.time, &x[..n], &mut r[..n]);
-            motion.system.add_friction(&motion.held, &x[..n], &mut r[..n]);
+            motion.system.add_history(&motion.held, &x[..n], &mut r[..n]);
             motion.finish(x, rates, r)
         })
     }
@@ -396,7 +396,7 @@ impl<'a> Motion<'a> {
             supports.clear_held(rates.time, damping);
         }
         system.force_and_tangent(rates.time, &x[..n], earlier, force, tangent, workspace);
-        system.add_friction_and_tangent(held, &x[..n], force, tangent, workspace);
+        system.add_history_and_tangent(held, &x[..n], force, tangent, workspace);
         system.add_constraint_stiffness(&x[..n], &x[n..], tangent);
         supports.turn_matrix(rates.time, tangent);
         system.polar().matrix(&x[..n], tangent);

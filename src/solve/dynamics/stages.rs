@@ -222,8 +222,8 @@ impl Motion<'_> {
         let Self { system, mass, side_by_side, held, .. } = self;
         let force = &mut stages.residual;
         system.forces(times, &stages.x, force, side_by_side);
-        if system.has_friction() {
-            lanes::one_by_one(&stages.x, force, side_by_side, |_, q, f| system.add_friction(held, q, f));
+        if system.has_history() {
+            lanes::one_by_one(&stages.x, force, side_by_side, |_, q, f| system.add_history(held, q, f));
         }
         if system.is_damped() {
             let velocities: [Vec<f64>; 4] = std::array::from_fn(|stage| lane(&stages.velocity, stage));

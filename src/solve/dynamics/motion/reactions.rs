@@ -15,7 +15,6 @@
 
 use super::super::State;
 use super::{Acceleration, Motion, Rates};
-use crate::effect::Slips;
 use crate::linear::Singular;
 use crate::system::{Balanced, Reaction};
 
@@ -44,9 +43,9 @@ pub struct Balance {
 impl Balance {
     /// The same, for the sums of a system.
     pub fn view(&self) -> Balanced<'_> {
-        let State { time, q, v, slips, .. } = &self.state;
+        let State { time, q, v, variables, .. } = &self.state;
         let motion = Some([&v[..], &self.acceleration]);
-        Balanced { parameter: *time, q, motion, held: &self.held, multipliers: &self.multipliers, slips }
+        Balanced { parameter: *time, q, motion, held: &self.held, multipliers: &self.multipliers, variables }
     }
 }
 
@@ -185,13 +184,12 @@ impl Motion<'_> {
         let [q, v, acceleration] = self.in_fixed_axes(&state, &rates);
         let mut force = vec![0.0; q.len()];
         self.system.force(time, &q, &mut force);
-        self.system.add_friction(&self.held, &q, &mut force);
+        self.system.add_history(&self.held, &q, &mut force);
         self.system.add_damping(&q, &v, &mut force);
         self.mass.multiply_add(1.0, &acceleration, &mut force);
         self.system.add_turning_force(&q, &v, &acceleration, &mut force);
-        let slips =
-            if self.system.has_friction() { self.system.slips(&self.held, &q) } else { Slips::default() };
-        let state = State { time, q, v, work, lost, slips, angles };
+        let variables = self.system.internal_variables(&self.held, &q);
+        let state = State { time, q, v, work, lost, variables, angles };
         (Balance { state, acceleration, held: Vec::new(), multipliers }, force)
     }
 

@@ -1,0 +1,172 @@
+//! Turns of torsion springs.
+//!
+//! A torsion spring has W = ½ k θ² with the angle θ = α + 2πn of all turns. Of a state one knows α, from −π to π; n is that by which θ is nearest to the angle
+//! θ_h of the last accepted state. The part ½ k α² is summed as all elastic energies are ([`super::Torsion`]), and what a winding adds,
+//!
+//! ```text
+//! W = 2πn k (α + πn),   ∂W/∂α = 2πn k,
+//! ```
+//!
+//! by [`Winding`]: nothing, until the spring has passed half a turn.
+
+use super::spring::turn;
+use super::{Actions, Density, Effect, Gradient, Held, Hessian, InternalVariables, Workspace};
+use crate::linear::Matrix;
+use nalgebra::{Matrix2, Vector2};
+use std::f64::consts::TAU;
+
+/// The angle from r'₀ to r' as an energy of unit moment.
+#[derive(Clone, Debug)]
+pub struct Direction {
+    reference: Vector2<f64>,
+}
+
+impl Direction {
+    /// From r'₀.
+    pub fn new(reference: Vector2<f64>) -> Self {
+        Self { reference }
+    }
+}
+
+/// The angle from `reference` to `r`, from −π to π.
+pub(super) fn angle(reference: &Vector2<f64>, r: &Vector2<f64>) -> f64 {
+    (reference.x * r.y - reference.y * r.x).atan2(reference.dot(r))
+}
+
+/// ∂²θ/∂r'².
+pub(super) fn bend(r: &Vector2<f64>) -> Matrix2<f64> {
+    let (x, y) = (r.x, r.y);
+    Matrix2::new(2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y) / r.norm_squared().powi(2)
+}
+
+impl Density<1> for Direction {
+    const ORDERS: [usize; 1] = [1];
+
+    fn energy(&self, _: usize, z: &Gradient<1>) -> f64 {
+        angle(&self.reference, &z[0])
+    }
+
+    fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
+        [turn(&z[0])]
+    }
+
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
+        (self.gradient(point, z), [[bend(&z[0])]])
+    }
+}
+
+/// What a torsion spring adds where it has passed half a turn.
+pub struct Winding {
+    direction: Box<dyn Effect>,
+    stiffness: f64,
+    number: usize,
+}
+
+impl Winding {
+    /// Of the spring with k = `stiffness` \[N m/rad\] on `direction` ([`Direction`]), number `number` of all.
+    pub fn new(direction: Box<dyn Effect>, stiffness: f64, number: usize) -> Self {
+        Self { direction, stiffness, number }
+    }
+
+    /// Index of the beam.
+    pub fn beam(&self) -> usize {
+        self.direction.beam()
+    }
+
+    /// θ in the state `q` \[rad\].
+    pub fn angle(&self, held: &Held, q: &[f64]) -> f64 {
+        let known = held.variables.angles.get(self.number).copied().unwrap_or(0.0);
+        let angle = self.direction.energy(q);
+        angle + TAU * ((known - angle) / TAU).round()
+    }
+
+    /// 2πn, where θ is `angle`.
+    fn beyond(angle: f64) -> f64 {
+        TAU * (angle / TAU).round()
+    }
+
+    /// W, where θ is `angle` \[J\].
+    pub fn energy(&self, angle: f64) -> f64 {
+        let beyond = Self::beyond(angle);
+        self.stiffness * beyond * (angle - 0.5 * beyond)
+    }
+
+    /// `f += ` ∂W/∂q.
+    pub fn add_force(&self, held: &Held, q: &[f64], f: &mut [f64]) {
+        self.add_force_at(self.angle(held, q), q, f);
+    }
+
+    /// The same, where θ is `angle`.
+    pub fn add_force_at(&self, angle: f64, q: &[f64], f: &mut [f64]) {
+        let beyond = Self::beyond(angle);
+        if beyond != 0.0 {
+            self.direction.add_force(self.stiffness * beyond, q, f);
+        }
+    }
+
+    /// The same, and `k += ` ∂²W/∂q∂q.
+    pub fn add_force_and_tangent(
+        &self,
+        held: &Held,
+        q: &[f64],
+        f: &mut [f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
+        let beyond = Self::beyond(self.angle(held, q));
+        if beyond != 0.0 {
+            self.direction.add_force_and_tangent(self.stiffness * beyond, q, None, f, k, workspace);
+        }
+    }
+
+    /// `k += ` ∂²W/∂q∂q, where θ is `angle`.
+    pub fn add_tangent_at(&self, angle: f64, q: &[f64], k: &mut Matrix) {
+        let beyond = Self::beyond(angle);
+        if beyond != 0.0 {
+            let (mut idle, mut workspace) = (vec![0.0; q.len()], Workspace::default());
+            let factor = self.stiffness * beyond;
+            self.direction.add_force_and_tangent(factor, q, None, &mut idle, k, &mut workspace);
+        }
+    }
+
+    /// `f += ` ∂²W/∂q∂q `v`, where θ is `angle`.
+    pub fn add_tangent_product_at(&self, angle: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
+        self.direction.add_tangent_product(self.stiffness * Self::beyond(angle), q, v, f);
+    }
+
+    /// What it does to its beam, where θ is the angle among `variables`.
+    pub fn add_actions(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions) {
+        let angle = variables.angles.get(self.number).copied().unwrap_or(0.0);
+        self.direction.add_actions(self.stiffness * Self::beyond(angle), q, q, sum);
+    }
+
+    /// By how much the spring has turned since the last accepted state \[rad\].
+    pub fn turn(&self, held: &Held, q: &[f64]) -> f64 {
+        let angle = self.angle(held, q);
+        angle - held.variables.angles.get(self.number).copied().unwrap_or(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn a_winding_makes_the_energy_that_of_all_turns() {
+        let angles: Vec<f64> = (-40..40).map(|k| 0.37 * f64::from(k)).collect();
+        for angle in angles {
+            let beyond = Winding::beyond(angle);
+            let within = angle - beyond;
+            assert!(within.abs() <= PI + 1e-12);
+            let sum = 0.5 * within * within + beyond * (angle - 0.5 * beyond);
+            assert!((sum - 0.5 * angle * angle).abs() < 1e-12, "{angle}: {sum}");
+        }
+    }
+}
