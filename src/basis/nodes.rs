@@ -68,6 +68,9 @@ pub fn arc_lengths(nodes: &Nodes, length: f64) -> Result<Vec<f64>, BasisError> {
 /// A place that is nearer to an end or to another one, per length of the beam, is the same.
 const SAME_PLACE: f64 = 1e-9;
 
+/// Lengths are told apart to such a part of a cell: round-off of a turned scene or of other units must not decide where nodes lie.
+const PARTS_OF_CELL: f64 = 1e9;
+
 /// A given node that is nearer to a break, in units of the spacing around it, is shifted there: a cell that short would serve nothing.
 const NEAR: f64 = 0.1;
 
@@ -112,8 +115,10 @@ fn apportion(s: &[f64], breaks: &[f64]) -> Vec<usize> {
     let last = s.len() - 1;
     let ends: Vec<f64> = std::iter::once(0.0).chain(breaks.iter().map(index)).chain([last as f64]).collect();
     let lengths: Vec<f64> = ends.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let mut cells: Vec<usize> = lengths.iter().map(|length| (*length as usize).max(1)).collect();
-    let size = |(j, cells): (usize, usize)| lengths[j] / cells as f64;
+    let mut cells: Vec<usize> =
+        lengths.iter().map(|length| ((length + 1.0 / PARTS_OF_CELL) as usize).max(1)).collect();
+    // Rounded, so that round-off does not decide between equals.
+    let size = |(j, cells): (usize, usize)| (lengths[j] / cells as f64 * PARTS_OF_CELL).round();
     while cells.iter().sum::<usize>() != last {
         let of = cells.iter().copied().enumerate();
         if cells.iter().sum::<usize>() < last {

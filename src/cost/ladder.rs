@@ -76,7 +76,7 @@ fn accurate(task: &Task<'_>) -> Solver {
     match task.analysis {
         Analysis::Dynamic(_) => {
             let step = StepControl::Tolerance(tolerance(0.1 * task.target));
-            Solver::Integrator(Integrator::accurate(task.model, step))
+            Solver::Integrator(Integrator::usual(step))
         }
         _ => Solver::Scene,
     }

@@ -41,7 +41,7 @@ fn pair(desk: &Desk<'_>, level: u32, target: f64) -> [(Family, usize, Setting); 
     let step = StepControl::Tolerance(0.05 * target * 0.25_f64.powi(level as i32));
     let solvers = match desk.analysis {
         Analysis::Dynamic(_) => [
-            Solver::Integrator(Integrator::accurate(desk.model, step)),
+            Solver::Integrator(Integrator::usual(step)),
             Solver::Integrator(Integrator::Radau { stages: 3, step }),
         ],
         _ => [Solver::Scene; 2],

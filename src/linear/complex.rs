@@ -63,7 +63,7 @@ impl ComplexFactor {
             Some(Self::Sparse(earlier)) => Some(*earlier),
             _ => None,
         };
-        Ok(Self::Sparse(Box::new(Bordered::from_entries(k, entry, border, earlier)?)))
+        Ok(Self::Sparse(Box::new(Bordered::from_entries(k, entry, |i| entry(i, i).norm(), border, earlier)?)))
     }
 
     /// Solves in place; `re` and `im` hold the multipliers' parts last.

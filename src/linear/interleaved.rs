@@ -12,6 +12,7 @@
 
 use super::band::{Band, BandLu, Number};
 use super::bordered::BorderRow;
+use super::equilibrate::scales;
 use super::{Matrix, Singular};
 
 /// LU of a bordered matrix that is a band in another order, real or complex.
@@ -19,6 +20,8 @@ use super::{Matrix, Singular};
 pub struct Interleaved<T = f64> {
     /// Where each unknown and multiplier stands.
     place: Vec<usize>,
+    /// By what each is scaled.
+    scales: Vec<f64>,
     lu: BandLu<T>,
 }
 
@@ -60,6 +63,7 @@ impl<T: Number> Interleaved<T> {
     ) -> Result<Self, Singular> {
         let size = pattern.size();
         let place = places(size, border);
+        let scales = scales(size, |i| entry(i, i).size(), border);
         let apart = |i: usize, j: usize| place[i].abs_diff(place[j]);
         let of_matrix = (0..size).flat_map(|i| {
             let columns = pattern.columns(i);
@@ -70,10 +74,12 @@ impl<T: Number> Interleaved<T> {
         let half = of_matrix.chain(of_rows.map(|(i, j)| apart(i, j))).max().unwrap_or(0);
         let mut band = Band::<T>::zeros(place.len(), half);
         for i in 0..size {
-            pattern.columns(i).for_each(|j| band.set(place[i], place[j], entry(i, j)));
+            let scaled = |j: usize| entry(i, j) * T::from_real(scales[i] * scales[j]);
+            pattern.columns(i).for_each(|j| band.set(place[i], place[j], scaled(j)));
         }
         for (r, row) in border.iter().enumerate() {
             for &(j, value) in row {
+                let value = value * scales[size + r] * scales[j];
                 let (mu, j) = (place[size + r], place[j]);
                 band.set(mu, j, T::from_real(value));
                 band.set(j, mu, T::from_real(value));
@@ -83,15 +89,16 @@ impl<T: Number> Interleaved<T> {
             let row = place.iter().position(|position| *position == singular.row);
             Singular { row: row.unwrap_or(size) }
         })?;
-        Ok(Self { place, lu })
+        Ok(Self { place, scales, lu })
     }
 
     /// Solves in place: unknowns first, multipliers last.
     pub fn solve(&self, b: &mut [T]) {
         let mut ordered = b.to_vec();
-        self.place.iter().zip(&*b).for_each(|(place, value)| ordered[*place] = *value);
+        let places = || self.place.iter().zip(&self.scales);
+        places().zip(&*b).for_each(|((place, scale), value)| ordered[*place] = *value * T::from_real(*scale));
         self.lu.solve(&mut ordered);
-        self.place.iter().zip(b).for_each(|(place, value)| *value = ordered[*place]);
+        places().zip(b).for_each(|((place, scale), value)| *value = ordered[*place] * T::from_real(*scale));
     }
 }
 
@@ -134,7 +141,9 @@ mod tests {
         let entry = |i: usize, j: usize| c64::new(k.get(i, j), if i == j { 0.3 } else { 0.0 });
         let mut expected: Vec<c64> = (0..16).map(|i| c64::new(1.0, f64::from(i))).collect();
         let mut found = expected.clone();
-        Bordered::from_entries(&k, entry, &border, None).unwrap().solve(&mut expected);
+        Bordered::from_entries(&k, entry, |i| entry(i, i).norm(), &border, None)
+            .unwrap()
+            .solve(&mut expected);
         Interleaved::new(&k, entry, &border).unwrap().solve(&mut found);
         for (a, b) in expected.iter().zip(&found) {
             assert!((a - b).norm() < 1e-11 * a.norm().max(1.0), "{a} and {b}");

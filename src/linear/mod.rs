@@ -18,6 +18,7 @@ pub mod band;
 pub mod bordered;
 pub mod complex;
 pub mod condensed;
+mod equilibrate;
 pub(crate) mod fma;
 pub(crate) mod inertia;
 pub mod interleaved;

@@ -142,15 +142,6 @@ impl Integrator {
         Self::Radau { stages: 3, step }
     }
 
-    /// The most accurate method for a model: Gauss collocation with three stages, or Radau IIA where a beam is inextensible.
-    pub fn accurate(model: &super::Model, step: StepControl) -> Self {
-        if model.is_inextensible() {
-            Self::Radau { stages: 3, step }
-        } else {
-            Self::Gauss { stages: 3, step }
-        }
-    }
-
     /// Checks that the method can do with the model.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use super::RunError;
 use super::angle;
 use super::locking::Locking;
-use crate::effect::{Actions, Side, InternalVariables};
+use crate::effect::{Actions, InternalVariables, Side};
 use crate::linear::Singular;
 use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;

@@ -133,7 +133,9 @@ pub enum Failure {
         gain: f64,
     },
     /// A torsion spring turns so far in a step that it could have turned the other way.
-    #[error("a torsion spring turns by {turn:.1} rad in one step, so that its turns cannot be counted; take smaller steps")]
+    #[error(
+        "a torsion spring turns by {turn:.1} rad in one step, so that its turns cannot be counted; take smaller steps"
+    )]
     Overwound {
         /// The turn \[rad\].
         turn: f64,

@@ -33,7 +33,10 @@ fn a_coil_is_held_back_by_all_its_turns() {
         let trajectory = solved(&scene);
         let found = trajectory.probes[0].samples.last().expect("an equilibrium").angle;
         let exact = 0.9 * moment / (ei + 0.9 * k);
-        assert!((found - exact).abs() < 2e-3 * exact.abs(), "{turns}, {basis}, {analysis}: {found}, not {exact}");
+        assert!(
+            (found - exact).abs() < 2e-3 * exact.abs(),
+            "{turns}, {basis}, {analysis}: {found}, not {exact}"
+        );
         let stored = trajectory.energy.last().expect("energies").stored;
         let half = 0.5 * k * exact * exact;
         assert!((stored - half).abs() < 5e-3 * half, "{turns}, {basis}: {stored} J, not {half} J");
@@ -66,7 +69,8 @@ fn a_rod_swings_through_all_turns_of_its_spring() {
             let found = sample.angle;
             assert!((found - exact).abs() < allowed, "{integrator}: {found} at {time} s, not {exact}");
         }
-        let [first, last] = [trajectory.energy.first(), trajectory.energy.last()].map(|e| e.expect("energies"));
+        let [first, last] =
+            [trajectory.energy.first(), trajectory.energy.last()].map(|e| e.expect("energies"));
         let drift = (last.total() - first.total()).abs() / first.kinetic;
         assert!(drift < 1e-3, "{integrator}: drift {drift:e}");
     }

@@ -235,7 +235,7 @@ impl Rubbing {
             for (spot, slip) in spots.zip(&piece.slip) {
                 let (_, along, _) = contact.penalty.obstacle.travel(contact.penalty.gap, &spot.r, &spot.r);
                 let s = contact.cells.arc_length(piece.cell, spot.place);
-                values.push((s, spot.weight, Action::at(spot.r, along * (self.friction.stiffness * slip))));
+                values.push((s, spot.weight, Action::at(spot.r, along * (-self.friction.stiffness * slip))));
             }
         }
         sum.add_spread(RULE.len(), values);

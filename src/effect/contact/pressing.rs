@@ -252,7 +252,7 @@ impl Effect for Pressing {
             self.for_spots(cell, &curve, |spot| {
                 let [force] = self.penalty.gradient(0, &[spot.r]);
                 let s = self.cells.arc_length(cell, spot.place);
-                values.push((s, spot.weight, Action::at(spot.r, force * factor)));
+                values.push((s, spot.weight, Action::at(spot.r, force * -factor)));
             });
         }
         sum.add_spread(self.rule.len(), values);

@@ -32,7 +32,7 @@ use crate::trajectory::Statistics;
 
 /// Newton tolerance relative to the displacement in the step and to the absolute tolerance: it counts where steps are very short, for the
 /// velocity takes the same relative error.
-const RELATIVE_TOLERANCE: f64 = 1e3;
+const RELATIVE_TOLERANCE: f64 = 10.0;
 /// The same as a part of the error that a step may make.
 const TOLERANCE_OF_ERROR: f64 = 0.02;
 
@@ -360,8 +360,8 @@ impl Method for GeneralizedAlpha<'_> {
         record: &mut Iterations,
     ) -> Result<f64, Failure> {
         self.motion.hold(state);
-        if self.motion.system().has_friction() {
-            // What a kept tangent is of depends on the state that friction held then.
+        if self.motion.remembers() {
+            // What a kept tangent is of depends on the state that was held then.
             self.kept = None;
         }
         let Coefficients { alpha_m, alpha_f, beta, gamma } = self.coefficients;

@@ -34,6 +34,7 @@ use crate::model::{Crossing, Integrator, StepControl};
 use crate::solve::newton::{Failure, Iterations, not_crushed};
 use crate::system::{System, View, unfold};
 use crate::trajectory::{Statistics, StepRecord};
+use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
 /// What is to be integrated, and how.
@@ -84,6 +85,8 @@ pub struct Watch {
 /// the soft pendulum (2.5 s) with all methods and tolerances from 1e-3 to 1e-6, the largest error of the tip is then 0.1 to 6 times the tolerance, mostly
 /// about one.
 const STEP_PART: f64 = 1e-4;
+/// The longest first step, per period of the slowest vibration: nothing may move yet.
+const FIRST_STEP: f64 = 0.01;
 /// Part of the wanted step that is taken, so that few are rejected.
 const SAFETY: f64 = 0.9;
 /// Steps grow and shrink at most by these factors.
@@ -200,7 +203,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             _ if continued && on_grid(control, origin, state.time) => (step, origin),
             StepControl::Fixed(step) => (step, (state.time, 0)),
             StepControl::Tolerance(tolerance) => {
-                (first_step(system, task, &*method, [&state.v, &acceleration], tolerance), (state.time, 0))
+                (first_step(system, &*method, [&state.v, &acceleration], tolerance), (state.time, 0))
             }
         };
         let touching = system.intervals(&state.q).map(|intervals| Touch::new(intervals > 0)).collect();
@@ -542,17 +545,14 @@ fn on_grid(control: StepControl, (start, taken): (f64, u64), time: f64) -> bool 
 /// A step in which the fastest node moves by a part of a beam length that suits the tolerance.
 fn first_step(
     system: &System,
-    task: &Task<'_>,
     method: &dyn Method,
     [velocity, acceleration]: [&[f64]; 2],
     tolerance: f64,
 ) -> f64 {
     let by_speed = step_by(system, method, tolerance, 1, velocity);
     let by_acceleration = step_by(system, method, tolerance, 2, acceleration);
-    let step = by_speed.min(by_acceleration);
-    let left = task.duration - task.start.state.time;
-    // A motion that is interrupted has the steps of one that is not: they do not depend on when it ends, unless nothing moves.
-    if step < left { step } else { 0.01 * left }
+    // A motion that is interrupted has the steps of one that is not: they do not depend on when it ends.
+    by_speed.min(by_acceleration).min(FIRST_STEP * TAU / system.lowest_vibration_scale().sqrt())
 }
 
 /// The same by the derivative of positions of the given order alone.

@@ -155,6 +155,11 @@ impl<'a> Motion<'a> {
         }
     }
 
+    /// Whether tangents depend on the way to the last accepted state: with friction, and with springs that are wound up.
+    pub fn remembers(&self) -> bool {
+        self.system.has_friction() || self.held.variables.winding != 0.0
+    }
+
     /// The system that moves.
     pub fn system(&self) -> &'a System {
         self.system
