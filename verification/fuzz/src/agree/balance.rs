@@ -19,11 +19,18 @@ pub fn worst(scene: &Table, seen: &Seen) -> Option<(f64, String)> {
             worst = (off / size, what);
         }
     };
+    if seen.reactions.len() != settings::items(scene, &["support"]).count() + settings::items(scene, &["joint"]).count() {
+        return None;
+    }
     if kind == "static" {
         let held = ground(scene, seen).fold(seen.effects.0, |[x, y], [fx, fy, _]| [x + fx, y + fy]);
         note(held[0].hypot(held[1]), "sum of all forces".to_owned());
     }
-    for ((name, _), beam) in settings::beams(scene).zip(&seen.beams) {
+    for ((name, table), beam) in settings::beams(scene).zip(&seen.beams) {
+        // A string has no Q and no M, whatever holds its direction.
+        if !["bending_stiffness", "second_moment"].iter().any(|key| table.contains_key(*key)) {
+            continue;
+        }
         for (end, index) in [("start", 0), ("end", beam.forces.len().saturating_sub(1))] {
             let (Some([n, q, m]), Some(angle)) = (beam.forces.get(index), beam.angle.get(index)) else { continue };
             let acts = match at_end(scene, seen, name, end) {

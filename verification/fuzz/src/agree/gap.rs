@@ -101,7 +101,7 @@ fn probes(a: &Seen, b: &Seen, pairs: &[(usize, usize)], gap: &mut Gap) {
     };
     let curvature = largest(&|s| s.curvature, 1.0);
     let strain = largest(&|s| s.strain, 1e-3);
-    let velocity = largest(&|s| s.velocity[0].hypot(s.velocity[1]), 1e-6);
+    let velocity = largest(&|s| s.velocity[0].hypot(s.velocity[1]), 1e-3);
     for (p, q) in a.probes.iter().zip(&b.probes) {
         for &(i, j) in pairs {
             let (Some(p), Some(q)) = (p.get(i), q.get(j)) else { continue };

@@ -79,7 +79,9 @@ pub fn campaign(task: &Task<'_>) -> (Report, Vec<Written>) {
             if task.only.is_some_and(|only| only != index) {
                 continue;
             }
-            let (report, found) = scene(task, index);
+            let begin = Instant::now();
+            let (mut report, found) = scene(task, index);
+            report.slowest = (begin.elapsed().as_secs_f64(), index);
             for written in &found {
                 keep(task, written);
             }

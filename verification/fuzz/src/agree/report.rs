@@ -33,6 +33,8 @@ pub struct Report {
     pub outcomes: BTreeMap<&'static str, usize>,
     /// Reasons of status 1 and 2.
     pub reasons: BTreeMap<String, usize>,
+    /// The scene that took longest, with its seconds; shown, and deciding nothing.
+    pub slowest: (f64, usize),
     keys: BTreeMap<String, usize>,
     ways: [Counts; WAYS.len()],
 }
@@ -61,11 +63,6 @@ impl Report {
         vocabulary::count(scene, &mut self.keys);
     }
 
-    /// All findings.
-    pub fn findings(&self) -> usize {
-        self.ways.iter().map(|counts| counts.findings).sum()
-    }
-
     /// Keys of the schema that take part in fewer scenes than they should, with their shares.
     pub fn rare(&self) -> Vec<(String, f64)> {
         let share = |key: &String| self.keys.get(key).copied().unwrap_or(0) as f64 / self.scenes.max(1) as f64;
@@ -76,6 +73,9 @@ impl Report {
     /// Adds the counts of another.
     pub fn add(&mut self, other: Self) {
         self.scenes += other.scenes;
+        if other.slowest.0 > self.slowest.0 {
+            self.slowest = other.slowest;
+        }
         for (into, from) in [(&mut self.illegal, other.illegal), (&mut self.reasons, other.reasons), (&mut self.keys, other.keys)] {
             for (key, n) in from {
                 *into.entry(key).or_default() += n;
@@ -115,6 +115,7 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let outcomes: Vec<String> = self.outcomes.iter().map(|(name, n)| format!("{n} {name}")).collect();
         writeln!(f, "{} scenes: {}", self.scenes, outcomes.join(", "))?;
+        writeln!(f, "slowest: scene {}, {:.1} s", self.slowest.1, self.slowest.0)?;
         let drawn: usize = self.illegal.values().sum();
         writeln!(f, "{drawn} draws were not legal:")?;
         for (title, counts) in [("", &self.illegal), ("without a result:", &self.reasons)] {

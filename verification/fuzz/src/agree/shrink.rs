@@ -12,6 +12,17 @@ use super::ways::Way;
 /// Scenes that are tried at most.
 const TRIES: usize = 150;
 
+/// What a beam resists and weighs.
+const SECTION: [&str; 7] = [
+    "axial_stiffness",
+    "bending_stiffness",
+    "mass_per_length",
+    "youngs_modulus",
+    "area",
+    "second_moment",
+    "density",
+];
+
 /// The smallest scene found, and what it is a finding of.
 pub fn shrink(case: Case, finding: Finding) -> (Case, Finding) {
     let mut shrink = Shrink { way: finding.way, best: case, finding, tries: TRIES };
@@ -106,10 +117,13 @@ fn removable(table: &Table, here: &mut Vec<Step>, found: &mut Vec<Vec<Step>>) {
     for (key, value) in table {
         let below_beam = matches!(here.first(), Some(Step::Key(first)) if first == "beam");
         here.push(Step::Key(key.clone()));
-        if !(below_beam && here.len() == 2) {
+        // Without its stiffness a beam is another problem, and not a smaller one.
+        if key != "output" && !(below_beam && (here.len() == 2 || SECTION.contains(&key.as_str()))) {
             found.push(here.clone());
         }
         match value {
+            // The balances need them.
+            _ if key == "output" => {}
             Value::Table(table) => removable(table, here, found),
             Value::Array(list) => {
                 // From the end, so that the numbers of the others stay.
