@@ -278,6 +278,10 @@ fn continued(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
                 let turned = before.last().map_or(0.0, |sample| sample.angle);
                 probe.iter_mut().for_each(|sample| sample.angle += turned);
             }
+            // So do its energies.
+            if let (Some(first), Some(whole)) = (seen.energy.first_mut(), base.energy.first()) {
+                *first = *whole;
+            }
             seen
         }
         Outcome::Failed(said) | Outcome::Refused(said) => {

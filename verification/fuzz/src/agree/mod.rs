@@ -176,3 +176,47 @@ fn keep(task: &Task<'_>, written: &Written) {
         eprintln!("{}: {error}", path.display());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Decided by the number of scenes, and never by the clock.
+    const SCENES: usize = 120;
+
+    #[test]
+    fn equivalent_runs_of_drawn_scenes_agree() {
+        let task = Task {
+            scenes: SCENES,
+            time: Duration::from_secs(3600),
+            seed: 1,
+            only: None,
+            out: None,
+            threads: std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
+        };
+        let (report, findings) = campaign(&task);
+        let said: Vec<String> =
+            findings.iter().map(|w| format!("{}: {}\n{}", w.name, w.what, w.scene)).collect();
+        assert!(findings.is_empty(), "{report}\n{}", said.join("\n"));
+    }
+
+    #[test]
+    fn frames_go_back_and_forth() {
+        let mut rng = Rng::with_seed(7);
+        for _ in 0..50 {
+            let scene = draw::scene(&mut rng);
+            let frame = draw::frame(&mut rng, &scene);
+            let p = [rng.f64(), rng.f64()];
+            let mut table = toml::Table::new();
+            let mut beam = toml::Table::new();
+            beam.insert("start".into(), frame::list(p));
+            let mut beams = toml::Table::new();
+            beams.insert("a".into(), beam.into());
+            table.insert("beam".into(), beams.into());
+            let written = frame.write(&table);
+            let there = settings::get(&written, &["beam", "a", "start"]).and_then(frame::vector);
+            let back = frame.point_back(there.unwrap_or_default());
+            assert!((back[0] - p[0]).hypot(back[1] - p[1]) < 1e-12, "{p:?}, {back:?} in {frame:?}");
+        }
+    }
+}

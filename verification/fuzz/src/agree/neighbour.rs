@@ -17,6 +17,20 @@ pub fn near(scene: &Table, share: f64, rng: &mut Rng) -> Table {
             shake(key, value, share, rng);
         }
     }
+    // A force that was not there tells what nothing holds: a string without a load across it, a column at its critical load.
+    let beams: Vec<String> = settings::beams(scene).map(|(name, _)| name.clone()).collect();
+    for beam in beams {
+        let (sine, cosine) = (std::f64::consts::TAU * rng.f64()).sin_cos();
+        let mut force = Table::new();
+        force.insert("beam".into(), beam.into());
+        force.insert("value".into(), super::frame::list([share * cosine, share * sine]));
+        if let Some(effects) = settings::table(&mut near, &["effect"])
+            && let Value::Array(list) =
+                effects.entry("distributed_force").or_insert_with(|| Value::Array(Vec::new()))
+        {
+            list.push(force.into());
+        }
+    }
     if let Some(Value::Table(beams)) = near.get_mut("beam") {
         for (_, beam) in beams.iter_mut() {
             for key in ["bending_stiffness", "axial_stiffness", "second_moment", "mass_per_length"] {

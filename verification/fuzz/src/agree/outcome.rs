@@ -12,9 +12,9 @@ use toml::Table;
 use super::frame::Frame;
 
 /// Newton iterations times nodes after which a run is given up: about a second. No clock decides, so that a seed gives the same verdicts.
-const WORK: usize = 120_000;
+const WORK: usize = 60_000;
 /// Steps after which a run is given up.
-const STEPS: usize = 6_000;
+const STEPS: usize = 4_000;
 
 thread_local! {
     /// What the last panic of this thread said.

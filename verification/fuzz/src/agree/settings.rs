@@ -89,9 +89,15 @@ pub fn with_integrator(scene: &Table, name: &str, key: &str, value: f64) -> Tabl
 /// The accuracy that is asked for.
 pub fn tolerance(scene: &Table) -> f64 {
     match motion(scene) {
-        Some(motion) => motion.tolerance.unwrap_or(1e-11),
+        // Iterations of fixed steps: a thousand of them should add up to less.
+        Some(motion) => motion.tolerance.unwrap_or_else(|| 1e-8_f64.max(1e3 * newton_tolerance(scene))),
         None => get(scene, &["analysis", "static", "tolerance"]).and_then(Value::as_float).unwrap_or(1e-10),
     }
+}
+
+fn newton_tolerance(scene: &Table) -> f64 {
+    let path = ["analysis", "dynamic", "generalized_alpha", "newton_tolerance"];
+    get(scene, &path).and_then(Value::as_float).unwrap_or(0.0)
 }
 
 /// Every beam's table.

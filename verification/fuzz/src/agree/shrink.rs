@@ -10,7 +10,7 @@ use super::settings;
 use super::ways::Way;
 
 /// Scenes that are tried at most.
-const TRIES: usize = 150;
+const TRIES: usize = 100;
 
 /// What a beam resists and weighs.
 const SECTION: [&str; 7] = [

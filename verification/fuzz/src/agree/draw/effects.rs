@@ -10,10 +10,14 @@ impl Draw<'_> {
         // One load at least, or else most equilibria are the stress-free shape.
         let size = self.log(0.02, 1.0);
         let sure = self.rng.u8(0..4);
-        self.force(size, sure == 0);
-        self.moment(size, sure == 1);
-        self.distributed(size, sure == 2);
-        self.gravity(size, sure == 3);
+        if self.kind == Kind::Buckling && self.chance(0.8) {
+            self.compression(size);
+        } else if self.kind != Kind::Modal || self.chance(0.1) {
+            self.force(size, sure == 0);
+            self.moment(size, sure == 1);
+            self.distributed(size, sure == 2);
+            self.gravity(size, sure == 3);
+        }
         self.damping();
         self.springs();
         self.masses();
@@ -37,6 +41,18 @@ impl Draw<'_> {
             self.perhaps_in_time(&mut table, 0.5);
             self.push(&["effect", "force"], table);
         }
+    }
+
+    /// A dead force along the last beam, towards its start: what buckles, and does not bend before.
+    fn compression(&mut self, size: f64) {
+        let Some(last) = self.beams.last() else { return };
+        let ([x, y], name) = (last.curve.tangent(last.length), last.name.clone());
+        let force = self.log(size, 20.0 * size);
+        let mut table = Table::new();
+        table.insert("beam".into(), name.into());
+        table.insert("at".into(), "end".into());
+        table.insert("value".into(), list([-force * x, -force * y]));
+        self.push(&["effect", "force"], table);
     }
 
     fn perhaps_follower(&mut self, table: &mut Table) {
@@ -93,14 +109,15 @@ impl Draw<'_> {
     }
 
     fn damping(&mut self) {
-        if !self.is_motion() && !self.chance(0.1) || !self.chance(0.25) {
+        if !self.is_motion() && !self.chance(0.04) || !self.chance(0.25) {
             return;
         }
         let (_, mut table) = self.of_beam();
-        if self.rng.bool() {
+        let mass = self.rng.bool();
+        if mass {
             table.insert("mass_proportional".into(), self.log(0.01, 3.0).into());
         }
-        match self.rng.u8(0..3) {
+        match self.rng.u8(0..if mass { 3 } else { 2 }) {
             0 => {
                 table.insert("stiffness_proportional".into(), self.log(1e-5, 0.1).into());
             }
@@ -127,20 +144,24 @@ impl Draw<'_> {
                 }
             }
             table.insert("stiffness".into(), self.log(0.1, 100.0).into());
-            if self.chance(0.4) {
-                table.insert("damping".into(), self.log(0.01, 3.0).into());
-            }
+            self.dashpot(&mut table);
             self.push(&["effect", "spring"], table);
         }
         if self.chance(0.1) {
             let (beam, _, mut table) = self.of_point();
             if self.beams[beam].bends {
                 table.insert("stiffness".into(), self.log(0.1, 100.0).into());
-                if self.chance(0.4) {
-                    table.insert("damping".into(), self.log(0.01, 3.0).into());
-                }
+                self.dashpot(&mut table);
                 self.push(&["effect", "torsion_spring"], table);
             }
+        }
+    }
+
+    /// Statics knows no velocities, and warns.
+    fn dashpot(&mut self, table: &mut Table) {
+        let share = if self.is_motion() { 0.6 } else { 0.02 };
+        if self.chance(share) {
+            table.insert("damping".into(), self.log(0.01, 3.0).into());
         }
     }
 
@@ -180,6 +201,9 @@ impl Draw<'_> {
         if stretches && self.chance(0.6) {
             table.insert("strain".into(), self.signed(1e-5, 3e-2).into());
         }
+        if !stretches && !bends {
+            return;
+        }
         if bends && (table.len() == 1 || self.chance(0.5)) {
             table.insert("curvature".into(), self.signed(1e-2, 5.0).into());
         }
@@ -196,6 +220,9 @@ impl Draw<'_> {
             if self.chance(0.45) {
                 table.insert(key.into(), self.log(0.01, 3.0).into());
             }
+        }
+        if table.len() == 1 {
+            table.insert("normal".into(), self.log(0.01, 3.0).into());
         }
         if !self.is_motion() || self.chance(0.5) {
             table.insert("flow".into(), self.vector(0.1, 2.0));
@@ -282,12 +309,25 @@ impl Draw<'_> {
     }
 
     fn initial_velocity(&mut self) {
-        if !self.is_motion() || !self.chance(0.3) {
+        if !self.is_motion() || !self.chance(0.45) {
             return;
         }
-        // Of several beams all turn alike, or else joints are torn.
-        let free = self.scene.get("support").is_none();
-        let rigid = self.beams.len() > 1 || free || self.rng.bool();
+        // What is held at the start must not move: beyond a pin all may turn about it, beyond a clamp a beam may bend.
+        let held: Vec<Table> = super::super::settings::items(&self.scene, &["support"]).cloned().collect();
+        let slides = super::super::settings::items(&self.scene, &["joint"])
+            .any(|joint| joint.get("type").and_then(Value::as_str) == Some("slider"));
+        let clamped = |table: &Table| table.get("fix").and_then(Value::as_array).is_some_and(|f| f.len() == 3);
+        let (free, rigid) = match held.as_slice() {
+            [] => (true, self.beams.len() > 1 || self.rng.bool()),
+            [one] if one.get("at").and_then(Value::as_str) == Some("start") => {
+                (false, !clamped(one) && (self.beams.len() > 1 || self.rng.bool()))
+            }
+            _ => return,
+        };
+        let moves = held.iter().any(|support| support.contains_key("move"));
+        if slides || moves || !rigid && self.beams.len() > 1 {
+            return;
+        }
         let about = self.beams[0].curve.position(0.0);
         let rotation = self.signed(0.05, 5.0);
         let value = (free && self.rng.bool()).then(|| self.vector(0.05, 3.0));
@@ -305,7 +345,9 @@ impl Draw<'_> {
                 }
             } else {
                 let size = self.signed(0.05, 2.0);
-                let key = self.pick(&["vx", "vy"]);
+                // An inextensible beam can bend, and not stretch.
+                let [x, y] = self.beams[0].curve.tangent(0.0);
+                let key = if x.abs() > y.abs() { "vy" } else { "vx" };
                 let mut inner = Table::new();
                 if self.rng.bool() {
                     inner.insert(key.into(), list([0.0, 0.0, size / (length * length)]));
