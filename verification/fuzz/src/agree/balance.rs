@@ -15,11 +15,13 @@ pub fn worst(scene: &Table, seen: &Seen) -> Option<(f64, String)> {
     let size = force_size(seen);
     let mut worst = (0.0, "nothing".to_owned());
     let mut note = |off: f64, what: String| {
-        if !(off / size <= worst.0) {
+        if off.is_nan() || off / size > worst.0 {
             worst = (off / size, what);
         }
     };
-    if seen.reactions.len() != settings::items(scene, &["support"]).count() + settings::items(scene, &["joint"]).count() {
+    if seen.reactions.len()
+        != settings::items(scene, &["support"]).count() + settings::items(scene, &["joint"]).count()
+    {
         return None;
     }
     if kind == "static" {
@@ -32,7 +34,9 @@ pub fn worst(scene: &Table, seen: &Seen) -> Option<(f64, String)> {
             continue;
         }
         for (end, index) in [("start", 0), ("end", beam.forces.len().saturating_sub(1))] {
-            let (Some([n, q, m]), Some(angle)) = (beam.forces.get(index), beam.angle.get(index)) else { continue };
+            let (Some([n, q, m]), Some(angle)) = (beam.forces.get(index), beam.angle.get(index)) else {
+                continue;
+            };
             let acts = match at_end(scene, seen, name, end) {
                 Acts::Nothing => [0.0; 3],
                 Acts::Support(reaction) => reaction,
@@ -63,8 +67,8 @@ enum Acts {
 fn at_end(scene: &Table, seen: &Seen, beam: &str, end: &str) -> Acts {
     let here = |table: &Table| {
         let named = table.get("beam").and_then(Value::as_str) == Some(beam);
-        // An arc length may be the end's.
-        named && table.get("at").is_some_and(|at| at.as_str().is_none_or(|at| at == end))
+        // Arc lengths are drawn between the ends.
+        named && table.get("at").and_then(Value::as_str) == Some(end)
     };
     let point_effects = ["force", "moment", "spring", "torsion_spring", "point_mass"];
     let acts = point_effects.iter().any(|kind| settings::items(scene, &["effect", kind]).any(here));
@@ -91,7 +95,8 @@ fn at_end(scene: &Table, seen: &Seen, beam: &str, end: &str) -> Acts {
 /// Forces and moments of supports and sliders.
 fn ground<'s>(scene: &'s Table, seen: &'s Seen) -> impl Iterator<Item = [f64; 3]> {
     let supports = settings::items(scene, &["support"]).count();
-    let joints = settings::items(scene, &["joint"]).map(|joint| joint.get("type").and_then(Value::as_str) == Some("slider"));
+    let joints = settings::items(scene, &["joint"])
+        .map(|joint| joint.get("type").and_then(Value::as_str) == Some("slider"));
     let outer = std::iter::repeat_n(true, supports).chain(joints);
     seen.reactions.iter().zip(outer).filter(|(_, outer)| *outer).map(|((_, reaction), _)| *reaction)
 }

@@ -49,7 +49,9 @@ pub fn cut(scene: &Table) -> Option<Table> {
             renamed.insert(key.clone(), value.clone());
             continue;
         }
-        for (piece, (key, nodes)) in [first.clone(), second.clone()].into_iter().zip([&name, &other].into_iter().zip(nodes.clone())) {
+        for (piece, (key, nodes)) in
+            [first.clone(), second.clone()].into_iter().zip([&name, &other].into_iter().zip(nodes.clone()))
+        {
             let mut piece = piece;
             let mut kind_table = table.clone();
             kind_table.remove("elements");
@@ -104,7 +106,11 @@ impl Cut<'_> {
                         _ => 0.0,
                     };
                     if s > self.at {
-                        let at = if at.is_float() { Value::Float((s - self.at).min(self.length - self.at)) } else { at };
+                        let at = if at.is_float() {
+                            Value::Float((s - self.at).min(self.length - self.at))
+                        } else {
+                            at
+                        };
                         table.insert("beam".into(), self.other.into());
                         table.insert("at".into(), at);
                     } else if (s - self.at).abs() < 1e-9 * self.length {
@@ -122,7 +128,9 @@ impl Cut<'_> {
         let doubled = |list: &mut Vec<Value>| {
             let copies: Vec<Value> = list
                 .iter()
-                .filter(|item| item.get("at").is_none() && item.get("beam").and_then(Value::as_str) == Some(self.name))
+                .filter(|item| {
+                    item.get("at").is_none() && item.get("beam").and_then(Value::as_str) == Some(self.name)
+                })
                 .cloned()
                 .map(|mut item| {
                     if let Value::Table(table) = &mut item {

@@ -104,10 +104,9 @@ impl Frame {
     }
 
     fn value(&self, path: &str, value: &mut Value) {
-        if path == "effect.foundation.stiffness" && self.quarters % 2 == 1 {
-            if let Value::Array(both) = value {
-                both.reverse();
-            }
+        let swapped = path == "effect.foundation.stiffness" && self.quarters % 2 == 1;
+        if let (true, Value::Array(both)) = (swapped, &mut *value) {
+            both.reverse();
         }
         match (nature(path), value) {
             (Some(nature), value) => self.quantity(nature, value),
@@ -187,8 +186,8 @@ impl Frame {
             if turned.iter().all(|v| v[axis] == 0.0) && !turned.iter().all(|v| v[1 - axis] == 0.0) {
                 continue;
             }
-            let column = turned.iter().map(|v| Value::Float(v[axis]));
-            let value = if single { column.last() } else { Some(Value::Array(column.collect())) };
+            let mut column = turned.iter().map(|v| Value::Float(v[axis]));
+            let value = if single { column.next_back() } else { Some(Value::Array(column.collect())) };
             table.extend(value.map(|value| (key.to_owned(), value)));
         }
     }
@@ -203,7 +202,9 @@ impl Frame {
         let axis = usize::from(turned[1].abs() > 0.5);
         let place = self.units[0] * (turned[axis] * value + self.shift[axis]);
         table.insert(keys[axis].to_owned(), Value::Float(place));
-        if turned[axis] < 0.0 && let Some(Value::String(way)) = table.get_mut("crossing") {
+        if turned[axis] < 0.0
+            && let Some(Value::String(way)) = table.get_mut("crossing")
+        {
             *way = match way.as_str() {
                 "rising" => "falling".to_owned(),
                 "falling" => "rising".to_owned(),
@@ -215,7 +216,7 @@ impl Frame {
     /// Names of what a support holds.
     fn fixed(&self, support: &mut Table) {
         let Some(Value::Array(names)) = support.get_mut("fix") else { return };
-        if self.quarters % 2 == 0 {
+        if self.quarters.is_multiple_of(2) {
             return;
         }
         for name in names {
@@ -246,9 +247,8 @@ pub fn has_axes(scene: &Table) -> bool {
         let held = ["x", "y"].map(|axis| names.iter().any(|name| name.as_str() == Some(axis)));
         held[0] != held[1]
     };
-    let uneven = |foundation: &Value| {
-        foundation.get("stiffness").and_then(vector).is_none_or(|[x, y]| x != y)
-    };
+    let uneven =
+        |foundation: &Value| foundation.get("stiffness").and_then(vector).is_none_or(|[x, y]| x != y);
     items(&["support"]).iter().any(one_axis)
         || items(&["effect", "foundation"]).iter().any(uneven)
         || !items(&["analysis", "dynamic", "event"]).is_empty()

@@ -17,14 +17,14 @@ impl Gap {
     fn note(&mut self, what: &str, difference: f64, size: f64) {
         let relative = if difference == 0.0 { 0.0 } else { difference / size };
         // Also what is no number.
-        if !(relative <= self.all) {
+        if relative.is_nan() || relative > self.all {
             self.all = relative;
             self.what = what.to_owned();
         }
     }
 
     fn place(&mut self, what: &str, difference: f64) {
-        if !(difference <= self.places) {
+        if difference.is_nan() || difference > self.places {
             self.places = difference;
         }
         self.note(what, difference, 1.0);

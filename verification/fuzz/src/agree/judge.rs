@@ -15,6 +15,10 @@ const ALLOWED: f64 = 10.0;
 
 /// Growth of errors beyond which a scene has no one answer.
 const NEUTRAL: f64 = 1e4;
+/// What the estimates of both meshes are worth at a cut, where other shape functions reach.
+const WELDED: f64 = 3.0;
+/// Relative accuracy of eigenvalues.
+const EIGENVALUES: f64 = 1e-7;
 /// Accuracy of forces and other things than positions, for which nothing is asked.
 const FORCES: f64 = 1e-5;
 
@@ -102,6 +106,7 @@ fn round_off(scene: &Table) -> f64 {
 
 fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng) -> Verdict {
     let Measured { value, allowed, places, what } = measured;
+    // What is no number agrees with nothing.
     if value <= allowed {
         return Verdict::Agrees(value / allowed);
     }
@@ -115,7 +120,9 @@ fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng)
     if value <= allowed * factor {
         return Verdict::Unstable;
     }
-    let says = format!("{what}: {value:.2e} where {allowed:.2e} is allowed, and neighbours depart by {factor:.1} times their difference");
+    let says = format!(
+        "{what}: {value:.2e} where {allowed:.2e} is allowed, and neighbours depart by {factor:.1} times their difference"
+    );
     finding(way, says, other.to_owned())
 }
 
@@ -151,10 +158,17 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         return Verdict::NotApplicable;
     }
     let motion = settings::motion(scene);
-    let records = if same || motion.is_some() { Records::All } else { Records::Last };
+    // Where a path, or a load that is not divided, pauses on its way is nobody's wish.
+    let pauses = settings::get(scene, &["analysis", "static", "steps"]).is_some() || motion.is_some();
+    let records = if pauses { Records::All } else { Records::Last };
     let gap = gap::between(a, b, records);
     let chosen = motion.as_ref().and_then(|motion| motion.tolerance);
-    let wanted = settings::tolerance(scene);
+    let modes = matches!(settings::analysis(scene), "modal" | "buckling");
+    let wanted = match () {
+        () if modes => EIGENVALUES,
+        () if free_end => FORCES,
+        () => settings::tolerance(scene),
+    };
     let (places, all) = match chosen {
         // Round-off decides on a step, and the tolerance on what that does.
         Some(_) if !same => (wanted, f64::INFINITY),
@@ -174,7 +188,9 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
 /// Runs another scene in the same frame; without a warning, or else the verdict.
 fn other(scene: &Table, frame: &Frame, way: Way) -> Result<Box<Seen>, Verdict> {
     match outcome::run(scene, frame) {
-        Outcome::Panicked(said) => Err(finding(way, format!("a panic: {said}"), frame.write(scene).to_string())),
+        Outcome::Panicked(said) => {
+            Err(finding(way, format!("a panic: {said}"), frame.write(scene).to_string()))
+        }
         Outcome::Solved(seen) if seen.warnings.is_empty() => Ok(seen),
         outcome => Err(solved(&outcome).err().unwrap_or(Verdict::Refused)),
     }
@@ -210,9 +226,10 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
         let seen = other(&changed, frame, way)?;
         let records = if settings::motion(scene).is_some() { Records::Common } else { Records::Last };
         let gap = gap::between(base, &seen, records);
-        let places = |value: f64, allowed: f64| Measured { value, allowed, places: true, what: gap.what.clone() };
+        let places =
+            |value: f64, allowed: f64| Measured { value, allowed, places: true, what: gap.what.clone() };
         Ok(match way {
-            Way::Count => places(gap.places, 1e-6 + 10.0 * round_off(scene)),
+            Way::Count => places(gap.places, ALLOWED * EIGENVALUES + 10.0 * round_off(scene)),
             Way::FixedStep => {
                 let third = ways::half_steps(&changed).ok_or(Verdict::NotApplicable)?;
                 let finest = other(&third, frame, way)?;
@@ -227,8 +244,11 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
             }
             Way::Welded => {
                 let fine = settings::finer(scene).ok_or(Verdict::NotApplicable)?;
-                let next = gap::between(base, &*other(&fine, frame, way)?, records);
-                estimated(&gap, next.places, 1e-6 + plain)
+                let fine_cut = settings::finer(&changed).ok_or(Verdict::NotApplicable)?;
+                let whole = gap::between(base, &*other(&fine, frame, way)?, records);
+                // Shape functions that reach over several cells are others beside a cut.
+                let pieces = gap::between(&seen, &*other(&fine_cut, frame, way)?, records);
+                estimated(&gap, WELDED * (whole.places + pieces.places), 1e-6 + plain)
             }
             Way::Basis => {
                 let fine = settings::finer(scene).ok_or(Verdict::NotApplicable)?;

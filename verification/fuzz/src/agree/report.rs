@@ -65,7 +65,8 @@ impl Report {
 
     /// Keys of the schema that take part in fewer scenes than they should, with their shares.
     pub fn rare(&self) -> Vec<(String, f64)> {
-        let share = |key: &String| self.keys.get(key).copied().unwrap_or(0) as f64 / self.scenes.max(1) as f64;
+        let share =
+            |key: &String| self.keys.get(key).copied().unwrap_or(0) as f64 / self.scenes.max(1) as f64;
         let all = vocabulary::keys().into_iter().map(|key| (share(&key), key));
         all.filter(|(share, _)| *share < LEAST).map(|(share, key)| (key, share)).collect()
     }
@@ -76,7 +77,11 @@ impl Report {
         if other.slowest.0 > self.slowest.0 {
             self.slowest = other.slowest;
         }
-        for (into, from) in [(&mut self.illegal, other.illegal), (&mut self.reasons, other.reasons), (&mut self.keys, other.keys)] {
+        for (into, from) in [
+            (&mut self.illegal, other.illegal),
+            (&mut self.reasons, other.reasons),
+            (&mut self.keys, other.keys),
+        ] {
             for (key, n) in from {
                 *into.entry(key).or_default() += n;
             }
@@ -128,13 +133,24 @@ impl fmt::Display for Report {
                 writeln!(f, "{n:7}  {reason}")?;
             }
         }
-        writeln!(f, "{:12}{:>8}{:>8}{:>10}{:>8}{:>9}{:>9}{:>10}{:>12}", "way", "runs", "agree", "unstable", "warned", "refused", "too long", "findings", "of allowed")?;
+        writeln!(
+            f,
+            "{:12}{:>8}{:>8}{:>10}{:>8}{:>9}{:>9}{:>10}{:>12}",
+            "way", "runs", "agree", "unstable", "warned", "refused", "too long", "findings", "of allowed"
+        )?;
         for (way, c) in WAYS.iter().zip(&self.ways) {
             let runs = c.agree + c.unstable + c.warned + c.refused + c.too_long + c.findings;
             writeln!(
                 f,
                 "{:12}{runs:8}{:8}{:10}{:8}{:9}{:9}{:10}{:12.3}",
-                way.name(), c.agree, c.unstable, c.warned, c.refused, c.too_long, c.findings, c.nearest
+                way.name(),
+                c.agree,
+                c.unstable,
+                c.warned,
+                c.refused,
+                c.too_long,
+                c.findings,
+                c.nearest
             )?;
         }
         let rare = self.rare();

@@ -24,7 +24,10 @@ pub fn items<'t>(scene: &'t Table, path: &[&str]) -> impl Iterator<Item = &'t Ta
 
 /// The kind of analysis, as a scene names it.
 pub fn analysis(scene: &Table) -> &str {
-    get(scene, &["analysis"]).and_then(Value::as_table).and_then(|t| t.keys().next()).map_or("", String::as_str)
+    get(scene, &["analysis"])
+        .and_then(Value::as_table)
+        .and_then(|t| t.keys().next())
+        .map_or("", String::as_str)
 }
 
 /// What a motion is asked for.

@@ -166,7 +166,9 @@ fn without_beam(scene: &Table, beam: &str) -> Option<Table> {
     settings::table(&mut scene, &["beam"])?.remove(beam)?;
     let speaks = |value: &Value| value.get("beam").and_then(Value::as_str) == Some(beam);
     let drop = |list: &mut Vec<Value>| {
-        list.retain(|item| !speaks(item) && !["first", "second"].iter().any(|key| item.get(*key).is_some_and(speaks)));
+        list.retain(|item| {
+            !speaks(item) && !["first", "second"].iter().any(|key| item.get(*key).is_some_and(speaks))
+        });
     };
     for (_, value) in scene.iter_mut() {
         match value {

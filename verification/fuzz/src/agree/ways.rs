@@ -122,15 +122,19 @@ pub fn load_steps(scene: &Table, rng: &mut Rng) -> Option<Table> {
 
 /// Whether a path is refused where an equilibrium is not.
 fn rests_on_weight(scene: &Table) -> bool {
-    settings::beams(scene).any(|(_, beam)| {
-        !beam.contains_key("bending_stiffness") && !beam.contains_key("second_moment")
-    })
+    settings::beams(scene)
+        .any(|(_, beam)| !beam.contains_key("bending_stiffness") && !beam.contains_key("second_moment"))
 }
 
 /// The same by a hundredth of the tolerance.
 pub fn tighter(scene: &Table) -> Option<Table> {
     if let Some(motion) = settings::motion(scene) {
-        return Some(settings::with_integrator(scene, &motion.integrator, "tolerance", 0.01 * motion.tolerance?));
+        return Some(settings::with_integrator(
+            scene,
+            &motion.integrator,
+            "tolerance",
+            0.01 * motion.tolerance?,
+        ));
     }
     let given = settings::get(scene, &["analysis", "static", "tolerance"])?.as_float()?;
     let mut other = scene.clone();
@@ -142,9 +146,8 @@ pub fn tighter(scene: &Table) -> Option<Table> {
 pub fn integrator(scene: &Table, rng: &mut Rng) -> Option<Table> {
     let motion = settings::motion(scene)?;
     let tolerance = motion.tolerance?;
-    let inextensible = settings::beams(scene).any(|(_, beam)| {
-        !beam.contains_key("axial_stiffness") && !beam.contains_key("youngs_modulus")
-    });
+    let inextensible = settings::beams(scene)
+        .any(|(_, beam)| !beam.contains_key("axial_stiffness") && !beam.contains_key("youngs_modulus"));
     let mut others = vec!["radau"];
     if !inextensible {
         others.push("gauss");

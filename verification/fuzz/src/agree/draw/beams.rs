@@ -7,7 +7,7 @@ use ancf::model::Centreline;
 use toml::{Table, Value};
 
 use super::super::frame::list;
-use super::{Draw, Drawn, round};
+use super::{Draw, Drawn, Kind, round};
 
 impl Draw<'_> {
     pub(super) fn beams(&mut self) {
@@ -48,14 +48,15 @@ impl Draw<'_> {
         let length = curve.length();
         let straight = matches!(centreline, Centreline::Line { .. });
         let bends = like.as_ref().map_or_else(
-            || axial.is_none() || !self.chance(0.08),
+            // From a string without a load no path goes on.
+            || axial.is_none() || self.kind == Kind::ArcLength || !self.chance(0.08),
             |like| like.contains_key("bending_stiffness") || like.contains_key("second_moment"),
         );
         let mut table = geometry;
         if let Some(like) = like {
-            let same = like.into_iter().filter(|(key, _)| {
-                !matches!(key.as_str(), "start" | "end" | "arc" | "points")
-            });
+            let same = like
+                .into_iter()
+                .filter(|(key, _)| !matches!(key.as_str(), "start" | "end" | "arc" | "points"));
             table.extend(same);
             if let Some(Value::Table(basis)) = table.get_mut("basis") {
                 for (_, kind) in basis.iter_mut() {
@@ -144,7 +145,8 @@ impl Draw<'_> {
         let next = ["a", "b", "c"][last + 1];
         // Where a curved beam is between its nodes only the solver knows.
         let middle = straight && self.chance(0.15);
-        let (at, s): (Value, f64) = if middle { ((0.5 * length).into(), 0.5 * length) } else { ("end".into(), length) };
+        let (at, s): (Value, f64) =
+            if middle { ((0.5 * length).into(), 0.5 * length) } else { ("end".into(), length) };
         let kind = if self.chance(0.6) { "weld" } else { "hinge" };
         let point = |beam: &str, at: Value| {
             let mut point = Table::new();

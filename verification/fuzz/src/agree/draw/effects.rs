@@ -279,10 +279,7 @@ impl Draw<'_> {
             }
             _ => {
                 let size = [self.log(0.05, 0.5), self.log(0.05, 0.5)];
-                let mut keys = vec![
-                    ("center", list(beyond(gap + 0.5 * size[1]))),
-                    ("size", list(size)),
-                ];
+                let mut keys = vec![("center", list(beyond(gap + 0.5 * size[1]))), ("size", list(size))];
                 let angle = ty.atan2(tx);
                 if angle != 0.0 || self.chance(0.5) {
                     keys.push(("angle", round(angle, 6).into()));
@@ -316,7 +313,8 @@ impl Draw<'_> {
         let held: Vec<Table> = super::super::settings::items(&self.scene, &["support"]).cloned().collect();
         let slides = super::super::settings::items(&self.scene, &["joint"])
             .any(|joint| joint.get("type").and_then(Value::as_str) == Some("slider"));
-        let clamped = |table: &Table| table.get("fix").and_then(Value::as_array).is_some_and(|f| f.len() == 3);
+        let clamped =
+            |table: &Table| table.get("fix").and_then(Value::as_array).is_some_and(|f| f.len() == 3);
         let (free, rigid) = match held.as_slice() {
             [] => (true, self.beams.len() > 1 || self.rng.bool()),
             [one] if one.get("at").and_then(Value::as_str) == Some("start") => {
