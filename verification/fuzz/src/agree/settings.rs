@@ -145,6 +145,18 @@ pub fn has_friction(scene: &Table) -> bool {
     items(scene, &["effect", "contact"]).any(|contact| contact.contains_key("friction"))
 }
 
+/// Whether an equilibrium is that of a string that nothing pulls along the whole of its length: any of its shapes is one.
+pub fn is_slack(scene: &Table) -> bool {
+    let bends =
+        |beam: &Table| ["bending_stiffness", "second_moment"].iter().any(|key| beam.contains_key(*key));
+    let pulled = |beam: &str| {
+        items(scene, &["effect", "distributed_force"])
+            .any(|load| load.get("beam").and_then(Value::as_str) == Some(beam))
+    };
+    let weighs = get(scene, &["effect", "gravity"]).is_some();
+    motion(scene).is_none() && beams(scene).any(|(name, beam)| !(bends(beam) || weighs || pulled(name)))
+}
+
 /// Changes every beam's `basis`; none where one cannot be.
 pub fn map_bases(scene: &Table, change: impl Fn(&Table) -> Option<Table>) -> Option<Table> {
     let mut scene = scene.clone();
