@@ -230,8 +230,12 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
         let seen = other(&changed, frame, way)?;
         let records = if settings::motion(scene).is_some() { Records::Common } else { Records::Last };
         let gap = gap::between(base, &seen, records);
-        let places =
-            |value: f64, allowed: f64| Measured { value, allowed, places: true, what: gap.what.clone() };
+        let places = |value: f64, allowed: f64| Measured {
+            value,
+            allowed,
+            places: true,
+            what: "a position or an eigenvalue".to_owned(),
+        };
         Ok(match way {
             Way::Count => places(gap.places, ALLOWED * EIGENVALUES + 10.0 * round_off(scene)),
             Way::FixedStep => {

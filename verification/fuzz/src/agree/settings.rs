@@ -151,6 +151,7 @@ pub fn is_slack(scene: &Table) -> bool {
         |beam: &Table| ["bending_stiffness", "second_moment"].iter().any(|key| beam.contains_key(*key));
     let pulled = |beam: &str| {
         items(scene, &["effect", "distributed_force"])
+            .filter(|load| load.get("follower").and_then(Value::as_bool) != Some(true))
             .any(|load| load.get("beam").and_then(Value::as_str) == Some(beam))
     };
     let weighs = get(scene, &["effect", "gravity"]).is_some();

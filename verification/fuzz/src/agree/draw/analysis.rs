@@ -53,9 +53,9 @@ impl Draw<'_> {
 
     fn path(&mut self) -> Table {
         let mut table = Table::new();
-        if self.chance(0.7) {
+        if self.chance(0.6) {
             table.insert("until_load".into(), self.even(0.3, 1.5).into());
-        } else if self.chance(0.6) {
+        } else if self.chance(0.8) {
             let probe = self.coordinate(0.02);
             table.insert("until_probe".into(), probe.into());
         }

@@ -306,7 +306,7 @@ impl Draw<'_> {
     }
 
     fn initial_velocity(&mut self) {
-        if !self.is_motion() || !self.chance(0.45) {
+        if !self.is_motion() || !self.chance(0.6) {
             return;
         }
         // What is held at the start must not move: beyond a pin all may turn about it, beyond a clamp a beam may bend.
@@ -328,7 +328,7 @@ impl Draw<'_> {
         }
         let about = self.beams[0].curve.position(0.0);
         let rotation = self.signed(0.05, 5.0);
-        let value = (free && self.rng.bool()).then(|| self.vector(0.05, 3.0));
+        let value = (free && self.chance(0.9)).then(|| self.vector(0.05, 3.0));
         for beam in 0..self.beams.len() {
             let mut table = Table::new();
             table.insert("beam".into(), self.beams[beam].name.clone().into());
