@@ -1,4 +1,5 @@
-//! `fuzz`: feeds the solver damaged scenes and saved states, and keeps those that it does not take well.
+//! `fuzz`: feeds the solver damaged scenes and saved states, and keeps those that it does not take well; with `--agree` legal ones, each in
+//! several ways that must agree ([`agree`]).
 //!
 //! The seeds are all scenes of the repository. A worker process damages them, as trees of values and as text, reads,
 //! inspects and, where they are small, runs them for a few steps and writes the results. Findings are panics, states with
@@ -7,6 +8,7 @@
 
 #![forbid(unsafe_code)]
 
+mod agree;
 mod damage;
 mod exercise;
 mod worker;
@@ -42,6 +44,21 @@ struct Arguments {
     /// Memory beyond what the seeds take, in MiB
     #[arg(long, default_value_t = 512)]
     mebibytes: usize,
+    /// Draw legal scenes, and run each in several ways that must agree
+    #[arg(long)]
+    agree: bool,
+    /// With `--agree`: how many scenes at most
+    #[arg(long, default_value_t = usize::MAX)]
+    scenes: usize,
+    /// With `--agree`: the one scene to look at
+    #[arg(long)]
+    only: Option<usize>,
+    /// With `--agree`: how many scenes at once; as many as processors where nothing is said
+    #[arg(long)]
+    threads: Option<usize>,
+    /// With `--agree`: list how often each key of the schema took part
+    #[arg(long)]
+    keys: bool,
     /// Be the worker
     #[arg(long, hide = true)]
     worker: bool,
@@ -52,7 +69,8 @@ fn main() -> ExitCode {
     if arguments.worker {
         return worker::work(&arguments);
     }
-    match supervise(&arguments) {
+    let found = if arguments.agree { agree(&arguments) } else { supervise(&arguments) };
+    match found {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
         Err(error) => {
@@ -60,6 +78,26 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Runs scenes in ways that must agree; returns the number of findings.
+fn agree(arguments: &Arguments) -> std::io::Result<usize> {
+    std::fs::create_dir_all(&arguments.out)?;
+    let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let task = agree::Task {
+        scenes: arguments.scenes,
+        time: Duration::from_secs_f64(60.0 * arguments.minutes),
+        seed: arguments.seed,
+        only: arguments.only,
+        out: Some(&arguments.out),
+        threads: arguments.threads.unwrap_or(processors),
+    };
+    let (report, findings) = agree::campaign(&task);
+    print!("{report}");
+    if arguments.keys {
+        print!("{}", report.keys());
+    }
+    Ok(findings.len())
 }
 
 /// Runs workers until the time is over; returns the number of findings.

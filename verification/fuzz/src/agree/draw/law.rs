@@ -1,0 +1,77 @@
+//! Laws of time.
+
+use toml::{Table, Value};
+
+use super::Draw;
+
+impl Draw<'_> {
+    /// A law that changes within the motion; `smooth` where what it drives must not jump, and start at rest.
+    pub(super) fn law(&mut self, smooth: bool) -> Table {
+        let duration = self.duration;
+        let mut law = Table::new();
+        let mut inner = Table::new();
+        let kind = match self.rng.u8(0..12) {
+            0..2 => "ramp",
+            2..4 => "smooth_ramp",
+            4 => "step",
+            5..8 => "harmonic",
+            8..10 => "polynomial",
+            _ => "table",
+        };
+        let kind = match kind {
+            "step" if smooth => "smooth_ramp",
+            kind => kind,
+        };
+        match kind {
+            "ramp" | "smooth_ramp" => {
+                if self.chance(0.5) {
+                    inner.insert("start".into(), (duration * self.even(0.0, 0.5)).into());
+                }
+                inner.insert("duration".into(), (duration * self.even(0.1, 0.8)).into());
+            }
+            "step" => {
+                inner.insert("start".into(), (duration * self.even(0.0, 0.8)).into());
+            }
+            "harmonic" => {
+                let cycles = self.log(0.1, 10.0);
+                inner.insert("frequency".into(), (cycles / duration).into());
+                if !smooth && self.chance(0.5) {
+                    inner.insert("phase".into(), self.even(-3.0, 3.0).into());
+                }
+            }
+            "polynomial" => {
+                let n = self.rng.usize(1..4);
+                let mut coefficients: Vec<f64> =
+                    (0..=n).map(|power| self.even(-1.0, 1.0) / duration.powi(power as i32)).collect();
+                if smooth {
+                    coefficients[0] = 0.0;
+                }
+                law.insert(kind.into(), Value::Array(coefficients.into_iter().map(Value::Float).collect()));
+                return law;
+            }
+            _ => {
+                let n = self.rng.usize(2..5);
+                let times = (0..n).map(|i| Value::Float(duration * i as f64 / (n - 1) as f64));
+                let times: Vec<Value> = times.collect();
+                let first = if smooth { 0.0 } else { self.even(-1.0, 1.0) };
+                let mut values = vec![Value::Float(first)];
+                values.extend((1..n).map(|_| Value::Float(self.even(-1.0, 1.0))));
+                inner.insert("times".into(), times.into());
+                inner.insert("values".into(), values.into());
+                if self.chance(0.5) {
+                    inner.insert("smooth".into(), true.into());
+                }
+            }
+        }
+        law.insert(kind.into(), inner.into());
+        law
+    }
+
+    /// Perhaps a law, in a motion.
+    pub(super) fn perhaps_in_time(&mut self, table: &mut Table, share: f64) {
+        if self.is_motion() && self.chance(share) {
+            let law = self.law(false);
+            table.insert("in_time".into(), law.into());
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! Units, direction and place in which a scene is written down. What is drawn is drawn in natural units: L = 1, EI = 1, ρA = 1.
+
+use toml::{Table, Value};
+
+use super::quantity::{Dimension, Nature, axes, nature};
+
+/// How natural coordinates become those of a scene: mirrored first, then turned, stretched and shifted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Natural units of length, mass and time in SI.
+    pub units: [f64; 3],
+    /// Whether y points the other way.
+    pub mirrored: bool,
+    /// Quarter turns, counter-clockwise, which keep axes axes.
+    pub quarters: u8,
+    /// Further turn \[rad\]; zero in scenes where something is said of an axis.
+    pub turn: f64,
+    /// Where the origin goes, in natural lengths.
+    pub shift: [f64; 2],
+}
+
+impl Default for Frame {
+    fn default() -> Self {
+        Self { units: [1.0; 3], mirrored: false, quarters: 0, turn: 0.0, shift: [0.0; 2] }
+    }
+}
+
+impl Frame {
+    /// The unit of a quantity.
+    pub fn unit(&self, dimension: Dimension) -> f64 {
+        self.units.iter().zip(dimension).map(|(unit, power)| unit.powi(power)).product()
+    }
+
+    /// −1 in a mirror.
+    pub fn sign(&self) -> f64 {
+        if self.mirrored { -1.0 } else { 1.0 }
+    }
+
+    /// The angle by which all is turned \[rad\].
+    fn angle(&self) -> f64 {
+        f64::from(self.quarters) * std::f64::consts::FRAC_PI_2 + self.turn
+    }
+
+    /// A direction, mirrored and turned.
+    pub fn direction(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let y = self.sign() * y;
+        let [x, y] = match self.quarters % 4 {
+            0 => [x, y],
+            1 => [-y, x],
+            2 => [-x, -y],
+            _ => [y, -x],
+        };
+        let (sine, cosine) = self.turn.sin_cos();
+        [x * cosine - y * sine, x * sine + y * cosine]
+    }
+
+    /// The reverse of [`direction`](Self::direction).
+    pub fn back(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (sine, cosine) = self.turn.sin_cos();
+        let [x, y] = [x * cosine + y * sine, y * cosine - x * sine];
+        let [x, y] = match self.quarters % 4 {
+            0 => [x, y],
+            1 => [y, -x],
+            2 => [-x, -y],
+            _ => [-y, x],
+        };
+        [x, self.sign() * y]
+    }
+
+    /// A place.
+    fn point(&self, p: [f64; 2]) -> [f64; 2] {
+        let [x, y] = self.direction(p);
+        [self.units[0] * (x + self.shift[0]), self.units[0] * (y + self.shift[1])]
+    }
+
+    /// The reverse of [`point`](Self::point).
+    pub fn point_back(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        self.back([x / self.units[0] - self.shift[0], y / self.units[0] - self.shift[1]])
+    }
+
+    /// The scene as it is written in this frame.
+    pub fn write(&self, natural: &Table) -> Table {
+        let mut scene = natural.clone();
+        self.table("", &mut scene);
+        scene
+    }
+
+    fn table(&self, path: &str, table: &mut Table) {
+        self.complete(path, table);
+        if let Some((keys, dimension, places)) = axes(path) {
+            self.components(path, table, (keys, dimension, places));
+        }
+        if path == "support" {
+            self.fixed(table);
+        }
+        for (key, value) in table.iter_mut() {
+            let below = match path {
+                "" => key.clone(),
+                "beam" => "beam.*".to_owned(),
+                _ => format!("{path}.{key}"),
+            };
+            self.value(&below, value);
+        }
+    }
+
+    fn value(&self, path: &str, value: &mut Value) {
+        let swapped = path == "effect.foundation.stiffness" && self.quarters % 2 == 1;
+        if let (true, Value::Array(both)) = (swapped, &mut *value) {
+            both.reverse();
+        }
+        match (nature(path), value) {
+            (Some(nature), value) => self.quantity(nature, value),
+            (None, Value::Table(table)) => self.table(path, table),
+            (None, Value::Array(list)) => list.iter_mut().for_each(|item| self.value(path, item)),
+            (None, _) => {}
+        }
+    }
+
+    fn quantity(&self, nature: Nature, value: &mut Value) {
+        match (nature, value) {
+            (Nature::Scalar(d), Value::Float(v)) => *v *= self.unit(d),
+            (Nature::Turning(d), Value::Float(v)) => *v *= self.sign() * self.unit(d),
+            (Nature::Polar, Value::Float(v)) => *v = self.angle() + self.sign() * *v,
+            (Nature::Vector(d), value) => {
+                if let Some(v) = vector(value) {
+                    *value = list(self.direction(v).map(|v| v * self.unit(d)));
+                }
+            }
+            (Nature::Point, value) => {
+                if let Some(p) = vector(value) {
+                    *value = list(self.point(p));
+                } else if let Value::Array(points) = value {
+                    points.iter_mut().for_each(|point| self.quantity(Nature::Point, point));
+                }
+            }
+            (Nature::Polynomial, Value::Array(coefficients)) => {
+                for (power, c) in (0..).zip(coefficients) {
+                    self.quantity(Nature::Scalar([0, 0, -power]), c);
+                }
+            }
+            (nature, Value::Array(items)) => items.iter_mut().for_each(|item| self.quantity(nature, item)),
+            _ => {}
+        }
+    }
+
+    /// Says what is meant where nothing is said, if it is something else in this frame.
+    fn complete(&self, path: &str, table: &mut Table) {
+        let absent = match path {
+            "effect.contact.box" => Some(("angle", Value::Float(0.0))),
+            "initial_velocity" if table.contains_key("rotation") => Some(("about", list([0.0; 2]))),
+            _ => None,
+        };
+        if let Some((key, value)) = absent {
+            table.entry(key).or_insert(value);
+        }
+    }
+
+    /// Keys of the two axes. Coefficients of 1, s, s², … have a dimension each.
+    fn components(
+        &self,
+        path: &str,
+        table: &mut Table,
+        (keys, dimension, places): ([&str; 2], Dimension, bool),
+    ) {
+        let along = |power: i32| if path.ends_with("polynomial") { power } else { 0 };
+        let both = keys.map(|key| table.remove(key));
+        if both.iter().all(Option::is_none) {
+            return;
+        }
+        if places {
+            self.crossing(table, keys, both);
+            return;
+        }
+        let columns = both.each_ref().map(|v| v.as_ref().map_or(Vec::new(), floats));
+        let single = both.iter().flatten().any(Value::is_float);
+        let n = columns[0].len().max(columns[1].len());
+        let turned: Vec<[f64; 2]> = (0..n)
+            .map(|i| {
+                let v = [0, 1].map(|axis: usize| columns[axis].get(i).copied().unwrap_or(0.0));
+                let [mut d, m, t] = dimension;
+                d -= along(i as i32);
+                self.direction(v).map(|v| v * self.unit([d, m, t]))
+            })
+            .collect();
+        for (axis, key) in keys.into_iter().enumerate() {
+            if turned.iter().all(|v| v[axis] == 0.0) && !turned.iter().all(|v| v[1 - axis] == 0.0) {
+                continue;
+            }
+            let mut column = turned.iter().map(|v| Value::Float(v[axis]));
+            let value = if single { column.next_back() } else { Some(Value::Array(column.collect())) };
+            table.extend(value.map(|value| (key.to_owned(), value)));
+        }
+    }
+
+    /// A coordinate that is reached: of another axis, and perhaps from the other side.
+    fn crossing(&self, table: &mut Table, keys: [&str; 2], [x, y]: [Option<Value>; 2]) {
+        let (axis, value) = if let Some(x) = x { (0, x) } else { (1, y.unwrap_or(Value::Float(0.0))) };
+        let Value::Float(value) = value else { return };
+        let mut place = [0.0; 2];
+        place[axis] = 1.0;
+        let turned = self.direction(place);
+        let axis = usize::from(turned[1].abs() > 0.5);
+        let place = self.units[0] * (turned[axis] * value + self.shift[axis]);
+        table.insert(keys[axis].to_owned(), Value::Float(place));
+        if turned[axis] < 0.0
+            && let Some(Value::String(way)) = table.get_mut("crossing")
+        {
+            *way = match way.as_str() {
+                "rising" => "falling".to_owned(),
+                "falling" => "rising".to_owned(),
+                other => other.to_owned(),
+            };
+        }
+    }
+
+    /// Names of what a support holds.
+    fn fixed(&self, support: &mut Table) {
+        let Some(Value::Array(names)) = support.get_mut("fix") else { return };
+        if self.quarters.is_multiple_of(2) {
+            return;
+        }
+        for name in names {
+            *name = match name.as_str() {
+                Some("x") => Value::from("y"),
+                Some("y") => Value::from("x"),
+                _ => continue,
+            };
+        }
+    }
+}
+
+/// Whether something is said of one axis, so that only quarter turns leave the scene what it is.
+pub fn has_axes(scene: &Table) -> bool {
+    let lists = |path: &[&str]| {
+        let mut value = Some(scene);
+        for key in &path[..path.len() - 1] {
+            value = value.and_then(|table| table.get(*key)).and_then(Value::as_table);
+        }
+        value.and_then(|table| table.get(path[path.len() - 1])).cloned()
+    };
+    let items = |path: &[&str]| match lists(path) {
+        Some(Value::Array(items)) => items,
+        _ => Vec::new(),
+    };
+    let one_axis = |support: &Value| {
+        let names = support.get("fix").and_then(Value::as_array).cloned().unwrap_or_default();
+        let held = ["x", "y"].map(|axis| names.iter().any(|name| name.as_str() == Some(axis)));
+        held[0] != held[1]
+    };
+    let uneven =
+        |foundation: &Value| foundation.get("stiffness").and_then(vector).is_none_or(|[x, y]| x != y);
+    items(&["support"]).iter().any(one_axis)
+        || items(&["effect", "foundation"]).iter().any(uneven)
+        || !items(&["analysis", "dynamic", "event"]).is_empty()
+        || lists(&["analysis", "static", "arc_length", "until_probe"]).is_some()
+}
+
+/// Two floats.
+pub fn vector(value: &Value) -> Option<[f64; 2]> {
+    match value.as_array()?.as_slice() {
+        [x, y] => Some([x.as_float()?, y.as_float()?]),
+        _ => None,
+    }
+}
+
+/// A list of numbers.
+pub fn list<const N: usize>(numbers: [f64; N]) -> Value {
+    Value::Array(numbers.into_iter().map(Value::Float).collect())
+}
+
+/// All numbers of a value, in order.
+fn floats(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Float(v) => vec![*v],
+        Value::Array(items) => items.iter().flat_map(floats).collect(),
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,178 @@
+//! How far two outcomes are apart.
+
+use super::outcome::{Sample, Seen};
+
+/// Differences of one scene's outcomes, each per the size of what differs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gap {
+    /// Positions at probes and along beams \[natural lengths\], and eigenvalues \[of their size\]: what a tolerance speaks of.
+    pub places: f64,
+    /// The largest of all differences.
+    pub all: f64,
+    /// What differs so.
+    pub what: String,
+}
+
+impl Gap {
+    fn note(&mut self, what: &str, difference: f64, size: f64) {
+        let relative = if difference == 0.0 { 0.0 } else { difference / size };
+        // Also what is no number.
+        if relative.is_nan() || relative > self.all {
+            self.all = relative;
+            self.what = what.to_owned();
+        }
+    }
+
+    fn place(&mut self, what: &str, difference: f64) {
+        if difference.is_nan() || difference > self.places {
+            self.places = difference;
+        }
+        self.note(what, difference, 1.0);
+    }
+}
+
+/// Which records are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Records {
+    /// All, which must be as many.
+    All,
+    /// Those at the same times, and the last.
+    Common,
+    /// The last.
+    Last,
+}
+
+fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Compares two outcomes.
+pub fn between(a: &Seen, b: &Seen, records: Records) -> Gap {
+    let mut gap = Gap::default();
+    let pairs = match records {
+        Records::All if a.parameter.len() != b.parameter.len() => {
+            let n = a.parameter.len().abs_diff(b.parameter.len());
+            gap.note("number of records", n as f64, a.parameter.len().max(1) as f64);
+            last(a, b)
+        }
+        Records::All => (0..a.parameter.len()).map(|i| (i, i)).collect(),
+        Records::Common => common(a, b),
+        Records::Last => last(a, b),
+    };
+    let end = a.parameter.last().map_or(1.0, |p| p.abs().max(1e-300));
+    for &(i, j) in &pairs {
+        gap.note("load factor or time of a record", (a.parameter[i] - b.parameter[j]).abs(), end);
+    }
+    probes(a, b, &pairs, &mut gap);
+    energies(a, b, &pairs, &mut gap);
+    lines(a, b, &mut gap);
+    eigenvalues(a, b, &mut gap);
+    if a.events.len() == b.events.len() {
+        for (s, t) in a.events.iter().zip(&b.events) {
+            gap.note("time of an event", (s - t).abs(), end);
+        }
+    } else if records == Records::All {
+        gap.note("number of events", 1.0, 1.0);
+    }
+    gap
+}
+
+fn last(a: &Seen, b: &Seen) -> Vec<(usize, usize)> {
+    a.parameter.len().checked_sub(1).zip(b.parameter.len().checked_sub(1)).into_iter().collect()
+}
+
+fn common(a: &Seen, b: &Seen) -> Vec<(usize, usize)> {
+    let end = a.parameter.last().copied().unwrap_or(1.0);
+    let same = |i: usize| {
+        let j = b.parameter.iter().position(|p| (p - a.parameter[i]).abs() <= 1e-9 * end)?;
+        Some((i, j))
+    };
+    let mut pairs: Vec<_> = (0..a.parameter.len()).filter_map(same).collect();
+    if pairs.is_empty() {
+        pairs = last(a, b);
+    }
+    pairs
+}
+
+fn probes(a: &Seen, b: &Seen, pairs: &[(usize, usize)], gap: &mut Gap) {
+    let largest = |of: &dyn Fn(&Sample) -> f64, least: f64| {
+        let samples = a.probes.iter().flatten().chain(b.probes.iter().flatten());
+        samples.fold(least, |m, s| m.max(of(s).abs()))
+    };
+    let curvature = largest(&|s| s.curvature, 1.0);
+    let strain = largest(&|s| s.strain, 1e-3);
+    let velocity = largest(&|s| s.velocity[0].hypot(s.velocity[1]), 1e-3);
+    for (p, q) in a.probes.iter().zip(&b.probes) {
+        for &(i, j) in pairs {
+            let (Some(p), Some(q)) = (p.get(i), q.get(j)) else { continue };
+            gap.place("position of a probe", apart(p.place, q.place));
+            gap.note("angle at a probe", (p.angle - q.angle).abs(), 1.0);
+            gap.note("curvature at a probe", (p.curvature - q.curvature).abs(), curvature);
+            gap.note("strain at a probe", (p.strain - q.strain).abs(), strain);
+            gap.note("velocity of a probe", apart(p.velocity, q.velocity), velocity);
+        }
+    }
+}
+
+fn energies(a: &Seen, b: &Seen, pairs: &[(usize, usize)], gap: &mut Gap) {
+    let (Some(first), Some(other)) = (a.energy.first(), b.energy.first()) else { return };
+    let change = |e: &[f64; 7], first: &[f64; 7]| {
+        let mut change = *e;
+        // A potential may count from elsewhere.
+        change[4] -= first[4];
+        change
+    };
+    let all = a.energy.iter().map(|e| change(e, first)).chain(b.energy.iter().map(|e| change(e, other)));
+    let size = all.flatten().fold(1e-9_f64, |m, e| m.max(e.abs()));
+    let names = ["stretch", "bend", "stored", "kinetic", "potential", "work", "lost"];
+    for &(i, j) in pairs {
+        let (Some(e), Some(f)) = (a.energy.get(i), b.energy.get(j)) else { continue };
+        let (e, f) = (change(e, first), change(f, other));
+        for (name, (e, f)) in names.iter().zip(e.iter().zip(f)) {
+            gap.note(&format!("energy, {name}"), (e - f).abs(), size);
+        }
+    }
+}
+
+fn lines(a: &Seen, b: &Seen, gap: &mut Gap) {
+    if a.beams.len() != b.beams.len() {
+        return;
+    }
+    let force = force_size(a).max(force_size(b));
+    for (a, b) in a.beams.iter().zip(&b.beams) {
+        if a.places.len() != b.places.len() {
+            continue;
+        }
+        for (p, q) in a.places.iter().zip(&b.places) {
+            gap.place("shape of a beam", apart(*p, *q));
+        }
+        for (f, g) in a.forces.iter().zip(&b.forces) {
+            for (name, (f, g)) in ["N", "Q", "M"].iter().zip(f.iter().zip(g)) {
+                gap.note(&format!("section force {name}"), (f - g).abs(), force);
+            }
+        }
+    }
+    for ((name, r), (_, s)) in a.reactions.iter().zip(&b.reactions) {
+        for (r, s) in r.iter().zip(s) {
+            gap.note(&format!("reaction of {name}"), (r - s).abs(), force);
+        }
+    }
+}
+
+/// The largest force or couple of a scene \[EI/L²\].
+pub fn force_size(seen: &Seen) -> f64 {
+    let sections = seen.beams.iter().flat_map(|beam| &beam.forces).flatten();
+    let reactions = seen.reactions.iter().flat_map(|(_, r)| r);
+    sections.chain(reactions).fold(seen.effects.1.max(1e-2), |m, f| m.max(f.abs()))
+}
+
+fn eigenvalues(a: &Seen, b: &Seen, gap: &mut Gap) {
+    let n = a.eigenvalues.len().min(b.eigenvalues.len());
+    let smallest = a.eigenvalues.iter().copied().map(f64::abs).find(|f| *f > 1e-3).unwrap_or(1.0);
+    for (f, g) in a.eigenvalues[..n].iter().zip(&b.eigenvalues[..n]) {
+        gap.place("an eigenvalue", (f - g).abs() / f.abs().max(smallest));
+    }
+    if n == 0 && a.eigenvalues.len() != b.eigenvalues.len() {
+        gap.place("number of eigenvalues", 1.0);
+    }
+}

@@ -1,0 +1,342 @@
+//! Runs a scene in a way that must agree, and says whether it does.
+
+use fastrand::Rng;
+use toml::{Table, Value};
+
+use super::frame::Frame;
+use super::gap::{self, Gap, Records};
+use super::neighbour::{self, Growth};
+use super::outcome::{self, Outcome, Seen};
+use super::ways::{self, Way};
+use super::{balance, cut, settings};
+
+/// What two runs may differ by, times what was asked for.
+const ALLOWED: f64 = 10.0;
+
+/// Growth of errors beyond which a scene has no one answer.
+const NEUTRAL: f64 = 1e4;
+/// What the estimates of both meshes are worth at a cut, where other shape functions reach.
+const WELDED: f64 = 3.0;
+/// Relative accuracy of eigenvalues.
+const EIGENVALUES: f64 = 1e-7;
+/// Accuracy of forces and other things than positions, for which nothing is asked.
+const FORCES: f64 = 1e-5;
+
+/// A scene in natural units, with the frame in which it is run and what its other ways are drawn from.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub scene: Table,
+    pub frame: Frame,
+    pub seed: u64,
+}
+
+/// What one way tells of a scene.
+#[derive(Clone, Debug)]
+pub enum Verdict {
+    /// The way is none for this scene.
+    NotApplicable,
+    /// The runs differ by this share of what is allowed.
+    Agrees(f64),
+    /// They differ by no more than the scene's own sensitivity explains.
+    Unstable,
+    /// A warning says that something is not known well.
+    Warned,
+    /// Status 1 or 2 in all ways.
+    Refused,
+    /// Given up.
+    TooLong,
+    /// They differ.
+    Finding(Finding),
+}
+
+/// Runs that do not agree.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    pub way: Way,
+    pub what: String,
+    /// The scene in the other way, as text.
+    pub other: String,
+}
+
+/// One disagreement, and what is allowed.
+struct Measured {
+    value: f64,
+    allowed: f64,
+    /// Whether it is one of positions, so that their growth counts.
+    places: bool,
+    what: String,
+}
+
+/// Judges one way.
+pub fn judge(case: &Case, way: Way, base: &Outcome) -> Verdict {
+    // A number of its own for each way, so that a smaller scene is judged in the same way.
+    let mut rng = Rng::with_seed(case.seed ^ ((way as u64 + 1) << 32));
+    if let Outcome::Panicked(said) = base {
+        return finding(way, format!("a panic: {said}"), String::new());
+    }
+    match way {
+        _ if way.is_exact() => exact(case, way, base, &mut rng),
+        Way::Balance => solved(base).map_or_else(|verdict| verdict, |seen| balanced(case, seen, &mut rng)),
+        _ => match solved(base) {
+            Ok(seen) => approximate(case, way, seen, &mut rng),
+            Err(verdict) => verdict,
+        },
+    }
+}
+
+/// What a run is worth: without warnings it can be compared.
+fn solved(outcome: &Outcome) -> Result<&Seen, Verdict> {
+    match outcome {
+        Outcome::Solved(seen) if seen.warnings.is_empty() => Ok(seen),
+        Outcome::Solved(_) => Err(Verdict::Warned),
+        Outcome::Failed(_) | Outcome::Refused(_) => Err(Verdict::Refused),
+        Outcome::TooLong => Err(Verdict::TooLong),
+        Outcome::Panicked(said) => Err(finding(Way::Balance, format!("a panic: {said}"), String::new())),
+    }
+}
+
+fn finding(way: Way, what: String, other: String) -> Verdict {
+    Verdict::Finding(Finding { way, what, other })
+}
+
+/// Error of round-off in positions: that of the stretch, which the stiffest beam makes a force.
+fn round_off(scene: &Table) -> f64 {
+    1e-9 + 1e-15 * settings::stiffness_ratio(scene) * settings::all_cells(scene) as f64
+}
+
+fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng) -> Verdict {
+    let Measured { value, allowed, places, what } = measured;
+    // What is no number agrees with nothing.
+    if value <= allowed {
+        return Verdict::Agrees(value / allowed);
+    }
+    if settings::is_slack(&case.scene) {
+        return Verdict::Unstable;
+    }
+    let factor = match neighbour::growth(&case.scene, &case.frame, rng) {
+        Growth::Unknown => return Verdict::Unstable,
+        // Nearly any shape is one: a string without a load across it, a column at its critical load.
+        Growth::By { places, .. } if places > NEUTRAL => return Verdict::Unstable,
+        Growth::By { places: grown, .. } if places => grown,
+        Growth::By { all, .. } => all,
+    };
+    if value <= allowed * factor {
+        return Verdict::Unstable;
+    }
+    let says = format!(
+        "{what}: {value:.2e} where {allowed:.2e} is allowed, and neighbours depart by {factor:.1} times their difference"
+    );
+    finding(way, says, other.to_owned())
+}
+
+fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
+    let Case { scene, frame, .. } = case;
+    let other = ways::other_frame(way, frame, scene, rng);
+    let text = || other.write(scene).to_string();
+    let outcome = outcome::run(scene, &other);
+    let (a, b) = match (base, &outcome) {
+        (Outcome::TooLong, _) | (_, Outcome::TooLong) => return Verdict::TooLong,
+        (_, Outcome::Panicked(said)) => return finding(way, format!("a panic: {said}"), text()),
+        (Outcome::Solved(a), Outcome::Solved(b)) => (a, b),
+        (Outcome::Solved(seen), Outcome::Failed(said) | Outcome::Refused(said))
+        | (Outcome::Failed(said) | Outcome::Refused(said), Outcome::Solved(seen)) => {
+            let given_up = !seen.warnings.is_empty() || settings::is_slack(scene);
+            if given_up || neighbour::at_the_edge(scene, [frame, &other], rng) {
+                return Verdict::Unstable;
+            }
+            return finding(way, format!("one of both has no result: {said}"), text());
+        }
+        (Outcome::Refused(said), Outcome::Failed(_)) | (Outcome::Failed(_), Outcome::Refused(said)) => {
+            return finding(way, format!("refused in one of both: {said}"), text());
+        }
+        _ => return Verdict::Refused,
+    };
+    if !a.warnings.is_empty() || !b.warnings.is_empty() {
+        return Verdict::Warned;
+    }
+    let same = a.counts == b.counts;
+    let free_end = settings::get(scene, &["analysis", "static", "arc_length"])
+        .and_then(Value::as_table)
+        .is_some_and(|path| !path.contains_key("until_load") && !path.contains_key("until_probe"));
+    if free_end && !same {
+        return Verdict::NotApplicable;
+    }
+    let motion = settings::motion(scene);
+    // Where a path, or a load that is not divided, pauses on its way is nobody's wish.
+    let pauses = settings::get(scene, &["analysis", "static", "steps"]).is_some() || motion.is_some();
+    let records = if pauses { Records::All } else { Records::Last };
+    let gap = gap::between(a, b, records);
+    let chosen = motion.as_ref().and_then(|motion| motion.tolerance);
+    let modes = matches!(settings::analysis(scene), "modal" | "buckling");
+    let wanted = match () {
+        () if modes => EIGENVALUES,
+        () if free_end => FORCES,
+        () => settings::tolerance(scene),
+    };
+    let (places, all) = match chosen {
+        // Round-off decides on a step, and the tolerance on what that does.
+        Some(_) if !same => (wanted, f64::INFINITY),
+        Some(_) => (0.1 * wanted, FORCES.max(wanted)),
+        None => (ALLOWED * wanted, FORCES.max(ALLOWED * wanted)),
+    };
+    let places = places + round_off(scene);
+    let measured = if gap.places > places {
+        let what = "a position or an eigenvalue".to_owned();
+        Measured { value: gap.places, allowed: places, places: true, what }
+    } else {
+        Measured { value: gap.all, allowed: all + 100.0 * round_off(scene), places: false, what: gap.what }
+    };
+    decide(case, way, measured, &text(), rng)
+}
+
+/// Runs another scene in the same frame; without a warning, or else the verdict.
+fn other(scene: &Table, frame: &Frame, way: Way) -> Result<Box<Seen>, Verdict> {
+    match outcome::run(scene, frame) {
+        Outcome::Panicked(said) => {
+            Err(finding(way, format!("a panic: {said}"), frame.write(scene).to_string()))
+        }
+        Outcome::Solved(seen) if seen.warnings.is_empty() => Ok(seen),
+        outcome => Err(solved(&outcome).err().unwrap_or(Verdict::Refused)),
+    }
+}
+
+fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
+    let Case { scene, frame, .. } = case;
+    let tolerance = settings::tolerance(scene);
+    let plain = ALLOWED * tolerance + round_off(scene);
+    let changed = match way {
+        Way::LoadSteps => ways::load_steps(scene, rng),
+        Way::Tolerance => ways::tighter(scene),
+        Way::Integrator => ways::integrator(scene, rng),
+        Way::Count => ways::count(scene, rng),
+        Way::FixedStep => ways::half_steps(scene),
+        Way::Mesh => (settings::all_cells(scene) <= 40).then(|| settings::finer(scene)).flatten(),
+        Way::Welded => cut::cut(scene),
+        Way::Basis => settings::other_basis(scene),
+        Way::Continued => return continued(case, base, rng),
+        Way::Turned | Way::Mirrored | Way::Units | Way::Balance => None,
+    };
+    let Some(changed) = changed else { return Verdict::NotApplicable };
+    let path = settings::get(scene, &["analysis", "static", "arc_length"]).is_some();
+    if path && matches!(way, Way::Mesh | Way::Welded | Way::Basis) {
+        // Where a path ends by its points depends on the mesh, and where it ends by a place it may pass it again.
+        let until = settings::get(scene, &["analysis", "static", "arc_length", "until_load"]).is_some();
+        if !until {
+            return Verdict::NotApplicable;
+        }
+    }
+    let text = || frame.write(&changed).to_string();
+    let result = (|| {
+        let seen = other(&changed, frame, way)?;
+        let records = if settings::motion(scene).is_some() { Records::Common } else { Records::Last };
+        let gap = gap::between(base, &seen, records);
+        let places = |value: f64, allowed: f64| Measured {
+            value,
+            allowed,
+            places: true,
+            what: "a position or an eigenvalue".to_owned(),
+        };
+        Ok(match way {
+            Way::Count => places(gap.places, ALLOWED * EIGENVALUES + 10.0 * round_off(scene)),
+            Way::FixedStep => {
+                let third = ways::half_steps(&changed).ok_or(Verdict::NotApplicable)?;
+                let finest = other(&third, frame, way)?;
+                let next = gap::between(&seen, &finest, records);
+                estimated(&next, gap.places, plain)
+            }
+            Way::Mesh => {
+                let third = settings::finer(&changed).ok_or(Verdict::NotApplicable)?;
+                let finest = other(&third, frame, way)?;
+                let next = gap::between(&seen, &finest, records);
+                estimated(&next, gap.places, 1e-6 + plain)
+            }
+            Way::Welded => {
+                let fine = settings::finer(scene).ok_or(Verdict::NotApplicable)?;
+                let fine_cut = settings::finer(&changed).ok_or(Verdict::NotApplicable)?;
+                let whole = gap::between(base, &*other(&fine, frame, way)?, records);
+                // Shape functions that reach over several cells are others beside a cut.
+                let pieces = gap::between(&seen, &*other(&fine_cut, frame, way)?, records);
+                estimated(&gap, WELDED * (whole.places + pieces.places), 1e-6 + plain)
+            }
+            Way::Basis => {
+                let fine = settings::finer(scene).ok_or(Verdict::NotApplicable)?;
+                let fine_other = settings::finer(&changed).ok_or(Verdict::NotApplicable)?;
+                let (fine, fine_other) = (other(&fine, frame, way)?, other(&fine_other, frame, way)?);
+                let errors = [gap::between(base, &fine, records), gap::between(&seen, &fine_other, records)];
+                let next = gap::between(&fine, &fine_other, records);
+                estimated(&next, errors[0].places + errors[1].places, 1e-6 + plain)
+            }
+            _ => places(gap.places, plain),
+        })
+    })();
+    match result {
+        Ok(measured) => decide(case, way, measured, &text(), rng),
+        Err(verdict) => verdict,
+    }
+}
+
+/// A difference that an estimate of the error should explain.
+fn estimated(gap: &Gap, estimate: f64, least: f64) -> Measured {
+    Measured {
+        value: gap.places,
+        allowed: ALLOWED * estimate + least,
+        places: true,
+        what: format!("position or eigenvalue, of which the estimated error is {estimate:.2e}"),
+    }
+}
+
+fn continued(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
+    let Case { scene, frame, .. } = case;
+    let way = Way::Continued;
+    let Some([first, rest]) = ways::parts(scene, rng) else { return Verdict::NotApplicable };
+    let half = match other(&first, frame, way) {
+        Ok(half) => half,
+        Err(verdict) => return verdict,
+    };
+    let Some(saved) = &half.saved else {
+        return finding(way, "a motion leaves no state".into(), frame.write(&first).to_string());
+    };
+    let text = || format!("{}\n# and then, --from its state:\n{}", frame.write(&first), frame.write(&rest));
+    let outcome = outcome::run_from(&rest, frame, Some(saved));
+    let seen = match &outcome {
+        Outcome::Solved(seen) => {
+            let mut seen = seen.clone();
+            // Its angles count from where it begins.
+            for (probe, before) in seen.probes.iter_mut().zip(&half.probes) {
+                let turned = before.last().map_or(0.0, |sample| sample.angle);
+                probe.iter_mut().for_each(|sample| sample.angle += turned);
+            }
+            // So do its energies.
+            if let (Some(first), Some(whole)) = (seen.energy.first_mut(), base.energy.first()) {
+                *first = *whole;
+            }
+            seen
+        }
+        Outcome::Failed(said) | Outcome::Refused(said) => {
+            return finding(way, format!("it does not go on: {said}"), text());
+        }
+        Outcome::Panicked(said) => return finding(way, format!("a panic: {said}"), text()),
+        Outcome::TooLong => return Verdict::TooLong,
+    };
+    let motion = settings::motion(scene);
+    let turns = settings::items(scene, &["support"]).any(|support| support.contains_key("move"));
+    let chooses = motion.as_ref().is_some_and(|m| m.tolerance.is_some());
+    let kicked = settings::names(scene, &["initial_velocity"]);
+    let exempt = chooses && (turns || !kicked);
+    let gap = gap::between(base, &seen, Records::Last);
+    let measured = if exempt {
+        let allowed = ALLOWED * settings::tolerance(scene) + round_off(scene);
+        Measured { value: gap.places, allowed, places: true, what: gap.what }
+    } else {
+        Measured { value: gap.all, allowed: 1e-8, places: false, what: gap.what }
+    };
+    decide(case, way, measured, &text(), rng)
+}
+
+fn balanced(case: &Case, seen: &Seen, rng: &mut Rng) -> Verdict {
+    let Some((off, what)) = balance::worst(&case.scene, seen) else { return Verdict::NotApplicable };
+    let tolerance = settings::tolerance(&case.scene);
+    let allowed = 1e-6 + 100.0 * round_off(&case.scene) + ALLOWED * tolerance;
+    let measured = Measured { value: off, allowed, places: false, what };
+    decide(case, Way::Balance, measured, "", rng)
+}

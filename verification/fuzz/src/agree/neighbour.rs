@@ -1,0 +1,114 @@
+//! Neighbours of a scene, and how far they depart: what no computation can hold still is no finding.
+
+use fastrand::Rng;
+use toml::{Table, Value};
+
+use super::frame::{Frame, vector};
+use super::gap::{self, Records};
+use super::outcome::{self, Outcome};
+use super::settings;
+
+/// The scene with loads, stiffnesses and prescribed motions that differ by about `share`. A vector changes its direction too, so that
+/// symmetry does not hide that it can be lost.
+pub fn near(scene: &Table, share: f64, rng: &mut Rng) -> Table {
+    let mut near = scene.clone();
+    for key in ["effect", "initial_velocity", "support"] {
+        if let Some(value) = near.get_mut(key) {
+            shake(key, value, share, rng);
+        }
+    }
+    // A force that was not there tells what nothing holds: a string without a load across it, a column at its critical load.
+    let beams: Vec<String> = settings::beams(scene).map(|(name, _)| name.clone()).collect();
+    for beam in beams {
+        let (sine, cosine) = (std::f64::consts::TAU * rng.f64()).sin_cos();
+        let mut force = Table::new();
+        force.insert("beam".into(), beam.into());
+        force.insert("value".into(), super::frame::list([share * cosine, share * sine]));
+        if let Some(effects) = settings::table(&mut near, &["effect"])
+            && let Value::Array(list) =
+                effects.entry("distributed_force").or_insert_with(|| Value::Array(Vec::new()))
+        {
+            list.push(force.into());
+        }
+    }
+    if let Some(Value::Table(beams)) = near.get_mut("beam") {
+        for (_, beam) in beams.iter_mut() {
+            for key in ["bending_stiffness", "axial_stiffness", "second_moment", "mass_per_length"] {
+                if let Some(value) = beam.get_mut(key) {
+                    shake(key, value, share, rng);
+                }
+            }
+        }
+    }
+    near
+}
+
+fn shake(key: &str, value: &mut Value, share: f64, rng: &mut Rng) {
+    // Places on beams must stay on them, and where a beam is at the start.
+    if matches!(key, "at" | "s" | "start" | "times" | "about" | "polynomial") {
+        return;
+    }
+    let mut by = |size: f64| share * size * (0.5 + 0.5 * rng.f64()) * if rng.bool() { 1.0 } else { -1.0 };
+    if let Some([x, y]) = vector(value).filter(|_| key != "stiffness" && key != "size") {
+        let size = x.hypot(y);
+        *value = super::frame::list([x + by(size), y + by(size)]);
+        return;
+    }
+    match value {
+        Value::Float(v) => *v += by(v.abs()),
+        Value::Table(table) => table.iter_mut().for_each(|(key, value)| shake(key, value, share, rng)),
+        Value::Array(list) => list.iter_mut().for_each(|item| shake(key, item, share, rng)),
+        _ => {}
+    }
+}
+
+/// By how much an error grows in a scene: the departure of neighbours per difference, 1 at least. Of a motion both are computed a
+/// hundred times more accurately than was asked for, so that the integrator's own error does not look like sensitivity.
+pub fn growth(scene: &Table, frame: &Frame, rng: &mut Rng) -> Growth {
+    let (scene, share) = match settings::motion(scene) {
+        None => (scene.clone(), 1e-7),
+        Some(motion) => {
+            let wanted = motion.tolerance.unwrap_or(1e-6).min(1e-4);
+            let name = if motion.integrator == "gauss" { "gauss" } else { "radau" };
+            // Looser than that would tell nothing, tighter costs time.
+            (settings::with_integrator(scene, name, "tolerance", 1e-2 * wanted), (0.1 * wanted).max(1e-7))
+        }
+    };
+    let Outcome::Solved(here) = outcome::run(&scene, frame) else { return Growth::Unknown };
+    let mut growth = Growth::By { places: 1.0, all: 1.0 };
+    for _ in 0..2 {
+        let Outcome::Solved(there) = outcome::run(&near(&scene, share, rng), frame) else {
+            return Growth::Unknown;
+        };
+        let gap = gap::between(&here, &there, Records::Common);
+        if let Growth::By { places, all } = &mut growth {
+            *places = places.max(gap.places / share);
+            *all = all.max(gap.all / share);
+        }
+    }
+    growth
+}
+
+/// What neighbours tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Growth {
+    /// By so much, of positions and of whatever grows most.
+    By { places: f64, all: f64 },
+    /// A neighbour has no result.
+    Unknown,
+}
+
+/// Whether some neighbour solves and another does not: a scene at the edge of what has a solution.
+pub fn at_the_edge(scene: &Table, frames: [&Frame; 2], rng: &mut Rng) -> bool {
+    let (mut solved, mut failed) = (0, 0);
+    for frame in frames {
+        for _ in 0..2 {
+            match outcome::run(&near(scene, 1e-9, rng), frame) {
+                Outcome::Solved(_) => solved += 1,
+                _ => failed += 1,
+            }
+        }
+    }
+    // In the frame that fails all fail, and in the other none: nothing but the frame decides.
+    !(solved == 2 && failed == 2)
+}

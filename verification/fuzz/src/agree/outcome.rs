@@ -1,0 +1,214 @@
+//! Runs a scene, and keeps what there is to compare: in natural units, turned back to where the scene was drawn.
+
+use std::cell::RefCell;
+use std::panic::{self, AssertUnwindSafe};
+
+use ancf::restart::SavedState;
+use ancf::run::{self, Control};
+use ancf::scene;
+use ancf::trajectory::{ProbeSample, Shape, Trajectory};
+use toml::Table;
+
+use super::frame::Frame;
+
+/// Newton iterations times nodes after which a run is given up: about a second. No clock decides, so that a seed gives the same verdicts.
+const WORK: usize = 60_000;
+/// Steps after which a run is given up.
+const STEPS: usize = 4_000;
+
+thread_local! {
+    /// What the last panic of this thread said.
+    static SAID: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// What became of a scene.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// Status 0.
+    Solved(Box<Seen>),
+    /// Status 1.
+    Failed(String),
+    /// Status 2, found by the reader or later.
+    Refused(String),
+    /// Given up.
+    TooLong,
+    /// A panic.
+    Panicked(String),
+}
+
+/// What was seen, in natural units.
+#[derive(Clone, Debug, Default)]
+pub struct Seen {
+    pub warnings: Vec<String>,
+    /// Load factors, or times.
+    pub parameter: Vec<f64>,
+    pub probes: Vec<Vec<Sample>>,
+    /// Parts of the energy, of which the differences from the first record are compared.
+    pub energy: Vec<[f64; 7]>,
+    /// The last state of each beam.
+    pub beams: Vec<Line>,
+    /// Per support and joint the force and moment in the last record.
+    pub reactions: Vec<(String, [f64; 3])>,
+    /// The sum of all forces of effects in the last record, and of their sizes.
+    pub effects: ([f64; 2], f64),
+    /// Frequencies or critical load factors.
+    pub eigenvalues: Vec<f64>,
+    /// Times of events.
+    pub events: Vec<f64>,
+    /// Steps, rejected steps, iterations.
+    pub counts: [usize; 3],
+    pub saved: Option<SavedState>,
+}
+
+/// What a probe saw.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sample {
+    pub place: [f64; 2],
+    /// Since the first record.
+    pub angle: f64,
+    pub curvature: f64,
+    pub strain: f64,
+    pub velocity: [f64; 2],
+}
+
+/// The last state of a beam.
+#[derive(Clone, Debug, Default)]
+pub struct Line {
+    pub places: Vec<[f64; 2]>,
+    pub angle: Vec<f64>,
+    /// N, Q, M.
+    pub forces: Vec<[f64; 3]>,
+}
+
+/// Keeps what panics say, and keeps them quiet.
+pub fn hear_panics() {
+    panic::set_hook(Box::new(|info| SAID.with(|said| *said.borrow_mut() = info.to_string())));
+}
+
+/// Runs a scene that was drawn in natural units.
+pub fn run(natural: &Table, frame: &Frame) -> Outcome {
+    run_from(natural, frame, None)
+}
+
+/// The same, from a saved state.
+pub fn run_from(natural: &Table, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
+    let text = frame.write(natural).to_string();
+    match panic::catch_unwind(AssertUnwindSafe(|| solve(&text, frame, saved))) {
+        Ok(outcome) => outcome,
+        Err(_) => Outcome::Panicked(SAID.with(|said| said.borrow().clone())),
+    }
+}
+
+/// Whether a scene is legal, and the reader's first line where it is not.
+pub fn check(natural: &Table, frame: &Frame) -> Result<(), String> {
+    let text = frame.write(natural).to_string();
+    match panic::catch_unwind(AssertUnwindSafe(|| scene::parse("drawn.toml", &text).map(|_| ()))) {
+        Ok(read) => read.map_err(|error| first_line(&error.to_string())),
+        // The run will tell.
+        Err(_) => Ok(()),
+    }
+}
+
+fn first_line(text: &str) -> String {
+    text.lines().next().unwrap_or_default().to_owned()
+}
+
+fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
+    let scene = match scene::parse("drawn.toml", text) {
+        Ok(scene) => scene,
+        Err(error) => return Outcome::Refused(first_line(&error.to_string())),
+    };
+    let nodes: usize = scene.model().beams.iter().map(|beam| count(&beam.discretization)).sum();
+    let (mut steps, mut gave_up) = (0, false);
+    let observer = &mut |progress: &run::Progress| {
+        steps += 1;
+        gave_up = steps > STEPS || progress.newton_iterations * nodes > WORK;
+        if gave_up { Control::Stop } else { Control::Continue }
+    };
+    let outcome = run::run_from(scene.model(), scene.analysis(), saved, observer);
+    if gave_up {
+        return Outcome::TooLong;
+    }
+    match outcome {
+        Ok(trajectory) => Outcome::Solved(Box::new(see(&trajectory, frame))),
+        Err(error) if error.exit_status() == 2 => Outcome::Refused(first_line(&error.to_string())),
+        Err(error) => Outcome::Failed(first_line(&error.to_string())),
+    }
+}
+
+fn count(discretization: &ancf::model::Discretization) -> usize {
+    match discretization {
+        ancf::model::Discretization::Ancf { nodes } => nodes.count(),
+        ancf::model::Discretization::Rpim { nodes, .. } => nodes.count(),
+    }
+}
+
+fn see(t: &Trajectory, frame: &Frame) -> Seen {
+    let time = match t.analysis {
+        ancf::trajectory::AnalysisKind::Dynamic => frame.unit([0, 0, 1]),
+        _ => 1.0,
+    };
+    let energy = frame.unit([2, 1, -2]);
+    let parts = |e: &ancf::trajectory::Energy| {
+        [e.stretch, e.bend, e.stored, e.kinetic, e.potential, e.work, e.lost].map(|part| part / energy)
+    };
+    let force = frame.unit([1, 1, -2]);
+    let reactions = t.reactions.iter().filter_map(|series| {
+        let last = series.samples.last()?;
+        let [fx, fy] = frame.back([last.fx / force, last.fy / force]);
+        Some((series.name.clone(), [fx, fy, frame.sign() * last.moment / energy]))
+    });
+    let mut sum = ([0.0; 2], 0.0);
+    for sample in t.effects.iter().filter_map(|series| series.samples.last()) {
+        let [_, fx, fy] = sample;
+        let f = frame.back([fx / force, fy / force]);
+        sum.0[0] += f[0];
+        sum.0[1] += f[1];
+        sum.1 += f[0].hypot(f[1]);
+    }
+    let rate = frame.unit([0, 0, -1]);
+    let frequencies = t.frequencies.iter().map(|f| f / rate);
+    Seen {
+        warnings: t.warnings.clone(),
+        parameter: t.parameter.iter().map(|p| p / time).collect(),
+        probes: t.probes.iter().map(|probe| samples(&probe.samples, frame)).collect(),
+        energy: t.energy.iter().map(parts).collect(),
+        beams: t.last.iter().map(|shape| line(shape, frame)).collect(),
+        reactions: reactions.collect(),
+        effects: sum,
+        eigenvalues: frequencies.chain(t.load_factors.iter().copied()).collect(),
+        events: t.events.iter().map(|event| event.time() / time).collect(),
+        counts: [t.statistics.steps, t.statistics.rejected_steps, t.statistics.newton_iterations],
+        saved: t.saved.clone(),
+    }
+}
+
+fn samples(samples: &[ProbeSample], frame: &Frame) -> Vec<Sample> {
+    let (length, velocity) = (frame.unit([1, 0, 0]), frame.unit([1, 0, -1]));
+    let first = samples.first().map_or(0.0, |s| s.angle);
+    let natural = samples.iter().map(|s| Sample {
+        place: frame.point_back([s.x, s.y]),
+        angle: frame.sign() * (s.angle - first),
+        curvature: frame.sign() * s.curvature * length,
+        strain: s.strain,
+        velocity: frame.back([s.vx.unwrap_or(0.0) / velocity, s.vy.unwrap_or(0.0) / velocity]),
+    });
+    natural.collect()
+}
+
+fn line(shape: &Shape, frame: &Frame) -> Line {
+    let (force, moment) = (frame.unit([1, 1, -2]), frame.unit([2, 1, -2]));
+    let sign = frame.sign();
+    let places = shape.x.iter().zip(&shape.y).map(|(x, y)| frame.point_back([*x, *y]));
+    let forces = shape.axial_force.iter().zip(&shape.shear_force).zip(&shape.bending_moment);
+    let angles = shape.angle.iter().map(|a| {
+        let (sine, cosine) = a.sin_cos();
+        let [x, y] = frame.back([cosine, sine]);
+        y.atan2(x)
+    });
+    Line {
+        places: places.collect(),
+        angle: angles.collect(),
+        forces: forces.map(|((n, q), m)| [n / force, sign * q / force, sign * m / moment]).collect(),
+    }
+}

@@ -1,0 +1,216 @@
+//! Reads and changes the settings of a scene: accuracy, steps, integrator, mesh.
+
+use toml::{Table, Value};
+
+/// The value at a path of tables.
+pub fn get<'t>(scene: &'t Table, path: &[&str]) -> Option<&'t Value> {
+    let (first, rest) = path.split_first()?;
+    let value = scene.get(*first)?;
+    if rest.is_empty() { Some(value) } else { get(value.as_table()?, rest) }
+}
+
+/// The table at a path, made where there is none.
+pub fn table<'t>(scene: &'t mut Table, path: &[&str]) -> Option<&'t mut Table> {
+    let Some((first, rest)) = path.split_first() else { return Some(scene) };
+    let below = scene.entry(*first).or_insert_with(|| Table::new().into());
+    table(below.as_table_mut()?, rest)
+}
+
+/// The tables of a list.
+pub fn items<'t>(scene: &'t Table, path: &[&str]) -> impl Iterator<Item = &'t Table> {
+    let list = get(scene, path).and_then(Value::as_array);
+    list.into_iter().flatten().filter_map(Value::as_table)
+}
+
+/// The kind of analysis, as a scene names it.
+pub fn analysis(scene: &Table) -> &str {
+    get(scene, &["analysis"])
+        .and_then(Value::as_table)
+        .and_then(|t| t.keys().next())
+        .map_or("", String::as_str)
+}
+
+/// What a motion is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// `radau`, `gauss` or `generalized_alpha`.
+    pub integrator: String,
+    /// The tolerance, or none and a fixed step.
+    pub tolerance: Option<f64>,
+    pub step: Option<f64>,
+    pub duration: f64,
+    pub output_every: f64,
+}
+
+/// The settings of a motion.
+pub fn motion(scene: &Table) -> Option<Motion> {
+    let dynamic = get(scene, &["analysis", "dynamic"])?.as_table()?;
+    let float = |table: &Table, key: &str| table.get(key).and_then(Value::as_float);
+    let duration = float(dynamic, "duration")?;
+    let output_every = float(dynamic, "output_every").unwrap_or(duration / 200.0);
+    let named = ["radau", "gauss", "generalized_alpha"]
+        .into_iter()
+        .find_map(|name| Some((name, dynamic.get(name)?.as_table()?)));
+    Some(match named {
+        None => {
+            Motion { integrator: "radau".into(), tolerance: Some(1e-6), step: None, duration, output_every }
+        }
+        Some((name, table)) => Motion {
+            integrator: name.to_owned(),
+            tolerance: float(table, "tolerance"),
+            step: float(table, "step"),
+            duration,
+            output_every,
+        },
+    })
+}
+
+/// The scene by another integrator.
+pub fn with_integrator(scene: &Table, name: &str, key: &str, value: f64) -> Table {
+    let mut scene = scene.clone();
+    if let Some(dynamic) = table(&mut scene, &["analysis", "dynamic"]) {
+        let same = dynamic.remove(name).and_then(|settings| match settings {
+            Value::Table(settings) => Some(settings),
+            _ => None,
+        });
+        for other in ["radau", "gauss", "generalized_alpha"] {
+            dynamic.remove(other);
+        }
+        let mut settings = same.unwrap_or_default();
+        for other in ["tolerance", "step"] {
+            settings.remove(other);
+        }
+        if key == "tolerance" {
+            settings.remove("newton_tolerance");
+        }
+        settings.insert(key.into(), value.into());
+        dynamic.insert(name.into(), settings.into());
+    }
+    scene
+}
+
+/// The accuracy that is asked for.
+pub fn tolerance(scene: &Table) -> f64 {
+    match motion(scene) {
+        // Iterations of fixed steps: a thousand of them should add up to less.
+        Some(motion) => motion.tolerance.unwrap_or_else(|| 1e-8_f64.max(1e3 * newton_tolerance(scene))),
+        None => get(scene, &["analysis", "static", "tolerance"]).and_then(Value::as_float).unwrap_or(1e-10),
+    }
+}
+
+fn newton_tolerance(scene: &Table) -> f64 {
+    let path = ["analysis", "dynamic", "generalized_alpha", "newton_tolerance"];
+    get(scene, &path).and_then(Value::as_float).unwrap_or(0.0)
+}
+
+/// Every beam's table.
+pub fn beams(scene: &Table) -> impl Iterator<Item = (&String, &Table)> {
+    let beams = get(scene, &["beam"]).and_then(Value::as_table);
+    beams.into_iter().flatten().filter_map(|(name, beam)| Some((name, beam.as_table()?)))
+}
+
+/// Cells of a discretisation.
+pub fn cells(basis: &Table) -> usize {
+    let of = |kind: &Value| {
+        let nodes = kind.get("nodes");
+        let counted = nodes.and_then(Value::as_integer).map(|n| n - 1);
+        let given = nodes.and_then(Value::as_array).map(|list| list.len() as i64 - 1);
+        let elements = kind.get("elements").and_then(Value::as_integer);
+        usize::try_from(elements.or(counted).or(given).unwrap_or(1)).unwrap_or(1)
+    };
+    basis.iter().next().map_or(1, |(_, kind)| of(kind))
+}
+
+/// Largest EA L²/EI in natural units, a string's stiffness counting against its loads, an inextensible beam's not.
+pub fn stiffness_ratio(scene: &Table) -> f64 {
+    let of = |beam: &Table| {
+        let float = |key: &str| beam.get(key).and_then(Value::as_float);
+        float("axial_stiffness").or_else(|| Some(float("youngs_modulus")? * float("area")?)).unwrap_or(1.0)
+    };
+    beams(scene).map(|(_, beam)| of(beam)).fold(1.0, f64::max)
+}
+
+/// All cells of a scene.
+pub fn all_cells(scene: &Table) -> usize {
+    beams(scene).filter_map(|(_, beam)| beam.get("basis")?.as_table()).map(cells).sum()
+}
+
+/// Whether a list of the scene has entries.
+pub fn names(scene: &Table, path: &[&str]) -> bool {
+    items(scene, path).next().is_some()
+}
+
+/// Whether some contact has friction.
+pub fn has_friction(scene: &Table) -> bool {
+    items(scene, &["effect", "contact"]).any(|contact| contact.contains_key("friction"))
+}
+
+/// Whether an equilibrium is that of a string that nothing pulls along the whole of its length: any of its shapes is one.
+pub fn is_slack(scene: &Table) -> bool {
+    let bends =
+        |beam: &Table| ["bending_stiffness", "second_moment"].iter().any(|key| beam.contains_key(*key));
+    let pulled = |beam: &str| {
+        items(scene, &["effect", "distributed_force"])
+            .filter(|load| load.get("follower").and_then(Value::as_bool) != Some(true))
+            .any(|load| load.get("beam").and_then(Value::as_str) == Some(beam))
+    };
+    let weighs = get(scene, &["effect", "gravity"]).is_some();
+    motion(scene).is_none() && beams(scene).any(|(name, beam)| !(bends(beam) || weighs || pulled(name)))
+}
+
+/// Changes every beam's `basis`; none where one cannot be.
+pub fn map_bases(scene: &Table, change: impl Fn(&Table) -> Option<Table>) -> Option<Table> {
+    let mut scene = scene.clone();
+    for (_, beam) in table(&mut scene, &["beam"])?.iter_mut() {
+        let basis = change(beam.get("basis")?.as_table()?)?;
+        beam.as_table_mut()?.insert("basis".into(), basis.into());
+    }
+    Some(scene)
+}
+
+/// Twice the cells.
+pub fn finer(scene: &Table) -> Option<Table> {
+    map_bases(scene, |basis| {
+        let mut basis = basis.clone();
+        for (_, kind) in basis.iter_mut() {
+            let kind = kind.as_table_mut()?;
+            if let Some(Value::Integer(elements)) = kind.get_mut("elements") {
+                *elements *= 2;
+            }
+            match kind.get_mut("nodes") {
+                Some(Value::Integer(nodes)) => *nodes = 2 * *nodes - 1,
+                Some(Value::Array(list)) => *list = halved(list)?,
+                _ => {}
+            }
+        }
+        Some(basis)
+    })
+}
+
+fn halved(list: &[Value]) -> Option<Vec<Value>> {
+    let places = list.iter().map(Value::as_float).collect::<Option<Vec<f64>>>()?;
+    let mut all = vec![Value::Float(*places.first()?)];
+    for pair in places.windows(2) {
+        all.extend([0.5 * (pair[0] + pair[1]), pair[1]].map(Value::Float));
+    }
+    Some(all)
+}
+
+/// The other discretisation, with the same nodes and the settings that it takes when nothing is said.
+pub fn other_basis(scene: &Table) -> Option<Table> {
+    map_bases(scene, |basis| {
+        let (name, kind) = basis.iter().next()?;
+        let mut other = Table::new();
+        let nodes = match kind.get("nodes") {
+            Some(nodes) => nodes.clone(),
+            None => (kind.get("elements")?.as_integer()? + 1).into(),
+        };
+        other.insert("nodes".into(), nodes);
+        if let Some(spacing) = kind.get("spacing") {
+            other.insert("spacing".into(), spacing.clone());
+        }
+        let mut basis = Table::new();
+        basis.insert(if name == "ancf" { "rpim" } else { "ancf" }.into(), other.into());
+        Some(basis)
+    })
+}
