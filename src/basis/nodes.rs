@@ -194,6 +194,10 @@ mod tests {
         ] {
             assert_eq!(meet(uniform(n), false, breaks).1, numbers, "{breaks:?}");
         }
+        // Of two equal stretches the same one gets the odd cell, whatever round-off makes of the break.
+        for error in [-1e-15, 0.0, 1e-15] {
+            assert_eq!(meet(uniform(4), false, &[0.5 + error]).1, [1], "{error}");
+        }
         assert_eq!(meet(uniform(3), false, &[0.3, 0.6]), (vec![0.0, 0.3, 0.5, 0.6, 1.0], vec![1, 3]));
         assert_eq!(given(&[0.0, 0.5, 1.0], &[0.3]), (vec![0.0, 0.3, 0.5, 1.0], vec![1]));
         assert_eq!(given(&[0.0, 0.5, 1.0], &[0.49, 0.501]), (vec![0.0, 0.49, 0.501, 1.0], vec![1, 2]));

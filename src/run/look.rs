@@ -434,6 +434,7 @@ impl<'a> Look<'a> {
     pub(super) fn equilibrium(&self, solution: &Solution, seen: &Trajectory) -> Option<SavedState> {
         let (_, x) = solution.states.last().filter(|(load, _)| *load == 1.0)?;
         let mut state = dynamics::State::at_rest(self.coordinates_of(x));
+        state.variables = solution.variables.last().cloned().unwrap_or_default();
         state.angles = seen.probes.iter().filter_map(|p| p.samples.last()).map(|s| s.angle).collect();
         let checkpoint = dynamics::Checkpoint { state, ..dynamics::Checkpoint::default() };
         Some(SavedState::new(self.model, self.system, String::new(), checkpoint))

@@ -75,6 +75,9 @@ const LARGEST_STEP: (f64, f64) = (7.0, 0.8);
 const BY_SMALL_STEPS: f64 = 0.5;
 /// A corrector that turns no node by more than this stays on its side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
+/// Part of the load beyond which a step without a count of unstable directions is looked at between its ends, and in how many parts.
+const LONG_STEP: f64 = 0.1;
+const BETWEEN: u32 = 5;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
 /// A step of this size in which stability is lost is believed. The knee of an imperfect path is about as wide as the
@@ -211,7 +214,8 @@ impl<'e, 'a> Path<'e, 'a> {
                         self.judge_again(&mut point);
                     }
                     let doubtful = self.loses_stability(&point)
-                        || turn > SURE_TURN && self.turns_back(&point, &predicted_state);
+                        || turn > SURE_TURN && self.turns_back(&point, &predicted_state)
+                        || self.crosses_twice(&point);
                     if doubtful && step > BELIEVED_STEP {
                         if let Some(record) = self.history.last_mut() {
                             record.accepted = false;
@@ -276,12 +280,34 @@ impl<'e, 'a> Path<'e, 'a> {
         lost && along(&last.rate) == along(&point.rate)
     }
 
-    /// Whether a point lies on the other side of the last one than was predicted, as on the mirrored branch of a column.
+    /// Whether nodes turn the other way than was predicted, as on the mirrored branch of a column.
     fn turns_back(&self, point: &Point, predicted: &[f64]) -> bool {
-        let from_here = |x: &[f64]| -> Vec<f64> {
-            x.iter().zip(&self.last().x).map(|(a, b)| a - b).chain([0.0]).collect()
-        };
-        self.parameter == Parameter::Load && self.dot(&from_here(&point.x), &from_here(predicted)) < 0.0
+        let n = self.equilibrium.system().coordinates();
+        let nodes = |x: &'_ [f64]| x[..n].chunks_exact(4).map(|x| [x[2], x[3]]).collect::<Vec<_>>();
+        let [here, there, wanted] = [&self.last().x, &point.x, predicted].map(nodes);
+        let angle = |from: [f64; 2], to: [f64; 2]| cross(from, to).atan2(dot(from, to));
+        let turns = here.iter().zip(there).zip(wanted);
+        let along: f64 = turns.map(|((from, to), wanted)| angle(*from, to) * angle(*from, wanted)).sum();
+        self.parameter == Parameter::Load && along < 0.0
+    }
+
+    /// Whether the determinant changes its sign twice on the way to a point, where it is all that tells of stability: at several states between.
+    fn crosses_twice(&mut self, point: &Point) -> bool {
+        let last = self.last().clone();
+        if point.unstable.is_some() || last.negative.is_none() || (point.load - last.load).abs() < LONG_STEP {
+            return false;
+        }
+        let mut scratch = vec![0.0; point.x.len()];
+        let mut rate = scratch.clone();
+        let differs = (1..BETWEEN).any(|k| {
+            let part = f64::from(k) / f64::from(BETWEEN);
+            let x: Vec<f64> = last.x.iter().zip(&point.x).map(|(a, b)| a + part * (b - a)).collect();
+            let load = last.load + part * (point.load - last.load);
+            self.equilibrium.linearize(load, &x, None, &mut scratch, &mut rate).is_err()
+                || self.equilibrium.determinant_is_negative() != last.negative
+        });
+        // What was factorised last belongs to the point.
+        differs || self.equilibrium.linearize(point.load, &point.x, None, &mut scratch, &mut rate).is_err()
     }
 
     /// Stability at the point itself: near a critical load what the last increment still changed decides over the sign.

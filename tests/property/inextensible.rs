@@ -334,3 +334,35 @@ fn what_cannot_be_done_is_refused_with_what_to_try() {
     );
     assert!(refused(&scene(ANCF, CLAMP, &held)).contains("the length that beam `arm` keeps"));
 }
+
+/// Units do not decide what a beam may do: a velocity that keeps its length is taken in millimetres and microseconds as in metres and seconds.
+#[test]
+fn units_do_not_decide_about_velocities() {
+    let tip = |length: f64, mass: f64, time: f64| {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [{:e}, {:e}], bending_stiffness = {:e}, mass_per_length = {:e}, basis.ancf.elements = 14 }}\n\
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+             probe = [{{ name = 'tip', beam = 'arm', at = 'end' }}]\n\
+             initial_velocity = [{{ beam = 'arm', polynomial = {{ vx = [0, 0, {:e}], vy = [0, 0, {:e}] }} }}]\n\
+             analysis.dynamic = {{ duration = {:e}, radau.tolerance = 1e-6 }}",
+            0.6 * length,
+            -0.8 * length,
+            0.4 * mass * length.powi(3) / time.powi(2),
+            2.0 * mass / length,
+            0.08 / (length * time),
+            0.06 / (length * time),
+            0.2 * time,
+        );
+        let scene = parse("arm.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let last = solve(&scene).probes[0].samples.last().map(|tip| [tip.x / length, tip.y / length]);
+        last.expect("a state")
+    };
+    let expected = tip(1.0, 1.0, 1.0);
+    for (length, mass, time) in
+        [(0.038, 1e-5, 2.7e-6), (1e-3, 1e-9, 1e-6), (1e3, 1e6, 1e2), (1e-6, 1e-15, 1e-7)]
+    {
+        let found = tip(length, mass, time);
+        let apart = (found[0] - expected[0]).hypot(found[1] - expected[1]);
+        assert!(apart < 1e-6, "L = {length}, M = {mass}, T = {time}: {apart:e} apart");
+    }
+}

@@ -134,6 +134,44 @@ fn section_forces_jump_by_what_acts_in_a_point() {
     }
 }
 
+/// A cantilever that a pull along it and a load across it press on the ground: behind the contact, at the free end, nothing is left of the forces, and at the clamp
+/// they are the reactions'. With friction the ground pulls back.
+#[test]
+fn section_forces_balance_contacts_and_friction() {
+    for (friction, analysis) in [
+        ("", "[analysis.static]\n"),
+        (", friction = { coefficient = 0.4 }", "[analysis.static]\n"),
+        (
+            ", friction = { coefficient = 0.4 }",
+            "[analysis.dynamic]\nduration = 0.4\nradau.tolerance = 1e-5\n",
+        ),
+    ] {
+        for basis in BASES {
+            let text = beam("arm", [0.0; 2], 1.0, 0.0, 1e4, 1.0, basis)
+                + &support("arm", "'start'", CLAMP)
+                + "[[effect.force]]\nbeam = 'arm'\nat = 0.9\nvalue = [0.4, -3.0]\n"
+                + &format!(
+                    "[[effect.contact]]\nbeam = 'arm'\nhalf_plane = {{ point = [0.0, -0.1], normal = [0.0, 1.0] }}\nstiffness = 1e4{}\n",
+                    friction.replace(", ", "\n")
+                )
+                + "[output]\nreactions = true\n"
+                + analysis;
+            let trajectory = solved(&text);
+            let shape = &trajectory.last[0];
+            let reaction = trajectory.reactions[0].samples.last().expect("a record");
+            let last = shape.s.len() - 1;
+            let free = [shape.axial_force[last], shape.shear_force[last], shape.bending_moment[last]];
+            assert!(
+                free.iter().all(|value| value.abs() < 1e-4),
+                "{basis}, {analysis}: {free:?} at a free end"
+            );
+            let clamp = differs(shape, 0, [-reaction.fx, -reaction.fy], -reaction.moment);
+            assert!(clamp.iter().all(|value| *value < 1e-4), "{basis}, {analysis}: {clamp:?} at the clamp");
+            assert!(reaction.fy < 2.5, "{basis}, {analysis}: the ground bears some of it, {reaction:?}");
+        }
+    }
+}
+
 /// A frame of two beams, welded and clamped at both feet: what one passes on the other takes.
 #[test]
 fn section_forces_pass_through_a_weld() {

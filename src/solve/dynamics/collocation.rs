@@ -82,6 +82,8 @@ const TOLERANCE: f64 = 1e-11;
 const TOLERANCE_OF_ERROR: [f64; 2] = [1.0, 10.0];
 /// The error of a vibration in a step against the defect's, with the power of the step that it has.
 const ERROR_OF_DEFECT: f64 = 0.1;
+/// By how much more errors of the damping at the ends of steps count: they have the same sign in every step.
+const ERRORS_OF_DAMPING: f64 = 3.0;
 /// Largest error of a step to which the stages' error is measured.
 const LARGEST_ERROR: f64 = 1e-6;
 /// Increments in beam lengths below which a beam rests: without a floor one that nothing moves yet would be solved for the round-off of zero.
@@ -505,7 +507,7 @@ impl<'a> Collocation<'a> {
             error += unit * self.motion.distance(&slow);
             unknowns.iter_mut().zip(&change).for_each(|(x, change)| *x += change);
         }
-        error
+        ERRORS_OF_DAMPING * error
     }
 
     /// Makes up in `to` for what the stages do not see of loads, as far as what they drive can be followed, so that it does not add up; returns by how much
