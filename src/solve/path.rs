@@ -75,8 +75,10 @@ const LARGEST_STEP: (f64, f64) = (7.0, 0.8);
 const BY_SMALL_STEPS: f64 = 0.5;
 /// A corrector that turns no node by more than this stays on its side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
-/// Part of the load beyond which a step without a count of unstable directions is looked at between its ends, and in how many parts.
+/// Part of the load beyond which a step without a count of unstable directions is looked at between its ends where it turns no node by more than this \[rad\], and
+/// in how many parts: what is bent keeps to its side.
 const LONG_STEP: f64 = 0.1;
+const STRAIGHT: f64 = 0.1;
 const BETWEEN: u32 = 5;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
@@ -294,7 +296,8 @@ impl<'e, 'a> Path<'e, 'a> {
     /// Whether the determinant changes its sign twice on the way to a point, where it is all that tells of stability: at several states between.
     fn crosses_twice(&mut self, point: &Point) -> bool {
         let last = self.last().clone();
-        if point.unstable.is_some() || last.negative.is_none() || (point.load - last.load).abs() < LONG_STEP {
+        let long = (point.load - last.load).abs() > LONG_STEP && self.turn(&point.x, &last.x) < STRAIGHT;
+        if point.unstable.is_some() || last.negative.is_none() || !long {
             return false;
         }
         let mut scratch = vec![0.0; point.x.len()];

@@ -6,7 +6,7 @@ use ancf::model::{
     Analysis, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Section, SideCondition,
     StrainMeasure,
 };
-use ancf::run::{Control, RunError, run};
+use ancf::run::{Control, RunError, run, run_from};
 use ancf::solve::dynamics::start::from_rest;
 use ancf::solve::dynamics::{Solution, Task, solve};
 use ancf::system::{Needs, System};
@@ -230,6 +230,19 @@ fn a_rod_sticks_in_statics() {
         let moved = trajectory.probes[0].samples.last().expect("an equilibrium").x - 1.0;
         let expected = ((pull - 0.5 * GRAVITY) / 10.0).max(0.0);
         assert!((moved - expected).abs() < 2e-3, "{pull} N, {steps}: moved by {moved} m, not {expected}");
+
+        // A motion that starts there knows what holds the rod, and rests.
+        let dynamic = scene
+            .replace(&format!("static = {steps}"), "dynamic = { duration = 0.2, radau.tolerance = 1e-6 }");
+        let dynamic = ancf::scene::parse("friction.toml", &dynamic).expect("a legal scene");
+        let rest = run_from(dynamic.model(), dynamic.analysis(), trajectory.saved.as_ref(), &mut |_| {
+            Control::Continue
+        });
+        let rest = rest.unwrap_or_else(|e| panic!("{pull} N, {steps}: {e}"));
+        for sample in &rest.probes[0].samples {
+            let crept = (sample.x - 1.0 - moved).abs();
+            assert!(crept < 1e-5, "{pull} N, {steps}: creeps by {crept:e} m");
+        }
     }
 }
 

@@ -128,15 +128,12 @@ fn a_motion_from_an_equilibrium_stays_there() {
          effect.force = [{ beam = 'arm', at = 0.3, value = [0.1, -0.5] }]
          support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }, { beam = 'arm', at = 'end', fix = ['x', 'y'], move = { x = -0.1 } }]";
     let clamp = "support = [{ beam = 'arm', at = AT, fix = ['x', 'y', 'HOW']MOVE }]";
-    // What depends on the way there: a spring that is wound up by ten radians, and a rod that friction holds on a slope.
+    // A spring that is wound up by ten radians.
     let wound = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }
          support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]
          effect.torsion_spring = [{ beam = 'arm', at = 'start', stiffness = 2 }]
          effect.moment = [{ beam = 'arm', at = 'start', value = 20 }]";
-    let resting = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }
-         effect.gravity.acceleration = [2, -9]
-         effect.contact = [{ beam = 'arm', half_plane = { point = [0, 0], normal = [0, 1] }, stiffness = 1e3, friction = { coefficient = 0.5 } }]";
-    let mut systems = vec![cable.to_owned(), wound.to_owned(), resting.to_owned()];
+    let mut systems = vec![cable.to_owned(), wound.to_owned()];
     for basis in ["ancf.elements = 6", "rpim.nodes = 6"] {
         for at in ["'start'", "0.31"] {
             for how in ["angle", "gradient"] {

@@ -81,8 +81,10 @@ fn a_rod_swings_through_all_turns_of_its_spring() {
 fn a_wound_spring_vibrates_as_a_slack_one() {
     let exact = 2_f64.sqrt() / TAU;
     for moment in [0.0, 6.0, 20.0, -31.0] {
+        // Less stiff along: what round-off leaves of an axial force counts as a stiffness.
+        let rod = ROD.replace("axial_stiffness = 1e10", "axial_stiffness = 1e6");
         let scene = format!(
-            "{ROD}effect.moment = [{{ beam = 'rod', at = 'start', value = {moment} }}]\n\
+            "{rod}effect.moment = [{{ beam = 'rod', at = 'start', value = {moment} }}]\n\
              analysis.modal = {{ count = 2, about = 'equilibrium' }}"
         );
         let found = solved(&scene).frequencies[0];
