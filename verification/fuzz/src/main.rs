@@ -1,5 +1,5 @@
 //! `fuzz`: feeds the solver damaged scenes and saved states, and keeps those that it does not take well; with `--agree` legal ones, each in
-//! several ways that must agree ([`agree`]).
+//! several ways that must agree ([`mod@agree`]).
 //!
 //! The seeds are all scenes of the repository. A worker process damages them, as trees of values and as text, reads,
 //! inspects and, where they are small, runs them for a few steps and writes the results. Findings are panics, states with
