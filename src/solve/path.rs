@@ -73,7 +73,7 @@ const UNEXPLAINED_OF_STEP: f64 = 0.02;
 const LARGEST_STEP: (f64, f64) = (7.0, 0.8);
 /// The same where the way between two points counts, as it does for contacts and for springs that are wound up.
 const BY_SMALL_STEPS: f64 = 0.5;
-/// A corrector that turns no node by more than this stays on its side of a bifurcation \[rad\].
+/// A corrector that turns no node by more than this, and by less than was predicted, stays on its side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
 /// Part of the load beyond which a step without a count of unstable directions is looked at between its ends where it turns no node by more than this \[rad\], and
 /// in how many parts: what is bent keeps to its side.
@@ -216,7 +216,8 @@ impl<'e, 'a> Path<'e, 'a> {
                         self.judge_again(&mut point);
                     }
                     let doubtful = self.loses_stability(&point)
-                        || turn > SURE_TURN && self.turns_back(&point, &predicted_state)
+                        || turn > SURE_TURN.min(self.predicted_turn(step))
+                            && self.turns_back(&point, &predicted_state)
                         || self.crosses_twice(&point);
                     if doubtful && step > BELIEVED_STEP {
                         if let Some(record) = self.history.last_mut() {

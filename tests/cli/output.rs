@@ -403,6 +403,11 @@ fn charts_refuse_what_cannot_be_drawn() {
     assert!(chart().svg().expect("drawn").contains("a &amp; b"));
     assert_eq!(chart().equal_aspect(300).svg(), Err(PlotError::EqualAspectNeedsLinear));
     assert_eq!(chart().sized(50, 50).svg(), Err(PlotError::TooSmall { width: 50, height: 50 }));
+    // Hundreds of series leave room for the picture.
+    let many = (0..300).fold(chart(), |chart, i| {
+        chart.with(Series::line(format!("beam{i}"), vec![[1.0, 2.0], [2.0, 3.0]], PALETTE[1]))
+    });
+    assert!(many.svg().expect("drawn").matches("<polyline").count() >= 300);
     let both = grid(&[chart(), chart()], 2).expect("drawn");
     assert_eq!(both.matches("<svg ").count(), 3);
 }

@@ -508,3 +508,32 @@ fn a_flywheel_keeps_energy_and_momentum() {
         assert!((angle - 6.0).abs() < 0.06, "{method}: {angle}");
     }
 }
+
+/// A column on an elastic hinge that is pushed by one per cent, and one that heat compresses to 2.4 times its critical load in a slight flow: however many load
+/// steps there are, they bend to the side to which they begin to.
+#[test]
+fn the_number_of_load_steps_does_not_choose_the_branch() {
+    let pushed = "beam.a = { start = [0, 0], end = [1, 0], axial_stiffness = 259100, bending_stiffness = 1, basis.ancf.nodes = 6 }
+        support = [{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'] },
+                   { beam = 'a', at = 'end', fix = ['x', 'y'], move = { x = -0.009241, y = 0.001005 } }]
+        effect.torsion_spring = [{ beam = 'a', at = 'end', stiffness = 0.42 }]";
+    let heated = "beam.a = { start = [0, 0], end = [0.8, 0], axial_stiffness = 15000, bending_stiffness = 0.9, mass_per_length = 1.5, basis.ancf.nodes = 3 }
+        support = [{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'a', at = 'end', fix = ['x', 'y', 'angle'] }]
+        effect.actuation = [{ beam = 'a', strain = 0.009 }]
+        effect.drag = [{ beam = 'a', normal = 0.3, flow = [0.4, -1.0] }]";
+    for system in [pushed, heated] {
+        let middle = |steps: usize| {
+            let scene = format!(
+                "{system}\nprobe = [{{ name = 'middle', beam = 'a', at = 0.37 }}]\nanalysis.static.steps = {steps}"
+            );
+            let trajectory = solve(&scene);
+            trajectory.probes[0].samples.last().expect("an equilibrium").y
+        };
+        let expected = middle(20);
+        assert!(expected.abs() > 0.02, "the column is bent");
+        for steps in [1, 2, 3, 5, 7, 10] {
+            let found = middle(steps);
+            assert!((found - expected).abs() < 1e-7, "{steps} steps: {found}, not {expected}\n{system}");
+        }
+    }
+}

@@ -91,6 +91,8 @@ struct Entry {
 
 const LEGEND_LINE: f64 = 20.0;
 
+/// Part of the picture's height that the legend takes at most: of hundreds of beams the last are drawn without their names.
+const LEGEND_PART: f64 = 0.3;
 /// Room for the sample of a series in the legend \[px\].
 fn sample_length(mark: Mark) -> f64 {
     match mark {
@@ -129,10 +131,14 @@ fn layout(chart: &Chart) -> Result<Layout, PlotError> {
         if at > left && at + length > width {
             (at, line) = (left, line + LEGEND_LINE);
         }
+        if line + LEGEND_LINE > LEGEND_PART * height {
+            break;
+        }
         legend.push(Entry { series, x: at, y: GAP + title + line + 0.5 * LEGEND_LINE });
         at += length;
     }
-    let legend_height = if legend.is_empty() { 0.0 } else { line + LEGEND_LINE + 0.5 * GAP };
+    let lines = legend.last().map_or(0.0, |last: &Entry| last.y + 0.5 * LEGEND_LINE - GAP - title);
+    let legend_height = if legend.is_empty() { 0.0 } else { lines + 0.5 * GAP };
     let factor = if draft.exponent == 0 { 0.0 } else { 1.3 * TEXT };
     let top = GAP + title + legend_height + factor + 0.5 * TEXT;
     let mut plot_height = height - top - bottom;
