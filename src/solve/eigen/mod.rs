@@ -37,9 +37,11 @@ pub enum EigenError {
         /// Number of negative eigenvalues.
         count: usize,
     },
-    /// Follower loads make the tangent unsymmetric.
-    #[error("follower loads make the tangent unsymmetric, and a {analysis} analysis needs a symmetric one")]
-    #[diagnostic(help("use dead loads, or a static analysis along the path"))]
+    /// Follower loads or dry friction make the tangent unsymmetric.
+    #[error(
+        "follower loads or dry friction make the tangent unsymmetric, and a {analysis} analysis needs a symmetric one"
+    )]
+    #[diagnostic(help("use dead loads and contacts without friction, or a static analysis along the path"))]
     NotSymmetric {
         /// The analysis.
         analysis: &'static str,
