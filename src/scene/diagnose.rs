@@ -64,7 +64,9 @@ pub(super) fn data(error: &toml::de::Error, document: &DeTable<'_>) -> Fault {
         }
     };
     let place = if path.is_empty() { String::new() } else { format!("`{path}`: ") };
-    let help = list_form(&path, &message).or((!rest.is_empty()).then(|| rest.to_owned()));
+    let help = list_form(&path, &message)
+        .or_else(|| table_form(&path, &message))
+        .or((!rest.is_empty()).then(|| rest.to_owned()));
     let fault = Fault::new(span, format!("{place}{message}"));
     match help {
         Some(help) => fault.help(help),
@@ -85,6 +87,17 @@ fn list_form(path: &str, message: &str) -> Option<String> {
         None => found.split('`').nth(1).unwrap_or("…").to_owned(),
     };
     Some(format!("write a list, also of one: `{key} = [{value}]`"))
+}
+
+/// How to write a table, where one is expected and a list was found. The list of an analysis is read as what its first key is.
+fn table_form(path: &str, message: &str) -> Option<String> {
+    let listed = message == "found sequence, expected a map"
+        || path.starts_with("analysis.") && message.starts_with("found map");
+    let path = listed.then(|| path.trim_end_matches(|c: char| c == '.' || c.is_ascii_digit()))?;
+    Some(match path {
+        "beam" => "write `[beam.NAME]`, one table with a name of its own for each beam".to_owned(),
+        _ => format!("write `[{path}]`, with single brackets: there is one"),
+    })
 }
 
 /// The first word in backticks, and all that follow it.

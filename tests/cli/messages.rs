@@ -54,6 +54,8 @@ const CASES: &[(&str, &str, &str)] = &[
     ("one bracket", "[[support]]", "[support]"),
     ("one bracket within a table", "[[effect.force]]", "[effect.force]"),
     ("one bracket about a probe", "[[probe]]", "[probe]"),
+    ("two brackets about a beam", "[beam.arm]", "[[beam]]"),
+    ("two brackets about an analysis", "[analysis.static]", "[[analysis.static]]"),
     ("a word for a list", "fix = [\"x\", \"y\", \"angle\"]", "fix = \"x\""),
     ("a number for a list", "end = [\"1.8 m\", 0.0]", "points = 3"),
     ("ambiguous unit", "\"2.5 cm^2\"", "\"2.5 m^3/m s\""),

@@ -26,7 +26,10 @@
 //! given length, whose stages are solved almost to round-off.
 //!
 //! # Predicted stages
-//! The polynomial of the last step's accelerations is continued. Where steps are chosen by a tolerance it, or the accelerations' mean: whichever would have
+//! Where there is no last step, or a step could not be solved, all accelerations are predicted as zero: the first iteration then solves the
+//! linearised equations, stiff ones too. The acceleration with which a load sets in moves a fine mesh, which the step cannot follow, by many elements.
+//!
+//! Else the polynomial of the last step's accelerations is continued. Where steps are chosen by a tolerance it, or the accelerations' mean: whichever would have
 //! come closer to the last stage of the last step. Gauss' methods do not damp what is too stiff to be followed, whose accelerations a polynomial continues to a
 //! hundred times what they were; with a tolerance of 1e-4 the soft pendulum (20 nodes) takes half the iterations from the mean. Radau's methods would take a fifth more,
 //! and Gauss' in a smooth motion a third. With steps of given length the choice saves a tenth of the iterations in the pendulums and costs a half more
@@ -138,9 +141,11 @@ pub struct Collocation<'a> {
     motion: Motion<'a>,
     tableau: Tableau,
     factors: Vec<BlockFactor>,
-    /// Q̈_i of the last accepted step, and its length.
+    /// Q̈_i of the last accepted step, and its length; that is zero where there is no such step.
     accelerations: Vec<Lanes>,
     last_step: f64,
+    /// Whether the last attempt's stages could not be solved.
+    failed: bool,
     trial_step: f64,
     /// Where the last attempt ends: loads and supports are seen no later.
     end: f64,
@@ -163,6 +168,7 @@ impl<'a> Collocation<'a> {
             factors: Vec::new(),
             accelerations: vec![Lanes::ZERO; n],
             last_step: 0.0,
+            failed: false,
             trial_step: 0.0,
             end: 0.0,
             kept: None,
@@ -205,6 +211,12 @@ impl<'a> Collocation<'a> {
         self.place(from, h);
     }
 
+    /// Predicts stages without accelerations.
+    fn predict_coasting(&mut self, from: &State, h: f64) {
+        self.stages.displacement[..from.q.len()].fill(Lanes::ZERO);
+        self.place(from, h);
+    }
+
     /// Q_i from Y_i.
     fn place(&mut self, from: &State, h: f64) {
         self.stages.place(from, self.in_lanes(|i| self.tableau.nodes[i] * h));
@@ -232,7 +244,7 @@ impl<'a> Collocation<'a> {
     /// Factorises the transformed systems with the tangent at `at` for steps of length `h`.
     fn linearize(&mut self, at: &State, multipliers: Vec<f64>, h: f64) -> Result<(), Singular> {
         self.kept = None;
-        self.motion.tangent_at(at, &multipliers)?;
+        self.motion.tangent_at(at, &multipliers);
         let mut earlier = std::mem::take(&mut self.factors).into_iter();
         for block in &self.tableau.blocks {
             let factor = match (block, earlier.next()) {
@@ -591,12 +603,16 @@ impl Method for Collocation<'_> {
         self.predict(from, h);
         self.stages.measure_displacements(from);
         let [.., displacement] = self.motion.sizes(&self.stages.residual);
+        if self.last_step == 0.0 || self.failed {
+            self.predict_coasting(from, h);
+        }
         let tight = (TOLERANCE * displacement).max(REST);
         let of_error = TOLERANCE_OF_ERROR[usize::from(self.tableau.damps())];
         let allowed = |accuracy: f64| (of_error * accuracy.min(LARGEST_ERROR)).max(tight);
         let tolerance = accuracy.map_or(tight, allowed);
         let solved = self.solve_stages(from, h, tolerance, accuracy.is_some(), record);
-        if solved.is_err() {
+        self.failed = solved.is_err();
+        if self.failed {
             self.increment = stages::lane(&self.stages.residual, self.tableau.stages() - 1);
         }
         solved?;

@@ -164,10 +164,9 @@ impl<'a> GeneralizedAlpha<'a> {
     }
 
     /// Takes the tangent at `at`.
-    fn keep(&mut self, at: &State, multipliers: Vec<f64>, rate: f64) -> Result<(), Singular> {
-        self.motion.tangent_at(at, &multipliers)?;
+    fn keep(&mut self, at: &State, multipliers: Vec<f64>, rate: f64) {
+        self.motion.tangent_at(at, &multipliers);
         self.kept = Some(Kept { at: at.clone(), multipliers, c: 0.0, rate });
-        Ok(())
     }
 
     /// Factorises K + dD + cM, unless that is what is there but for the round-off of the step's length.
@@ -190,7 +189,7 @@ impl<'a> GeneralizedAlpha<'a> {
     ) -> Result<bool, Singular> {
         let mut fresh = self.kept.as_ref().is_none_or(|kept| kept.rate > KEEP);
         if fresh {
-            self.keep(from, self.last.multipliers.clone(), 1.0)?;
+            self.keep(from, self.last.multipliers.clone(), 1.0);
         }
         let (n, damped) = (self.motion.coordinates(), self.motion.needs_velocity());
         let (c, d) = (self.rule.c, self.rule.d);
@@ -235,7 +234,7 @@ impl<'a> GeneralizedAlpha<'a> {
                 self.kept = None;
                 return Ok(false);
             }
-            self.keep(from, self.last.multipliers.clone(), 1.0)?;
+            self.keep(from, self.last.multipliers.clone(), 1.0);
             fresh = true;
         }
     }
@@ -512,6 +511,10 @@ impl Method for GeneralizedAlpha<'_> {
         self.before = (!before.is_empty()).then_some((before, step));
         self.rule.d = d;
         let at = State { time, q, v, ..State::default() };
-        at.q.is_empty() || (self.keep(&at, with, rate).is_ok() && (c == 0.0 || self.factorize(c, d).is_ok()))
+        if at.q.is_empty() {
+            return true;
+        }
+        self.keep(&at, with, rate);
+        c == 0.0 || self.factorize(c, d).is_ok()
     }
 }

@@ -195,16 +195,13 @@ impl<'a> Motion<'a> {
         self.damping.is_some() || self.system.has_turning_inertia() || self.system.turns()
     }
 
-    /// Forms the mass matrix of the unknowns at `time` in the state `q` in fixed axes, if it is not constant, with the constraints' rows, if they follow it.
+    /// Factorises the mass matrix of the unknowns at `time` in the state `q` in fixed axes, if it is not constant, with the constraints' rows, if they follow it.
+    /// The mass and the rows beside the tangent remain those of its state, so that a saved motion finds them again.
     fn mass_at(&mut self, time: f64, q: &[f64]) -> Result<(), Singular> {
         if self.system.turns() || self.system.has_turning_inertia() || self.follows {
             let border = self.system.border_in_motion(time, q);
-            let [free, eliminated] = free_mass(self.system, time, q, &self.mass);
-            (self.free_mass, self.mass_factor) = (free, Factor::definite(&eliminated, &border)?);
-            // Rows that follow the state are those of the tangent until it is taken anew.
-            if !self.follows {
-                self.border = border;
-            }
+            let [_, eliminated] = free_mass(self.system, time, q, &self.mass);
+            self.mass_factor = Factor::definite(&eliminated, &border)?;
         }
         Ok(())
     }
@@ -345,16 +342,8 @@ impl<'a> Motion<'a> {
         negate(self.system, scale, negative, |_| ())
     }
 
-    /// The tangent ∂f/∂q in the state `state` of unknowns, with the scaled `multipliers`.
-    ///
-    /// # Errors
-    /// [`Singular`] where a coordinate has no mass in a frame that turns.
-    pub fn tangent_at(&mut self, state: &State, multipliers: &[f64]) -> Result<(), Singular> {
-        if self.system.turns() {
-            let (mut q, mut v) = (state.q.clone(), state.v.clone());
-            self.system.carry(state.time, [&mut q, &mut v, &mut vec![0.0; state.q.len()]]);
-            self.mass_at(state.time, &q)?;
-        }
+    /// The tangent ∂f/∂q in the state `state` of unknowns, with the scaled `multipliers`, and the mass and the constraints' rows there.
+    pub fn tangent_at(&mut self, state: &State, multipliers: &[f64]) {
         let rates = Rates { time: state.time, v: &state.v, a: Acceleration::constant(&state.v) };
         let mut x = state.q.clone();
         x.extend_from_slice(multipliers);
@@ -365,7 +354,6 @@ impl<'a> Motion<'a> {
             self.assemble(&x, None, rates, &mut force);
         }
         self.force = force;
-        Ok(())
     }
 
     /// Calls `f` with positions, velocities and accelerations in fixed axes, those of moving supports as prescribed.
@@ -406,10 +394,10 @@ impl<'a> Motion<'a> {
         supports.turn_matrix(rates.time, tangent);
         system.polar().matrix(&x[..n], tangent);
         supports.eliminate(rates.time, tangent);
-        if self.follows {
+        if self.follows || system.turns() {
             self.border = system.border_in_motion(rates.time, &x[..n]);
         }
-        if system.has_turning_inertia() {
+        if system.has_turning_inertia() || system.turns() {
             [self.free_mass, _] = free_mass(system, rates.time, &x[..n], &self.mass);
         }
         self.statistics.tangent_evaluations += 1;

@@ -100,7 +100,7 @@ impl Motion<'_> {
         let mut stage = Stage { state, rates };
         let (d, c) = (FAST / h, (FAST / h).powi(2));
         for pass in 0..PASSES {
-            self.tangent_at(&stage.state, &stage.rates[n..])?;
+            self.tangent_at(&stage.state, &stage.rates[n..]);
             let factor = self.factorize(c, d, None)?;
             if pass == 0 {
                 let mut change = self.rate_of_rates(&stage);
