@@ -13,11 +13,13 @@ use crate::effect::{
 use crate::model::{Beam, Law, Model, Place};
 use crate::system::course::Amplitude;
 use nalgebra::Vector2;
+use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// What takes part in the mechanics besides beams, supports and loads.
-pub trait Part: fmt::Debug + Send + Sync {
+/// What takes part in the mechanics besides beams, supports and loads; as [`Any`], so that what reads a model can tell
+/// the kinds of parts that it knows.
+pub trait Part: Any + fmt::Debug + Send + Sync {
     /// Adds the part's densities to the equations under assembly.
     ///
     /// # Errors

@@ -8,7 +8,8 @@ supports and loads at nodes, and one analysis. Nothing is decided here that is n
   coordinates themselves, reference included, although those of Exudyn's nodes are counted from the reference.
 - A follower's components are along and across the tangent; ours are those of the fixed frame in the undeformed state.
 - A moment acts through the node's orientation, atan2(y', x'), as ours does.
-- Loads grow with the load factor, in statics only.
+- Loads grow with the load factor, in statics only; in a motion they are multiplied by the factors that are given for the
+  start and for the end of every step, and so are supports moved. Index 3 asks for what is held at no other time.
 - Exudyn starts with loose tolerances of Newton's method; here the residual is absolute and small.
 """
 
@@ -65,6 +66,8 @@ class Cables:
                     massPerLength=beam["mass_per_length"],
                     axialStiffness=beam["axial_stiffness"],
                     bendingStiffness=beam["bending_stiffness"],
+                    axialDamping=beam["axial_damping"],
+                    bendingDamping=beam["bending_damping"],
                     nodeNumbers=[a, b],
                     useReducedOrderIntegration=QUADRATURE[tuple(beam["gauss_points"])],
                 )
@@ -73,33 +76,49 @@ class Cables:
             mbs.AddLoad(item.LoadMassProportional(markerNumber=mass, loadVector=[*self.given["gravity"], 0]))
         self.nodes.append(nodes)
 
-    def add_support(self, beam, node, x, y, rotation):
-        tangent = self.given["beams"][beam]["tangent"]
-        rows = []
-        if x:
-            rows.append([1, 0, 0, 0])
-        if y:
-            rows.append([0, 1, 0, 0])
-        if rotation == "angle":
-            rows.append([0, 0, -tangent[1], tangent[0]])
-        if rotation == "gradient":
-            rows += [[0, 0, 1, 0], [0, 0, 0, 1]]
-        rows = np.array(rows, float)
-        place = [*self.given["beams"][beam]["nodes"][node], *tangent]
+    def add_support(self, beam, node, x, y, rotation, moved):
+        place, tangent = self.given["beams"][beam]["nodes"][node], self.given["beams"][beam]["tangent"]
+
+        def held(by):
+            """Rows times the coordinates are an offset, where the support has moved by x, y and an angle."""
+            c, s = np.cos(by[2]), np.sin(by[2])
+            along = [c * tangent[0] - s * tangent[1], s * tangent[0] + c * tangent[1]]
+            rows, offset = [], []
+            if x:
+                rows, offset = [[1, 0, 0, 0]], [place[0] + by[0]]
+            if y:
+                rows, offset = [*rows, [0, 1, 0, 0]], [*offset, place[1] + by[1]]
+            if rotation == "angle":
+                rows, offset = [*rows, [0, 0, -along[1], along[0]]], [*offset, 0]
+            if rotation == "gradient":
+                rows, offset = [*rows, [0, 0, 1, 0], [0, 0, 0, 1]], [*offset, *along]
+            return np.array(rows, float), np.array(offset, float)
+
         mbs = self.mbs
         ground = mbs.AddNode(item.NodePointGround())
         markers = [
             mbs.AddMarker(item.MarkerNodeCoordinates(nodeNumber=ground)),
             mbs.AddMarker(item.MarkerNodeCoordinates(nodeNumber=self.nodes[beam][node])),
         ]
-        mbs.AddObject(
-            item.ObjectConnectorCoordinateVector(
-                markerNumbers=markers,
-                scalingMarker0=np.zeros((len(rows), 0)),
-                scalingMarker1=rows,
-                offset=rows @ place,
-            )
-        )
+        rows, offset = held([0, 0, 0])
+        options = {"scalingMarker0": np.zeros((len(rows), 0)), "scalingMarker1": rows, "offset": offset}
+        if moved is not None:
+            now = [held(by) for by in moved]
+
+            def missed(mbs, t, number, q, q_t, velocity_level):
+                rows, offset = now[self.step_at(t)]
+                return rows @ q - offset
+
+            options = {
+                "scalingMarker0": np.zeros((len(rows), 1)),
+                "constraintUserFunction": missed,
+                "jacobianUserFunction": lambda mbs, t, number, q, q_t, velocity_level: now[self.step_at(t)][0],
+            }
+        mbs.AddObject(item.ObjectConnectorCoordinateVector(markerNumbers=markers, **options))
+
+    def step_at(self, time):
+        """Number of the step that ends at a time."""
+        return round(time / self.given["analysis"]["dynamic"]["step"])
 
     def add_force(self, force):
         along, across = self.given["beams"][force["beam"]]["tangent"]
@@ -109,6 +128,9 @@ class Cables:
         self.add_load(item.Force, force, [x, y, 0], bodyFixed=force["follower"])
 
     def add_load(self, kind, load, vector, **options):
+        factors = load["factors"]
+        if factors is not None:
+            options["loadVectorUserFunction"] = lambda mbs, t, whole: factors[self.step_at(t)] * np.array(whole)
         marker = self.mbs.AddMarker(item.MarkerNodeRigid(nodeNumber=self.nodes[load["beam"]][load["node"]]))
         self.mbs.AddLoad(kind(markerNumber=marker, loadVector=vector, **options))
 
@@ -161,8 +183,9 @@ class Cables:
         """The lowest, from Exudyn's mass and stiffness matrices, in which the supports are projected out."""
         self.mbs.Assemble()
         mass, stiffness, *_ = self.mbs.ComputeLinearizedSystem(quiet(), projectIntoConstraintNullspace=True)
-        squares = scipy.linalg.eigh((stiffness + stiffness.T) / 2, mass, eigvals_only=True)[:count]
-        return list(np.sqrt(np.maximum(squares, 0)) / (2 * np.pi))
+        squares = scipy.linalg.eigh((stiffness + stiffness.T) / 2, mass, eigvals_only=True)
+        squares[squares < np.finfo(float).eps * squares[-1]] = 0  # round-off of what nothing resists
+        return list(np.sqrt(squares[:count]) / (2 * np.pi))
 
 
 def quiet():

@@ -24,6 +24,12 @@ class Beam:
             raise ValueError("the beam must be along x")
         if np.any(self.beam["velocities"]):
             raise ValueError("the beam must start at rest")
+        if self.beam["axial_damping"] or self.beam["bending_damping"]:
+            raise ValueError("the beam must be without damping")
+        if any(load["factors"] for load in given["forces"] + given["moments"]):
+            raise ValueError("loads must not follow time")
+        if any(support["moved"] for support in given["supports"]):
+            raise ValueError("supports must stay")
         self.places = np.array(self.beam["nodes"])
         basis = skfem.Basis(skfem.MeshLine(self.places[:, 0]), skfem.ElementLineHermite(), intorder=6)
         # deflection and slope of every node, from left to right

@@ -2,10 +2,13 @@
 //!
 //! Whatever these words cannot say is an error that names it; nothing is left out silently.
 
+use std::any::Any;
+
 use ancf::basis::Basis;
 use ancf::centreline::Curve;
+use ancf::effect::BeamDamping;
 use ancf::model::{
-    About, Analysis, Beam, Centreline, Discretization, FixedRotation, Integrator, Load, Model, Place,
+    About, Analysis, Beam, Centreline, Discretization, FixedRotation, Integrator, Law, Load, Model, Place,
     StepControl, StrainMeasure,
 };
 use serde::Serialize;
@@ -36,6 +39,10 @@ struct Cable {
     axial_stiffness: f64,
     bending_stiffness: f64,
     mass_per_length: f64,
+    /// c of the axial force EA ε + c ε̇ \[N s\].
+    axial_damping: f64,
+    /// c of the bending moment EI κ + c κ̇ \[N m² s\].
+    bending_damping: f64,
     gauss_points: [usize; 2],
 }
 
@@ -46,6 +53,8 @@ struct Support {
     x: bool,
     y: bool,
     rotation: &'static str,
+    /// What the held quantities have moved by, x \[m\], y \[m\], angle \[rad\], at the start and at the end of every step.
+    moved: Option<Vec<[f64; 3]>>,
 }
 
 #[derive(Debug, Serialize)]
@@ -54,6 +63,7 @@ struct Force {
     node: usize,
     value: [f64; 2],
     follower: bool,
+    factors: Option<Factors>,
 }
 
 #[derive(Debug, Serialize)]
@@ -61,7 +71,11 @@ struct Moment {
     beam: usize,
     node: usize,
     value: f64,
+    factors: Option<Factors>,
 }
+
+/// What multiplies a load at the start of a motion and at the end of every step.
+type Factors = Vec<f64>;
 
 #[derive(Debug, Serialize)]
 struct Probe {
@@ -102,16 +116,31 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
         probes: Vec::new(),
         analysis: question(analysis)?,
     };
+    let times = times(&description.analysis);
     if let Some(joint) = model.joints.first() {
         return Err(none(&format!("{joint:?}")));
     }
-    if let Some(part) = model.parts.first() {
-        return Err(none(&format!("{part:?}")));
+    for part in &model.parts {
+        let part: &dyn Any = part.as_ref();
+        let Some(damping) = part.downcast_ref::<BeamDamping>() else {
+            return Err(none(&format!("{:?}", model.parts)));
+        };
+        add_damping(&mut description.beams, damping)?;
     }
     for support in &model.supports {
-        let moved = support.displacement;
-        if [moved.x, moved.y, moved.angle] != [0.0; 3] {
-            return Err(none("a support that is moved"));
+        let by = support.displacement;
+        let by = [by.x, by.y, by.angle];
+        let moved = match (&support.law, &times) {
+            _ if by == [0.0; 3] => None,
+            (Some(law), Some(times)) => {
+                Some(values(law, times).into_iter().map(|factor| by.map(|v| factor * v)).collect())
+            }
+            _ => return Err(none("a support that is moved in statics")),
+        };
+        if moved.is_some() && matches!(description.analysis, Question::Dynamic { spectral_radius: 1.0, .. }) {
+            return Err(none(
+                "a support that is moved, by the trapezoidal rule, which holds velocities there",
+            ));
         }
         let rotation = match support.fix.rotation {
             FixedRotation::Free => "free",
@@ -119,24 +148,30 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
             FixedRotation::Gradient => "gradient",
         };
         let (beam, node) = (support.at.beam, node("a support", &support.at)?);
-        description.supports.push(Support { beam, node, x: support.fix.x, y: support.fix.y, rotation });
+        let (x, y) = (support.fix.x, support.fix.y);
+        description.supports.push(Support { beam, node, x, y, rotation, moved });
     }
     for load in &model.loads {
+        let (load, factors) = match (load, &times) {
+            (Load::InTime { load, law }, Some(times)) => (load.as_ref(), Some(values(law, times))),
+            _ => (load, None),
+        };
         match load {
             Load::Force { at, value, follower } => {
                 let (beam, node) = (at.beam, node("a force", at)?);
-                description.forces.push(Force { beam, node, value: *value, follower: *follower });
+                description.forces.push(Force { beam, node, value: *value, follower: *follower, factors });
             }
             Load::Moment { at, value } => {
                 let (beam, node) = (at.beam, node("a moment", at)?);
-                description.moments.push(Moment { beam, node, value: *value });
+                description.moments.push(Moment { beam, node, value: *value, factors });
             }
-            Load::Gravity { acceleration: [x, y] } => {
+            Load::Gravity { acceleration: [x, y] } if factors.is_none() => {
                 description.gravity[0] += x;
                 description.gravity[1] += y;
             }
+            Load::Gravity { .. } => return Err(none("a weight that follows time")),
             Load::DistributedForce { .. } => return Err(none("a distributed force")),
-            Load::InTime { .. } => return Err(none("a load that follows time")),
+            Load::InTime { .. } => return Err(none("a load that follows time in statics, or two laws")),
         }
     }
     for given in &model.initial_velocities {
@@ -151,6 +186,28 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
         description.probes.push(Probe { name: probe.name.clone(), beam, node });
     }
     Ok(description)
+}
+
+/// When a motion starts and when every step of it ends.
+fn times(analysis: &Question) -> Option<Vec<f64>> {
+    match analysis {
+        Question::Dynamic { steps, step, .. } => Some((0..=*steps).map(|k| k as f64 * step).collect()),
+        Question::Static { .. } | Question::Modal { .. } => None,
+    }
+}
+
+fn values(law: &Law, times: &[f64]) -> Factors {
+    times.iter().map(|t| law.at(*t)[0]).collect()
+}
+
+fn add_damping(beams: &mut [Cable], damping: &BeamDamping) -> Result<(), String> {
+    if damping.mass_proportional.is_some() {
+        return Err(none("damping in proportion to mass"));
+    }
+    let beam = beams.get_mut(damping.beam).ok_or_else(|| none("the damping of no beam"))?;
+    beam.axial_damping += damping.strain.unwrap_or(0.0) * beam.axial_stiffness;
+    beam.bending_damping += damping.curvature.unwrap_or(0.0) * beam.bending_stiffness;
+    Ok(())
 }
 
 fn none(what: &str) -> String {
@@ -188,6 +245,8 @@ fn cable(beam: &Beam, basis: &Basis) -> Result<Cable, String> {
         axial_stiffness: beam.section.axial_stiffness.unwrap_or(0.0),
         bending_stiffness: beam.section.bending_stiffness.unwrap_or(0.0),
         mass_per_length: beam.section.mass_per_length.unwrap_or(0.0),
+        axial_damping: 0.0,
+        bending_damping: 0.0,
         gauss_points: points,
     })
 }
@@ -265,6 +324,55 @@ at = "end"
         assert_eq!(beam.nodes, [[0.0, 0.0], [0.0, 0.5], [0.0, 1.0], [0.0, 1.5], [0.0, 2.0]]);
         assert_eq!((beam.tangent, &beam.lengths[..]), ([0.0, 1.0], &[0.5; 4][..]));
         assert_eq!((description.forces[0].node, description.probes[0].node), (4, 4));
+    }
+
+    const MOTION: &str = "[analysis.dynamic]\nduration = 0.3\noutput_every = 0.1\n\
+                          generalized_alpha = { step = 0.1, spectral_radius = 0.9 }";
+    const TURNED: &str = "fix = [\"x\", \"y\", \"angle\"]\n\
+                          move = { angle = 2.0, in_time = { ramp = { duration = 0.2 } } }";
+
+    /// A motion whose scene has more lines before its analysis.
+    fn moving(more: &str) -> Result<Description, String> {
+        let scene = SCENE
+            .replace("bending_stiffness = 2.0", "bending_stiffness = 2.0\nmass_per_length = 1.0")
+            .replace("[analysis.static]", &format!("{more}\n{MOTION}"));
+        let scene = ancf::scene::parse("scene.toml", &scene).expect("a legal scene");
+        describe(scene.model(), scene.analysis())
+    }
+
+    /// Factors that are not those at the ends of the steps, or are lost, would move another code's beam differently.
+    #[test]
+    fn laws_of_time_are_said_by_their_values_at_the_ends_of_the_steps() {
+        let moment = "[[effect.moment]]\nbeam = \"b\"\nat = \"end\"\nvalue = 3.0\n\
+                      in_time = { ramp = { duration = 0.2 } }";
+        let description = moving(moment).expect("a counterpart");
+        assert_eq!(description.moments[0].factors, Some(vec![0.0, 0.5, 1.0, 1.0]));
+        assert_eq!((&description.forces[0].factors, &description.supports[0].moved), (&None, &None));
+        let scene = SCENE
+            .replace("bending_stiffness = 2.0", "bending_stiffness = 2.0\nmass_per_length = 1.0")
+            .replace("fix = [\"x\", \"y\", \"angle\"]", TURNED)
+            .replace("[analysis.static]", MOTION);
+        let turned = |scene: &str| {
+            let scene = ancf::scene::parse("scene.toml", scene).expect("a legal scene");
+            describe(scene.model(), scene.analysis())
+        };
+        let moved = turned(&scene).expect("a counterpart").supports.remove(0).moved;
+        assert_eq!(moved.expect("it moves").iter().map(|by| by[2]).collect::<Vec<_>>(), [0.0, 1.0, 2.0, 2.0]);
+        let error = turned(&scene.replace("= 0.9 }", "= 1.0 }")).expect_err("held by its velocity there");
+        assert!(
+            error.starts_with("no counterpart for a support that is moved, by the trapezoidal rule"),
+            "{error}"
+        );
+    }
+
+    /// Another code takes the coefficients themselves, c = η EA and η EI; a damping that is left out would go unnoticed in statics only.
+    #[test]
+    fn damping_is_said_in_newton_seconds() {
+        let damping = "[[effect.damping]]\nbeam = \"b\"\nstrain = 0.5\ncurvature = 0.25";
+        let beam = &moving(damping).expect("a counterpart").beams[0];
+        assert_eq!((beam.axial_damping, beam.bending_damping), (5e3, 0.5));
+        let error = moving("[[effect.damping]]\nbeam = \"b\"\nmass_proportional = 1.0").expect_err("no word");
+        assert_eq!(error, "no counterpart for damping in proportion to mass");
     }
 
     #[test]
