@@ -17,8 +17,8 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// What takes part in the mechanics besides beams, supports and loads; as [`Any`], so that what reads a model can tell
-/// the kinds of parts that it knows.
+/// What takes part in the mechanics besides beams, supports and loads; as [`Any`], so that what reads
+/// a model can tell the kinds of parts that it knows.
 pub trait Part: Any + fmt::Debug + Send + Sync {
     /// Adds the part's densities to the equations under assembly.
     ///

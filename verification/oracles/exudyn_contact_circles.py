@@ -1,8 +1,10 @@
-"""Exudyn's cable on two circles, ANCFcontactCircleTest, by Exudyn 1.13.6; and the same with finer elements and segments.
+"""Exudyn's cable on two circles, ANCFcontactCircleTest, by Exudyn 1.13.6, and with finer segments.
 
-A cantilever of 2 m, 1 mm square, E = 207 GPa, is pressed upon two discs by its weight in a field of 80 m/s^2: in the test by dead forces at its
-nodes, half of them at the ends, with the finer elements as the weight itself. Exudyn's contact is a stiffness c per straight segment of an element; here c = k h with the segment's length h and the k of the
-test's own 8 elements of 4 segments with c = 1 kN/m, 16 kN/m^2, so that finer segments tend to a pressure per length.
+A cantilever of 2 m, 1 mm square, E = 207 GPa, is pressed upon two discs by its weight in a field of
+80 m/s^2: in the test by dead forces at its nodes, half of them at the ends, with the finer elements
+as the weight itself. Exudyn's contact is a stiffness c per straight segment of an element. Here
+c = k h with the segment's length h and the k of the test's own 8 elements of 4 segments with
+c = 1 kN/m, 16 kN/m^2, so that finer segments tend to a pressure per length.
 
     python3 exudyn_contact_circles.py
 """
@@ -20,20 +22,22 @@ LOAD_STEPS = 200
 def pressed(elements, segments, at_nodes=False):
     """Arc lengths and places of the nodes."""
     m = Settled()
-    nodes, cables = m.cable((0, 0), (LENGTH, 0), elements, AXIAL, BENDING, MASS, (0, 0 if at_nodes else -FIELD))
+    field = (0, 0 if at_nodes else -FIELD)
+    nodes, cables = m.cable((0, 0), (LENGTH, 0), elements, AXIAL, BENDING, MASS, field)
     m.hold(nodes[0], np.eye(4)[[0, 1, 3]], [0, 0, 0])
     for centre, radius in DISCS:
         disc = Disc(m, centre, radius, PRESSURE, segments)
         for cable in cables:
             disc.stops(cable, LENGTH / elements)
     for k, node in enumerate(nodes if at_nodes else []):
-        share = 0.5 if k in (0, elements) else 1.0
+        weight = FIELD * MASS * LENGTH / elements * (0.5 if k in (0, elements) else 1.0)
         marker = m.mbs.AddMarker(item.MarkerNodePosition(nodeNumber=node))
-        m.mbs.AddLoad(item.Force(markerNumber=marker, loadVector=[0, -FIELD * MASS * share * LENGTH / elements, 0]))
+        m.mbs.AddLoad(item.Force(markerNumber=marker, loadVector=[0, -weight, 0]))
     m.mbs.Assemble()
     settings = m.settings()
     static = settings.staticSolver
-    static.numberOfLoadSteps, static.loadStepGeometric, static.loadStepGeometricRange = LOAD_STEPS, True, 1e4
+    static.numberOfLoadSteps = LOAD_STEPS
+    static.loadStepGeometric, static.loadStepGeometricRange = True, 1e4
     static.newton.maxIterations = 30
     static.stabilizerODE2term = 2
     if not m.mbs.SolveStatic(settings):

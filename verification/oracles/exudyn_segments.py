@@ -1,8 +1,9 @@
-"""Exudyn's finite segment method, finiteSegmentMethod, by Exudyn 1.13.6: a heavy chain of rigid bars with bending springs between them.
+"""Exudyn's finite segment method, finiteSegmentMethod, by Exudyn 1.13.6: rigid bars and springs.
 
-A beam of L = 2 m, EI = 1 N m^2, 1 kg/m, hinged at the origin, falls from the horizontal. It is cut into n bars of equal length without moment of
-inertia, with a torsion spring EI/h at every hinge between two of them, and moved by generalised-alpha. Such a chain keeps its length, and comes
-closer to the beam with the square of h; rows with 0 segments are (4 (2 n) - n)/3 of the two finest.
+A beam of L = 2 m, EI = 1 N m^2, 1 kg/m, hinged at the origin, falls from the horizontal. It is cut
+into n bars of equal length without moment of inertia, with a torsion spring EI/h at every hinge
+between two of them, and moved by generalised-alpha. Such a chain keeps its length, and comes closer
+to the beam with the square of h; rows with 0 segments are (4 (2 n) - n)/3 of the two finest.
 
     python3 exudyn_segments.py
 """
@@ -20,18 +21,26 @@ def fall(segments):
     m = Mechanism()
     mbs, h = m.mbs, LENGTH / segments
     body = mbs.AddObject(item.ObjectGround())
-    before, turned = mbs.AddMarker(item.MarkerBodyPosition(bodyNumber=body, localPosition=[0, 0, 0])), None
+
+    def marker(body, x):
+        return mbs.AddMarker(item.MarkerBodyPosition(bodyNumber=body, localPosition=[x, 0, 0]))
+
+    before, turned = marker(body, 0), None
     for k in range(segments):
         node = mbs.AddNode(item.NodeRigidBody2D(referenceCoordinates=[(k + 0.5) * h, 0, 0]))
-        bar = mbs.AddObject(item.ObjectRigidBody2D(physicsMass=MASS * h, physicsInertia=0, nodeNumber=node))
+        bar = mbs.AddObject(
+            item.ObjectRigidBody2D(physicsMass=MASS * h, physicsInertia=0, nodeNumber=node)
+        )
         weight = mbs.AddMarker(item.MarkerBodyMass(bodyNumber=bar))
         mbs.AddLoad(item.LoadMassProportional(markerNumber=weight, loadVector=[0, -GRAVITY, 0]))
-        ends = [mbs.AddMarker(item.MarkerBodyPosition(bodyNumber=bar, localPosition=[x, 0, 0])) for x in (-h / 2, h / 2)]
+        ends = [marker(bar, -h / 2), marker(bar, h / 2)]
         mbs.AddObject(item.ObjectJointRevolute2D(markerNumbers=[before, ends[0]]))
         turn = mbs.AddMarker(item.MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
         if turned is not None:
             mbs.AddObject(
-                item.ObjectConnectorCoordinateSpringDamper(markerNumbers=[turned, turn], stiffness=BENDING / h)
+                item.ObjectConnectorCoordinateSpringDamper(
+                    markerNumbers=[turned, turn], stiffness=BENDING / h
+                )
             )
         before, turned = ends[1], turn
     m.sensors.append(

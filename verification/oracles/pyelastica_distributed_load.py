@@ -1,9 +1,10 @@
-"""Tip of a cantilever under an even load q per length, q L^3/EI = 1, 3, ... 25, dead or following the normal, by shooting.
+"""Tip of a cantilever under an even load q per length, dead or following the normal, by shooting.
 
-PyElastica ships the load cases with a table of tips. Here they are boundary value problems in 30-digit arithmetic, by the
-equations and the integrator of `static_beam.py`: of the elastica, which keeps its length, and of PyElastica's rod without its
-shear, E = 12 MPa, 10 mm square, L = 0.5 m, so EA L^2/EI = 30000, with the load per length of the undeformed rod. Lengths are
-in L; y counts in the direction of the load.
+PyElastica ships the loads q L^3/EI = 1, 3, ... 25 with a table of tips. Here they are boundary value
+problems in 30-digit arithmetic, by the equations and the integrator of `static_beam.py`: of the
+elastica, which keeps its length, and of PyElastica's rod without its shear, E = 12 MPa, 10 mm square,
+L = 0.5 m, so EA L^2/EI = 30000, with the load per length of the undeformed rod. Lengths are in L;
+y counts in the direction of the load.
 
     python3 pyelastica_distributed_load.py
 """
@@ -17,7 +18,7 @@ EXTENSIBLE = 30000
 
 
 def tips(kind, axial):
-    """(load, x, y, angle) of the tip; each root starts from the one before, the first from the straight beam."""
+    """(load, x, y, angle) of the tip; each root starts from the one before, the first from 0."""
     angle = [mpf(0)]
     for load in LOADS:
         beam = Beam(1, 1, axial, **{kind: (0, load) if kind == "dead" else load})

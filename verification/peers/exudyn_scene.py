@@ -8,8 +8,9 @@ supports and loads at nodes, and one analysis. Nothing is decided here that is n
   coordinates themselves, reference included, although those of Exudyn's nodes are counted from the reference.
 - A follower's components are along and across the tangent; ours are those of the fixed frame in the undeformed state.
 - A moment acts through the node's orientation, atan2(y', x'), as ours does.
-- Loads grow with the load factor, in statics only; in a motion they are multiplied by the factors that are given for the
-  start and for the end of every step, and so are supports moved. Index 3 asks for what is held at no other time.
+- Loads grow with the load factor, in statics only; in a motion they are multiplied by the factors
+  that are given for the start and for the end of every step, and so are supports moved. Index 3 asks
+  for what is held at no other time.
 - Exudyn starts with loose tolerances of Newton's method; here the residual is absolute and small.
 """
 
@@ -77,10 +78,11 @@ class Cables:
         self.nodes.append(nodes)
 
     def add_support(self, beam, node, x, y, rotation, moved):
-        place, tangent = self.given["beams"][beam]["nodes"][node], self.given["beams"][beam]["tangent"]
+        given = self.given["beams"][beam]
+        place, tangent = given["nodes"][node], given["tangent"]
 
         def held(by):
-            """Rows times the coordinates are an offset, where the support has moved by x, y and an angle."""
+            """Rows and an offset, which they times the coordinates are; moved by x, y and an angle."""
             c, s = np.cos(by[2]), np.sin(by[2])
             along = [c * tangent[0] - s * tangent[1], s * tangent[0] + c * tangent[1]]
             rows, offset = [], []
@@ -101,7 +103,8 @@ class Cables:
             mbs.AddMarker(item.MarkerNodeCoordinates(nodeNumber=self.nodes[beam][node])),
         ]
         rows, offset = held([0, 0, 0])
-        options = {"scalingMarker0": np.zeros((len(rows), 0)), "scalingMarker1": rows, "offset": offset}
+        none = np.zeros((len(rows), 0))
+        options = {"scalingMarker0": none, "scalingMarker1": rows, "offset": offset}
         if moved is not None:
             now = [held(by) for by in moved]
 
@@ -109,10 +112,13 @@ class Cables:
                 rows, offset = now[self.step_at(t)]
                 return rows @ q - offset
 
+            def rows_then(mbs, t, number, q, q_t, velocity_level):
+                return now[self.step_at(t)][0]
+
             options = {
                 "scalingMarker0": np.zeros((len(rows), 1)),
                 "constraintUserFunction": missed,
-                "jacobianUserFunction": lambda mbs, t, number, q, q_t, velocity_level: now[self.step_at(t)][0],
+                "jacobianUserFunction": rows_then,
             }
         mbs.AddObject(item.ObjectConnectorCoordinateVector(markerNumbers=markers, **options))
 
@@ -130,7 +136,11 @@ class Cables:
     def add_load(self, kind, load, vector, **options):
         factors = load["factors"]
         if factors is not None:
-            options["loadVectorUserFunction"] = lambda mbs, t, whole: factors[self.step_at(t)] * np.array(whole)
+
+            def then(mbs, t, whole):
+                return factors[self.step_at(t)] * np.array(whole)
+
+            options["loadVectorUserFunction"] = then
         marker = self.mbs.AddMarker(item.MarkerNodeRigid(nodeNumber=self.nodes[load["beam"]][load["node"]]))
         self.mbs.AddLoad(kind(markerNumber=marker, loadVector=vector, **options))
 

@@ -53,7 +53,8 @@ struct Support {
     x: bool,
     y: bool,
     rotation: &'static str,
-    /// What the held quantities have moved by, x \[m\], y \[m\], angle \[rad\], at the start and at the end of every step.
+    /// What the held quantities have moved by, x \[m\], y \[m\], angle \[rad\], at the start and at the
+    /// end of every step.
     moved: Option<Vec<[f64; 3]>>,
 }
 
@@ -340,7 +341,8 @@ at = "end"
         describe(scene.model(), scene.analysis())
     }
 
-    /// Factors that are not those at the ends of the steps, or are lost, would move another code's beam differently.
+    /// Factors that are not those at the ends of the steps, or are lost, would move another code's
+    /// beam differently.
     #[test]
     fn laws_of_time_are_said_by_their_values_at_the_ends_of_the_steps() {
         let moment = "[[effect.moment]]\nbeam = \"b\"\nat = \"end\"\nvalue = 3.0\n\
@@ -365,7 +367,8 @@ at = "end"
         );
     }
 
-    /// Another code takes the coefficients themselves, c = η EA and η EI; a damping that is left out would go unnoticed in statics only.
+    /// Another code takes the coefficients themselves, c = η EA and η EI; without them its beam would
+    /// swing on.
     #[test]
     fn damping_is_said_in_newton_seconds() {
         let damping = "[[effect.damping]]\nbeam = \"b\"\nstrain = 0.5\ncurvature = 0.25";
