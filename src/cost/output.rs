@@ -303,7 +303,7 @@ fn html(study: &Study, report: &Report<'_>, figures: &[(&str, String)]) -> Resul
             rung.solver.clone(),
             degrees_of_freedom.to_string(),
             if rung.below_uncertainty {
-                format!("below the reference's {}", human(uncertainty.error, 2))
+                format!("< {}", human(uncertainty.error, 2))
             } else {
                 human(deviation.error, 2)
             },

@@ -181,6 +181,17 @@ fn over_parameter(t: &Trajectory, values: impl Iterator<Item = f64>) -> Vec<[f64
     t.parameter.iter().zip(values).map(|(&p, v)| [p, v]).collect()
 }
 
+/// Up to this many records each has a dot: between few of them the line is no more than a line.
+const DOTS: usize = 60;
+
+/// The chart with dots at the records, where these are few.
+fn with_dots(chart: Chart, points: &[[f64; 2]], colour: Colour) -> Chart {
+    if points.len() > DOTS {
+        return chart;
+    }
+    chart.with(Series::points("", points.to_vec(), colour).size(1.8))
+}
+
 /// Two quantities of each probe over the parameter, drawn as a line and dashed.
 fn probes(t: &Trajectory, axis: Axis, pair: Pair) -> Option<Chart> {
     if t.parameter.len() < 2 || t.probes.is_empty() {
@@ -190,6 +201,7 @@ fn probes(t: &Trajectory, axis: Axis, pair: Pair) -> Option<Chart> {
     for (i, probe) in t.probes.iter().enumerate() {
         for (mark, (name, value)) in [Mark::Line, Mark::Dashed].into_iter().zip(pair) {
             let points = over_parameter(t, probe.samples.iter().map(value));
+            chart = with_dots(chart, &points, colour(i));
             chart = chart.with(Series::new(format!("{}.{name}", probe.name), points, mark, colour(i)));
         }
     }
@@ -222,6 +234,7 @@ fn angle(t: &Trajectory) -> Option<Sketch> {
     let mut chart = Chart::new("", parameter_axis(t), axis).sized(SMALL.0, SMALL.1);
     for (i, probe) in t.probes.iter().enumerate() {
         let points = over_parameter(t, probe.samples.iter().map(|s| s.angle.to_degrees()));
+        chart = with_dots(chart, &points, colour(i));
         chart = chart.with(Series::line(probe.name.clone(), points, colour(i)));
     }
     Some(Sketch::one(
@@ -252,6 +265,7 @@ fn energy(t: &Trajectory) -> Option<Sketch> {
     for (name, points, colour) in parts {
         // What is not simulated is zero throughout and would only hide the others.
         if size(&points) > 0.0 {
+            chart = with_dots(chart, &points, colour);
             chart = chart.with(Series::line(name, points, colour));
         }
     }

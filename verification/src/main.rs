@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod beside;
+mod browser;
 mod cost;
 mod freeze;
 mod instructions;
@@ -63,6 +64,16 @@ enum Command {
         /// Problems, files of verification/work-precision; all if none is named
         problems: Vec<String>,
     },
+    /// Open the pages of runs, of a cost study and of the report in Chromium and say what is wrong with them; exit status 1 if
+    /// anything is. Needs chromium and chromedriver
+    Browser {
+        /// A report's index.html with report.json beside it; one of some cases is made if none is named
+        #[arg(long, value_name = "HTML")]
+        report: Option<PathBuf>,
+        /// Damage pages too: every damage must be found out
+        #[arg(long)]
+        prove: bool,
+    },
     /// Measure what a time step costs per element, and the memory it takes, from 100 to 100,000 elements
     Scaling,
     /// Count the instructions of some runs with valgrind, keep them for the report, and compare them with another build's or the last
@@ -98,6 +109,7 @@ fn main() -> ExitCode {
         Command::Freeze { check, cases } => freeze::freeze(&suite, &cases, check),
         Command::Peers { cases } => beside::print(&suite, &cases),
         Command::WorkPrecision { quick, out, problems } => cost::print(&suite, &problems, quick, &out),
+        Command::Browser { report, prove } => browser::print(&suite, report.as_deref(), prove),
         Command::Scaling => scaling::print(&suite),
         Command::Instructions { against, program } => {
             instructions::print(&suite, &program, against.as_deref())
