@@ -337,17 +337,22 @@ fn driven(rotation: FixedRotation, duration: f64) -> Model {
     model
 }
 
+/// Places after a short while with three steps, each half of the one before. Catches a term of time or velocity that is taken at
+/// another time than its method wants, which costs a method its order. Steps are such that the fastest waves are
+/// resolved, without which no order shows, and changes are a hundred times round-off, without which chance decides.
 #[test]
 fn what_depends_on_time_and_velocity_keeps_the_order_of_every_method() {
+    const ROUND_OFF: f64 = 1e-14;
     let mut wrong = Vec::new();
     for rotation in [FixedRotation::Gradient, FixedRotation::Angle] {
         let model = driven(rotation, 0.08);
         for (integrator, expected) in methods(1.0) {
-            let step: f64 = match expected {
-                2.0 => 2e-5,
-                3.0 => 8e-5,
-                4.0 => 2e-4,
-                _ => 4e-4,
+            let (step, within): (f64, f64) = match expected {
+                2.0 => (1e-4, 0.05),
+                3.0 => (1e-4, 0.25),
+                4.0 => (4e-4, 0.1),
+                5.0 => (4e-4, 0.4),
+                _ => (8e-4, 0.5),
             };
             let at = |factor: f64| {
                 let integrator = super::dynamics::with_step(integrator, StepControl::Fixed(factor * step));
@@ -357,9 +362,9 @@ fn what_depends_on_time_and_velocity_keeps_the_order_of_every_method() {
             };
             let [a, b, c] = [2.0, 1.0, 0.5].map(at);
             let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
-            let order = (distance(a, b) / distance(b, c)).log2();
-            if (order - expected).abs() > 0.2 * expected.max(3.0) {
-                let changes = [distance(a, b), distance(b, c)];
+            let changes = [distance(a, b), distance(b, c)];
+            let order = (changes[0] / changes[1]).log2();
+            if (order - expected).abs() > within || changes[1] < 100.0 * ROUND_OFF {
                 wrong.push(format!("{rotation:?}, {integrator}: order {order}, changes {changes:?}"));
             }
         }
