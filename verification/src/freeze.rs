@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use ancf_check::case::Oracle;
-use ancf_check::reference::{Provenance, Table, provenance_path, sha256};
+use ancf_check::reference::{Provenance, Table, difference, provenance_path, sha256};
 use ancf_check::{Case, Suite};
 use indexmap::IndexMap;
 
@@ -13,7 +13,8 @@ use ancf_verification::{Failure, bridge, peers};
 use crate::chosen;
 
 /// Makes the tables of all oracles of some cases. With `check` nothing is written, and the answer is whether the
-/// tables are byte by byte what is there.
+/// tables are what is there, but for the round-off of another processor. Transcriptions are only copied: of these it
+/// says that nothing was computed.
 pub fn freeze(suite: &Suite, cases: &[String], check: bool) -> Result<bool, Failure> {
     let names = chosen(suite, cases)?;
     let python = bridge::environment()?;
@@ -26,12 +27,20 @@ pub fn freeze(suite: &Suite, cases: &[String], check: bool) -> Result<bool, Fail
                 make(suite, &case, key, oracle, python).map_err(|e| format!("{name}/{key}: {e}"))?;
             let path = suite.table_path(&name, key);
             let known = Table::read(&path).ok();
-            let agrees = std::fs::read_to_string(&path).is_ok_and(|old| old == table);
-            same &= agrees;
-            if agrees && known.is_some_and(|known| says_the_same(&known.provenance, &provenance)) {
-                eprintln!("unchanged");
+            let frozen = std::fs::read_to_string(&path).ok();
+            let agrees = frozen.as_ref().is_some_and(|frozen| *frozen == table);
+            let provenance_holds = known.is_some_and(|known| says_the_same(&known.provenance, &provenance));
+            if agrees && provenance_holds {
+                let computed = oracle.transcribed.is_none() && oracle.shared.is_none();
+                eprintln!("{}", if computed { "unchanged" } else { "copied, not computed" });
             } else if check {
-                eprintln!("{}", if agrees { "same numbers" } else { "DIFFERS from reference_data" });
+                let other = frozen.map_or(Some("there is none".into()), |old| difference(&table, &old));
+                same &= other.is_none();
+                match other {
+                    None if agrees => eprintln!("same numbers"),
+                    None => eprintln!("same numbers but for round-off"),
+                    Some(how) => eprintln!("DIFFERS from reference_data: {how}"),
+                }
             } else {
                 store(&path, &table)?;
                 let header = "# Written by `verify freeze`; not to be edited.\n";
@@ -40,7 +49,7 @@ pub fn freeze(suite: &Suite, cases: &[String], check: bool) -> Result<bool, Fail
             }
         }
     }
-    Ok(same || !check)
+    Ok(same)
 }
 
 fn make(
@@ -56,6 +65,9 @@ fn make(
         inputs.insert(suite.short(path), sha256(&bytes));
         Ok(())
     };
+    if let Some(other) = &oracle.shared {
+        return shared(suite, other, key, oracle);
+    }
     let (table, tool, command) = match (&oracle.script, &oracle.transcribed, oracle.peer) {
         (Some(script), ..) => {
             let path = suite.oracles_folder().join(script);
@@ -92,7 +104,7 @@ fn make(
             let command = format!("verify freeze {}", case.name);
             (peers::table(case, oracle, peer)?, python.facts.tool(|p| p == peers::package(peer)), command)
         }
-        (None, None, None) => return Err("it has none of `script`, `transcribed`, `peer`".into()),
+        (None, None, None) => return Err("it has none of `script`, `transcribed`, `peer`, `shared`".into()),
     };
     let provenance = Provenance {
         oracle: key.to_owned(),
@@ -108,6 +120,29 @@ fn make(
         inputs,
     };
     Ok((table, provenance))
+}
+
+/// The reference of another case with its own provenance: how, when and where it was made there. Computed anew it is there alone.
+fn shared(suite: &Suite, other: &str, key: &str, oracle: &Oracle) -> Result<(String, Provenance), Failure> {
+    let (case, of) = other.split_once('/').ok_or_else(|| format!("`{other}` is not `<case>/<oracle>`"))?;
+    let path = suite.table_path(case, of);
+    let provenance = Table::read(&path)?.provenance;
+    if provenance.class != oracle.class {
+        return Err(format!("{other} is of the class `{}`", provenance.class.word()).into());
+    }
+    let text = std::fs::read_to_string(&path)?;
+    let mut inputs = IndexMap::from([(suite.short(&path), sha256(text.as_bytes()))]);
+    inputs.extend(provenance.inputs);
+    let made = Provenance {
+        oracle: key.to_owned(),
+        title: oracle.title.clone(),
+        citation: oracle.citation.trim().to_owned(),
+        note: oracle.note.as_deref().map(|note| note.trim().to_owned()),
+        csv_sha256: sha256(text.as_bytes()),
+        inputs,
+        ..provenance
+    };
+    Ok((text, made))
 }
 
 /// Whether all is the same but the day and the machine, which alone are no reason to write.

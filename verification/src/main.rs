@@ -8,6 +8,7 @@ mod cost;
 mod freeze;
 mod instructions;
 mod mutants;
+mod numbers;
 mod report;
 mod scaling;
 
@@ -74,6 +75,8 @@ enum Command {
         #[arg(long)]
         prove: bool,
     },
+    /// Compute the numbers that the documents quote; exit status 1 if one of them is false
+    Numbers,
     /// Measure what a time step costs per element, and the memory it takes, from 100 to 100,000 elements
     Scaling,
     /// Count the instructions of some runs with valgrind, keep them for the report, and compare them with another build's or the last
@@ -110,6 +113,7 @@ fn main() -> ExitCode {
         Command::Peers { cases } => beside::print(&suite, &cases),
         Command::WorkPrecision { quick, out, problems } => cost::print(&suite, &problems, quick, &out),
         Command::Browser { report, prove } => browser::print(&suite, report.as_deref(), prove),
+        Command::Numbers => numbers::print(&suite),
         Command::Scaling => scaling::print(&suite),
         Command::Instructions { against, program } => {
             instructions::print(&suite, &program, against.as_deref())

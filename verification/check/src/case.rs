@@ -15,7 +15,7 @@
 //! class = "closed-form"                 # closed-form | published | code | integrator | refinement
 //! title = "Elastica by shooting, 30 digits"
 //! citation = "Bisshopp & Drucker 1945"
-//! script = "static_beam.py"             # in verification/oracles/; or transcribed = "file.csv" there; or peer = "exudyn"
+//! script = "static_beam.py"             # in verification/oracles/; or transcribed = "file.csv" there; or peer = "exudyn"; or shared = "case/oracle"
 //! arguments = ["tip-load"]
 //! note = "What a reader of the numbers must know."
 //!
@@ -150,6 +150,8 @@ pub struct Oracle {
     pub scenes: Vec<String>,
     /// A table in `verification/oracles/` typed from the literature.
     pub transcribed: Option<String>,
+    /// A reference of another case, `<case>/<oracle>`, that is this one's too.
+    pub shared: Option<String>,
     /// Another code that solves the same scenes.
     pub peer: Option<Peer>,
     /// The family that the peer solves; may be left out where there is only one.
@@ -372,9 +374,16 @@ impl Case {
             return Err("a case needs at least one [[check]]".to_owned());
         }
         for (name, oracle) in &self.text.oracle {
-            let sources = [oracle.script.is_some(), oracle.transcribed.is_some(), oracle.peer.is_some()];
+            let sources = [
+                oracle.script.is_some(),
+                oracle.transcribed.is_some(),
+                oracle.peer.is_some(),
+                oracle.shared.is_some(),
+            ];
             if sources.iter().filter(|given| **given).count() != 1 {
-                return Err(format!("[oracle.{name}] needs `script`, `transcribed` or `peer`, one of them"));
+                return Err(format!(
+                    "[oracle.{name}] needs `script`, `transcribed`, `peer` or `shared`, one of them"
+                ));
             }
             if oracle.peer.is_some() {
                 self.family(oracle.run.as_deref())

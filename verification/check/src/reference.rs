@@ -122,9 +122,74 @@ impl Table {
     }
 }
 
+/// Of a column's largest number, what another processor's round-off may move.
+const ROUND_OFF: f64 = 1e-9;
+/// Two units of the last of the twelve decimals that many oracles print: where a column is zero but for
+/// round-off there is no largest number to speak of.
+const LAST_DECIMAL: f64 = 2e-12;
+
+/// Where a table made today is not the one that was frozen but for another processor's round-off: the header and
+/// words differ, or numbers by more than 1e-9 of their column's largest. `None` where it is the same.
+pub fn difference(today: &str, frozen: &str) -> Option<String> {
+    let rows = |text: &str| -> Vec<Vec<String>> {
+        text.lines().map(|line| line.split(',').map(|cell| cell.trim().to_owned()).collect()).collect()
+    };
+    let (today, frozen) = (rows(today), rows(frozen));
+    if today.len() != frozen.len() {
+        return Some(format!("{} lines today, {} frozen", today.len(), frozen.len()));
+    }
+    let largest = |column: usize| {
+        let cells = frozen.iter().filter_map(|row| row.get(column)?.parse::<f64>().ok());
+        cells.filter(|value| value.is_finite()).fold(0.0_f64, |m, value| m.max(value.abs()))
+    };
+    let columns = frozen.iter().map(Vec::len).max().unwrap_or(0);
+    let allowed: Vec<f64> = (0..columns).map(|k| ROUND_OFF * largest(k) + LAST_DECIMAL).collect();
+    today.iter().zip(&frozen).find_map(|(a, b)| {
+        let same = a.len() == b.len()
+            && a.iter().zip(b).zip(&allowed).all(|((a, b), allowed)| {
+                match (a.parse::<f64>(), b.parse::<f64>()) {
+                    (Ok(a), Ok(b)) => (a - b).abs() <= *allowed,
+                    _ => a == b,
+                }
+            });
+        (!same).then(|| format!("today {}, frozen {}", a.join(","), b.join(",")))
+    })
+}
+
 fn same(cell: &str, wanted: &str) -> bool {
     match (cell.trim().parse::<f64>(), wanted.trim().parse::<f64>()) {
         (Ok(a), Ok(b)) => (a - b).abs() <= 1e-12 * a.abs().max(b.abs()),
         _ => cell.trim() == wanted.trim(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::difference;
+
+    const FROZEN: &str = "load,x,y\n1,0.500000000000,1e-17\n2,-20.0,3e-16\n";
+
+    /// Catches a comparison that lets a digit go, a row, a column or a word, and one that takes round-off for a
+    /// difference, be it in the last decimal or of a number that is zero.
+    #[test]
+    fn round_off_is_no_difference_and_a_digit_is() {
+        for same in [
+            FROZEN,
+            "load,x,y\n1,0.500000000001,-4e-16\n2,-20.0,0.0\n",
+            "load,x,y\r\n1.0,0.5,1e-17\r\n2,-2.00000000001e1,3e-16\r\n",
+        ] {
+            assert_eq!(difference(same, FROZEN), None);
+        }
+        for other in [
+            "load,x,y\n1,0.50000003,1e-17\n2,-20.0,3e-16\n",
+            "load,x,y\n1,0.5,1e-11\n2,-20.0,3e-16\n",
+            "load,x,y\n1,0.5,1e-17\n2,20.0,3e-16\n",
+            "load,x,y\n1,0.5,1e-17\n2,nan,3e-16\n",
+            "load,x,y\n1,0.5,1e-17\n",
+            "load,x\n1,0.5\n2,-20.0\n",
+            "load,x,z\n1,0.5,1e-17\n2,-20.0,3e-16\n",
+        ] {
+            assert!(difference(other, FROZEN).is_some(), "{other}");
+        }
     }
 }

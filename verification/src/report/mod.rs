@@ -23,6 +23,7 @@ mod page;
 mod scaling;
 mod work;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -122,6 +123,9 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
                     lost = true;
                     eprintln!("LOST {:.1} digits in {} since the report compared with", -digits, entry.name);
                 }
+                for wide in wide(&examined.outcomes) {
+                    eprintln!("WIDE {}: {wide}", entry.name);
+                }
                 for outcome in &examined.outcomes {
                     if outcome.verdict.passed() {
                         count.0 += 1;
@@ -145,6 +149,37 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
         out.join("index.html").display()
     );
     Ok(passed && !lost)
+}
+
+/// A tolerance may be so many times the largest error that it is for; beyond, it holds nothing, unless its reason says why.
+const WIDE: f64 = 30.0;
+/// Errors below this are a few roundings, which differ from machine to machine.
+const ROUNDINGS: f64 = 1e-15;
+
+/// Tolerances of a check that are far above all errors that they are for.
+fn wide(outcomes: &[Outcome]) -> Vec<String> {
+    let mut largest: BTreeMap<(usize, u64), &Outcome> = BTreeMap::new();
+    for outcome in outcomes {
+        if let Some(allowed) = outcome.verdict.allowed {
+            let known = largest.entry((outcome.check, allowed.to_bits())).or_insert(outcome);
+            if outcome.error > known.error {
+                *known = outcome;
+            }
+        }
+    }
+    let wide = |outcome: &&Outcome| {
+        outcome.verdict.allowed.is_some_and(|allowed| allowed > WIDE * outcome.error.max(ROUNDINGS))
+    };
+    let line = |outcome: &Outcome| {
+        let allowed = short(outcome.verdict.allowed.unwrap_or_default());
+        format!(
+            "{} ({}) errs by {} where {allowed} is allowed",
+            outcome.quantity,
+            outcome.label,
+            short(outcome.error)
+        )
+    };
+    largest.into_values().filter(wide).map(line).collect()
 }
 
 /// All pages in the order of reading; `measured` is the folder of `verify work-precision`.

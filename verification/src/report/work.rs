@@ -204,8 +204,7 @@ mod tests {
             claims: vec![Verdict {
                 says: "So it is.".into(),
                 limit: Some(("tip".into(), 1e-3)),
-                times: Some(30.0),
-                within: None,
+                times: 30.0,
                 ours: found(0.25),
                 theirs: found(2.5),
                 ratio: Some(10.0),

@@ -13,9 +13,7 @@ pub struct Verdict {
     /// The name of the norm, and the largest error; none: any error.
     pub limit: Option<(String, f64)>,
     /// How many times faster ours is to be.
-    pub times: Option<f64>,
-    /// Longest time of ours \[s\].
-    pub within: Option<f64>,
+    pub times: f64,
     /// Our cheapest setting that keeps the limit.
     pub ours: Option<Cheapest>,
     /// That of the other code, or of those of our methods that it is compared with.
@@ -77,24 +75,12 @@ pub fn judge(claim: &Claim, points: &[Point]) -> Verdict {
     };
     let (ours, theirs) = (of(true, &claim.ours), of(false, &claim.than));
     let ratio = ours.as_ref().zip(theirs.as_ref()).map(|(a, b)| b.seconds / a.seconds);
-    let within = claim.within_ms.map(|ms| ms * 1e-3);
-    let met = match (&ours, claim.times, ratio) {
-        (None, ..) => Some(false),
-        (Some(ours), ..) if within.is_some_and(|longest| ours.seconds > longest) => Some(false),
-        (_, Some(times), Some(ratio)) => Some(ratio >= times),
-        (_, Some(_), None) => None,
-        (_, None, _) => Some(true),
+    let met = match (&ours, ratio) {
+        (None, _) => Some(false),
+        (_, Some(ratio)) => Some(ratio >= claim.times),
+        (_, None) => None,
     };
-    Verdict {
-        says: claim.says.trim().to_owned(),
-        limit,
-        times: claim.times,
-        within,
-        ours,
-        theirs,
-        ratio,
-        met,
-    }
+    Verdict { says: claim.says.trim().to_owned(), limit, times: claim.times, ours, theirs, ratio, met }
 }
 
 #[cfg(test)]
@@ -130,9 +116,9 @@ mod tests {
         ]
     }
 
-    fn claim(error: f64, times: Option<f64>, within_ms: Option<f64>) -> Claim {
+    fn claim(error: f64, times: f64) -> Claim {
         let norm = Some("tip".to_owned());
-        Claim { says: String::new(), norm, error: Some(error), ours: vec![], than: vec![], times, within_ms }
+        Claim { says: String::new(), norm, error: Some(error), ours: vec![], than: vec![], times }
     }
 
     #[test]
@@ -157,16 +143,14 @@ mod tests {
     #[test]
     fn a_claim_is_met_missed_or_undecided() {
         let points = points();
-        let verdict = judge(&claim(1e-3, Some(10.0), None), &points);
+        let verdict = judge(&claim(1e-3, 10.0), &points);
         assert_eq!((verdict.ratio, verdict.met), (Some(15.0), Some(true)));
-        assert_eq!(judge(&claim(1e-3, Some(20.0), None), &points).met, Some(false));
-        let only = Claim { than: vec!["x".into()], ..claim(1e-3, Some(20.0), None) };
+        assert_eq!(judge(&claim(1e-3, 20.0), &points).met, Some(false));
+        let only = Claim { than: vec!["x".into()], ..claim(1e-3, 20.0) };
         assert_eq!(judge(&only, &points).ratio, Some(20.0));
-        let own = Claim { ours: vec!["a".into()], than: vec!["b".into()], ..claim(1e-3, Some(1.0), None) };
+        let own = Claim { ours: vec!["a".into()], than: vec!["b".into()], ..claim(1e-3, 1.0) };
         assert_eq!(judge(&own, &points).ratio, Some(1.0), "two methods of ours");
-        assert_eq!(judge(&claim(5e-4, Some(1.0), None), &points).met, None, "nothing to compare with");
-        assert_eq!(judge(&claim(1e-9, Some(1.0), None), &points).met, Some(false), "ours is not good enough");
-        assert_eq!(judge(&claim(1e-3, None, Some(2000.0)), &points).met, Some(true));
-        assert_eq!(judge(&claim(1e-3, Some(1.0), Some(1999.0)), &points).met, Some(false));
+        assert_eq!(judge(&claim(5e-4, 1.0), &points).met, None, "nothing to compare with");
+        assert_eq!(judge(&claim(1e-9, 1.0), &points).met, Some(false), "ours is not good enough");
     }
 }
