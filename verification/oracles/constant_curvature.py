@@ -80,7 +80,12 @@ def circle():
     show(HEADER, arc(mpf(3), curvature, pi / 2, (1 / curvature, mpf(0)), 60))
 
 
-CASES = {"circle": circle, "roll-up": roll_up, "unbend": unbend, "axial-bar": axial_bar}
+def full_circle():
+    """A beam of length 1 that a moment at its end has rolled up once, from the origin along x."""
+    show(HEADER, arc(mpf(1), 2 * pi))
+
+
+CASES = {"circle": circle, "full-circle": full_circle, "roll-up": roll_up, "unbend": unbend, "axial-bar": axial_bar}
 
 if __name__ == "__main__":
     if len(sys.argv) != 2 or sys.argv[1] not in CASES:
