@@ -5,3 +5,4 @@ mod hard;
 mod property;
 mod regress;
 mod validate;
+mod values;

@@ -8,6 +8,7 @@ mod exudyn_random;
 mod exudyn_statics;
 mod frozen;
 mod scikit_fem;
+mod vtu;
 mod work;
 
 use ancf::run::{Control, run};

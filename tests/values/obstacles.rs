@@ -1,0 +1,125 @@
+//! Contacts: where a falling rod touches first, and how deep a resting one sinks, by geometry and balance.
+
+use super::{Written, near};
+
+/// A horizontal rod 40 cm long falls from the height `height`, its start at `x`: when it touches `obstacle`, from which y follows.
+fn lands([x, height]: [f64; 2], obstacle: &str) -> f64 {
+    let text = format!(
+        "beam.rod = {{ start = [{x:?}, {height:?}], end = [{:?}, {height:?}], axial_stiffness = 1e5, bending_stiffness = 1e3, \
+         mass_per_length = 1, basis.ancf.elements = 2 }}
+         effect.gravity.acceleration = [0, -10]
+         effect.contact = [{{ beam = 'rod', stiffness = 1e5, {obstacle} }}]
+         analysis.dynamic = {{ duration = 0.6, output_every = 0.1, radau.tolerance = 1e-7 }}\n",
+        x + 0.4
+    );
+    let found = Written::of(&text);
+    let summary = found.summary();
+    let event = &summary["events"][0];
+    assert_eq!(
+        (event["touches"].as_bool(), event["contact"].as_str()),
+        (Some(true), Some("rod.1")),
+        "{summary}"
+    );
+    let time = event["time"].as_f64().expect("a time");
+    height - 5.0 * time * time
+}
+
+/// Would catch sides of a box that are halved, doubled or swapped, an angle of the other sense, half a thickness that is the whole or a quarter, a hole that
+/// is a disc, and a normal or a point that is another.
+#[test]
+fn a_falling_rod_touches_where_the_surface_is() {
+    let (sine, cosine) = 20.0_f64.to_radians().sin_cos();
+    for (start, obstacle, height) in [
+        ([0.3, 1.0], "box = { center = [0.5, 0.1], size = ['3 m', '40 cm'] }, half_thickness = '5 cm'", 0.35),
+        ([0.3, 1.0], "box = { center = [0.5, 0.1], size = [3, 0.4] }", 0.3),
+        // Turned by 20°, its upper side rises to the right: the rod's end at x = 0.7 is the first to touch.
+        (
+            [0.3, 1.2],
+            "box = { center = [0, 0], size = [3, 0.4], angle = '20 deg' }, half_thickness = 0.05",
+            (0.25 + 0.7 * sine) / cosine,
+        ),
+        // The other way round its start is.
+        (
+            [0.3, 1.0],
+            "box = { center = [0, 0], size = [3, 0.4], angle = '-20 deg' }",
+            (0.2 - 0.3 * sine) / cosine,
+        ),
+        // A corner under the rod's middle.
+        ([-0.2, 1.2], "box = { center = [0, 0], size = [0.6, 0.8], angle = '45 deg' }", 1.4 / 8.0_f64.sqrt()),
+        ([0.3, 1.0], "circle = { center = [0.5, -0.2], radius = '60 cm' }, half_thickness = 0.02", 0.42),
+        // The ends of the rod come to the rim of a hole.
+        (
+            [0.3, 1.0],
+            "circle = { center = [0.5, 0.9], radius = 0.7, inside = true }, half_thickness = 0.02",
+            0.9 - (0.68_f64 * 0.68 - 0.04).sqrt(),
+        ),
+        ([0.3, 1.0], "half_plane = { point = [0, 0.1], normal = [0, 2] }, half_thickness = 0.05", 0.15),
+        // (r − p)·n = 0 with n = (0.6, 0.8): the rod's start is nearest.
+        ([0.3, 1.0], "half_plane = { point = [0.1, 0.3], normal = [3, 4] }", 0.3 - 0.75 * 0.2),
+    ] {
+        near(lands(start, obstacle), height, 1e-6, obstacle);
+    }
+}
+
+/// A stiff rod under an even load sinks into the ground by q/k, and is dragged along it by what the springs of friction give way: q_x/k_t.
+///
+/// Would catch a stiffness that is doubled, and a default of the friction's stiffness other than that of the contact.
+#[test]
+fn a_resting_rod_sinks_and_slips_by_load_over_stiffness() {
+    for (friction, slip) in [
+        ("friction = { coefficient = 0.5, stiffness = '50 N/m^2' }", 0.2 / (50.0 + 10.0)),
+        ("friction = { coefficient = 0.5 }", 0.2 / (200.0 + 10.0)),
+    ] {
+        let text = format!(
+            "beam.rod = {{ start = [0, 0.05], end = [1, 0.05], axial_stiffness = 1e6, bending_stiffness = 1e4, basis.ancf.elements = 2 }}
+             effect.contact = [{{ beam = 'rod', half_plane = {{ point = [0, 0], normal = [0, 1] }}, stiffness = '200 N/m^2', \
+             half_thickness = '50 mm', {friction} }}]
+             effect.foundation = [{{ beam = 'rod', stiffness = [10, 0] }}]
+             effect.distributed_force = [{{ beam = 'rod', value = [0.2, -2] }}]
+             probe = [{{ name = 'middle', beam = 'rod', at = 0.5 }}]
+             output.effects = true
+             analysis.static = {{}}\n"
+        );
+        let found = Written::of(&text);
+        let expected = [("middle.x", 0.5 + slip), ("middle.y", 0.04)];
+        found.ends("probes.csv", &expected, 1e-6);
+        let expected = [
+            ("contact.rod.energy", 0.5 * 2.0 * 0.01),
+            ("contact.rod.fx", 0.0),
+            ("contact.rod.fy", 2.0),
+            ("friction.rod.fx", -(0.2 - 10.0 * slip)),
+        ];
+        found.ends("effects.csv", &expected, 1e-5);
+    }
+}
+
+/// A rod that bounces off the ground as it came: would catch impulses along another axis or of another sign, forces and times that are another.
+#[test]
+fn a_bounce_gives_twice_the_momentum() {
+    let rod = "beam.rod = { start = [0, 0.2], end = [0.4, 0.2], axial_stiffness = 1e5, bending_stiffness = 1e3, mass_per_length = 5, \
+        basis.ancf.elements = 2 }
+        probe = [{ name = 'end', beam = 'rod', at = 'end' }]\n";
+    let text = format!(
+        "{rod}initial_velocity = [{{ beam = 'rod', value = [0.1, -1] }}]
+         effect.contact = [{{ beam = 'rod', half_plane = {{ point = [0, 0], normal = [0, 1] }}, stiffness = 1e4 }}]
+         analysis.dynamic = {{ duration = 0.6, output_every = 0.1, radau.tolerance = 1e-8 }}\n"
+    );
+    let found = Written::of(&text);
+    let events = found.summary()["events"].clone();
+    let number = |event: usize, pointer: &str| events[event].pointer(pointer).and_then(|v| v.as_f64());
+    // It touches at 0.2 s, with ω = √(k/ρA) for half a period π/ω; 2 kg.
+    let frequency = (1e4_f64 / 5.0).sqrt();
+    for (event, pointer, value) in [
+        (0, "/time", 0.2),
+        (1, "/time", 0.2 + std::f64::consts::PI / frequency),
+        (1, "/impulse/0", 0.0),
+        (1, "/impulse/1", 4.0),
+        (1, "/largest_force", 2.0 * frequency),
+    ] {
+        let found = number(event, pointer).unwrap_or_else(|| panic!("{pointer} in {events}"));
+        let tolerance = if pointer == "/largest_force" { 0.02 * value } else { 1e-5 };
+        near(found, value, tolerance, pointer);
+    }
+    assert_eq!((events[0]["touches"].as_bool(), events[1]["touches"].as_bool()), (Some(true), Some(false)));
+    found.ends("probes.csv", &[("end.vy", 1.0), ("end.vx", 0.1)], 1e-5);
+}
