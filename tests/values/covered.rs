@@ -1,4 +1,5 @@
-//! No key and no column without a value test: the schema and the headers as written against the lists `keys.toml` and `columns.toml`.
+//! No key and no column without a value test: the schema and the headers as written against the
+//! lists `keys.toml` and `columns.toml`.
 
 use super::Written;
 use std::collections::{BTreeMap, BTreeSet};
@@ -25,7 +26,8 @@ fn has_word(text: &str, word: &str) -> bool {
         .any(|(at, _)| !text[..at].ends_with(part) && !text[at + word.len()..].starts_with(part))
 }
 
-/// What is wrong with a test that a list names: `room::file::function` of `tests`, `live::file::function`, or `case NAME`; it must be there, and speak of the word.
+/// What is wrong with a test that a list names: `room::file::function` of `tests`,
+/// `live::file::function`, or `case NAME`; it must be there, and speak of the word.
 fn problem(test: &str, word: &str) -> Option<String> {
     if let Some(name) = test.strip_prefix("case ") {
         let folder = root().join("verification/cases").join(name);
@@ -126,7 +128,8 @@ fn paths(value: &serde_json::Value, path: &str, into: &mut BTreeSet<String>) {
     }
 }
 
-/// Would catch a column, a number of the summary, or a field for ParaView that is new and has no test of its value.
+/// Would catch a column, a number of the summary, or a field for ParaView that is new and has no
+/// test of its value.
 #[test]
 fn every_column_of_every_file_has_a_value_test() {
     let beam = "beam.arm = { start = [0, 0.2], end = [1, 0.2], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }

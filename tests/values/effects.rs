@@ -1,10 +1,13 @@
-//! What acts on beams besides loads: springs, masses, damping, foundations, fluids. Expected are systems of one degree of freedom, and columns of `effects.csv` with them.
+//! What acts on beams besides loads: springs, masses, damping, foundations, fluids. Expected are
+//! systems of one degree of freedom, and columns of `effects.csv` with them.
 
 use super::{ROD, SECOND, Written, near};
 
-/// Velocities along and across an inclined rod in a flow fall as those of a point: exp(−c t/ρA) of what is viscous, 1/(1 + C |u₀| t/ρA) of what is quadratic.
+/// Velocities along and across an inclined rod in a flow fall as those of a point: exp(−c t/ρA) of
+/// what is viscous, 1/(1 + C |u₀| t/ρA) of what is quadratic.
 ///
-/// Would catch coefficients along and across that are swapped, viscous ones that are quadratic, and a flow that is reversed or forgotten.
+/// Would catch coefficients along and across that are swapped, viscous ones that are quadratic, and
+/// a flow that is reversed or forgotten.
 #[test]
 fn drag_slows_a_rod_along_and_across_by_its_own_coefficients() {
     // t = (0.8, 0.6), n = (−0.6, 0.8), ρA = 2 kg/m, 1 m.
@@ -68,8 +71,8 @@ fn a_flow_presses_on_its_supports() {
     found.ends("effects.csv", &[("drag.rod.fx", x), ("drag.rod.fy", y)], 1e-3);
 }
 
-/// A bar on rollers along x is pulled against a spring: F = k (ℓ − ℓ₀). Would catch another default of ℓ₀ than the stress-free length, one that is ignored, and the
-/// wrong sign of the force.
+/// A bar on rollers along x is pulled against a spring: F = k (ℓ − ℓ₀). Would catch another default
+/// of ℓ₀ than the stress-free length, one that is ignored, and the wrong sign of the force.
 #[test]
 fn springs_pull_by_what_they_are_longer() {
     let bar = "beam.bar = { start = [0, 0], end = [1, 0], axial_stiffness = 1e9, bending_stiffness = 1, basis.ancf.elements = 2 }
@@ -92,7 +95,8 @@ fn springs_pull_by_what_they_are_longer() {
         near(found.last("energy.csv", "stored"), energy, 1e-8, spring);
         near(found.said("/energy/stored"), energy, 1e-8, spring);
     }
-    // Across its line a spring with an anchor does nothing; along it, from (0, −1), it holds with k y.
+    // Across its line a spring with an anchor does nothing; along it, from (0, −1), it holds with k
+    // y.
     let lift = "beam.bar = { start = [0, 0], end = [1, 0], axial_stiffness = 1e9, bending_stiffness = 1e6, basis.ancf.elements = 2 }
         support = [{ beam = 'bar', at = 'start', fix = ['x', 'y'] }]
         effect.force = [{ beam = 'bar', at = 'end', value = [0, 3e-3] }]
@@ -139,10 +143,12 @@ fn dashpots_take_a_velocity_by_their_coefficients() {
     }
 }
 
-/// A couple turns a rod by M t²/2I, and a dashpot brings its turning to rest: every inertia counts with its own factor.
+/// A couple turns a rod by M t²/2I, and a dashpot brings its turning to rest: every inertia counts
+/// with its own factor.
 #[test]
 fn inertias_add_up_in_a_rod_that_turns() {
-    // 2/12 of the rod, 0.05 about the middle's point, 0.03 · 1 m of sections, 2 · 0.1 kg at 0.5 m, in kg m².
+    // 2/12 of the rod, 0.05 about the middle's point, 0.03 · 1 m of sections, 2 · 0.1 kg at 0.5 m,
+    // in kg m².
     let inertia = 2.0 / 12.0 + 0.05 + 0.03 + 2.0 * 0.1 * 0.25;
     let masses = "effect.rotary_inertia = [{ beam = 'rod', per_length = '0.03 kg m' }]
         effect.point_mass = [{ beam = 'rod', at = 0.5, rotary_inertia = '0.05 kg m^2' }, \
@@ -161,9 +167,11 @@ fn inertias_add_up_in_a_rod_that_turns() {
     near(found.last("probes.csv", "middle.angle"), turned, 1e-6, "angle");
 }
 
-/// A light bar under a load that begins at once creeps as exp(−t/η) to its equilibrium, whichever the measure of strain.
+/// A light bar under a load that begins at once creeps as exp(−t/η) to its equilibrium, whichever
+/// the measure of strain.
 ///
-/// Would catch a coefficient that is doubled, of one measure alone or of bending, and strain for curvature.
+/// Would catch a coefficient that is doubled, of one measure alone or of bending, and strain for
+/// curvature.
 #[test]
 fn bars_and_beams_creep_by_their_retardation() {
     for measure in ["green", "engineering"] {
@@ -213,7 +221,8 @@ fn a_foundation_gives_way_along_each_axis_by_its_own_stiffness() {
     found.ends("effects.csv", &expected, 1e-7);
 }
 
-/// What would bend and stretch a beam by itself presses its clamps: N = −EA ε₀ and M = −EI κ₀ where neither is allowed, for both measures of strain.
+/// What would bend and stretch a beam by itself presses its clamps: N = −EA ε₀ and M = −EI κ₀ where
+/// neither is allowed, for both measures of strain.
 #[test]
 fn held_actuation_presses_with_the_opposite_sign() {
     for measure in ["engineering", "green"] {

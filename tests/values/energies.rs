@@ -1,13 +1,17 @@
-//! Energies, section forces and reactions of bars, cantilevers and pendulums that can be written down.
+//! Energies, section forces and reactions of bars, cantilevers and pendulums that can be written
+//! down.
 
 use super::{ROD, SECOND, Written, near};
 
-/// A bar that doubles no small strain: N is the force whatever the measure, and |r'| what follows from it.
+/// A bar that doubles no small strain: N is the force whatever the measure, and |r'| what follows
+/// from it.
 ///
-/// Would catch N as EA ε of Green's strain without the |r'| that goes with it, and the strain of one measure for the other.
+/// Would catch N as EA ε of Green's strain without the |r'| that goes with it, and the strain of
+/// one measure for the other.
 #[test]
 fn a_stretched_bar_carries_its_force_by_either_measure() {
-    // EA = 1000 N. Green's: ½ (g² − 1) g = 0.6 with g = |r'|, by Cardano's formula; engineering: g − 1 = 0.6.
+    // EA = 1000 N. Green's: ½ (g² − 1) g = 0.6 with g = |r'|, by Cardano's formula; engineering: g
+    // − 1 = 0.6.
     let root = (1.2_f64 * 1.2 / 4.0 - 1.0 / 27.0).sqrt();
     let green = (0.6 + root).cbrt() + (0.6 - root).cbrt();
     for (measure, stretch, strain) in
@@ -62,9 +66,11 @@ fn a_stretched_bar_carries_its_force_by_either_measure() {
     }
 }
 
-/// A clamped beam under small loads: N, Q and M by the cut, the deflection by Euler, and what the clamp gives.
+/// A clamped beam under small loads: N, Q and M by the cut, the deflection by Euler, and what the
+/// clamp gives.
 ///
-/// Would catch fx for fy, a moment of the other sense, sections of the other side of the cut, and bending energy for stretching.
+/// Would catch fx for fy, a moment of the other sense, sections of the other side of the cut, and
+/// bending energy for stretching.
 #[test]
 fn a_cantilever_has_the_sections_of_its_cut() {
     let text = "beam.arm = { start = [1, 2], end = [3, 2], axial_stiffness = 1e7, bending_stiffness = 50, basis.ancf.elements = 8 }
@@ -119,7 +125,8 @@ fn a_cantilever_has_the_sections_of_its_cut() {
     near(found.last("effects.csv", "bend.arm.energy"), found.last("energy.csv", "bend"), 1e-15, "bend");
 }
 
-/// A moment in a static analysis has no potential, and the beam is bent to a circle of curvature M/EI.
+/// A moment in a static analysis has no potential, and the beam is bent to a circle of curvature
+/// M/EI.
 #[test]
 fn a_couple_bends_to_a_circle() {
     let text = "beam.arm = { start = [0, 0], end = [2, 0], axial_stiffness = 1e6, bending_stiffness = 10, basis.rpim.nodes = 12 }
@@ -148,9 +155,11 @@ fn a_couple_bends_to_a_circle() {
     }
 }
 
-/// A rod in free fall with a couple: kinetic energy, potential of the weight, work of the couple, each in its column, record by record.
+/// A rod in free fall with a couple: kinetic energy, potential of the weight, work of the couple,
+/// each in its column, record by record.
 ///
-/// Would catch a sign of the potential, work for kinetic or lost energy, a drift that is another, and columns that are swapped.
+/// Would catch a sign of the potential, work for kinetic or lost energy, a drift that is another,
+/// and columns that are swapped.
 #[test]
 fn a_falling_rod_has_its_energies_in_their_columns() {
     let text = format!(
@@ -206,9 +215,11 @@ fn a_falling_rod_has_its_energies_in_their_columns() {
     assert!(found.said("/energy/drift") < 1e-4, "of the integrator alone");
 }
 
-/// A support that lifts a rod along y = 0.2 m (10 t³ − 15 t⁴ + 6 t⁵): its work is the rod's kinetic energy, its force m ÿ at half the rod's length.
+/// A support that lifts a rod along y = 0.2 m (10 t³ − 15 t⁴ + 6 t⁵): its work is the rod's kinetic
+/// energy, its force m ÿ at half the rod's length.
 ///
-/// Would catch work that is lost, a reaction of the other sign or axis, and the load in place of the reaction.
+/// Would catch work that is lost, a reaction of the other sign or axis, and the load in place of
+/// the reaction.
 #[test]
 fn a_lift_puts_in_what_the_rod_has() {
     let text = format!(

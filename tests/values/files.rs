@@ -13,7 +13,8 @@ fn hinged(analysis: &str) -> Written {
     ))
 }
 
-/// Would catch modes that are numbered from 0, frequencies in rad/s, shapes of another mode, and slopes, strains and curvatures that are not of these shapes.
+/// Would catch modes that are numbered from 0, frequencies in rad/s, shapes of another mode, and
+/// slopes, strains and curvatures that are not of these shapes.
 #[test]
 fn modes_of_a_hinged_beam_are_sines_with_their_numbers() {
     let wave = PI / 2.0;
@@ -78,7 +79,8 @@ fn modes_of_a_hinged_beam_are_sines_with_their_numbers() {
     }
 }
 
-/// What `summary.json` says is what the tables end with: would catch any two of its numbers that are swapped, of another record, or of another beam.
+/// What `summary.json` says is what the tables end with: would catch any two of its numbers that
+/// are swapped, of another record, or of another beam.
 #[test]
 fn the_summary_says_what_the_tables_end_with() {
     let moving = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 0.5, mass_per_length = 1, basis.ancf.elements = 4 }

@@ -1,8 +1,10 @@
-//! Values of what is read and written: each key of a scene and each column of a file against closed forms and hand calculation.
+//! Values of what is read and written: each key of a scene and each column of a file against closed
+//! forms and hand calculation.
 //!
-//! Expected numbers come from rigid motions, cuts through statically determinate beams, Euler's beams and systems of one degree of freedom, with numbers so
-//! chosen that a swapped axis, a sign, a factor or a neighbouring index gives another result. `keys.toml` and `columns.toml` say which test looks at
-//! what; [`covered`] holds them against the schema and the headers.
+//! Expected numbers come from rigid motions, cuts through statically determinate beams, Euler's
+//! beams and systems of one degree of freedom, with numbers so chosen that a swapped axis, a sign,
+//! a factor or a neighbouring index gives another result. `keys.toml` and `columns.toml` say which
+//! test looks at what; [`covered`] holds them against the schema and the headers.
 
 mod covered;
 mod effects;
@@ -102,7 +104,8 @@ pub(crate) fn near(found: f64, expected: f64, tolerance: f64, what: &str) {
     assert!((found - expected).abs() <= tolerance, "{what}: {found}, not {expected}");
 }
 
-/// A beam without supports from (0, 0) to (1, 0), 2 kg, so stiff that it moves as a rigid body under the loads of these tests.
+/// A beam without supports from (0, 0) to (1, 0), 2 kg, so stiff that it moves as a rigid body
+/// under the loads of these tests.
 pub(crate) const ROD: &str = "beam.rod = { start = [0, 0], end = [1, 0], axial_stiffness = 1e6, \
     bending_stiffness = 1e4, mass_per_length = 2, basis.ancf.elements = 2 }
     probe = [{ name = 'start', beam = 'rod', at = 'start' }, { name = 'middle', beam = 'rod', at = 0.5 }, \

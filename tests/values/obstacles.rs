@@ -1,8 +1,10 @@
-//! Contacts: where a falling rod touches first, and how deep a resting one sinks, by geometry and balance.
+//! Contacts: where a falling rod touches first, and how deep a resting one sinks, by geometry and
+//! balance.
 
 use super::{Written, near};
 
-/// A horizontal rod 40 cm long falls from the height `height`, its start at `x`: when it touches `obstacle`, from which y follows.
+/// A horizontal rod 40 cm long falls from the height `height`, its start at `x`: when it touches
+/// `obstacle`, from which y follows.
 fn lands([x, height]: [f64; 2], obstacle: &str) -> f64 {
     let text = format!(
         "beam.rod = {{ start = [{x:?}, {height:?}], end = [{:?}, {height:?}], axial_stiffness = 1e5, bending_stiffness = 1e3, \
@@ -24,15 +26,17 @@ fn lands([x, height]: [f64; 2], obstacle: &str) -> f64 {
     height - 5.0 * time * time
 }
 
-/// Would catch sides of a box that are halved, doubled or swapped, an angle of the other sense, half a thickness that is the whole or a quarter, a hole that
-/// is a disc, and a normal or a point that is another.
+/// Would catch sides of a box that are halved, doubled or swapped, an angle of the other sense,
+/// half a thickness that is the whole or a quarter, a hole that is a disc, and a normal or a point
+/// that is another.
 #[test]
 fn a_falling_rod_touches_where_the_surface_is() {
     let (sine, cosine) = 20.0_f64.to_radians().sin_cos();
     for (start, obstacle, height) in [
         ([0.3, 1.0], "box = { center = [0.5, 0.1], size = ['3 m', '40 cm'] }, half_thickness = '5 cm'", 0.35),
         ([0.3, 1.0], "box = { center = [0.5, 0.1], size = [3, 0.4] }", 0.3),
-        // Turned by 20°, its upper side rises to the right: the rod's end at x = 0.7 is the first to touch.
+        // Turned by 20°, its upper side rises to the right: the rod's end at x = 0.7 is the first
+        // to touch.
         (
             [0.3, 1.2],
             "box = { center = [0, 0], size = [3, 0.4], angle = '20 deg' }, half_thickness = 0.05",
@@ -61,9 +65,11 @@ fn a_falling_rod_touches_where_the_surface_is() {
     }
 }
 
-/// A stiff rod under an even load sinks into the ground by q/k, and is dragged along it by what the springs of friction give way: q_x/k_t.
+/// A stiff rod under an even load sinks into the ground by q/k, and is dragged along it by what the
+/// springs of friction give way: q_x/k_t.
 ///
-/// Would catch a stiffness that is doubled, and a default of the friction's stiffness other than that of the contact.
+/// Would catch a stiffness that is doubled, and a default of the friction's stiffness other than
+/// that of the contact.
 #[test]
 fn a_resting_rod_sinks_and_slips_by_load_over_stiffness() {
     for (friction, slip) in [
@@ -93,7 +99,8 @@ fn a_resting_rod_sinks_and_slips_by_load_over_stiffness() {
     }
 }
 
-/// A rod that bounces off the ground as it came: would catch impulses along another axis or of another sign, forces and times that are another.
+/// A rod that bounces off the ground as it came: would catch impulses along another axis or of
+/// another sign, forces and times that are another.
 #[test]
 fn a_bounce_gives_twice_the_momentum() {
     let rod = "beam.rod = { start = [0, 0.2], end = [0.4, 0.2], axial_stiffness = 1e5, bending_stiffness = 1e3, mass_per_length = 5, \

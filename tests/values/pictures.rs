@@ -2,7 +2,8 @@
 
 use super::{Written, near};
 
-/// A chart of `svg`: polylines by colour in the units of its axes, by the texts and places of their ticks.
+/// A chart of `svg`: polylines by colour in the units of its axes, by the texts and places of their
+/// ticks.
 struct Drawn {
     x: [f64; 2],
     y: [f64; 2],
@@ -100,7 +101,8 @@ fn follows(drawn: &[[f64; 2]], x: &[f64], y: &[f64], what: &str) {
 
 const BLUE: &str = "#0072B2";
 
-/// A beam that a force bends and pulls, so that curvature falls and strain rises along it. Would catch one quantity that is drawn for another, and axes with other numbers.
+/// A beam that a force bends and pulls, so that curvature falls and strain rises along it. Would
+/// catch one quantity that is drawn for another, and axes with other numbers.
 #[test]
 fn plots_along_a_beam_draw_the_columns_of_the_table() {
     let text = "beam.arm = { start = [0, 0], end = [2, 0], axial_stiffness = 300, bending_stiffness = 2, basis.ancf.elements = 16 }
@@ -117,7 +119,8 @@ fn plots_along_a_beam_draw_the_columns_of_the_table() {
     }
 }
 
-/// Would catch x for y, a velocity for a place, degrees for radians, and the work that is drawn as what is lost.
+/// Would catch x for y, a velocity for a place, degrees for radians, and the work that is drawn as
+/// what is lost.
 #[test]
 fn plots_over_time_draw_the_columns_of_the_tables() {
     let text = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 50, mass_per_length = 1, basis.ancf.elements = 2 }
@@ -155,8 +158,8 @@ fn plots_over_time_draw_the_columns_of_the_tables() {
     }
 }
 
-/// The data of the moving picture: whole cells from an origin, frame by frame the places of `states.csv`. Would catch another origin, another cell, times by number, and x
-/// for y.
+/// The data of the moving picture: whole cells from an origin, frame by frame the places of
+/// `states.csv`. Would catch another origin, another cell, times by number, and x for y.
 #[test]
 fn the_moving_picture_shows_the_states_of_the_table() {
     let text = "beam.arm = { start = [3, 1], end = [4, 1.5], axial_stiffness = 1e4, bending_stiffness = 5, mass_per_length = 1, basis.ancf.elements = 4 }

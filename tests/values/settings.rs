@@ -77,7 +77,8 @@ fn discretisations_are_as_the_scene_says() {
     }
 }
 
-/// Every key of an analysis: would catch a tolerance for a step, stages of another method, and the axis of a target.
+/// Every key of an analysis: would catch a tolerance for a step, stages of another method, and the
+/// axis of a target.
 #[test]
 fn analyses_are_as_the_scene_says() {
     let read = |analysis: &str| {
@@ -125,7 +126,8 @@ fn analyses_are_as_the_scene_says() {
     }
 }
 
-/// A bar whose place follows its load: a path ends where it is told to, with steps no longer than allowed.
+/// A bar whose place follows its load: a path ends where it is told to, with steps no longer than
+/// allowed.
 #[test]
 fn paths_end_where_they_are_told_to() {
     let path = |until: &str| {
@@ -183,7 +185,8 @@ fn beams_lie_where_their_geometry_says() {
     }
 }
 
-/// E A, E I and ρ A from their parts: a bar of steel, whose extension, deflection and weight are known.
+/// E A, E I and ρ A from their parts: a bar of steel, whose extension, deflection and weight are
+/// known.
 #[test]
 fn sections_are_products_of_their_parts() {
     let text = "beam.bar = { start = [0, 0], end = [2, 0], youngs_modulus = '200 GPa', area = '3 cm^2', second_moment = '5 cm^4', \

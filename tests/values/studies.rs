@@ -16,7 +16,8 @@ probe = [{ name = 'end', beam = 'bar', at = 'end' }]
 analysis.static = {}
 ";
 
-/// Would catch values of a range that are rounded, a logarithmic range that is even, results in another run's row, and columns with another's results.
+/// Would catch values of a range that are rounded, a logarithmic range that is even, results in
+/// another run's row, and columns with another's results.
 #[test]
 fn a_sweep_runs_what_its_range_says() {
     let folder = folder(BAR);
@@ -72,10 +73,13 @@ fn a_sweep_runs_what_its_range_says() {
     assert!(compared > 15, "{compared} of {names:?}");
 }
 
-/// Cubic elements under an even load are exact at their nodes, and in between miss by a bubble, q h⁴/384 EI in the middle. Their curvature is the straight line that is
-/// nearest to the parabola q t²/2 EI, so that its root mean square error is q h²/2 EI √180, and their energy misses (h/L)⁴/36.
+/// Cubic elements under an even load are exact at their nodes, and in between miss by a bubble, q
+/// h⁴/384 EI in the middle. Their curvature is the straight line that is nearest to the parabola q
+/// t²/2 EI, so that its root mean square error is q h²/2 EI √180, and their energy misses
+/// (h/L)⁴/36.
 ///
-/// Would catch an error of the curvature without its root, one in metres and not in lengths, a relative error that is none, and counts of another setting.
+/// Would catch an error of the curvature without its root, one in metres and not in lengths, a
+/// relative error that is none, and counts of another setting.
 #[test]
 fn what_a_setting_errs_by_is_known_by_hand() {
     // q L³/EI = 0.01, L = 2 m, two elements; the probe is in the middle of the first one.

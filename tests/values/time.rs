@@ -1,4 +1,5 @@
-//! Laws of time and what follows them: a free rod of mass m under m a f(t) has the velocity a ∫ f dt and the place a ∬ f dt dt.
+//! Laws of time and what follows them: a free rod of mass m under m a f(t) has the velocity a ∫ f
+//! dt and the place a ∬ f dt dt.
 
 use super::{ROD, SECOND, Written, near};
 use std::f64::consts::{FRAC_PI_6, PI, TAU};
@@ -24,13 +25,15 @@ fn laws() -> [(&'static str, [f64; 2]); 9] {
         ("polynomial = [1, -2, 3]", [1.0, 0.5 - 1.0 / 3.0 + 0.25]),
         // Straight: 0.2 + 0.3 · 2 + 0.3 · 1 − 0.2.
         ("table = { times = [0.2, 0.5, 0.8], values = [1, 3, -1] }", [0.9, 0.67]),
-        // The natural spline has the second derivatives 0, −100, 0 there, and so 2 · 0.3³ · 100/24 more below it.
+        // The natural spline has the second derivatives 0, −100, 0 there, and so 2 · 0.3³ · 100/24
+        // more below it.
         ("table = { times = [0.2, 0.5, 0.8], values = [1, 3, -1], smooth = true }", [1.125, 0.7825]),
     ]
 }
 
-/// Would catch a start that is ignored, a frequency without 2π, a phase of the other sign or in degrees, coefficients in reverse, a smooth table for a straight
-/// one, and components of the load that are swapped.
+/// Would catch a start that is ignored, a frequency without 2π, a phase of the other sign or in
+/// degrees, coefficients in reverse, a smooth table for a straight one, and components of the load
+/// that are swapped.
 #[test]
 fn a_free_rod_integrates_every_law_twice() {
     for (law, [velocity, place]) in laws() {
@@ -47,12 +50,14 @@ fn a_free_rod_integrates_every_law_twice() {
     }
 }
 
-/// Every load that may follow a law follows it: would catch one that acts in full, or whose law is dropped on the way.
+/// Every load that may follow a law follows it: would catch one that acts in full, or whose law is
+/// dropped on the way.
 #[test]
 fn every_load_follows_its_law() {
     let law = "in_time.ramp = { start = 0.2, duration = 0.5 }";
     let place = 0.25 / 6.0 + 0.25 * 0.3 + 0.045;
-    // A force in the middle, a couple (moment of inertia 2/12), weight of the rod, lift of the fluid for a third of it.
+    // A force in the middle, a couple (moment of inertia 2/12), weight of the rod, lift of the
+    // fluid for a third of it.
     for (acts, name, expected) in [
         (
             format!("effect.force = [{{ beam = 'rod', at = 0.5, value = [0.1, 0.3], {law} }}]\n"),
@@ -102,7 +107,8 @@ fn actuation_follows_its_law() {
     found.ends("probes.csv", &expected, 1e-4);
 }
 
-/// A clamp that moves: would catch x for y, an angle without its law, and a spin-up of another duration or speed.
+/// A clamp that moves: would catch x for y, an angle without its law, and a spin-up of another
+/// duration or speed.
 #[test]
 fn supports_go_where_their_laws_say() {
     let clamp = |at: &str| {
@@ -152,7 +158,8 @@ fn prescribed_displacements_are_full_at_full_load() {
     }
 }
 
-/// A force that crosses a free rod within half a second pushes its centre by F/m, and turns it by −F/I/48 s² to the side where it came on first.
+/// A force that crosses a free rod within half a second pushes its centre by F/m, and turns it by
+/// −F/I/48 s² to the side where it came on first.
 #[test]
 fn a_moving_force_acts_while_it_is_on_the_rod() {
     // F = 0.02 N on 2 kg with the moment of inertia 2/12.
@@ -174,8 +181,9 @@ fn a_moving_force_acts_while_it_is_on_the_rod() {
     }
 }
 
-/// Velocities at the start: a rigid motion about a point, a polynomial and a table along the rod; would catch the other sense of rotation, a centre that is
-/// forgotten, coefficients in reverse, and vx for vy.
+/// Velocities at the start: a rigid motion about a point, a polynomial and a table along the rod;
+/// would catch the other sense of rotation, a centre that is forgotten, coefficients in reverse,
+/// and vx for vy.
 #[test]
 fn velocities_at_the_start_are_those_of_the_scene() {
     let first = |velocity: &str| {
@@ -202,7 +210,8 @@ fn velocities_at_the_start_are_those_of_the_scene() {
     }
 }
 
-/// A rod thrown up crosses a height twice, and a line across its way once: when, where, and from which side.
+/// A rod thrown up crosses a height twice, and a line across its way once: when, where, and from
+/// which side.
 #[test]
 fn events_are_when_and_where_the_rod_crosses() {
     let thrown = |event: &str| {
@@ -237,7 +246,8 @@ fn events_are_when_and_where_the_rod_crosses() {
     }
 }
 
-/// The sense of angles: a rod that turns counter-clockwise has a growing angle, over more than one turn.
+/// The sense of angles: a rod that turns counter-clockwise has a growing angle, over more than one
+/// turn.
 #[test]
 fn angles_count_turns_counter_clockwise() {
     let text = format!(

@@ -1,4 +1,5 @@
-//! Units: each name and each prefix that a scene may use, by the definitions of the SI and of the international yard and pound.
+//! Units: each name and each prefix that a scene may use, by the definitions of the SI and of the
+//! international yard and pound.
 
 use ancf::scene::parse;
 
@@ -48,8 +49,8 @@ fn prefixes_are_powers_of_ten() {
     }
 }
 
-/// Each unit's name in a product that is a bending stiffness \[N m²\], with its definition: would catch any factor or power that is another, and a name
-/// of the list that is not tried.
+/// Each unit's name in a product that is a bending stiffness \[N m²\], with its definition: would
+/// catch any factor or power that is another, and a name of the list that is not tried.
 #[test]
 fn units_have_their_defined_factors() {
     let (inch, foot, pound, gravity) = (0.0254, 0.3048, 0.453_592_37, 9.806_65);

@@ -1,4 +1,5 @@
-//! The files for ParaView as VTK itself reads them, against the tables of the same run and against geometry.
+//! The files for ParaView as VTK itself reads them, against the tables of the same run and against
+//! geometry.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -55,10 +56,11 @@ fn column(folder: &Path, file: &str, name: &str) -> Vec<f64> {
     reader.records().map(|row| row.expect("a row")[at].parse().expect("a number")).collect()
 }
 
-/// Two beams of other lengths, places and directions, hinged to each other, fall. VTK reads them where `states.csv` and `shape.csv` have them, with displacements from where the
-/// scene puts them.
+/// Two beams of other lengths, places and directions, hinged to each other, fall. VTK reads them
+/// where `states.csv` and `shape.csv` have them, with displacements from where the scene puts them.
 ///
-/// Would catch x for y, offsets, connectivity or types of cells that are another, times by number, and fields under another's name.
+/// Would catch x for y, offsets, connectivity or types of cells that are another, times by number,
+/// and fields under another's name.
 #[test]
 fn vtk_reads_what_the_tables_say() {
     let trajectory = "[beam.arm]\nstart = [1, 2]\nend = [2, 2]\naxial_stiffness = 1e4\nbending_stiffness = 1.0\nmass_per_length = 1.0\n\
