@@ -122,6 +122,8 @@ fn paths(value: &serde_json::Value, path: &str, into: &mut BTreeSet<String>) {
         serde_json::Value::Array(entries) if entries.iter().any(serde_json::Value::is_object) => {
             entries.iter().for_each(|value| paths(value, path, into));
         }
+        // What a kind of analysis has none of.
+        serde_json::Value::Null => {}
         _ => {
             into.insert(path.replace("probes.end.", "probes."));
         }

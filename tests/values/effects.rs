@@ -136,10 +136,10 @@ fn dashpots_take_a_velocity_by_their_coefficients() {
         let [vx, vy] = [0.3 * f64::exp(-rate[0]), 0.4 * f64::exp(-rate[1])];
         let [x, y] = [(0.3, rate[0]), (0.4, rate[1])]
             .map(|(v, rate)| if rate == 0.0 { v } else { v * (1.0 - f64::exp(-rate)) / rate });
-        let expected = [("middle.vx", vx), ("middle.vy", vy), ("middle.x", 0.5 + x), ("middle.y", y)];
-        // Begun so suddenly it vibrates along itself by some 1e-5 m/s.
-        found.ends("probes.csv", &expected, 5e-5);
-        found.ends("energy.csv", &[("lost", 0.25 - vx * vx - vy * vy)], 5e-5);
+        found.ends("probes.csv", &[("middle.x", 0.5 + x), ("middle.y", y)], 1e-5);
+        // Braked so suddenly it vibrates a little.
+        found.ends("probes.csv", &[("middle.vx", vx), ("middle.vy", vy)], 5e-4);
+        found.ends("energy.csv", &[("lost", 0.25 - vx * vx - vy * vy)], 1e-5);
     }
 }
 
