@@ -1,0 +1,146 @@
+//! `ancf-mutants`: do the tests catch faults that are put into the sources? Writes `verification/mutants.toml`.
+
+#![forbid(unsafe_code)]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::process::ExitCode;
+
+use ancf_mutants::build::{self, Built, Program};
+use ancf_mutants::copy::{Workshop, sources, spliced};
+use ancf_mutants::find::{Mutant, find};
+use ancf_mutants::reasons::without_place;
+use ancf_mutants::record::{Record, head};
+use ancf_mutants::sample::parts;
+use ancf_mutants::trial::{self, Outcome};
+use ancf_mutants::Failure;
+use clap::Parser;
+
+/// So many more are put in than are wanted, for some do not compile.
+const SPARE: f64 = 1.6;
+
+/// Put small faults into the sources of ancf, one at a time, and see whether a test fails
+#[derive(Parser)]
+#[command(version, about)]
+struct Arguments {
+    /// How many mutants that compile to try, spread over all sources
+    #[arg(long, default_value_t = 300)]
+    sample: usize,
+    /// At least so many in each folder of src, if there are any
+    #[arg(long, default_value_t = 15)]
+    least: usize,
+    /// Another sample for another number
+    #[arg(long, default_value_t = 1)]
+    seed: u32,
+    /// Try the survivors of the record again, and record nothing
+    #[arg(long, conflicts_with_all = ["sample", "least", "seed", "only"])]
+    again: bool,
+    /// Try those only whose names hold one of these texts, and record nothing
+    #[arg(long, value_name = "TEXT")]
+    only: Vec<String>,
+    /// Print all mutants that there are
+    #[arg(long)]
+    list: bool,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether all were caught.
+fn run(arguments: &Arguments) -> Result<bool, Failure> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize()?;
+    let sources = sources(&root)?;
+    let mut all: Vec<Mutant> = Vec::new();
+    for (file, text) in &sources {
+        all.extend(find(file, text)?);
+    }
+    if arguments.list {
+        all.iter().for_each(|mutant| println!("{}", mutant.name()));
+        return Ok(true);
+    }
+    let path = Record::path(&root);
+    let before = Record::read(&path)?.map_or_else(Vec::new, |record| record.survivor);
+    let survivors: BTreeSet<String> = before.iter().map(|s| without_place(&s.mutant)).collect();
+    // Folder by folder: how many are wanted of which candidates.
+    let wanted: Vec<(usize, Vec<usize>)> = if arguments.again || !arguments.only.is_empty() {
+        let meant = |mutant: &Mutant| {
+            let name = mutant.name();
+            (arguments.again && survivors.contains(&without_place(&name)))
+                || arguments.only.iter().any(|text| name.contains(text))
+        };
+        vec![(all.len(), (0..all.len()).filter(|&i| meant(&all[i])).collect())]
+    } else {
+        let candidates = |wanted: usize| (SPARE * wanted as f64).ceil() as usize + 2;
+        parts(&all, arguments.sample, arguments.least, arguments.seed)
+            .into_values()
+            .map(|part| (part.wanted, part.order.into_iter().take(candidates(part.wanted)).collect()))
+            .collect()
+    };
+    let workshop = Workshop::new(&root)?;
+    let commit = head(&root)?;
+    let mut inside: BTreeSet<usize> = wanted.iter().flat_map(|(_, order)| order).copied().collect();
+    eprintln!("{} mutants, {} of them put into {}", all.len(), inside.len(), workshop.copy.display());
+    let (programs, fingerprint) = viable(&workshop, &sources, &all, &mut inside)?;
+    let mut chosen: Vec<(f64, usize)> = Vec::new();
+    let mut unviable: BTreeSet<usize> = BTreeSet::new();
+    for (number, order) in &wanted {
+        let own: Vec<usize> = order.iter().copied().filter(|i| inside.contains(i)).take(*number).collect();
+        // Those beyond the last that is tried were not needed.
+        let all_of_them = own.len() < *number;
+        let needed = |i: &&usize| all_of_them || own.last() != Some(i);
+        unviable.extend(order.iter().take_while(needed).filter(|i| !inside.contains(i)));
+        let turn = |k: usize| k as f64 / own.len() as f64;
+        chosen.extend(own.iter().enumerate().map(|(k, &i)| (turn(k), i)));
+    }
+    // All folders side by side, so that what is known after a part of the time is of all.
+    chosen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let chosen: Vec<(usize, String)> = chosen.into_iter().map(|(_, i)| (i, all[i].name())).collect();
+    eprintln!("{} mutants to try, {} do not compile", chosen.len(), unviable.len());
+    let tests = trial::tests(&workshop, &programs, fingerprint)?;
+    let outcomes = trial::outcomes(&workshop, &tests, &chosen, fingerprint)?;
+    let chosen: BTreeSet<usize> = chosen.into_iter().map(|(i, _)| i).collect();
+    let outcomes: BTreeMap<usize, Outcome> =
+        outcomes.into_iter().filter(|(i, _)| chosen.contains(i)).collect();
+    let mut record = Record::of(&all, &unviable, &outcomes, &before);
+    if !arguments.again && arguments.only.is_empty() {
+        record.date = jiff::Timestamp::now().strftime("%F").to_string();
+        record.commit = commit;
+        let (sample, least, seed) = (arguments.sample, arguments.least, arguments.seed);
+        record.command = format!(".ci/mutants --sample {sample} --least {least} --seed {seed}");
+        record.store(&path, &before)?;
+    }
+    Ok(record.total.missed == 0)
+}
+
+/// Builds the copy, leaving out mutants that do not compile until all others do.
+fn viable(
+    workshop: &Workshop,
+    sources: &[(String, String)],
+    all: &[Mutant],
+    inside: &mut BTreeSet<usize>,
+) -> Result<(Vec<Program>, u64), Failure> {
+    let mut checked = false;
+    loop {
+        let mutants: Vec<(usize, &Mutant)> = inside.iter().map(|&i| (i, &all[i])).collect();
+        let files = spliced(sources, &mutants);
+        let fingerprint = workshop.fill(&files, all.len())?;
+        let built =
+            if checked { build::tests(workshop, &files)? } else { build::check(workshop, &files)? };
+        match built {
+            Built::Programs(programs) if checked => return Ok((programs, fingerprint)),
+            Built::Programs(_) => checked = true,
+            Built::Unviable(unviable) => {
+                eprintln!("{} do not compile, and are left out", unviable.len());
+                inside.retain(|i| !unviable.contains(i));
+            }
+        }
+    }
+}

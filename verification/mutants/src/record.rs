@@ -1,0 +1,193 @@
+//! `verification/mutants.toml`: what was tried, and a reason for every survivor.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+use crate::Failure;
+use crate::find::Mutant;
+use crate::reasons::{Survivor, UNEXPLAINED, explain, without_place};
+use crate::trial::Outcome;
+
+/// The file.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Record {
+    /// Day of the run.
+    pub date: String,
+    /// The sources.
+    pub commit: String,
+    /// What repeats it.
+    pub command: String,
+    /// Over all folders.
+    pub total: Counts,
+    /// By source folder.
+    pub folder: IndexMap<String, Counts>,
+    /// Missed mutants in the order of the sources.
+    #[serde(default)]
+    pub survivor: Vec<Survivor>,
+}
+
+/// Numbers of mutants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Counts {
+    /// There are.
+    pub exist: usize,
+    /// Tried: all that follow.
+    pub tried: usize,
+    /// A test failed.
+    pub caught: usize,
+    /// The tests did not come to their end.
+    pub timed_out: usize,
+    /// Did not compile.
+    pub unviable: usize,
+    /// All tests passed.
+    pub missed: usize,
+}
+
+impl Counts {
+    /// Tried and compiled.
+    pub fn viable(&self) -> usize {
+        self.tried - self.unviable.min(self.tried)
+    }
+
+    /// Part of the viable mutants that was caught, those timed out among them. None where none was viable.
+    pub fn score(&self) -> Option<f64> {
+        (self.viable() > 0).then(|| (self.caught + self.timed_out) as f64 / self.viable() as f64)
+    }
+}
+
+impl Record {
+    /// Where the record of a repository lies.
+    pub fn path(root: &Path) -> PathBuf {
+        root.join("verification").join("mutants.toml")
+    }
+
+    /// Reads it; none where there is no such file.
+    pub fn read(path: &Path) -> Result<Option<Self>, Failure> {
+        match std::fs::read_to_string(path) {
+            Ok(text) => Ok(Some(toml::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))?)),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(format!("{}: {error}", path.display()).into()),
+        }
+    }
+
+    /// Counts what came of some of all mutants, and keeps the reasons of an earlier record.
+    pub fn of(
+        all: &[Mutant],
+        unviable: &BTreeSet<usize>,
+        outcomes: &BTreeMap<usize, Outcome>,
+        reasons: &[Survivor],
+    ) -> Self {
+        let (mut total, mut folder) = (Counts::default(), IndexMap::<String, Counts>::new());
+        let mut missed = Vec::new();
+        for (number, mutant) in all.iter().enumerate() {
+            let outcome = outcomes.get(&number);
+            for counts in [folder.entry(mutant.folder()).or_default(), &mut total] {
+                counts.exist += 1;
+                counts.tried += usize::from(outcome.is_some() || unviable.contains(&number));
+                counts.unviable += usize::from(unviable.contains(&number));
+                match outcome {
+                    Some(Outcome::Caught(_)) => counts.caught += 1,
+                    Some(Outcome::TimedOut(_)) => counts.timed_out += 1,
+                    Some(Outcome::Missed(_)) => counts.missed += 1,
+                    None => {}
+                }
+            }
+            if let Some(Outcome::Missed(_)) = outcome {
+                missed.push(mutant.name());
+            }
+        }
+        folder.sort_unstable_keys();
+        let missed: Vec<&str> = missed.iter().map(String::as_str).collect();
+        let (date, commit, command) = Default::default();
+        Self { date, commit, command, total, folder, survivor: explain(&missed, reasons) }
+    }
+
+    /// Writes it, and says what is new of the survivors.
+    pub fn store(&self, path: &Path, before: &[Survivor]) -> Result<(), Failure> {
+        let header = "# Written by `ancf-mutants`; only the reasons are to be edited.\n";
+        std::fs::write(path, header.to_owned() + &toml::to_string(self)?)
+            .map_err(|e| format!("{}: {e}", path.display()))?;
+        let now: Vec<String> = self.survivor.iter().map(|s| without_place(&s.mutant)).collect();
+        for gone in before.iter().filter(|s| s.explained() && !now.contains(&without_place(&s.mutant))) {
+            eprintln!("no longer missed, or not tried: {} ({})", gone.mutant, gone.reason);
+        }
+        for new in self.survivor.iter().filter(|s| !s.explained()) {
+            eprintln!("{UNEXPLAINED}: {}", new.mutant);
+        }
+        for (name, counts) in &self.folder {
+            let part = counts.score().map_or("–".to_owned(), |s| format!("{:.0} %", 100.0 * s));
+            eprintln!("{name}: {part} of {} caught", counts.viable());
+        }
+        let Counts { exist, missed, .. } = self.total;
+        let viable = self.total.viable();
+        eprintln!("{viable} viable of {exist} mutants tried, {missed} missed · {}", path.display());
+        Ok(())
+    }
+}
+
+/// The commit of the sources, and whether they are as committed.
+pub fn head(root: &Path) -> Result<String, Failure> {
+    let git = |arguments: &[&str]| -> Result<String, Failure> {
+        let output = Command::new("git").arg("-C").arg(root).args(arguments).output();
+        let output = output.map_err(|e| format!("git cannot be started: {e}"))?;
+        if !output.status.success() {
+            return Err(String::from_utf8_lossy(&output.stderr).trim().to_owned().into());
+        }
+        Ok(String::from_utf8(output.stdout)?.trim().to_owned())
+    };
+    let commit = git(&["rev-parse", "--short", "HEAD"])?;
+    let changed = git(&["status", "--porcelain", "--", "src", "tests", "verification/check"])?;
+    Ok(if changed.is_empty() { commit } else { format!("{commit} with changes") })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::find::Edit;
+
+    /// Would catch a mutant counted twice, in another folder, or as what it was not.
+    #[test]
+    fn outcomes_are_counted_by_folder_and_reasons_kept() {
+        let edit = Edit::Body { at: 0, value: None };
+        let mutant = |file: &str, line: usize| Mutant {
+            file: file.to_owned(),
+            line,
+            column: 1,
+            change: "leave the body out in f".to_owned(),
+            edit: edit.clone(),
+        };
+        let all = [
+            mutant("src/solve/a.rs", 1),
+            mutant("src/basis/a.rs", 1),
+            mutant("src/basis/a.rs", 2),
+            mutant("src/basis.rs", 1),
+            mutant("src/basis.rs", 9),
+        ];
+        let outcomes = BTreeMap::from([
+            (0, Outcome::TimedOut("t".to_owned())),
+            (1, Outcome::Caught("t".to_owned())),
+            (3, Outcome::Missed(2)),
+        ]);
+        let reason = Survivor {
+            mutant: "src/basis.rs:70:4: leave the body out in f".to_owned(),
+            reason: "Equal either way.".to_owned(),
+        };
+        let record = Record::of(&all, &BTreeSet::from([2]), &outcomes, std::slice::from_ref(&reason));
+        let total = Counts { exist: 5, tried: 4, caught: 1, timed_out: 1, unviable: 1, missed: 1 };
+        assert_eq!((record.total, record.total.score()), (total, Some(2.0 / 3.0)));
+        assert_eq!(record.folder.keys().collect::<Vec<_>>(), ["src/basis", "src/solve"]);
+        let basis = Counts { exist: 4, tried: 3, caught: 1, timed_out: 0, unviable: 1, missed: 1 };
+        assert_eq!(record.folder["src/basis"], basis);
+        let moved = "src/basis.rs:1:1: leave the body out in f".to_owned();
+        assert_eq!(record.survivor, [Survivor { mutant: moved, ..reason }]);
+        // What is written reads back.
+        let text = toml::to_string(&record).expect("serialisable");
+        assert_eq!(toml::from_str::<Record>(&text).expect("the same format"), record);
+    }
+}

@@ -1,0 +1,239 @@
+//! Which tests reach which mutants, and which fail when one is on.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Write};
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+
+use crate::Failure;
+use crate::build::Program;
+use crate::copy::Workshop;
+
+/// A test takes too long beyond its usual time this many times, and this long.
+const TIMES: f64 = 5.0;
+const MORE: Duration = Duration::from_secs(5);
+/// A test without mutant may take so long.
+const LONGEST: Duration = Duration::from_secs(1800);
+/// Address space of a test in KiB, for mutants that never stop to ask for more.
+const MEMORY: u64 = 8_000_000;
+
+/// A test, by itself.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Test {
+    /// Program and name.
+    pub name: String,
+    program: PathBuf,
+    folder: PathBuf,
+    own: String,
+    /// What it takes without mutant.
+    seconds: f64,
+    /// Numbers of the mutants that it asks for.
+    reaches: BTreeSet<usize>,
+    /// Whether it passes without mutant; otherwise it can show nothing.
+    passes: bool,
+}
+
+/// What came of a mutant.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub enum Outcome {
+    /// This test failed.
+    Caught(String),
+    /// This test did not come to its end.
+    TimedOut(String),
+    /// All of so many tests passed; none where nothing reaches it.
+    Missed(usize),
+}
+
+/// All tests with what they reach, known from an earlier run of the same sources or found by running each once.
+pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Result<Vec<Test>, Failure> {
+    let path = workshop.outcomes.join(format!("{fingerprint:016x}-tests.json"));
+    if let Ok(text) = fs::read_to_string(&path) {
+        return Ok(serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))?);
+    }
+    let mut tests = Vec::new();
+    for program in programs {
+        let ignored = list(program, &["--ignored"])?;
+        for own in list(program, &[])?.difference(&ignored) {
+            tests.push(Test {
+                name: format!("{} {own}", program.name),
+                program: program.path.clone(),
+                folder: program.folder.clone(),
+                own: own.clone(),
+                seconds: 0.0,
+                reaches: BTreeSet::new(),
+                passes: false,
+            });
+        }
+    }
+    let number = tests.len();
+    for (i, test) in tests.iter_mut().enumerate() {
+        let reached = workshop.temporary.join("reached");
+        let _ = fs::remove_file(&reached);
+        let start = Instant::now();
+        let end = test.run(workshop, "ANCF_MUTANT_REACHED", reached.as_os_str().as_ref(), LONGEST)?;
+        test.seconds = start.elapsed().as_secs_f64();
+        test.passes = end == End::Passed;
+        test.reaches = numbers(&reached)?;
+        if !test.passes {
+            eprintln!("fails without any mutant, and is left out: {}", test.name);
+        }
+        if (i + 1) % 100 == 0 || i + 1 == number {
+            eprintln!("{} of {number} tests run without mutant", i + 1);
+        }
+    }
+    fs::write(&path, serde_json::to_string(&tests)?)?;
+    Ok(tests)
+}
+
+/// The outcome of each mutant, by number. What is known from an earlier run of the same sources is not tried again.
+pub fn outcomes(
+    workshop: &Workshop,
+    tests: &[Test],
+    mutants: &[(usize, String)],
+    fingerprint: u64,
+) -> Result<BTreeMap<usize, Outcome>, Failure> {
+    let path = workshop.outcomes.join(format!("{fingerprint:016x}.jsonl"));
+    let mut known: BTreeMap<usize, Outcome> = BTreeMap::new();
+    if let Ok(file) = File::open(&path) {
+        for line in BufReader::new(file).lines() {
+            let (number, outcome) = serde_json::from_str(&line?)?;
+            known.insert(number, outcome);
+        }
+    }
+    let mut file = File::options().append(true).create(true).open(&path)?;
+    for (i, (number, name)) in mutants.iter().enumerate() {
+        let start = Instant::now();
+        let outcome = match known.get(number) {
+            Some(outcome) => outcome.clone(),
+            None => {
+                let outcome = attempt(workshop, tests, *number)?;
+                writeln!(file, "{}", serde_json::to_string(&(number, &outcome))?)?;
+                outcome
+            }
+        };
+        let words = match &outcome {
+            Outcome::Caught(test) => format!("caught by {test}"),
+            Outcome::TimedOut(test) => format!("timed out in {test}"),
+            Outcome::Missed(0) => "MISSED, for nothing reaches it".to_owned(),
+            Outcome::Missed(tests) => format!("MISSED by {tests} tests"),
+        };
+        let seconds = start.elapsed().as_secs_f64();
+        eprintln!("{}/{} #{number} {name}: {words} ({seconds:.1} s)", i + 1, mutants.len());
+        known.insert(*number, outcome);
+    }
+    Ok(known)
+}
+
+/// Runs the tests that reach a mutant, the quickest first, until one fails.
+fn attempt(workshop: &Workshop, tests: &[Test], number: usize) -> Result<Outcome, Failure> {
+    let mut reaching: Vec<&Test> = tests.iter().filter(|t| t.passes && t.reaches.contains(&number)).collect();
+    reaching.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    for test in &reaching {
+        let limit = Duration::from_secs_f64(TIMES * test.seconds) + MORE;
+        match test.run(workshop, "ANCF_MUTANT", number.to_string().as_ref(), limit)? {
+            End::Passed => {}
+            End::Failed => return Ok(Outcome::Caught(test.name.clone())),
+            End::TooLong => return Ok(Outcome::TimedOut(test.name.clone())),
+        }
+    }
+    Ok(Outcome::Missed(reaching.len()))
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    Passed,
+    Failed,
+    TooLong,
+}
+
+impl Test {
+    fn run(
+        &self,
+        workshop: &Workshop,
+        key: &str,
+        value: &std::ffi::OsStr,
+        limit: Duration,
+    ) -> Result<End, Failure> {
+        // What a killed test left behind.
+        let own = workshop.temporary.join("test");
+        let _ = fs::remove_dir_all(&own);
+        fs::create_dir_all(&own)?;
+        let child = Command::new("sh")
+            .args(["-c", &format!("ulimit -v {MEMORY}; exec \"$0\" \"$@\"")])
+            .arg(&self.program)
+            .args(["--exact", &self.own])
+            .current_dir(&self.folder)
+            .env("CARGO_MANIFEST_DIR", &self.folder)
+            .env("TMPDIR", &own)
+            .env("INSTA_UPDATE", "no")
+            .env("RUST_BACKTRACE", "0")
+            .env(key, value)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            // Its own group, so that it can be ended with all that it started.
+            .process_group(0)
+            .spawn()
+            .map_err(|e| format!("sh: {e}"))?;
+        wait(child, limit)
+    }
+}
+
+fn wait(mut child: Child, limit: Duration) -> Result<End, Failure> {
+    let start = Instant::now();
+    let mut pause = Duration::from_millis(1);
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(if status.success() { End::Passed } else { End::Failed });
+        }
+        if start.elapsed() > limit {
+            let group = format!("-{}", child.id());
+            Command::new("kill").args(["-KILL", "--", &group]).status()?;
+            child.wait()?;
+            return Ok(End::TooLong);
+        }
+        std::thread::sleep(pause);
+        pause = (pause * 2).min(Duration::from_millis(20));
+    }
+}
+
+fn numbers(path: &Path) -> Result<BTreeSet<usize>, Failure> {
+    let text = fs::read_to_string(path).unwrap_or_default();
+    text.lines().map(|line| Ok(line.parse::<usize>().map_err(|e| format!("{line}: {e}"))?)).collect()
+}
+
+fn list(program: &Program, more: &[&str]) -> Result<BTreeSet<String>, Failure> {
+    let output = Command::new(&program.path)
+        .args(["--list", "--format", "terse"])
+        .args(more)
+        .current_dir(&program.folder)
+        .output()
+        .map_err(|e| format!("{}: {e}", program.path.display()))?;
+    let text = String::from_utf8(output.stdout)?;
+    Ok(text.lines().filter_map(|line| line.strip_suffix(": test")).map(str::to_owned).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn started(line: &str) -> Child {
+        Command::new("sh").args(["-c", line]).process_group(0).spawn().expect("a shell")
+    }
+
+    /// Would catch a failure taken for a success, and a test that is never ended.
+    #[test]
+    fn processes_pass_fail_or_take_too_long() {
+        let long = Duration::from_secs(600);
+        assert_eq!(wait(started("exit 0"), long).expect("an end"), End::Passed);
+        assert_eq!(wait(started("exit 101"), long).expect("an end"), End::Failed);
+        // The child of the shell, too, is ended; otherwise this would wait for it.
+        let child = started("sleep 600 | sleep 600");
+        assert_eq!(wait(child, Duration::from_millis(50)).expect("an end"), End::TooLong);
+    }
+}
