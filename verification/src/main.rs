@@ -7,7 +7,6 @@ mod browser;
 mod cost;
 mod freeze;
 mod instructions;
-mod mutants;
 mod numbers;
 mod report;
 mod scaling;
@@ -88,21 +87,6 @@ enum Command {
         /// The program `ancf`, with symbols
         program: PathBuf,
     },
-    /// Record what cargo-mutants found in verification/mutants.toml, with the reasons already written there
-    Mutants {
-        /// All mutants that there are: what `cargo mutants --list --json` prints
-        #[arg(long, value_name = "JSON")]
-        of: PathBuf,
-        /// What repeats the run
-        #[arg(long, default_value = ".ci/mutants")]
-        command: String,
-        /// The sources that were tried; HEAD if not given
-        #[arg(long)]
-        commit: Option<String>,
-        /// Folders mutants.out, or their files outcomes.json
-        #[arg(required = true)]
-        outcomes: Vec<PathBuf>,
-    },
 }
 
 fn main() -> ExitCode {
@@ -117,9 +101,6 @@ fn main() -> ExitCode {
         Command::Scaling => scaling::print(&suite),
         Command::Instructions { against, program } => {
             instructions::print(&suite, &program, against.as_deref())
-        }
-        Command::Mutants { of, command, commit, outcomes } => {
-            mutants::record(&suite, &of, &outcomes, &command, commit)
         }
     };
     match outcome {

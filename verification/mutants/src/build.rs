@@ -130,7 +130,8 @@ fn cargo(workshop: &Workshop, spliced: &[(String, Spliced)], command: &[&str]) -
         .filter_map(|value| serde_json::from_value::<Line>(value).ok());
     let (mut unviable, mut programs) = (BTreeSet::new(), Vec::new());
     for line in lines {
-        if let Some(message) = line.message.filter(|m| line.reason == "compiler-message" && m.level == "error")
+        if let Some(message) =
+            line.message.filter(|m| line.reason == "compiler-message" && m.level == "error")
         {
             let blamed = message.blame(spliced);
             let said = message.rendered.unwrap_or_default();

@@ -429,7 +429,8 @@ mod tests {
     /// Would catch a kind of fault that is no longer put in.
     #[test]
     fn a_small_source_has_these_mutants() {
-        let text = "fn f(a: f64, v: &[f64]) -> f64 {\n    if a < v[0] { a.min(2.0) - 3.0 * a } else { -a }\n}\n";
+        let text =
+            "fn f(a: f64, v: &[f64]) -> f64 {\n    if a < v[0] { a.min(2.0) - 3.0 * a } else { -a }\n}\n";
         assert_eq!(
             changes(text),
             [

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::ExitCode;
 
+use ancf_mutants::Failure;
 use ancf_mutants::build::{self, Built, Program};
 use ancf_mutants::copy::{Workshop, sources, spliced};
 use ancf_mutants::find::{Mutant, find};
@@ -13,7 +14,6 @@ use ancf_mutants::reasons::without_place;
 use ancf_mutants::record::{Record, head};
 use ancf_mutants::sample::parts;
 use ancf_mutants::trial::{self, Outcome};
-use ancf_mutants::Failure;
 use clap::Parser;
 
 /// So many more are put in than are wanted, for some do not compile.
@@ -132,8 +132,7 @@ fn viable(
         let mutants: Vec<(usize, &Mutant)> = inside.iter().map(|&i| (i, &all[i])).collect();
         let files = spliced(sources, &mutants);
         let fingerprint = workshop.fill(&files, all.len())?;
-        let built =
-            if checked { build::tests(workshop, &files)? } else { build::check(workshop, &files)? };
+        let built = if checked { build::tests(workshop, &files)? } else { build::check(workshop, &files)? };
         match built {
             Built::Programs(programs) if checked => return Ok((programs, fingerprint)),
             Built::Programs(_) => checked = true,

@@ -30,6 +30,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use ancf_check::{Examined, Outcome, Suite, audit, examine};
+use ancf_mutants::record::Record;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
@@ -37,7 +38,6 @@ use self::before::Before;
 pub use self::number::short;
 use self::overview::Made;
 use self::page::{Page, document};
-use crate::mutants::Record;
 use crate::{Failure, chosen};
 
 /// A case as it came out.
@@ -199,7 +199,7 @@ fn pages(
     pages.extend(work::pages(suite, measured)?);
     pages.push(scaling::page(&suite.root.join(crate::scaling::FILE))?);
     pages.push(instructions::page(&suite.root.join(crate::instructions::HISTORY))?);
-    let record = Record::path(suite);
+    let record = Record::path(&suite.root);
     pages.push(mutants::page(Record::read(&record)?.as_ref(), Path::new(&suite.short(&record)))?);
     Ok(pages)
 }
