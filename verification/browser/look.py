@@ -2,9 +2,10 @@
 
     python3 look.py pages.json
 
-`pages.json` is {"screenshots": folder, "pages": [{"name", "kind", "file", …}]}; `kind` is `run`, `cost` or
-`report`. Printed is, as JSON, the browser and for every page its number of pictures, of compared
-numbers and of frames seen, and its problems: an empty list where nothing is wrong.
+`pages.json` is {"screenshots": folder, "pages": [{"name", "kind", "file", …}]}; `kind` is
+`run`, `cost` or `report`. Printed is, as JSON, the browser and for every page its number of
+pictures, of compared numbers and of frames seen, and its problems: an empty list where nothing
+is wrong.
 """
 
 import csv
@@ -24,62 +25,78 @@ COLOURS = [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 15
 # The dots of a canvas, from a copy: one that is read often would be told so on the console.
 DOTS = """
 const dots = (canvas) => {
-  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+  const copy = new OffscreenCanvas(canvas.width, canvas.height)
+    .getContext("2d", { willReadFrequently: true });
   copy.drawImage(canvas, 0, 0);
   return copy.getImageData(0, 0, canvas.width, canvas.height).data;
 };
 """
 
-# Every picture that is shown: its size, and how many marks in colour lie in it. Axes and grids are grey.
+# Every picture that is shown: its size, and how many marks in colour lie in it. Axes and grids
+# are grey.
 PICTURES = DOTS + """
+const spread = ([r, g, b]) => Math.max(r, g, b) - Math.min(r, g, b);
 const shown = (e) => e.checkVisibility() && e.getBoundingClientRect().width > 0;
 const colour = (text) => {
   const n = (text.match(/[\\d.]+/g) || []).map(Number);
-  return text !== "none" && n.length >= 3 && (n.length < 4 || n[3] > 0) && Math.max(...n.slice(0, 3)) - Math.min(...n.slice(0, 3)) > 30;
+  const there = text !== "none" && n.length >= 3 && (n.length < 4 || n[3] > 0);
+  return there && spread(n) > 30;
 };
 return [...document.querySelectorAll("figure")].filter((f) => f.checkVisibility()).map((figure) => {
   const caption = (figure.querySelector("figcaption")?.textContent || "").trim().slice(0, 60);
   const picture = figure.querySelector("svg, canvas");
-  if (!picture) return { caption, kind: "none", width: 0, height: 0, marks: 0, words: figure.textContent };
+  const none = { caption, kind: "none", width: 0, height: 0, marks: 0, words: figure.textContent };
+  if (!picture) return none;
   const box = picture.getBoundingClientRect();
-  const found = { caption, kind: picture.localName, width: box.width, height: box.height, marks: 0, words: picture.textContent };
+  const [kind, words] = [picture.localName, picture.textContent];
+  const found = { caption, kind, width: box.width, height: box.height, marks: 0, words };
   if (picture.localName === "svg") {
-    found.marks = [...picture.querySelectorAll("polyline, path, line, circle, polygon, rect")].filter((mark) => {
+    const marks = picture.querySelectorAll("polyline, path, line, circle, polygon, rect");
+    found.marks = [...marks].filter((mark) => {
       const style = getComputedStyle(mark), at = mark.getBoundingClientRect();
-      return shown(picture) && at.width + at.height > 0.5 && (colour(style.stroke) || colour(style.fill))
+      return shown(picture) && at.width + at.height > 0.5
+        && (colour(style.stroke) || colour(style.fill))
         && at.right > box.left && at.left < box.right && at.bottom > box.top && at.top < box.bottom;
     }).length;
   } else {
     const all = dots(picture);
     for (let i = 0; i < all.length; i += 4)
-      if (all[i + 3] > 100 && Math.max(all[i], all[i + 1], all[i + 2]) - Math.min(all[i], all[i + 1], all[i + 2]) > 30) found.marks++;
+      if (all[i + 3] > 100 && spread(all.subarray(i, i + 3)) > 30) found.marks++;
   }
   return found;
 });
 """
 
 TABLES = """
-return [...document.querySelectorAll(arguments[0])].filter((t) => t.checkVisibility()).map((table) => ({
+const tables = [...document.querySelectorAll(arguments[0])].filter((t) => t.checkVisibility());
+return tables.map((table) => ({
   caption: table.caption ? table.caption.textContent : "", grid: table.classList.contains("grid"),
   rows: [...table.rows].map((row) => [...row.cells].map((cell) => cell.innerText.trim())),
 }));
 """
 
-# What the player shows: words, and a number for the picture (FNV-1a) with the box of the beams' colours.
+# What the player shows: words, and a number for the picture (FNV-1a) with the box of the beams'
+# colours.
 PLAYER = DOTS + """
-const [colours] = arguments, player = document.getElementById("player"), canvas = player.querySelector("canvas");
+const [colours] = arguments, player = document.getElementById("player");
+const [canvas, slider, output, button] =
+  ["canvas", "input", "output", "button"].map((name) => player.querySelector(name));
 const all = dots(canvas);
 let hash = 2166136261, low = [1e9, 1e9], high = [-1e9, -1e9];
 for (let i = 0; i < all.length; i += 4) {
-  hash = Math.imul(hash ^ (all[i] | all[i + 1] << 8 | all[i + 2] << 16 | all[i + 3] << 24), 16777619);
-  const of = (c) => Math.abs(all[i] - c[0]) + Math.abs(all[i + 1] - c[1]) + Math.abs(all[i + 2] - c[2]) < 24;
+  const dot = all[i] | all[i + 1] << 8 | all[i + 2] << 16 | all[i + 3] << 24;
+  hash = Math.imul(hash ^ dot, 16777619);
+  const of = (c) => [0, 1, 2].reduce((sum, k) => sum + Math.abs(all[i + k] - c[k]), 0) < 24;
   if (all[i + 3] > 250 && colours.some(of)) {
     const at = [(i / 4) % canvas.width, Math.floor(i / 4 / canvas.width)];
-    for (const k of [0, 1]) { low[k] = Math.min(low[k], at[k]); high[k] = Math.max(high[k], at[k]); }
+    for (const k of [0, 1]) {
+      low[k] = Math.min(low[k], at[k]);
+      high[k] = Math.max(high[k], at[k]);
+    }
   }
 }
-return { hash, low, high, frame: Number(player.querySelector("input").value), last: Number(player.querySelector("input").max),
-  words: player.querySelector("output").textContent, button: player.querySelector("button").textContent };
+return { hash, low, high, frame: Number(slider.value), last: Number(slider.max),
+  words: output.textContent, button: button.textContent };
 """
 
 SLIDE = """
@@ -142,7 +159,9 @@ class Look:
         for message in self.browser.messages():
             self.wrong(f"console: {message}")
         names = ["name", "problems", "pictures", "numbers", "frames"]
-        return dict(zip(names, [self.page["name"], self.problems, self.pictures, self.numbers, self.frames]))
+        return dict(
+            zip(names, [self.page["name"], self.problems, self.pictures, self.numbers, self.frames])
+        )
 
     def fits(self, where):
         """Nothing is wider than the window."""
@@ -153,7 +172,8 @@ class Look:
                 self.wrong(f"layout: {where} is {wide} wide in a window of {width}")
         # In a wide window no column of a table is out of sight.
         hidden = self.browser.run(
-            "return [...document.querySelectorAll('.scroll')].filter((e) => e.scrollWidth > e.clientWidth + 1).length"
+            "return [...document.querySelectorAll('.scroll')]"
+            ".filter((e) => e.scrollWidth > e.clientWidth + 1).length"
         )
         if hidden:
             self.wrong(f"layout: {where} has a table wider than its place")
@@ -179,10 +199,14 @@ class Look:
         self.drawn("the page", len(list(self.file.parent.glob("*.svg"))))
         self.fits("the page")
         self.browser.picture(self.screenshot.with_suffix(".png"))
-        measured = sorted(table(self.file.parent / "cost.csv"), key=lambda row: float(row["seconds"]))
+        measured = sorted(
+            table(self.file.parent / "cost.csv"), key=lambda row: float(row["seconds"])
+        )
         [shown] = self.browser.run(TABLES, "table.numbers")
         if len(shown["rows"]) - 1 != len(measured):
-            self.wrong(f"number: {len(shown['rows']) - 1} settings are shown, cost.csv has {len(measured)}")
+            self.wrong(
+                f"number: {len(shown['rows']) - 1} settings are shown, cost.csv has {len(measured)}"
+            )
         for cells, row in zip(shown["rows"][1:], measured):
             if cells[:3] != [row["discretization"], row["cells"], row["solver"]]:
                 self.wrong(f"number: {cells[:3]} stands where cost.csv has {row}")
@@ -200,14 +224,19 @@ class Look:
 
     def report(self):
         """The verification report: one page at a time, all cases."""
-        cases = {c["name"]: c for c in json.loads(pathlib.Path(self.page["json"]).read_text())["cases"]}
-        pages = self.browser.run("return [...document.querySelectorAll('section.page')].map((s) => s.id)")
+        cases = {
+            c["name"]: c for c in json.loads(pathlib.Path(self.page["json"]).read_text())["cases"]
+        }
+        pages = self.browser.run(
+            "return [...document.querySelectorAll('section.page')].map((s) => s.id)"
+        )
         if missing := set(cases) - set(pages):
             self.wrong(f"page: there is none for {sorted(missing)}")
         for page in pages:
             self.browser.run("location.hash = '#' + arguments[0]", page)
             shown = self.browser.run(
-                "return [...document.querySelectorAll('section.page')].filter((s) => s.checkVisibility()).map((s) => s.id)"
+                "return [...document.querySelectorAll('section.page')]"
+                ".filter((s) => s.checkVisibility()).map((s) => s.id)"
             )
             if shown != [page]:
                 self.wrong(f"page: #{page} shows {shown}")
@@ -216,21 +245,32 @@ class Look:
             if page in cases:
                 self.outcomes(cases[page])
             if page in self.page["pictures"]:
-                self.browser.picture(self.screenshot.with_name(f"{self.screenshot.name}-{page}.png"))
+                self.browser.picture(
+                    self.screenshot.with_name(f"{self.screenshot.name}-{page}.png")
+                )
 
     def outcomes(self, case):
         """Errors of a case's page against report.json, in their order."""
         tables = self.browser.run(TABLES, "table")
-        lines = [row for t in tables if not t["grid"] and len(t["rows"][0]) == 6 for row in t["rows"][1:]]
-        cells = sum(cell != "" for t in tables if t["grid"] for row in t["rows"][1:] for cell in row[1:])
+        lines = [
+            row for t in tables if not t["grid"] and len(t["rows"][0]) == 6 for row in t["rows"][1:]
+        ]
+        cells = sum(
+            cell != "" for t in tables if t["grid"] for row in t["rows"][1:] for cell in row[1:]
+        )
         if len(lines) + cells != len(case["outcomes"]):
-            self.wrong(f"number: {case['name']} shows {len(lines) + cells} errors of {len(case['outcomes'])}")
+            self.wrong(
+                f"number: {case['name']} shows {len(lines) + cells} errors"
+                f" of {len(case['outcomes'])}"
+            )
         errors = iter([o["error"] for o in case["outcomes"]])
         for row in lines:
             text = re.sub(r"e(−?)(\d+)", lambda m: f" × 10{m[1]}{m[2]}", row[3])
             self.numbers += 1
             if not any(error is not None and same(text, error, 2) for error in errors):
-                self.wrong(f"number: the error {row[3]} of {case['name']} is not the next in report.json")
+                self.wrong(
+                    f"number: the error {row[3]} of {case['name']} is not the next in report.json"
+                )
                 break
 
     def run(self):
@@ -244,7 +284,10 @@ class Look:
         if (folder / "probes.csv").exists():
             self.probes(shown, table(folder / "probes.csv")[-1])
             self.energies(shown, table(folder / "energy.csv"))
-        for file, caption in [("frequencies", "Natural frequencies"), ("load_factors", "Critical loads")]:
+        for file, caption in [
+            ("frequencies", "Natural frequencies"),
+            ("load_factors", "Critical loads"),
+        ]:
             if (folder / f"{file}.csv").exists():
                 values = [float(list(row.values())[1]) for row in table(folder / f"{file}.csv")]
                 rows = shown[caption][1:]
@@ -295,11 +338,15 @@ class Look:
         return self.browser.run(PLAYER, COLOURS)
 
     def movie(self, folder):
-        motion = json.loads(self.browser.run("return document.getElementById('motion').textContent"))
+        motion = json.loads(
+            self.browser.run("return document.getElementById('motion').textContent")
+        )
         start = self.player()
         last = len(motion["frames"]) - 1
         if start["last"] != last or start["frame"] != (0 if motion["vibration"] else last):
-            self.wrong(f"movie: it begins at frame {start['frame']} of {start['last']}, {last} are there")
+            self.wrong(
+                f"movie: it begins at frame {start['frame']} of {start['last']}, {last} are there"
+            )
         self.frames_are_those_of_the_files(motion, folder)
         if motion["vibration"]:
             self.swings()
@@ -322,7 +369,9 @@ class Look:
             parameter = motion["parameter"][frame]
             row = next((r for r in probes if float(next(iter(r.values()))) == parameter), None)
             if row is None:
-                self.wrong(f"number: the movie's frame {frame} at {parameter} is in no row of probes.csv")
+                self.wrong(
+                    f"number: the movie's frame {frame} at {parameter} is in no row of probes.csv"
+                )
                 continue
             self.equal("the movie's parameter", label, parameter, 5)
             self.passes_through_the_probes(motion, frame, row)
@@ -336,21 +385,30 @@ class Look:
             scale = max(drawn) / max(box)
             for box, drawn in sizes:
                 if any(abs(scale * b - d) > 6 for b, d in zip(box, drawn)):
-                    self.wrong(f"movie: beams of {box} cells are drawn with {drawn} dots, {scale:.4f} a cell")
+                    self.wrong(
+                        f"movie: beams of {box} cells are drawn with {drawn} dots,"
+                        f" {scale:.4f} a cell"
+                    )
 
     def passes_through_the_probes(self, motion, frame, row):
         for name in {key.rsplit(".", 1)[0] for key in row if key.endswith(".x")}:
-            at = [(float(row[f"{name}.{c}"]) - o) / motion["cell"] for c, o in zip("xy", motion["origin"])]
+            at = [
+                (float(row[f"{name}.{c}"]) - o) / motion["cell"]
+                for c, o in zip("xy", motion["origin"])
+            ]
             points = [p for line in motion["frames"][frame] for p in zip(line[0::2], line[1::2])]
             beyond = min(math.dist(at, p) for p in points)
             steps = (math.dist(a, b) for a, b in zip(points, points[1:]))
             self.numbers += 1
             # A probe lies between two points; ends lie on one.
             if beyond > max(steps) + 2:
-                self.wrong(f"number: {name} is {beyond:.0f} cells beside the movie's beams in frame {frame}")
+                self.wrong(
+                    f"number: {name} is {beyond:.0f} cells beside the movie's beams"
+                    f" in frame {frame}"
+                )
 
     def until(self, done, seconds):
-        """What the player shows until something is true of it; the time is for a machine that hangs."""
+        """What the player shows until something is true; the time is for a machine that hangs."""
         seen, end = [], time.monotonic() + seconds
         while time.monotonic() < end:
             seen.append(self.player())

@@ -1,4 +1,5 @@
-"""A browser by the W3C's WebDriver protocol: chromedriver speaks it over HTTP, and needs no package here.
+"""A browser by the W3C's WebDriver protocol: chromedriver speaks it over HTTP,
+and needs no package here.
 
 https://www.w3.org/TR/webdriver2/; `/se/log` and `/goog/cdp/execute` are chromedriver's own.
 """
@@ -72,7 +73,9 @@ class Browser:
             self._end()
             raise
         self.base += f"/session/{made['sessionId']}"
-        self.name = f"{made['capabilities']['browserName']} {made['capabilities']['browserVersion']}"
+        self.name = (
+            f"{made['capabilities']['browserName']} {made['capabilities']['browserVersion']}"
+        )
 
     def _port(self):
         for line in self.process.stdout:
@@ -117,7 +120,10 @@ class Browser:
 
     def messages(self):
         """What has come on the console since the last call."""
-        return [f"{m['level']}: {m['message']}" for m in self._ask("POST", "/se/log", {"type": "browser"})]
+        return [
+            f"{m['level']}: {m['message']}"
+            for m in self._ask("POST", "/se/log", {"type": "browser"})
+        ]
 
     def picture(self, path):
         """The whole page as PNG."""
