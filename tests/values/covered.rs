@@ -142,6 +142,7 @@ fn every_column_of_every_file_has_a_value_test() {
     let moving = "effect.gravity.acceleration = [0, -9.81]
         effect.contact = [{ beam = 'arm', half_plane = { point = [0, 0], normal = [0, 1] }, stiffness = 1e4 }]
         effect.damping = [{ beam = 'arm', mass_proportional = 0.2 }]
+        effect.spring = [{ beam = 'arm', at = 0.5, stiffness = 1 }]
         analysis.dynamic = { duration = 0.6, output_every = 0.2, event = [{ probe = 'end', y = 0.1 }] }\n";
     let held = beam.replace("fix = ['x', 'y'] }", "fix = ['x', 'y', 'angle'] }");
     let written = [

@@ -119,6 +119,8 @@ fn the_summary_says_what_the_tables_end_with() {
             }
         }
         assert_eq!(seen.len(), if dynamic { 8 } else { 5 });
+        let moves = ["end.vx", "end.vy"].map(|name| found.header("probes.csv").iter().any(|n| n == name));
+        assert_eq!(moves, [dynamic; 2], "velocities belong to motions");
         for name in found.header("probes.csv").into_iter().skip(1) {
             let pointer = format!("/probes/{}", name.replace('.', "/"));
             assert_eq!(found.said(&pointer), found.last("probes.csv", &name), "{name}");
