@@ -2,7 +2,7 @@
 
 #![forbid(unsafe_code)]
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -13,11 +13,11 @@ use ancf_mutants::find::{Mutant, find};
 use ancf_mutants::reasons::without_place;
 use ancf_mutants::record::{Record, head};
 use ancf_mutants::sample::parts;
-use ancf_mutants::trial::{self, Outcome};
+use ancf_mutants::trial;
 use clap::Parser;
 
 /// So many more are put in than are wanted, for some do not compile.
-const SPARE: f64 = 1.6;
+const SPARE: f64 = 1.25;
 
 /// Put small faults into the sources of ancf, one at a time, and see whether a test fails
 #[derive(Parser)]
@@ -38,6 +38,9 @@ struct Arguments {
     /// Try those only whose names hold one of these texts, and record nothing
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
+    /// How many to try at a time
+    #[arg(short, long, default_value_t = 1)]
+    jobs: usize,
     /// Print all mutants that there are
     #[arg(long)]
     list: bool,
@@ -105,10 +108,7 @@ fn run(arguments: &Arguments) -> Result<bool, Failure> {
     let chosen: Vec<(usize, String)> = chosen.into_iter().map(|(_, i)| (i, all[i].name())).collect();
     eprintln!("{} mutants to try, {} do not compile", chosen.len(), unviable.len());
     let tests = trial::tests(&workshop, &programs, fingerprint)?;
-    let outcomes = trial::outcomes(&workshop, &tests, &chosen, fingerprint)?;
-    let chosen: BTreeSet<usize> = chosen.into_iter().map(|(i, _)| i).collect();
-    let outcomes: BTreeMap<usize, Outcome> =
-        outcomes.into_iter().filter(|(i, _)| chosen.contains(i)).collect();
+    let outcomes = trial::outcomes(&workshop, &tests, &chosen, fingerprint, arguments.jobs)?;
     let mut record = Record::of(&all, &unviable, &outcomes, &before);
     if !arguments.again && arguments.only.is_empty() {
         record.date = jiff::Timestamp::now().strftime("%F").to_string();

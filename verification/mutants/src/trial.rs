@@ -1,11 +1,14 @@
 //! Which tests reach which mutants, and which fail when one is on.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
@@ -75,7 +78,7 @@ pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Res
         let reached = workshop.temporary.join("reached");
         let _ = fs::remove_file(&reached);
         let start = Instant::now();
-        let end = test.run(workshop, "ANCF_MUTANT_REACHED", reached.as_os_str().as_ref(), LONGEST)?;
+        let end = test.run(workshop, "ANCF_MUTANT_REACHED", reached.as_os_str(), LONGEST, 0)?;
         test.seconds = start.elapsed().as_secs_f64();
         test.passes = end == End::Passed;
         test.reaches = numbers(&reached)?;
@@ -90,12 +93,14 @@ pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Res
     Ok(tests)
 }
 
-/// The outcome of each mutant, by number. What is known from an earlier run of the same sources is not tried again.
+/// The outcome of each mutant, by number, of so many tried at a time. What is known from an earlier run of the same
+/// sources is not tried again.
 pub fn outcomes(
     workshop: &Workshop,
     tests: &[Test],
     mutants: &[(usize, String)],
     fingerprint: u64,
+    jobs: usize,
 ) -> Result<BTreeMap<usize, Outcome>, Failure> {
     let path = workshop.outcomes.join(format!("{fingerprint:016x}.jsonl"));
     let mut known: BTreeMap<usize, Outcome> = BTreeMap::new();
@@ -105,37 +110,64 @@ pub fn outcomes(
             known.insert(number, outcome);
         }
     }
-    let mut file = File::options().append(true).create(true).open(&path)?;
-    for (i, (number, name)) in mutants.iter().enumerate() {
-        let start = Instant::now();
-        let outcome = match known.get(number) {
-            Some(outcome) => outcome.clone(),
-            None => {
-                let outcome = attempt(workshop, tests, *number)?;
-                writeln!(file, "{}", serde_json::to_string(&(number, &outcome))?)?;
-                outcome
-            }
-        };
-        let words = match &outcome {
-            Outcome::Caught(test) => format!("caught by {test}"),
-            Outcome::TimedOut(test) => format!("timed out in {test}"),
-            Outcome::Missed(0) => "MISSED, for nothing reaches it".to_owned(),
-            Outcome::Missed(tests) => format!("MISSED by {tests} tests"),
-        };
-        let seconds = start.elapsed().as_secs_f64();
-        eprintln!("{}/{} #{number} {name}: {words} ({seconds:.1} s)", i + 1, mutants.len());
-        known.insert(*number, outcome);
+    let file = Mutex::new(File::options().append(true).create(true).open(&path)?);
+    let (next, known) = (AtomicUsize::new(0), &known);
+    let work = |job: usize| -> Result<Vec<(usize, Outcome)>, String> {
+        let mut own = Vec::new();
+        while let Some((i, (number, name))) = take(&next, mutants) {
+            let start = Instant::now();
+            let outcome = match known.get(number) {
+                Some(outcome) => outcome.clone(),
+                None => {
+                    let outcome = attempt(workshop, tests, *number, job).map_err(|e| e.to_string())?;
+                    let line = serde_json::to_string(&(number, &outcome)).map_err(|e| e.to_string())?;
+                    let mut file = file.lock().map_err(|e| e.to_string())?;
+                    writeln!(file, "{line}").map_err(|e| e.to_string())?;
+                    outcome
+                }
+            };
+            let seconds = start.elapsed().as_secs_f64();
+            eprintln!("{}/{} #{number} {name}: {outcome} ({seconds:.1} s)", i + 1, mutants.len());
+            own.push((*number, outcome));
+        }
+        Ok(own)
+    };
+    let parts = std::thread::scope(|scope| {
+        let work = &work;
+        let jobs: Vec<_> = (0..jobs.max(1)).map(|job| scope.spawn(move || work(job))).collect();
+        jobs.into_iter().map(|job| job.join()).collect::<Vec<_>>()
+    });
+    let mut all = BTreeMap::new();
+    for part in parts {
+        all.extend(part.map_err(|_| "a job has panicked")??);
     }
-    Ok(known)
+    Ok(all)
+}
+
+/// The next of a list that no other has taken.
+fn take<'a, T>(next: &AtomicUsize, list: &'a [T]) -> Option<(usize, &'a T)> {
+    let i = next.fetch_add(1, Ordering::Relaxed);
+    Some((i, list.get(i)?))
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Caught(test) => write!(f, "caught by {test}"),
+            Self::TimedOut(test) => write!(f, "timed out in {test}"),
+            Self::Missed(0) => write!(f, "MISSED, for nothing reaches it"),
+            Self::Missed(tests) => write!(f, "MISSED by {tests} tests"),
+        }
+    }
 }
 
 /// Runs the tests that reach a mutant, the quickest first, until one fails.
-fn attempt(workshop: &Workshop, tests: &[Test], number: usize) -> Result<Outcome, Failure> {
+fn attempt(workshop: &Workshop, tests: &[Test], number: usize, job: usize) -> Result<Outcome, Failure> {
     let mut reaching: Vec<&Test> = tests.iter().filter(|t| t.passes && t.reaches.contains(&number)).collect();
     reaching.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
     for test in &reaching {
         let limit = Duration::from_secs_f64(TIMES * test.seconds) + MORE;
-        match test.run(workshop, "ANCF_MUTANT", number.to_string().as_ref(), limit)? {
+        match test.run(workshop, "ANCF_MUTANT", number.to_string().as_ref(), limit, job)? {
             End::Passed => {}
             End::Failed => return Ok(Outcome::Caught(test.name.clone())),
             End::TooLong => return Ok(Outcome::TimedOut(test.name.clone())),
@@ -158,9 +190,10 @@ impl Test {
         key: &str,
         value: &std::ffi::OsStr,
         limit: Duration,
+        job: usize,
     ) -> Result<End, Failure> {
         // What a killed test left behind.
-        let own = workshop.temporary.join("test");
+        let own = workshop.temporary.join(format!("job-{job}"));
         let _ = fs::remove_dir_all(&own);
         fs::create_dir_all(&own)?;
         let child = Command::new("sh")
