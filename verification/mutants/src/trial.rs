@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader, Write};
+use std::io::Write;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -11,6 +11,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
@@ -52,17 +53,17 @@ pub enum Outcome {
     Missed(usize),
 }
 
-/// All tests with what they reach, known from an earlier run of the same sources or found by running each once.
+/// All tests with what they reach, found by running each once; what is known from an earlier run of the same sources is
+/// not run again.
 pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Result<Vec<Test>, Failure> {
-    let path = workshop.outcomes.join(format!("{fingerprint:016x}-tests.json"));
-    if let Ok(text) = fs::read_to_string(&path) {
-        return Ok(serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))?);
-    }
-    let mut tests = Vec::new();
+    let path = workshop.outcomes.join(format!("{fingerprint:016x}-tests.jsonl"));
+    let mut tests: Vec<Test> = lines(&path)?;
+    let known: BTreeSet<String> = tests.iter().map(|test| test.name.clone()).collect();
+    let mut rest = Vec::new();
     for program in programs {
         let ignored = list(program, &["--ignored"])?;
         for own in list(program, &[])?.difference(&ignored) {
-            tests.push(Test {
+            rest.push(Test {
                 name: format!("{} {own}", program.name),
                 program: program.path.clone(),
                 folder: program.folder.clone(),
@@ -73,8 +74,10 @@ pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Res
             });
         }
     }
-    let number = tests.len();
-    for (i, test) in tests.iter_mut().enumerate() {
+    rest.retain(|test| !known.contains(&test.name));
+    let number = tests.len() + rest.len();
+    let mut file = File::options().append(true).create(true).open(&path)?;
+    for mut test in rest {
         let reached = workshop.temporary.join("reached");
         let _ = fs::remove_file(&reached);
         let start = Instant::now();
@@ -82,14 +85,15 @@ pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Res
         test.seconds = start.elapsed().as_secs_f64();
         test.passes = end == End::Passed;
         test.reaches = numbers(&reached)?;
-        if !test.passes {
-            eprintln!("fails without any mutant, and is left out: {}", test.name);
-        }
-        if (i + 1) % 100 == 0 || i + 1 == number {
-            eprintln!("{} of {number} tests run without mutant", i + 1);
+        writeln!(file, "{}", serde_json::to_string(&test)?)?;
+        tests.push(test);
+        if tests.len() % 100 == 0 || tests.len() == number {
+            eprintln!("{} of {number} tests run without mutant", tests.len());
         }
     }
-    fs::write(&path, serde_json::to_string(&tests)?)?;
+    for test in tests.iter().filter(|test| !test.passes) {
+        eprintln!("fails without any mutant, and is left out: {}", test.name);
+    }
     Ok(tests)
 }
 
@@ -103,13 +107,7 @@ pub fn outcomes(
     jobs: usize,
 ) -> Result<BTreeMap<usize, Outcome>, Failure> {
     let path = workshop.outcomes.join(format!("{fingerprint:016x}.jsonl"));
-    let mut known: BTreeMap<usize, Outcome> = BTreeMap::new();
-    if let Ok(file) = File::open(&path) {
-        for line in BufReader::new(file).lines() {
-            let (number, outcome) = serde_json::from_str(&line?)?;
-            known.insert(number, outcome);
-        }
-    }
+    let known: BTreeMap<usize, Outcome> = lines(&path)?.into_iter().collect();
     let file = Mutex::new(File::options().append(true).create(true).open(&path)?);
     let (next, known) = (AtomicUsize::new(0), &known);
     let work = |job: usize| -> Result<Vec<(usize, Outcome)>, String> {
@@ -235,6 +233,17 @@ fn wait(mut child: Child, limit: Duration) -> Result<End, Failure> {
     }
 }
 
+/// What stands in the lines of a file, nothing where there is none. The last line may have been broken off.
+fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, Failure> {
+    let text = fs::read_to_string(path).unwrap_or_default();
+    let Some((whole, broken)) = text.rsplit_once('\n') else { return Ok(Vec::new()) };
+    if !broken.is_empty() {
+        fs::write(path, format!("{whole}\n"))?;
+    }
+    let read = |line| serde_json::from_str(line).map_err(|e| format!("{}: {e}", path.display()).into());
+    whole.lines().map(read).collect()
+}
+
 fn numbers(path: &Path) -> Result<BTreeSet<usize>, Failure> {
     let text = fs::read_to_string(path).unwrap_or_default();
     text.lines().map(|line| Ok(line.parse::<usize>().map_err(|e| format!("{line}: {e}"))?)).collect()
@@ -254,6 +263,20 @@ fn list(program: &Program, more: &[&str]) -> Result<BTreeSet<String>, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Would catch a run that cannot go on where it was broken off in the midst of a line.
+    #[test]
+    fn whole_lines_are_read_and_a_broken_one_is_removed() {
+        let name = format!("ancf-mutants-{}", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        assert_eq!(lines::<usize>(&path).expect("no file, no lines"), Vec::<usize>::new());
+        let line = serde_json::to_string(&(7, Outcome::Missed(3))).expect("a line");
+        fs::write(&path, format!("{line}\n{line}\n[7, {{")).expect("a file");
+        let two = vec![(7, Outcome::Missed(3)); 2];
+        assert_eq!(lines::<(usize, Outcome)>(&path).expect("two lines"), two);
+        assert_eq!(fs::read_to_string(&path).expect("a file"), format!("{line}\n{line}\n"));
+        fs::remove_file(&path).expect("a file");
+    }
 
     fn started(line: &str) -> Child {
         Command::new("sh").args(["-c", line]).process_group(0).spawn().expect("a shell")
