@@ -87,7 +87,7 @@ pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Res
         test.reaches = numbers(&reached)?;
         writeln!(file, "{}", serde_json::to_string(&test)?)?;
         tests.push(test);
-        if tests.len() % 100 == 0 || tests.len() == number {
+        if tests.len().is_multiple_of(100) || tests.len() == number {
             eprintln!("{} of {number} tests run without mutant", tests.len());
         }
     }
