@@ -263,3 +263,141 @@ impl SavedState {
         Ok((checkpoint, true))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{Control, run};
+    use crate::scene::{Scene, parse};
+    use crate::system::Needs;
+
+    const ARM: &str = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, \
+         bending_stiffness = 0.1, mass_per_length = 1, basis.ancf.elements = 2 }\n\
+         support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]\n\
+         effect.gravity.acceleration = [0, -9.81]\n\
+         analysis.dynamic.duration = 0.01\n";
+
+    fn scene(text: &str) -> Scene {
+        parse("arm.toml", text).expect("a scene")
+    }
+
+    fn saved(text: &str) -> SavedState {
+        let scene = scene(text);
+        let motion = run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
+        motion.expect("a motion").saved.expect("a state")
+    }
+
+    /// The state taken up by the model of a text, as the same motion or another.
+    fn taken(state: &SavedState, text: &str, same: bool) -> Result<(Checkpoint, bool), String> {
+        let scene = scene(text);
+        let system = System::build(scene.model(), Needs { inertia: true, motion: true });
+        let system = system.expect("a system");
+        let motion = if same { state.saved.motion.clone() } else { String::new() };
+        state.take_up(scene.model(), &system, &motion).map_err(|error| error.to_string())
+    }
+
+    /// Would catch a number of a saved state that nothing looks at: with each out of order in turn, the state is refused.
+    #[test]
+    fn no_number_of_a_state_is_taken_unseen() {
+        let sound = saved(ARM);
+        assert_eq!(taken(&sound, ARM, true), Ok((sound.saved.checkpoint.clone(), true)));
+        let (nan, infinite) = (f64::NAN, f64::INFINITY);
+        type Change = Box<dyn Fn(&mut Checkpoint)>;
+        let of_state: [Change; 7] = [
+            Box::new(|c| c.state.q.truncate(11)),
+            Box::new(|c| c.state.v.push(0.0)),
+            Box::new(move |c| c.state.q[3] = nan),
+            Box::new(move |c| c.state.v[3] = infinite),
+            Box::new(move |c| c.state.work = nan),
+            // The state before a step that was cut, and the one that was reached, are both needed.
+            Box::new(|c| {
+                c.cut = Some(c.state.clone());
+                c.state.q.clear();
+            }),
+            Box::new(|c| c.cut = Some(State { v: Vec::new(), ..c.state.clone() })),
+        ];
+        let of_method: [Change; 8] = [
+            Box::new(|c| c.step = 0.0),
+            Box::new(|c| c.step = -1e-3),
+            Box::new(move |c| c.step = infinite),
+            Box::new(|c| c.last_ratio = 0.0),
+            Box::new(move |c| c.last_ratio = nan),
+            Box::new(move |c| c.origin.0 = infinite),
+            Box::new(move |c| c.memory.push(vec![nan])),
+            Box::new(move |c| c.memory.insert(0, vec![1.0, infinite])),
+        ];
+        for (i, change) in of_state.iter().enumerate() {
+            let mut state = sound.clone();
+            change(&mut state.saved.checkpoint);
+            let refused = taken(&state, ARM, true).expect_err("an unsound state");
+            assert!(refused.contains("coordinates or velocities are incomplete"), "{i}: {refused}");
+        }
+        for (i, change) in of_method.iter().enumerate() {
+            let mut state = sound.clone();
+            assert!(!state.saved.checkpoint.method.is_empty());
+            change(&mut state.saved.checkpoint);
+            let refused = taken(&state, ARM, true).expect_err("an unsound memory");
+            assert!(refused.contains("no sound number"), "{i}: {refused}");
+            // Another motion starts from the state alone, and so does one whose method has left nothing.
+            let (other, same) = taken(&state, ARM, false).expect("the state is sound");
+            assert_eq!(
+                (other.state, other.step, same),
+                (state.saved.checkpoint.reached().clone(), 0.0, false)
+            );
+            state.saved.checkpoint.method.clear();
+            assert!(taken(&state, ARM, true).is_ok_and(|(_, same)| same), "{i}");
+        }
+    }
+
+    /// Would catch beams that are taken for those of the state although they differ.
+    #[test]
+    fn a_state_of_other_beams_is_refused_with_the_first_difference() {
+        let state = saved(ARM);
+        let second = ARM.replace(
+            "beam.arm",
+            "beam.other = { start = [0, 2], end = [1, 2], \
+             axial_stiffness = 1e3, bending_stiffness = 0.1, mass_per_length = 1, \
+             basis.ancf.elements = 2 }\nbeam.arm",
+        );
+        for (text, part) in [
+            (second, "it has 1 beams, the scene 2"),
+            (ARM.replace("beam.arm", "beam.leg").replace("'arm'", "'leg'"), "its beam `arm` is called `leg`"),
+            (ARM.replace("elements = 2", "elements = 3"), "had 3 nodes when it was saved and has 4 now"),
+            (ARM.replace("ancf.elements = 2", "ancf.nodes = [0, 0.3, 1]"), "or they lie elsewhere"),
+            (
+                ARM.replace("start = [0, 0], end = [1, 0]", "start = [0, 1], end = [1, 1]"),
+                "another centreline",
+            ),
+            (ARM.replace("ancf.elements = 2", "rpim.nodes = 3"), "another discretisation"),
+            (ARM.replace("axial_stiffness = 1e3", "axial_stiffness = 2e3"), "another section"),
+            (ARM.replace("bending_stiffness = 0.1", "bending_stiffness = 0.2"), "another section"),
+            (ARM.replace("mass_per_length = 1", "mass_per_length = 2"), "another section"),
+        ] {
+            let refused = taken(&state, &text, false).expect_err(part);
+            assert!(refused.contains(part), "{part} in {refused}");
+        }
+        // Of an equilibrium the mass may be unknown.
+        let mut massless = state;
+        massless.saved.beams[0].mass = None;
+        assert!(taken(&massless, ARM, false).is_ok());
+    }
+
+    /// Would catch an angle that is taken up at another probe than its own, and so is wrong by full turns.
+    #[test]
+    fn angles_stay_with_their_probes() {
+        let probes = |places: &[f64]| {
+            let probe = |s: &f64| format!("{{ name = 'p{s}', beam = 'arm', at = {s} }}");
+            format!("probe = [{}]\n{ARM}", places.iter().map(probe).collect::<Vec<_>>().join(", "))
+        };
+        let mut state = saved(&probes(&[0.25, 0.5, 1.0]));
+        state.saved.checkpoint.state.angles = vec![7.0, 8.0, 9.0];
+        if let Some(cut) = &mut state.saved.checkpoint.cut {
+            cut.angles = vec![7.0, 8.0, 9.0];
+        }
+        let (taken, _) = taken(&state, &probes(&[1.0, 0.75, 0.25]), true).expect("the same beams");
+        for state in [&taken.state].into_iter().chain(&taken.cut) {
+            assert_eq!((state.angles[0], state.angles[2], state.angles.len()), (9.0, 7.0, 3));
+            assert!(state.angles[1].is_nan());
+        }
+    }
+}
