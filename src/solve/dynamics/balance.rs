@@ -23,7 +23,8 @@ impl Driver<'_, '_> {
         let (before, after) = (energy(&self.state), energy(new));
         let (work, _) = self.work(new, new.time, None);
         // Springs of friction give back what they hold at most.
-        let put_in = work - self.state.work - self.taken_at_least(new) + self.state.variables.friction;
+        let put_in =
+            work - self.state.work - self.taken_by_damping(new, new.time) + self.state.variables.friction;
         let wound = self.system.winding_energy(&self.held, &new.q) - self.state.variables.winding;
         let gain = (after.total() + wound - before.total() - put_in) / before.kinetic.max(after.kinetic);
         match gain {
@@ -31,18 +32,6 @@ impl Driver<'_, '_> {
             _ if gain.is_nan() => Err(Failure::NotFinite),
             _ => Err(Failure::Gain { gain }),
         }
-    }
-
-    /// What damping takes in a step to `new` at the mean of its ends: with a linear damping what the trapezoidal rule takes, and less than
-    /// the mean of the powers at the ends, which a step much longer than the decay makes arbitrarily large.
-    fn taken_at_least(&self, new: &State) -> f64 {
-        if !self.system.is_damped() {
-            return 0.0;
-        }
-        let mean =
-            |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect() };
-        let (q, v) = (mean(&self.state.q, &new.q), mean(&self.state.v, &new.v));
-        (new.time - self.state.time) * self.system.lost_power(&q, &v, &mut vec![0.0; q.len()])
     }
 
     /// Whether energy enters or leaves by other ways than potentials.
@@ -67,14 +56,18 @@ impl Driver<'_, '_> {
         if turn > LARGEST_WINDING { Err(Failure::Overwound { turn }) } else { Ok(()) }
     }
 
-    /// Work of the loads without potential and of moving supports, and what damping took, until `time` in the step to `new`: of what a state tells by the
-    /// trapezoidal rule where the method itself is of second order, and else by three Gauss points.
+    /// Work of the loads without potential and of moving supports, and what damping and friction took, until `time` in the step to `new`: of what a state
+    /// tells by the trapezoidal rule where the method itself is of second order, and else by three Gauss points.
     pub(super) fn work(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> (f64, f64) {
         let (mut work, mut lost) = (self.state.work, self.state.lost);
         if !self.has_work() {
             return (work, lost);
         }
         work += self.work_of_supports(new, time);
+        lost += self.taken_by_damping(new, time);
+        if !(self.system.has_work() || self.system.has_friction()) {
+            return (work, lost);
+        }
         let h = time - self.state.time;
         if self.method.order() <= 2.0 {
             let before = self.power_at_start();
@@ -111,20 +104,15 @@ impl Driver<'_, '_> {
         power
     }
 
-    /// Power \[W\] put in by loads without potential, and taken by damping.
+    /// Power \[W\] put in by loads without potential, and taken by friction.
     pub(super) fn power(&self, state: &State) -> (f64, f64) {
         let mut scratch = vec![0.0; state.q.len()];
         let loads = self.system.power(state.time, &state.q, &state.v, &mut scratch);
-        let mut taken = if self.system.is_damped() {
-            self.system.lost_power(&state.q, &state.v, &mut scratch)
-        } else {
-            0.0
-        };
-        if self.system.has_friction() {
-            scratch.fill(0.0);
-            self.system.add_friction(&self.held, &state.q, &mut scratch);
-            taken += scratch.iter().zip(&state.v).map(|(f, v)| f * v).sum::<f64>();
+        if !self.system.has_friction() {
+            return (loads, 0.0);
         }
-        (loads, taken)
+        scratch.fill(0.0);
+        self.system.add_friction(&self.held, &state.q, &mut scratch);
+        (loads, scratch.iter().zip(&state.v).map(|(f, v)| f * v).sum())
     }
 }

@@ -35,9 +35,40 @@ impl<'a> Driver<'_, 'a> {
             };
             self.support_powers = stages.into_iter().map(power).collect();
         }
-        let times: Vec<f64> = self.support_powers.iter().map(|(time, _)| *time).collect();
+        self.until(time, &self.support_powers)
+    }
+
+    /// What damping takes until `time` in the step to `new`, by the quadrature that the method itself is: of what decays faster than a step can follow, that alone
+    /// is what the motion loses, and the powers at the step's ends are arbitrarily larger. Methods of second order take, in a whole step, what the mean of its
+    /// ends takes.
+    pub(super) fn taken_by_damping(&mut self, new: &State, time: f64) -> f64 {
+        if !self.system.is_damped() {
+            return 0.0;
+        }
+        let mut scratch = vec![0.0; new.q.len()];
+        if self.method.order() <= 2.0 {
+            let mean =
+                |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect() };
+            let (q, v) = (mean(&self.state.q, &new.q), mean(&self.state.v, &new.v));
+            return (time - self.state.time) * self.system.lost_power(&q, &v, &mut scratch);
+        }
+        if self.damping_powers.is_empty() {
+            for Stage { mut state, .. } in self.method.stages(&self.state, new) {
+                if let Some(motion) = self.observer() {
+                    motion.carry(&mut state);
+                }
+                let power = self.system.lost_power(&state.q, &state.v, &mut scratch);
+                self.damping_powers.push((state.time, power));
+            }
+        }
+        self.until(time, &self.damping_powers)
+    }
+
+    /// The integral of powers at the times of stages from the last state until `time`.
+    fn until(&self, time: f64, powers: &[(f64, f64)]) -> f64 {
+        let times: Vec<f64> = powers.iter().map(|(time, _)| *time).collect();
         let weights = integrals(&times, self.state.time, time);
-        weights.iter().zip(&self.support_powers).map(|(weight, (_, power))| weight * power).sum()
+        weights.iter().zip(powers).map(|(weight, (_, power))| weight * power).sum()
     }
 
     /// The equations of motion for looking at states, apart from those of the method and its counts; friction counts from the last state.

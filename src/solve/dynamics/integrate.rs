@@ -169,6 +169,8 @@ pub(super) struct Driver<'t, 'a> {
     pub(super) powers: [(f64, (f64, f64)); 2],
     /// Times and powers of moving supports in the stages of the last attempt; empty before they are asked for.
     pub(super) support_powers: Vec<(f64, f64)>,
+    /// The same of what damping takes.
+    pub(super) damping_powers: Vec<(f64, f64)>,
     /// Length of the last accepted step \[s\].
     pub(super) last_step: f64,
     /// What looks at forces.
@@ -231,6 +233,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             touching,
             powers: [(f64::NAN, (0.0, 0.0)); 2],
             support_powers: Vec::new(),
+            damping_powers: Vec::new(),
             last_step: step,
             observer: None,
         };
@@ -356,6 +359,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             let mut record = Iterations::default();
             let result = self.method.attempt(&self.state, until, accuracy, new, &mut record);
             self.support_powers.clear();
+            self.damping_powers.clear();
             new.time = until;
             let result = match accuracy {
                 None => result.and_then(|error| self.without_gain(new).map(|()| error)),

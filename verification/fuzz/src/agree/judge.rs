@@ -8,7 +8,7 @@ use super::gap::{self, Gap, Records};
 use super::neighbour::{self, Growth};
 use super::outcome::{self, Outcome, Seen};
 use super::ways::{self, Way};
-use super::{balance, cut, settings};
+use super::{balance, cut, momentum, settings};
 
 /// What two runs may differ by, times what was asked for.
 const ALLOWED: f64 = 10.0;
@@ -77,6 +77,7 @@ pub fn judge(case: &Case, way: Way, base: &Outcome) -> Verdict {
     match way {
         _ if way.is_exact() => exact(case, way, base, &mut rng),
         Way::Balance => solved(base).map_or_else(|verdict| verdict, |seen| balanced(case, seen, &mut rng)),
+        Way::Momentum => solved(base).map_or_else(|verdict| verdict, |_| keeps_momentum(case, &mut rng)),
         _ => match solved(base) {
             Ok(seen) => approximate(case, way, seen, &mut rng),
             Err(verdict) => verdict,
@@ -214,7 +215,7 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
         Way::Welded => cut::cut(scene),
         Way::Basis => settings::other_basis(scene),
         Way::Continued => return continued(case, base, rng),
-        Way::Turned | Way::Mirrored | Way::Units | Way::Balance => None,
+        Way::Turned | Way::Mirrored | Way::Units | Way::Balance | Way::Momentum => None,
     };
     let Some(changed) = changed else { return Verdict::NotApplicable };
     let path = settings::get(scene, &["analysis", "static", "arc_length"]).is_some();
@@ -318,18 +319,8 @@ fn continued(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
         Outcome::Panicked(said) => return finding(way, format!("a panic: {said}"), text()),
         Outcome::TooLong => return Verdict::TooLong,
     };
-    let motion = settings::motion(scene);
-    let turns = settings::items(scene, &["support"]).any(|support| support.contains_key("move"));
-    let chooses = motion.as_ref().is_some_and(|m| m.tolerance.is_some());
-    let kicked = settings::names(scene, &["initial_velocity"]);
-    let exempt = chooses && (turns || !kicked);
     let gap = gap::between(base, &seen, Records::Last);
-    let measured = if exempt {
-        let allowed = ALLOWED * settings::tolerance(scene) + round_off(scene);
-        Measured { value: gap.places, allowed, places: true, what: gap.what }
-    } else {
-        Measured { value: gap.all, allowed: 1e-8, places: false, what: gap.what }
-    };
+    let measured = Measured { value: gap.all, allowed: 1e-8, places: false, what: gap.what };
     decide(case, way, measured, &text(), rng)
 }
 
@@ -339,4 +330,22 @@ fn balanced(case: &Case, seen: &Seen, rng: &mut Rng) -> Verdict {
     let allowed = 1e-6 + 100.0 * round_off(&case.scene) + ALLOWED * tolerance;
     let measured = Measured { value: off, allowed, places: false, what };
     decide(case, Way::Balance, measured, "", rng)
+}
+
+/// In natural units, in which the whole motion is run once more.
+fn keeps_momentum(case: &Case, rng: &mut Rng) -> Verdict {
+    let Case { scene, .. } = case;
+    let (way, natural) = (Way::Momentum, Frame::default());
+    if !momentum::is_known(scene) {
+        return Verdict::NotApplicable;
+    }
+    let Some([first, _]) = ways::parts(scene, rng) else { return Verdict::NotApplicable };
+    let runs = [&first, scene].map(|scene| other(scene, &natural, way));
+    let [first, whole] = match runs {
+        [Ok(first), Ok(whole)] => [first, whole],
+        [Err(verdict), _] | [_, Err(verdict)] => return verdict,
+    };
+    let Some((off, what)) = momentum::lacks(scene, &first, &whole) else { return Verdict::NotApplicable };
+    let allowed = 1e-7 + round_off(scene) + ALLOWED * settings::tolerance(scene);
+    decide(case, way, Measured { value: off, allowed, places: false, what }, "", rng)
 }

@@ -10,6 +10,7 @@ mod draw;
 mod frame;
 mod gap;
 mod judge;
+mod momentum;
 mod neighbour;
 mod outcome;
 mod quantity;

@@ -23,10 +23,11 @@ pub enum Way {
     Welded,
     Count,
     Balance,
+    Momentum,
 }
 
 /// All of them, in the order of the report.
-pub const WAYS: [Way; 13] = [
+pub const WAYS: [Way; 14] = [
     Way::Turned,
     Way::Mirrored,
     Way::Units,
@@ -40,6 +41,7 @@ pub const WAYS: [Way; 13] = [
     Way::Welded,
     Way::Count,
     Way::Balance,
+    Way::Momentum,
 ];
 
 impl Way {
@@ -59,6 +61,7 @@ impl Way {
             Self::Welded => "welded",
             Self::Count => "count",
             Self::Balance => "balance",
+            Self::Momentum => "momentum",
         }
     }
 
