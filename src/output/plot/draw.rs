@@ -93,6 +93,7 @@ const LEGEND_LINE: f64 = 20.0;
 
 /// Part of the picture's height that the legend takes at most: of hundreds of beams the last are drawn without their names.
 const LEGEND_PART: f64 = 0.3;
+
 /// Room for the sample of a series in the legend \[px\].
 fn sample_length(mark: Mark) -> f64 {
     match mark {
