@@ -16,6 +16,9 @@
 //! frequency and would not be followed anyway. What loads and supports do between the ends of the step ([`crate::system::laws`]) is added to it, and made up
 //! for, through the same matrix.
 //!
+//! Where a contact begins, ends, or turns, a starts anew from the q̈ of the equations of motion: a carries the force that was before into the steps behind,
+//! by which a hinged beam on a stiff box erred by 364 times a tolerance of 1e-5, and q̈ of the formula rings, by which it still erred by 40.
+//!
 //! # A tangent for many steps
 //! The tangent is kept, turned with the nodes ([`super::turns`]), as long as the increments shrink to 0.6 % and less from one iteration to the next; then it is
 //! taken anew at the last equilibrium. A residual costs a third of a tangent with its factorisation and substitution. Where that
@@ -446,6 +449,10 @@ impl Method for GeneralizedAlpha<'_> {
         }
         multipliers.iter_mut().zip(&jump[n..]).for_each(|(mu, jump)| *mu += jump);
         Ok(jump)
+    }
+
+    fn renew(&mut self, state: &State) -> Result<(), Singular> {
+        self.start(state).map(|_| ())
     }
 
     fn end_accelerations(&mut self, _: &State, _: &State) -> Option<[Vec<f64>; 2]> {

@@ -12,7 +12,8 @@
 //!
 //! # Kinks
 //! Where a load or a support's motion is not smooth a step ends, whatever the method and however steps are chosen: the last stage sees what was just before,
-//! the next step begins with what is just after (`Driver::pass_kinks`), and no interpolation reaches over it. A step of fixed length is divided there, and all
+//! the next step begins with what is just after (`Driver::pass_kinks`), and no interpolation reaches over it. Where a contact begins, ends, or turns, a step that is to meet an accuracy ends too, and what
+//! the method remembers of the acceleration is made anew ([`Method::renew`]). A step of fixed length is divided there, and all
 //! later ones end where they would have.
 //!
 //! # Steps of fixed length
@@ -177,6 +178,15 @@ pub(super) struct Driver<'t, 'a> {
     pub(super) observer: Option<Motion<'a>>,
 }
 
+/// How forces are where a step ends.
+#[derive(Clone, Copy, Debug)]
+enum End {
+    /// Of them only loads and supports may have a kink there, and those are known beforehand.
+    Smooth,
+    /// A contact begins, ends, or turns: accelerations from before say nothing about those afterwards.
+    ContactChanges,
+}
+
 impl<'t, 'a> Driver<'t, 'a> {
     fn new(
         system: &'a System,
@@ -256,7 +266,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             let ends_early = self.end_cuts();
             match self.advance(&mut new) {
                 Err(stuck) => self.solution.stuck = Some(stuck),
-                Ok(()) => {
+                Ok(end) => {
                     self.last_step = new.time - self.state.time;
                     let stopped = self.look(&mut new);
                     if (stopped || ends_early) && self.whole.is_none() {
@@ -265,7 +275,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                     self.method.accept();
                     std::mem::swap(&mut self.state, &mut new);
                     if !stopped {
-                        self.pass_kinks();
+                        self.go_on(end);
                     }
                     self.hold();
                     if let Some(Keep { every, take }) = self.task.keep
@@ -345,7 +355,7 @@ impl<'t, 'a> Driver<'t, 'a> {
     }
 
     /// Takes one step, smaller as often as needed, to `new`.
-    fn advance(&mut self, new: &mut State) -> Result<(), Stuck> {
+    fn advance(&mut self, new: &mut State) -> Result<End, Stuck> {
         let (mut touch, mut cuts) = (f64::INFINITY, 0);
         loop {
             let end = self.next_end(touch);
@@ -408,7 +418,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                     self.step = if cut { self.step.max(next) } else { next };
                     (self.last_ratio, self.rejected) = (ratio, false);
                 }
-                return Ok(());
+                return Ok(if end == touch { End::ContactChanges } else { End::Smooth });
             }
             let stuck = |method: &dyn Method, failure| {
                 let unknown = match failure {
@@ -479,31 +489,37 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
+    /// Prepares the step that follows one with such an `end`.
+    fn go_on(&mut self, end: End) {
+        let renewed = match end {
+            End::ContactChanges => self.method.renew(&self.state),
+            End::Smooth => Ok(()),
+        };
+        if let Err(singular) = renewed.and_then(|()| self.pass_kinks()) {
+            let at = self.system.place_of(singular.row);
+            let (time, step) = (self.state.time, self.step);
+            self.solution.stuck = Some(Stuck { time, step, failure: singular.into(), at });
+        }
+    }
+
     /// Goes on just after the kinks at which the last step ended, if it did.
-    fn pass_kinks(&mut self) {
+    fn pass_kinks(&mut self) -> Result<(), Singular> {
         let before = self.state.time;
         let slack = SMALLEST_STEP * self.task.duration;
         let passed = |kink: &&f64| **kink > before && **kink - before <= slack;
-        let Some(kink) = self.kinks.iter().rfind(passed).copied() else { return };
+        let Some(kink) = self.kinks.iter().rfind(passed).copied() else { return Ok(()) };
         let kinetic =
             |driver: &Self| driver.system.energy(kink, &driver.state.q, Some(&driver.state.v)).kinetic;
         let earlier = kinetic(self);
         self.state.time = kink;
-        match self.method.pass(before, &mut self.state) {
-            Ok(jump) => {
-                // An impulse of supports whose velocity jumps.
-                self.state.work += kinetic(self) - earlier;
-                if let StepControl::Tolerance(tolerance) = self.control {
-                    let n = self.state.q.len();
-                    self.step = self.step.min(step_by(self.system, &*self.method, tolerance, 2, &jump[..n]));
-                }
-            }
-            Err(singular) => {
-                let at = self.system.place_of(singular.row);
-                self.solution.stuck =
-                    Some(Stuck { time: kink, step: self.step, failure: singular.into(), at });
-            }
+        let jump = self.method.pass(before, &mut self.state)?;
+        // An impulse of supports whose velocity jumps.
+        self.state.work += kinetic(self) - earlier;
+        if let StepControl::Tolerance(tolerance) = self.control {
+            let n = self.state.q.len();
+            self.step = self.step.min(step_by(self.system, &*self.method, tolerance, 2, &jump[..n]));
         }
+        Ok(())
     }
 
     /// Keeps every second record of the past where there are too many; rejected ones stay unless they are the most.

@@ -47,6 +47,15 @@ pub trait Method {
     /// [`Singular`] where a coordinate has no mass.
     fn pass(&mut self, before: f64, state: &mut State) -> Result<Vec<f64>, Singular>;
 
+    /// Forgets accelerations from before `state`, the end of the last step, for forces have changed there. Nothing has to be done where the past only
+    /// serves to predict.
+    ///
+    /// # Errors
+    /// [`Singular`] where a coordinate has no mass.
+    fn renew(&mut self, _state: &State) -> Result<(), Singular> {
+        Ok(())
+    }
+
     /// The accelerations at both ends of the last attempt by which it is to be interpolated; none where positions and velocities
     /// alone match the order of the method.
     fn end_accelerations(&mut self, from: &State, to: &State) -> Option<[Vec<f64>; 2]>;
