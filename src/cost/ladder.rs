@@ -238,8 +238,8 @@ fn other_solvers(task: &Task<'_>, mean_step: f64) -> Vec<Vec<Solver>> {
                 )))
             };
             vec![
-                by_tolerance(&|step| Integrator::Gauss { stages: 3, step }, &[10.0, 1.0, 0.01]),
-                by_tolerance(&|step| Integrator::Radau { stages: 3, step }, &[10.0, 1.0, 0.1]),
+                by_tolerance(&|step| Integrator::Gauss { stages: 3, step }, &[10.0, 1.0, 0.1]),
+                by_tolerance(&|step| Integrator::Radau { stages: 3, step }, &[10.0, 1.0, 0.01]),
                 by_tolerance(&alpha, &[10.0, 1.0, 0.1]),
                 [1.0, 4.0, 16.0].map(fixed).into(),
             ]
@@ -336,6 +336,7 @@ mod tests {
     use crate::cost::{Deviation, Measured};
     use crate::model::{Discretization, Dynamic, Static};
     use crate::scene::{STEP_CONTROL, parse};
+    use crate::trajectory::Statistics;
 
     /// A bench with a clock of its own, on which `time` and `error` follow from family and cells.
     struct Fake {
@@ -448,5 +449,78 @@ mod tests {
         assert_eq!(tolerance(0.1 * 1e-4), 1e-5);
         assert_eq!(tolerance(0.1 * 3e-6), 3e-7);
         assert_eq!(tolerance(4.0), 0.1);
+    }
+
+    /// A bench where steps cost time and leave errors of the method's order, and where the mesh leaves one, too.
+    struct Steps {
+        clock: f64,
+    }
+
+    impl Bench for Steps {
+        fn now(&self) -> f64 {
+            self.clock
+        }
+
+        fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Miss> {
+            let (meshfree, nodes) = match &setting.beams[0].0 {
+                Discretization::Ancf { nodes } => (false, nodes),
+                Discretization::Rpim { nodes, .. } => (true, nodes),
+            };
+            let cells = (nodes.count() - 1) as f64;
+            let (steps, by_steps) = match setting.solver {
+                Solver::Scene | Solver::Tolerance(_) => (1.0, 0.0),
+                Solver::Integrator(integrator) => {
+                    let order = match integrator {
+                        Integrator::Gauss { .. } => 6.0,
+                        Integrator::Radau { .. } => 5.0,
+                        Integrator::GeneralizedAlpha { .. } => 2.0,
+                    };
+                    match integrator.step_control() {
+                        StepControl::Fixed(step) => (1.0 / step, step.powf(order)),
+                        StepControl::Tolerance(tolerance) => (2.0 * tolerance.powf(-1.0 / order), tolerance),
+                    }
+                }
+            };
+            let seconds = 1e-6 * steps * cells * if meshfree { 3.0 } else { 1.0 };
+            let error = by_steps + cells.powi(if meshfree { -5 } else { -4 });
+            if self.clock + seconds > deadline {
+                self.clock = deadline;
+                return Err(Miss::TooSlow);
+            }
+            self.clock += seconds;
+            let statistics =
+                Statistics { steps: steps as usize, factorizations: steps as usize, ..Default::default() };
+            let deviation = Deviation { error, ..Deviation::default() };
+            Ok(Measured { seconds, runs: 1, statistics, deviation, ..Measured::default() })
+        }
+    }
+
+    /// What is tried in which order, and what is left out for which reason: whoever changes the ladder sees here what becomes of it.
+    #[test]
+    fn the_order_of_what_is_tried_is_as_reviewed() {
+        let motion = Analysis::Dynamic(Dynamic {
+            duration: 1.0,
+            output_every: 0.1,
+            integrator: Integrator::Gauss { stages: 3, step: STEP_CONTROL },
+            events: vec![],
+        });
+        let mut text = String::new();
+        for (analysis, name) in [(&motion, "motion"), (&Analysis::Static(Static::default()), "statics")] {
+            let mut bench = Steps { clock: 0.0 };
+            let task = Task { model: &model(), analysis, target: 1e-5, least: 1e-9, deadline: 0.3 };
+            let climbed = climb(&task, &mut bench);
+            text += &format!("{name}\n");
+            for Rung { family, cells, setting, measured } in &climbed.rungs {
+                let error = measured.deviation.error;
+                text += &format!("{family}, {cells} cells, {}: {error:.2e}\n", setting.solver);
+            }
+            text += "left out:\n";
+            for LeftOut { what, why } in &climbed.left_out {
+                text += &format!("{what}: {why}\n");
+            }
+        }
+        insta::with_settings!({ snapshot_path => "../../tests/snapshots", prepend_module_to_snapshot => false }, {
+            insta::assert_snapshot!("cost_ladder", text);
+        });
     }
 }

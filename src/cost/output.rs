@@ -122,7 +122,7 @@ pub fn write(directory: &Path, study: &Study) -> Result<(), OutputError> {
     let by_time = draw(time, &chart(study, "time to build and solve [s]", |m| m.seconds))?;
     let by_work =
         draw(work, &chart(study, "(tangent evaluations + factorisations) × unknowns", Measured::sized_work))?;
-    let marks = "Dots on lines: meshes of one discretisation with an accurate solver; circles: other tolerances and Radau; \
+    let marks = "Dots on lines: meshes of one discretisation with an accurate solver; circles: other tolerances and Gauss; \
                  crosses: generalised-α; grey: what no other setting beats; dashed: the target, and the uncertainty of the \
                  reference, below which errors are only known to be no more than that.";
     let figures = [
@@ -215,10 +215,11 @@ fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
         all.iter().map(|[cost, error]| [*cost, error.max(study.least())]).collect();
     let front = front(&distinct_errors).into_iter().map(|i| all[i]).collect();
     chart = chart.with(Series::line("front", front, GREY).size(7.0).opacity(0.35));
-    for (kind, colour) in KINDS {
-        let mut label = kind;
-        let families = distinct(study.rungs.iter().map(|r| r.family).filter(|f| f.kind() == kind));
-        for family in families {
+    let families = distinct(study.rungs.iter().map(|rung| rung.family));
+    for kind in distinct(families.iter().map(|family| family.kind())) {
+        let mut label = kind.as_str();
+        for family in families.iter().copied().filter(|family| family.kind() == kind) {
+            let Some(colour) = colour(family) else { continue };
             // The first solver of a family is that with which its meshes were compared.
             let own = || study.rungs.iter().filter(move |r| r.family == family);
             let Some(first) = own().next().map(|rung| rung.setting.solver) else { continue };
@@ -253,20 +254,23 @@ fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
     chart
 }
 
-/// Kinds of discretisations with their colours.
-const KINDS: [(&str, Colour); 5] = [
-    ("ANCF, 5/3 points", PALETTE[1]),
-    ("ANCF, 4/2 points", PALETTE[4]),
-    ("RPIM, 1 neighbour", PALETTE[2]),
-    ("RPIM, 2 neighbours", PALETTE[0]),
-    ("RPIM, 3 neighbours", PALETTE[3]),
-];
+/// The colour of a kind of discretisation; none for the scene's own, which has a mark of its own.
+fn colour(family: Family) -> Option<Colour> {
+    match family {
+        Family::Scene => None,
+        Family::Ancf(points) if points.lobatto => Some(PALETTE[4]),
+        Family::Ancf(_) => Some(PALETTE[1]),
+        Family::Rpim { neighbours: 1, .. } => Some(PALETTE[2]),
+        Family::Rpim { neighbours: 2, .. } => Some(PALETTE[0]),
+        Family::Rpim { .. } => Some(PALETTE[3]),
+    }
+}
 
-fn distinct(families: impl Iterator<Item = Family>) -> Vec<Family> {
+fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     let mut distinct = Vec::new();
-    for family in families {
-        if !distinct.contains(&family) {
-            distinct.push(family);
+    for one in all {
+        if !distinct.contains(&one) {
+            distinct.push(one);
         }
     }
     distinct

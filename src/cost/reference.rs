@@ -41,7 +41,7 @@ fn pair(desk: &Desk<'_>, level: u32, target: f64) -> [(Family, usize, Setting); 
     let step = StepControl::Tolerance(0.05 * target * 0.25_f64.powi(level as i32));
     let solvers = match desk.analysis {
         Analysis::Dynamic(_) => [
-            Solver::Integrator(Integrator::usual(step)),
+            Solver::Integrator(Integrator::Gauss { stages: 3, step }),
             Solver::Integrator(Integrator::Radau { stages: 3, step }),
         ],
         _ => [Solver::Scene; 2],
@@ -112,5 +112,50 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
     match best {
         Some(best) => Ok(Reference { seconds: desk.now() - start, ..best }),
         None => Err(CostError::NoReference { reason }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Discretization;
+    use crate::scene::parse;
+
+    /// Twice the cells and a quarter of the tolerance from pair to pair; meshfree by Gauss against elements by Radau.
+    #[test]
+    fn pairs_share_neither_mesh_nor_method() {
+        let scene = parse(
+            "arm",
+            "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 5 }\n\
+             analysis.dynamic = { duration = 1, output_every = 0.1 }",
+        )
+        .unwrap();
+        let watcher = |_: &super::super::Progress<'_>| crate::run::Control::Continue;
+        let desk = Desk {
+            model: scene.model(),
+            analysis: scene.analysis(),
+            start: std::time::Instant::now(),
+            budget: 1.0,
+            watcher: &watcher,
+        };
+        for (level, cells, tolerance) in [(0, 16, 5e-6), (1, 32, 1.25e-6), (3, 128, 7.8125e-8)] {
+            let [(meshfree, first, gauss), (elements, second, radau)] = pair(&desk, level, 1e-4);
+            assert_eq!((first, second), (cells, 4 * cells));
+            assert!(matches!(meshfree, Family::Rpim { .. }) && matches!(elements, Family::Ancf(_)));
+            let nodes = |setting: &Setting| match &setting.beams[0].0 {
+                Discretization::Ancf { nodes } | Discretization::Rpim { nodes, .. } => nodes.count(),
+            };
+            assert_eq!((nodes(&gauss), nodes(&radau)), (cells + 1, 4 * cells + 1));
+            let close = |step: StepControl| match step {
+                StepControl::Tolerance(found) => (found / tolerance - 1.0).abs() < 1e-12,
+                StepControl::Fixed(_) => false,
+            };
+            assert!(
+                matches!(gauss.solver, Solver::Integrator(Integrator::Gauss { step, .. }) if close(step))
+            );
+            assert!(
+                matches!(radau.solver, Solver::Integrator(Integrator::Radau { stages: 3, step }) if close(step))
+            );
+        }
     }
 }

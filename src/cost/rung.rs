@@ -84,6 +84,13 @@ mod tests {
     }
 
     #[test]
+    fn work_counts_tangents_and_factorisations_by_unknown() {
+        let statistics = Statistics { tangent_evaluations: 3, factorizations: 4, ..Statistics::default() };
+        let measured = Measured { degrees_of_freedom: 10, statistics, ..Measured::default() };
+        assert_eq!((measured.work(), measured.sized_work()), (7, 70.0));
+    }
+
+    #[test]
     fn the_cheapest_meets_the_target() {
         let points = [[3.0, 1e-4], [1.0, 1e-2], [2.0, 9e-5], [9.0, 1e-9]];
         assert_eq!(cheapest(&points, 1e-4), Some(2));

@@ -88,3 +88,46 @@ fn free() -> Option<f64> {
     };
     [memory, limit(), group()].into_iter().flatten().reduce(f64::min)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bytes(basis: &str, analysis: &str) -> f64 {
+        let scene = crate::scene::parse(
+            "arm",
+            &format!(
+                "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1, bending_stiffness = 1, mass_per_length = 1, basis.{basis} }}\n\
+                 support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\nanalysis.{analysis}"
+            ),
+        )
+        .unwrap();
+        needed(scene.model(), scene.analysis())
+    }
+
+    /// Counted by hand for 11 nodes, 44 coordinates of 8 bytes: 40 vectors; tables of so many functions at 5 points a cell; band matrices of four rows a node,
+    /// twice as wide as the functions of a cell; and the states.
+    #[test]
+    fn what_is_needed_is_counted_as_by_hand() {
+        let state = 44.0 * 8.0;
+        let of = |functions: f64, matrices: f64, states: f64| {
+            11.0 * 5.0 * functions * 8.0
+                + matrices * 4.0 * 11.0 * 2.0 * functions * 8.0
+                + (40.0 + states) * state
+        };
+        let ancf = "ancf = { elements = 10, gauss_points = { stretch = 3, bend = 2 } }";
+        let rpim = "rpim = { nodes = 11, neighbours = 2, gauss_points = { stretch = 3, bend = 2 } }";
+        for (analysis, matrices, states) in [
+            ("static = {}", 2.0, 0.0),
+            ("static.steps = 7", 2.0, 7.0),
+            ("static.arc_length = { until_load = 1, max_points = 30 }", 2.0, 30.0),
+            ("buckling.count = 3", 4.0, 12.0),
+            ("modal.count = 3", 4.0, 12.0),
+            ("modal = { count = 3, about = 'equilibrium' }", 5.0, 12.0),
+            ("dynamic = { duration = 2, output_every = 0.1 }", 4.0, 40.0),
+        ] {
+            assert_eq!(bytes(ancf, analysis), of(4.0, matrices, states), "{analysis}");
+            assert_eq!(bytes(rpim, analysis), of(12.0, matrices, states), "{analysis}");
+        }
+    }
+}

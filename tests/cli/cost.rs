@@ -1,7 +1,14 @@
 //! What accuracy costs: settings are measured against a reference, and the cheapest one that is good enough is a scene.
 
 use super::commands::{ROLL_UP, ancf, entries, folder, status, stderr};
+use super::output::elements;
+use ancf::cost::{
+    Best, Deviation, Family, LeftOut, Measured, Options, Reference, Rung, Setting, Solver, Study,
+};
+use ancf::model::{Integrator, StepControl};
+use ancf::trajectory::{AnalysisKind, Statistics, Trajectory};
 use std::fs;
+use std::time::Duration;
 
 const MODAL: &str = include_str!("../scenes/modal.toml");
 const FILES: [&str; 6] = ["best.toml", "cost-work.svg", "cost.csv", "cost.html", "cost.json", "cost.svg"];
@@ -111,4 +118,110 @@ fn a_scene_that_cannot_be_solved_has_no_reference() {
     assert_eq!(status(&output), 1, "{}", stderr(&output));
     assert!(stderr(&output).contains("no reference could be made"), "{}", stderr(&output));
     assert_eq!(entries(folder.path()), ["scene.toml"]);
+}
+
+/// A study whose numbers are made up: discretisations of every kind on three meshes, one of them with other solvers, too.
+fn study() -> Study {
+    let scene = ancf::scene::parse("roll-up.toml", ROLL_UP).expect("a legal scene");
+    let alpha = |step| Integrator::GeneralizedAlpha { step, spectral_radius: 0.9, newton_tolerance: 1e-10 };
+    let solvers = [
+        Solver::Scene,
+        Solver::Tolerance(1e-5),
+        Solver::Integrator(Integrator::Radau { stages: 3, step: StepControl::Tolerance(1e-4) }),
+        Solver::Integrator(alpha(StepControl::Fixed(2e-3))),
+    ];
+    let mut rungs = Vec::new();
+    let all = Family::all();
+    let families = [0, 1, 2, 3, 7, 10].map(|i| all[i]);
+    for (kind, family) in std::iter::once(Family::Scene).chain(families).enumerate() {
+        for (mesh, cells) in [4, 8, 16].into_iter().enumerate() {
+            let many = if kind == 3 { solvers.len() } else { 1 };
+            for (way, solver) in solvers[..many].iter().copied().enumerate() {
+                let order = 2.0 + 0.1 * kind as f64;
+                let deviation = Deviation {
+                    error: 0.3 * (cells as f64).powf(-order) / (1.0 + way as f64),
+                    curvature: (kind > 0).then_some(0.5 / cells as f64),
+                    energy: (kind > 1).then_some(0.25 / cells as f64),
+                };
+                let statistics = Statistics {
+                    tangent_evaluations: 3 * (mesh + 1) + way,
+                    factorizations: 5 + kind,
+                    steps: 10,
+                    ..Statistics::default()
+                };
+                let measured = Measured {
+                    degrees_of_freedom: 4 * cells,
+                    seconds: 1e-4 * (1.0 + 0.2 * kind as f64) * cells as f64 * (1.0 + 0.5 * way as f64),
+                    runs: 3,
+                    statistics,
+                    deviation,
+                    warnings: if kind == 5 { vec!["it is warned of".to_owned()] } else { vec![] },
+                };
+                rungs.push(Rung { family, cells, setting: Setting { beams: vec![], solver }, measured });
+            }
+        }
+    }
+    let best = Best { rung: 7, lines: "[beam.cantilever.basis.ancf]\nelements = 8\n".to_owned(), scene };
+    Study {
+        options: Options { target: 2e-3, budget: Duration::from_secs(20) },
+        reference: Reference {
+            trajectory: Trajectory {
+                title: "Made up".to_owned(),
+                analysis: AnalysisKind::Static,
+                ..Trajectory::default()
+            },
+            uncertainty: Deviation { error: 1.5e-4, curvature: Some(2e-3), energy: None },
+            warnings: vec!["it locks".to_owned()],
+            pair: ["RPIM, 32 cells".to_owned(), "ANCF, 128 cells".to_owned()],
+            seconds: 1.25,
+        },
+        rungs,
+        front: vec![0, 4, 7, 12],
+        best: Some(best),
+        left_out: ["one", "two", "three", "four"]
+            .map(|what| LeftOut { what: what.to_owned(), why: "no time is left in the budget".to_owned() })
+            .into(),
+        complete: true,
+        seconds: 17.5,
+    }
+}
+
+/// Whoever changes how a study is drawn or written sees here what it changes.
+#[test]
+fn regress_pages_of_a_study() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let study = study();
+    ancf::cost::write(directory.path(), &study).expect("written");
+    let read = |name: &str| fs::read_to_string(directory.path().join(name)).expect("a file");
+    let mut text = read("cost.csv");
+    for picture in ["cost.svg", "cost-work.svg"] {
+        text += &format!("== {picture}\n{}", elements(&read(picture)));
+    }
+    let page = read("cost.html");
+    for row in page.split("<tr").skip(1).map(|row| row.split("</tr>").next().unwrap_or_default()) {
+        text += &format!("<tr{}\n", row.split_whitespace().collect::<Vec<_>>().join(" "));
+    }
+    insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false }, {
+        insta::assert_snapshot!("pages_of_a_study", text);
+    });
+    // Every family that was measured is in the picture.
+    let families: Vec<String> = study.rungs.iter().skip(3).map(|rung| rung.family.to_string()).collect();
+    for kind in families.iter().map(|family| family.split(", shape").next().unwrap_or_default()) {
+        assert!(read("cost.svg").contains(kind), "{kind}");
+    }
+}
+
+/// A reference has to be ten times as certain as what is asked for.
+#[test]
+fn how_good_a_reference_must_be() {
+    let told = |error: f64| {
+        let mut study = study();
+        study.reference.uncertainty.error = error;
+        (study.reference_is_good(), study.warnings().join("; "))
+    };
+    assert!(told(2e-4).0 && !told(2e-4).1.contains("uncertain"));
+    let (good, warning) = told(2.1e-4);
+    assert!(!good && warning.contains("more than a tenth of the target"), "{warning}");
+    let (good, warning) = told(2e-3);
+    assert!(!good && warning.contains("not good enough"), "{warning}");
 }

@@ -425,3 +425,73 @@ fn equal_lengths_are_equal_in_the_picture() {
     let (wide, high) = (corner[2] - corner[0], corner[3] - corner[5]);
     assert!(wide > 100.0 && (wide - high).abs() <= 2.0, "{wide} × {high}");
 }
+
+/// What a picture shows, a line each: texts with their places, curves by their number of points, ends and extent, lines, marks, and their colours.
+pub(super) fn elements(svg: &str) -> String {
+    let mut lines = String::new();
+    for element in svg.split('<').skip(1).filter(|element| !element.starts_with('/')) {
+        let (tag, text) = element.split_once('>').unwrap_or((element, ""));
+        let attribute = |name: &str| {
+            let (_, rest) = tag.split_once(&format!(" {name}=\""))?;
+            rest.split_once('"').map(|(value, _)| value)
+        };
+        let mut line = tag.split_whitespace().next().unwrap_or_default().to_owned();
+        for name in [
+            "x",
+            "y",
+            "x1",
+            "y1",
+            "x2",
+            "y2",
+            "cx",
+            "cy",
+            "r",
+            "width",
+            "height",
+            "stroke",
+            "fill",
+            "transform",
+        ] {
+            if let Some(value) = attribute(name).filter(|value| *value != "none" && *value != "#282828") {
+                line += &format!(" {name} {value}");
+            }
+        }
+        if let Some(points) = attribute("points") {
+            let points: Vec<[i32; 2]> = points
+                .split_whitespace()
+                .filter_map(|point| point.split_once(','))
+                .map(|(x, y)| [x, y].map(|c| c.parse().expect("a whole number")))
+                .collect();
+            let extent = |axis: usize| {
+                let of = || points.iter().map(|point| point[axis]);
+                [of().min().expect("points"), of().max().expect("points")]
+            };
+            let (first, last) = (points[0], points[points.len() - 1]);
+            line += &format!(", {} points from {first:?} to {last:?}", points.len());
+            if points.len() > 2 {
+                line += &format!(" within {:?} {:?}", extent(0), extent(1));
+            }
+        }
+        lines += &format!("{line} {}\n", text.trim());
+    }
+    lines
+}
+
+/// The pictures of a motion and of modes whose numbers are made up, so that no solver moves a point: whoever changes how something is drawn sees here what it
+/// changes.
+#[test]
+fn regress_pictures() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let mut text = String::new();
+    for (name, mut trajectory) in [("motion", motion(5)), ("modes", modal())] {
+        let results = directory.path().join(name);
+        write(&results, &mut trajectory, &OutputOptions::default()).expect("written");
+        for file in names(&results).iter().filter(|file| file.ends_with(".svg")) {
+            let svg = fs::read_to_string(results.join(file)).expect("a picture");
+            text += &format!("== {name}/{file}\n{}", elements(&svg));
+        }
+    }
+    insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false }, {
+        insta::assert_snapshot!("pictures", text);
+    });
+}
