@@ -169,7 +169,6 @@
 //! assert!(tip.x.hypot(tip.y) < 1e-4 * length);
 //! # Ok::<(), ancf::run::RunError>(())
 //! ```
-#![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
 pub mod basis;

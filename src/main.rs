@@ -1,5 +1,4 @@
 //! The `ancf` program: see `ancf --help`.
-#![forbid(unsafe_code)]
 
 mod cli;
 

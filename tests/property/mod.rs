@@ -1,13 +1,16 @@
 //! What must hold at every state: derivatives, invariances, exactness.
 
 mod absence;
+mod acting;
 mod agreement;
+mod arm;
 mod balances;
 mod basis;
 mod breaks;
 mod buoyancy;
 mod contact;
 mod derivatives;
+mod driven;
 mod dynamics;
 mod events;
 mod frames;
@@ -15,6 +18,7 @@ mod friction;
 pub mod generators;
 mod inextensible;
 mod invariance;
+mod joints;
 mod laws;
 mod linear;
 mod modal;
@@ -23,6 +27,7 @@ mod restart;
 mod scene;
 mod section_forces;
 mod stability;
+mod strings;
 mod supports;
 mod turning;
 mod weld;

@@ -14,7 +14,6 @@
 //!
 //! Nothing outside this package links Python. Where Python or a package is missing, whatever asks for it fails and says
 //! what to install; nothing is skipped.
-#![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
 pub mod bridge;

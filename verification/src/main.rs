@@ -1,7 +1,5 @@
 //! `verify`: makes the reference data of the verification cases, and reports how the solver compares with it.
 
-#![forbid(unsafe_code)]
-
 mod beside;
 mod browser;
 mod cost;

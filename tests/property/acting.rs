@@ -1,0 +1,110 @@
+//! Actuators and contacts at work, and parts that do not fit.
+
+use super::arm::{LENGTH, ancf, beam, imbalance, moved, one, still, support};
+use ancf::effect::{Actuation, BeamDamping, Contact, Friction, Obstacle, Spring};
+use ancf::model::*;
+use ancf::run::{Control, run};
+use ancf::trajectory::Event;
+use std::sync::Arc;
+
+/// An actuated cantilever without loads takes the arc of its own curvature, and is free of stress.
+#[test]
+fn an_actuated_beam_takes_its_own_shape() {
+    let actuation = Actuation { beam: 0, strain: Some(0.02), curvature: Some(1.5), law: None };
+    let trajectory = still(&one(vec![support(0.0, FixedRotation::Angle)], vec![Arc::new(actuation)]));
+    let last = trajectory.probes[0].samples.last().expect("a record");
+    // κ counts per reference length: the arc has the angle κ L and the length 1.02 L.
+    let angle = 1.5 * LENGTH;
+    let radius = 1.02 / 1.5;
+    assert!((last.angle - angle).abs() < 1e-4, "{}", last.angle);
+    assert!((last.x - radius * angle.sin()).hypot(last.y - radius * (1.0 - angle.cos())) < 1e-3, "{last:?}");
+    let arm = &trajectory.last[0];
+    assert!(arm.axial_force.iter().all(|n| n.abs() < 2.0), "{:?}", arm.axial_force);
+}
+
+/// A beam dropped on a plane bounces; the contact gives back what it takes, friction takes for good.
+#[test]
+fn a_beam_bounces_from_a_plane() {
+    let contact = |friction| Contact {
+        beam: 0,
+        obstacle: Obstacle::HalfPlane { point: [0.0, -0.1], normal: [0.0, 1.0] },
+        stiffness: 1e4,
+        half_thickness: 0.0,
+        friction,
+    };
+    let tolerance = Integrator::Gauss { stages: 2, step: StepControl::Tolerance(1e-7) };
+    for friction in [None, Some(Friction { coefficient: 0.3, stiffness: 1e4 })] {
+        let mut model = one(vec![], vec![Arc::new(contact(friction))]);
+        model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+        model.initial_velocities =
+            vec![InitialVelocity { translation: [1.0, 0.0], ..InitialVelocity::default() }];
+        let trajectory = moved(&model, 0.4, tolerance);
+        let lowest = trajectory.probes[0].samples.iter().fold(f64::INFINITY, |m, s| m.min(s.y));
+        assert!((-0.12..-0.05).contains(&lowest), "lowest {lowest}");
+        let off = imbalance(&trajectory);
+        assert!(off < 1e-5, "balance off by {off}");
+        assert_eq!(trajectory.outlines, [[[LENGTH, -0.1], [-LENGTH, -0.1]]]);
+        // It falls 0.1 m, and is pushed back.
+        let [
+            Event::Contact { time: begin, contact, touches: true, blow: None },
+            Event::Contact { time: end, touches: false, blow: Some(blow), .. },
+            ..,
+        ] = &trajectory.events[..]
+        else {
+            panic!("{:?}", trajectory.events)
+        };
+        assert!(
+            contact == "arm.1" && (begin - (0.2_f64 / 9.81).sqrt()).abs() < 1e-6,
+            "{contact} at {begin} s"
+        );
+        assert!((1e-3..0.1).contains(&(end - begin)), "it touches until {end} s");
+        // It leaves as fast as it came, by an oscillation on the penalty about the depth at which that bears the weight.
+        let (mass, speed, frequency) = (0.4 * LENGTH, 9.81 * begin, (1e4 / 0.4_f64).sqrt());
+        let impulse = mass * (2.0 * speed + 9.81 * (end - begin));
+        let force =
+            1e4 * LENGTH * (9.81 / frequency.powi(2) + (9.81 / frequency.powi(2)).hypot(speed / frequency));
+        assert!(
+            blow.impulse[0].abs() < 1e-9 && (blow.impulse[1] - impulse).abs() < 1e-5 * impulse,
+            "{blow:?}, not {impulse}"
+        );
+        assert!((0.9..=1.0 + 1e-6).contains(&(blow.largest_force / force)), "{blow:?}, not {force}");
+        let lost = trajectory.energy.last().expect("a record").lost;
+        assert_eq!(friction.is_some(), lost > 1e-3, "lost {lost}");
+        let speed = trajectory.probes[0].samples.last().and_then(|s| s.vx).unwrap_or_default();
+        assert_eq!(friction.is_some(), speed < 0.95, "speed {speed}");
+        assert!(
+            trajectory
+                .effects
+                .iter()
+                .any(|e| e.name == "contact.arm" && e.samples.iter().any(|s| s[2] > 1.0))
+        );
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_its_place() {
+    let refused = |model: &Model, words: &str| {
+        let error = run(model, &Analysis::Static(Static::default()), &mut |_| Control::Continue);
+        let message = error.expect_err("refused").to_string();
+        assert!(message.contains(words), "{message}");
+    };
+    let mut apart = one(vec![support(0.0, FixedRotation::Angle)], vec![]);
+    apart.beams.push(beam("other", [LENGTH, 0.3], [2.0, 0.3], ancf(2)));
+    apart.joints =
+        vec![Joint::Hinge { first: Place { beam: 0, s: LENGTH }, second: Place { beam: 1, s: 0.0 } }];
+    refused(&apart, "3.000e-1 m apart");
+    let load = Load::Force { at: Place { beam: 0, s: 0.5 }, value: [0.0, 1.0], follower: false };
+    let mut timed = one(vec![support(0.0, FixedRotation::Angle)], vec![]);
+    timed.loads = vec![Load::InTime { load: Box::new(load), law: Law::Step { start: 0.0 } }];
+    refused(&timed, "law of time");
+    let spring = Spring {
+        at: Place { beam: 0, s: 7.0 },
+        anchor: None,
+        length: None,
+        stiffness: Some(1.0),
+        damping: None,
+    };
+    refused(&one(vec![support(0.0, FixedRotation::Angle)], vec![Arc::new(spring)]), "s = 7 m");
+    let damping = BeamDamping { beam: 3, mass_proportional: Some(1.0), ..BeamDamping::default() };
+    refused(&one(vec![support(0.0, FixedRotation::Angle)], vec![Arc::new(damping)]), "beam number 3");
+}

@@ -1,0 +1,120 @@
+//! Strings: beams without a bending stiffness, taut and slack.
+
+use super::arm::{ancf, beam, gauss, imbalance, moved, one, still, support, tip};
+use ancf::model::*;
+use ancf::run::{Control, run};
+
+/// A string: no bending stiffness named, none computed.
+#[test]
+fn a_string_has_no_bending() {
+    let mut model = one(vec![support(0.0, FixedRotation::Free)], vec![]);
+    model.beams[0].section.bending_stiffness = None;
+    model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+    let analysis = Analysis::Dynamic(Dynamic {
+        duration: 0.1,
+        output_every: 0.1,
+        integrator: gauss(1e-3),
+        events: vec![],
+    });
+    let inventory = ancf::run::inspect(&model, &analysis).expect("a string");
+    assert!(inventory.effects.iter().all(|effect| effect.kind != ancf::effect::Kind::Bend));
+    let trajectory = moved(&model, 0.3, gauss(1e-3));
+    assert!(trajectory.energy.iter().all(|e| e.bend == 0.0));
+    assert!(imbalance(&trajectory) < 1e-4, "{}", imbalance(&trajectory));
+}
+
+/// A slack cable between two supports, laid out as an arc, hangs as a catenary: y = a cosh(x/a) with 2 a sinh(w/2a) = L.
+#[test]
+fn a_slack_cable_hangs_as_a_catenary() {
+    let (radius, half) = (1.0_f64, 1.0_f64);
+    let mut cable = beam("cable", [0.0; 2], [1.0, 0.0], ancf(24));
+    cable.centreline = Centreline::Arc { center: [0.0, 0.0], radius, from: -2.0, to: -2.0 + 2.0 * half };
+    cable.section =
+        Section { axial_stiffness: Some(1e6), bending_stiffness: None, mass_per_length: Some(0.4) };
+    let length = 2.0 * half * radius;
+    let ends = [0.0, length].map(|s| support(s, FixedRotation::Free));
+    let mut model = one(ends.to_vec(), vec![]);
+    model.beams = vec![cable];
+    model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+    model.probes = tip(0, 0.5 * length);
+    let trajectory = still(&model);
+    let [a, b] = [-2.0_f64, 0.0].map(|angle| [radius * angle.cos(), radius * angle.sin()]);
+    // The catenary through both ends: √(L² − v²) = 2 c sinh(h/2c), h and v the distances along x and y.
+    let (h, v) = (b[0] - a[0], b[1] - a[1]);
+    let mut bracket = (0.05_f64, 50.0_f64);
+    for _ in 0..200 {
+        let c = 0.5 * (bracket.0 + bracket.1);
+        if 2.0 * c * (0.5 * h / c).sinh() > (length * length - v * v).sqrt() {
+            bracket.0 = c
+        } else {
+            bracket.1 = c
+        }
+    }
+    let c = bracket.0;
+    let tension = c * 0.4 * 9.81;
+    let pull = trajectory.reactions[1].samples.last().expect("a record");
+    assert!((pull.fx - tension).abs() < 2e-3 * tension, "{} N and not {tension} N", pull.fx);
+    let weight: f64 = trajectory.reactions.iter().filter_map(|r| r.samples.last()).map(|r| r.fy).sum();
+    assert!((weight - 0.4 * 9.81 * length).abs() < 1e-6, "the supports bear {weight} N");
+    assert!(trajectory.last[0].bending_moment.iter().all(|m| *m == 0.0));
+}
+
+/// Where nothing acts a string stays where it is, though nothing would resist it.
+#[test]
+fn a_string_without_load_stays() {
+    let arc = Centreline::Arc { center: [0.0, 0.0], radius: 1.0, from: -2.0, to: -0.5 };
+    let line = Centreline::Line { start: [0.0; 2], end: [0.9, 1.2] };
+    for centreline in [arc, line] {
+        let mut model =
+            one(vec![support(0.0, FixedRotation::Free), support(1.5, FixedRotation::Free)], vec![]);
+        model.beams[0].centreline = centreline;
+        model.beams[0].section.bending_stiffness = None;
+        for supports in [2, 1, 0] {
+            model.supports.truncate(supports);
+            let trajectory = still(&model);
+            assert_eq!(trajectory.statistics.newton_iterations, 0);
+            assert_eq!(
+                (&trajectory.last[0].x, &trajectory.last[0].y),
+                (&trajectory.undeformed[0].x, &trajectory.undeformed[0].y)
+            );
+        }
+        // A support that has a way to go is not at rest.
+        model.supports = vec![support(0.0, FixedRotation::Free), support(1.5, FixedRotation::Free)];
+        model.supports[1].displacement = Displacement { x: 0.01, ..Displacement::default() };
+        let end = still(&Model { probes: tip(0, 1.5), ..model.clone() }).probes[0]
+            .samples
+            .last()
+            .expect("a record")
+            .x;
+        let before =
+            still(&Model { probes: tip(0, 1.5), supports: vec![], ..model.clone() }).probes[0].samples[0].x;
+        assert!((end - before - 0.01).abs() < 1e-9, "{end} from {before}");
+    }
+}
+
+/// A straight string whose end is brought nearer at once may be left with a fold, and says so; by small steps it hangs without one.
+#[test]
+fn a_folded_string_is_named() {
+    let cable = |steps| {
+        let mut model =
+            one(vec![support(0.0, FixedRotation::Free), support(1.0, FixedRotation::Free)], vec![]);
+        model.beams = vec![beam("cable", [0.0; 2], [1.0, 0.0], ancf(16))];
+        model.beams[0].section =
+            Section { axial_stiffness: Some(100.0), bending_stiffness: None, mass_per_length: Some(1.0) };
+        model.supports[1].displacement = Displacement { x: -0.4, ..Displacement::default() };
+        model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+        model.probes = tip(0, 0.5);
+        let settings = Static { steps, ..Static::default() };
+        run(&model, &Analysis::Static(settings), &mut |_| Control::Continue).expect("an equilibrium")
+    };
+    for steps in [None, Some(40)] {
+        let trajectory = cable(steps);
+        let middle = trajectory.probes[0].samples.last().expect("a record");
+        // What is free of folds is symmetric.
+        let symmetric = (middle.x - 0.3).abs() < 1e-6;
+        let named =
+            trajectory.warnings.iter().any(|w| w.contains("string `cable` turns by more than a right angle"));
+        assert_eq!(named, !symmetric, "{steps:?} steps: x = {}, {:?}", middle.x, trajectory.warnings);
+        assert!(symmetric || steps.is_none(), "x = {}", middle.x);
+    }
+}
