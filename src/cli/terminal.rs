@@ -328,7 +328,7 @@ fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ancf::trajectory::{Energy, ProbeSeries};
+    use ancf::trajectory::{Energy, ProbeSeries, Seconds, Statistics};
 
     #[test]
     fn numbers_keep_seven_digits() {
@@ -362,5 +362,73 @@ mod tests {
         assert!(!text.contains("complete"), "{text}");
         let text = table(&Trajectory { complete: false, ..trajectory }, Path::new("out/arm"));
         assert!(text.contains("complete     no, the run ended"), "{text}");
+    }
+
+    /// All rows that there are, word for word.
+    #[test]
+    fn the_table_reads_as_reviewed() {
+        let sample = ProbeSample {
+            x: 0.25,
+            y: -1.5e-4,
+            angle: 0.5,
+            curvature: 3.0,
+            strain: 2e-6,
+            vx: Some(1.5),
+            vy: Some(-0.25),
+        };
+        let trajectory = Trajectory {
+            title: "Arm".into(),
+            analysis: AnalysisKind::Dynamic,
+            complete: true,
+            degrees_of_freedom: 44,
+            parameter: vec![0.0, 0.75],
+            probes: vec![ProbeSeries { name: "tip".into(), samples: vec![ProbeSample::default(), sample] }],
+            energy: vec![Energy {
+                stretch: 0.125,
+                bend: 0.5,
+                stored: 0.25,
+                kinetic: 2.0,
+                potential: -4.0,
+                work: 8.0,
+                lost: 16.0,
+            }],
+            events: vec![
+                Event::Crossing { time: 0.5, probe: "tip".into(), axis: "y".into(), value: -0.125 },
+                Event::Contact { time: 0.625, contact: "arm.1".into(), touches: true, blow: None },
+                Event::Contact {
+                    time: 0.6875,
+                    contact: "arm.1".into(),
+                    touches: false,
+                    blow: Some(Blow { impulse: [0.5, -0.25], largest_force: 32.0 }),
+                },
+            ],
+            frequencies: vec![0.0, 12.5],
+            load_factors: vec![2.467],
+            statistics: Statistics {
+                steps: 12,
+                rejected_steps: 1,
+                newton_iterations: 24,
+                factorizations: 0,
+                ..Statistics::default()
+            },
+            seconds: Seconds { build: 0.125, solve: 1.5, write: 0.0625 },
+            ..Trajectory::default()
+        };
+        let expected = "\
+Arm
+  time             0.75 s
+  tip              x = 0.25 m, y = -1.500000e-4 m, angle = 28.64789°, curvature = 3 /m, strain = 2.000000e-6, vx = 1.5 m/s, vy = -0.25 m/s
+  frequency 1      0 Hz (nothing resists)
+  frequency 2      12.5 Hz
+  critical load 1  2.467 × the load
+  energy           stretch 0.125 J, bend 0.5 J, springs and contacts 0.25 J, kinetic 2 J, potential -4 J, put in 8 J, lost 16 J, total 6.875 J
+  event at tip     0.5 s: y = -0.125 m
+  contact arm.1    0.625 s: begins
+  contact arm.1    0.6875 s: ends, impulse (0.5, -0.25) N s, up to 32 N
+  unknowns         44
+  work             12 steps, 1 rejected, 24 Newton iterations
+  seconds          build 0.125, solve 1.500, write 0.062
+  report           out/arm/report.html";
+        assert_eq!(table(&trajectory, Path::new("out/arm")), expected);
     }
 }

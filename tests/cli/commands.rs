@@ -44,7 +44,7 @@ fn run_writes_its_results_and_says_where() {
     assert!(output.stdout.is_empty());
     assert!(folder.path().join("out/scene/summary.json").is_file());
     let text = stderr(&output);
-    for part in ["Roll-up, ANCF, 4 nodes", "tip", "energy", "unknowns", "report.html"] {
+    for part in ["Roll-up, ANCF, 4 nodes", "tip", "energy", "unknowns", "Newton iterations", "report.html"] {
         assert!(text.contains(part), "{part} in {text}");
     }
 }

@@ -5,6 +5,7 @@ use ancf::model::{
     Analysis, ArcLength, Discretization, Dynamic, GaussPoints, Integrator, Kernel, Nodes, ProbeTarget,
     SideCondition, Static, StepControl,
 };
+use ancf::run::{Control, run};
 use ancf::scene::parse;
 use std::f64::consts::PI;
 
@@ -216,4 +217,88 @@ fn a_moment_that_follows_is_the_same_moment() {
         found.last("probes.csv", "end.y")
     };
     assert_eq!(bent(""), bent(", follower = true"));
+}
+
+/// An end that is typed with fewer digits than the length has is the end, twelve digits are no other place, and what lies beyond is refused.
+#[test]
+fn places_are_where_the_scene_says() {
+    let of = |at: &str| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 1], axial_stiffness = 1e6, bending_stiffness = 1e4, basis.ancf.elements = 2 }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+            effect.force = [{{ beam = 'arm', at = {at}, value = [0, -3] }}]
+            analysis.static = {{}}\n"
+        )
+    };
+    for at in ["'end'", "1.4142135623", "1.41421356237309"] {
+        let solved = Written::of(&of(at));
+        // −F x, with x of the end.
+        near(solved.column("shape.csv", "bending_moment")[0], -3.0, 1e-3, at);
+    }
+    assert!(parse("scene.toml", &of("1.4142136")).is_err());
+}
+
+/// Two supports at one place may share the work, but not hold the same twice; as many polynomial terms as a support of shape functions can carry are legal.
+#[test]
+fn what_is_legal_up_to_its_bound() {
+    let of = |supports: &str, terms: u32| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1e4, \
+             basis.rpim = {{ nodes = 5, neighbours = 1, polynomial_terms = {terms} }} }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y'] }}, {supports}]
+            effect.force = [{{ beam = 'arm', at = 'end', value = [0, -3] }}]
+            analysis.static = {{}}\n"
+        )
+    };
+    let angle = "{ beam = 'arm', at = 'start', fix = ['angle'] }";
+    let legal = |supports: &str, terms: u32| {
+        parse("scene.toml", &of(supports, terms)).map(|_| ()).map_err(|e| e.to_string())
+    };
+    assert_eq!(legal(angle, 6), Ok(()));
+    let refused = legal(angle, 7).expect_err("more terms than the smallest support has coordinates");
+    assert!(refused.contains("7 polynomial terms"), "{refused}");
+    let twice = legal(&format!("{angle}, {angle}"), 6).expect_err("the angle is held twice");
+    assert!(twice.contains("direction"), "{twice}");
+}
+
+/// The nodes that the page draws are on the beam: at every quarter of four elements.
+#[test]
+fn nodes_of_a_shape_are_on_it() {
+    let scene = parse(
+        "scene.toml",
+        "beam.arm = { start = [0, 0], end = [2, 0], axial_stiffness = 300, bending_stiffness = 2, basis.ancf.elements = 4 }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.force = [{ beam = 'arm', at = 'end', value = [0, 1.5] }]
+        analysis.static = {}\n",
+    )
+    .expect("a legal scene");
+    let solved = run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("an equilibrium");
+    let shape = &solved.last[0];
+    let every = (shape.s.len() - 1) / 4;
+    assert_eq!(shape.nodes.len(), 5);
+    for (k, node) in shape.nodes.iter().enumerate() {
+        near(node[0], shape.x[k * every], 1e-12, "x");
+        near(node[1], shape.y[k * every], 1e-12, "y");
+    }
+    assert!(shape.nodes[4][1] > 0.5);
+}
+
+/// A string carries nothing but its tension, and what moves has an energy but no force of its own in `effects.csv`.
+#[test]
+fn a_string_has_no_shear_and_inertia_no_force() {
+    let found = Written::of(
+        "beam.rope = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, mass_per_length = 2, basis.ancf.elements = 4 }
+        support = [{ beam = 'rope', at = 'start', fix = ['x', 'y'] }]
+        effect.gravity.acceleration = [0, -5]
+        output.effects = true
+        analysis.dynamic = { duration = 0.1, output_every = 0.05 }\n",
+    );
+    for name in ["shear_force", "bending_moment"] {
+        assert!(found.column("shape.csv", name).iter().all(|value| *value == 0.0), "{name}");
+    }
+    for name in found.header("effects.csv").iter().filter(|name| name.starts_with("inertia")) {
+        if !name.ends_with("energy") {
+            assert!(found.column("effects.csv", name).iter().all(|value| *value == 0.0), "{name}");
+        }
+    }
 }

@@ -102,3 +102,80 @@ pub fn table(report: &Report<'_>, directory: &Path) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ancf::cost::{Deviation, Measured};
+    use ancf::trajectory::Statistics;
+
+    fn rung(
+        discretization: &str,
+        seconds: f64,
+        deviation: Deviation,
+        [front, below_uncertainty]: [bool; 2],
+    ) -> ReportedRung {
+        let statistics = Statistics { tangent_evaluations: 3, factorizations: 4, ..Statistics::default() };
+        let measured = Measured { seconds, deviation, statistics, ..Measured::default() };
+        let (discretization, solver) = (discretization.to_owned(), "as the scene is".to_owned());
+        ReportedRung {
+            discretization,
+            cells: 8,
+            solver,
+            measured,
+            below_uncertainty,
+            front,
+            meets_target: false,
+        }
+    }
+
+    /// Settings on the front and those close to it, by their time; one that takes 1.3 times as long for the same is left out.
+    #[test]
+    fn the_table_reads_as_reviewed() {
+        let error = |error: f64| Deviation { error, ..Deviation::default() };
+        let full = Deviation { error: 2.5e-5, curvature: Some(1.5e-3), energy: Some(4e-6) };
+        let left = |what: &str| LeftOut { what: what.to_owned(), why: "it was too slow".to_owned() };
+        let report = Report {
+            title: "Arm",
+            version: "0",
+            complete: true,
+            target: 1e-4,
+            error: "position error",
+            budget: 60.0,
+            reference: &["one".to_owned(), "other".to_owned()],
+            uncertainty: Deviation { error: 1e-7, curvature: Some(2e-4), energy: None },
+            rungs: vec![
+                rung("the scene", 5e-3, error(1e-3), [false, false]),
+                rung("dear", 1.3e-3, full, [false, false]),
+                rung("best", 1e-3, full, [true, false]),
+                rung("as good", 1.2e-3, full, [false, false]),
+                rung("exact", 4.5e-2, error(1e-8), [true, true]),
+            ],
+            best: Some(2),
+            lines: Some("elements = 8\n"),
+            left_out: &[left("a"), left("b"), left("c"), left("d"), left("e")],
+            warnings: vec![],
+        };
+        let expected = "\
+Arm
+
+   discretisation  cells  solver           time [ms]  work  error                              curvature  energy
+►  best            8      as the scene is  1          7     2.5e-5                             1.5e-3     4.0e-6
+   as good         8      as the scene is  1.2        7     2.5e-5                             1.5e-3     4.0e-6
+   the scene       8      as the scene is  5          7     1.0e-3                             –          –
+•  exact           8      as the scene is  45         7     below the reference's uncertainty  –          –
+
+• nothing is better in time and error; ► the cheapest that meets the target 1e-4
+error: position error; work: tangent evaluations and factorisations
+reference: one
+against: other
+uncertainty of the reference: 1.0e-7, of its curvature 2.0e-4, of its energy –
+5 settings measured; details and plots: out/cost.html
+left out, because it was too slow: a; b; c; and 2 more
+
+In place of the tables of these names (or run out/best.toml):
+
+elements = 8";
+        assert_eq!(table(&report, Path::new("out")), expected);
+    }
+}
