@@ -11,7 +11,30 @@
 //! method, so that |r₀'(s)| = 1 for every kind of centreline. Spline ends: de Boor, *A Practical Guide to
 //! Splines*, ch. IV.
 
-use crate::model::Centreline;
+/// The stress-free centreline r₀(s), parametrised by arc length s ∈ [0, L].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Centreline {
+    /// Straight from `start` to `end` \[m\].
+    Line {
+        /// First end \[m\].
+        start: [f64; 2],
+        /// Second end \[m\].
+        end: [f64; 2],
+    },
+    /// Part of a circle; the polar angle runs from `from` to `to` \[rad\], either way round.
+    Arc {
+        /// Centre of the circle \[m\].
+        center: [f64; 2],
+        /// Radius \[m\], positive.
+        radius: f64,
+        /// Polar angle of the beam's start \[rad\].
+        from: f64,
+        /// Polar angle of the beam's end \[rad\].
+        to: f64,
+    },
+    /// A smooth curve through the given points \[m\], in order.
+    Points(Vec<[f64; 2]>),
+}
 
 /// A centreline ready for evaluation.
 #[derive(Clone, Debug, PartialEq)]

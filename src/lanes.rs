@@ -3,7 +3,10 @@
 //! The densities that cost time are written once, for [`Real`] numbers, and serve single points and four at once alike. Left to itself the
 //! compiler keeps four points scalar, so that the lanes are named here, by `wide`'s registers (AVX where the target has it).
 
-use crate::linear::fma::fma;
+mod fma;
+
+pub use fma::fma;
+
 use nalgebra::Matrix2;
 use std::ops::{Add, Mul, Neg, Sub};
 use wide::f64x4;

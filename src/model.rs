@@ -14,6 +14,9 @@ pub use joint::Joint;
 pub use law::{Law, Table};
 pub use velocity::{InitialVelocity, Profile};
 
+pub use crate::basis::{Discretization, Kernel, Nodes, SideCondition};
+pub use crate::centreline::Centreline;
+
 use crate::basis::Quadrature;
 use crate::system::assembly::Part;
 use std::fmt;
@@ -98,31 +101,6 @@ pub struct Beam {
     pub gauss_points: GaussPoints,
 }
 
-/// The stress-free centreline r₀(s), parametrised by arc length s ∈ [0, L].
-#[derive(Clone, Debug, PartialEq)]
-pub enum Centreline {
-    /// Straight from `start` to `end` \[m\].
-    Line {
-        /// First end \[m\].
-        start: [f64; 2],
-        /// Second end \[m\].
-        end: [f64; 2],
-    },
-    /// Part of a circle; the polar angle runs from `from` to `to` \[rad\], either way round.
-    Arc {
-        /// Centre of the circle \[m\].
-        center: [f64; 2],
-        /// Radius \[m\], positive.
-        radius: f64,
-        /// Polar angle of the beam's start \[rad\].
-        from: f64,
-        /// Polar angle of the beam's end \[rad\].
-        to: f64,
-    },
-    /// A smooth curve through the given points \[m\], in order.
-    Points(Vec<[f64; 2]>),
-}
-
 /// What the section resists and weighs. `None`: the scene does not name it, so it is not simulated; what names no axial stiffness keeps its length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Section {
@@ -142,77 +120,6 @@ pub enum StrainMeasure {
     /// ε = |r'| − 1.
     #[default]
     Engineering,
-}
-
-/// How a beam's centreline is approximated between nodes.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Discretization {
-    /// Gradient-deficient cable element: cubic Hermite shape functions between neighbouring nodes.
-    Ancf {
-        /// Where the nodes are.
-        nodes: Nodes,
-    },
-    /// Hermite radial point interpolation.
-    Rpim {
-        /// Where the nodes are.
-        nodes: Nodes,
-        /// Radial function.
-        kernel: Kernel,
-        /// Number of polynomial terms 1, s, s², …
-        polynomial_terms: usize,
-        /// Sign of the slope terms in the side conditions.
-        side_condition: SideCondition,
-        /// Nodes beyond the cell's own two, on each side.
-        neighbours: usize,
-    },
-}
-
-/// The places of the nodes along a beam.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Nodes {
-    /// `n` nodes at equal distances.
-    Uniform(usize),
-    /// `n` nodes at s_i = L/2 − L/2 cos((i−1)π/(n−1)).
-    Chebyshev(usize),
-    /// Arc lengths \[m\], increasing from 0 to L.
-    Given(Vec<f64>),
-}
-
-/// Radial function R(d) of a support, d in units of the average spacing d_c.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kernel {
-    /// (d² + α²)^q
-    Multiquadric {
-        /// Exponent q, not a whole number.
-        q: f64,
-        /// α_c.
-        shape: f64,
-    },
-    /// exp(−α d²)
-    Exponential {
-        /// α_c.
-        shape: f64,
-    },
-    /// d^η, or d^η ln d where η is an even whole number.
-    ThinPlateSpline {
-        /// η, larger than 3: three derivatives must exist at d = 0.
-        exponent: f64,
-    },
-    /// (1 − d/δ)₊⁸ (32 (d/δ)³ + 25 (d/δ)² + 8 d/δ + 1), Wendland's C⁶ function of compact support.
-    Wendland {
-        /// Radius δ of the support.
-        radius: f64,
-    },
-}
-
-/// The sign in Σ [p_j(s_i) a_i ± p_j'(s_i) b_i] = 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SideCondition {
-    /// The paper's; the moment matrix is not symmetric.
-    #[default]
-    Plus,
-    /// The symmetric choice.
-    Minus,
 }
 
 /// Quadrature points in a cell, by energy.
@@ -359,54 +266,5 @@ impl fmt::Display for StrainMeasure {
             Self::Green => "green",
             Self::Engineering => "engineering",
         })
-    }
-}
-
-impl Nodes {
-    /// Number of nodes.
-    pub fn count(&self) -> usize {
-        match self {
-            Self::Uniform(n) | Self::Chebyshev(n) => *n,
-            Self::Given(s) => s.len(),
-        }
-    }
-}
-
-impl fmt::Display for Nodes {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Uniform(n) => write!(f, "{n} uniform nodes"),
-            Self::Chebyshev(n) => write!(f, "{n} Chebyshev nodes"),
-            Self::Given(s) => write!(f, "{} given nodes", s.len()),
-        }
-    }
-}
-
-impl fmt::Display for Kernel {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Multiquadric { q, shape } => write!(f, "multiquadric (q = {q}, shape {shape})"),
-            Self::Exponential { shape } => write!(f, "exponential (shape {shape})"),
-            Self::ThinPlateSpline { exponent } => write!(f, "thin plate spline (exponent {exponent})"),
-            Self::Wendland { radius } => write!(f, "Wendland C⁶ (radius {radius})"),
-        }
-    }
-}
-
-impl fmt::Display for Discretization {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Ancf { nodes } => write!(f, "ANCF cable elements, {nodes}"),
-            Self::Rpim { nodes, kernel, polynomial_terms, side_condition, neighbours } => {
-                let sign = match side_condition {
-                    SideCondition::Plus => '+',
-                    SideCondition::Minus => '−',
-                };
-                write!(
-                    f,
-                    "RPIM, {nodes}, {kernel}, {polynomial_terms} polynomial terms, side condition {sign}, {neighbours} neighbours a side"
-                )
-            }
-        }
     }
 }

@@ -1,7 +1,9 @@
 //! What a computation leaves: states at the recorded times or load factors, seen through probes,
 //! energies and shapes. Output and verification read nothing else.
 
-use crate::effect::InternalVariables;
+pub use crate::solve::{Blow, Statistics, StepRecord};
+pub use crate::system::Energy;
+
 use crate::restart::SavedState;
 use crate::system::Reaction;
 use serde::Serialize;
@@ -124,40 +126,6 @@ pub struct EffectSeries {
     pub samples: Vec<[f64; 3]>,
 }
 
-/// Energies \[J\].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Energy {
-    /// ½∫ EA (ε − ε₀)² ds, ε₀ that of an actuation.
-    pub stretch: f64,
-    /// ½∫ EI (κ − κ₀)² ds.
-    pub bend: f64,
-    /// Of springs, foundations and contacts.
-    pub stored: f64,
-    /// ½∫ ρA ṙ·ṙ ds, with masses and rotary inertias.
-    pub kinetic: f64,
-    /// −∫ ρA g·(r − r₀) ds, zero in the stress-free shape, and that of conservative loads.
-    pub potential: f64,
-    /// Work that loads without a potential (moments, follower forces), moving supports and actuators that follow a law have done since the start of a motion;
-    /// in statics that of actuators, by the trapezoidal rule over the records.
-    pub work: f64,
-    /// Energy that damping has taken since the start of a motion.
-    pub lost: f64,
-}
-
-impl Energy {
-    /// With what no function of the coordinates counts.
-    #[must_use]
-    pub fn with(mut self, variables: &InternalVariables) -> Self {
-        self.stored += variables.energy();
-        self
-    }
-
-    /// Sum of all parts, less the work put in and with what was lost: constant.
-    pub fn total(&self) -> f64 {
-        self.stretch + self.bend + self.stored + self.kinetic + self.potential - self.work + self.lost
-    }
-}
-
 /// Something that happened in a motion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
@@ -185,15 +153,6 @@ pub enum Event {
         #[serde(flatten)]
         blow: Option<Blow>,
     },
-}
-
-/// What a contact did to a beam from its beginning to its end; without friction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Blow {
-    /// ∫ F dt \[N s\].
-    pub impulse: [f64; 2],
-    /// The largest \|F\| \[N\] that was seen, at three points of every step and more.
-    pub largest_force: f64,
 }
 
 impl Event {
@@ -239,40 +198,6 @@ pub struct Shape {
     pub bending_moment: Vec<f64>,
     /// Positions of the nodes \[m\].
     pub nodes: Vec<[f64; 2]>,
-}
-
-/// One attempted step.
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct StepRecord {
-    /// Load factor or time \[s\] at the end of the step.
-    pub parameter: f64,
-    /// Step size in the load factor, along the path, or in time \[s\].
-    pub step: f64,
-    /// Whether it was kept.
-    pub accepted: bool,
-    /// Per Newton iteration: the scaled increment (dimensionless).
-    pub increments: Vec<f64>,
-    /// Per Newton iteration: the scaled residual (dimensionless).
-    pub residuals: Vec<f64>,
-}
-
-/// Counts of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Statistics {
-    /// Steps kept.
-    pub steps: usize,
-    /// Steps tried again smaller.
-    pub rejected_steps: usize,
-    /// Load steps kept (statics).
-    pub load_steps: usize,
-    /// Newton iterations in all.
-    pub newton_iterations: usize,
-    /// Evaluations of the residual.
-    pub residual_evaluations: usize,
-    /// Evaluations of the tangent.
-    pub tangent_evaluations: usize,
-    /// Matrix factorisations.
-    pub factorizations: usize,
 }
 
 /// Wall time \[s\].

@@ -1,6 +1,6 @@
 //! Radial functions R(d) and their first three derivatives, d in units of the average spacing of the nodes.
 
-use crate::model::Kernel;
+use super::Kernel;
 
 use super::arithmetic::Arithmetic;
 use super::error::BasisError;

@@ -5,8 +5,7 @@
 //! cannot tell which discretisation it came from.
 //!
 //! ```
-//! use ancf::basis::{Basis, Quadrature};
-//! use ancf::model::{Discretization, Nodes};
+//! use ancf::basis::{Basis, Discretization, Nodes, Quadrature};
 //!
 //! let basis = Basis::new(&Discretization::Ancf { nodes: Nodes::Uniform(5) }, 2.0)?;
 //! let table = basis.table(Quadrature::Gauss(3), &[1, 2])?;
@@ -18,6 +17,7 @@
 mod ancf;
 mod arithmetic;
 mod cells;
+mod discretization;
 mod double_double;
 mod error;
 mod kernel;
@@ -29,11 +29,10 @@ mod quadrature;
 mod rpim;
 mod table;
 
+pub use discretization::{Discretization, Kernel, Nodes, SideCondition};
 pub use error::BasisError;
 pub use quadrature::Quadrature;
 pub use table::{BasisTable, Cell};
-
-use crate::model::{Discretization, Nodes};
 
 use cells::{Supports, distinct_cells};
 use rpim::{Interpolation, Precisions, Quality, Shape, Wanted};
@@ -347,7 +346,7 @@ fn ill_conditioned(
     cell: usize,
     first_node: usize,
     nodes: &[f64],
-    kernel: &crate::model::Kernel,
+    kernel: &Kernel,
     quality: Quality,
 ) -> BasisError {
     let spacings = || nodes.windows(2).map(|p| p[1] - p[0]);
@@ -381,7 +380,6 @@ fn check_orders(orders: &[usize]) -> Result<(), BasisError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Kernel;
 
     /// No scene is known that all precisions fail: the message is made of what a cell would leave.
     #[test]

@@ -6,7 +6,7 @@
 //! the kernel as well as the factorisation. A check of the rows against the same factors would not: it passes for a
 //! wrong G.
 
-use crate::model::SideCondition;
+use super::SideCondition;
 
 use super::arithmetic::Arithmetic;
 use super::kernel::Radial;

@@ -1,6 +1,6 @@
 //! Where the nodes are.
 
-use crate::model::Nodes;
+use super::Nodes;
 
 use super::NODE_SNAP;
 use super::error::BasisError;

@@ -14,7 +14,7 @@
 
 use std::ops::Range;
 
-use crate::model::{Kernel, SideCondition};
+use super::{Kernel, SideCondition};
 
 use super::arithmetic::Arithmetic;
 use super::double_double::{Double, DoubleDouble};

@@ -5,8 +5,8 @@
 //! products with the rows; the compiler's own attempts at it stayed scalar.
 
 use super::{Density, Gradient, Integral};
+use crate::lanes::fma;
 use crate::lanes::{self, Lanes, Pair, Points};
-use crate::linear::fma::fma;
 use nalgebra::Vector2;
 
 impl<D: Density<M>, const M: usize> Integral<D, M> {

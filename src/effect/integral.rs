@@ -25,9 +25,9 @@
 
 use super::{Action, Actions, Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
+use crate::lanes::fma;
 use crate::lanes::{self, Lanes, Pair};
 use crate::linear::Matrix;
-use crate::linear::fma::fma;
 use nalgebra::Vector2;
 
 /// Memory that the assembly of a cell uses; kept by the caller so that nothing is allocated in the loops.

@@ -10,12 +10,11 @@
 //! ½ J ṙ'·ṙ', whose matrix is constant, would give |r'| an inertia too: a point's makes the stretch of the cells beside it swing, slower on finer meshes, and
 //! that of sections holds up axial waves.
 
-use super::spring::turn;
+use super::direction;
 use super::{Dissipation, Gradient, Hessian, Inertia, Kind};
 use crate::model::Place;
 use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Extent, Part};
-use nalgebra::{Matrix2, Vector2};
 
 /// A mass at a point: T = ½ m ṙ·ṙ + ½ J θ̇².
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,7 +84,7 @@ impl Dissipation<1> for RotaryInertia {
 
     #[inline(always)]
     fn force_and_matrix(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
-        let p = turn(&z[0]);
+        let p = direction::gradient(&z[0]);
         let matrix = p * p.transpose() * self.inertia;
         ([matrix * rate[0]], [[matrix]])
     }
@@ -105,14 +104,8 @@ impl Dissipation<1> for Gyration {
 
     #[inline(always)]
     fn force_and_matrix(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
-        let (p, half) = (turn(&z[0]), second_turn(&z[0]) * rate[0]);
+        let (p, half) = (direction::gradient(&z[0]), direction::hessian(&z[0]) * rate[0]);
         let inertia = self.0.inertia;
         ([p * (inertia * rate[0].dot(&half))], [[p * half.transpose() * (2.0 * inertia)]])
     }
-}
-
-/// ∂²θ/∂r'∂r'.
-fn second_turn(r: &Vector2<f64>) -> Matrix2<f64> {
-    let (x, y) = (r.x, r.y);
-    Matrix2::new(2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y) / r.norm_squared().powi(2)
 }

@@ -28,6 +28,7 @@ mod actuation;
 mod bend;
 mod contact;
 mod damping;
+mod direction;
 mod dissipation;
 mod drag;
 mod force;

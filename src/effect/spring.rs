@@ -1,6 +1,6 @@
 //! Springs and dashpots between a point of a beam and the ground.
 
-use super::winding::{angle, bend};
+use super::direction;
 use super::{Density, Dissipation, Gradient, Hessian, Kind};
 use crate::model::Place;
 use crate::system::SystemError;
@@ -206,11 +206,6 @@ impl Dissipation<1> for Dashpot {
     }
 }
 
-/// ∂θ/∂r' = J r'/|r'|².
-pub(super) fn turn(r: &Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(-r.y, r.x) / r.norm_squared()
-}
-
 /// W = ½ k (θ − θ₀)², θ − θ₀ from −π to π.
 #[derive(Clone, Debug)]
 pub struct Torsion {
@@ -225,7 +220,7 @@ impl Torsion {
     }
 
     fn angle(&self, r: &Vector2<f64>) -> f64 {
-        angle(&self.reference, r)
+        direction::angle(&self.reference, r)
     }
 }
 
@@ -237,7 +232,7 @@ impl Density<1> for Torsion {
     }
 
     fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
-        [turn(&z[0]) * (self.stiffness * self.angle(&z[0]))]
+        [direction::gradient(&z[0]) * (self.stiffness * self.angle(&z[0]))]
     }
 
     fn gradient_and_hessian(
@@ -247,8 +242,9 @@ impl Density<1> for Torsion {
         _: &Gradient<1>,
         _: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
-        let first = turn(&z[0]);
-        let hessian = (first * first.transpose() + bend(&z[0]) * self.angle(&z[0])) * self.stiffness;
+        let first = direction::gradient(&z[0]);
+        let hessian =
+            (first * first.transpose() + direction::hessian(&z[0]) * self.angle(&z[0])) * self.stiffness;
         (self.gradient(point, z), [[hessian]])
     }
 }
@@ -270,7 +266,7 @@ impl Dissipation<1> for TorsionDashpot {
 
     #[inline(always)]
     fn force_and_matrix(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> (Gradient<1>, Hessian<1>) {
-        let first = turn(&z[0]);
+        let first = direction::gradient(&z[0]);
         let matrix = first * first.transpose() * self.coefficient;
         ([matrix * rate[0]], [[matrix]])
     }

@@ -15,9 +15,9 @@
 
 use super::force::{coefficients, fields, fields_of_four, sums_of_points};
 use super::{Density, Earlier, Integral, Workspace};
+use crate::lanes::fma;
 use crate::lanes::{self, Lanes, Pair, Points};
 use crate::linear::Matrix;
-use crate::linear::fma::fma;
 use nalgebra::Vector2;
 
 impl<D: Density<M>, const M: usize> Integral<D, M> {

@@ -9,10 +9,10 @@
 //!
 //! by [`Winding`]: nothing, until the spring has passed half a turn.
 
-use super::spring::turn;
+use super::direction;
 use super::{Actions, Density, Effect, Gradient, Held, Hessian, InternalVariables, Workspace};
 use crate::linear::Matrix;
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 use std::f64::consts::TAU;
 
 /// The angle from r'₀ to r' as an energy of unit moment.
@@ -28,26 +28,15 @@ impl Direction {
     }
 }
 
-/// The angle from `reference` to `r`, from −π to π.
-pub(super) fn angle(reference: &Vector2<f64>, r: &Vector2<f64>) -> f64 {
-    (reference.x * r.y - reference.y * r.x).atan2(reference.dot(r))
-}
-
-/// ∂²θ/∂r'².
-pub(super) fn bend(r: &Vector2<f64>) -> Matrix2<f64> {
-    let (x, y) = (r.x, r.y);
-    Matrix2::new(2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y) / r.norm_squared().powi(2)
-}
-
 impl Density<1> for Direction {
     const ORDERS: [usize; 1] = [1];
 
     fn energy(&self, _: usize, z: &Gradient<1>) -> f64 {
-        angle(&self.reference, &z[0])
+        direction::angle(&self.reference, &z[0])
     }
 
     fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
-        [turn(&z[0])]
+        [direction::gradient(&z[0])]
     }
 
     fn gradient_and_hessian(
@@ -57,7 +46,7 @@ impl Density<1> for Direction {
         _: &Gradient<1>,
         _: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
-        (self.gradient(point, z), [[bend(&z[0])]])
+        (self.gradient(point, z), [[direction::hessian(&z[0])]])
     }
 }
 

@@ -4,7 +4,7 @@
 //! upper band by the lower bandwidth, as in LAPACK's `gbtrf`.
 
 use super::Singular;
-use super::fma::fma;
+use crate::lanes::fma;
 use faer::c64;
 use std::fmt;
 use std::ops::{Div, Mul, Sub};

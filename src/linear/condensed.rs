@@ -10,7 +10,7 @@
 //! r substitutions for K⁻¹Bᵀ when it is factorised, one when it is solved: a fifth of the time of a sparse LU for a chain of two beams.
 
 use super::bordered::BorderRow;
-use super::complex::ComplexLdl;
+use super::complex_ldl::ComplexLdl;
 use super::interleaved::fits;
 use super::symmetric::Ldl;
 use super::{Matrix, Singular};

@@ -3,11 +3,9 @@
 //! Positions, gradients and multipliers have units of their own, and partial pivoting compares their entries: with a beam of some millimetres those of the
 //! rows are 10⁹ times those of a mass matrix, which then loses as many digits. With powers of two nothing is rounded.
 
-use super::bordered::BorderRow;
-
 /// Scales of `size` unknowns with the given diagonal of the matrix, and then of the rows. Positions have one scale and gradients another: what of a single
 /// unknown is left by round-off is no measure.
-pub fn scales(size: usize, diagonal: impl Fn(usize) -> f64, border: &[BorderRow]) -> Vec<f64> {
+pub fn scales(size: usize, diagonal: impl Fn(usize) -> f64, border: &[Vec<(usize, f64)>]) -> Vec<f64> {
     let power = |value: f64, exponent: f64| {
         let scale = (exponent * value.log2()).round().exp2();
         if scale.is_normal() { scale } else { 1.0 }

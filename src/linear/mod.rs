@@ -17,19 +17,19 @@
 pub mod band;
 pub mod bordered;
 pub mod complex;
+mod complex_ldl;
 pub mod condensed;
 mod equilibrate;
-pub(crate) mod fma;
 pub(crate) mod inertia;
 pub mod interleaved;
 pub mod isotropic;
 mod order;
 pub mod symmetric;
 
+use crate::lanes::fma;
 use band::{Band, BandLu};
 use bordered::{BorderRow, Bordered};
 use condensed::Condensed;
-use fma::fma;
 use interleaved::Interleaved;
 use symmetric::{Ldl, SymmetricBand};
 

@@ -12,9 +12,9 @@
 
 use super::Singular;
 use super::band::Band;
-use super::fma::fma;
 use super::order::Order;
 use crate::lanes::Lanes;
+use crate::lanes::fma;
 
 /// Upper half of a symmetric matrix, banded by blocks.
 #[derive(Clone, Debug)]

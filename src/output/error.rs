@@ -73,7 +73,7 @@ pub enum OutputError {
     /// The report page cannot be made.
     #[error("cannot make the report page")]
     #[diagnostic(
-        code(ancf::output::report),
+        code(ancf::output::page),
         help("the numbers are unaffected: report this with the scene file")
     )]
     Report {

@@ -6,8 +6,8 @@ use crate::effect::{Earlier, Held, InternalVariables, Workspace};
 use crate::lanes::Lanes;
 use crate::linear::bordered::BorderRow;
 use crate::linear::{Factor, Matrix, Singular};
+use crate::solve::Statistics;
 use crate::system::System;
-use crate::trajectory::Statistics;
 
 /// Residuals of so many round-offs of the internal forces count as zero.
 const ROUND_OFFS: f64 = 100.0;

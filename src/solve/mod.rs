@@ -8,6 +8,9 @@ pub mod equilibrium;
 pub mod modal;
 pub mod newton;
 pub mod path;
+mod record;
 pub mod relax;
 pub mod retraction;
 pub mod statics;
+
+pub use record::{Blow, Statistics, StepRecord};

@@ -28,7 +28,7 @@ use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
 use super::newton::{self, Failure, Iterations, Settings};
 use crate::effect::Earlier;
 use crate::lanes::{cross, dot};
-use crate::trajectory::StepRecord;
+use crate::solve::StepRecord;
 use std::f64::consts::TAU;
 
 /// An equilibrium on the path.

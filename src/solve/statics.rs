@@ -6,8 +6,8 @@ use super::path::{Parameter, Path, Stuck};
 use super::relax::{Rest, relax};
 use crate::effect::InternalVariables;
 use crate::model::{ArcLength, Static};
+use crate::solve::{Statistics, StepRecord};
 use crate::system::{System, View};
-use crate::trajectory::{Statistics, StepRecord};
 
 /// By how much the state at which stability and the path's tangent are judged may miss the equilibrium, in beam lengths. Far from
 /// it, that of Newton's last iterate carries the stress of a state not yet converged, which in a slender beam is enough to

@@ -18,6 +18,7 @@ mod contacts;
 pub mod course;
 mod cut;
 mod effects;
+mod energy;
 mod error;
 mod history;
 mod hold;
@@ -35,6 +36,7 @@ pub mod supports;
 mod view;
 
 pub use cut::Balanced;
+pub use energy::Energy;
 pub use error::SystemError;
 pub use inventory::{EffectEntry, Inventory};
 pub use measure::Measured;

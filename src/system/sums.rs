@@ -1,11 +1,11 @@
 //! Sums over effects: forces, tangents, matrices, energies and powers.
 
+use super::Energy;
 use super::course::Amplitude;
 use super::{Acting, System};
 use crate::effect::{Earlier, Effect, Kind, Workspace};
 use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
-use crate::trajectory::Energy;
 
 impl System {
     /// `f = f_int(q) + f_load(q)` at load factor or time `parameter`.

@@ -71,10 +71,10 @@ use super::turns::Turns;
 use crate::lanes::Lanes;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::{Factor, Singular};
+use crate::solve::Statistics;
 use crate::solve::equilibrium::larger;
 use crate::solve::newton::{Failure, Iterations};
 use crate::system::laws::Look;
-use crate::trajectory::Statistics;
 use nalgebra::{Complex, DMatrix, RowDVector};
 
 /// Error of the stages of a step of given length, relative to the displacement in the step: the velocity takes the same relative error.

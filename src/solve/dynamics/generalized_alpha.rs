@@ -30,8 +30,8 @@ use super::motion::{Acceleration, Motion, Rates, Stage};
 use super::turns::Turns;
 use crate::effect::Earlier;
 use crate::linear::{Factor, Singular};
+use crate::solve::Statistics;
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
-use crate::trajectory::Statistics;
 
 /// Newton tolerance relative to the displacement in the step and to the absolute tolerance: it counts where steps are very short, for the
 /// velocity takes the same relative error.

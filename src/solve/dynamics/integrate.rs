@@ -33,8 +33,8 @@ use crate::effect::Held;
 use crate::linear::Singular;
 use crate::model::{Crossing, Integrator, StepControl};
 use crate::solve::newton::{Failure, Iterations, not_crushed};
+use crate::solve::{Statistics, StepRecord};
 use crate::system::{System, View, unfold};
-use crate::trajectory::{Statistics, StepRecord};
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 

@@ -3,8 +3,8 @@
 use super::State;
 use super::motion::Stage;
 use crate::linear::Singular;
+use crate::solve::Statistics;
 use crate::solve::newton::{Failure, Iterations};
-use crate::trajectory::Statistics;
 
 /// A method of time integration. It keeps what it carries from step to step (accelerations, last stages).
 pub trait Method {

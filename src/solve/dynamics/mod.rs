@@ -37,8 +37,8 @@ pub mod turns;
 
 use super::newton::Failure;
 use crate::effect::InternalVariables;
+use crate::solve::{Statistics, StepRecord};
 use crate::system::Reaction;
-use crate::trajectory::{Statistics, StepRecord};
 use serde::{Deserialize, Serialize};
 
 pub use integrate::{Keep, Task, Watch, solve};

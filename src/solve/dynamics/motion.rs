@@ -38,9 +38,9 @@ use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::isotropic::Inertia;
 use crate::linear::{Factor, Matrix, Singular};
+use crate::solve::Statistics;
 use crate::solve::equilibrium::{self, Largest, balance, negate};
 use crate::system::System;
-use crate::trajectory::Statistics;
 use faer::c64;
 
 /// Velocities and accelerations of the unknowns at a time.

@@ -12,8 +12,8 @@
 use super::State;
 use super::integrate::{Driver, SMALLEST_PART};
 use crate::model::StepControl;
+use crate::solve::Blow;
 use crate::solve::newton::Failure;
-use crate::trajectory::Blow;
 
 /// Parts of a step after which contacts are looked at.
 const PARTS: u32 = 4;

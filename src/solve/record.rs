@@ -1,0 +1,46 @@
+//! What solvers tell of their way: attempted steps, counts of work, what contacts did.
+
+use serde::Serialize;
+
+/// One attempted step.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct StepRecord {
+    /// Load factor or time \[s\] at the end of the step.
+    pub parameter: f64,
+    /// Step size in the load factor, along the path, or in time \[s\].
+    pub step: f64,
+    /// Whether it was kept.
+    pub accepted: bool,
+    /// Per Newton iteration: the scaled increment (dimensionless).
+    pub increments: Vec<f64>,
+    /// Per Newton iteration: the scaled residual (dimensionless).
+    pub residuals: Vec<f64>,
+}
+
+/// Counts of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Statistics {
+    /// Steps kept.
+    pub steps: usize,
+    /// Steps tried again smaller.
+    pub rejected_steps: usize,
+    /// Load steps kept (statics).
+    pub load_steps: usize,
+    /// Newton iterations in all.
+    pub newton_iterations: usize,
+    /// Evaluations of the residual.
+    pub residual_evaluations: usize,
+    /// Evaluations of the tangent.
+    pub tangent_evaluations: usize,
+    /// Matrix factorisations.
+    pub factorizations: usize,
+}
+
+/// What a contact did to a beam from its beginning to its end; without friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Blow {
+    /// ∫ F dt \[N s\].
+    pub impulse: [f64; 2],
+    /// The largest \|F\| \[N\] that was seen, at three points of every step and more.
+    pub largest_force: f64,
+}
