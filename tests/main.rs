@@ -2,6 +2,7 @@
 
 mod cli;
 mod hard;
+mod layout;
 mod property;
 mod regress;
 mod validate;

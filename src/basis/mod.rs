@@ -20,6 +20,7 @@ mod cells;
 mod discretization;
 mod double_double;
 mod error;
+mod interpolation;
 mod kernel;
 mod lu;
 mod moments;
@@ -35,7 +36,8 @@ pub use quadrature::Quadrature;
 pub use table::{BasisTable, Cell};
 
 use cells::{Supports, distinct_cells};
-use rpim::{Interpolation, Precisions, Quality, Shape, Wanted};
+use interpolation::{Interpolation, Quality, Wanted};
+use rpim::{Precisions, Shape};
 
 /// Distance at which a point is taken to be a node, in units of the round-off of the beam's length.
 const NODE_SNAP: f64 = 16.0 * f64::EPSILON;

@@ -9,9 +9,9 @@
 use super::SideCondition;
 
 use super::arithmetic::Arithmetic;
+use super::interpolation::{Interpolation, Place, Quality, Wanted};
 use super::kernel::Radial;
 use super::lu::Lu;
-use super::rpim::{Interpolation, Place, Quality, Wanted};
 
 /// Where in a cell the error is estimated, ξ ∈ [0, 1].
 const SAMPLES: [f64; 4] = [0.0, 0.3, 0.7, 1.0];

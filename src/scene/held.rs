@@ -5,7 +5,7 @@ use crate::model::{FixedRotation, Joint, Load, Model, Place};
 
 use super::error::Fault;
 use super::file::SceneTable;
-use super::to_model::Built;
+use super::place::Built;
 
 /// Places nearer to each other than this, per length of the beam, are one: what two supports hold there differs by less
 /// than the equations can tell.

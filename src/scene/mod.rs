@@ -15,6 +15,7 @@ mod file;
 mod held;
 mod merge;
 mod overrides;
+mod place;
 mod quantity;
 mod schema;
 mod to_analysis;

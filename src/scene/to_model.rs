@@ -4,23 +4,17 @@ use std::ops::Range;
 
 use crate::centreline::Curve;
 use crate::model::{
-    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Law, Load, Model, Outputs, Place,
-    Probe, Section, Static, StrainMeasure, Support,
+    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Law, Load, Model, Outputs, Probe,
+    Section, Static, StrainMeasure, Support,
 };
 
-use super::diagnose::choices;
 use super::error::Fault;
 use super::file::{BeamTable, FixName, LawTable, MoveTable, SceneTable, StrainName, SupportTable};
 use super::held::Resisting;
+use super::place::{Built, beam_index, place};
 use super::to_basis::{self, Size};
-use super::value::{At, Located};
+use super::value::Located;
 use super::{held, to_analysis, to_law, to_parts, to_velocity};
-
-/// A beam with what the checks of other tables need to know of it.
-pub(super) struct Built {
-    pub name: Located<String>,
-    pub curve: Curve,
-}
 
 /// Converts and checks everything.
 pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
@@ -220,37 +214,6 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
         }
     }
     Ok(())
-}
-
-pub(super) fn beam_index(name: &Located<String>, built: &[Built]) -> Result<usize, Fault> {
-    built.iter().position(|beam| beam.name.get() == name.get()).ok_or_else(|| {
-        let names: Vec<String> = built.iter().map(|beam| beam.name.get().clone()).collect();
-        Fault::new(name.span(), format!("there is no beam named `{}`", name.get())).help(choices(
-            "beams of this scene",
-            name.get(),
-            &names,
-        ))
-    })
-}
-
-pub(super) fn place(beam: &Located<String>, at: &Located<At>, built: &[Built]) -> Result<Place, Fault> {
-    let index = beam_index(beam, built)?;
-    let length = built.get(index).map_or(0.0, |b| b.curve.length());
-    let s = match *at.get() {
-        At::Start => 0.0,
-        At::End => length,
-        // An end typed with fewer digits than L has is meant as the end.
-        At::ArcLength(s) if (s - length).abs() <= 1e-9 * length => length,
-        At::ArcLength(s) if (0.0..=length).contains(&s) => s,
-        At::ArcLength(s) => {
-            return Err(Fault::new(
-                at.span(),
-                format!("arc length {s} m is not on beam `{}`, which is {length} m long", beam.get()),
-            )
-            .help(format!("give \"start\", \"end\" or an arc length from 0 to {length} m")));
-        }
-    };
-    Ok(Place { beam: index, s })
 }
 
 fn support(table: &Located<SupportTable>, built: &[Built]) -> Result<Support, Fault> {

@@ -10,8 +10,8 @@ use crate::model::{Joint, Model};
 
 use super::error::Fault;
 use super::file::{ContactTable, FrictionTable, GravityTable, JointName, JointTable, PointTable, SceneTable};
+use super::place::{Built, beam_index, place};
 use super::to_law;
-use super::to_model::{Built, beam_index, place};
 use super::value::Located;
 
 /// Adds what the file names to the model.

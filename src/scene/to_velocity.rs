@@ -4,8 +4,8 @@ use crate::model::{FixedRotation, InitialVelocity, Model, Profile, Table};
 
 use super::error::Fault;
 use super::file::{InitialVelocityTable, SceneTable, VelocityPointsTable};
+use super::place::{Built, beam_index};
 use super::quantity::{Measure, Quantity};
-use super::to_model::{Built, beam_index};
 use super::value::Located;
 
 pub(super) fn initial_velocities(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {

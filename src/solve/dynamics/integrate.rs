@@ -23,11 +23,11 @@
 //! way leads through an obstacle (the private module `touch`).
 
 use super::collocation::Collocation;
+use super::contact::Touch;
 use super::generalized_alpha::GeneralizedAlpha;
 use super::method::Method;
 use super::motion::Motion;
 use super::tableau::Tableau;
-use super::touch::Touch;
 use super::{Checkpoint, Solution, State, Stuck};
 use crate::effect::Held;
 use crate::linear::Singular;

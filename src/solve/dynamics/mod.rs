@@ -22,6 +22,7 @@
 
 mod balance;
 pub mod collocation;
+mod contact;
 mod crossing;
 mod forces;
 pub mod generalized_alpha;
@@ -41,8 +42,8 @@ use crate::solve::{Statistics, StepRecord};
 use crate::system::Reaction;
 use serde::{Deserialize, Serialize};
 
+pub use contact::Change;
 pub use integrate::{Keep, Task, Watch, solve};
-pub use touch::Change;
 
 /// A state of motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -10,6 +10,7 @@
 //! leaves an obstacle unseen.
 
 use super::State;
+use super::contact::{Change, Touch};
 use super::integrate::{Driver, SMALLEST_PART};
 use crate::model::StepControl;
 use crate::solve::Blow;
@@ -24,36 +25,6 @@ const BEGUN: f64 = 1e-2;
 /// The rule of Gauss with three points on (0, 1).
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-
-/// A contact as it is after the last step.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Touch {
-    touches: bool,
-    /// Since it began.
-    blow: Blow,
-    /// Whether it has given way once.
-    crossed: bool,
-}
-
-/// A contact begins or ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Change {
-    /// Number of the contact.
-    pub contact: usize,
-    /// Whether it touches from then on.
-    pub touches: bool,
-    /// When \[s\].
-    pub time: f64,
-    /// What it did since it began, or since the motion was taken up; where it ends.
-    pub blow: Option<Blow>,
-}
-
-impl Touch {
-    /// A contact that touches already, or not.
-    pub(super) fn new(touches: bool) -> Self {
-        Self { touches, ..Self::default() }
-    }
-}
 
 impl Driver<'_, '_> {
     /// Refuses a step to `new` whose way leads through an obstacle, and one of fixed length that would not see that it touches one.
