@@ -1,15 +1,16 @@
-//! Geometry of stress-free centrelines: r₀(s), its unit tangent and its curvature by arc length s ∈ [0, L] \[m\].
+//! Geometry of stress-free centrelines: r₀(s), its unit tangent and its curvature by arc length s ∈
+//! [0, L] \[m\].
 //!
-//! Lines and arcs are exact. Through given points runs a cubic spline in the accumulated chord length u
-//! with not-a-knot ends (fourth-order accurate up to the ends), whose arc length
+//! Lines and arcs are exact. Through given points runs a cubic spline in the accumulated chord
+//! length u with not-a-knot ends (fourth-order accurate up to the ends), whose arc length
 //!
 //! ```text
 //! s(u) = ∫₀ᵘ |P'(v)| dv
 //! ```
 //!
-//! is integrated by Gauss quadrature on panels halved until it is exact to round-off, and inverted by Newton's
-//! method, so that |r₀'(s)| = 1 for every kind of centreline. Spline ends: de Boor, *A Practical Guide to
-//! Splines*, ch. IV.
+//! is integrated by Gauss quadrature on panels halved until it is exact to round-off, and inverted
+//! by Newton's method, so that |r₀'(s)| = 1 for every kind of centreline. Spline ends: de Boor, *A
+//! Practical Guide to Splines*, ch. IV.
 
 /// The stress-free centreline r₀(s), parametrised by arc length s ∈ [0, L].
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +106,8 @@ impl Curve {
         }
     }
 
-    /// Position r₀(s) \[m\]; s beyond the ends continues a line or arc, and stops at the ends of a spline.
+    /// Position r₀(s) \[m\]; s beyond the ends continues a line or arc, and stops at the ends of a
+    /// spline.
     pub fn position(&self, s: f64) -> [f64; 2] {
         match &self.0 {
             Shape::Line { start, direction, .. } => add(*start, *direction, s),
@@ -289,7 +291,8 @@ impl Spline {
             let first = panels.len();
             piece.panels(index, 0.0, piece.h, 12, &mut panels);
             for panel in panels.iter_mut().skip(first) {
-                // The halving crowds panels where the speed has a kink, so their ends find every cusp.
+                // The halving crowds panels where the speed has a kink, so their ends find every
+                // cusp.
                 let slowest = piece.speed(panel.from).min(piece.speed(panel.to));
                 if !panel.length.is_finite() || !slowest.is_finite() {
                     return Err(CurveError::NotFinite);
@@ -317,7 +320,8 @@ impl Spline {
         let piece = &self.pieces[panel.piece];
         let target = (s - panel.start).min(panel.length);
         let mut v = panel.from + (panel.to - panel.from) * (target / panel.length);
-        // The speed varies little within a panel: Newton's method converges quadratically from here.
+        // The speed varies little within a panel: Newton's method converges quadratically from
+        // here.
         for _ in 0..20 {
             let step = (target - piece.arc_length(panel.from, v)) / piece.speed(v);
             v = (v + step).clamp(panel.from, panel.to);
@@ -329,8 +333,8 @@ impl Spline {
     }
 }
 
-/// First derivatives at the knots of the not-a-knot cubic spline with spacings `h` and divided differences
-/// `slope`; a parabola through three points.
+/// First derivatives at the knots of the not-a-knot cubic spline with spacings `h` and divided
+/// differences `slope`; a parabola through three points.
 fn tangents(h: &[f64], slope: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let n = h.len() + 1;
     let combine = |a: f64, p: [f64; 2], b: f64, q: [f64; 2]| [a * p[0] + b * q[0], a * p[1] + b * q[1]];
@@ -342,8 +346,9 @@ fn tangents(h: &[f64], slope: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let middle = combine(h[1] / total, slope[0], h[0] / total, slope[1]);
         return vec![combine(2.0, slope[0], -1.0, middle), middle, combine(2.0, slope[1], -1.0, middle)];
     }
-    // Rows lower d[i-1] + diagonal d[i] + upper d[i+1] = right; the end rows say that the third derivative does
-    // not jump at the second and last-but-one knot. Every pivot is positive, whatever the spacings.
+    // Rows lower d[i-1] + diagonal d[i] + upper d[i+1] = right; the end rows say that the third
+    // derivative does not jump at the second and last-but-one knot. Every pivot is positive,
+    // whatever the spacings.
     let mut diagonal = vec![0.0; n];
     let mut upper = vec![0.0; n];
     let mut lower = vec![0.0; n];
@@ -402,7 +407,8 @@ mod tests {
         }
     }
 
-    /// A cubic spline is exact on cubics, parametrised by arc length here: |dr/ds| = 1 by differences.
+    /// A cubic spline is exact on cubics, parametrised by arc length here: |dr/ds| = 1 by
+    /// differences.
     #[test]
     fn splines_run_at_unit_speed() {
         let points = vec![[0.0, 0.0], [0.3, 0.5], [1.0, 0.4], [1.2, -0.6], [2.0, -0.5], [2.1, 0.3]];
@@ -442,7 +448,8 @@ mod tests {
         assert!((spline.length() - fine).abs() < 1e-14 * fine);
     }
 
-    /// Through n points of a circle: length of order 4, curvature of order 2 (both at least, ends included).
+    /// Through n points of a circle: length of order 4, curvature of order 2 (both at least, ends
+    /// included).
     #[test]
     fn circle_points_converge() {
         let error = |n: u32| {

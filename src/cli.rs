@@ -1,8 +1,9 @@
 //! Commands of the `ancf` program. This module and those below it are the only code that prints.
 //!
-//! Results go to files, or to standard output where a command is there to print them; progress, tables, warnings and
-//! errors go to standard error. Exit status: 0 done, 1 the computation or the writing of its results failed or was
-//! interrupted (what was computed until then is written, marked as incomplete), 2 the input is wrong.
+//! Results go to files, or to standard output where a command is there to print them; progress,
+//! tables, warnings and errors go to standard error. Exit status: 0 done, 1 the computation or the
+//! writing of its results failed or was interrupted (what was computed until then is written,
+//! marked as incomplete), 2 the input is wrong.
 
 mod cost;
 mod destination;
@@ -27,8 +28,8 @@ use destination::Destination;
 use failure::Failure;
 use terminal::ProgressLine;
 
-/// Planar flexible beams by the absolute nodal coordinate formulation: cable elements and Hermite radial point
-/// interpolation.
+/// Planar flexible beams by the absolute nodal coordinate formulation: cable elements and Hermite
+/// radial point interpolation.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -48,7 +49,8 @@ enum Command {
     Check(CheckArguments),
     /// Print what would be built for a scene: effects, tables, unknowns, bandwidth, memory
     Inspect(InspectArguments),
-    /// Run a scene many times over a grid or list of values, in parallel and resumable, into one table
+    /// Run a scene many times over a grid or list of values, in parallel and resumable, into one
+    /// table
     Sweep(sweep::SweepArguments),
     /// Measure what accuracy costs in time, on a ladder of discretisations, meshes and integrators
     Cost(cost::CostArguments),
@@ -63,11 +65,12 @@ struct RunArguments {
     /// Directory of the results [default: out/<stem of the scene file>]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Start a motion from the state that a motion or a static run has saved (`state.json` in its directory); it lasts for `duration` from there on
+    /// Start a motion from the state that a motion or a static run has saved (`state.json` in its
+    /// directory); it lasts for `duration` from there on
     #[arg(long, value_name = "STATE")]
     from: Option<PathBuf>,
-    /// Save the state of a motion every so often by the clock, such as "10 min", into `state.json` of the directory, from which `--from` goes on should
-    /// the run be killed
+    /// Save the state of a motion every so often by the clock, such as "10 min", into `state.json`
+    /// of the directory, from which `--from` goes on should the run be killed
     #[arg(long, value_name = "TIME", value_parser = duration)]
     checkpoint: Option<Duration>,
     #[command(flatten)]
@@ -108,7 +111,8 @@ struct InspectArguments {
 
 #[derive(Debug, Args)]
 struct Overrides {
-    /// Set one value of the scene, such as beam.arm.basis.ancf.elements=9 or effect.moment.0.value="3 kN m"; repeatable
+    /// Set one value of the scene, such as beam.arm.basis.ancf.elements=9 or
+    /// effect.moment.0.value="3 kN m"; repeatable
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
 }
@@ -199,7 +203,8 @@ fn check(arguments: &CheckArguments) -> Result<(), Vec<Failure>> {
     let mut failures = Vec::new();
     for path in &arguments.scenes {
         let checked = load(path, &arguments.overrides).and_then(|scene| {
-            // Some faults, such as shape functions that cannot be solved for, show only when they are built.
+            // Some faults, such as shape functions that cannot be solved for, show only when they
+            // are built.
             run::inspect(scene.model(), scene.analysis()).map_err(|error| Failure::run(scene.name(), error))
         });
         match checked {

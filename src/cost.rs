@@ -14,10 +14,11 @@
 //! | work | tangent evaluations and factorisations, for the plot times the unknowns |
 //!
 //! # The reference
-//! A meshfree run and one of cable elements (in motion by another integrator, too) are refined together until they differ
-//! by a tenth of the target, further where that is cheap. Their difference is the uncertainty of the reference. A setting
-//! meets the target where its error *plus that uncertainty* does: the exact solution, if it lies between the two, is then
-//! no further away than asked for. Errors below the uncertainty are known to be no more than that.
+//! A meshfree run and one of cable elements (in motion by another integrator, too) are refined
+//! together until they differ by a tenth of the target, further where that is cheap. Their
+//! difference is the uncertainty of the reference. A setting meets the target where its error *plus
+//! that uncertainty* does: the exact solution, if it lies between the two, is then no further away
+//! than asked for. Errors below the uncertainty are known to be no more than that.
 //!
 //! The runs of the reference go in parallel; those of the ladder are alone.
 
@@ -159,8 +160,8 @@ impl Study {
 /// Finds out what accuracy costs for `scene`.
 ///
 /// # Errors
-/// [`CostError`] where the options are not legal, the scene cannot be built, no reference could be made, or nothing was
-/// measured before `watcher` stopped it.
+/// [`CostError`] where the options are not legal, the scene cannot be built, no reference could be
+/// made, or nothing was measured before `watcher` stopped it.
 pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<Study, CostError> {
     let (target, budget) = (options.target, options.budget.as_secs_f64());
     if !(1e-12..1.0).contains(&target) {

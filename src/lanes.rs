@@ -1,7 +1,8 @@
 //! Four points side by side, in the lanes of a register.
 //!
-//! The densities that cost time are written once, for [`Real`] numbers, and serve single points and four at once alike. Left to itself the
-//! compiler keeps four points scalar, so that the lanes are named here, by `wide`'s registers (AVX where the target has it).
+//! The densities that cost time are written once, for [`Real`] numbers, and serve single points and
+//! four at once alike. Left to itself the compiler keeps four points scalar, so that the lanes are
+//! named here, by `wide`'s registers (AVX where the target has it).
 
 mod fma;
 
@@ -140,7 +141,8 @@ pub fn matrix([[xx, xy], [yx, yy]]: Square<f64>) -> Matrix2<f64> {
     Matrix2::new(xx, xy, yx, yy)
 }
 
-/// Adds to every lane of `f` what `add` makes of it and of that lane of `q`; `scratch` has two vectors of their length.
+/// Adds to every lane of `f` what `add` makes of it and of that lane of `q`; `scratch` has two
+/// vectors of their length.
 pub fn one_by_one(
     q: &[Lanes],
     f: &mut [Lanes],
@@ -160,7 +162,8 @@ pub fn one_by_one(
     }
 }
 
-/// The `W` coefficients of four cells, each a node further than the one before; `q` starts at the first cell's.
+/// The `W` coefficients of four cells, each a node further than the one before; `q` starts at the
+/// first cell's.
 #[inline(always)]
 pub fn gather<const W: usize>(q: &[f64]) -> [Pair<Lanes>; W] {
     let nodes = q.as_chunks::<4>().0;

@@ -1,10 +1,10 @@
-//! Planar flexible beams with large rotations and deformations, by two discretisations of the absolute nodal coordinate
-//! formulation: the gradient-deficient **ANCF** cable element, and its meshfree variant with Hermite radial point
-//! interpolation (**RPIM**; Chen, Zhang, Li, *J. Vibration Engineering* 31(2), 2018, 245–254), which needs far fewer
-//! nodes for the same accuracy.
+//! Planar flexible beams with large rotations and deformations, by two discretisations of the
+//! absolute nodal coordinate formulation: the gradient-deficient **ANCF** cable element, and its
+//! meshfree variant with Hermite radial point interpolation (**RPIM**; Chen, Zhang, Li, *J.
+//! Vibration Engineering* 31(2), 2018, 245–254), which needs far fewer nodes for the same accuracy.
 //!
-//! Physics is a density at a point of the beam; a discretisation is a table of shape functions; the system sums one over
-//! the other; every solver asks the system for the same few things.
+//! Physics is a density at a point of the beam; a discretisation is a table of shape functions; the
+//! system sums one over the other; every solver asks the system for the same few things.
 //!
 //! ```text
 //! scene.toml ─parse─► Scene ─► Model ─build─► System ─solve─► Trajectory ─► csv · json · vtu · svg · html
@@ -31,8 +31,9 @@
 //! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`] |
 //! | [`cost`] | what accuracy costs in time: a ladder of settings against a reference | [`centreline`], [`model`], [`trajectory`], [`scene`], [`run`](mod@run), [`output`] |
 //!
-//! A module imports what stands above it, and nothing else but what its row says: a test reads this table and all sources. Below their place only [`model`]
-//! and [`effect`] import, and only [`system::assembly`] with its error: a part of a model says itself how it is assembled.
+//! A module imports what stands above it, and nothing else but what its row says: a test reads this
+//! table and all sources. Below their place only [`model`] and [`effect`] import, and only
+//! [`system::assembly`] with its error: a part of a model says itself how it is assembled.
 //!
 //! # The beam
 //! | symbol | formula | unit |
@@ -49,17 +50,19 @@
 //! | N, Q, M | what a section passes on, by the balance of one side of the cut ([`system::Balanced`]) | N, N, N m |
 //! | λ | load factor: loads and prescribed displacements grow with it from 0 to 1 | – |
 //!
-//! No shear; rotary inertia where it is named. ε₀ and κ₀ are those of the stress-free shape as the discretisation sees it, so that a
-//! curved beam starts without stress.
+//! No shear; rotary inertia where it is named. ε₀ and κ₀ are those of the stress-free shape as the
+//! discretisation sees it, so that a curved beam starts without stress.
 //!
 //! # Invariants
 //! - `scene` never imports `system`.
 //! - An effect never sees a node number, a step size or another effect.
 //! - No solver matches on a discretisation or on an effect.
-//! - A discretisation is asked for shape functions only while a system is built or a state looked at.
-//! - Only the command line prints. Only [`sweep`] and [`cost`] start threads, and compute each run on one. The crate never links Python.
-//! - Where a model does not name an effect there is no object, no table, no matrix and no instruction for it;
-//!   [`system::System::inventory`] says what was built.
+//! - A discretisation is asked for shape functions only while a system is built or a state looked
+//!   at.
+//! - Only the command line prints. Only [`sweep`] and [`cost`] start threads, and compute each run
+//!   on one. The crate never links Python.
+//! - Where a model does not name an effect there is no object, no table, no matrix and no
+//!   instruction for it; [`system::System::inventory`] says what was built.
 //!
 //! # What takes part, and how it is named in a scene
 //! | scene | part | formula |
@@ -75,12 +78,14 @@
 //! | `[[effect.moving_force]]` | [`effect::MovingForce`] | −N(s₀ + v t) F |
 //! | `[[effect.contact]]` | [`effect::Contact`] | ½ ∫ k ⟨−g⟩² ds with circles, half-planes, boxes; friction ½ ∫ k_t e² ds, k_t \|e\| ≤ μ p |
 //!
-//! A beam without a bending stiffness is a string: nothing is computed of its curvature. One without an axial stiffness keeps its length
-//! ([`system::inextensible`]): ∫ N ½ (r'·r' − |r'₀|²) ds with the axial force N as an unknown.
+//! A beam without a bending stiffness is a string: nothing is computed of its curvature. One
+//! without an axial stiffness keeps its length ([`system::inextensible`]): ∫ N ½ (r'·r' − |r'₀|²)
+//! ds with the axial force N as an unknown.
 //!
 //! # An effect of one's own
-//! An effect is a density of a few local fields, and a part of the model that says where it is summed. In this crate it is one file in `src/effect`
-//! and one line in the scene's list (`src/scene/to_parts.rs`); from outside it is this:
+//! An effect is a density of a few local fields, and a part of the model that says where it is
+//! summed. In this crate it is one file in `src/effect` and one line in the scene's list
+//! (`src/scene/to_parts.rs`); from outside it is this:
 //! ```
 //! use ancf::effect::{Density, Gradient, Hessian, Kind};
 //! use ancf::model::*;

@@ -51,8 +51,9 @@ impl Model {
         self.beams.iter().any(|beam| beam.section.axial_stiffness.is_none())
     }
 
-    /// Where along a beam there must be a node, over which no shape function reaches \[m\]: at joints, and where something takes or gives a couple, for there
-    /// the curvature jumps. A force only bends its course; nine nodes that do not meet it err by 3e-6 of the length.
+    /// Where along a beam there must be a node, over which no shape function reaches \[m\]: at
+    /// joints, and where something takes or gives a couple, for there the curvature jumps. A force
+    /// only bends its course; nine nodes that do not meet it err by 3e-6 of the length.
     pub fn breaks(&self, beam: usize) -> Vec<f64> {
         let supports = self.supports.iter().filter(|support| support.fix.rotation != FixedRotation::Free);
         let supports = supports.map(|support| support.at);
@@ -101,7 +102,8 @@ pub struct Beam {
     pub gauss_points: GaussPoints,
 }
 
-/// What the section resists and weighs. `None`: the scene does not name it, so it is not simulated; what names no axial stiffness keeps its length.
+/// What the section resists and weighs. `None`: the scene does not name it, so it is not simulated;
+/// what names no axial stiffness keeps its length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Section {
     /// EA \[N\].
@@ -149,8 +151,8 @@ pub struct Support {
     pub at: Place,
     /// What is held.
     pub fix: Fixed,
-    /// By how much the held quantities move until the load factor is 1: x \[m\], y \[m\], angle \[rad\]; in a motion, what `law` is
-    /// multiplied by.
+    /// By how much the held quantities move until the load factor is 1: x \[m\], y \[m\], angle
+    /// \[rad\]; in a motion, what `law` is multiplied by.
     pub displacement: Displacement,
     /// How the displacement follows time; needed in a motion, and only there.
     pub law: Option<Law>,
@@ -208,8 +210,8 @@ pub enum Load {
         /// Turns with the section.
         follower: bool,
     },
-    /// Concentrated moment \[N m\], counter-clockwise. In the plane a moment about z has no direction
-    /// that could follow, so there is no follower moment.
+    /// Concentrated moment \[N m\], counter-clockwise. In the plane a moment about z has no
+    /// direction that could follow, so there is no follower moment.
     Moment {
         /// Where it acts.
         at: Place,
@@ -230,7 +232,8 @@ pub enum Load {
         /// \[m/s²\].
         acceleration: [f64; 2],
     },
-    /// A load that a law of time multiplies; in a motion only. Other loads act in full from the start.
+    /// A load that a law of time multiplies; in a motion only. Other loads act in full from the
+    /// start.
     InTime {
         /// What acts.
         load: Box<Load>,

@@ -1,11 +1,14 @@
 //! A state saved by one run, from which a motion may start.
 //!
-//! A motion of the same model by the same integrator goes on bit for bit as if it had not been interrupted: the file holds what the integrator
-//! carries from step to step, in decimal digits that give back the same numbers. Where the end of a run, or an event, cut a step short, that is kept as it was
-//! before this step, which is taken once more as a whole; what the run has reported already is not reported again.
+//! A motion of the same model by the same integrator goes on bit for bit as if it had not been
+//! interrupted: the file holds what the integrator carries from step to step, in decimal digits
+//! that give back the same numbers. Where the end of a run, or an event, cut a step short, that is
+//! kept as it was before this step, which is taken once more as a whole; what the run has reported
+//! already is not reported again.
 //!
-//! Another scene may start from the state too, with other loads, supports or another integrator, and a motion may start at rest in the equilibrium that a
-//! static run found. Its beams must be the same: in name, centreline, discretisation, nodes, stiffness and, where both have one, mass.
+//! Another scene may start from the state too, with other loads, supports or another integrator,
+//! and a motion may start at rest in the equilibrium that a static run found. Its beams must be the
+//! same: in name, centreline, discretisation, nodes, stiffness and, where both have one, mass.
 //!
 //! A checksum tells whether the file is as it was written.
 
@@ -195,8 +198,8 @@ impl SavedState {
         Ok(state)
     }
 
-    /// What is saved, if it belongs to the beams of `model`, and whether the motion of this `fingerprint` goes on: any other starts from
-    /// the state alone.
+    /// What is saved, if it belongs to the beams of `model`, and whether the motion of this
+    /// `fingerprint` goes on: any other starts from the state alone.
     ///
     /// # Errors
     /// [`RestartError::Mismatch`] naming the first difference.
@@ -296,7 +299,8 @@ mod tests {
         state.take_up(scene.model(), &system, &motion).map_err(|error| error.to_string())
     }
 
-    /// Would catch a number of a saved state that nothing looks at: with each out of order in turn, the state is refused.
+    /// Would catch a number of a saved state that nothing looks at: with each out of order in turn,
+    /// the state is refused.
     #[test]
     fn no_number_of_a_state_is_taken_unseen() {
         let sound = saved(ARM);
@@ -338,7 +342,8 @@ mod tests {
             change(&mut state.saved.checkpoint);
             let refused = taken(&state, ARM, true).expect_err("an unsound memory");
             assert!(refused.contains("no sound number"), "{i}: {refused}");
-            // Another motion starts from the state alone, and so does one whose method has left nothing.
+            // Another motion starts from the state alone, and so does one whose method has left
+            // nothing.
             let (other, same) = taken(&state, ARM, false).expect("the state is sound");
             assert_eq!(
                 (other.state, other.step, same),
@@ -382,7 +387,8 @@ mod tests {
         assert!(taken(&massless, ARM, false).is_ok());
     }
 
-    /// Would catch an angle that is taken up at another probe than its own, and so is wrong by full turns.
+    /// Would catch an angle that is taken up at another probe than its own, and so is wrong by full
+    /// turns.
     #[test]
     fn angles_stay_with_their_probes() {
         let probes = |places: &[f64]| {

@@ -76,8 +76,9 @@ pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result
     run_from(model, analysis, None, observer)
 }
 
-/// The same, a motion starting from a saved state if one is given: it lasts for its duration from the time of that state on. Supports that follow no law
-/// of time hold a beam where the state has it.
+/// The same, a motion starting from a saved state if one is given: it lasts for its duration from
+/// the time of that state on. Supports that follow no law of time hold a beam where the state has
+/// it.
 ///
 /// # Errors
 /// As [`run`], and where the saved state does not fit.
@@ -240,7 +241,8 @@ struct Beginning {
     told: Option<String>,
 }
 
-/// Where a motion begins. Of a motion that is taken up, supports that follow no law hold the beams where the state has them.
+/// Where a motion begins. Of a motion that is taken up, supports that follow no law hold the beams
+/// where the state has them.
 fn beginning(
     model: &Model,
     settings: &Dynamic,
@@ -273,7 +275,8 @@ fn beginning(
     Ok(Beginning { start, end, motion, told: Some(told) })
 }
 
-/// The sum of two times as decimals have it, so that a motion in parts ends when it does as a whole.
+/// The sum of two times as decimals have it, so that a motion in parts ends when it does as a
+/// whole.
 fn later(time: f64, duration: f64) -> f64 {
     let sum = time + duration;
     if time == 0.0 { sum } else { format!("{sum:.14e}").parse().unwrap_or(sum) }

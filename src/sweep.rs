@@ -1,4 +1,5 @@
-//! Many runs of one scene: over a grid or a list of values, on several threads and in several processes.
+//! Many runs of one scene: over a grid or a list of values, on several threads and in several
+//! processes.
 //!
 //! ```text
 //! directory ─┬─ sweep.json            which sweep this is: scene's hash, overrides, axes, version
@@ -7,10 +8,10 @@
 //!            └─ sweep.csv             all runs, one row each, when none is missing
 //! ```
 //!
-//! The unit of work is a run: it is computed by one thread from start to end, its row is appended to the journal, and
-//! its states are let go. So a sweep may be killed at any moment and called again, on as many threads as there are, in
-//! as many processes as there are shards: no finished run is repeated, and every column of the table but `seconds` is the
-//! same to the last bit.
+//! The unit of work is a run: it is computed by one thread from start to end, its row is appended
+//! to the journal, and its states are let go. So a sweep may be killed at any moment and called
+//! again, on as many threads as there are, in as many processes as there are shards: no finished
+//! run is repeated, and every column of the table but `seconds` is the same to the last bit.
 //!
 //! # The table
 //! | column | holds |
@@ -80,11 +81,12 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// A sweep of the scene file at `scene`, with the overrides `set` in all runs and the product of `axes` over them, on
-    /// `threads` threads (0: one per core). Reads the scene of every run.
+    /// A sweep of the scene file at `scene`, with the overrides `set` in all runs and the product
+    /// of `axes` over them, on `threads` threads (0: one per core). Reads the scene of every run.
     ///
     /// # Errors
-    /// [`SweepError`] where the axes make no grid, or the scene of a run is not legal (that of the first such run).
+    /// [`SweepError`] where the axes make no grid, or the scene of a run is not legal (that of the
+    /// first such run).
     pub fn new(scene: &Path, set: &[String], axes: Vec<Axis>, threads: usize) -> Result<Self, SweepError> {
         let grid = Grid::new(axes)?;
         let scene = Scene::load(scene, set)?;
@@ -109,11 +111,12 @@ impl Sweep {
     /// Computes the runs of `shard` that no journal in `directory`, which must exist, has yet.
     ///
     /// # Errors
-    /// [`SweepError`] where the directory holds another sweep, a journal cannot be written, or `observer` stopped it: then
-    /// the runs in progress are finished and recorded first.
+    /// [`SweepError`] where the directory holds another sweep, a journal cannot be written, or
+    /// `observer` stopped it: then the runs in progress are finished and recorded first.
     pub fn run(&self, directory: &Path, shard: Shard, observer: Observer<'_>) -> Result<(), SweepError> {
         self.manifest.claim(directory)?;
-        // Opened before the journals are read: what another process of this part finished until now is among them.
+        // Opened before the journals are read: what another process of this part finished until now
+        // is among them.
         let journal = Journal::open(directory, shard)?;
         let finished = Finished::read(directory, self.grid.runs())?;
         let (before, left): (Vec<usize>, Vec<usize>) =
@@ -196,8 +199,8 @@ pub struct Merged {
 /// Joins the journals in `directory` to one table, `sweep.csv` there.
 ///
 /// # Errors
-/// [`SweepError::Missing`] where a run is not finished, and where a file cannot be read or written; then a table that was
-/// there before stays as it is.
+/// [`SweepError::Missing`] where a run is not finished, and where a file cannot be read or written;
+/// then a table that was there before stays as it is.
 pub fn merge(directory: &Path) -> Result<Merged, SweepError> {
     let manifest = Manifest::read(directory)?.ok_or_else(|| SweepError::Manifest {
         path: directory.join(MANIFEST),

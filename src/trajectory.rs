@@ -15,14 +15,15 @@ pub struct Trajectory {
     pub title: String,
     /// Kind of analysis.
     pub analysis: AnalysisKind,
-    /// Whether it reaches as far as was asked for: not where the run was stopped, or found no way on.
+    /// Whether it reaches as far as was asked for: not where the run was stopped, or found no way
+    /// on.
     pub complete: bool,
     /// Unknowns after supports are eliminated, plus multipliers.
     pub degrees_of_freedom: usize,
     /// Lines for the reader: what was simulated and how (name, value).
     pub settings: Vec<(String, String)>,
-    /// Load factors (statics; also the one equilibrium about which vibrations are small) or times \[s\] (dynamics) of the
-    /// records, in order.
+    /// Load factors (statics; also the one equilibrium about which vibrations are small) or times
+    /// \[s\] (dynamics) of the records, in order.
     pub parameter: Vec<f64>,
     /// Per probe, one sample per entry of `parameter`.
     pub probes: Vec<ProbeSeries>,
@@ -42,11 +43,13 @@ pub struct Trajectory {
     pub outlines: Vec<Vec<[f64; 2]>>,
     /// One entry per attempted step.
     pub history: Vec<StepRecord>,
-    /// Natural frequencies \[Hz\], ascending, 0 where nothing resists the motion; modal analysis only.
+    /// Natural frequencies \[Hz\], ascending, 0 where nothing resists the motion; modal analysis
+    /// only.
     pub frequencies: Vec<f64>,
     /// Critical load factors, ascending; buckling only.
     pub load_factors: Vec<f64>,
-    /// Mode shapes (modal, buckling): per mode one shape per beam, largest displacement scaled for drawing.
+    /// Mode shapes (modal, buckling): per mode one shape per beam, largest displacement scaled for
+    /// drawing.
     pub modes: Vec<Vec<Shape>>,
     /// What the user should know: instabilities met, with the load factor.
     pub warnings: Vec<String>,
@@ -70,7 +73,8 @@ pub enum AnalysisKind {
     Static,
     /// Motion; `parameter` is the time \[s\].
     Dynamic,
-    /// Small vibrations; `parameter` is the load factor of the equilibrium, empty for the stress-free state.
+    /// Small vibrations; `parameter` is the load factor of the equilibrium, empty for the
+    /// stress-free state.
     Modal,
     /// Critical loads; without records.
     Buckling,
@@ -173,7 +177,8 @@ pub struct Frame {
     pub beams: Vec<Vec<[f64; 2]>>,
 }
 
-/// One beam sampled at 201 arc lengths or more. Of the last state a place where a force or a couple acts in a point is there twice: before and behind it.
+/// One beam sampled at 201 arc lengths or more. Of the last state a place where a force or a couple
+/// acts in a point is there twice: before and behind it.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Shape {
     /// Name of the beam.
@@ -190,7 +195,8 @@ pub struct Shape {
     pub strain: Vec<f64>,
     /// κ \[1/m\].
     pub curvature: Vec<f64>,
-    /// N \[N\], positive in tension; of the last state alone, as are Q and M. All three balance what acts on the beam before the cut.
+    /// N \[N\], positive in tension; of the last state alone, as are Q and M. All three balance
+    /// what acts on the beam before the cut.
     pub axial_force: Vec<f64>,
     /// Q \[N\], along the normal J r' on the side of the cut that looks to the beam's end.
     pub shear_force: Vec<f64>,
@@ -207,6 +213,7 @@ pub struct Seconds {
     pub build: f64,
     /// The solution itself.
     pub solve: f64,
-    /// Looking at the states (probes, shapes, frames), and files so far as written when the summary is.
+    /// Looking at the states (probes, shapes, frames), and files so far as written when the summary
+    /// is.
     pub write: f64,
 }

@@ -1,4 +1,5 @@
-//! Tests of the whole: properties, validation against reference data, regression snapshots, the command line.
+//! Tests of the whole: properties, validation against reference data, regression snapshots, the
+//! command line.
 
 mod cli;
 mod hard;

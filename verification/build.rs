@@ -1,4 +1,5 @@
-//! Links Python so that what runs is the interpreter that was found at build time, and says which that is.
+//! Links Python so that what runs is the interpreter that was found at build time, and says which
+//! that is.
 
 use std::path::Path;
 

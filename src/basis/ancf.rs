@@ -1,4 +1,5 @@
-//! Shape functions of the gradient-deficient cable element: cubic Hermite polynomials between two nodes.
+//! Shape functions of the gradient-deficient cable element: cubic Hermite polynomials between two
+//! nodes.
 //!
 //! With ξ = (s − s_i)/l, for (r_i, r'_i, r_{i+1}, r'_{i+1}):
 //!
@@ -6,8 +7,8 @@
 //!
 //! Source: Gerstmayr and Shabana, *Nonlinear Dynamics* 45 (2006) 109–130, the thin cable element.
 
-/// The four functions' derivative of order `order` (0, 1 or 2) with respect to s, at ξ ∈ [0, 1] of a cell of
-/// length `l` in metres.
+/// The four functions' derivative of order `order` (0, 1 or 2) with respect to s, at ξ ∈ [0, 1] of
+/// a cell of length `l` in metres.
 pub fn row(l: f64, xi: f64, order: usize, out: &mut [f64; 4]) {
     let x = xi;
     *out = match order {

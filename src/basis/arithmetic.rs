@@ -1,11 +1,13 @@
-//! What the construction of shape functions asks of a number, so that one code serves every precision.
+//! What the construction of shape functions asks of a number, so that one code serves every
+//! precision.
 
 use std::fmt::Debug;
 
 /// Real arithmetic at a fixed precision.
 ///
-/// Operations are methods of the arithmetic, not of the number, since multiprecision needs to know its precision and
-/// keeps constants. All but the conversions have a relative error of a few units of the round-off that [`Arithmetic::log2_round_off`] states.
+/// Operations are methods of the arithmetic, not of the number, since multiprecision needs to know
+/// its precision and keeps constants. All but the conversions have a relative error of a few units
+/// of the round-off that [`Arithmetic::log2_round_off`] states.
 pub trait Arithmetic {
     /// A number.
     type Number: Clone + Debug;

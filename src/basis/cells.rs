@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// How many of the latest distinct cells a new one is compared with: enough for meshes that repeat a pattern.
+/// How many of the latest distinct cells a new one is compared with: enough for meshes that repeat
+/// a pattern.
 const RECENT: usize = 16;
 
 /// Which nodes the shape functions of a cell are made of.
@@ -12,13 +13,14 @@ pub struct Supports {
     nodes: usize,
     /// Nodes of the widest support.
     widest: usize,
-    /// Nodes at which supports end, rising: those of a beam's ends, and between them those at which its curvature jumps, for no smooth function
-    /// follows it there.
+    /// Nodes at which supports end, rising: those of a beam's ends, and between them those at which
+    /// its curvature jumps, for no smooth function follows it there.
     ends: Vec<usize>,
 }
 
 impl Supports {
-    /// A cell's own two nodes and `neighbours` more on each side that exists; none beyond one of `breaks`, which rise.
+    /// A cell's own two nodes and `neighbours` more on each side that exists; none beyond one of
+    /// `breaks`, which rise.
     pub fn new(neighbours: usize, nodes: usize, breaks: &[usize]) -> Self {
         let ends = std::iter::once(0).chain(breaks.iter().copied()).chain([nodes - 1]).collect();
         let supports = Self { neighbours, nodes, widest: 2, ends };
@@ -31,7 +33,8 @@ impl Supports {
         self.widest
     }
 
-    /// The first of the nodes for which a cell's functions are tabulated; as many as the widest support has follow.
+    /// The first of the nodes for which a cell's functions are tabulated; as many as the widest
+    /// support has follow.
     pub fn first(&self, cell: usize) -> usize {
         self.of(cell).start.min(self.nodes - self.widest)
     }
@@ -55,12 +58,13 @@ impl Supports {
     }
 }
 
-/// Groups cells whose supports are translations of each other: per cell the number of its group, per group its first
-/// cell.
+/// Groups cells whose supports are translations of each other: per cell the number of its group,
+/// per group its first cell.
 ///
-/// Node positions are rounded to double precision, so the spacings of an even mesh differ in their last digits. Two
-/// supports are the same if they agree within that round-off and within 1e-9 of the smallest spacing, and their rows have the same zeros. The first of a
-/// group stands for it: nearest to s = 0, its spacings are rounded the least.
+/// Node positions are rounded to double precision, so the spacings of an even mesh differ in their
+/// last digits. Two supports are the same if they agree within that round-off and within 1e-9 of
+/// the smallest spacing, and their rows have the same zeros. The first of a group stands for it:
+/// nearest to s = 0, its spacings are rounded the least.
 pub fn distinct_cells(nodes: &[f64], supports: &Supports) -> (Vec<u32>, Vec<u32>) {
     let mut representative: Vec<u32> = Vec::new();
     let shape_of = (0..nodes.len() - 1)

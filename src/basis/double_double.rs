@@ -1,8 +1,9 @@
 //! Double-double arithmetic: a number is the unevaluated sum of two doubles, about 106 bits.
 //!
-//! Sums and products by Knuth's and Dekker's error-free transformations in the accurate variants of Joldes, Muller and
-//! Popescu, *ACM TOMS* 44(2) (2017) 15, with a fused multiply-add for the error of a product. One operation is off by
-//! less than 2⁻¹⁰² relative; exponential and logarithm by less than 1e-30 (absolute for the logarithm near 1).
+//! Sums and products by Knuth's and Dekker's error-free transformations in the accurate variants of
+//! Joldes, Muller and Popescu, *ACM TOMS* 44(2) (2017) 15, with a fused multiply-add for the error
+//! of a product. One operation is off by less than 2⁻¹⁰² relative; exponential and logarithm by
+//! less than 1e-30 (absolute for the logarithm near 1).
 
 use super::arithmetic::{Arithmetic, ldexp};
 
@@ -19,7 +20,8 @@ pub struct DoubleDouble;
 
 const ONE: Double = Double { hi: 1.0, lo: 0.0 };
 
-/// ln 2 as three doubles; the first has 32 trailing zero bits, so that small whole multiples of it are exact.
+/// ln 2 as three doubles; the first has 32 trailing zero bits, so that small whole multiples of it
+/// are exact.
 const LN2: [f64; 3] = [0.693_146_705_627_441_4, 4.749_325_039_031_672_6e-7, -2.340_793_886_567_823_4e-23];
 
 /// 1/n! for n = 3 to 10.
@@ -126,7 +128,8 @@ impl Double {
         if !(self.hi > 0.0 && self.hi.is_finite()) {
             return Self { hi: self.hi.ln(), lo: 0.0 };
         }
-        // ln x = y + ln(1 + e) with y = ln x in double precision, so e is about 1e-16 and two terms suffice.
+        // ln x = y + ln(1 + e) with y = ln x in double precision, so e is about 1e-16 and two terms
+        // suffice.
         let y = self.hi.ln();
         let e = self.times(Self { hi: -y, lo: 0.0 }.exp()).minus(ONE);
         Self { hi: y, lo: 0.0 }.plus(e.minus(e.times(e).scaled(0.5)))

@@ -91,7 +91,8 @@ pub enum BasisError {
         /// What is wrong and what to try.
         problem: String,
     },
-    /// Without the constant term a translated beam would be strained; too many terms make the moment matrix singular.
+    /// Without the constant term a translated beam would be strained; too many terms make the
+    /// moment matrix singular.
     #[error(
         "{found} polynomial terms: expected 1 to {limit}, since {}",
         if *found == 0 {

@@ -1,4 +1,5 @@
-//! Radial functions R(d) and their first three derivatives, d in units of the average spacing of the nodes.
+//! Radial functions R(d) and their first three derivatives, d in units of the average spacing of
+//! the nodes.
 
 use super::Kernel;
 
@@ -26,8 +27,8 @@ pub fn describe(kernel: &Kernel) -> String {
     }
 }
 
-/// Refuses parameters for which no moment matrix can be regular or the third derivative does not exist.
-/// `widest_cell` is the largest spacing of the nodes in units of the average one.
+/// Refuses parameters for which no moment matrix can be regular or the third derivative does not
+/// exist. `widest_cell` is the largest spacing of the nodes in units of the average one.
 pub fn check(kernel: &Kernel, widest_cell: f64) -> Result<(), BasisError> {
     let fault = |parameter, value, problem: String| {
         Err(BasisError::KernelParameter { kernel: name(kernel), parameter, value, problem })
@@ -146,7 +147,8 @@ impl<'a, A: Arithmetic> Radial<'a, A> {
         [r, r1, r2, r3]
     }
 
-    /// With l = ln|d| where η is an even whole number, and 1 with no derivative otherwise; all vanish at d = 0.
+    /// With l = ln|d| where η is an even whole number, and 1 with no derivative otherwise; all
+    /// vanish at d = 0.
     fn thin_plate_spline(&self, d: &A::Number, eta: f64) -> [A::Number; 4] {
         let a = self.arithmetic;
         let n = |x| a.number(x);
@@ -158,8 +160,9 @@ impl<'a, A: Arithmetic> Radial<'a, A> {
         let logarithm = a.ln(&magnitude);
         let power = a.exp(&a.mul(&n(eta), &logarithm));
         let even = eta % 2.0 == 0.0;
-        // The k-th derivative of d^η (b l + c) is d^(η−k) (b_k l + c_k), where b ← b e, c ← c e + b with e the
-        // exponent before; without the logarithm b is what c is with it, so one recurrence serves both.
+        // The k-th derivative of d^η (b l + c) is d^(η−k) (b_k l + c_k), where b ← b e, c ← c e + b
+        // with e the exponent before; without the logarithm b is what c is with it, so one
+        // recurrence serves both.
         let (mut b, mut c) = if even { (n(1.0), n(0.0)) } else { (n(0.0), n(1.0)) };
         let mut scale = power;
         let mut exponent = n(eta);

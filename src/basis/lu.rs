@@ -6,15 +6,17 @@ use super::arithmetic::Arithmetic;
 #[derive(Clone, Debug)]
 pub struct Lu<N> {
     size: usize,
-    /// L below the diagonal (its diagonal is one), U on and above with reciprocal pivots, column by column: a
-    /// substitution then updates independent numbers, where a sum along a row would wait for each of its terms.
+    /// L below the diagonal (its diagonal is one), U on and above with reciprocal pivots, column by
+    /// column: a substitution then updates independent numbers, where a sum along a row would wait
+    /// for each of its terms.
     factors: Vec<N>,
     /// Row of A that stands in each row of P A.
     order: Vec<u32>,
 }
 
 impl<N: Clone> Lu<N> {
-    /// Factorises the matrix of `size` rows stored row by row; `None` if a pivot is zero or not finite.
+    /// Factorises the matrix of `size` rows stored row by row; `None` if a pivot is zero or not
+    /// finite.
     pub fn new<A: Arithmetic<Number = N>>(arithmetic: &A, size: usize, matrix: Vec<N>) -> Option<Self> {
         let n = size;
         let mut a = matrix;

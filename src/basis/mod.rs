@@ -1,6 +1,7 @@
 //! Shape functions: from a [`Discretization`] to tables of numbers.
 //!
-//! Both discretisations have the same nodal coefficients, the position r_i and the gradient r'_i, and both end as a
+//! Both discretisations have the same nodal coefficients, the position r_i and the gradient r'_i,
+//! and both end as a
 //! [`BasisTable`]: at a point of the beam a short row of numbers for each wanted derivative. Whoever holds a table
 //! cannot tell which discretisation it came from.
 //!
@@ -42,7 +43,8 @@ use rpim::{Precisions, Shape};
 /// Distance at which a point is taken to be a node, in units of the round-off of the beam's length.
 const NODE_SNAP: f64 = 16.0 * f64::EPSILON;
 
-/// Most nodes in a support: the work of a cell grows with the third power and the digits it needs with the first.
+/// Most nodes in a support: the work of a cell grows with the third power and the digits it needs
+/// with the first.
 const MOST_SUPPORT: usize = 64;
 
 /// The shape functions of one beam.
@@ -73,15 +75,19 @@ enum Shapes {
 /// How well the shape functions satisfy what defines them, over all cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Defects {
-    /// Largest |N_j(s_i) − δ_ij| and |N'_j(s_i) − δ'_ij|, each in units of the function's largest value or slope.
+    /// Largest |N_j(s_i) − δ_ij| and |N'_j(s_i) − δ'_ij|, each in units of the function's largest
+    /// value or slope.
     pub kronecker: f64,
-    /// Largest defect in reproducing 1 and s and their derivatives, in units of the sum of absolute terms.
+    /// Largest defect in reproducing 1 and s and their derivatives, in units of the sum of absolute
+    /// terms.
     pub reproduction: f64,
     /// Largest estimated relative error of any row.
     pub estimated_error: f64,
-    /// Decimal logarithm of the largest estimated condition number of a moment matrix; 0 where there is none.
+    /// Decimal logarithm of the largest estimated condition number of a moment matrix; 0 where
+    /// there is none.
     pub condition_log10: f64,
-    /// Bits of the most precise arithmetic that a cell needed: 53 where formulas are exact in double precision.
+    /// Bits of the most precise arithmetic that a cell needed: 53 where formulas are exact in
+    /// double precision.
     pub bits: usize,
     /// Cells of distinct geometry, each solved once.
     pub distinct_cells: usize,
@@ -91,14 +97,16 @@ impl Basis {
     /// The shape functions of a beam of length `length` \[m\].
     ///
     /// # Errors
-    /// Unusable nodes or kernel parameters, and cells whose shape functions cannot be found to 13 digits.
+    /// Unusable nodes or kernel parameters, and cells whose shape functions cannot be found to 13
+    /// digits.
     pub fn new(discretization: &Discretization, length: f64) -> Result<Self, BasisError> {
         Self::broken(discretization, length, &[])
     }
 
-    /// The same for a beam whose curvature or its slope jumps at the arc lengths `breaks` \[m\]: there is a node at each of them, and no shape function reaches
-    /// over it. Counted nodes keep their number: the nearest is shifted there, and those between breaks are spread as they were. Given nodes stay and are
-    /// joined by another.
+    /// The same for a beam whose curvature or its slope jumps at the arc lengths `breaks` \[m\]:
+    /// there is a node at each of them, and no shape function reaches over it. Counted nodes keep
+    /// their number: the nearest is shifted there, and those between breaks are spread as they
+    /// were. Given nodes stay and are joined by another.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -190,7 +198,8 @@ impl Basis {
         })
     }
 
-    /// Rows of the wanted derivative orders (0 to 2) at the points of `rule` in every cell between neighbouring nodes.
+    /// Rows of the wanted derivative orders (0 to 2) at the points of `rule` in every cell between
+    /// neighbouring nodes.
     ///
     /// # Errors
     /// A rule or an order that does not exist.
@@ -227,9 +236,10 @@ impl Basis {
         Ok(table)
     }
 
-    /// Rows of the wanted derivative orders (0 to 2) at single points, each with weight 1 and its own cell, in the
-    /// order given. At a node the rows of order 0 and 1 are exactly 0 and 1; the row of order 2, which jumps there, is
-    /// that of the cell to the right, at the beam's end to the left.
+    /// Rows of the wanted derivative orders (0 to 2) at single points, each with weight 1 and its
+    /// own cell, in the order given. At a node the rows of order 0 and 1 are exactly 0 and 1; the
+    /// row of order 2, which jumps there, is that of the cell to the right, at the beam's end to
+    /// the left.
     ///
     /// # Errors
     /// A point that is not on the beam, or an order that does not exist.
@@ -330,7 +340,8 @@ impl Basis {
                 }
             }
         }
-        // At a node, values and slopes are coefficients; what round-off leaves beside them is removed.
+        // At a node, values and slopes are coefficients; what round-off leaves beside them is
+        // removed.
         if xi == 0.0 || xi == 1.0 {
             let node = cell + usize::from(xi == 1.0);
             for (row, &order) in

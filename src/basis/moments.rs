@@ -1,10 +1,11 @@
-//! The conditions that define the shape functions of one support, and how well their solution is known.
+//! The conditions that define the shape functions of one support, and how well their solution is
+//! known.
 //!
-//! How the error is known: to first order, perturbing φ and G by relative amounts u changes y by at most
-//! u |G⁻ᵀ| (|φ| + |Gᵀ| |y|), taken entry by entry (Bauer and Skeel; Higham, *Accuracy and Stability of Numerical
-//! Algorithms*, 2nd ed., SIAM 2002, §7.2). With the residual of each solution added, that bound covers the evaluation of
-//! the kernel as well as the factorisation. A check of the rows against the same factors would not: it passes for a
-//! wrong G.
+//! How the error is known: to first order, perturbing φ and G by relative amounts u changes y by at
+//! most u |G⁻ᵀ| (|φ| + |Gᵀ| |y|), taken entry by entry (Bauer and Skeel; Higham, *Accuracy and
+//! Stability of Numerical Algorithms*, 2nd ed., SIAM 2002, §7.2). With the residual of each
+//! solution added, that bound covers the evaluation of the kernel as well as the factorisation. A
+//! check of the rows against the same factors would not: it passes for a wrong G.
 
 use super::SideCondition;
 
@@ -19,7 +20,8 @@ const SAMPLES: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
 /// Round-offs that meet in one entry of G or φ, and growth in the factorisation.
 const SAFETY: f64 = 16.0;
 
-/// A function that is this much smaller in the cell than the largest of its kind is judged by the latter.
+/// A function that is this much smaller in the cell than the largest of its kind is judged by the
+/// latter.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// The conditions of one support, at one precision.
@@ -77,7 +79,8 @@ impl<'a, A: Arithmetic> System<'a, A> {
             .collect()
     }
 
-    /// Gᵀ, row by row: row j belongs to the function φ_j, column l to the condition l; values and slopes alternate.
+    /// Gᵀ, row by row: row j belongs to the function φ_j, column l to the condition l; values and
+    /// slopes alternate.
     pub fn transposed_moments(&self) -> Vec<A::Number> {
         let a = self.arithmetic;
         let (k, n) = (self.x.len(), self.size());
@@ -152,7 +155,8 @@ impl<'a, A: Arithmetic> System<'a, A> {
         }
     }
 
-    /// Estimates errors and measures defects at a few points of the cell; `None` if anything is not finite.
+    /// Estimates errors and measures defects at a few points of the cell; `None` if anything is not
+    /// finite.
     pub fn quality(&self, lu: &Lu<A::Number>, matrix: &[A::Number], moments: &[f64]) -> Option<Quality> {
         let a = self.arithmetic;
         let (n, width) = (self.size(), 2 * self.x.len());
@@ -247,9 +251,9 @@ impl<'a, A: Arithmetic> System<'a, A> {
         Some((inverse, shift))
     }
 
-    /// Defect of the rounded row in reproducing 1 and, given two terms, s − s_left. Each is relative to the sum of
-    /// absolute terms, or to the natural size in a cell of length h, h^−order and h^(1−order), where at a node all terms
-    /// vanish but for round-off.
+    /// Defect of the rounded row in reproducing 1 and, given two terms, s − s_left. Each is
+    /// relative to the sum of absolute terms, or to the natural size in a cell of length h,
+    /// h^−order and h^(1−order), where at a node all terms vanish but for round-off.
     fn reproduction(&self, row: &[f64], xi: f64, order: usize) -> f64 {
         let nodes = self.place.nodes;
         let left = nodes[self.place.left];
@@ -274,8 +278,9 @@ impl<'a, A: Arithmetic> System<'a, A> {
         if self.interpolation.terms > 1 { defect.max((s / s_size).abs()) } else { defect }
     }
 
-    /// Largest difference from the unit row at an end of the cell: of values as they are (order 0) or in units of
-    /// 1/h (order 1), of slopes in units of h or as they are, with h the cell's length.
+    /// Largest difference from the unit row at an end of the cell: of values as they are (order 0)
+    /// or in units of 1/h (order 1), of slopes in units of h or as they are, with h the cell's
+    /// length.
     fn kronecker(&self, row: &[f64], xi: f64, order: usize) -> f64 {
         let h = self.place.nodes[self.place.left + 1] - self.place.nodes[self.place.left];
         let node = self.place.left + usize::from(xi == 1.0);

@@ -73,8 +73,8 @@ impl Arithmetic for Multiprecision {
     }
 
     fn scaled_magnitude(&self, x: &BigFloat, shift: i64) -> f64 {
-        // The value is 0.m × 2^e; the words of m are stored least significant first. Of the top 64 bits or more
-        // the conversion keeps 53, rounding to nearest.
+        // The value is 0.m × 2^e; the words of m are stored least significant first. Of the top 64
+        // bits or more the conversion keeps 53, rounding to nearest.
         match x.as_raw_parts() {
             Some((words, _, _, exponent, _)) => {
                 let mut sum = 0.0;
@@ -91,7 +91,8 @@ impl Arithmetic for Multiprecision {
     }
 
     fn exceeds(&self, a: &BigFloat, b: &BigFloat) -> bool {
-        // Not `abs_cmp`, which compares signed values in astro-float 0.3.7. Mantissas are normalised and of one length.
+        // Not `abs_cmp`, which compares signed values in astro-float 0.3.7. Mantissas are
+        // normalised and of one length.
         match (a.as_raw_parts(), b.as_raw_parts()) {
             (Some((a, _, _, ea, _)), Some((b, _, _, eb, _))) => {
                 match (a.iter().all(|w| *w == 0), b.iter().all(|w| *w == 0)) {
@@ -124,7 +125,8 @@ impl Arithmetic for Multiprecision {
         a.div(b, self.bits, ROUNDING)
     }
 
-    /// By the series of a halved argument and repeated squaring, three times faster here than the library's own.
+    /// By the series of a halved argument and repeated squaring, three times faster here than the
+    /// library's own.
     fn exp(&self, x: &BigFloat) -> BigFloat {
         let Exponential { bits: p, ln2, inverse_factorials, halvings } = &self.exponential;
         let p = *p;

@@ -5,22 +5,26 @@ use super::Nodes;
 use super::NODE_SNAP;
 use super::error::BasisError;
 
-/// Most nodes of one beam. Beyond, tables and unknowns take gigabytes and coefficient numbers outgrow their type.
+/// Most nodes of one beam. Beyond, tables and unknowns take gigabytes and coefficient numbers
+/// outgrow their type.
 pub const MOST_NODES: usize = 20_000_000;
 
-/// Rough memory of one node in tables, states and tangents, for the message that refuses too many \[bytes\].
+/// Rough memory of one node in tables, states and tangents, for the message that refuses too many
+/// \[bytes\].
 const BYTES_PER_NODE: f64 = 2000.0;
 
-/// Relative distance of neighbouring nodes below which their difference carries fewer than three digits.
+/// Relative distance of neighbouring nodes below which their difference carries fewer than three
+/// digits.
 const LEAST_RELATIVE_SPACING: f64 = 1e3 * f64::EPSILON;
 
 /// Arc lengths of the nodes \[m\]: increasing, the first exactly 0, the last exactly `length`.
 ///
 /// # Errors
-/// An unusable length, too few or too many nodes, nodes that are not finite, out of order, indistinguishable, or that
-/// do not span the beam to within 1e-9 of its length.
+/// An unusable length, too few or too many nodes, nodes that are not finite, out of order,
+/// indistinguishable, or that do not span the beam to within 1e-9 of its length.
 pub fn arc_lengths(nodes: &Nodes, length: f64) -> Result<Vec<f64>, BasisError> {
-    // A length whose square or reciprocal leaves the range of double precision cannot be computed with.
+    // A length whose square or reciprocal leaves the range of double precision cannot be computed
+    // with.
     if !(1e-140..=1e140).contains(&length) {
         return Err(BasisError::Length { length });
     }
@@ -68,17 +72,21 @@ pub fn arc_lengths(nodes: &Nodes, length: f64) -> Result<Vec<f64>, BasisError> {
 /// A place that is nearer to an end or to another one, per length of the beam, is the same.
 const SAME_PLACE: f64 = 1e-9;
 
-/// Lengths are told apart to such a part of a cell: round-off of a turned scene or of other units must not decide where nodes lie.
+/// Lengths are told apart to such a part of a cell: round-off of a turned scene or of other units
+/// must not decide where nodes lie.
 const PARTS_OF_CELL: f64 = 1e9;
 
-/// A given node that is nearer to a break, in units of the spacing around it, is shifted there: a cell that short would serve nothing.
+/// A given node that is nearer to a break, in units of the spacing around it, is shifted there: a
+/// cell that short would serve nothing.
 const NEAR: f64 = 0.1;
 
-/// The nodes `s` with one at each of `breaks` \[m\] that lies between the ends, and the numbers of those.
+/// The nodes `s` with one at each of `breaks` \[m\] that lies between the ends, and the numbers of
+/// those.
 ///
-/// Counted nodes keep their number: the stretches between breaks get cells so that the longest is as short as it can be, in units of the cells that were there,
-/// and their nodes are spread as they were; only where there are more breaks than nodes are there more nodes in the end. Nodes that are `given` stay where
-/// they are, and are joined by others.
+/// Counted nodes keep their number: the stretches between breaks get cells so that the longest is
+/// as short as it can be, in units of the cells that were there, and their nodes are spread as they
+/// were; only where there are more breaks than nodes are there more nodes in the end. Nodes that
+/// are `given` stay where they are, and are joined by others.
 pub fn meet(mut s: Vec<f64>, given: bool, breaks: &[f64]) -> (Vec<f64>, Vec<usize>) {
     let length = s[s.len() - 1];
     let inside = |s: &f64| (SAME_PLACE * length..(1.0 - SAME_PLACE) * length).contains(s);
@@ -137,7 +145,8 @@ fn apportion(s: &[f64], breaks: &[f64]) -> Vec<usize> {
     sums.take(breaks.len()).collect()
 }
 
-/// Puts a node to `at`: another one, or the nearest if that is very near, no end and no other break.
+/// Puts a node to `at`: another one, or the nearest if that is very near, no end and no other
+/// break.
 fn join(s: &mut Vec<f64>, at: f64, breaks: &[f64]) {
     let right = s.partition_point(|node| *node < at);
     let spacing = s[right] - s[right - 1];
@@ -194,7 +203,8 @@ mod tests {
         ] {
             assert_eq!(meet(uniform(n), false, breaks).1, numbers, "{breaks:?}");
         }
-        // Of two equal stretches the same one gets the odd cell, whatever round-off makes of the break.
+        // Of two equal stretches the same one gets the odd cell, whatever round-off makes of the
+        // break.
         for error in [-1e-15, 0.0, 1e-15] {
             assert_eq!(meet(uniform(4), false, &[0.5 + error]).1, [1], "{error}");
         }

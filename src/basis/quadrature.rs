@@ -1,7 +1,8 @@
 //! Gauss–Legendre and Gauss–Lobatto rules on [0, 1].
 //!
-//! Abscissae are the roots of P_n, and of P'_{n−1} with both ends, found by Newton's method from asymptotic
-//! starting values; they are exact to the last digit or two of double precision, for any number of points.
+//! Abscissae are the roots of P_n, and of P'_{n−1} with both ends, found by Newton's method from
+//! asymptotic starting values; they are exact to the last digit or two of double precision, for any
+//! number of points.
 
 use super::error::BasisError;
 

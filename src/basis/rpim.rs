@@ -1,16 +1,18 @@
 //! Hermite radial point interpolation: shape functions of one cell from the nodes of its support.
 //!
-//! In the scaled coordinate X = (s − s̄)/d_c, with d_c the average spacing of the whole beam's nodes,
+//! In the scaled coordinate X = (s − s̄)/d_c, with d_c the average spacing of the whole beam's
+//! nodes,
 //!
 //! u(X) = Σ_i [R(X−X_i) a_i + R'(X−X_i) b_i] + Σ_{j<m} c_j Xʲ
 //!
-//! interpolates values and slopes at the k nodes of the support, under Σ_i [X_iʲ a_i ± (Xʲ)'_i b_i] = 0. With G the matrix
-//! of these 2k + m conditions and φ(X) the functions above, the row of shape functions is the solution y of Gᵀ y = φ(X),
-//! and its derivatives that with φ differentiated.
+//! interpolates values and slopes at the k nodes of the support, under Σ_i [X_iʲ a_i ± (Xʲ)'_i b_i]
+//! = 0. With G the matrix of these 2k + m conditions and φ(X) the functions above, the row of shape
+//! functions is the solution y of Gᵀ y = φ(X), and its derivatives that with φ differentiated.
 //!
-//! G is close to singular wherever the interpolation is good: its condition number grows about like α^(4k−2), with
-//! α in units of the smallest spacing. So G is formed, factorised and solved in extended precision, doubled until the
-//! error of the rows is negligible in double precision, and only then rounded.
+//! G is close to singular wherever the interpolation is good: its condition number grows about like
+//! α^(4k−2), with α in units of the smallest spacing. So G is formed, factorised and solved in
+//! extended precision, doubled until the error of the rows is negligible in double precision, and
+//! only then rounded.
 
 use std::ops::Range;
 
@@ -73,7 +75,8 @@ impl Shape {
         precisions: &mut Precisions,
     ) -> Result<Self, Quality> {
         let mut last = Quality::default();
-        // Bits beyond those that an attempt needed are known, so a neighbour can start where this one ended.
+        // Bits beyond those that an attempt needed are known, so a neighbour can start where this
+        // one ended.
         let mut bits = if precisions.hint <= DoubleDouble.bits() as f64 {
             DoubleDouble.bits()
         } else {

@@ -1,4 +1,5 @@
-//! Shape functions tabulated at points of a beam: all that effects, loads, probes and supports see of a discretisation.
+//! Shape functions tabulated at points of a beam: all that effects, loads, probes and supports see
+//! of a discretisation.
 
 /// One point or one cell of a beam, with the coefficients that its rows multiply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,8 +13,8 @@ pub struct Cell {
 /// Rows of shape functions at quadrature points or at single points.
 ///
 /// A row of order d holds dᵈN_j/dsᵈ for `width` consecutive coefficients, so that
-/// `dᵈr/dsᵈ = Σ_j row[j] · coefficient[first + j]`. Where a cell touches fewer coefficients (at the ends of a
-/// beam), the row is padded with zeros, and `first` is such that all coefficients exist.
+/// `dᵈr/dsᵈ = Σ_j row[j] · coefficient[first + j]`. Where a cell touches fewer coefficients (at the
+/// ends of a beam), the row is padded with zeros, and `first` is such that all coefficients exist.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BasisTable {
     /// Coefficients that each row multiplies.
@@ -28,8 +29,8 @@ pub struct BasisTable {
     pub cells: Vec<Cell>,
     /// Per block, per point: the quadrature weight ds \[m\]; 1 for single points.
     pub weights: Vec<f64>,
-    /// Per block, per point, per order: a row of `width` numbers. Of order d, those of a value are in m⁻ᵈ, those of
-    /// a slope in m¹⁻ᵈ.
+    /// Per block, per point, per order: a row of `width` numbers. Of order d, those of a value are
+    /// in m⁻ᵈ, those of a slope in m¹⁻ᵈ.
     pub rows: Vec<f64>,
     /// Per cell, per point: the arc length s \[m\].
     pub s: Vec<f64>,
@@ -51,8 +52,8 @@ impl BasisTable {
         )
     }
 
-    /// The first cells of as many fours as there are that have the same block and start each a node later than the one before, and the cells
-    /// that are in no four.
+    /// The first cells of as many fours as there are that have the same block and start each a node
+    /// later than the one before, and the cells that are in no four.
     pub fn by_fours(&self) -> (Vec<u32>, Vec<u32>) {
         let alike = |cells: &[Cell]| {
             cells.windows(2).all(|pair| pair[0].block == pair[1].block && pair[1].first == pair[0].first + 2)

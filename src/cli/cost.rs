@@ -32,8 +32,9 @@ it was interrupted (what was measured until then is written, marked as incomplet
 pub struct CostArguments {
     /// The scene file (TOML)
     scene: PathBuf,
-    /// Wanted error: largest distance of a probe from its true place, in beam lengths (without probes: of both ends and the
-    /// middle of every beam); for modal analysis and buckling, relative error of frequencies or load factors
+    /// Wanted error: largest distance of a probe from its true place, in beam lengths (without
+    /// probes: of both ends and the middle of every beam); for modal analysis and buckling,
+    /// relative error of frequencies or load factors
     #[arg(long, value_name = "ERROR", default_value_t = Options::default().target)]
     target: f64,
     /// Time for everything, with its unit; the reference takes up to half of it

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 
-/// A directory that can be written. Unless [`keep`](Self::keep) is called, the directories that were made for it are
-/// removed again when it goes out of scope, so that a run that fails leaves nothing behind.
+/// A directory that can be written. Unless [`keep`](Self::keep) is called, the directories that
+/// were made for it are removed again when it goes out of scope, so that a run that fails leaves
+/// nothing behind.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,

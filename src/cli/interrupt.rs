@@ -1,5 +1,5 @@
-//! Ctrl-C, or another request to end such as a queue's before its time is over: once to end after the step, or the runs,
-//! in progress; twice to end the program.
+//! Ctrl-C, or another request to end such as a queue's before its time is over: once to end after
+//! the step, or the runs, in progress; twice to end the program.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -27,9 +27,10 @@ pub struct SweepArguments {
     /// The scene file (TOML)
     #[arg(required_unless_present = "merge")]
     scene: Option<PathBuf>,
-    /// Vary one value of the scene: PATH=START:STOP:COUNT evenly, PATH=START:STOP:COUNT:log evenly in the logarithm, or
-    /// PATH=a,b,c; both ends with the same unit, as in effect.moment.0.value="0 N m:300 N m:7". Repeatable: all combinations
-    /// are run, the last one changing fastest
+    /// Vary one value of the scene: PATH=START:STOP:COUNT evenly, PATH=START:STOP:COUNT:log evenly
+    /// in the logarithm, or PATH=a,b,c; both ends with the same unit, as in
+    /// effect.moment.0.value="0 N m:300 N m:7". Repeatable: all combinations are run, the last one
+    /// changing fastest
     #[arg(long, value_name = "PATH=VALUES")]
     vary: Vec<String>,
     /// Take values from the lines of a CSV file whose header names paths of the scene

@@ -19,12 +19,14 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
 use super::failure::Failure;
 
-/// Lines on standard error, in which nothing commands the terminal. That nobody reads it is no reason to fail.
+/// Lines on standard error, in which nothing commands the terminal. That nobody reads it is no
+/// reason to fail.
 pub fn note(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", visible(text));
 }
 
-/// The text with control characters, other than ends of lines and tabs, as they are written in a scene: a title or a name could move the cursor, or worse.
+/// The text with control characters, other than ends of lines and tabs, as they are written in a
+/// scene: a title or a name could move the cursor, or worse.
 pub fn visible(text: &str) -> Cow<'_, str> {
     let commands = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
     if !text.contains(commands) {
@@ -34,7 +36,8 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     text.chars().map(shown).collect::<String>().into()
 }
 
-/// Prints a failure: with the lines of the scene on a terminal, else as plain text with everything in it.
+/// Prints a failure: with the lines of the scene on a terminal, else as plain text with everything
+/// in it.
 pub fn report(failure: &Failure) {
     if io::stderr().is_terminal() {
         let plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());

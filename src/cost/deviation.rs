@@ -6,21 +6,22 @@ use crate::model::{Analysis, Model};
 use crate::output::Summary;
 use crate::trajectory::{AnalysisKind, Shape, Trajectory};
 
-/// Records belong together when their times or load factors differ by less, relative to the last one.
+/// Records belong together when their times or load factors differ by less, relative to the last
+/// one.
 const SAME: f64 = 1e-9;
 
 /// Errors of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Deviation {
-    /// What the target refers to. Statics and motion: largest distance of a probe from its place in the reference, over
-    /// probes and common records, in lengths of the probe's beam. Modal analysis and buckling: largest relative error of a
-    /// frequency or load factor.
+    /// What the target refers to. Statics and motion: largest distance of a probe from its place in
+    /// the reference, over probes and common records, in lengths of the probe's beam. Modal
+    /// analysis and buckling: largest relative error of a frequency or load factor.
     pub error: f64,
-    /// Root mean square error of the curvature along all beams in the last state, relative to the largest curvature there;
-    /// `None` where nothing bends or there is no state.
+    /// Root mean square error of the curvature along all beams in the last state, relative to the
+    /// largest curvature there; `None` where nothing bends or there is no state.
     pub curvature: Option<f64>,
-    /// Statics: relative error of the strain energy in the last state. Motion: max |total − initial| / max kinetic, which
-    /// needs no reference.
+    /// Statics: relative error of the strain energy in the last state. Motion: max |total −
+    /// initial| / max kinetic, which needs no reference.
     pub energy: Option<f64>,
 }
 
@@ -73,7 +74,8 @@ impl Deviation {
     }
 }
 
-/// Pairs of records at the same time or load factor; both lists ascend. The last of the reference must be among them.
+/// Pairs of records at the same time or load factor; both lists ascend. The last of the reference
+/// must be among them.
 fn common(run: &[f64], reference: &[f64]) -> Result<Vec<(usize, usize)>, String> {
     let last = *reference.last().ok_or("no record")?;
     let (mut pairs, mut i) = (Vec::new(), 0);

@@ -1,8 +1,9 @@
 //! The settings that are tried, coarse ones first, and when a family of them is left.
 //!
-//! First all discretisations climb their meshes together, with one accurate solver. Then the best of them, from the
-//! cheapest to the most accurate, are tried with other solvers: tolerances in statics; integrators, tolerances and steps
-//! in motion. A setting whose predicted time exceeds what is left is not tried.
+//! First all discretisations climb their meshes together, with one accurate solver. Then the best
+//! of them, from the cheapest to the most accurate, are tried with other solvers: tolerances in
+//! statics; integrators, tolerances and steps in motion. A setting whose predicted time exceeds
+//! what is left is not tried.
 
 use serde::Serialize;
 
@@ -14,7 +15,8 @@ use crate::scene::SPECTRAL_RADIUS;
 
 /// Cells of the meshes.
 const MESHES: [usize; 15] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
-/// A family is dominated by far where another setting has so many times less error in so many times less time …
+/// A family is dominated by far where another setting has so many times less error in so many times
+/// less time …
 const FAR: f64 = 4.0;
 /// … on so many meshes in succession; and it is given up after so many failures in succession.
 const PATIENCE: usize = 2;
@@ -260,7 +262,8 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
             let mut before: Option<[f64; 2]> = None;
             for solver in list {
                 let what = format!("{family}, {cells} cells, {solver}");
-                // Second-order methods pay most for a digit: ten times the accuracy, or a quarter of the step.
+                // Second-order methods pay most for a digit: ten times the accuracy, or a quarter
+                // of the step.
                 let predicted = before.map_or(measured.seconds, |[seconds, _]| 4.0 * seconds);
                 if bench.now() + RESERVE * predicted >= task.deadline {
                     climbed.leave(what, "no time is left in the budget");
@@ -272,7 +275,8 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
                         let found = climbed.rungs[index].measured.clone();
                         let (seconds, error) = (found.seconds, found.deviation.error);
                         if found.work() == measured.work() && same(error, measured.deviation.error) {
-                            // Otherwise the noise of the clock would choose between two names of one thing.
+                            // Otherwise the noise of the clock would choose between two names of
+                            // one thing.
                             climbed.rungs.truncate(index);
                             climbed.leave(what, "it comes to the same by the same work as without it");
                             break;
@@ -303,14 +307,15 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-3 * a.max(b)
 }
 
-/// Rungs of the front whose discretisation is worth another solver: the cheapest that meets the target, and others evenly
-/// along the front, the best first.
+/// Rungs of the front whose discretisation is worth another solver: the cheapest that meets the
+/// target, and others evenly along the front, the best first.
 fn picks(rungs: &[Rung], task: &Task<'_>) -> Vec<usize> {
     let front: Vec<usize> =
         front(&points(rungs, task.least)).into_iter().filter(|&i| rungs[i].family != Family::Scene).collect();
     let meets = front.iter().position(|&i| rungs[i].measured.deviation.error <= task.target);
     let middle = meets.unwrap_or(front.len().saturating_sub(1));
-    // What is far cheaper, and far more accurate, is there to be seen; what decides lies around the target.
+    // What is far cheaper, and far more accurate, is there to be seen; what decides lies around the
+    // target.
     let near = [
         middle,
         middle.saturating_sub(1),
@@ -451,7 +456,8 @@ mod tests {
         assert_eq!(tolerance(4.0), 0.1);
     }
 
-    /// A bench where steps cost time and leave errors of the method's order, and where the mesh leaves one, too.
+    /// A bench where steps cost time and leave errors of the method's order, and where the mesh
+    /// leaves one, too.
     struct Steps {
         clock: f64,
     }
@@ -495,7 +501,8 @@ mod tests {
         }
     }
 
-    /// What is tried in which order, and what is left out for which reason: whoever changes the ladder sees here what becomes of it.
+    /// What is tried in which order, and what is left out for which reason: whoever changes the
+    /// ladder sees here what becomes of it.
     #[test]
     fn the_order_of_what_is_tried_is_as_reviewed() {
         let motion = Analysis::Dynamic(Dynamic {

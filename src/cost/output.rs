@@ -68,7 +68,8 @@ pub struct ReportedRung {
     pub below_uncertainty: bool,
     /// No other one beats it in time and error.
     pub front: bool,
-    /// Its error plus the uncertainty of the reference is within the target, and its run warned of nothing.
+    /// Its error plus the uncertainty of the reference is within the target, and its run warned of
+    /// nothing.
     pub meets_target: bool,
 }
 

@@ -1,5 +1,5 @@
-//! What errors are measured against: two runs that share neither the discretisation nor, in motion, the integrator, made
-//! finer until they agree.
+//! What errors are measured against: two runs that share neither the discretisation nor, in motion,
+//! the integrator, made finer until they agree.
 
 use super::bench::{Desk, Miss};
 use super::{CostError, Deviation, Family, Setting, Solver};
@@ -9,7 +9,8 @@ use crate::trajectory::Trajectory;
 
 /// Cells of the meshfree run of the first pair.
 const CELLS: usize = 16;
-/// Elements of the other run for each of them: about as expensive, and about as accurate where bending dominates.
+/// Elements of the other run for each of them: about as expensive, and about as accurate where
+/// bending dominates.
 const ELEMENTS_PER_CELL: usize = 4;
 /// Most pairs.
 const PAIRS: u32 = 7;
@@ -121,7 +122,8 @@ mod tests {
     use crate::model::Discretization;
     use crate::scene::parse;
 
-    /// Twice the cells and a quarter of the tolerance from pair to pair; meshfree by Gauss against elements by Radau.
+    /// Twice the cells and a quarter of the tolerance from pair to pair; meshfree by Gauss against
+    /// elements by Radau.
     #[test]
     fn pairs_share_neither_mesh_nor_method() {
         let scene = parse(

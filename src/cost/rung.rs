@@ -42,13 +42,15 @@ impl Measured {
         self.statistics.tangent_evaluations + self.statistics.factorizations
     }
 
-    /// The same times the unknowns, to which the cost of either is proportional: a cost that no clock enters.
+    /// The same times the unknowns, to which the cost of either is proportional: a cost that no
+    /// clock enters.
     pub fn sized_work(&self) -> f64 {
         self.work() as f64 * self.degrees_of_freedom as f64
     }
 }
 
-/// Indices of the points (cost, error) that no other one beats in both, by ascending cost. Of equal ones the first.
+/// Indices of the points (cost, error) that no other one beats in both, by ascending cost. Of equal
+/// ones the first.
 pub(super) fn front(points: &[[f64; 2]]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| points[a][0].total_cmp(&points[b][0]).then(points[a][1].total_cmp(&points[b][1])));
@@ -67,7 +69,8 @@ pub(super) fn cheapest(points: &[[f64; 2]], target: f64) -> Option<usize> {
     meets.min_by(|&a, &b| points[a][0].total_cmp(&points[b][0]))
 }
 
-/// (seconds, error) of every rung; an error below `least` counts as `least`, for nobody can tell them apart.
+/// (seconds, error) of every rung; an error below `least` counts as `least`, for nobody can tell
+/// them apart.
 pub(super) fn points(rungs: &[Rung], least: f64) -> Vec<[f64; 2]> {
     rungs.iter().map(|rung| [rung.measured.seconds, rung.measured.deviation.error.max(least)]).collect()
 }

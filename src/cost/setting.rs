@@ -20,7 +20,8 @@ pub enum Family {
     Scene,
     /// Cable elements.
     Ancf(GaussPoints),
-    /// Radial point interpolation with multiquadrics; what is not said takes the defaults of scenes.
+    /// Radial point interpolation with multiquadrics; what is not said takes the defaults of
+    /// scenes.
     Rpim {
         /// Nodes beyond the cell's own two, on each side.
         neighbours: usize,
@@ -34,10 +35,12 @@ pub enum Family {
 impl Family {
     /// Cable elements with the points that integrate Green's strain exactly.
     pub const FULL: Self = Self::Ancf(GaussPoints { stretch: 5, bend: 3, lobatto: false });
-    /// Cable elements as scenes have them where they say no more: with fewer points, which let membrane locking go.
+    /// Cable elements as scenes have them where they say no more: with fewer points, which let
+    /// membrane locking go.
     pub const REDUCED: Self = Self::Ancf(ANCF_GAUSS_POINTS);
 
-    /// Radial point interpolation as scenes have it where they say no more, but for the Gauss points.
+    /// Radial point interpolation as scenes have it where they say no more, but for the Gauss
+    /// points.
     pub fn usual(points: usize) -> Self {
         let shape = match RPIM_KERNEL {
             Kernel::Multiquadric { shape, .. } => shape,
@@ -56,8 +59,9 @@ impl Family {
         [Self::FULL, Self::REDUCED].into_iter().chain(usual).chain(rpim).collect()
     }
 
-    /// The beams of `model` with as many cells that the one with the most has `cells`, the others in proportion to what
-    /// they have in the model. Nodes are spaced evenly, or graded as the model's given ones.
+    /// The beams of `model` with as many cells that the one with the most has `cells`, the others
+    /// in proportion to what they have in the model. Nodes are spaced evenly, or graded as the
+    /// model's given ones.
     pub(super) fn beams(self, model: &Model, cells: usize) -> Vec<(Discretization, GaussPoints)> {
         let most = model.beams.iter().map(cells_of).max().unwrap_or(1);
         let beam = |beam: &Beam| {
@@ -91,7 +95,8 @@ impl Family {
         model.beams.iter().map(beam).collect()
     }
 
-    /// The discretisation without what is varied within RPIM beyond the support: for the colours of plots.
+    /// The discretisation without what is varied within RPIM beyond the support: for the colours of
+    /// plots.
     pub(super) fn kind(self) -> String {
         match self {
             Self::Rpim { neighbours, .. } => {
@@ -195,8 +200,8 @@ impl Setting {
         (model, analysis)
     }
 
-    /// The lines of a scene that ask for this setting: tables to stand in place of those of the same names, the bases of
-    /// all beams and the integrator.
+    /// The lines of a scene that ask for this setting: tables to stand in place of those of the
+    /// same names, the bases of all beams and the integrator.
     pub fn toml(&self, model: &Model) -> String {
         let mut tables = Vec::new();
         for (beam, (discretization, points)) in model.beams.iter().zip(&self.beams) {

@@ -1,13 +1,16 @@
-//! What acts on a beam, by arc length: forces and couples, concentrated and spread, and their sum up to a cut.
+//! What acts on a beam, by arc length: forces and couples, concentrated and spread, and their sum
+//! up to a cut.
 //!
-//! A density W(r, r', r'') acts on a rigid motion δr = δa + δθ J r of the piece of the beam where it is summed by
+//! A density W(r, r', r'') acts on a rigid motion δr = δa + δθ J r of the piece of the beam where
+//! it is summed by
 //!
 //! ```text
 //! force   −∂W/∂r        moment about the origin   −(r × ∂W/∂r + r' × ∂W/∂r' + r'' × ∂W/∂r'')
 //! ```
 //!
-//! per length. Of what does not change when the beam is turned and moved both vanish in every point: elasticity, its actuation and damping
-//! take no part, without having to be named. What is left balances the section forces at the cut.
+//! per length. Of what does not change when the beam is turned and moved both vanish in every
+//! point: elasticity, its actuation and damping take no part, without having to be named. What is
+//! left balances the section forces at the cut.
 
 use nalgebra::Vector2;
 use std::ops::{AddAssign, Mul};
@@ -32,7 +35,8 @@ impl Action {
         Self { moment, ..Self::default() }
     }
 
-    /// What the derivatives `gradient` of a density by the fields of the given `orders` do, which are `fields` in the present state.
+    /// What the derivatives `gradient` of a density by the fields of the given `orders` do, which
+    /// are `fields` in the present state.
     pub fn of_density<const M: usize>(
         orders: [usize; M],
         fields: &[Vector2<f64>; M],
@@ -105,7 +109,8 @@ impl Actions {
         self.points.push((s, action));
     }
 
-    /// Actions per length at the points of a quadrature rule, cell after cell: (s, weight, action), `points` of them in a cell.
+    /// Actions per length at the points of a quadrature rule, cell after cell: (s, weight, action),
+    /// `points` of them in a cell.
     pub fn add_spread(&mut self, points: usize, values: Vec<(f64, f64, Action)>) {
         let mut before = Action::default();
         let cells = values.chunks(points.max(1)).map(|cell| {
@@ -130,7 +135,8 @@ impl Actions {
         places
     }
 
-    /// The sum of all that acts between the beam's start and a cut on one side of `s`; `length` is that of the beam.
+    /// The sum of all that acts between the beam's start and a cut on one side of `s`; `length` is
+    /// that of the beam.
     pub fn until(&self, s: f64, side: Side, length: f64) -> Action {
         let mut sum = Action::default();
         let same = SAME * length;
@@ -155,7 +161,8 @@ impl Spread {
             values.iter().for_each(|(_, weight, action)| sum += *action * *weight);
             return sum;
         }
-        // The rule on the part of the cell before the cut, for the polynomial through the values at the cell's points.
+        // The rule on the part of the cell before the cut, for the polynomial through the values at
+        // the cell's points.
         for (s, weight, _) in values {
             let at = start + part * (s - start);
             for (k, (here, _, action)) in values.iter().enumerate() {

@@ -1,7 +1,9 @@
-//! Pre-strain and pre-curvature: a stress-free shape that grows with the load factor or follows a law of time.
+//! Pre-strain and pre-curvature: a stress-free shape that grows with the load factor or follows a
+//! law of time.
 //!
-//! Heat, a tendon, pressure or a piezoelectric layer ask for a strain ε₀ and a curvature κ₀. Of the energy ½ EA (ε − ε₀)² only −EA ε₀ ε does work on the
-//! beam: a load with a potential, beside the elastic energy ½ EA ε², so that it can be switched on like any other load.
+//! Heat, a tendon, pressure or a piezoelectric layer ask for a strain ε₀ and a curvature κ₀. Of the
+//! energy ½ EA (ε − ε₀)² only −EA ε₀ ε does work on the beam: a load with a potential, beside the
+//! elastic energy ½ EA ε², so that it can be switched on like any other load.
 
 use super::{Density, Engineering, Gradient, Green, Hessian, Kind, Strain, bend};
 use crate::lanes;

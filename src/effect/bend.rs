@@ -4,10 +4,11 @@ use super::{Density, Gradient, Hessian};
 use crate::lanes::{self, Lanes, Pair, Points, Real, Square, cross, dot, outer};
 use nalgebra::{Matrix2, Vector2};
 
-/// W = ½ EI (κ − κ₀)² with the material curvature κ = (r' × r'')/|r'|², κ₀ that of the stress-free shape as the
-/// discretisation sees it (no table of it for a straight beam).
+/// W = ½ EI (κ − κ₀)² with the material curvature κ = (r' × r'')/|r'|², κ₀ that of the stress-free
+/// shape as the discretisation sees it (no table of it for a straight beam).
 ///
-/// With g = r'·r', n = r' × r'' and the quarter turn J v = (−v_y, v_x), so that a × b = −(J b)·a = (J a)·b:
+/// With g = r'·r', n = r' × r'' and the quarter turn J v = (−v_y, v_x), so that a × b = −(J b)·a =
+/// (J a)·b:
 ///
 /// ```text
 /// ∂κ/∂r'  = −J r''/g − 2 κ r'/g            ∂κ/∂r'' = J r'/g
@@ -28,7 +29,8 @@ pub fn curvature(first: &Vector2<f64>, second: &Vector2<f64>) -> f64 {
 }
 
 impl Bend {
-    /// EI \[N m²\], and (r', r'') of the stress-free shape at the quadrature points (none: straight).
+    /// EI \[N m²\], and (r', r'') of the stress-free shape at the quadrature points (none:
+    /// straight).
     pub fn new(bending_stiffness: f64, reference: &[[Vector2<f64>; 2]]) -> Self {
         let reference = reference.iter().map(|[first, second]| curvature(first, second)).collect();
         Self { bending_stiffness, reference }

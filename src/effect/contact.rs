@@ -1,11 +1,15 @@
 //! Contact of a beam with circles, half-planes and boxes of the ground, by penalty.
 //!
-//! With g(r) the distance of the centreline from the obstacle less half the beam's thickness, the contact has the energy W = ½ k ⟨−g⟩² per length, ⟨x⟩ = max(x, 0): the
-//! pressure k ⟨−g⟩ grows with the penetration, which is the pressure divided by the stated k. Energy that goes into the contact comes back.
+//! With g(r) the distance of the centreline from the obstacle less half the beam's thickness, the
+//! contact has the energy W = ½ k ⟨−g⟩² per length, ⟨x⟩ = max(x, 0): the pressure k ⟨−g⟩ grows with
+//! the penetration, which is the pressure divided by the stated k. Energy that goes into the
+//! contact comes back.
 //!
-//! What decides is the gap of the curve, not of points on it: each cell is a polynomial ([`curve`]), the places where it crosses the obstacle's border are that
-//! polynomial's roots, and W is integrated over the pieces between them ([`pressing`]). So a disc of any size is met wherever along a cell it is, and the
-//! force changes smoothly as the edge of a contact moves. What lies between two states is looked at by [`sweep`].
+//! What decides is the gap of the curve, not of points on it: each cell is a polynomial
+//! ([`curve`]), the places where it crosses the obstacle's border are that polynomial's roots, and
+//! W is integrated over the pieces between them ([`pressing`]). So a disc of any size is met
+//! wherever along a cell it is, and the force changes smoothly as the edge of a contact moves. What
+//! lies between two states is looked at by [`sweep`].
 //!
 //! Friction sticks and slides ([`friction`]).
 

@@ -1,7 +1,9 @@
-//! Damping of a beam: in proportion to its mass, and of Kelvin–Voigt's kind on strain and curvature.
+//! Damping of a beam: in proportion to its mass, and of Kelvin–Voigt's kind on strain and
+//! curvature.
 //!
-//! For small vibrations the force of mass damping is α M q̇, and with the same η for strain and curvature that of Kelvin–Voigt's is η K q̇:
-//! Rayleigh's damping, by which a mode of frequency ω has the damping ratio ζ = ½ (α/ω + η ω).
+//! For small vibrations the force of mass damping is α M q̇, and with the same η for strain and
+//! curvature that of Kelvin–Voigt's is η K q̇: Rayleigh's damping, by which a mode of frequency ω
+//! has the damping ratio ζ = ½ (α/ω + η ω).
 
 use super::{Dissipation, Engineering, Gradient, Green, Hessian, Kind, Strain, bend};
 use crate::model::StrainMeasure;

@@ -1,7 +1,7 @@
 //! Forces that depend on velocity, as derivatives of a dissipation function.
 //!
-//! What takes energy out of a motion (material damping, dashpots, drag, friction) has a dissipation function R(z, ż), Rayleigh's where it is
-//! quadratic in ż, whose derivatives give
+//! What takes energy out of a motion (material damping, dashpots, drag, friction) has a dissipation
+//! function R(z, ż), Rayleigh's where it is quadratic in ż, whose derivatives give
 //!
 //! ```text
 //! force     f_a  = ∫ Σ_m N_a⁽ᵒᵐ⁾ ∂R/∂ż_m ds
@@ -9,9 +9,10 @@
 //! power     P    = f · q̇ ≥ 0, lost
 //! ```
 //!
-//! with z the local fields of the position and ż those of the velocity, and the same tables as a [`Density`]. The change of f with z is left
-//! out of the iteration matrix K + d D + c M: it is smaller than D/h, h being the step, by the rotation within that step, and would
-//! cost the symmetry.
+//! with z the local fields of the position and ż those of the velocity, and the same tables as a
+//! [`Density`]. The change of f with z is left out of the iteration matrix K + d D + c M: it is
+//! smaller than D/h, h being the step, by the rotation within that step, and would cost the
+//! symmetry.
 
 use super::{Actions, Density, Gradient, Hessian, Integral, Kind, Workspace};
 use crate::linear::Matrix;

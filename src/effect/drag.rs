@@ -6,9 +6,9 @@ use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Extent, Part};
 use nalgebra::{Matrix2, Vector2};
 
-/// Drag per length by the velocity u of the section against the fluid, split along and across the beam:
-/// f = −Σ_d (c_d + C_d |u_d|) u_d, the first part viscous, the second Morison's with C = ½ ρ C_D D. Its dissipation function is
-/// R = Σ_d (½ c_d u_d² + ⅓ C_d |u_d|³).
+/// Drag per length by the velocity u of the section against the fluid, split along and across the
+/// beam: f = −Σ_d (c_d + C_d |u_d|) u_d, the first part viscous, the second Morison's with C = ½ ρ
+/// C_D D. Its dissipation function is R = Σ_d (½ c_d u_d² + ⅓ C_d |u_d|³).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drag {
     /// Index of the beam.
@@ -37,7 +37,8 @@ impl Part for Drag {
     }
 }
 
-/// The drag of a steady flow on a beam at rest, a load that follows the beam's direction: of the fluid's velocity −u with u = u_t t + u_n n,
+/// The drag of a steady flow on a beam at rest, a load that follows the beam's direction: of the
+/// fluid's velocity −u with u = u_t t + u_n n,
 ///
 /// ```text
 /// ∂W/∂r = Σ_d φ_d a_d,   φ_d = (c_d + C_d |u_d|) u_d,   a = (t, n),   ∂/∂r' of it = Σ_d (φ_d' (u·a_d') a_d + φ_d a_d') ⊗ n/|r'|,   t' = n, n' = −t.
@@ -104,7 +105,8 @@ impl Dissipation<2> for Drag {
     }
 }
 
-/// Buoyancy of a beam in a heavy fluid: the dead force −m g per length, m the mass of the fluid that it displaces.
+/// Buoyancy of a beam in a heavy fluid: the dead force −m g per length, m the mass of the fluid
+/// that it displaces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Buoyancy {
     /// Index of the beam.

@@ -1,7 +1,8 @@
 //! Forces of the cells of a table whose width is known when this is compiled.
 //!
-//! Four cells that are alike, each a node further than the one before, are summed side by side in the lanes of a register, or one cell in the four
-//! states that the stages of a collocation method are. With 5/3 points an element takes 210 instructions by fours, 520 alone, most of them the
+//! Four cells that are alike, each a node further than the one before, are summed side by side in
+//! the lanes of a register, or one cell in the four states that the stages of a collocation method
+//! are. With 5/3 points an element takes 210 instructions by fours, 520 alone, most of them the
 //! products with the rows; the compiler's own attempts at it stayed scalar.
 
 use super::{Density, Gradient, Integral};
@@ -62,8 +63,8 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         }
     }
 
-    /// Forces on the coefficients `here` of four cells, the first of them `cell` and each with `stride` points more before it; or of one cell in four states, without
-    /// a stride.
+    /// Forces on the coefficients `here` of four cells, the first of them `cell` and each with
+    /// `stride` points more before it; or of one cell in four states, without a stride.
     #[inline(always)]
     fn sums_of_four<const W: usize, const P: usize>(
         &self,
@@ -81,7 +82,8 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let points = Points { first: cell * P + p, stride };
             gradients[p] = self.density.gradients(factor * weights[p], points, &z);
         }
-        // Loaded anew: carried on from above they would be stored to and loaded from the stack, as all registers are taken.
+        // Loaded anew: carried on from above they would be stored to and loaded from the stack, as
+        // all registers are taken.
         sums_of_points(std::hint::black_box(rows), &gradients)
     }
 

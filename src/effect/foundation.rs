@@ -6,7 +6,8 @@ use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Extent, Part};
 use nalgebra::Vector2;
 
-/// Winkler's foundation, W = ½ (k_x u_x² + k_y u_y²) per length with the displacement u = r − r₀; k_y alone carries a beam along x.
+/// Winkler's foundation, W = ½ (k_x u_x² + k_y u_y²) per length with the displacement u = r − r₀;
+/// k_y alone carries a beam along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foundation {
     /// Index of the beam.

@@ -3,7 +3,8 @@
 use super::{Density, Gradient, Hessian};
 use nalgebra::Matrix2;
 
-/// W = ½ ρA v·v, a density of the velocity field v = ṙ: its second derivative is the constant mass matrix.
+/// W = ½ ρA v·v, a density of the velocity field v = ṙ: its second derivative is the constant mass
+/// matrix.
 #[derive(Clone, Debug)]
 pub struct Inertia {
     /// ρA \[kg/m\].

@@ -1,27 +1,37 @@
 //! The sum of a density over a table of shape functions: where the time of a Newton iteration goes.
 //!
-//! The work is dispatched once per effect on the table's width, so that the loops below are compiled with the number
-//! of functions known (4 for the cable element; 8 and 12 for radial point interpolation): forces in `force.rs`, tangents in `tangent.rs`. Other widths
-//! are summed by the loops of this file.
+//! The work is dispatched once per effect on the table's width, so that the loops below are
+//! compiled with the number of functions known (4 for the cable element; 8 and 12 for radial point
+//! interpolation): forces in `force.rs`, tangents in `tangent.rs`. Other widths are summed by the
+//! loops of this file.
 //!
 //! # What was measured
-//! Forces of cable elements are bound by the short dependent sums of the local fields and by the divisions of the curvature, so that four of them side by
-//! side in the lanes of a register take the time of one and a half: 210 instructions an element with 5/3 points by fours, 520 alone. A tangent
-//! (with 3/2 points) takes 1 000 by fours, 1 400 alone; its tiles' 528 multiply–adds would take 0.02 µs at the machine's peak.
+//! Forces of cable elements are bound by the short dependent sums of the local fields and by the
+//! divisions of the curvature, so that four of them side by side in the lanes of a register take
+//! the time of one and a half: 210 instructions an element with 5/3 points by fours, 520 alone. A
+//! tangent (with 3/2 points) takes 1 000 by fours, 1 400 alone; its tiles' 528 multiply–adds would
+//! take 0.02 µs at the machine's peak.
 //!
-//! A step of the trapezoidal rule (30 elements, 1 ms, a kept tangent that is renewed every fourth step) takes 57 000 instructions:
-//! 35 % are forces, 25 % new tangents and their factorisations, 14 % substitutions, 9 % products with the mass matrix, the rest passes over vectors. A step of Radau's method
-//! (23 elements with Lobatto points, 2.5 iterations) takes 158 000: 28 % are the tangent and its two factorisations, 17 % forces, 15 % substitutions. In
-//! factorisations and substitutions it is not the count of instructions that decides but how long one waits for the other: two chains from both ends
-//! (the private module `linear::order`) execute more of them and take three fifths of the time.
+//! A step of the trapezoidal rule (30 elements, 1 ms, a kept tangent that is renewed every fourth
+//! step) takes 57 000 instructions: 35 % are forces, 25 % new tangents and their factorisations, 14
+//! % substitutions, 9 % products with the mass matrix, the rest passes over vectors. A step of
+//! Radau's method (23 elements with Lobatto points, 2.5 iterations) takes 158 000: 28 % are the
+//! tangent and its two factorisations, 17 % forces, 15 % substitutions. In factorisations and
+//! substitutions it is not the count of instructions that decides but how long one waits for the
+//! other: two chains from both ends (the private module `linear::order`) execute more of them and
+//! take three fifths of the time.
 //!
-//! With many elements memory decides. An iteration of the trapezoidal rule moves 384 bytes a node of the factors and 0.8 kB of vectors, a step 1 kB
-//! more: from a cache a step of 10 000 elements takes 1.5 times what one of 100 takes an element (0.125 µs), and from memory, which gives 13 GB/s,
-//! one of 100 000 takes 2.6 times. Forces cost the same there as anywhere: they compute longer than their vectors take to come. All else waits for memory, so that
-//! passes over vectors are few: accelerations are never put down, the largest force is found where the inertia is added, the largest residual where it is
-//! turned, and an increment is turned, measured and added in one pass. Going over all of an iteration in sections of 32 to 2048 nodes that stay in a
-//! cache moves two thirds of the bytes and was slower (0.41 instead of 0.36 µs a step), for memory idles while forces are computed; fetching factors
-//! ahead by instruction and pages of 2 MB changed nothing.
+//! With many elements memory decides. An iteration of the trapezoidal rule moves 384 bytes a node
+//! of the factors and 0.8 kB of vectors, a step 1 kB more: from a cache a step of 10 000 elements
+//! takes 1.5 times what one of 100 takes an element (0.125 µs), and from memory, which gives 13
+//! GB/s, one of 100 000 takes 2.6 times. Forces cost the same there as anywhere: they compute
+//! longer than their vectors take to come. All else waits for memory, so that passes over vectors
+//! are few: accelerations are never put down, the largest force is found where the inertia is
+//! added, the largest residual where it is turned, and an increment is turned, measured and added
+//! in one pass. Going over all of an iteration in sections of 32 to 2048 nodes that stay in a cache
+//! moves two thirds of the bytes and was slower (0.41 instead of 0.36 µs a step), for memory idles
+//! while forces are computed; fetching factors ahead by instruction and pages of 2 MB changed
+//! nothing.
 
 use super::{Action, Actions, Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
@@ -30,7 +40,8 @@ use crate::lanes::{self, Lanes, Pair};
 use crate::linear::Matrix;
 use nalgebra::Vector2;
 
-/// Memory that the assembly of a cell uses; kept by the caller so that nothing is allocated in the loops.
+/// Memory that the assembly of a cell uses; kept by the caller so that nothing is allocated in the
+/// loops.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(super) products: Vec<f64>,
@@ -38,7 +49,8 @@ pub struct Workspace {
     pub(super) pairs: Vec<Pair<Lanes>>,
 }
 
-/// A density, the shape functions at its quadrature points, and the place of its beam among the coordinates.
+/// A density, the shape functions at its quadrature points, and the place of its beam among the
+/// coordinates.
 #[derive(Clone, Debug)]
 pub struct Integral<D, const M: usize> {
     pub(super) kind: Kind,
@@ -46,7 +58,8 @@ pub struct Integral<D, const M: usize> {
     /// First coefficient of the beam; coefficient c has the coordinates 2c and 2c + 1.
     offset: usize,
     pub(super) table: BasisTable,
-    /// First cells of four that are alike, each a node further than the one before, and all cells that are in no such four.
+    /// First cells of four that are alike, each a node further than the one before, and all cells
+    /// that are in no such four.
     pub(super) fours: Vec<u32>,
     pub(super) singles: Vec<u32>,
     pub(super) density: D,
@@ -55,7 +68,8 @@ pub struct Integral<D, const M: usize> {
 /// Points in a cell with which cells are summed four at a time.
 const POINTS_BY_FOURS: std::ops::RangeInclusive<usize> = 2..=5;
 
-/// `f(const width, arguments…)`, the width a compile-time constant for the common tables and 0 for all others.
+/// `f(const width, arguments…)`, the width a compile-time constant for the common tables and 0 for
+/// all others.
 macro_rules! with_width {
     ($self:ident . $method:ident ( $($argument:expr),* )) => {
         match $self.table.width {
@@ -68,8 +82,8 @@ macro_rules! with_width {
 }
 
 impl<D: Density<M>, const M: usize> Integral<D, M> {
-    /// `offset` is the beam's first coefficient (two per node) in the system; `table` must hold the rows
-    /// [`Density::ORDERS`].
+    /// `offset` is the beam's first coefficient (two per node) in the system; `table` must hold the
+    /// rows [`Density::ORDERS`].
     pub fn new(kind: Kind, beam: usize, offset: usize, table: BasisTable, density: D) -> Self {
         debug_assert_eq!(table.orders, D::ORDERS);
         let (fours, singles) = if D::BY_FOURS && POINTS_BY_FOURS.contains(&table.points_per_cell) {

@@ -1,9 +1,11 @@
-//! Forces and moments, concentrated (a table of one point with weight 1) or distributed (a table of the whole beam).
+//! Forces and moments, concentrated (a table of one point with weight 1) or distributed (a table of
+//! the whole beam).
 
 use super::{Density, Gradient, Hessian};
 use nalgebra::{Matrix2, Vector2};
 
-/// A force of fixed direction, F \[N\] or \[N/m\]: W = −F·(r − r₀). Weight is such a force with F = ρA g.
+/// A force of fixed direction, F \[N\] or \[N/m\]: W = −F·(r − r₀). Weight is such a force with F =
+/// ρA g.
 #[derive(Clone, Debug)]
 pub struct DeadForce {
     force: Vector2<f64>,
@@ -44,8 +46,8 @@ impl Density<1> for DeadForce {
 
 /// A force that turns with the section: F = R(θ − θ₀) F₀ with θ = atan2(y', x'). It has no energy.
 ///
-/// Along and across the tangent t = r'/|r'| it has constant components (f_t, f_n): F = f_t t + f_n J t, and
-/// ∂F/∂r' = (f_t 1 + f_n J)(1 − t tᵀ)/|r'|.
+/// Along and across the tangent t = r'/|r'| it has constant components (f_t, f_n): F = f_t t + f_n
+/// J t, and ∂F/∂r' = (f_t 1 + f_n J)(1 − t tᵀ)/|r'|.
 #[derive(Clone, Debug)]
 pub struct FollowerForce {
     /// (f_t, f_n) per point.
@@ -107,8 +109,9 @@ impl Density<2> for FollowerForce {
 
 /// A moment M \[N m\], counter-clockwise: δW = −M δθ with θ = atan2(y', x').
 ///
-/// ∂θ/∂r' = J r'/|r'|², symmetric second derivative. Its work M θ is a potential only as long as θ is counted on
-/// through full turns, which no single state can tell; its work is therefore summed up along the motion.
+/// ∂θ/∂r' = J r'/|r'|², symmetric second derivative. Its work M θ is a potential only as long as θ
+/// is counted on through full turns, which no single state can tell; its work is therefore summed
+/// up along the motion.
 #[derive(Clone, Debug)]
 pub struct Moment {
     /// Counter-clockwise \[N m\].

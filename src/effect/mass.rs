@@ -1,14 +1,15 @@
 //! Masses on a beam, and the rotary inertia of points and sections.
 //!
-//! Rotary inertia belongs to the direction θ of the gradient alone, T = ½ J θ̇² with θ̇ = p·ṙ' and p = ∂θ/∂r' = J r'/|r'|² (J a quarter turn). With it the
-//! mass matrix J p pᵀ follows the direction, and the force of inertia is
+//! Rotary inertia belongs to the direction θ of the gradient alone, T = ½ J θ̇² with θ̇ = p·ṙ' and
+//! p = ∂θ/∂r' = J r'/|r'|² (J a quarter turn). With it the mass matrix J p pᵀ follows the
+//! direction, and the force of inertia is
 //!
 //! ```text
 //! J θ̈ p,   θ̈ = p·r̈' + ṙ'·∂²θ/∂r'∂r'·ṙ'
 //! ```
 //!
-//! ½ J ṙ'·ṙ', whose matrix is constant, would give |r'| an inertia too: a point's makes the stretch of the cells beside it swing, slower on finer meshes, and
-//! that of sections holds up axial waves.
+//! ½ J ṙ'·ṙ', whose matrix is constant, would give |r'| an inertia too: a point's makes the stretch
+//! of the cells beside it swing, slower on finer meshes, and that of sections holds up axial waves.
 
 use super::direction;
 use super::{Dissipation, Gradient, Hessian, Inertia, Kind};
@@ -67,7 +68,8 @@ impl Part for SectionInertia {
     }
 }
 
-/// The kinetic energy ½ J θ̇² as a function of ṙ': its derivative is the momentum J θ̇ p, its second derivative the mass matrix J p pᵀ.
+/// The kinetic energy ½ J θ̇² as a function of ṙ': its derivative is the momentum J θ̇ p, its
+/// second derivative the mass matrix J p pᵀ.
 #[derive(Clone, Debug)]
 pub struct RotaryInertia {
     /// J \[kg m²\], or per length ρI \[kg m\].

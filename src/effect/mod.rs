@@ -1,8 +1,9 @@
 //! Physics as densities at a point of the beam.
 //!
-//! An effect is a function W of a few local fields z = (r⁽ᵒ¹⁾, r⁽ᵒ²⁾, …): the position r, the gradient r' and its
-//! derivative r'' at one arc length s. With the shape functions r⁽ᵒ⁾(s) = Σ_a N_a⁽ᵒ⁾(s) q_a, everything that a solver
-//! asks for follows from the first and second derivatives of W at that point:
+//! An effect is a function W of a few local fields z = (r⁽ᵒ¹⁾, r⁽ᵒ²⁾, …): the position r, the
+//! gradient r' and its derivative r'' at one arc length s. With the shape functions r⁽ᵒ⁾(s) = Σ_a
+//! N_a⁽ᵒ⁾(s) q_a, everything that a solver asks for follows from the first and second derivatives
+//! of W at that point:
 //!
 //! ```text
 //! energy     U   = ∫ W(z) ds
@@ -10,18 +11,21 @@
 //! tangent    K_ab = ∫ Σ_m Σ_n N_a⁽ᵒᵐ⁾ ∂²W/∂z_m∂z_n N_b⁽ᵒⁿ⁾ ds
 //! ```
 //!
-//! A [`Density`] gives W and its derivatives and knows no node, no step and no other effect; an [`Integral`] sums it
-//! over a table of shape functions. A load that has no energy (a follower force) is a density that gives its virtual
-//! work's coefficients as "∂W/∂z" and their derivatives as "∂²W/∂z∂z", which then is not symmetric.
+//! A [`Density`] gives W and its derivatives and knows no node, no step and no other effect; an
+//! [`Integral`] sums it over a table of shape functions. A load that has no energy (a follower
+//! force) is a density that gives its virtual work's coefficients as "∂W/∂z" and their derivatives
+//! as "∂²W/∂z∂z", which then is not symmetric.
 //!
 //! # The tangent between two iterates
-//! The stress resultants that enter the tangent's second term (N for stretch, M for bend) are taken by linear
-//! extrapolation from the previous iterate, S = C (ε(z⁻) + ∂ε/∂z Δz), and not from the strain at the current one.
-//! This is Newton's method on the mixed problem in which S is an unknown of its own at every quadrature point, with S
-//! eliminated (Magisano, Leonetti, Garcea, *Int. J. Numer. Meth. Engng* 109, 2017, 1237–1262). The equilibria are the
-//! same and convergence stays quadratic; but a slender beam's large EA no longer turns the strain of a not yet
-//! converged rotation into an enormous axial force, so that steps can be many times longer. With z⁻ = z and Δz = 0 it is the
-//! ordinary tangent. Δz is that of the increment; the current iterate may have been moved along it with turns that are finite.
+//! The stress resultants that enter the tangent's second term (N for stretch, M for bend) are taken
+//! by linear extrapolation from the previous iterate, S = C (ε(z⁻) + ∂ε/∂z Δz), and not from the
+//! strain at the current one. This is Newton's method on the mixed problem in which S is an unknown
+//! of its own at every quadrature point, with S eliminated (Magisano, Leonetti, Garcea, *Int. J.
+//! Numer. Meth. Engng* 109, 2017, 1237–1262). The equilibria are the same and convergence stays
+//! quadratic; but a slender beam's large EA no longer turns the strain of a not yet converged
+//! rotation into an enormous axial force, so that steps can be many times longer. With z⁻ = z and
+//! Δz = 0 it is the ordinary tangent. Δz is that of the increment; the current iterate may have
+//! been moved along it with turns that are finite.
 
 mod action;
 mod actuation;
@@ -80,10 +84,12 @@ pub trait Density<const M: usize>: Send + Sync {
     /// Whether ∂²W/∂z∂z is symmetric, as it is for everything that has an energy.
     const SYMMETRIC: bool = true;
 
-    /// Whether ∂²W/∂z∂z is more than zero; where it is not, the force is constant and no tangent is assembled.
+    /// Whether ∂²W/∂z∂z is more than zero; where it is not, the force is constant and no tangent is
+    /// assembled.
     const HAS_TANGENT: bool = true;
 
-    /// Whether the force has the potential W; where it has not, its work is summed up along the motion.
+    /// Whether the force has the potential W; where it has not, its work is summed up along the
+    /// motion.
     const CONSERVATIVE: bool = true;
 
     /// W at quadrature point number `point` \[J/m\]; zero for what has no energy.
@@ -107,7 +113,8 @@ pub trait Density<const M: usize>: Send + Sync {
         })
     }
 
-    /// `factor` times what [`Self::gradient_and_hessian`] gives for the states z, before and change, at four points.
+    /// `factor` times what [`Self::gradient_and_hessian`] gives for the states z, before and
+    /// change, at four points.
     #[inline(always)]
     fn gradients_and_hessians(
         &self,
@@ -129,7 +136,8 @@ pub trait Density<const M: usize>: Send + Sync {
         (gradient, from_fn(|m| from_fn(|n| from_fn(|d| from_fn(|e| entry(m, n, d, e))))))
     }
 
-    /// ∂W/∂z and ∂²W/∂z∂z, stress resultants in the latter extrapolated from the iterate `before` by the `change` that was computed there.
+    /// ∂W/∂z and ∂²W/∂z∂z, stress resultants in the latter extrapolated from the iterate `before`
+    /// by the `change` that was computed there.
     fn gradient_and_hessian(
         &self,
         point: usize,
@@ -297,13 +305,15 @@ pub trait Effect: Send + Sync {
     /// `f += factor · ∂U/∂q`.
     fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]);
 
-    /// The same in the states of four lanes, each with its own factor; `scratch` has two vectors of coordinates.
+    /// The same in the states of four lanes, each with its own factor; `scratch` has two vectors of
+    /// coordinates.
     fn add_forces(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
         let factors = factors.to_array();
         lanes::one_by_one(q, f, scratch, |lane, q, f| self.add_force(factors[lane], q, f));
     }
 
-    /// `f += factor · ∂U/∂q`, `k += factor · ∂²U/∂q∂q`, the latter with stress resultants extrapolated from an earlier iterate, if there is one.
+    /// `f += factor · ∂U/∂q`, `k += factor · ∂²U/∂q∂q`, the latter with stress resultants
+    /// extrapolated from an earlier iterate, if there is one.
     fn add_force_and_tangent(
         &self,
         factor: f64,
@@ -314,12 +324,13 @@ pub trait Effect: Send + Sync {
         workspace: &mut Workspace,
     );
 
-    /// `f += factor · ∂²U/∂q∂q v`, from point to point without a matrix: what differs by little between neighbouring nodes
-    /// is differentiated before it is multiplied by a large stiffness, so that fine meshes cost few digits.
+    /// `f += factor · ∂²U/∂q∂q v`, from point to point without a matrix: what differs by little
+    /// between neighbouring nodes is differentiated before it is multiplied by a large stiffness,
+    /// so that fine meshes cost few digits.
     fn add_tangent_product(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]);
 
-    /// What it does to its beam in the state `q`, times `factor`; a kinetic energy with the accelerations `a` of the coordinates, all else with
-    /// `a` the same as `q`.
+    /// What it does to its beam in the state `q`, times `factor`; a kinetic energy with the
+    /// accelerations `a` of the coordinates, all else with `a` the same as `q`.
     fn add_actions(&self, factor: f64, q: &[f64], a: &[f64], sum: &mut Actions);
 
     /// Quadrature points, and bytes of its tables and data.

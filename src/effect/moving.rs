@@ -1,7 +1,8 @@
 //! A force that travels along a beam with constant speed.
 //!
-//! The generalised force f_a = −N_a(s(t)) F needs the shape functions at a place that changes with time. They are tabulated at Lobatto points of every cell and
-//! interpolated between them by Lagrange's polynomial of degree 7, which is exact for the cable element's cubics.
+//! The generalised force f_a = −N_a(s(t)) F needs the shape functions at a place that changes with
+//! time. They are tabulated at Lobatto points of every cell and interpolated between them by
+//! Lagrange's polynomial of degree 7, which is exact for the cable element's cubics.
 
 use super::{Action, Actions, Kind};
 use crate::basis::{Basis, BasisError, BasisTable, Quadrature};
@@ -73,7 +74,8 @@ impl Travelling {
         (comes..goes).contains(&time).then(|| self.force.speed.mul_add(time, self.force.start))
     }
 
-    /// Calls `each` with the coordinates of every coefficient that the place `s` depends on, and its shape function there.
+    /// Calls `each` with the coordinates of every coefficient that the place `s` depends on, and
+    /// its shape function there.
     fn shape(&self, s: f64, mut each: impl FnMut(std::ops::Range<usize>, f64)) {
         let cells = self.table.s.as_chunks::<POINTS>().0;
         let cell = cells.partition_point(|places| places[0] <= s).max(1) - 1;
@@ -102,7 +104,8 @@ impl Travelling {
         });
     }
 
-    /// Adds mean and first moment of the force from `start` to `end` ([`crate::model::Law::moments`]).
+    /// Adds mean and first moment of the force from `start` to `end`
+    /// ([`crate::model::Law::moments`]).
     pub fn add_moments(&self, start: f64, end: f64, [mean, moment]: [&mut [f64]; 2]) {
         let [comes, goes] = self.kinks();
         if end <= comes || start >= goes {

@@ -7,8 +7,9 @@ use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Extent, Part};
 use nalgebra::{Matrix2, Vector2};
 
-/// A spring and a dashpot side by side. With an anchor they act along the line from it to the point, W = ½ k (ℓ − ℓ₀)², R = ½ c ℓ̇²; without one they
-/// hold the point where it is in the stress-free shape in all directions, W = ½ k |r − r₀|², R = ½ c |ṙ|².
+/// A spring and a dashpot side by side. With an anchor they act along the line from it to the
+/// point, W = ½ k (ℓ − ℓ₀)², R = ½ c ℓ̇²; without one they hold the point where it is in the
+/// stress-free shape in all directions, W = ½ k |r − r₀|², R = ½ c |ṙ|².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
     /// The point.

@@ -21,8 +21,8 @@ pub trait Strain: Copy + Send + Sync {
 pub struct Green;
 
 impl Strain for Green {
-    // Factored as ½ (x'−1)(x'+1) + ½ y'², the subtraction would lose fewer digits for a beam along x only; the plain
-    // form treats all directions alike.
+    // Factored as ½ (x'−1)(x'+1) + ½ y'², the subtraction would lose fewer digits for a beam along
+    // x only; the plain form treats all directions alike.
     #[inline(always)]
     fn strain(r: &Vector2<f64>) -> f64 {
         0.5 * (r.norm_squared() - 1.0)
@@ -81,7 +81,8 @@ pub struct Stretch<S> {
 }
 
 impl<S: Strain> Stretch<S> {
-    /// EA \[N\], and the gradients r' of the stress-free shape at the quadrature points (none: straight).
+    /// EA \[N\], and the gradients r' of the stress-free shape at the quadrature points (none:
+    /// straight).
     pub fn new(axial_stiffness: f64, reference: &[Vector2<f64>]) -> Self {
         let reference = reference.iter().map(S::strain).collect();
         Self { axial_stiffness, reference, strain: std::marker::PhantomData }

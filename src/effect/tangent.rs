@@ -1,17 +1,20 @@
 //! Force and tangent of the cells of a table whose width is known when this is compiled.
 //!
-//! Two passes a cell. The first evaluates the density at the cell's points and multiplies its second derivatives into the rows,
+//! Two passes a cell. The first evaluates the density at the cell's points and multiplies its
+//! second derivatives into the rows,
 //!
 //! ```text
 //! P_md = w Σ_n H_mn(d, ·) N⁽ᵒⁿ⁾        (2 M rows of 2 W numbers per point)
 //! ```
 //!
-//! the second adds Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md to row (a, d) of the matrix, a tile of 4 × 4 numbers (two nodes) at a
-//! time, so that the tile stays in registers while the points go by and is loaded and stored once per cell. Of a
-//! symmetric matrix only the tiles on and above the diagonal are computed.
+//! the second adds Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md to row (a, d) of the matrix, a tile of 4 × 4 numbers
+//! (two nodes) at a time, so that the tile stays in registers while the points go by and is loaded
+//! and stored once per cell. Of a symmetric matrix only the tiles on and above the diagonal are
+//! computed.
 //!
-//! Cable elements that are alike are summed four at a time, a number of each in a lane: what surrounds their few tiles costs more than the tiles. Wider cells, which
-//! have many, are summed one at a time with four columns of a tile in the lanes.
+//! Cable elements that are alike are summed four at a time, a number of each in a lane: what
+//! surrounds their few tiles costs more than the tiles. Wider cells, which have many, are summed
+//! one at a time with four columns of a tile in the lanes.
 
 use super::force::{coefficients, fields, fields_of_four, sums_of_points};
 use super::{Density, Earlier, Integral, Workspace};

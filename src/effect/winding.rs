@@ -1,7 +1,8 @@
 //! Turns of torsion springs.
 //!
-//! A torsion spring has W = ½ k θ² with the angle θ = α + 2πn of all turns. Of a state one knows α, from −π to π; n is that by which θ is nearest to the angle
-//! θ_h of the last accepted state. The part ½ k α² is summed as all elastic energies are ([`super::Torsion`]), and what a winding adds,
+//! A torsion spring has W = ½ k θ² with the angle θ = α + 2πn of all turns. Of a state one knows α,
+//! from −π to π; n is that by which θ is nearest to the angle θ_h of the last accepted state. The
+//! part ½ k α² is summed as all elastic energies are ([`super::Torsion`]), and what a winding adds,
 //!
 //! ```text
 //! W = 2πn k (α + πn),   ∂W/∂α = 2πn k,
@@ -58,7 +59,8 @@ pub struct Winding {
 }
 
 impl Winding {
-    /// Of the spring with k = `stiffness` \[N m/rad\] on `direction` ([`Direction`]), number `number` of all.
+    /// Of the spring with k = `stiffness` \[N m/rad\] on `direction` ([`Direction`]), number
+    /// `number` of all.
     pub fn new(direction: Box<dyn Effect>, stiffness: f64, number: usize) -> Self {
         Self { direction, stiffness, number }
     }

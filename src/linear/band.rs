@@ -1,7 +1,7 @@
 //! Band matrix without symmetry, real or complex, and its LU factorisation with partial pivoting.
 //!
-//! Rows are contiguous, so that an elimination step is a handful of row updates of fixed length. Pivoting widens the
-//! upper band by the lower bandwidth, as in LAPACK's `gbtrf`.
+//! Rows are contiguous, so that an elimination step is a handful of row updates of fixed length.
+//! Pivoting widens the upper band by the lower bandwidth, as in LAPACK's `gbtrf`.
 
 use super::Singular;
 use crate::lanes::fma;
@@ -150,7 +150,8 @@ impl<T: Number> BandLu<T> {
     pub fn new(matrix: &Band<T>) -> Result<Self, Singular> {
         let (n, half) = (matrix.n, matrix.half);
         let width = 2 * half + 1;
-        // Row i starts at column `max(0, i − half)` while it waits, at column k while column k is eliminated.
+        // Row i starts at column `max(0, i − half)` while it waits, at column k while column k is
+        // eliminated.
         let mut rows = vec![T::default(); n * width];
         for i in 0..n {
             let columns = matrix.columns(i);

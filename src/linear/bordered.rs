@@ -5,7 +5,8 @@
 //! [ B  0  ]
 //! ```
 //!
-//! factorised by faer's sparse LU with a fill-reducing ordering. The symbolic part is kept as long as the pattern stays.
+//! factorised by faer's sparse LU with a fill-reducing ordering. The symbolic part is kept as long
+//! as the pattern stays.
 
 use super::equilibrate::scales;
 use super::{Matrix, Singular};
@@ -52,7 +53,8 @@ fn assemble<T: ComplexField>(
 }
 
 impl Bordered {
-    /// Factorises `matrix` bordered by `border`; `earlier` lends its symbolic factorisation if the pattern is the same.
+    /// Factorises `matrix` bordered by `border`; `earlier` lends its symbolic factorisation if the
+    /// pattern is the same.
     ///
     /// # Errors
     /// [`Singular`] where the whole matrix is.
@@ -63,7 +65,8 @@ impl Bordered {
 }
 
 impl<T: ComplexField> Bordered<T> {
-    /// The same for a matrix with the pattern of `pattern`, the entries `entry(row, column)` and a diagonal of the sizes `diagonal`.
+    /// The same for a matrix with the pattern of `pattern`, the entries `entry(row, column)` and a
+    /// diagonal of the sizes `diagonal`.
     ///
     /// # Errors
     /// As [`Bordered::new`].

@@ -1,8 +1,9 @@
-//! Factorisation of K + ζ M for a complex number ζ and real K and M: the matrices into which the stages of a collocation
-//! method fall apart.
+//! Factorisation of K + ζ M for a complex number ζ and real K and M: the matrices into which the
+//! stages of a collocation method fall apart.
 //!
-//! K and M are symmetric, as a rule: then there is an L D Lᵀ ([`ComplexLdl`]). Unsymmetric matrices and those bordered by many rows are
-//! factorised with pivoting, as a band where the rows lie within it, else by faer's sparse LU.
+//! K and M are symmetric, as a rule: then there is an L D Lᵀ ([`ComplexLdl`]). Unsymmetric matrices
+//! and those bordered by many rows are factorised with pivoting, as a band where the rows lie
+//! within it, else by faer's sparse LU.
 
 use super::bordered::{BorderRow, Bordered};
 pub use super::complex_ldl::ComplexLdl;
@@ -25,8 +26,8 @@ pub enum ComplexFactor {
 }
 
 impl ComplexFactor {
-    /// Factorises `k` + ζ `m`, bordered by constraint rows if there are any, in the memory of an earlier factorisation of the
-    /// same pattern.
+    /// Factorises `k` + ζ `m`, bordered by constraint rows if there are any, in the memory of an
+    /// earlier factorisation of the same pattern.
     ///
     /// # Errors
     /// [`Singular`] where the matrix has no inverse to round-off.

@@ -1,10 +1,10 @@
 //! L D Lᵀ of K + ζ M for a complex number ζ and real symmetric bands K and M.
 //!
-//! K + ζ M is complex *symmetric* (not Hermitian) and has L D Lᵀ. It exists without
-//! pivoting: with M positive definite and Im ζ ≠ 0, x*(K + ζM)x has an imaginary part different from zero for every x, hence no
-//! leading minor vanishes (George, Ikramov, Kucherov, *SIAM J. Matrix Anal. Appl.* 21, 2000, 377–387).
-//! Numbers are kept by fours, their real parts before their imaginary parts (`Four`), so that all inner loops are real multiply–adds over
-//! whole registers.
+//! K + ζ M is complex *symmetric* (not Hermitian) and has L D Lᵀ. It exists without pivoting: with
+//! M positive definite and Im ζ ≠ 0, x*(K + ζM)x has an imaginary part different from zero for
+//! every x, hence no leading minor vanishes (George, Ikramov, Kucherov, *SIAM J. Matrix Anal.
+//! Appl.* 21, 2000, 377–387). Numbers are kept by fours, their real parts before their imaginary
+//! parts (`Four`), so that all inner loops are real multiply–adds over whole registers.
 
 use super::Singular;
 use super::order::Order;
@@ -56,8 +56,9 @@ fn transpose(block: Block) -> Block {
 
 /// L D Lᵀ of a complex symmetric band, D of blocks of 4 × 4.
 ///
-/// Kept are D⁻¹, by Gauss and Jordan's elimination, whose pivots are those of L D Lᵀ by single numbers, and the blocks W = D⁻¹ U and Wᵀ right of the
-/// diagonal, so that a substitution consists of products with blocks, none of which but the one with W or Wᵀ waits for the node before.
+/// Kept are D⁻¹, by Gauss and Jordan's elimination, whose pivots are those of L D Lᵀ by single
+/// numbers, and the blocks W = D⁻¹ U and Wᵀ right of the diagonal, so that a substitution consists
+/// of products with blocks, none of which but the one with W or Wᵀ waits for the node before.
 #[derive(Clone, Debug)]
 pub struct ComplexLdl {
     /// Blocks of a node, the diagonal one included.
@@ -179,8 +180,9 @@ impl ComplexLdl {
     }
 }
 
-/// Inverts symmetric blocks of which the part below the diagonal need not be there, step by step, so that one waits while another goes on; or says which block has
-/// a pivot that vanishes or is not finite, and in which row.
+/// Inverts symmetric blocks of which the part below the diagonal need not be there, step by step,
+/// so that one waits while another goes on; or says which block has a pivot that vanishes or is not
+/// finite, and in which row.
 #[inline(always)]
 fn invert<const N: usize>(mut blocks: [&mut Block; N]) -> Result<(), (usize, usize)> {
     for block in &mut blocks {

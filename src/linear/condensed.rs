@@ -1,13 +1,14 @@
 //! A band bordered by few constraint rows, condensed onto their multipliers.
 //!
-//! Where K itself has an inverse, as K + c M of a motion has, the bordered system needs no matrix but the band and one as large as the
-//! number r of rows:
+//! Where K itself has an inverse, as K + c M of a motion has, the bordered system needs no matrix
+//! but the band and one as large as the number r of rows:
 //!
 //! ```text
 //! S = B K⁻¹ Bᵀ,   S μ = B K⁻¹ f − g,   x = K⁻¹ f − K⁻¹Bᵀ μ
 //! ```
 //!
-//! r substitutions for K⁻¹Bᵀ when it is factorised, one when it is solved: a fifth of the time of a sparse LU for a chain of two beams.
+//! r substitutions for K⁻¹Bᵀ when it is factorised, one when it is solved: a fifth of the time of a
+//! sparse LU for a chain of two beams.
 
 use super::bordered::BorderRow;
 use super::complex_ldl::ComplexLdl;

@@ -1,16 +1,19 @@
 //! How many directions a tangent is negative in, among the motions that constraint rows allow.
 //!
-//! On the motions that m independent rows B allow, K has as many negative eigenvalues as the bordered matrix has beyond m (Sylvester's law of inertia;
-//! Gould, *Math. Programming* 32, 1985, 90–99). An LDLᵀ without pivoting tells them by the signs of its pivots,
+//! On the motions that m independent rows B allow, K has as many negative eigenvalues as the
+//! bordered matrix has beyond m (Sylvester's law of inertia; Gould, *Math. Programming* 32, 1985,
+//! 90–99). An LDLᵀ without pivoting tells them by the signs of its pivots,
 //!
 //! ```text
 //! [ K + BᵀWB  Bᵀ ]
 //! [ B         0  ]
 //! ```
 //!
-//! where the positive diagonal W changes nothing on those motions, so that the number is exact whatever W is, and yet keeps pivots away from zero that only
-//! the rows hold: beams that hang on nothing but their joints, the axis of an inextensible beam. A multiplier is eliminated as soon as all unknowns of its
-//! row are; these are ordered for little fill by faer, which also does the elimination.
+//! where the positive diagonal W changes nothing on those motions, so that the number is exact
+//! whatever W is, and yet keeps pivots away from zero that only the rows hold: beams that hang on
+//! nothing but their joints, the axis of an inextensible beam. A multiplier is eliminated as soon
+//! as all unknowns of its row are; these are ordered for little fill by faer, which also does the
+//! elimination.
 
 use super::bordered::BorderRow;
 use super::symmetric::SMALLEST_PIVOT;
@@ -26,11 +29,12 @@ use faer::{Par, Side};
 
 type Entry = Triplet<usize, usize, f64>;
 
-/// Factors of W that are tried until two agree: without pivoting a small pivot may grow round-off to the size of what is eliminated after it.
+/// Factors of W that are tried until two agree: without pivoting a small pivot may grow round-off
+/// to the size of what is eliminated after it.
 const TRIES: [f64; 5] = [1.0, 30.0, 0.03, 7.0, 0.2];
 
-/// Number of negative eigenvalues of the symmetric `k` on the motions that the rows of `border` allow; `None` without symmetry, where a pivot vanishes, or
-/// where no two eliminations agree.
+/// Number of negative eigenvalues of the symmetric `k` on the motions that the rows of `border`
+/// allow; `None` without symmetry, where a pivot vanishes, or where no two eliminations agree.
 pub fn negative_directions(k: &Matrix, border: &[BorderRow]) -> Option<usize> {
     if matches!(k, Matrix::General(_)) {
         return None;
@@ -79,7 +83,8 @@ fn count(k: &Matrix, border: &[BorderRow], factor: f64) -> Option<usize> {
     pivots.iter().filter(|pivot| **pivot < 0.0).count().checked_sub(border.len())
 }
 
-/// What makes a row as stiff as the softest of the unknowns that it holds. Those of a beam's axis may have no stiffness where those across it have.
+/// What makes a row as stiff as the softest of the unknowns that it holds. Those of a beam's axis
+/// may have no stiffness where those across it have.
 fn weight(k: &Matrix, row: &BorderRow) -> f64 {
     let of_pair = |i: usize| k.get(i & !1, i & !1).abs().max(k.get(i | 1, i | 1).abs());
     let held = row.iter().filter(|(i, value)| *value != 0.0 && of_pair(*i) > 0.0);
@@ -103,7 +108,8 @@ fn places(n: usize, entries: &[Entry], border: &[BorderRow]) -> Option<Vec<usize
     Some(place)
 }
 
-/// The pivots of a symmetric matrix, eliminated row by row in its order, from its upper entries; those in the same place are summed.
+/// The pivots of a symmetric matrix, eliminated row by row in its order, from its upper entries;
+/// those in the same place are summed.
 ///
 /// # Errors
 /// [`Singular`] with the row whose pivot is zero.

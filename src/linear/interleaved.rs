@@ -1,14 +1,15 @@
 //! A band bordered by constraint rows each of which lies within a few neighbouring supports.
 //!
-//! Numbered behind the last unknown of its row, a multiplier stays within the band, which becomes wider by the rows that share its place:
+//! Numbered behind the last unknown of its row, a multiplier stays within the band, which becomes
+//! wider by the rows that share its place:
 //!
 //! ```text
 //! [ K  Bᵀ ]        x₀ x₁ μ₀ μ₁ x₂ μ₂ μ₃ …
 //! [ B  0  ]   →    one band, LU with partial pivoting
 //! ```
 //!
-//! The rows of an inextensible beam of cable elements, which span two of them, make 14 diagonals out of 7 on either side, and a cell costs the same
-//! however many there are.
+//! The rows of an inextensible beam of cable elements, which span two of them, make 14 diagonals
+//! out of 7 on either side, and a cell costs the same however many there are.
 
 use super::band::{Band, BandLu, Number};
 use super::bordered::BorderRow;
@@ -52,7 +53,8 @@ fn places(size: usize, border: &[BorderRow]) -> Vec<usize> {
 }
 
 impl<T: Number> Interleaved<T> {
-    /// Factorises the matrix with the pattern of `pattern` and the entries `entry(row, column)`, bordered by `border`, which must fit.
+    /// Factorises the matrix with the pattern of `pattern` and the entries `entry(row, column)`,
+    /// bordered by `border`, which must fit.
     ///
     /// # Errors
     /// [`Singular`] where the whole matrix is.

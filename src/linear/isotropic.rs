@@ -1,7 +1,8 @@
 //! A symmetric band that treats x and y alike and apart: c ⊗ 1₂, as mass matrices are.
 //!
-//! Of the sixteen numbers of a block for a pair of nodes four are different, the products of the two nodes' shape functions of position and
-//! slope. A product of this matrix with a vector takes a fifth of the instructions that [`super::symmetric`] needs, and a quarter of the memory traffic.
+//! Of the sixteen numbers of a block for a pair of nodes four are different, the products of the
+//! two nodes' shape functions of position and slope. A product of this matrix with a vector takes a
+//! fifth of the instructions that [`super::symmetric`] needs, and a quarter of the memory traffic.
 
 use super::Matrix;
 use super::symmetric::SymmetricBand;
@@ -13,7 +14,8 @@ pub struct IsotropicBand {
     nodes: usize,
     /// Blocks in a row, the diagonal one included.
     blocks: usize,
-    /// Per node, per block from the diagonal on: \[position–position, position–slope, slope–position, slope–slope\].
+    /// Per node, per block from the diagonal on:
+    /// \[position–position, position–slope, slope–position, slope–slope\].
     data: Vec<[f64; 4]>,
 }
 

@@ -1,8 +1,9 @@
 //! Linear algebra of the tangent: storage by pattern, factorisation, inertia.
 //!
-//! Every unknown belongs to a node, and a node has four: x, y, x', y'. A beam's tangent is therefore a band of
-//! 4 × 4 blocks, as many to the right of the diagonal as a support has further nodes (1 for the cable element, 5 for
-//! six-node radial point interpolation). Five factorisations serve, chosen by the pattern and never by the caller:
+//! Every unknown belongs to a node, and a node has four: x, y, x', y'. A beam's tangent is
+//! therefore a band of 4 × 4 blocks, as many to the right of the diagonal as a support has further
+//! nodes (1 for the cable element, 5 for six-node radial point interpolation). Five factorisations
+//! serve, chosen by the pattern and never by the caller:
 //!
 //! | pattern | method | file |
 //! |---|---|---|
@@ -12,7 +13,8 @@
 //! | band bordered by constraint rows within it | LU of a band in another order | [`interleaved`] |
 //! | band bordered by others, such as those of joints | sparse LU by faer | [`bordered`] |
 //!
-//! What of the inertia the rows leave is in `inertia`. The complex matrices of collocation's stages are in [`complex`], the constant mass matrix in [`isotropic`].
+//! What of the inertia the rows leave is in `inertia`. The complex matrices of collocation's stages
+//! are in [`complex`], the constant mass matrix in [`isotropic`].
 
 pub mod band;
 pub mod bordered;
@@ -112,8 +114,8 @@ impl Matrix {
         }
     }
 
-    /// Turns the unknowns `2 pair` and `2 pair + 1` into a frame at the angle with the given cosine and sine:
-    /// rows and columns are replaced by their components along that frame's axes.
+    /// Turns the unknowns `2 pair` and `2 pair + 1` into a frame at the angle with the given cosine
+    /// and sine: rows and columns are replaced by their components along that frame's axes.
     pub fn rotate_pair(&mut self, pair: usize, cosine: f64, sine: f64) {
         self.change_pair(pair, [[cosine, sine], [-sine, cosine]]);
     }
@@ -210,8 +212,8 @@ pub enum Factor {
 }
 
 impl Factor {
-    /// Factorises `matrix`, bordered by constraint rows if there are any. A symmetric matrix whose LDLᵀ meets a
-    /// vanishing pivot is factorised again with pivoting.
+    /// Factorises `matrix`, bordered by constraint rows if there are any. A symmetric matrix whose
+    /// LDLᵀ meets a vanishing pivot is factorised again with pivoting.
     ///
     /// # Errors
     /// [`Singular`] where the matrix has no inverse to round-off.
@@ -236,7 +238,8 @@ impl Factor {
         Ok(Self::Bordered(Box::new(Bordered::new(matrix, border, earlier)?)))
     }
 
-    /// Factorises a symmetric positive definite `matrix`, bordered by constraint rows if there are any.
+    /// Factorises a symmetric positive definite `matrix`, bordered by constraint rows if there are
+    /// any.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -266,8 +269,9 @@ impl Factor {
         }
     }
 
-    /// Factorises `matrix` + c `mass`, bordered by constraint rows if there are any, reusing an earlier factorisation of the same
-    /// pattern. The sum is taken to be definite, as it is where c is large enough for the motion to be followed.
+    /// Factorises `matrix` + c `mass`, bordered by constraint rows if there are any, reusing an
+    /// earlier factorisation of the same pattern. The sum is taken to be definite, as it is where c
+    /// is large enough for the motion to be followed.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -311,8 +315,8 @@ impl Factor {
         }
     }
 
-    /// Number of negative eigenvalues of a symmetric matrix (Sylvester's law of inertia); `None` where the
-    /// factorisation does not tell.
+    /// Number of negative eigenvalues of a symmetric matrix (Sylvester's law of inertia); `None`
+    /// where the factorisation does not tell.
     pub fn negative_eigenvalues(&self) -> Option<usize> {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots()),
@@ -329,8 +333,8 @@ impl Factor {
         }
     }
 
-    /// Number of negative eigenvalues of the factorised `matrix` restricted to motions that the rows of `border` allow;
-    /// `None` where it has no symmetry or cannot be told.
+    /// Number of negative eigenvalues of the factorised `matrix` restricted to motions that the
+    /// rows of `border` allow; `None` where it has no symmetry or cannot be told.
     pub fn negative_directions(&self, matrix: &Matrix, border: &[BorderRow]) -> Option<usize> {
         if border.is_empty() {
             return self.negative_eigenvalues();

@@ -1,17 +1,21 @@
 //! In which order the nodes of a symmetric band are eliminated.
 //!
-//! Each elimination of a node and each step of a substitution waits for the one before, and the processor with it. A cable element couples
-//! neighbours only, so that its nodes can be eliminated from both ends towards the middle in turn,
+//! Each elimination of a node and each step of a substitution waits for the one before, and the
+//! processor with it. A cable element couples neighbours only, so that its nodes can be eliminated
+//! from both ends towards the middle in turn,
 //!
 //! ```text
 //! 0, n − 1, 1, n − 2, 2, …        position k leads to position k + 2, the last two but one to the last
 //! ```
 //!
-//! two chains, each half as long, that do not wait for each other: a factorisation takes four fifths of the time, a substitution three fifths.
+//! two chains, each half as long, that do not wait for each other: a factorisation takes four
+//! fifths of the time, a substitution three fifths.
 //!
-//! That is for matrices with a mass in them. Without one, in equilibria, what is eliminated last decides how digits are lost, and from the first node to the last fewer
-//! are: from both ends the relaxation of a slack cable did not come to rest in 2000 iterations instead of 17, and a beam with EA L²/EI of 10¹⁴ took one more. Wider
-//! bands are eliminated from the first node to the last too.
+//! That is for matrices with a mass in them. Without one, in equilibria, what is eliminated last
+//! decides how digits are lost, and from the first node to the last fewer are: from both ends the
+//! relaxation of a slack cable did not come to rest in 2000 iterations instead of 17, and a beam
+//! with EA L²/EI of 10¹⁴ took one more. Wider bands are eliminated from the first node to the last
+//! too.
 
 /// The order for a number of nodes.
 #[derive(Clone, Copy, Debug)]
@@ -37,20 +41,23 @@ impl Order {
         }
     }
 
-    /// The position of the `block`th node (from 1 on) with which that at `position` is coupled when it is eliminated.
+    /// The position of the `block`th node (from 1 on) with which that at `position` is coupled when
+    /// it is eliminated.
     #[inline(always)]
     pub fn next(self, position: usize, block: usize) -> Option<usize> {
         let next = if self.from_both_ends { (position + 2).min(self.nodes - 1) } else { position + block };
         (next < self.nodes && next > position).then_some(next)
     }
 
-    /// Whether the nodes at this position and the one after it do not wait for each other: the first of such a pair.
+    /// Whether the nodes at this position and the one after it do not wait for each other: the
+    /// first of such a pair.
     #[inline(always)]
     pub fn is_pair(self, position: usize) -> bool {
         self.from_both_ends && position.is_multiple_of(2) && position + 2 < self.nodes
     }
 
-    /// Where block number `block` of the node at `position` is in the matrix: in which node's panel, and whether transposed.
+    /// Where block number `block` of the node at `position` is in the matrix: in which node's
+    /// panel, and whether transposed.
     #[inline(always)]
     pub fn source(self, position: usize, block: usize) -> (usize, bool) {
         let node = self.node(position);

@@ -1,9 +1,10 @@
 //! Symmetric band of 4 × 4 blocks and its factorisation A = L D Lᵀ.
 //!
-//! Block row I is kept as a panel of four rows, each holding the columns of nodes I, I + 1, …, I + b contiguously
-//! (b + 1 blocks, 4(b + 1) numbers). Within the diagonal block the entries left of the diagonal are carried along but
-//! never read. The factorisation keeps blocks, a row of one in a register, and works node by node: its blocks are reduced by its own four pivots, and each
-//! block of a later node then takes them in one pass, 4 multiply–adds per number loaded and stored.
+//! Block row I is kept as a panel of four rows, each holding the columns of nodes I, I + 1, …, I +
+//! b contiguously (b + 1 blocks, 4(b + 1) numbers). Within the diagonal block the entries left of
+//! the diagonal are carried along but never read. The factorisation keeps blocks, a row of one in a
+//! register, and works node by node: its blocks are reduced by its own four pivots, and each block
+//! of a later node then takes them in one pass, 4 multiply–adds per number loaded and stored.
 //!
 //! Cost per node: 4·4·(b + 1) + 16·(b)(b + 1)/2 · 4 multiply–adds, 112 for the cable element (b = 1) and 1 056 for
 //! six-node supports (b = 5); a pivoted LU of the same band takes 3.5 to 4 times as many. Another 40 b give the blocks W of [`Ldl`], which are
@@ -161,7 +162,8 @@ impl SymmetricBand {
             let (x_here, x_later) = x[first..].split_at(4);
             let (y_here, y_later) = y[first..].split_at_mut(4);
             let scaled: [f64; 4] = std::array::from_fn(|r| factor * x_here[r]);
-            // The block to the right of the diagonal's, and its transpose: one pass over it, four columns at a time.
+            // The block to the right of the diagonal's, and its transpose: one pass over it, four
+            // columns at a time.
             let mut sums = [[0.0; 4]; 4];
             for (b, (x, y)) in
                 x_later.chunks_exact(4).zip(y_later.chunks_exact_mut(4)).take(self.blocks - 1).enumerate()
@@ -205,14 +207,17 @@ type Block = [Lanes; 4];
 
 /// A = L D Lᵀ without pivoting, D of blocks of 4 × 4, which are D = l d lᵀ in turn.
 ///
-/// The blocks right of the diagonal hold W = D⁻¹ U, so that a substitution is a product with W or Wᵀ from node to node: one after
-/// the other only as far as it must be, and by whole registers. Solving with the pivots themselves waits for nothing and is waited for by nothing; with a
-/// mass in the matrix, which bounds its condition, it is a product with D⁻¹, and a substitution executes three quarters of the instructions.
+/// The blocks right of the diagonal hold W = D⁻¹ U, so that a substitution is a product with W or
+/// Wᵀ from node to node: one after the other only as far as it must be, and by whole registers.
+/// Solving with the pivots themselves waits for nothing and is waited for by nothing; with a mass
+/// in the matrix, which bounds its condition, it is a product with D⁻¹, and a substitution executes
+/// three quarters of the instructions.
 #[derive(Clone, Debug)]
 pub struct Ldl {
     /// Blocks of a node, the diagonal one included.
     blocks: usize,
-    /// Of each node, in the order of elimination: d lᵀ (where both ends are begun with: D⁻¹), and the blocks W.
+    /// Of each node, in the order of elimination: d lᵀ (where both ends are begun with: D⁻¹), and
+    /// the blocks W.
     rows: Vec<Block>,
     /// The blocks Wᵀ.
     transposed: Vec<Block>,
@@ -229,7 +234,8 @@ impl Ldl {
     /// Factorises.
     ///
     /// # Errors
-    /// [`Singular`] where a pivot vanishes against the diagonal entry it came from, or is not finite.
+    /// [`Singular`] where a pivot vanishes against the diagonal entry it came from, or is not
+    /// finite.
     pub fn new(matrix: &SymmetricBand) -> Result<Self, Singular> {
         Self::again(None, matrix, None)
     }
@@ -246,7 +252,8 @@ impl Ldl {
         }
     }
 
-    /// Factorises `matrix`, plus c M where `shift` is (c, M), in the memory of an earlier factorisation of the same pattern.
+    /// Factorises `matrix`, plus c M where `shift` is (c, M), in the memory of an earlier
+    /// factorisation of the same pattern.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -378,7 +385,8 @@ impl Ldl {
     }
 }
 
-/// Takes row `R` of the first block times what makes zeros below its pivot from the rows below; 1/pivot, or nothing where it is none against `scale`.
+/// Takes row `R` of the first block times what makes zeros below its pivot from the rows below;
+/// 1/pivot, or nothing where it is none against `scale`.
 #[inline(always)]
 fn reduce<const R: usize>(panel: &mut [Block], scale: f64) -> Option<f64> {
     let row = panel[0][R].to_array();

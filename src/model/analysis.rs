@@ -36,9 +36,11 @@ pub enum About {
 /// Settings of a static analysis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Static {
-    /// Load factors at which states are recorded: this many equal parts. `None`: chosen by the solver.
+    /// Load factors at which states are recorded: this many equal parts. `None`: chosen by the
+    /// solver.
     pub steps: Option<usize>,
-    /// Relative accuracy of every equilibrium, in increments per length. `None`: the solver's default.
+    /// Relative accuracy of every equilibrium, in increments per length. `None`: the solver's
+    /// default.
     pub tolerance: Option<f64>,
     /// Follow the path by arc length, through limit points.
     pub arc_length: Option<ArcLength>,
@@ -113,7 +115,8 @@ pub enum Integrator {
         step: StepControl,
         /// Spectral radius at infinite frequency, from 0 to 1.
         spectral_radius: f64,
-        /// Error of positions, in beam lengths, that the iteration of a step of fixed length may leave.
+        /// Error of positions, in beam lengths, that the iteration of a step of fixed length may
+        /// leave.
         newton_tolerance: f64,
     },
     /// Gauss collocation, of order 2 `stages`.
@@ -133,11 +136,13 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// Newton tolerance of generalised-α where nothing is said: a thousand steps then add up to less than 1e-8.
+    /// Newton tolerance of generalised-α where nothing is said: a thousand steps then add up to
+    /// less than 1e-8.
     pub const NEWTON_TOLERANCE: f64 = 1e-11;
 
-    /// The method where nothing is said: Radau IIA collocation with three stages. It damps what is too fast to be followed, suits every model, and over the
-    /// motions of the suite with a tolerance it took fewer iterations than Gauss' methods for the same error.
+    /// The method where nothing is said: Radau IIA collocation with three stages. It damps what is
+    /// too fast to be followed, suits every model, and over the motions of the suite with a
+    /// tolerance it took fewer iterations than Gauss' methods for the same error.
     pub fn usual(step: StepControl) -> Self {
         Self::Radau { stages: 3, step }
     }
@@ -163,8 +168,8 @@ impl Integrator {
     }
 }
 
-/// A method without damping at infinite frequency, and a beam that is inextensible: an error of its axial force would be carried on from step to step,
-/// and grow.
+/// A method without damping at infinite frequency, and a beam that is inextensible: an error of its
+/// axial force would be carried on from step to step, and grow.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{integrator}: the error that it makes in the axial force of an inextensible beam would grow")]
 pub struct Undamped {

@@ -1,7 +1,9 @@
 //! Which rigid motions supports and joints leave to the beams of a model.
 //!
-//! A planar rigid motion of a beam is (t_x, t_y, ω): the displacement of its start, and its turn per length. A support at r₀ holds t_x − ω (y₀ − ȳ),
-//! t_y + ω (x₀ − x̄) and ω, and a joint equals those of two beams: one row each. What the rows leave is their null space, by Gauss and Jordan's elimination.
+//! A planar rigid motion of a beam is (t_x, t_y, ω): the displacement of its start, and its turn
+//! per length. A support at r₀ holds t_x − ω (y₀ − ȳ), t_y + ω (x₀ − x̄) and ω, and a joint equals
+//! those of two beams: one row each. What the rows leave is their null space, by Gauss and Jordan's
+//! elimination.
 
 use super::{FixedRotation, Joint, Model, Place};
 
@@ -20,7 +22,8 @@ pub struct Freedom {
 pub type Motion = Vec<[f64; 3]>;
 
 impl Freedom {
-    /// What supports and joints of `model` leave. `position` is where a place is in the stress-free shape, `length` the scale of lengths \[m\].
+    /// What supports and joints of `model` leave. `position` is where a place is in the stress-free
+    /// shape, `length` the scale of lengths \[m\].
     pub fn new(model: &Model, length: f64, position: impl Fn(Place) -> [f64; 2]) -> Self {
         let origins = (0..model.beams.len()).map(|beam| position(Place { beam, s: 0.0 })).collect();
         let mut freedom = Self { length, origins, rows: Vec::new() };

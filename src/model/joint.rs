@@ -12,14 +12,16 @@ pub enum Joint {
         /// A point of another beam, or of the same.
         second: Place,
     },
-    /// The two points coincide, and the directions keep the angle at which they meet in the stress-free shape; see [`crate::system::joint`].
+    /// The two points coincide, and the directions keep the angle at which they meet in the
+    /// stress-free shape; see [`crate::system::joint`].
     Weld {
         /// A point of a beam.
         first: Place,
         /// A point of another beam, or of the same.
         second: Place,
     },
-    /// The point moves along a straight line of the ground, through where it is in the stress-free shape.
+    /// The point moves along a straight line of the ground, through where it is in the stress-free
+    /// shape.
     Slider {
         /// A point of a beam.
         at: Place,

@@ -12,7 +12,8 @@ pub enum Law {
         /// How long it takes \[s\].
         duration: f64,
     },
-    /// The same with continuous acceleration: 10 x³ − 15 x⁴ + 6 x⁵, x the part of the duration that is over.
+    /// The same with continuous acceleration: 10 x³ − 15 x⁴ + 6 x⁵, x the part of the duration that
+    /// is over.
     SmoothRamp {
         /// When it begins \[s\].
         start: f64,
@@ -35,8 +36,8 @@ pub enum Law {
     Polynomial(Vec<f64>),
     /// Through given points, constant before the first and after the last.
     Table(Table),
-    /// The angle of a hub that is brought to the speed Ω within T (Simo & Vu-Quoc, *J. Appl. Mech.* 53, 1986, 855–863):
-    /// Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) until T, then Ω (t − T/2).
+    /// The angle of a hub that is brought to the speed Ω within T (Simo & Vu-Quoc, *J. Appl. Mech.*
+    /// 53, 1986, 855–863): Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) until T, then Ω (t − T/2).
     SpinUp {
         /// Ω \[rad/s\].
         speed: f64,
@@ -55,8 +56,8 @@ pub struct Table {
 }
 
 impl Table {
-    /// Through `values` at increasing `times` \[s\], straight or by the natural cubic spline between them; none where there are fewer than two points or
-    /// the times do not increase.
+    /// Through `values` at increasing `times` \[s\], straight or by the natural cubic spline
+    /// between them; none where there are fewer than two points or the times do not increase.
     pub fn new(times: Vec<f64>, values: Vec<f64>, smooth: bool) -> Option<Self> {
         let rising = times.windows(2).all(|t| t[1] > t[0]);
         if times.len() < 2 || times.len() != values.len() || !rising {
@@ -66,7 +67,8 @@ impl Table {
         Some(Self { times, values, curvatures })
     }
 
-    /// By the cubic spline that is flat at its ends where `flat` says so, and not curved there otherwise.
+    /// By the cubic spline that is flat at its ends where `flat` says so, and not curved there
+    /// otherwise.
     pub fn with_flat_ends(times: Vec<f64>, values: Vec<f64>, flat: [bool; 2]) -> Option<Self> {
         let table = Self::new(times, values, false)?;
         let curvatures = Some(spline(&table.times, &table.values, flat));
@@ -100,9 +102,11 @@ impl Table {
     }
 }
 
-/// Angle by which a harmonic turns in a step \[rad\] up to which Gauss' rule integrates it to round-off.
+/// Angle by which a harmonic turns in a step \[rad\] up to which Gauss' rule integrates it to
+/// round-off.
 const SLOW: f64 = 1.5;
-/// Gauss' rule with six points on (−1, 1): exact for what pieces of laws are, up to the eleventh degree.
+/// Gauss' rule with six points on (−1, 1): exact for what pieces of laws are, up to the eleventh
+/// degree.
 const GAUSS: [(f64, f64); 3] = [
     (0.238_619_186_083_196_9, 0.467_913_934_572_691_05),
     (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
@@ -118,7 +122,8 @@ fn quadrature(time: impl Fn(f64) -> f64, f: impl Fn(f64) -> f64) -> [f64; 2] {
     })
 }
 
-/// Second derivatives of the cubic spline that is flat or not curved at its ends, by elimination in its tridiagonal system.
+/// Second derivatives of the cubic spline that is flat or not curved at its ends, by elimination in
+/// its tridiagonal system.
 fn spline(t: &[f64], v: &[f64], [flat_start, flat_end]: [bool; 2]) -> Vec<f64> {
     let n = t.len();
     let (mut above, mut right) = (vec![0.0; n], vec![0.0; n]);
@@ -197,13 +202,15 @@ impl Law {
         }
     }
 
-    /// Mean and first moment of the value f over the time from `start` to `end`, between which there is no kink:
+    /// Mean and first moment of the value f over the time from `start` to `end`, between which
+    /// there is no kink:
     ///
     /// ```text
     /// ∫₀¹ f(t₀ + x h) dx,   ∫₀¹ (1 − x) f(t₀ + x h) dx,   t₀ the start, h the time between
     /// ```
     ///
-    /// However fast the law oscillates: a mass that it drives alone changes its velocity by h times the first, and its position by h² times the second.
+    /// However fast the law oscillates: a mass that it drives alone changes its velocity by h times
+    /// the first, and its position by h² times the second.
     pub fn moments(&self, start: f64, end: f64) -> [f64; 2] {
         let h = end - start;
         match self {
@@ -231,7 +238,8 @@ impl Law {
         }
     }
 
-    /// Times at which the value or a derivative up to the third jumps: steps of an integrator should end there.
+    /// Times at which the value or a derivative up to the third jumps: steps of an integrator
+    /// should end there.
     pub fn kinks(&self) -> Vec<f64> {
         match self {
             Self::Ramp { start, duration } | Self::SmoothRamp { start, duration } => {

@@ -47,7 +47,8 @@ impl Profile {
 }
 
 impl InitialVelocity {
-    /// Rates of \[x, y, x', y'\] at the arc length `s` \[m\], where the beam is at `position` \[m\] with the gradient `gradient`.
+    /// Rates of \[x, y, x', y'\] at the arc length `s` \[m\], where the beam is at `position` \[m\]
+    /// with the gradient `gradient`.
     pub fn at(&self, s: f64, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> [f64; 4] {
         let ([vx, vy], [cx, cy], turn) = (self.translation, self.center, self.rotation);
         let [[wx, dwx], [wy, dwy]] = [self.along[0].at(s), self.along[1].at(s)];

@@ -386,7 +386,8 @@ fn steps(t: &Trajectory) -> Option<Sketch> {
     Some(Sketch::one("steps", "Size of the steps that the solver took.", chart))
 }
 
-/// Newton iterations of every time step: where they grow, the steps are as long as the motion allows.
+/// Newton iterations of every time step: where they grow, the steps are as long as the motion
+/// allows.
 fn newton(t: &Trajectory) -> Option<Sketch> {
     if t.analysis != AnalysisKind::Dynamic {
         return None;

@@ -11,10 +11,11 @@
 //! | `shape.svg`, `curvature.svg`, … | the page's plots, one each |
 //! | `states.csv`; `states.pvd`, `vtu/` | all recorded states as a table; for ParaView (both when asked for) |
 //!
-//! In tables a name that begins as a formula does (`=`, `+`, `-`, `@`) has an apostrophe before it, which spreadsheets take for the mark of a text.
+//! In tables a name that begins as a formula does (`=`, `+`, `-`, `@`) has an apostrophe before it,
+//! which spreadsheets take for the mark of a text.
 //!
-//! Files are written under temporary names and renamed when all of them are complete: a failure leaves no
-//! half-written file under a final name.
+//! Files are written under temporary names and renamed when all of them are complete: a failure
+//! leaves no half-written file under a final name.
 
 mod error;
 mod figures;
@@ -47,8 +48,8 @@ pub struct OutputOptions {
     pub vtu: bool,
 }
 
-/// Names that a run may leave; those that this run does not write are removed when it replaces an older one, so that a
-/// directory never mixes two runs.
+/// Names that a run may leave; those that this run does not write are removed when it replaces an
+/// older one, so that a directory never mixes two runs.
 const NAMES: [&str; 25] = [
     "reactions.csv",
     "effects.csv",
@@ -77,12 +78,13 @@ const NAMES: [&str; 25] = [
     "modes.svg",
 ];
 
-/// Writes the results into `directory`, which is made where it is missing, and returns what `summary.json` says.
-/// Adds the time taken until the summary was written to `trajectory.seconds.write`.
+/// Writes the results into `directory`, which is made where it is missing, and returns what
+/// `summary.json` says. Adds the time taken until the summary was written to
+/// `trajectory.seconds.write`.
 ///
 /// # Errors
-/// [`OutputError`] where the trajectory contradicts itself, or a file cannot be written: then no file has a new
-/// content that is not complete, and directories made for it are removed.
+/// [`OutputError`] where the trajectory contradicts itself, or a file cannot be written: then no
+/// file has a new content that is not complete, and directories made for it are removed.
 pub fn write(
     directory: &Path,
     trajectory: &mut Trajectory,
@@ -162,7 +164,8 @@ pub fn save(directory: &Path, state: &SavedState) -> Result<(), OutputError> {
     stage.commit()
 }
 
-/// Refuses lists whose lengths do not fit together, which would put values beside the wrong parameter.
+/// Refuses lists whose lengths do not fit together, which would put values beside the wrong
+/// parameter.
 fn check(t: &Trajectory) -> Result<(), OutputError> {
     let fits = |quantity: &dyn Fn() -> String, expected: usize, found: usize| {
         if expected == found {

@@ -1,5 +1,5 @@
-//! The data of the moving picture in the report: positions as whole numbers on a grid much finer than a screen, so
-//! that a page with hundreds of frames stays small.
+//! The data of the moving picture in the report: positions as whole numbers on a grid much finer
+//! than a screen, so that a page with hundreds of frames stays small.
 
 use serde::Serialize;
 

@@ -18,7 +18,8 @@ pub(crate) struct Stage {
     waiting: Vec<(TempPath, PathBuf)>,
     /// Names relative to `directory`, of everything staged so far.
     names: Vec<String>,
-    /// A file that cannot be written fails before the first one is renamed, so that what fails leaves no mixture.
+    /// A file that cannot be written fails before the first one is renamed, so that what fails
+    /// leaves no mixture.
     committed: bool,
 }
 
@@ -47,7 +48,8 @@ impl Stage {
             .map_err(|source| OutputError::Directory { path: directory.to_owned(), source })
     }
 
-    /// Writes one file under a temporary name. `name` is relative to the directory, its parts separated by `/`.
+    /// Writes one file under a temporary name. `name` is relative to the directory, its parts
+    /// separated by `/`.
     pub(crate) fn add(
         &mut self,
         name: &str,

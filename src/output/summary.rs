@@ -27,7 +27,8 @@ pub struct Summary {
     /// Events of a motion, in order; left out where none was asked for or none happened.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<Event>,
-    /// Natural frequencies \[Hz\], ascending, 0 where nothing resists the motion; modal analysis only.
+    /// Natural frequencies \[Hz\], ascending, 0 where nothing resists the motion; modal analysis
+    /// only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Vec<f64>>,
     /// Critical load factors, ascending; buckling only.

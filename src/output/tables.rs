@@ -1,4 +1,5 @@
-//! The comma-separated files. Numbers have 17 significant digits, so that reading them back gives the same bits.
+//! The comma-separated files. Numbers have 17 significant digits, so that reading them back gives
+//! the same bits.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -20,7 +21,8 @@ pub(crate) fn exact(value: f64) -> String {
     format!("{value:.16e}")
 }
 
-/// A text as a cell of a table: what a spreadsheet would take for a formula has an apostrophe before it, which makes it text there. Numbers are as they are.
+/// A text as a cell of a table: what a spreadsheet would take for a formula has an apostrophe
+/// before it, which makes it text there. Numbers are as they are.
 pub(crate) fn cell(text: &str) -> Cow<'_, str> {
     let signed =
         text.starts_with(['+', '-']) && !text[1..].starts_with(|c: char| c.is_ascii_digit() || c == '.');
@@ -56,7 +58,8 @@ fn words(names: &[&str]) -> Vec<String> {
     names.iter().map(|&n| n.to_owned()).collect()
 }
 
-/// `probes.csv`: the parameter, then per probe `x, y, angle, curvature, strain`, in dynamics also `vx, vy`.
+/// `probes.csv`: the parameter, then per probe `x, y, angle, curvature, strain`, in dynamics also
+/// `vx, vy`.
 pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let moving = t.probes.iter().flat_map(|p| &p.samples).any(|s| s.vx.is_some() || s.vy.is_some());
     let mut quantities = vec!["x", "y", "angle", "curvature", "strain"];
@@ -80,7 +83,8 @@ pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     table.finish()
 }
 
-/// `energy.csv`: the parameter, `stretch, bend, kinetic, potential, work, total` \[J\], and where they are not zero throughout `stored` and `lost`.
+/// `energy.csv`: the parameter, `stretch, bend, kinetic, potential, work, total` \[J\], and where
+/// they are not zero throughout `stored` and `lost`.
 pub(super) fn energy(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let mut header =
         vec![parameter_name(t.analysis), "stretch", "bend", "kinetic", "potential", "work", "total"];
@@ -99,7 +103,8 @@ pub(super) fn energy(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     table.finish()
 }
 
-/// `reactions.csv`: the parameter, then per support and joint `fx, fy` \[N\] and `moment` \[N m\] on the beam.
+/// `reactions.csv`: the parameter, then per support and joint `fx, fy` \[N\] and `moment` \[N m\]
+/// on the beam.
 pub(super) fn reactions(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let mut header = words(&[parameter_name(t.analysis)]);
     let quantities = ["fx", "fy", "moment"];
@@ -112,7 +117,8 @@ pub(super) fn reactions(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     table.finish()
 }
 
-/// `effects.csv`: the parameter, then per effect `energy` \[J\] where it has one, and the resultant `fx, fy` \[N\] of its forces on the beam.
+/// `effects.csv`: the parameter, then per effect `energy` \[J\] where it has one, and the resultant
+/// `fx, fy` \[N\] of its forces on the beam.
 pub(super) fn effects(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let mut header = words(&[parameter_name(t.analysis)]);
     for effect in &t.effects {
@@ -143,7 +149,8 @@ fn shape_rows(table: &mut Table<'_>, lead: &[&str], shape: &Shape, forces: bool)
     Ok(())
 }
 
-/// `shape.csv`: the last state, `beam, s, x, y, angle, strain, curvature, axial_force, shear_force, bending_moment`.
+/// `shape.csv`: the last state,
+/// `beam, s, x, y, angle, strain, curvature, axial_force, shear_force, bending_moment`.
 pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let header = [
         "beam",
@@ -164,7 +171,8 @@ pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     table.finish()
 }
 
-/// `modes.csv`: the mode shapes, scaled for drawing; `mode, beam, s, x, y, angle, strain, curvature`.
+/// `modes.csv`: the mode shapes, scaled for drawing;
+/// `mode, beam, s, x, y, angle, strain, curvature`.
 pub(super) fn modes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let mut table =
         Table::new(out, &words(&["mode", "beam", "s", "x", "y", "angle", "strain", "curvature"]))?;

@@ -1,5 +1,6 @@
-//! The series of files for ParaView: `states.pvd` names one `vtu/state_….vtu` per frame, each an unstructured grid
-//! with one polyline a beam, in the XML formats of the Visualization Toolkit (ASCII data, f64 to the last bit).
+//! The series of files for ParaView: `states.pvd` names one `vtu/state_….vtu` per frame, each an
+//! unstructured grid with one polyline a beam, in the XML formats of the Visualization Toolkit
+//! (ASCII data, f64 to the last bit).
 
 use std::fmt::Write as _;
 

@@ -2,8 +2,9 @@
 
 use crate::system::{BeamPart, unfold};
 
-/// By how much the node of a beam nearest to `s` has turned between two states. One load step may wind a beam up by whole turns; but some node has
-/// turned by less than half of one, such as one that is clamped, and the others follow from cell to cell.
+/// By how much the node of a beam nearest to `s` has turned between two states. One load step may
+/// wind a beam up by whole turns; but some node has turned by less than half of one, such as one
+/// that is clamped, and the others follow from cell to cell.
 pub(super) fn turn(part: &BeamPart, s: f64, before: &[f64], now: &[f64]) -> f64 {
     let first = 4 * part.first_node;
     let nodes = |q: &'_ [f64]| {

@@ -139,7 +139,8 @@ impl RunError {
         }
     }
 
-    /// What was computed before the failure, if it is more than the state at which everything starts.
+    /// What was computed before the failure, if it is more than the state at which everything
+    /// starts.
     pub fn take_partial(&mut self) -> Option<Trajectory> {
         self.partial().filter(|partial| partial.parameter.len() > 1).map(std::mem::take)
     }
@@ -159,7 +160,8 @@ fn gib(bytes: f64) -> f64 {
     bytes / 1024f64.powi(3)
 }
 
-/// A number with so many decimals, or in powers of ten where these would show too few digits of it or too many.
+/// A number with so many decimals, or in powers of ten where these would show too few digits of it
+/// or too many.
 fn plain(value: f64, decimals: usize) -> String {
     if value == 0.0 || (1e-2..1e6).contains(&value.abs()) {
         format!("{value:.decimals$}")

@@ -1,7 +1,8 @@
 //! Membrane locking, measured on the states of a run.
 //!
-//! A cell whose shape functions cannot follow a bent axis stretches where it only should bend, up and down within the cell. What a load stretches is smooth there,
-//! so that the part of ε that is not linear in a cell tells the two apart:
+//! A cell whose shape functions cannot follow a bent axis stretches where it only should bend, up
+//! and down within the cell. What a load stretches is smooth there, so that the part of ε that is
+//! not linear in a cell tells the two apart:
 //!
 //! ```text
 //! ½ ∫ EA (ε − ε_linear)² ds / ½ ∫ EI (κ − κ₀)² ds

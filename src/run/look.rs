@@ -59,7 +59,8 @@ struct Watched {
     reference_strain: f64,
 }
 
-/// What there is to say about a motion whose balance of energy is off by more than a hundredth of its largest energy, where that is more than `least` \[J\].
+/// What there is to say about a motion whose balance of energy is off by more than a hundredth of
+/// its largest energy, where that is more than `least` \[J\].
 fn unbalanced(energy: &[Energy], least: f64) -> Option<String> {
     let first = energy.first()?;
     let change = |e: &Energy| e.total() - first.total();
@@ -279,7 +280,8 @@ impl<'a> Look<'a> {
         shape
     }
 
-    /// The same with section forces, from what acts on each beam; where that is a force or a couple in a point there are two rows, before and behind it.
+    /// The same with section forces, from what acts on each beam; where that is a force or a couple
+    /// in a point there are two rows, before and behind it.
     pub(super) fn loaded(&self, q: &[f64], actions: &[Actions]) -> Vec<Shape> {
         let beams = self.shapes.iter().zip(actions).enumerate();
         beams
@@ -445,7 +447,8 @@ impl<'a> Look<'a> {
         self.probes.iter().map(|probe| probe.view.clone()).collect()
     }
 
-    /// Strings that turn back within a cell. Nothing resists such a fold but the string's length, so that it may stay where a large step has left it.
+    /// Strings that turn back within a cell. Nothing resists such a fold but the string's length,
+    /// so that it may stay where a large step has left it.
     fn folds(&self, shapes: &[Shape]) -> Vec<String> {
         let strings = shapes.iter().zip(self.system.beams()).zip(&self.model.beams);
         let strings = strings.filter(|(_, beam)| beam.section.bending_stiffness.is_none());
@@ -528,8 +531,8 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Whether increments are small but do not vanish, or the round-off of internal forces compares with the loads, so that there is nothing
-    /// to converge to.
+    /// Whether increments are small but do not vanish, or the round-off of internal forces compares
+    /// with the loads, so that there is nothing to converge to.
     fn limited_by_round_off(&self, failure: &Failure) -> bool {
         let mut loads = vec![0.0; self.system.coordinates()];
         self.system.add_load_rate(1.0, self.system.reference(), &mut loads);

@@ -1,4 +1,5 @@
-//! Whether there is memory for what a model needs, before it is asked for: an allocation that fails ends a program without a word.
+//! Whether there is memory for what a model needs, before it is asked for: an allocation that fails
+//! ends a program without a word.
 
 use super::RunError;
 use crate::model::{About, Analysis, Beam, Discretization, Model};
@@ -105,8 +106,9 @@ mod tests {
         needed(scene.model(), scene.analysis())
     }
 
-    /// Counted by hand for 11 nodes, 44 coordinates of 8 bytes: 40 vectors; tables of so many functions at 5 points a cell; band matrices of four rows a node,
-    /// twice as wide as the functions of a cell; and the states.
+    /// Counted by hand for 11 nodes, 44 coordinates of 8 bytes: 40 vectors; tables of so many
+    /// functions at 5 points a cell; band matrices of four rows a node, twice as wide as the
+    /// functions of a cell; and the states.
     #[test]
     fn what_is_needed_is_counted_as_by_hand() {
         let state = 44.0 * 8.0;

@@ -8,11 +8,12 @@ use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};
 use crate::trajectory::{AnalysisKind, Shape, Statistics, Trajectory};
 
-/// Accuracy of the equilibrium: as far as round-off lets Newton's method come, because stress, and with it the stiffness,
-/// is a small difference of large numbers.
+/// Accuracy of the equilibrium: as far as round-off lets Newton's method come, because stress, and
+/// with it the stiffness, is a small difference of large numbers.
 const TO_THE_END: f64 = 1e-14;
-/// A long step past the critical load of a nearly perfect structure may end on the unstable branch of a perfect one.
-/// Before a state is refused as unstable, its path is followed again in so many parts of the load.
+/// A long step past the critical load of a nearly perfect structure may end on the unstable branch
+/// of a perfect one. Before a state is refused as unstable, its path is followed again in so many
+/// parts of the load.
 const FINER: [usize; 2] = [20, 200];
 /// Turn of a node before buckling to which the linear solution is trusted \[rad\].
 const STRAIGHT: f64 = 0.1;

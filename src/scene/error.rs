@@ -6,8 +6,9 @@ use std::path::PathBuf;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceSpan};
 
-/// A scene that cannot be used. `Display` says all of it in one message, with `file:line:column`; as a
-/// [`Diagnostic`] it also carries the text and the place for a report with the lines themselves.
+/// A scene that cannot be used. `Display` says all of it in one message, with `file:line:column`;
+/// as a [`Diagnostic`] it also carries the text and the place for a report with the lines
+/// themselves.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum SceneError {
     /// The file could not be read at all.

@@ -1,7 +1,8 @@
 //! The tables of a scene file, as serde reads them and as the JSON schema describes them.
 //!
-//! Each struct is one table; a key that no struct has is an error. Alternatives ("one of these keys") are
-//! optional fields here and are checked in `to_model`, because only there can a message point at both.
+//! Each struct is one table; a key that no struct has is an error. Alternatives ("one of these
+//! keys") are optional fields here and are checked in `to_model`, because only there can a message
+//! point at both.
 
 use std::collections::BTreeMap;
 
@@ -22,8 +23,8 @@ use super::quantity::{
 };
 use super::value::{At, Count, Located, NodeList, Vector};
 
-/// A planar flexible-beam problem: beams, supports, loads, probes and one analysis. Numbers are SI; text
-/// carries a unit, such as "1.8 m". What is not named is not simulated.
+/// A planar flexible-beam problem: beams, supports, loads, probes and one analysis. Numbers are SI;
+/// text carries a unit, such as "1.8 m". What is not named is not simulated.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "Scene of ancf")]
@@ -57,7 +58,8 @@ pub struct SceneTable {
     pub output: OutputTable,
 }
 
-/// A slender planar beam. Its geometry is one of `start` and `end`, `arc`, or `points`, all stress-free as given.
+/// A slender planar beam. Its geometry is one of `start` and `end`, `arc`, or `points`, all
+/// stress-free as given.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["start", "end"] }, { "required": ["arc"] }, { "required": ["points"] }]))]
@@ -79,9 +81,11 @@ pub struct BeamTable {
     pub second_moment: Option<Located<Quantity<SecondMoment, Positive>>>,
     /// Density ρ.
     pub density: Option<Located<Quantity<Density, Positive>>>,
-    /// Axial stiffness EA, in place of `youngs_modulus` and `area`. A beam without any keeps its length.
+    /// Axial stiffness EA, in place of `youngs_modulus` and `area`. A beam without any keeps its
+    /// length.
     pub axial_stiffness: Option<Located<Quantity<Force, Positive>>>,
-    /// Bending stiffness EI, in place of `youngs_modulus` and `second_moment`. A beam without any is a string.
+    /// Bending stiffness EI, in place of `youngs_modulus` and `second_moment`. A beam without any
+    /// is a string.
     pub bending_stiffness: Option<Located<Quantity<BendingStiffness, Positive>>>,
     /// Mass per length ρA, in place of `density` and `area`.
     pub mass_per_length: Option<Located<Quantity<MassPerLength, Positive>>>,
@@ -138,11 +142,13 @@ pub struct AncfTable {
     pub nodes: Option<Located<NodeList>>,
     /// How counted nodes are spaced.
     pub spacing: Option<Located<SpacingName>>,
-    /// Points in every element; Lobatto's three (stretch) and Gauss' two (bend) when left out, Gauss' 5/3 where nothing can lock.
+    /// Points in every element; Lobatto's three (stretch) and Gauss' two (bend) when left out,
+    /// Gauss' 5/3 where nothing can lock.
     pub gauss_points: Option<GaussPointsTable>,
 }
 
-/// Hermite radial point interpolation. What is left out takes values that were chosen by measurement.
+/// Hermite radial point interpolation. What is left out takes values that were chosen by
+/// measurement.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RpimTable {
@@ -409,7 +415,8 @@ pub struct ProbeTable {
     pub at: Located<At>,
 }
 
-/// The velocity of a beam: as a rigid body, along the arc length, or both; several of one beam add up.
+/// The velocity of a beam: as a rigid body, along the arc length, or both; several of one beam add
+/// up.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialVelocityTable {
@@ -427,7 +434,8 @@ pub struct InitialVelocityTable {
     pub table: Option<Located<VelocityPointsTable>>,
 }
 
-/// Components in the fixed frame, as coefficients of 1, s, s², … with s in metres and velocities in metres per second; `vx`, `vy` or both.
+/// Components in the fixed frame, as coefficients of 1, s, s², … with s in metres and velocities in
+/// metres per second; `vx`, `vy` or both.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VelocityPolynomialTable {
@@ -439,8 +447,8 @@ pub struct VelocityPolynomialTable {
     pub vy: Option<Vec<Quantity<Ratio>>>,
 }
 
-/// Components in the fixed frame at places from one end of the beam to the other, by a cubic spline between them, which is flat at an end whose
-/// direction a support holds; `vx`, `vy` or both.
+/// Components in the fixed frame at places from one end of the beam to the other, by a cubic spline
+/// between them, which is flat at an end whose direction a support holds; `vx`, `vy` or both.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VelocityPointsTable {

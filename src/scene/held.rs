@@ -1,4 +1,5 @@
-//! What supports hold: nothing twice, no more than a mesh can give, and in statics every rigid motion of every beam.
+//! What supports hold: nothing twice, no more than a mesh can give, and in statics every rigid
+//! motion of every beam.
 
 use crate::model::freedom::{Freedom, Motion};
 use crate::model::{FixedRotation, Joint, Load, Model, Place};
@@ -7,8 +8,8 @@ use super::error::Fault;
 use super::file::SceneTable;
 use super::place::Built;
 
-/// Places nearer to each other than this, per length of the beam, are one: what two supports hold there differs by less
-/// than the equations can tell.
+/// Places nearer to each other than this, per length of the beam, are one: what two supports hold
+/// there differs by less than the equations can tell.
 const NEAR: f64 = 1e-6;
 
 /// Refuses two supports at one point of a beam that hold the same quantity.
@@ -51,8 +52,9 @@ pub(super) enum Resisting {
     Weight,
 }
 
-/// Refuses a structure that can move without deforming. The direction of a string is found with its shape, from the load that it carries; and
-/// weight gives a direction to the beams that it pulls straight.
+/// Refuses a structure that can move without deforming. The direction of a string is found with its
+/// shape, from the load that it carries; and weight gives a direction to the beams that it pulls
+/// straight.
 pub(super) fn check_rigid_motions(model: &Model, built: &[Built], resisting: Resisting) -> Result<(), Fault> {
     let length = built.iter().map(|beam| beam.curve.length()).fold(0.0, f64::max);
     let position = |place: Place| built[place.beam].curve.position(place.s);
@@ -94,8 +96,9 @@ pub(super) fn check_rigid_motions(model: &Model, built: &[Built], resisting: Res
     ))
 }
 
-/// Per beam, whether weight, and loads of fixed direction beside it, may pull on it at one point and something else at another, so that they give it a direction: whether it
-/// is joined to a beam on which they act, itself perhaps, and does not dangle.
+/// Per beam, whether weight, and loads of fixed direction beside it, may pull on it at one point
+/// and something else at another, so that they give it a direction: whether it is joined to a beam
+/// on which they act, itself perhaps, and does not dangle.
 fn taut(model: &Model, built: &[Built]) -> Vec<bool> {
     let length = built.iter().map(|beam| beam.curve.length()).fold(0.0, f64::max);
     let loads = acted_upon(model, built);
@@ -138,7 +141,8 @@ fn taut(model: &Model, built: &[Built]) -> Vec<bool> {
     }
 }
 
-/// Points on which loads of fixed direction act: of weight and of distributed forces both ends, where a mass per length or a force acts.
+/// Points on which loads of fixed direction act: of weight and of distributed forces both ends,
+/// where a mass per length or a force acts.
 fn acted_upon(model: &Model, built: &[Built]) -> Vec<Place> {
     let ends = |beam: usize| [0.0, built[beam].curve.length()].map(|s| Place { beam, s });
     let acts = |value: &[f64; 2]| value.iter().any(|component| *component != 0.0);

@@ -9,8 +9,9 @@ use super::error::{Fault, SceneError};
 const INTEGRATORS: [&str; 3] = ["generalized_alpha", "gauss", "radau"];
 
 impl Scene {
-    /// This scene with what `lines`, a TOML text, say in place of what it says itself: a `basis` replaces the whole basis
-    /// of its beam, and an integrator the integrator; other keys are set one by one. Comments elsewhere stay.
+    /// This scene with what `lines`, a TOML text, say in place of what it says itself: a `basis`
+    /// replaces the whole basis of its beam, and an integrator the integrator; other keys are set
+    /// one by one. Comments elsewhere stay.
     ///
     /// # Errors
     /// Where `lines` are not TOML, or what comes of it is not a legal scene.

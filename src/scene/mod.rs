@@ -1,13 +1,15 @@
 //! Scene files: text → checked description.
 //!
-//! A scene is a TOML file; numbers in it are SI, text carries a unit (`"45 cm"`). Reading it goes through
+//! A scene is a TOML file; numbers in it are SI, text carries a unit (`"45 cm"`). Reading it goes
+//! through
 //!
 //! ```text
 //! text ──syntax──► tables ──keys, types, units──► tables with spans ──cross-field rules──► Model + Analysis
 //! ```
 //!
-//! and every fault on the way names file, line and column, what was found, and what is legal. Nothing here knows of
-//! shape functions, degrees of freedom or solvers; a geometry is measured only to place nodes and loads on it.
+//! and every fault on the way names file, line and column, what was found, and what is legal.
+//! Nothing here knows of shape functions, degrees of freedom or solvers; a geometry is measured
+//! only to place nodes and loads on it.
 
 mod diagnose;
 mod error;
@@ -49,7 +51,8 @@ pub use to_basis::{
     RPIM_KERNEL, RPIM_NEIGHBOURS, RPIM_POLYNOMIAL_TERMS, RPIM_SIDE_CONDITION, STRING_GAUSS_POINTS,
 };
 
-/// Longest scene file that is read \[bytes\]: more than 10⁷ node places, and a bound for what is no file at all.
+/// Longest scene file that is read \[bytes\]: more than 10⁷ node places, and a bound for what is no
+/// file at all.
 const LONGEST: u64 = 1 << 29;
 
 /// A checked scene.
@@ -72,8 +75,9 @@ pub struct Output {
 }
 
 impl Scene {
-    /// Reads the scene file at `path`, with `overrides` of the form `PATH=VALUE`: a dotted path whose list entries go
-    /// by number (`effect.moment.0.value=12.5`), and a TOML value, or else text.
+    /// Reads the scene file at `path`, with `overrides` of the form `PATH=VALUE`: a dotted path
+    /// whose list entries go by number (`effect.moment.0.value=12.5`), and a TOML value, or else
+    /// text.
     ///
     /// # Errors
     /// Where the file cannot be read, an override has no place in it, or the scene is not legal.

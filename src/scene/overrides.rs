@@ -1,4 +1,5 @@
-//! `--set PATH=VALUE`: values of a scene changed from outside, under the same checks as the file's own.
+//! `--set PATH=VALUE`: values of a scene changed from outside, under the same checks as the file's
+//! own.
 
 use std::ops::Range;
 
@@ -35,7 +36,8 @@ impl<'a> Overridden<'a> {
         self.texts.last().map_or("", String::as_str)
     }
 
-    /// Blames a fault of [`text`](Self::text) on the override that brought it, or on its place in the file.
+    /// Blames a fault of [`text`](Self::text) on the override that brought it, or on its place in
+    /// the file.
     pub fn blame(&self, mut fault: Fault) -> SceneError {
         let document = DeTable::parse(self.text());
         let path = document.map(|root| path_at(root.get_ref(), &fault.span)).unwrap_or_default();
@@ -66,7 +68,8 @@ fn on_option(mut fault: Fault, option: &str) -> SceneError {
     fault.at("--set", option)
 }
 
-/// Where the text at `span` of `after` began in `before`, unless it was touched by the change between the two.
+/// Where the text at `span` of `after` began in `before`, unless it was touched by the change
+/// between the two.
 fn origin(before: &str, after: &str, span: &Range<usize>) -> Option<usize> {
     let same = |(a, b): &(u8, u8)| a == b;
     let prefix = before.bytes().zip(after.bytes()).take_while(same).count();
@@ -108,14 +111,16 @@ fn set(text: &str, option: &str) -> Result<(String, Vec<String>), Fault> {
     Ok((text, names))
 }
 
-/// Sets the value at `path` below `root`; adds the last key, and tables on the way, where they are missing.
+/// Sets the value at `path` below `root`; adds the last key, and tables on the way, where they are
+/// missing.
 fn assign(root: &mut Item, path: &[String], value: Value) -> Result<(), (String, String)> {
     let Some((last, parents)) = path.split_last() else {
         return Err(("the path is empty".into(), "name a key of the scene".into()));
     };
     let mut item = root;
     for (depth, key) in parents.iter().enumerate() {
-        // A beam cannot come into being by a single value: a name that is not there is a misspelt one.
+        // A beam cannot come into being by a single value: a name that is not there is a misspelt
+        // one.
         let may_add = depth != 1 || path.first().is_none_or(|first| first != "beam");
         item = child(item, path, depth, key, may_add)?;
     }

@@ -7,8 +7,9 @@ use serde_json::Value;
 
 use super::file::SceneTable;
 
-/// The JSON schema (draft 2020-12) of scene files, for editors and other programs. It describes keys, types and units;
-/// what depends on several keys at once is checked by [`super::parse`] alone.
+/// The JSON schema (draft 2020-12) of scene files, for editors and other programs. It describes
+/// keys, types and units; what depends on several keys at once is checked by [`super::parse`]
+/// alone.
 pub fn schema() -> Value {
     let generator = SchemaSettings::draft2020_12().with_transform(without_null).into_generator();
     generator.into_root_schema_for::<SceneTable>().to_value()

@@ -1,4 +1,5 @@
-//! A beam's `basis` table → [`Discretization`] and Gauss points, with the bounds that keep memory sane.
+//! A beam's `basis` table → [`Discretization`] and Gauss points, with the bounds that keep memory
+//! sane.
 
 use crate::model::{Discretization, GaussPoints, Kernel, Nodes, SideCondition};
 
@@ -8,10 +9,12 @@ use super::file::{
 };
 use super::value::{Located, NodeList};
 
-/// Points of ANCF elements unless the scene says otherwise: three of Lobatto's for stretching, which neighbours share at the nodes, two of Gauss' for bending.
+/// Points of ANCF elements unless the scene says otherwise: three of Lobatto's for stretching,
+/// which neighbours share at the nodes, two of Gauss' for bending.
 ///
-/// Distance of the tip from the exact place, per length, at EA L²/EI = 6e5 in the units of [`RPIM_KERNEL`]'s table; the limit load of the deep arch at 1e8
-/// (right: 8.973), by `ancf run verification/cases/deep-arch/scene.toml --set beam.arch.axial_stiffness=7.1e6 --set 'beam.arch.basis={ ancf = { elements = 20 } }'`:
+/// Distance of the tip from the exact place, per length, at EA L²/EI = 6e5 in the units of
+/// [`RPIM_KERNEL`]'s table; the limit load of the deep arch at 1e8 (right: 8.973), by
+/// `ancf run verification/cases/deep-arch/scene.toml --set beam.arch.axial_stiffness=7.1e6 --set 'beam.arch.basis={ ancf = { elements = 20 } }'`:
 ///
 /// | stretch/bend | M = πEI/L, n = 6 | 10 | 20 | dead load PL²/EI = 10, n = 6 | 10 | 20 | deep arch, n = 20 | 40 |
 /// |---|---|---|---|---|---|---|---|---|
@@ -19,13 +22,15 @@ use super::value::{Located, NodeList};
 /// | Gauss 4/2 | 8e-4 | 1e-4 | 6e-6 | 5e-3 | 1e-3 | 8e-5 | 9.28 | |
 /// | **Lobatto 3, Gauss 2** | 7e-4 | 1e-4 | 6e-6 | 6e-4 | 9e-5 | 6e-6 | 9.02 | 8.98 |
 pub const ANCF_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 3, bend: 2, lobatto: true };
-/// Points of ANCF elements of a string, or of a beam that keeps its length, unless the scene says otherwise: neither locks, nothing but its stretch keeps a cell of
-/// a string from folding, and a third point for bending makes the error of an inextensible beam four times smaller.
+/// Points of ANCF elements of a string, or of a beam that keeps its length, unless the scene says
+/// otherwise: neither locks, nothing but its stretch keeps a cell of a string from folding, and a
+/// third point for bending makes the error of an inextensible beam four times smaller.
 pub const STRING_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 5, bend: 3, lobatto: false };
 /// Radial function of RPIM unless the scene says otherwise.
 ///
-/// Distance of the tip from the exact place, per length, of a cantilever at EA L²/EI = 6e5 with uniform nodes, q = 1.03, m = 2, two neighbours, four Gauss points
-/// a cell where the row does not say otherwise; `ancf cost SCENE` makes such a table of any scene:
+/// Distance of the tip from the exact place, per length, of a cantilever at EA L²/EI = 6e5 with
+/// uniform nodes, q = 1.03, m = 2, two neighbours, four Gauss points a cell where the row does not
+/// say otherwise; `ancf cost SCENE` makes such a table of any scene:
 ///
 /// | shape, sign | M = πEI/L, n = 6 | 10 | 20 | dead load PL²/EI = 10, n = 6 | 10 | 20 |
 /// |---|---|---|---|---|---|---|
@@ -40,8 +45,9 @@ pub const STRING_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 5, bend: 3, 
 /// | Gauss 3/4 | 2e-7 | 6e-9 | 5e-9 | 6e-6 | 9e-8 | 8e-9 |
 /// | Gauss 5/5, 8/8 | 2e-6 | 4e-8 | 8e-9 | 1e-5 | 4e-7 | 3e-8 |
 ///
-/// Flatter functions win in statics, but not in motion, where the curvature of 14 nodes at shape 20 errs twice as much as
-/// at 3.3; and up to about 6 the moment matrices can be solved in double-double arithmetic, ten times faster than beyond.
+/// Flatter functions win in statics, but not in motion, where the curvature of 14 nodes at shape 20
+/// errs twice as much as at 3.3; and up to about 6 the moment matrices can be solved in
+/// double-double arithmetic, ten times faster than beyond.
 pub const RPIM_KERNEL: Kernel = Kernel::Multiquadric { q: 1.03, shape: 5.0 };
 /// Polynomial terms of RPIM unless the scene says otherwise.
 pub const RPIM_POLYNOMIAL_TERMS: usize = 2;
@@ -49,7 +55,8 @@ pub const RPIM_POLYNOMIAL_TERMS: usize = 2;
 pub const RPIM_SIDE_CONDITION: SideCondition = SideCondition::Plus;
 /// Support width of RPIM unless the scene says otherwise.
 pub const RPIM_NEIGHBOURS: usize = 2;
-/// Gauss points of RPIM cells unless the scene says otherwise; compared in the table of [`RPIM_KERNEL`].
+/// Gauss points of RPIM cells unless the scene says otherwise; compared in the table of
+/// [`RPIM_KERNEL`].
 pub const RPIM_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 4, bend: 4, lobatto: false };
 
 /// Most nodes of a scene.
@@ -69,8 +76,8 @@ pub(super) struct Size {
     pub memory: f64,
 }
 
-/// The discretisation that `basis` asks for, on a beam of the given length \[m\], which may lock if it resists both stretch and
-/// bending.
+/// The discretisation that `basis` asks for, on a beam of the given length \[m\], which may lock if
+/// it resists both stretch and bending.
 pub(super) fn discretization(
     beam: &str,
     basis: &Located<BasisTable>,
@@ -120,7 +127,8 @@ pub(super) fn check_size(total: Size, basis: &Located<BasisTable>) -> Result<(),
     Ok(())
 }
 
-/// A count that fits the machine; far larger ones are refused by [`check_size`] with the memory they need.
+/// A count that fits the machine; far larger ones are refused by [`check_size`] with the memory
+/// they need.
 fn to_usize(count: u64) -> usize {
     usize::try_from(count).unwrap_or(usize::MAX)
 }
@@ -167,7 +175,8 @@ fn rpim_table(
         Some(n) => to_usize(n.get().0),
         None => RPIM_NEIGHBOURS,
     };
-    // Supports are clipped at the beam's ends; the smallest one decides how many terms it can carry.
+    // Supports are clipped at the beam's ends; the smallest one decides how many terms it can
+    // carry.
     let smallest = (nodes.count() as f64).min((2 + neighbours) as f64);
     let polynomial_terms = match &table.polynomial_terms {
         Some(m) if m.get().0 as f64 > 2.0 * smallest => {

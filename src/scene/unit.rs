@@ -1,13 +1,14 @@
 //! Units of measurement: text such as `kg/m^3` to a factor and a dimension.
 //!
-//! A unit is a product or quotient of named units, each with an optional SI prefix and an optional whole
-//! power: `mm`, `N/mm`, `kN m`, `kg/m^3`, `m s^-2`, `cm²`, `kg/(m s^2)`. A slash divides by the one factor
-//! (or bracket) that follows it; because readers disagree about `kg/m s`, that spelling is refused.
+//! A unit is a product or quotient of named units, each with an optional SI prefix and an optional
+//! whole power: `mm`, `N/mm`, `kN m`, `kg/m^3`, `m s^-2`, `cm²`, `kg/(m s^2)`. A slash divides by
+//! the one factor (or bracket) that follows it; because readers disagree about `kg/m s`, that
+//! spelling is refused.
 
 use std::fmt;
 
-/// Exponents of metre, kilogram, second and radian. Angles count as a dimension of their own, so that
-/// `"3 m"` is no angle and `"90 deg"` no ratio.
+/// Exponents of metre, kilogram, second and radian. Angles count as a dimension of their own, so
+/// that `"3 m"` is no angle and `"90 deg"` no ratio.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dimension {
     /// Exponent of the metre.
@@ -177,7 +178,8 @@ pub fn parse_unit(text: &str) -> Result<Unit, String> {
     Ok(unit)
 }
 
-/// The text with `^` before digits that follow a letter, where it is a unit then: `kg/m3` was meant to be `kg/m^3`.
+/// The text with `^` before digits that follow a letter, where it is a unit then: `kg/m3` was meant
+/// to be `kg/m^3`.
 fn with_powers(text: &str) -> Option<String> {
     let mut form = String::new();
     for c in text.trim().chars() {

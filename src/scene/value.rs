@@ -1,5 +1,5 @@
-//! Values of scene files that are not plain quantities: counts, places along a beam, node lists — and
-//! [`Located`], which remembers where in the text a value stands.
+//! Values of scene files that are not plain quantities: counts, places along a beam, node lists —
+//! and [`Located`], which remembers where in the text a value stands.
 
 use std::borrow::Cow;
 use std::fmt;

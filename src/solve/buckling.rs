@@ -1,12 +1,15 @@
-//! Linear buckling: the load factors λ at which the tangent, with the stress resultants of the linear solution, becomes singular,
+//! Linear buckling: the load factors λ at which the tangent, with the stress resultants of the
+//! linear solution, becomes singular,
 //!
 //! ```text
 //! (K₀ + λ K₁) φ = 0,   K₁ = ∫ N₁ ∂²ε/∂q∂q + M₁ ∂²κ/∂q∂q ds + …,   N₁ = EA ∂ε/∂q·u,  M₁ = EI ∂κ/∂q·u,   K₀ u = −f_load
 //! ```
 //!
-//! with all derivatives in the stress-free state. The directions in which a beam resists stretch are those of that state too: that they turn with the
-//! rotations of u is a term of the first order which one of the second cancels, and alone it would let a stiff beam that bends buckle at once. An effect whose
-//! tangent extrapolates its resultants ([`crate::effect`]) gives K₀ + λ K₁ when it is asked for the tangent one increment λ u ahead.
+//! with all derivatives in the stress-free state. The directions in which a beam resists stretch
+//! are those of that state too: that they turn with the rotations of u is a term of the first order
+//! which one of the second cancels, and alone it would let a stiff beam that bends buckle at once.
+//! An effect whose tangent extrapolates its resultants ([`crate::effect`]) gives K₀ + λ K₁ when it
+//! is asked for the tangent one increment λ u ahead.
 
 use super::eigen::{EigenError, Pencil, largest_reciprocals};
 use super::equilibrium::Equilibrium;
@@ -26,10 +29,12 @@ pub struct Modes {
     pub factorizations: usize,
 }
 
-/// Load factor at which K₀ + λ K₁ is K₁ to round-off: it is linear in λ, and so no digit is lost when K₀ is taken away.
+/// Load factor at which K₀ + λ K₁ is K₁ to round-off: it is linear in λ, and so no digit is lost
+/// when K₀ is taken away.
 const FAR_AHEAD: f64 = 1e18;
 
-/// Reciprocal of a load factor, in units of the load on the structure's stiffness, that round-off may leave.
+/// Reciprocal of a load factor, in units of the load on the structure's stiffness, that round-off
+/// may leave.
 const ROUND_OFF: f64 = 1e-11;
 
 /// The `count` lowest positive critical load factors.

@@ -1,4 +1,5 @@
-//! The equations of statics at a load factor, in the form that Newton's method and the path solvers ask for.
+//! The equations of statics at a load factor, in the form that Newton's method and the path solvers
+//! ask for.
 
 use super::newton::{Equations, RESIDUAL_TOLERANCE};
 use super::retraction::Retraction;
@@ -12,8 +13,8 @@ use crate::system::System;
 /// Residuals of so many round-offs of the internal forces count as zero.
 const ROUND_OFFS: f64 = 100.0;
 
-/// Residual, tangent and its factorisation at one load factor. Unknowns are the system's coordinates followed by the
-/// scaled multipliers.
+/// Residual, tangent and its factorisation at one load factor. Unknowns are the system's
+/// coordinates followed by the scaled multipliers.
 pub struct Equilibrium<'a> {
     system: &'a System,
     /// How states are moved along increments.
@@ -59,7 +60,8 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
-    /// Counts the turns of torsion springs on to `x`, which need not be accepted, on a way of many small changes.
+    /// Counts the turns of torsion springs on to `x`, which need not be accepted, on a way of many
+    /// small changes.
     pub fn follow_windings(&mut self, x: &[f64]) {
         if self.system.has_windings() {
             self.held.variables.angles = self.internal_variables(x).angles;
@@ -83,8 +85,9 @@ impl<'a> Equilibrium<'a> {
         x
     }
 
-    /// Writes −R(x) to `negative` and returns the scaled residual: its largest component against the largest force on
-    /// a coordinate (reactions included) plus the round-off of the internal forces.
+    /// Writes −R(x) to `negative` and returns the scaled residual: its largest component against
+    /// the largest force on a coordinate (reactions included) plus the round-off of the internal
+    /// forces.
     pub fn residual(&mut self, load: f64, x: &[f64], negative: &mut [f64]) -> f64 {
         let n = self.system.coordinates();
         self.statistics.residual_evaluations += 1;
@@ -101,8 +104,8 @@ impl<'a> Equilibrium<'a> {
         negate(self.system, scale, negative, |_| ())
     }
 
-    /// The same as [`Self::residual`]; also factorises the tangent at `x`, and to `rate` writes the right-hand side
-    /// of the path's tangent dx/dλ there.
+    /// The same as [`Self::residual`]; also factorises the tangent at `x`, and to `rate` writes the
+    /// right-hand side of the path's tangent dx/dλ there.
     ///
     /// # Errors
     /// [`Singular`] where the tangent has no inverse.
@@ -164,7 +167,8 @@ impl<'a> Equilibrium<'a> {
         Ok(())
     }
 
-    /// −∂R/∂λ − K v with the prescribed rates v of held coordinates; the tangent must not be eliminated yet.
+    /// −∂R/∂λ − K v with the prescribed rates v of held coordinates; the tangent must not be
+    /// eliminated yet.
     fn rate_right_hand_side(&mut self, load: f64, x: &[f64], rate: &mut [f64]) {
         let system = self.system;
         let n = system.coordinates();
@@ -191,8 +195,8 @@ impl<'a> Equilibrium<'a> {
         system.supports().to_frames(load, &mut rate[..n]);
     }
 
-    /// Solves with the last tangent; `b` comes in the supports' frames and leaves in fixed axes. With `moving`, held
-    /// coordinates receive their prescribed rates.
+    /// Solves with the last tangent; `b` comes in the supports' frames and leaves in fixed axes.
+    /// With `moving`, held coordinates receive their prescribed rates.
     pub fn solve(&self, load: f64, b: &mut [f64], moving: bool) {
         let n = self.system.coordinates();
         if let Some(factor) = &self.factor {
@@ -200,26 +204,29 @@ impl<'a> Equilibrium<'a> {
         }
         if moving {
             for (b, rate) in b[..n].iter_mut().zip(&self.held_rate) {
-                // Held components are zero in a solved right-hand side, free ones have no prescribed rate.
+                // Held components are zero in a solved right-hand side, free ones have no
+                // prescribed rate.
                 *b += rate;
             }
         }
         self.system.supports().from_frames(load, &mut b[..n]);
     }
 
-    /// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not count.
+    /// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not
+    /// count.
     pub fn size(&self, increment: &[f64]) -> f64 {
         size(self.system, increment)
     }
 
-    /// Number of unstable directions at the last linearised state: negative eigenvalues of the tangent restricted to
-    /// motions that constraints and supports allow. `None` under follower loads.
+    /// Number of unstable directions at the last linearised state: negative eigenvalues of the
+    /// tangent restricted to motions that constraints and supports allow. `None` under follower
+    /// loads.
     pub fn unstable_directions(&self) -> Option<usize> {
         self.factor.as_ref()?.negative_directions(&self.tangent, &self.border)
     }
 
-    /// Whether the determinant of the last tangent is negative, where the factorisation tells. Its sign changes where an odd
-    /// number of directions lose their stiffness, follower loads or not.
+    /// Whether the determinant of the last tangent is negative, where the factorisation tells. Its
+    /// sign changes where an odd number of directions lose their stiffness, follower loads or not.
     pub fn determinant_is_negative(&self) -> Option<bool> {
         self.factor.as_ref()?.determinant_is_negative()
     }
@@ -230,7 +237,8 @@ impl<'a> Equilibrium<'a> {
     }
 }
 
-/// Adds Bᵀμ to the forces that are in `r`, turns them into the supports' frames and appends g. Returns the largest force, `scale` or larger.
+/// Adds Bᵀμ to the forces that are in `r`, turns them into the supports' frames and appends g.
+/// Returns the largest force, `scale` or larger.
 pub(super) fn balance(system: &System, load: f64, x: &[f64], mut scale: f64, r: &mut [f64]) -> f64 {
     let (q, multipliers) = x.split_at(system.coordinates());
     let (force, gaps) = r.split_at_mut(q.len());
@@ -247,8 +255,9 @@ pub(super) fn balance(system: &System, load: f64, x: &[f64], mut scale: f64, r: 
     scale
 }
 
-/// Makes −R of the R that [`balance`] left, which `turn` may turn node after node; returns the residual scaled by the largest force. Newton's method satisfies
-/// constraints that are linear in q to round-off at once, and lengths as soon as its increments vanish: they do not count.
+/// Makes −R of the R that [`balance`] left, which `turn` may turn node after node; returns the
+/// residual scaled by the largest force. Newton's method satisfies constraints that are linear in q
+/// to round-off at once, and lengths as soon as its increments vanish: they do not count.
 #[inline(always)]
 pub(super) fn negate(system: &System, scale: f64, r: &mut [f64], mut turn: impl FnMut(&mut [f64; 4])) -> f64 {
     let (force, gaps) = r.split_at_mut(system.coordinates());
@@ -268,7 +277,8 @@ pub(super) fn floor(system: &System) -> f64 {
     ROUND_OFFS / RESIDUAL_TOLERANCE * system.round_off()
 }
 
-/// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not count.
+/// Largest nodal change: positions in beam lengths, gradients as they are. Multipliers do not
+/// count.
 pub(super) fn size(system: &System, increment: &[f64]) -> f64 {
     let mut largest = Largest::change(system);
     increment[..system.coordinates()].as_chunks().0.iter().for_each(|d| largest.see(d));
@@ -369,12 +379,13 @@ impl Equations for AtLoad<'_, '_> {
 
 /// Equilibrium on a plane across the path: unknowns (x, λ) with ⟨τ, (x, λ) − (x, λ)_predicted⟩ = 0.
 ///
-/// The plane's normal τ is the predictor's direction (Keller's pseudo-arc length); the bordered system is solved with
-/// the same tangent twice, δx = a + δλ b with K a = −R and K b = −∂R/∂λ.
+/// The plane's normal τ is the predictor's direction (Keller's pseudo-arc length); the bordered
+/// system is solved with the same tangent twice, δx = a + δλ b with K a = −R and K b = −∂R/∂λ.
 pub struct AcrossPath<'e, 'a> {
     /// The equations.
     pub equilibrium: &'e mut Equilibrium<'a>,
-    /// τ, one longer than x; already weighted, so that its dot product with a change is that change along the path.
+    /// τ, one longer than x; already weighted, so that its dot product with a change is that change
+    /// along the path.
     pub normal: Vec<f64>,
     rate: Vec<f64>,
     scratch: Vec<f64>,

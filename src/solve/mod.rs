@@ -1,5 +1,5 @@
-//! Solvers. Each asks the system for forces, tangents, supports and constraints, and knows neither discretisation nor
-//! effect.
+//! Solvers. Each asks the system for forces, tangents, supports and constraints, and knows neither
+//! discretisation nor effect.
 
 pub mod buckling;
 pub mod dynamics;

@@ -1,14 +1,15 @@
 //! Natural frequencies and mode shapes of small vibrations about an equilibrium: K φ = ω² M φ.
 //!
-//! K is the tangent of all forces there, so that stress and loads stiffen or soften the structure; about the stress-free
-//! state it is the linear stiffness, and loads take no part. Motions that a support or a constraint row forbids are left
-//! out.
+//! K is the tangent of all forces there, so that stress and loads stiffen or soften the structure;
+//! about the stress-free state it is the linear stiffness, and loads take no part. Motions that a
+//! support or a constraint row forbids are left out.
 //!
-//! What is inverted is K + σ M, with a σ of the order of the lowest ω² that also stands out of round-off: it is definite
-//! even for free bodies, whose rigid motions have ω = 0. The entries of K have lost digits where the mesh is fine (N
-//! elements, up to N⁴ round-offs), so that frequencies and shapes are then those of K itself, evaluated without a matrix,
-//! in the space of the vectors found (Rayleigh and Ritz). With 10 000 elements this leaves 1e-6 to 1e-5 of the first
-//! frequency of a clamped beam, where the matrix alone leaves 5e-2. What cannot be told from zero is zero.
+//! What is inverted is K + σ M, with a σ of the order of the lowest ω² that also stands out of
+//! round-off: it is definite even for free bodies, whose rigid motions have ω = 0. The entries of K
+//! have lost digits where the mesh is fine (N elements, up to N⁴ round-offs), so that frequencies
+//! and shapes are then those of K itself, evaluated without a matrix, in the space of the vectors
+//! found (Rayleigh and Ritz). With 10 000 elements this leaves 1e-6 to 1e-5 of the first frequency
+//! of a clamped beam, where the matrix alone leaves 5e-2. What cannot be told from zero is zero.
 
 use super::eigen::{EigenError, Pencil, dot, largest_reciprocals};
 use crate::effect::{InternalVariables, Workspace};
@@ -29,8 +30,9 @@ pub struct Modes {
     pub factorizations: usize,
 }
 
-/// The `count` lowest vibrations about the equilibrium `x` (coordinates, then scaled multipliers) at load factor `load`, motions
-/// without resistance included. At load factor 0 the loads are absent. `variables` are those of the equilibrium; friction takes no part.
+/// The `count` lowest vibrations about the equilibrium `x` (coordinates, then scaled multipliers)
+/// at load factor `load`, motions without resistance included. At load factor 0 the loads are
+/// absent. `variables` are those of the equilibrium; friction takes no part.
 ///
 /// # Errors
 /// [`EigenError`] where the state is unstable or the loads have no symmetric tangent.
@@ -100,7 +102,8 @@ pub fn solve(
     if unstable > 0 { Err(EigenError::Unstable { count: unstable }) } else { Ok(modes) }
 }
 
-/// σ in units of EI/(ρA L⁴): less than the lowest ω² of a beam held at one end, 12.4, and enough to stand out of round-off.
+/// σ in units of EI/(ρA L⁴): less than the lowest ω² of a beam held at one end, 12.4, and enough to
+/// stand out of round-off.
 const SHIFT: f64 = 10.0;
 /// Vectors sought beyond those wanted, which the wanted ones may be mixed with.
 const GUARD: usize = 4;
@@ -109,8 +112,8 @@ const CERTAIN: f64 = 10.0;
 /// How far the shift stands out of what round-off makes of a zero ω².
 const STAND_OUT: f64 = 1e3;
 
-/// ω² and M-orthonormal shapes of the stiffness K restricted to the span of `vectors`, of which `stiff` are the products
-/// with K (Rayleigh and Ritz); lowest first.
+/// ω² and M-orthonormal shapes of the stiffness K restricted to the span of `vectors`, of which
+/// `stiff` are the products with K (Rayleigh and Ritz); lowest first.
 fn ritz(vectors: &[Vec<f64>], stiff: &[Vec<f64>], mass: &Matrix) -> Result<Vec<(f64, Vec<f64>)>, EigenError> {
     let c = vectors.len();
     let heavy: Vec<Vec<f64>> = vectors
@@ -140,7 +143,8 @@ fn ritz(vectors: &[Vec<f64>], stiff: &[Vec<f64>], mass: &Matrix) -> Result<Vec<(
         }
         sum
     };
-    // The eigenvalues have the round-off of the largest one. Rayleigh's quotients have each their own, for they err by the square of what the shapes do.
+    // The eigenvalues have the round-off of the largest one. Rayleigh's quotients have each their
+    // own, for they err by the square of what the shapes do.
     let mut modes: Vec<(f64, Vec<f64>)> = (0..c)
         .map(|k| {
             let shape = combined(vectors, k);

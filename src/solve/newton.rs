@@ -1,19 +1,20 @@
 //! Newton's method, which knows nothing of loads or time.
 //!
-//! Convergence is judged by the increment in a scaled norm, which is what the user's accuracy means, and by the scaled
-//! residual, which catches a tangent that lies; increments below the tolerance that no longer shrink are the round-off of
-//! the forces, which then balance as well as they can. Because convergence is quadratic, an increment δ_k with contraction
-//! Θ = |δ_k|/|δ_{k−1}| leaves an error of about Θ² |δ_k|; iteration stops when that is below the tolerance. The first
-//! contraction also tells the caller how far the predictor was from the solution (Deuflhard, *Newton Methods for
-//! Nonlinear Problems*, 2004, ch. 5).
+//! Convergence is judged by the increment in a scaled norm, which is what the user's accuracy
+//! means, and by the scaled residual, which catches a tangent that lies; increments below the
+//! tolerance that no longer shrink are the round-off of the forces, which then balance as well as
+//! they can. Because convergence is quadratic, an increment δ_k with contraction Θ =
+//! |δ_k|/|δ_{k−1}| leaves an error of about Θ² |δ_k|; iteration stops when that is below the
+//! tolerance. The first contraction also tells the caller how far the predictor was from the
+//! solution (Deuflhard, *Newton Methods for Nonlinear Problems*, 2004, ch. 5).
 
 use crate::effect::Earlier;
 use crate::linear::Singular;
 
 /// A nonlinear system of equations.
 pub trait Equations {
-    /// Writes the Newton increment at `x` to `increment` and returns the scaled residual at `x`. The tangent may take
-    /// account of the iterate before.
+    /// Writes the Newton increment at `x` to `increment` and returns the scaled residual at `x`.
+    /// The tangent may take account of the iterate before.
     ///
     /// # Errors
     /// [`Singular`] where the tangent has no inverse.
@@ -93,7 +94,8 @@ pub enum Failure {
     /// A force or an increment overflowed or is not a number.
     #[error("a force or an increment is not finite")]
     NotFinite,
-    /// Converged, but so far from the prediction that it may be another equilibrium than the one that continues the path.
+    /// Converged, but so far from the prediction that it may be another equilibrium than the one
+    /// that continues the path.
     #[error("the solution lies {turn:.2} rad from where the path's tangents lead, perhaps on another branch")]
     OtherBranch {
         /// Largest turn of a node between solution and prediction \[rad\].
@@ -123,7 +125,8 @@ pub enum Failure {
         /// Number of the contact.
         contact: usize,
     },
-    /// Converged, but to an equilibrium that lies beyond a bifurcation, where a path that bends away may still be stable.
+    /// Converged, but to an equilibrium that lies beyond a bifurcation, where a path that bends
+    /// away may still be stable.
     #[error("the step ends beyond a bifurcation, perhaps on another branch")]
     Bifurcation,
     /// A step of a motion gains energy that no load puts in.
@@ -155,8 +158,9 @@ pub enum Failure {
 /// Increments that no longer shrink count as converged below this size: what is left is round-off.
 const ROUND_OFF: f64 = 1e-6;
 
-/// Iterates from `x`, which receives the solution; `start` is from where that was predicted and by which increment: the first tangent is extrapolated from it.
-/// `record` receives what happened, also on failure.
+/// Iterates from `x`, which receives the solution; `start` is from where that was predicted and by
+/// which increment: the first tangent is extrapolated from it. `record` receives what happened,
+/// also on failure.
 ///
 /// # Errors
 /// [`Failure`]; `x` is then meaningless.
@@ -224,7 +228,8 @@ pub fn not_crushed(q: &[f64]) -> Result<(), Failure> {
     }
 }
 
-/// Refuses a step from `before` to `q` that turns a node's gradient about, or ends where it has all but vanished.
+/// Refuses a step from `before` to `q` that turns a node's gradient about, or ends where it has all
+/// but vanished.
 ///
 /// # Errors
 /// [`Failure::Crushed`] with the node.

@@ -1,28 +1,37 @@
 //! Following a path of equilibria: predictor, step control, and what is noticed on the way.
 //!
-//! Points of the path are functions of a parameter t, the load factor or the arc length. The next point is predicted by
-//! going on along the path's tangent, which costs one substitution, and corrected by Newton's method. The step is
-//! controlled by the *turn of the corrector*: the largest change of a nodal gradient between predicted and corrected
-//! state, which is an angle in radians for slender beams whatever their size. The predictor errs by O(h²), so that the
-//! step for a wanted turn follows at once. A step whose corrector turns too far is redone smaller even though it
-//! converged: a solution that far from the prediction may lie on another branch. If already the first correction is that large the step is
-//! refused before it is followed, and the correction tells how much shorter the next one is to be.
+//! Points of the path are functions of a parameter t, the load factor or the arc length. The next
+//! point is predicted by going on along the path's tangent, which costs one substitution, and
+//! corrected by Newton's method. The step is controlled by the *turn of the corrector*: the largest
+//! change of a nodal gradient between predicted and corrected state, which is an angle in radians
+//! for slender beams whatever their size. The predictor errs by O(h²), so that the step for a
+//! wanted turn follows at once. A step whose corrector turns too far is redone smaller even though
+//! it converged: a solution that far from the prediction may lie on another branch. If already the
+//! first correction is that large the step is refused before it is followed, and the correction
+//! tells how much shorter the next one is to be.
 //!
-//! States are moved along tangents and increments with finite turns ([`super::retraction`]), so that a step may turn a tip by a whole turn: a straight
-//! cantilever takes one step and three iterations to a full circle, where increments that are added allow steps of 0.8 rad and take nine and thirty-eight.
+//! States are moved along tangents and increments with finite turns ([`super::retraction`]), so
+//! that a step may turn a tip by a whole turn: a straight cantilever takes one step and three
+//! iterations to a full circle, where increments that are added allow steps of 0.8 rad and take
+//! nine and thirty-eight.
 //!
-//! A step is redone, too, if the tangents at its two ends do not explain it. On a smooth path the trapezoidal rule for the angles of the nodes,
-//! φ₁ ≈ φ₀ + ½h (φ̇₀ + φ̇₁), errs by O(h³) and thus by a fraction of the corrector's own O(h²), or of the step's turn where the corrector has little left
-//! to do. A step to another branch misses it by all of the jump. Twelve thousand random cantilevers end where two hundred small steps end. Two of ten thousand
-//! do not if few cable elements with full quadrature lock (four of them, EA L²/EI of 2·10⁶ and 7·10⁶): such meshes have branches of their own within a step.
+//! A step is redone, too, if the tangents at its two ends do not explain it. On a smooth path the
+//! trapezoidal rule for the angles of the nodes, φ₁ ≈ φ₀ + ½h (φ̇₀ + φ̇₁), errs by O(h³) and thus
+//! by a fraction of the corrector's own O(h²), or of the step's turn where the corrector has little
+//! left to do. A step to another branch misses it by all of the jump. Twelve thousand random
+//! cantilevers end where two hundred small steps end. Two of ten thousand do not if few cable
+//! elements with full quadrature lock (four of them, EA L²/EI of 2·10⁶ and 7·10⁶): such meshes have
+//! branches of their own within a step.
 //!
-//! A step that passes no limit point and yet ends in an unstable equilibrium is redone smaller too, and so is one that ends opposite to
-//! where it was to go. The path of an imperfect column bends away from its critical load and stays stable; long steps, of which no
-//! corrector turns far, end on the unstable path beside it, or on the branch that bends to the other side. Only where ever smaller steps
-//! lose stability as well does the path itself, and it goes on with a warning.
+//! A step that passes no limit point and yet ends in an unstable equilibrium is redone smaller too,
+//! and so is one that ends opposite to where it was to go. The path of an imperfect column bends
+//! away from its critical load and stays stable; long steps, of which no corrector turns far, end
+//! on the unstable path beside it, or on the branch that bends to the other side. Only where ever
+//! smaller steps lose stability as well does the path itself, and it goes on with a warning.
 //!
-//! Polynomials through the last points, with and without the tangents there, were tried: their corrections are smaller, but the first steps,
-//! which find no past to extrapolate, decide, and Newton's method takes as many iterations a step.
+//! Polynomials through the last points, with and without the tangents there, were tried: their
+//! corrections are smaller, but the first steps, which find no past to extrapolate, decide, and
+//! Newton's method takes as many iterations a step.
 
 use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
 use super::newton::{self, Failure, Iterations, Settings};
@@ -65,25 +74,32 @@ const WANTED_TURN: f64 = 0.25;
 const LARGEST_TURN: f64 = 0.5;
 /// Part of the corrector's turn that the tangents at both ends of a step may leave unexplained.
 const UNEXPLAINED_PART: f64 = 0.5;
-/// Unexplained turn that is never refused \[rad\]: near an inflection of the path the corrector's own turn vanishes.
+/// Unexplained turn that is never refused \[rad\]: near an inflection of the path the corrector's
+/// own turn vanishes.
 const UNEXPLAINED_TURN: f64 = 0.02;
-/// The same as a part of the step's predicted turn: of a whole turn as much as a corrector may turn.
+/// The same as a part of the step's predicted turn: of a whole turn as much as a corrector may
+/// turn.
 const UNEXPLAINED_OF_STEP: f64 = 0.02;
-/// Predicted turn of any node in one step \[rad\], with finite turns and with increments that are added.
+/// Predicted turn of any node in one step \[rad\], with finite turns and with increments that are
+/// added.
 const LARGEST_STEP: (f64, f64) = (7.0, 0.8);
-/// The same where the way between two points counts, as it does for contacts and for springs that are wound up.
+/// The same where the way between two points counts, as it does for contacts and for springs that
+/// are wound up.
 const BY_SMALL_STEPS: f64 = 0.5;
-/// A corrector that turns no node by more than this, and by less than was predicted, stays on its side of a bifurcation \[rad\].
+/// A corrector that turns no node by more than this, and by less than was predicted, stays on its
+/// side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
-/// Part of the load beyond which a step without a count of unstable directions is looked at between its ends where it turns no node by more than this \[rad\], and
-/// in how many parts: what is bent keeps to its side.
+/// Part of the load beyond which a step without a count of unstable directions is looked at between
+/// its ends where it turns no node by more than this \[rad\], and in how many parts: what is bent
+/// keeps to its side.
 const LONG_STEP: f64 = 0.1;
 const STRAIGHT: f64 = 0.1;
 const BETWEEN: u32 = 5;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
-/// A step of this size in which stability is lost is believed. The knee of an imperfect path is about as wide as the
-/// imperfection to the power of 2/3 (Koiter), which leaves it to imperfections of 1e-7.
+/// A step of this size in which stability is lost is believed. The knee of an imperfect path is
+/// about as wide as the imperfection to the power of 2/3 (Koiter), which leaves it to imperfections
+/// of 1e-7.
 const BELIEVED_STEP: f64 = 1e-5;
 
 /// Why a path could not be followed.
@@ -151,8 +167,8 @@ impl<'e, 'a> Path<'e, 'a> {
         }
     }
 
-    /// Extreme value of the load factor near the last two points: the vertex of the parabola through the last three,
-    /// where it lies between them, else the last load.
+    /// Extreme value of the load factor near the last two points: the vertex of the parabola
+    /// through the last three, where it lies between them, else the last load.
     pub fn extreme_load(&self) -> f64 {
         let [.., a, b, c] = &self.points[..] else { return self.last().load };
         let slope = |p: &Point, q: &Point| (q.load - p.load) / (q.parameter - p.parameter);
@@ -176,7 +192,8 @@ impl<'e, 'a> Path<'e, 'a> {
         self.step = self.step.min(largest);
     }
 
-    /// Takes one step to a new equilibrium, not beyond the parameter `end`, halving it as often as needed.
+    /// Takes one step to a new equilibrium, not beyond the parameter `end`, halving it as often as
+    /// needed.
     ///
     /// # Errors
     /// [`Stuck`] where no step converges.
@@ -271,7 +288,8 @@ impl<'e, 'a> Path<'e, 'a> {
         self.last()
     }
 
-    /// Whether a point has more unstable directions than the last one although no limit point of the load lies between them.
+    /// Whether a point has more unstable directions than the last one although no limit point of
+    /// the load lies between them.
     fn loses_stability(&self, point: &Point) -> bool {
         let last = self.last();
         let along = |rate: &[f64]| rate.last().is_some_and(|load| *load > 0.0);
@@ -294,7 +312,8 @@ impl<'e, 'a> Path<'e, 'a> {
         self.parameter == Parameter::Load && along < 0.0
     }
 
-    /// Whether the determinant changes its sign twice on the way to a point, where it is all that tells of stability: at several states between.
+    /// Whether the determinant changes its sign twice on the way to a point, where it is all that
+    /// tells of stability: at several states between.
     fn crosses_twice(&mut self, point: &Point) -> bool {
         let last = self.last().clone();
         let long = (point.load - last.load).abs() > LONG_STEP && self.turn(&point.x, &last.x) < STRAIGHT;
@@ -314,7 +333,8 @@ impl<'e, 'a> Path<'e, 'a> {
         differs || self.equilibrium.linearize(point.load, &point.x, None, &mut scratch, &mut rate).is_err()
     }
 
-    /// Stability at the point itself: near a critical load what the last increment still changed decides over the sign.
+    /// Stability at the point itself: near a critical load what the last increment still changed
+    /// decides over the sign.
     fn judge_again(&mut self, point: &mut Point) {
         let mut scratch = vec![0.0; point.x.len()];
         let mut rate = scratch.clone();
@@ -352,7 +372,8 @@ impl<'e, 'a> Path<'e, 'a> {
         Ok(())
     }
 
-    /// ⟨a, b⟩ over (x, λ): mean square of nodal changes, positions in beam lengths, plus the load factor.
+    /// ⟨a, b⟩ over (x, λ): mean square of nodal changes, positions in beam lengths, plus the load
+    /// factor.
     fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
         self.weights(a).iter().zip(b).map(|(a, b)| a * b).sum()
     }
@@ -414,7 +435,8 @@ impl<'e, 'a> Path<'e, 'a> {
         pairs.fold(0.0, |turn: f64, (a, b)| turn.max((a[2] - b[2]).hypot(a[3] - b[3])))
     }
 
-    /// Largest angle between a gradient of `to` and where the trapezoidal rule leads from `from` by the turning rates at both; 0 where one is unknown.
+    /// Largest angle between a gradient of `to` and where the trapezoidal rule leads from `from` by
+    /// the turning rates at both; 0 where one is unknown.
     fn unexplained(&self, from: &Point, to: &Point) -> f64 {
         let half = 0.5 * (to.parameter - from.parameter);
         let n = self.equilibrium.system().coordinates();
@@ -549,13 +571,14 @@ impl<'e, 'a> Path<'e, 'a> {
         self.equilibrium.system().place_of(4 * node)
     }
 
-    /// The equilibrium at load factor `load`, starting from the state between the last two points nearest to it; the
-    /// path itself is not changed.
+    /// The equilibrium at load factor `load`, starting from the state between the last two points
+    /// nearest to it; the path itself is not changed.
     pub fn between(&mut self, load: f64) -> Option<Point> {
         let [.., a, b] = &self.points[..] else { return None };
         let share = (load - a.load) / (b.load - a.load);
         let mut x: Vec<f64> = a.x.iter().zip(&b.x).map(|(a, b)| a + share * (b - a)).collect();
-        // Long steps are not straight: they go along the tangent at the first, and of what that misses the second by a part that grows as its error does.
+        // Long steps are not straight: they go along the tangent at the first, and of what that
+        // misses the second by a part that grows as its error does.
         if self.turn(&a.x, &b.x) > LARGEST_STEP.1 {
             let led = |h: f64| {
                 let increment: Vec<f64> = a.rate[..a.x.len()].iter().map(|rate| h * rate).collect();

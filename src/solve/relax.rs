@@ -1,17 +1,21 @@
-//! Equilibria of what has no stiffness before it is loaded: strings and cables, and beams that hang on hinges.
+//! Equilibria of what has no stiffness before it is loaded: strings and cables, and beams that hang
+//! on hinges.
 //!
-//! A slack string or a pendulum under ever so small a load takes a shape far from its stress-free one, so that no path of load steps leads there. It is found
-//! as the rest of a creeping motion, σ D ẋ = −R(x), by implicit Euler steps (pseudo-transient continuation; Kelley & Keyes, *SIAM J. Numer. Anal.* 35, 1998,
-//! 508–523):
+//! A slack string or a pendulum under ever so small a load takes a shape far from its stress-free
+//! one, so that no path of load steps leads there. It is found as the rest of a creeping motion, σ
+//! D ẋ = −R(x), by implicit Euler steps (pseudo-transient continuation; Kelley & Keyes, *SIAM J.
+//! Numer. Anal.* 35, 1998, 508–523):
 //!
 //! ```text
 //! (K(x) + σ D) δ = −R(x),   σ ← σ |δ|/δ_wanted
 //! ```
 //!
-//! With falling increments σ vanishes and the iteration becomes Newton's. D weighs a node by its share w of the length, EA/L² (w, w³/10) for position and gradient,
-//! as a beam's mass matrix does; the first σ lets the load move it by some beam lengths. The axial force in K is extrapolated from the iterate before
-//! ([`crate::effect`]). A slack cable of 24 elements whose EA is 100 to 10,000 times its weight takes 17 iterations; without the extrapolation they
-//! grow from 18 to 450, and with EA of 100,000 times the weight they are 600 anyway.
+//! With falling increments σ vanishes and the iteration becomes Newton's. D weighs a node by its
+//! share w of the length, EA/L² (w, w³/10) for position and gradient, as a beam's mass matrix does;
+//! the first σ lets the load move it by some beam lengths. The axial force in K is extrapolated
+//! from the iterate before ([`crate::effect`]). A slack cable of 24 elements whose EA is 100 to
+//! 10,000 times its weight takes 17 iterations; without the extrapolation they grow from 18 to 450,
+//! and with EA of 100,000 times the weight they are 600 anyway.
 
 use super::equilibrium::Equilibrium;
 use super::newton::{Failure, Iterations, Settings};
@@ -38,7 +42,8 @@ const ITERATIONS: usize = 2000;
 pub enum Rest {
     /// Any equilibrium: σ follows the increments alone.
     Any,
-    /// A minimum of the energy only: K + σ D is kept definite, so that every increment leads downhill.
+    /// A minimum of the energy only: K + σ D is kept definite, so that every increment leads
+    /// downhill.
     Stable,
 }
 
@@ -114,7 +119,8 @@ pub fn relax(
     Err(Failure::TooSlow { iterations: ITERATIONS, last: size })
 }
 
-/// The part of the straight way by `part` of an increment from `q` that does not lead through an obstacle.
+/// The part of the straight way by `part` of an increment from `q` that does not lead through an
+/// obstacle.
 fn clear(system: &System, q: &[f64], increment: &[f64], part: f64) -> Result<f64, Failure> {
     let moved = |part: f64| -> Vec<f64> { q.iter().zip(increment).map(|(q, d)| q + part * d).collect() };
     let (first, second, end) = (moved(part / 3.0), moved(part / 1.5), moved(part));

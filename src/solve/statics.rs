@@ -1,4 +1,5 @@
-//! Static analysis: from the stress-free state to the full loads, or along the path through limit points.
+//! Static analysis: from the stress-free state to the full loads, or along the path through limit
+//! points.
 
 use super::equilibrium::Equilibrium;
 use super::newton::{Iterations, Settings};
@@ -9,18 +10,20 @@ use crate::model::{ArcLength, Static};
 use crate::solve::{Statistics, StepRecord};
 use crate::system::{System, View};
 
-/// By how much the state at which stability and the path's tangent are judged may miss the equilibrium, in beam lengths. Far from
-/// it, that of Newton's last iterate carries the stress of a state not yet converged, which in a slender beam is enough to
-/// change the signs.
+/// By how much the state at which stability and the path's tangent are judged may miss the
+/// equilibrium, in beam lengths. Far from it, that of Newton's last iterate carries the stress of a
+/// state not yet converged, which in a slender beam is enough to change the signs.
 const LAST_INCREMENT: f64 = 1e-6;
 
-/// Largest push that takes a structure from a crest of its energy: positions in beam lengths, gradients as they are.
+/// Largest push that takes a structure from a crest of its energy: positions in beam lengths,
+/// gradients as they are.
 const PUSH: f64 = 1e-3;
 
 /// What a static analysis found.
 #[derive(Clone, Debug, Default)]
 pub struct Solution {
-    /// (load factor, coordinates and scaled multipliers) of the recorded equilibria, the stress-free state first.
+    /// (load factor, coordinates and scaled multipliers) of the recorded equilibria, the
+    /// stress-free state first.
     pub states: Vec<(f64, Vec<f64>)>,
     /// The internal variables of each of them.
     pub variables: Vec<InternalVariables>,
@@ -65,8 +68,9 @@ pub struct Target<'a> {
 /// Whether to go on.
 pub type Observer<'o> = &'o mut dyn FnMut(f64, f64, &Statistics) -> bool;
 
-/// Solves for the full loads by adaptive load steps, or follows the path by arc length to `target`. `observe` is called
-/// with (load factor, step, counts) after every step and ends the analysis by returning false.
+/// Solves for the full loads by adaptive load steps, or follows the path by arc length to `target`.
+/// `observe` is called with (load factor, step, counts) after every step and ends the analysis by
+/// returning false.
 pub fn solve(
     system: &System,
     settings: &Static,

@@ -45,10 +45,11 @@ impl Lines {
 impl Axis {
     /// Reads `PATH=START:STOP:COUNT`, `PATH=START:STOP:COUNT:log` or `PATH=a,b,c`.
     ///
-    /// START and STOP are numbers, both without a unit or both with the same one; COUNT values are spread evenly
-    /// between them, both ends included, in the value or with `log` in its logarithm. Values in between are rounded
-    /// to 15 significant digits, so that they are those that people would write (0.3, not 0.30000000000000004).
-    /// In a list, commas and colons within brackets, braces or quotation marks belong to the value.
+    /// START and STOP are numbers, both without a unit or both with the same one; COUNT values are
+    /// spread evenly between them, both ends included, in the value or with `log` in its logarithm.
+    /// Values in between are rounded to 15 significant digits, so that they are those that people
+    /// would write (0.3, not 0.30000000000000004). In a list, commas and colons within brackets,
+    /// braces or quotation marks belong to the value.
     ///
     /// # Errors
     /// [`SweepError::Vary`]: what was found and what is legal.
@@ -115,7 +116,8 @@ impl Axis {
     }
 }
 
-/// Parts of `text` between the separators that are not within brackets, braces or quotation marks; trimmed.
+/// Parts of `text` between the separators that are not within brackets, braces or quotation marks;
+/// trimmed.
 fn split(text: &str, separator: char) -> Vec<&str> {
     let (mut depth, mut quote, mut escaped) = (0_usize, None, false);
     text.split(|c: char| {

@@ -14,8 +14,8 @@ pub struct Grid {
 
 impl Grid {
     /// # Errors
-    /// [`SweepError::Grid`] where there is nothing to vary, a path appears twice, or there are more runs than
-    /// [`MAX_RUNS`].
+    /// [`SweepError::Grid`] where there is nothing to vary, a path appears twice, or there are more
+    /// runs than [`MAX_RUNS`].
     pub fn new(axes: Vec<Axis>) -> Result<Self, SweepError> {
         let wrong = |reason: String| Err(SweepError::Grid { reason });
         let mut paths: Vec<&str> = axes.iter().flat_map(|axis| &axis.paths).map(String::as_str).collect();

@@ -1,6 +1,7 @@
 //! Finished runs, one line each, only ever appended to.
 //!
-//! A record counts when its line is complete and legal; whatever else a process that was killed has left is passed over.
+//! A record counts when its line is complete and legal; whatever else a process that was killed has
+//! left is passed over.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -87,7 +88,8 @@ impl Journal {
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(SweepError::Busy { path }),
-            // Some network file systems have no locks; two processes of one part then only waste time.
+            // Some network file systems have no locks; two processes of one part then only waste
+            // time.
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(error)) => return Err(wrong(error)),
         }
@@ -96,7 +98,8 @@ impl Journal {
         Ok(Self { path, file, length })
     }
 
-    /// Appends a record. What a failing write leaves is removed, so that the next one begins a line.
+    /// Appends a record. What a failing write leaves is removed, so that the next one begins a
+    /// line.
     pub fn append(&mut self, record: &Record) -> Result<(), SweepError> {
         let write = |file: &mut File| -> io::Result<usize> {
             let mut line = serde_json::to_vec(record)?;

@@ -28,7 +28,8 @@ fn cells(record: &Record) -> Vec<(String, String)> {
 pub(super) struct Columns(Vec<String>);
 
 impl Columns {
-    /// Makes room for the results of a run. Calls in the order of the runs give the same columns each time.
+    /// Makes room for the results of a run. Calls in the order of the runs give the same columns
+    /// each time.
     pub fn add(&mut self, record: &Record) {
         let mut place = 0;
         for (name, _) in cells(record) {

@@ -1,4 +1,5 @@
-//! Values by name, in the order in which they were written: a summary becomes columns whatever its fields are.
+//! Values by name, in the order in which they were written: a summary becomes columns whatever its
+//! fields are.
 
 use std::fmt;
 
@@ -26,8 +27,9 @@ impl Tree {
         serde_json::from_str(&serde_json::to_string(value)?)
     }
 
-    /// Calls `see` with the path of every value that is neither nothing nor made of others, keys joined by dots, entries
-    /// of lists counted from 1, and its text, numbers with 17 significant digits.
+    /// Calls `see` with the path of every value that is neither nothing nor made of others, keys
+    /// joined by dots, entries of lists counted from 1, and its text, numbers with 17 significant
+    /// digits.
     pub fn visit(&self, path: &str, see: &mut dyn FnMut(&str, String)) {
         let below = |key: &dyn fmt::Display| {
             if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }

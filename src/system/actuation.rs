@@ -6,8 +6,9 @@
 //! ½ ∫ EA (ε − ε₀)² ds = ½ ∫ EA ε² ds − Σ a_i ∫ EA ε₀ᵢ ε ds + ½ EA L ε₀²
 //! ```
 //!
-//! and likewise that of bending. The first term is that of the beam, the terms of the sum are those by which the actuation acts on its motion. When an
-//! amplitude changes, the actuator puts in −∫ N ε̇₀ ds − ∫ M κ̇₀ ds.
+//! and likewise that of bending. The first term is that of the beam, the terms of the sum are those
+//! by which the actuation acts on its motion. When an amplitude changes, the actuator puts in −∫ N
+//! ε̇₀ ds − ∫ M κ̇₀ ds.
 
 use super::System;
 use super::course::Amplitude;
@@ -55,7 +56,8 @@ impl System {
         })
     }
 
-    /// −∫ EA ε₀ᵢ ε ds or −∫ EI κ₀ᵢ κ ds of those with a law of time and of those without one, the former times their amplitudes.
+    /// −∫ EA ε₀ᵢ ε ds or −∫ EI κ₀ᵢ κ ds of those with a law of time and of those without one, the
+    /// former times their amplitudes.
     fn coupling(&self, actuated: &Actuated, parameter: f64, q: &[f64]) -> [f64; 2] {
         let of = self
             .loads
@@ -70,7 +72,8 @@ impl System {
         })
     }
 
-    /// What actuation adds to the energies of stretch and of bending \[J\], and the part of it that laws of time have put in since the start.
+    /// What actuation adds to the energies of stretch and of bending \[J\], and the part of it that
+    /// laws of time have put in since the start.
     pub(super) fn actuation_energy(&self, parameter: f64, q: &[f64]) -> ([f64; 2], f64) {
         let (mut energy, mut put_in) = ([0.0; 2], 0.0);
         for actuated in &self.actuated {
@@ -85,7 +88,8 @@ impl System {
         (energy, put_in)
     }
 
-    /// What actuators put in as their amplitude grows with the load factor \[J\]: −∫ N ε₀ ds − ∫ M κ₀ ds in the state `q`.
+    /// What actuators put in as their amplitude grows with the load factor \[J\]: −∫ N ε₀ ds − ∫ M
+    /// κ₀ ds in the state `q`.
     pub fn actuators_rate(&self, load: f64, q: &[f64]) -> f64 {
         let rate = |actuated: &Actuated| {
             let (own, rate) = self.own(actuated, load);

@@ -1,8 +1,9 @@
 //! How a part of a model becomes terms of the equations.
 //!
-//! A [`Part`] is what a scene names besides beams, supports and loads: springs, dampers, masses, contacts, …. It knows the model in words (arc
-//! lengths, stiffnesses) and, asked once when the system is built, hands densities to the [`Assembly`], which tabulates the shape
-//! functions where the density is to be summed.
+//! A [`Part`] is what a scene names besides beams, supports and loads: springs, dampers, masses,
+//! contacts, …. It knows the model in words (arc lengths, stiffnesses) and, asked once when the
+//! system is built, hands densities to the [`Assembly`], which tabulates the shape functions where
+//! the density is to be summed.
 
 use super::{Acting, BeamPart, Needs, SystemError, Turning};
 use crate::basis::{Basis, BasisTable, Quadrature};
@@ -17,8 +18,8 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// What takes part in the mechanics besides beams, supports and loads; as [`Any`], so that what reads
-/// a model can tell the kinds of parts that it knows.
+/// What takes part in the mechanics besides beams, supports and loads; as [`Any`], so that what
+/// reads a model can tell the kinds of parts that it knows.
 pub trait Part: Any + fmt::Debug + Send + Sync {
     /// Adds the part's densities to the equations under assembly.
     ///
@@ -135,14 +136,15 @@ impl<'a> Assembly<'a> {
         &self.beams[beam]
     }
 
-    /// A rule that integrates products of two shape functions: exact for the cable element's mass matrix (degree 6).
+    /// A rule that integrates products of two shape functions: exact for the cable element's mass
+    /// matrix (degree 6).
     pub fn mass_rule(&self, beam: usize) -> Quadrature {
         let points = self.model.beams[beam].gauss_points;
         Quadrature::Gauss(points.stretch.max(points.bend).max(4))
     }
 
-    /// Something with an energy: springs, foundations, contacts, a beam's own elasticity. `density` receives the fields of the stress-free state at
-    /// the points.
+    /// Something with an energy: springs, foundations, contacts, a beam's own elasticity. `density`
+    /// receives the fields of the stress-free state at the points.
     ///
     /// # Errors
     /// [`SystemError`] where the extent is off the beam, naming the kind.
@@ -176,7 +178,8 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// A kinetic energy, quadratic in the velocities, with a constant matrix; nothing in an analysis without inertia.
+    /// A kinetic energy, quadratic in the velocities, with a constant matrix; nothing in an
+    /// analysis without inertia.
     ///
     /// # Errors
     /// As [`Self::elastic`].
@@ -196,8 +199,9 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// A kinetic energy, quadratic in the velocities, with a matrix that follows the state: `momentum` is its derivative by the rates of the fields, and
-    /// `rate` the force of inertia of fields that do not accelerate. Nothing in an analysis without inertia.
+    /// A kinetic energy, quadratic in the velocities, with a matrix that follows the state:
+    /// `momentum` is its derivative by the rates of the fields, and `rate` the force of inertia of
+    /// fields that do not accelerate. Nothing in an analysis without inertia.
     ///
     /// # Errors
     /// As [`Self::elastic`].

@@ -1,10 +1,13 @@
-//! Supports between nodes, joints and inextensible beams, as constraint rows with Lagrange multipliers.
+//! Supports between nodes, joints and inextensible beams, as constraint rows with Lagrange
+//! multipliers.
 //!
-//! At an arc length between nodes a support holds a combination of coordinates, g = n(λ)·Σ_a N_a q_a − c(λ) = 0, with the
-//! rows N of r or of r' there: a component of the position, a component of the gradient, or, for a held direction θ, the
-//! gradient's component across it, n = (−sin θ, cos θ). A joint ties the fields of two points, each with a normal of its own. These rows are linear in q.
-//! The length of the gradient, which an inextensible beam keeps ([`super::inextensible`]), is quadratic: its row's normal follows the gradient. So does that of the
-//! angle from one direction to another, which a weld keeps.
+//! At an arc length between nodes a support holds a combination of coordinates, g = n(λ)·Σ_a N_a
+//! q_a − c(λ) = 0, with the rows N of r or of r' there: a component of the position, a component of
+//! the gradient, or, for a held direction θ, the gradient's component across it, n = (−sin θ, cos
+//! θ). A joint ties the fields of two points, each with a normal of its own. These rows are linear
+//! in q. The length of the gradient, which an inextensible beam keeps ([`super::inextensible`]), is
+//! quadratic: its row's normal follows the gradient. So does that of the angle from one direction
+//! to another, which a weld keeps.
 
 use super::course::Course;
 use crate::basis::BasisTable;
@@ -80,20 +83,21 @@ impl Field {
 #[derive(Clone, Debug)]
 pub struct Constraint {
     fields: Vec<Field>,
-    /// Arc lengths of the fields \[m\]; of a length, which is no force on the beam from without, none.
+    /// Arc lengths of the fields \[m\]; of a length, which is no force on the beam from without,
+    /// none.
     places: Vec<f64>,
     row: Row,
 }
 
 impl Constraint {
-    /// `table` holds one point with the single row that `row` needs (order 0 for a position, 1 otherwise); `offset` is the
-    /// beam's first coefficient.
+    /// `table` holds one point with the single row that `row` needs (order 0 for a position, 1
+    /// otherwise); `offset` is the beam's first coefficient.
     pub fn new(table: &BasisTable, offset: usize, row: Row) -> Self {
         Self { fields: vec![Field::new(table, offset)], places: vec![table.s[0]], row }
     }
 
-    /// The length of the gradient as in the state `reference`, weighted over several points: of each (first coordinate that its shape
-    /// functions touch, shape functions of r', weight \[m\]).
+    /// The length of the gradient as in the state `reference`, weighted over several points: of
+    /// each (first coordinate that its shape functions touch, shape functions of r', weight \[m\]).
     pub fn length(points: &[(usize, &[f64], f64)], reference: &[f64]) -> Self {
         let field = |&(first, shape, _): &(usize, &[f64], f64)| Field { first, shape: shape.to_vec() };
         let fields = points.iter().map(field).collect();
@@ -106,7 +110,8 @@ impl Constraint {
         row
     }
 
-    /// Σ n·r⁽ᵒ⁾ = 0 over the points of several tables of one row, each with the first coefficient of its beam.
+    /// Σ n·r⁽ᵒ⁾ = 0 over the points of several tables of one row, each with the first coefficient
+    /// of its beam.
     pub fn joint<'t>(
         points: impl Iterator<Item = (&'t BasisTable, usize)>,
         order: usize,
@@ -116,7 +121,8 @@ impl Constraint {
         Self { fields, places, row: Row::Joint { order, normals, value: 0.0 } }
     }
 
-    /// The angle from the direction of the first of two gradients to that of the second, from tables of one row each with the first coefficient of its beam.
+    /// The angle from the direction of the first of two gradients to that of the second, from
+    /// tables of one row each with the first coefficient of its beam.
     pub fn angle(points: [(&BasisTable, usize); 2], angle: f64) -> Self {
         let (fields, places) =
             points.into_iter().map(|(table, offset)| (Field::new(table, offset), table.s[0])).unzip();
@@ -202,7 +208,8 @@ impl Constraint {
         }
     }
 
-    /// The normal of field `k` in the state `q`, that of all fields being `n` for what is no joint and no length.
+    /// The normal of field `k` in the state `q`, that of all fields being `n` for what is no joint
+    /// and no length.
     fn normal_of(&self, k: usize, n: [f64; 2], q: &[f64]) -> [f64; 2] {
         match &self.row {
             Row::Joint { normals, .. } => normals.get(k).copied().unwrap_or(n),
@@ -229,8 +236,8 @@ impl Constraint {
         fields.sum()
     }
 
-    /// The number by which the row is multiplied so that its entries compare with those of the tangent: EA/L \[N/m\] for
-    /// a position and for a length, EA L \[N m\] for a gradient.
+    /// The number by which the row is multiplied so that its entries compare with those of the
+    /// tangent: EA/L \[N/m\] for a position and for a length, EA L \[N m\] for a gradient.
     pub fn scale(&self, stiffness: f64, length: f64) -> f64 {
         match self.row {
             Row::Position { .. } | Row::Length { .. } | Row::Joint { order: 0, .. } => stiffness / length,
@@ -245,7 +252,8 @@ impl Constraint {
         if let (Row::Angle(angle), [a, b]) = (&self.row, &self.fields[..]) {
             let ([ax, ay], [bx, by]) = (a.at(q), b.at(q));
             let (sine, cosine) = angle.sin_cos();
-            // From where the first direction should have the second, so that no full turn is counted.
+            // From where the first direction should have the second, so that no full turn is
+            // counted.
             let (wx, wy) = (cosine * ax - sine * ay, sine * ax + cosine * ay);
             return (wx * by - wy * bx).atan2(wx * bx + wy * by);
         }
@@ -276,7 +284,8 @@ impl Constraint {
         (normal, Some(self.fields[k].at(q)))
     }
 
-    /// What a support or joint with the multiplier `mu` does in the state `q`: per point its first coordinate, its arc length, and the action.
+    /// What a support or joint with the multiplier `mu` does in the state `q`: per point its first
+    /// coordinate, its arc length, and the action.
     pub fn actions<'q>(
         &'q self,
         load: f64,

@@ -20,7 +20,8 @@ impl System {
         self.contacts.get(contact).is_some_and(|contact| contact.touches(q))
     }
 
-    /// The resultant \[N\] of contact number `contact` on its beam in the state `q`, without friction; `scratch` is overwritten.
+    /// The resultant \[N\] of contact number `contact` on its beam in the state `q`, without
+    /// friction; `scratch` is overwritten.
     pub fn contact_force(&self, contact: usize, q: &[f64], scratch: &mut [f64]) -> [f64; 2] {
         scratch.fill(0.0);
         if let Some(contact) = self.contacts.get(contact) {
@@ -35,8 +36,9 @@ impl System {
         names.map(|(i, contact)| format!("{}.{}", self.beams[contact.beam()].name, i + 1))
     }
 
-    /// Where on the cubic with the control states `way` a contact would be crossed, and which: the part of the way that is clear, and the number of the contact.
-    /// With `may_cross` only what goes too fast for its force to be seen is in conflict.
+    /// Where on the cubic with the control states `way` a contact would be crossed, and which: the
+    /// part of the way that is clear, and the number of the contact. With `may_cross` only what
+    /// goes too fast for its force to be seen is in conflict.
     pub fn conflict(&self, way: [&[f64]; 4], may_cross: bool) -> Option<(f64, usize)> {
         let contacts = self.contacts.iter().enumerate();
         let met = contacts.filter_map(|(i, contact)| contact.conflict(way, may_cross).map(|part| (part, i)));
@@ -48,7 +50,8 @@ impl System {
         self.contacts.get(contact).is_some_and(|contact| contact.crosses(way))
     }
 
-    /// The part of the way until contact number `contact`, which does not touch at its start, begins to, if it does.
+    /// The part of the way until contact number `contact`, which does not touch at its start,
+    /// begins to, if it does.
     pub fn first_touch(&self, contact: usize, way: [&[f64]; 4]) -> Option<f64> {
         self.contacts.get(contact).and_then(|contact| contact.first_touch(way))
     }
@@ -58,7 +61,8 @@ impl System {
         !self.friction.is_empty()
     }
 
-    /// Per contact with friction whether the larger part of it slides, and whether against friction.
+    /// Per contact with friction whether the larger part of it slides, and whether against
+    /// friction.
     pub fn sliding(&self, held: &Held, q: &[f64], v: &[f64]) -> Vec<Option<bool>> {
         self.friction.iter().map(|friction| friction.sliding(held, q, v)).collect()
     }

@@ -1,4 +1,5 @@
-//! How loads and supports follow the parameter of an analysis: the load factor of statics, the time of a motion.
+//! How loads and supports follow the parameter of an analysis: the load factor of statics, the time
+//! of a motion.
 
 use crate::model::Law;
 

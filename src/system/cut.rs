@@ -1,15 +1,18 @@
 //! Section forces: what a cut through a beam passes on, by the balance of one side of it.
 //!
-//! In the discrete equations, constants and r itself are among the shape functions, so that the forces on a whole beam and their moments balance to
-//! round-off, those of supports and joints included. The piece before a cut is therefore held by
+//! In the discrete equations, constants and r itself are among the shape functions, so that the
+//! forces on a whole beam and their moments balance to round-off, those of supports and joints
+//! included. The piece before a cut is therefore held by
 //!
 //! ```text
 //! F(s) = −Σ f      M(s) = −Σ ((r_i − r(s)) × f_i + couples)      N = F·t   Q = F·Jt   t = r'/|r'|
 //! ```
 //!
-//! summed over all that acts on it: loads, inertia, springs, contacts, fluids, supports, joints. F and M are those on the side of the cut that looks
-//! to the beam's end: N is positive in tension, M has the sign of EI κ, and M' = −Q |r'| where no couple acts. Stiffness times strain
-//! is another thing: its error is that of the strain times EA, of any size against a load that bends a slender beam.
+//! summed over all that acts on it: loads, inertia, springs, contacts, fluids, supports, joints. F
+//! and M are those on the side of the cut that looks to the beam's end: N is positive in tension, M
+//! has the sign of EI κ, and M' = −Q |r'| where no couple acts. Stiffness times strain is another
+//! thing: its error is that of the strain times EA, of any size against a load that bends a slender
+//! beam.
 
 use super::{System, Turning};
 use crate::effect::{Action, Actions, InternalVariables};

@@ -16,8 +16,9 @@ pub struct Energy {
     pub kinetic: f64,
     /// −∫ ρA g·(r − r₀) ds, zero in the stress-free shape, and that of conservative loads.
     pub potential: f64,
-    /// Work that loads without a potential (moments, follower forces), moving supports and actuators that follow a law have done since the start of a motion;
-    /// in statics that of actuators, by the trapezoidal rule over the records.
+    /// Work that loads without a potential (moments, follower forces), moving supports and
+    /// actuators that follow a law have done since the start of a motion; in statics that of
+    /// actuators, by the trapezoidal rule over the records.
     pub work: f64,
     /// Energy that damping has taken since the start of a motion.
     pub lost: f64,

@@ -1,4 +1,5 @@
-//! Forces that depend on the way to a state ([`crate::effect::Held`]): dry friction, and torsion springs with their turns.
+//! Forces that depend on the way to a state ([`crate::effect::Held`]): dry friction, and torsion
+//! springs with their turns.
 
 use super::System;
 use crate::effect::{Held, InternalVariables, Workspace};
@@ -60,7 +61,8 @@ impl System {
         self.windings.iter().map(|winding| winding.energy(winding.angle(held, q))).sum()
     }
 
-    /// The largest turn of a torsion spring since the last accepted state `held` \[rad\]; beyond π the spring would seem to have turned the other way.
+    /// The largest turn of a torsion spring since the last accepted state `held` \[rad\]; beyond π
+    /// the spring would seem to have turned the other way.
     pub fn winding_turn(&self, held: &Held, q: &[f64]) -> f64 {
         self.windings.iter().fold(0.0, |turn: f64, winding| turn.max(winding.turn(held, q).abs()))
     }

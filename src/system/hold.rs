@@ -1,4 +1,5 @@
-//! What a model's supports hold: coordinates of nodes, which are eliminated, and rows of constraints between nodes.
+//! What a model's supports hold: coordinates of nodes, which are eliminated, and rows of
+//! constraints between nodes.
 
 use super::constraints::{Constraint, Row};
 use super::course::Course;

@@ -1,26 +1,32 @@
-//! Beams whose axis keeps its length: the constraint |r'| = |r'₀|, with the axial force as its multiplier.
+//! Beams whose axis keeps its length: the constraint |r'| = |r'₀|, with the axial force as its
+//! multiplier.
 //!
-//! A beam that names no axial stiffness is not given a large one. The axial force N(s) is an unknown of its own,
+//! A beam that names no axial stiffness is not given a large one. The axial force N(s) is an
+//! unknown of its own,
 //!
 //! ```text
 //! L = U − … + ∫ N ½ (r'·r' − |r'₀|²) ds,   N(s) = Σ_k N_k φ_k(s)
 //! g_k = ∫ φ_k ½ (r'·r' − |r'₀|²) ds = 0,   force  ∫ N r' N' ds,   tangent  ∫ N N'ᵀN' ds ⊗ I
 //! ```
 //!
-//! with continuous quadratics φ_k: one for every node and one for every cell between nodes. The multipliers N_k \[N\] are the axial force at nodes
-//! and midpoints. No stretch is stored, no axial wave limits a step, and no digit is lost to a ratio EA L²/EI.
+//! with continuous quadratics φ_k: one for every node and one for every cell between nodes. The
+//! multipliers N_k \[N\] are the axial force at nodes and midpoints. No stretch is stored, no axial
+//! wave limits a step, and no digit is lost to a ratio EA L²/EI.
 //!
 //! # How many rows
-//! A node adds four coordinates. Two rows a cell leave two for bending, three would leave one and a chain of cells that cannot take the shape of
-//! an arc (membrane locking). The n + 1 nodes and n cells hold the 2n + 2 coordinates of a straight beam along its axis but for the translation; two
-//! rows a cell without continuity would hold one less, and all nodal gradients could shrink together: those of a pendulum do, to nothing.
+//! A node adds four coordinates. Two rows a cell leave two for bending, three would leave one and a
+//! chain of cells that cannot take the shape of an arc (membrane locking). The n + 1 nodes and n
+//! cells hold the 2n + 2 coordinates of a straight beam along its axis but for the translation; two
+//! rows a cell without continuity would hold one less, and all nodal gradients could shrink
+//! together: those of a pendulum do, to nothing.
 //!
 //! Where a support holds a gradient wholly one row would be too many: N is linear in a cell there.
 //!
 //! # Why integrals
-//! Rows at the nodes and midpoints themselves, |r'| = 1, give the same motion. But their multipliers are no axial force where shape functions
-//! are no polynomials: with radial point interpolation they scatter by a tenth about it on any mesh, and a chain that has no other stiffness
-//! than ∫ N N'ᵀN' ds misses its fourth frequency by 5e-4.
+//! Rows at the nodes and midpoints themselves, |r'| = 1, give the same motion. But their
+//! multipliers are no axial force where shape functions are no polynomials: with radial point
+//! interpolation they scatter by a tenth about it on any mesh, and a chain that has no other
+//! stiffness than ∫ N N'ᵀN' ds misses its fourth frequency by 5e-4.
 
 use super::constraints::Constraint;
 use super::{System, SystemError};
@@ -48,7 +54,8 @@ pub(super) fn rows(system: &System, model: &Model) -> Result<(Vec<Row>, Vec<Cons
             continue;
         }
         let nodes = part.basis.nodes();
-        // A cell beside a node whose gradient is held already: that on the right, of the last node that on the left.
+        // A cell beside a node whose gradient is held already: that on the right, of the last node
+        // that on the left.
         let linear = |cell: usize| {
             let held = |node: usize| held.contains(&(part.first_node + node));
             held(cell) || cell + 2 == nodes.len() && held(cell + 1)
@@ -109,7 +116,8 @@ impl System {
         self.lengths.iter().zip(&self.constraints[first..]).map(|(row, c)| (row.beam, c.bytes()))
     }
 
-    /// The axial force \[N\] at the arc lengths `s` of an inextensible beam; of any other none. `multipliers` are the scaled μ.
+    /// The axial force \[N\] at the arc lengths `s` of an inextensible beam; of any other none.
+    /// `multipliers` are the scaled μ.
     pub fn axial_force(&self, beam: usize, multipliers: &[f64], s: &[f64]) -> Option<Vec<f64>> {
         let first = self.constraints.len() - self.lengths.len();
         let rows = self.constraints[first..].iter().zip(multipliers.get(first..)?);

@@ -68,7 +68,8 @@ pub struct BeamEntry {
     pub nodes: usize,
     /// Length \[m\].
     pub length: f64,
-    /// Arc lengths between the ends to which nodes were put because something holds, joins or turns the beam there \[m\].
+    /// Arc lengths between the ends to which nodes were put because something holds, joins or turns
+    /// the beam there \[m\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub breaks: Vec<f64>,
     /// Functions that are different from zero at a point.

@@ -6,10 +6,13 @@
 //! | weld | r_b − r_a = 0 and θ_b − θ_a − φ = 0, θ = atan2(y', x') |
 //! | slider along d | (J d)·(r − r₀) = 0 |
 //!
-//! with φ the angle between the gradients of the stress-free shapes. A weld leaves the lengths of the gradients free: the axial strains of the two beams jump where
-//! their stiffnesses do. Its direction is not linear in q; in statics its row follows the state, and in motion the gradients of both points are
-//! polar ([`super::polar`]), in which all rows are linear and constant, so that a motion stays an ordinary differential equation on the subspace that they
-//! leave ([`crate::solve::dynamics::motion`]). There are nodes where joints are ([`crate::model::Model::breaks`]).
+//! with φ the angle between the gradients of the stress-free shapes. A weld leaves the lengths of
+//! the gradients free: the axial strains of the two beams jump where their stiffnesses do. Its
+//! direction is not linear in q; in statics its row follows the state, and in motion the gradients
+//! of both points are polar ([`super::polar`]), in which all rows are linear and constant, so that
+//! a motion stays an ordinary differential equation on the subspace that they leave
+//! ([`crate::solve::dynamics::motion`]). There are nodes where joints are
+//! ([`crate::model::Model::breaks`]).
 
 use super::constraints::Constraint;
 use super::polar::Polar;
@@ -91,7 +94,8 @@ fn table(system: &System, order: usize, place: Place) -> Result<(BasisTable, usi
     Ok((table, part.offset()))
 }
 
-/// The gradients that a motion has in polar coordinates: those of welded nodes of which supports hold nothing.
+/// The gradients that a motion has in polar coordinates: those of welded nodes of which supports
+/// hold nothing.
 pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, SystemError> {
     let held: Vec<usize> = system.supports.eliminated().map(|i| i / 2).collect();
     let mut pairs = Vec::new();

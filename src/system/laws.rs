@@ -1,16 +1,19 @@
-//! What follows laws of time: when it is not smooth, and what of it the points of a step do not see.
+//! What follows laws of time: when it is not smooth, and what of it the points of a step do not
+//! see.
 //!
-//! A method of integration looks at loads and supports at a few times of a step, and takes them for what is interpolated between these. What they do
-//! beside that is known exactly, for it does not depend on the motion: of every law the mean over the step and the first moment
-//! ([`crate::model::Law::moments`]). Less the same of what the method sees, they are the change of velocity and of position that it misses,
-//! however fast a law oscillates against the step.
+//! A method of integration looks at loads and supports at a few times of a step, and takes them for
+//! what is interpolated between these. What they do beside that is known exactly, for it does not
+//! depend on the motion: of every law the mean over the step and the first moment
+//! ([`crate::model::Law::moments`]). Less the same of what the method sees, they are the change of
+//! velocity and of position that it misses, however fast a law oscillates against the step.
 
 use super::course::Amplitude;
 use super::{Acting, System};
 use crate::effect::Travelling;
 use crate::model::Law;
 
-/// A time at which a method looks, and its weights in the mean over the step and in the first moment.
+/// A time at which a method looks, and its weights in the mean over the step and in the first
+/// moment.
 pub type Look = (f64, [f64; 2]);
 
 fn law(load: &Acting) -> Option<&Law> {
@@ -41,7 +44,8 @@ impl System {
         !self.travelling.is_empty() || self.loads.iter().any(|load| law(load).is_some())
     }
 
-    /// Adds to `mean` and `moment` those of the loads from `start` to `end`, less what `looks` have of them, in the state `q`. `scratch` is overwritten.
+    /// Adds to `mean` and `moment` those of the loads from `start` to `end`, less what `looks` have
+    /// of them, in the state `q`. `scratch` is overwritten.
     pub fn add_unseen_loads(
         &self,
         [start, end]: [f64; 2],
@@ -70,8 +74,8 @@ impl System {
         }
     }
 
-    /// By how much the supports' motions from `start` to `end` differ from what `looks` at their accelerations make of them: the largest, positions in beam
-    /// lengths, angles as they are.
+    /// By how much the supports' motions from `start` to `end` differ from what `looks` at their
+    /// accelerations make of them: the largest, positions in beam lengths, angles as they are.
     pub fn unseen_motion(&self, [start, end]: [f64; 2], looks: &[Look]) -> f64 {
         let h = end - start;
         let miss = |(course, unit): (&super::course::Course, f64)| {

@@ -1,4 +1,5 @@
-//! Where the time of an iteration goes, by the clock: one evaluation of each effect with its tangent, one factorisation, one substitution.
+//! Where the time of an iteration goes, by the clock: one evaluation of each effect with its
+//! tangent, one factorisation, one substitution.
 
 use super::{Inventory, System};
 use crate::effect::{Kind, Workspace};
@@ -6,7 +7,8 @@ use crate::linear::Factor;
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
-/// How long one thing is repeated: clocks of shared machines are good to a few per cent in that time.
+/// How long one thing is repeated: clocks of shared machines are good to a few per cent in that
+/// time.
 const PATIENCE: Duration = Duration::from_millis(10);
 
 /// What the linear algebra of an iteration takes.

@@ -1,9 +1,12 @@
-//! The semi-discrete system: coordinates, effects, supports and constraints of a model, ready for a solver.
+//! The semi-discrete system: coordinates, effects, supports and constraints of a model, ready for a
+//! solver.
 //!
 //! # Coordinates
-//! Node after node, beam after beam, four each: `[x, y, x', y']`, positions in metres, gradients without unit. What a
-//! support holds stays in this vector and is eliminated in place ([`supports`]); supports between nodes and joints add one Lagrange
-//! multiplier a row ([`constraints`], [`joint`]), and so does the length of a beam without axial stiffness ([`inextensible`]).
+//! Node after node, beam after beam, four each: `[x, y, x', y']`, positions in metres, gradients
+//! without unit. What a support holds stays in this vector and is eliminated in place
+//! ([`supports`]); supports between nodes and joints add one Lagrange multiplier a row
+//! ([`constraints`], [`joint`]), and so does the length of a beam without axial stiffness
+//! ([`inextensible`]).
 //!
 //! # Equations of statics
 //! ```text
@@ -61,7 +64,8 @@ use supports::Supports;
 pub struct Needs {
     /// Whether inertia takes part.
     pub inertia: bool,
-    /// Whether loads and supports follow time, and damping takes part; otherwise loads and prescribed displacements follow the load factor.
+    /// Whether loads and supports follow time, and damping takes part; otherwise loads and
+    /// prescribed displacements follow the load factor.
     pub motion: bool,
 }
 
@@ -74,7 +78,8 @@ struct Acting {
 
 /// An inertia whose matrix follows the state.
 struct Turning {
-    /// Its momentum as a function of state and velocity; and so its force as a function of state and acceleration, but for what velocities add.
+    /// Its momentum as a function of state and velocity; and so its force as a function of state
+    /// and acceleration, but for what velocities add.
     momentum: Box<dyn Damping>,
     /// What velocities add.
     rate: Box<dyn Damping>,
@@ -105,7 +110,8 @@ impl BeamPart {
         2 * self.first_node
     }
 
-    /// The arc length `s`, where `what` stands; round-off beyond an end and beside a node is cut off.
+    /// The arc length `s`, where `what` stands; round-off beyond an end and beside a node is cut
+    /// off.
     ///
     /// # Errors
     /// [`SystemError::OffBeam`].
@@ -163,7 +169,8 @@ pub struct System {
 }
 
 impl System {
-    /// Builds the equations of `model`: shape functions, tables of the effects that it names, supports.
+    /// Builds the equations of `model`: shape functions, tables of the effects that it names,
+    /// supports.
     ///
     /// # Errors
     /// [`SystemError`] where the model contradicts itself or its shape functions cannot be built.
@@ -193,7 +200,8 @@ impl System {
             let section = &beam.section;
             let per_length = section.bending_stiffness.map_or(0.0, |ei| ei / curve.length().powi(2));
             stiffness = stiffness.max(section.axial_stiffness.unwrap_or(per_length));
-            // A position is stored to ε L; a cubic element resists that with EA/h, and with 12 EI/h³ across.
+            // A position is stored to ε L; a cubic element resists that with EA/h, and with 12
+            // EI/h³ across.
             let spacing = basis.nodes().windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
             let axial = section.axial_stiffness.unwrap_or(0.0);
             let bending = 12.0 * section.bending_stiffness.unwrap_or(0.0) / spacing.powi(2);
@@ -289,7 +297,8 @@ impl System {
         self.part(what, at).map(|(_, s)| s)
     }
 
-    /// Beam and arc length \[m\] of the node to which an unknown belongs; of the first node for a multiplier.
+    /// Beam and arc length \[m\] of the node to which an unknown belongs; of the first node for a
+    /// multiplier.
     pub fn place_of(&self, unknown: usize) -> (usize, f64) {
         let node = unknown / 4;
         let beams = self.beams.iter().enumerate().rev();
@@ -341,7 +350,8 @@ impl System {
         &self.beams
     }
 
-    /// Effects that the model names and that cannot take part in the analysis, with their beams' names.
+    /// Effects that the model names and that cannot take part in the analysis, with their beams'
+    /// names.
     pub fn left_out(&self) -> impl Iterator<Item = (Kind, &str)> {
         self.left_out.iter().map(|(kind, beam)| (*kind, self.beams[*beam].name.as_str()))
     }
@@ -371,19 +381,20 @@ impl System {
         self.length
     }
 
-    /// Largest EA \[N\], the scale of internal forces; of inextensible beams EI/L², of chains their weight.
+    /// Largest EA \[N\], the scale of internal forces; of inextensible beams EI/L², of chains their
+    /// weight.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
 
-    /// By how much the internal forces on a node change when a position changes by its round-off \[N\]:
-    /// ε max(EA, 12 EI/h²) L/h with the smallest spacing h of nodes.
+    /// By how much the internal forces on a node change when a position changes by its round-off
+    /// \[N\]: ε max(EA, 12 EI/h²) L/h with the smallest spacing h of nodes.
     pub fn round_off(&self) -> f64 {
         self.round_off
     }
 
-    /// The order of magnitude of the lowest vibration's ω² \[1/s²\]: EI/(ρA L⁴), or for a string a small part of
-    /// EA/(ρA L²), of a chain a part of its load on ρA L².
+    /// The order of magnitude of the lowest vibration's ω² \[1/s²\]: EI/(ρA L⁴), or for a string a
+    /// small part of EA/(ρA L²), of a chain a part of its load on ρA L².
     pub fn lowest_vibration_scale(&self) -> f64 {
         self.lowest_vibration
     }
@@ -398,12 +409,14 @@ impl System {
         &self.polar
     }
 
-    /// Whether the stress-free structure can move without resistance: strings, and beams that supports and joints leave a rigid motion.
+    /// Whether the stress-free structure can move without resistance: strings, and beams that
+    /// supports and joints leave a rigid motion.
     pub fn is_floppy(&self) -> bool {
         self.floppy
     }
 
-    /// Per coordinate EA/L² times the share w of the length that is the node's, for gradients times w²/10: a mass matrix's diagonal \[N/m, N m\].
+    /// Per coordinate EA/L² times the share w of the length that is the node's, for gradients times
+    /// w²/10: a mass matrix's diagonal \[N/m, N m\].
     pub fn weights(&self) -> Vec<f64> {
         let scale = self.stiffness / self.length.powi(2);
         let of_beam = |part: &BeamPart| {
@@ -434,7 +447,8 @@ impl System {
         held
     }
 
-    /// The supports and joints that are constraint rows, and the lengths that inextensible beams keep.
+    /// The supports and joints that are constraint rows, and the lengths that inextensible beams
+    /// keep.
     pub fn constraints(&self) -> &[Constraint] {
         &self.constraints
     }

@@ -1,15 +1,18 @@
 //! Gradients of welded nodes in polar coordinates.
 //!
-//! A weld ties the directions of two gradients and leaves their lengths free: θ_b − θ_a = φ. In components of r' that is not linear, and a motion under it would
-//! be differential-algebraic of index 3. With length y and direction θ as the unknowns,
+//! A weld ties the directions of two gradients and leaves their lengths free: θ_b − θ_a = φ. In
+//! components of r' that is not linear, and a motion under it would be differential-algebraic of
+//! index 3. With length y and direction θ as the unknowns,
 //!
 //! ```text
 //! r' = y e,   ṙ' = ẏ e + y θ̇ n,   r̈' = (ÿ − y θ̇²) e + (2 ẏ θ̇ + y θ̈) n,   e = (cos θ, sin θ), n = (−sin θ, cos θ)
 //! f → Pᵀ f,   K → Pᵀ K P,   P = ∂r'/∂(y, θ) = [e, y n]
 //! ```
 //!
-//! it is linear with constant rows, and the motion an ordinary differential equation on the subspace that they leave: every method keeps its order, and Gauss' methods
-//! conserve the energy as they do elsewhere. What the change of P adds to a tangent, f·∂²r'/∂(y, θ)², vanishes where forces and inertia balance, and is left out.
+//! it is linear with constant rows, and the motion an ordinary differential equation on the
+//! subspace that they leave: every method keeps its order, and Gauss' methods conserve the energy
+//! as they do elsewhere. What the change of P adds to a tangent, f·∂²r'/∂(y, θ)², vanishes where
+//! forces and inertia balance, and is left out.
 
 use super::System;
 use crate::linear::Matrix;
@@ -119,7 +122,8 @@ impl System {
         self.polar.carry([q, v, a]);
     }
 
-    /// The unknowns of a motion from positions and velocities in fixed axes: the inverse of [`Self::carry`].
+    /// The unknowns of a motion from positions and velocities in fixed axes: the inverse of
+    /// [`Self::carry`].
     pub fn uncarry(&self, time: f64, q: &mut [f64], v: &mut [f64]) {
         self.supports.uncarry(time, q, v);
         self.polar.uncarry(q, v);

@@ -1,7 +1,8 @@
 //! Forces of supports and joints on the beams.
 //!
-//! A support at a node acts on the held coordinates with R = M q̈ + f; one between nodes, and a joint, with −Bᵀμ. A generalised force F' on a gradient r' has the
-//! moment r' × F' on the section, for δW = F'·δr' = M δθ with δr' = δθ J r'.
+//! A support at a node acts on the held coordinates with R = M q̈ + f; one between nodes, and a
+//! joint, with −Bᵀμ. A generalised force F' on a gradient r' has the moment r' × F' on the section,
+//! for δW = F'·δr' = M δθ with δr' = δθ J r'.
 
 use super::System;
 use crate::effect::InternalVariables;
@@ -42,8 +43,9 @@ fn moment(gradient: [f64; 2], force: [f64; 2]) -> f64 {
 }
 
 impl System {
-    /// Forces on the beams of all supports and then of all joints (on their second points), in the model's order. `held` are the forces on held coordinates in
-    /// fixed axes, `multipliers` the scaled μ.
+    /// Forces on the beams of all supports and then of all joints (on their second points), in the
+    /// model's order. `held` are the forces on held coordinates in fixed axes, `multipliers` the
+    /// scaled μ.
     pub fn reactions(&self, parameter: f64, q: &[f64], held: &[f64], multipliers: &[f64]) -> Vec<Reaction> {
         let of = |source: &Source| match source {
             Source::Node { node, position, rotation } => {
@@ -73,7 +75,8 @@ impl System {
         self.sources.iter().map(of).collect()
     }
 
-    /// The same in equilibrium, `x` being coordinates and scaled multipliers, with the internal variables.
+    /// The same in equilibrium, `x` being coordinates and scaled multipliers, with the internal
+    /// variables.
     pub fn static_reactions(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<Reaction> {
         let (q, multipliers) = x.split_at(self.coordinates());
         self.reactions(load, q, &self.static_held_forces(load, x, variables), multipliers)
@@ -90,8 +93,8 @@ impl System {
         force
     }
 
-    /// Per effect with an energy or a load its kind, its beam's name, its energy \[J\] and the resultant \[N\] of its forces on the beam. Of damping the
-    /// energy is left out.
+    /// Per effect with an energy or a load its kind, its beam's name, its energy \[J\] and the
+    /// resultant \[N\] of its forces on the beam. Of damping the energy is left out.
     pub fn effects(
         &self,
         parameter: f64,

@@ -1,9 +1,11 @@
 //! Constraint rows that hold what others hold already.
 //!
-//! The multipliers of rows that depend on each other have no values, and no factorisation a pivot for them. Whether rows do is seen in the stress-free state
-//! from the Gram matrix G = B Bᵀ of the rows, each of length 1, without what supports at nodes hold: eliminated row by row, its pivots are the squares of the
-//! sines of each row's angle to all before it. A loop of beams that bend may be closed more often than it needs to be, and keeps its multipliers; one of straight
-//! beams that keep their length may not.
+//! The multipliers of rows that depend on each other have no values, and no factorisation a pivot
+//! for them. Whether rows do is seen in the stress-free state from the Gram matrix G = B Bᵀ of the
+//! rows, each of length 1, without what supports at nodes hold: eliminated row by row, its pivots
+//! are the squares of the sines of each row's angle to all before it. A loop of beams that bend may
+//! be closed more often than it needs to be, and keeps its multipliers; one of straight beams that
+//! keep their length may not.
 
 use super::reaction::Source;
 use super::{System, SystemError};
@@ -15,7 +17,8 @@ use faer::sparse::Triplet;
 use faer::{Mat, Side};
 use std::collections::BTreeMap;
 
-/// Square of the sine of an angle that is none: far below that of a shallow arch's thrust, far above round-off.
+/// Square of the sine of an angle that is none: far below that of a shallow arch's thrust, far
+/// above round-off.
 const DEPENDENT: f64 = 1e-12;
 /// Share of a row in a combination that counts.
 const SHARE: f64 = 1e-6;
@@ -75,11 +78,13 @@ impl System {
         joints.find(|(source, _)| of_joint(source)).map(|(_, joint)| *joint)
     }
 
-    /// The rows in the stress-free state, positions in beam lengths, each of length 1; empty where supports at nodes hold all of it.
+    /// The rows in the stress-free state, positions in beam lengths, each of length 1; empty where
+    /// supports at nodes hold all of it.
     fn directions(&self) -> Vec<BorderRow> {
         let mut rows = self.border(0.0, &self.reference);
         for (row, constraint) in rows.iter_mut().zip(&self.constraints) {
-            // Entries for gradients are lengths where those for positions are none, or have no unit where these are inverse lengths.
+            // Entries for gradients are lengths where those for positions are none, or have no unit
+            // where these are inverse lengths.
             row.iter_mut().filter(|(i, _)| i % 4 > 1).for_each(|(_, value)| *value /= self.length);
             let scale = constraint.scale(self.stiffness, self.length);
             let size = row.iter().map(|(_, value)| value * value).sum::<f64>().sqrt();

@@ -8,7 +8,8 @@ use crate::linear::bordered::BorderRow;
 use std::collections::BTreeMap;
 
 impl System {
-    /// Scaled rows of ∂g/∂q in the supports' frames, without the held coordinates. An entry that happens to vanish stays, so that the pattern does.
+    /// Scaled rows of ∂g/∂q in the supports' frames, without the held coordinates. An entry that
+    /// happens to vanish stays, so that the pattern does.
     pub fn border(&self, load: f64, q: &[f64]) -> Vec<BorderRow> {
         self.border_of(&Polar::default(), load, q)
     }
@@ -62,7 +63,8 @@ impl System {
         }
     }
 
-    /// The row that the state `q` misses most: a coordinate of it, and by how much (beam lengths; of directions rad).
+    /// The row that the state `q` misses most: a coordinate of it, and by how much (beam lengths;
+    /// of directions rad).
     pub fn missed(&self, parameter: f64, q: &[f64]) -> Option<(usize, f64)> {
         let missed = self.constraints.iter().map(|row| (row.first(), row.miss(parameter, q, self.length)));
         missed.max_by(|a, b| a.1.total_cmp(&b.1))
@@ -75,7 +77,8 @@ impl System {
         }
     }
 
-    /// Writes −∂g/∂q·v, scaled, in the state `q`, which is what the rates of unknowns must make up for where supports have the rates `v`.
+    /// Writes −∂g/∂q·v, scaled, in the state `q`, which is what the rates of unknowns must make up
+    /// for where supports have the rates `v`.
     pub fn constraint_rates(&self, parameter: f64, q: &[f64], v: &[f64], rates: &mut [f64]) {
         for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
             let scale = constraint.scale(self.stiffness, self.length);

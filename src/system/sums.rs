@@ -20,7 +20,8 @@ impl System {
         self.travelling.iter().for_each(|force| force.add_force(parameter, f));
     }
 
-    /// The forces of [`Self::force`] in the states of four lanes, each at its own `parameters`; `scratch` has two vectors of coordinates.
+    /// The forces of [`Self::force`] in the states of four lanes, each at its own `parameters`;
+    /// `scratch` has two vectors of coordinates.
     pub fn forces(&self, parameters: [f64; 4], q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
         let factor = Lanes::new(parameters.map(|parameter| self.amplitude.at(parameter)));
         f.iter_mut().zip(&self.constant_load).for_each(|(f, load)| *f = factor * Lanes::splat(*load));
@@ -85,7 +86,8 @@ impl System {
         !self.damping.is_empty()
     }
 
-    /// Power \[W\] at time `parameter` of the loads without potential in the state (q, v); `scratch` is overwritten.
+    /// Power \[W\] at time `parameter` of the loads without potential in the state (q, v);
+    /// `scratch` is overwritten.
     pub fn power(&self, parameter: f64, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
         scratch.fill(0.0);
         for load in self.loads.iter().filter(|load| !load.has_potential()) {
@@ -124,8 +126,8 @@ impl System {
         scratch.iter().zip(v).map(|(f, v)| f * v).sum()
     }
 
-    /// The same force as [`Self::force`], and its derivative by q; stress resultants in the tangent are extrapolated
-    /// from an earlier iterate, if there is one (see [`crate::effect`]).
+    /// The same force as [`Self::force`], and its derivative by q; stress resultants in the tangent
+    /// are extrapolated from an earlier iterate, if there is one (see [`crate::effect`]).
     pub fn force_and_tangent(
         &self,
         parameter: f64,
@@ -146,7 +148,8 @@ impl System {
         self.travelling.iter().for_each(|force| force.add_force(parameter, f));
     }
 
-    /// `f = K v` with the tangent of [`Self::force_and_tangent`] at `q`, but to many more digits where the mesh is fine.
+    /// `f = K v` with the tangent of [`Self::force_and_tangent`] at `q`, but to many more digits
+    /// where the mesh is fine.
     pub fn tangent_product(&self, parameter: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
         for effect in &self.internal {
@@ -190,7 +193,8 @@ impl System {
         self.turning.iter().for_each(|turning| turning.rate.add_force(q, v, f));
     }
 
-    /// Kinetic energy \[J\] of each inertia whose matrix follows the state: its kind, its beam's index and ½ v·M v.
+    /// Kinetic energy \[J\] of each inertia whose matrix follows the state: its kind, its beam's
+    /// index and ½ v·M v.
     pub(super) fn turning_energies<'q>(
         &'q self,
         q: &'q [f64],
@@ -224,8 +228,9 @@ impl System {
         sum
     }
 
-    /// Energies at load factor or time `parameter`; `velocity` where there is motion. Of the work here is what actuation by laws of time has put into the elastic
-    /// energy beyond what [`Self::power`] counts.
+    /// Energies at load factor or time `parameter`; `velocity` where there is motion. Of the work
+    /// here is what actuation by laws of time has put into the elastic energy beyond what
+    /// [`Self::power`] counts.
     pub fn energy(&self, parameter: f64, q: &[f64], velocity: Option<&[f64]>) -> Energy {
         let sum = |effects: &[Box<dyn Effect>], kind: Kind, q: &[f64]| -> f64 {
             // `sum` of nothing is −0.
@@ -256,7 +261,8 @@ impl System {
     }
 }
 
-/// The resultant of forces on a beam \[N\], from their negative on the coordinates: position functions sum to 1, and gradient functions have no part in it.
+/// The resultant of forces on a beam \[N\], from their negative on the coordinates: position
+/// functions sum to 1, and gradient functions have no part in it.
 pub(super) fn resultant(f: &[f64]) -> [f64; 2] {
     f.chunks_exact(4).fold([0.0; 2], |sum, f| [sum[0] - f[0], sum[1] - f[1]])
 }

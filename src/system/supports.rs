@@ -1,13 +1,14 @@
 //! Supports at nodes, by elimination.
 //!
-//! Both discretisations interpolate values and slopes at their nodes (Kronecker delta), so that what a support holds
-//! there *is* a coordinate, if need be in a turned frame, and is eliminated exactly: its row and column become those of
-//! the identity, which keeps the band as it is. Coordinates come in pairs, (x, y) or (x', y') of a node:
+//! Both discretisations interpolate values and slopes at their nodes (Kronecker delta), so that
+//! what a support holds there *is* a coordinate, if need be in a turned frame, and is eliminated
+//! exactly: its row and column become those of the identity, which keeps the band as it is.
+//! Coordinates come in pairs, (x, y) or (x', y') of a node:
 //!
 //! - a held position fixes one or both components of its pair;
 //! - a held gradient fixes both components of (x', y') to R(φ) r'₀, φ the prescribed rotation;
-//! - a held direction θ lets (x', y') = a (cos θ, sin θ) with a free: in the frame turned by θ the second component is
-//!   fixed to zero.
+//! - a held direction θ lets (x', y') = a (cos θ, sin θ) with a free: in the frame turned by θ the
+//!   second component is fixed to zero.
 
 use super::course::Course;
 use crate::lanes::Real;
@@ -167,7 +168,8 @@ impl Supports {
         self.held.iter().flat_map(Held::courses).any(Course::moves)
     }
 
-    /// Turns a vector of forces or increments into the frames of the supports and clears what is held.
+    /// Turns a vector of forces or increments into the frames of the supports and clears what is
+    /// held.
     pub fn to_frames<T: Real>(&self, load: f64, v: &mut [T]) {
         for held in &self.held {
             let (frame, fixed) = held.frame(load);
@@ -177,8 +179,8 @@ impl Supports {
         }
     }
 
-    /// Turns increments back from the frames of the supports, except where these turn with time: there the unknowns of a motion are
-    /// components in the frame.
+    /// Turns increments back from the frames of the supports, except where these turn with time:
+    /// there the unknowns of a motion are components in the frame.
     pub fn from_frames<T: Real>(&self, load: f64, v: &mut [T]) {
         for held in self.held.iter().filter(|held| !held.turns()) {
             let ([cosine, sine], _) = held.frame(load);
@@ -215,8 +217,8 @@ impl Supports {
         }
     }
 
-    /// Eliminates the held coordinates from a tangent that is already in their frames. The diagonal is left in place of
-    /// the row, so that the matrix keeps its units.
+    /// Eliminates the held coordinates from a tangent that is already in their frames. The diagonal
+    /// is left in place of the row, so that the matrix keeps its units.
     pub fn eliminate(&self, load: f64, k: &mut Matrix) {
         for held in &self.held {
             let (_, fixed) = held.frame(load);
@@ -235,7 +237,8 @@ impl Supports {
         self.held.iter().flat_map(Held::courses).any(Course::moves_in_time)
     }
 
-    /// What moves by a law of time, each with the unit by which it is measured: `per_length` for positions, 1 for angles.
+    /// What moves by a law of time, each with the unit by which it is measured: `per_length` for
+    /// positions, 1 for angles.
     pub fn moving(&self, per_length: f64) -> impl Iterator<Item = (&Course, f64)> {
         let of = move |held: &Held| if matches!(held.hold, Hold::Position(_)) { per_length } else { 1.0 };
         let courses =
@@ -273,7 +276,8 @@ impl Supports {
         })
     }
 
-    /// Turns changes of a motion's unknowns into the frames of the supports and clears what is held.
+    /// Turns changes of a motion's unknowns into the frames of the supports and clears what is
+    /// held.
     pub fn unknowns_to_frames(&self, v: &mut [f64]) {
         for held in &self.held {
             let (frame, fixed) = held.frame(0.0);
@@ -287,8 +291,9 @@ impl Supports {
 
     /// Takes what is held out of changes or rates of a motion's unknowns.
     ///
-    /// In a frame that is no axis of the coordinates round-off leaves something of the held component in every sum. A solution never touches it, so
-    /// that whatever is continued from step to step must be freed from it: a polynomial of stages multiplies it with every step.
+    /// In a frame that is no axis of the coordinates round-off leaves something of the held
+    /// component in every sum. A solution never touches it, so that whatever is continued from step
+    /// to step must be freed from it: a polynomial of stages multiplies it with every step.
     pub fn release<T: Real>(&self, v: &mut [T]) {
         for held in &self.held {
             let ([cosine, sine], fixed) = held.frame(0.0);
@@ -345,8 +350,8 @@ impl Supports {
         force.copy_from_slice(&kept);
     }
 
-    /// Positions, velocities and accelerations in fixed axes from the unknowns of a motion: what a support moves receives its prescribed
-    /// values, and along a direction that turns with θ(t),
+    /// Positions, velocities and accelerations in fixed axes from the unknowns of a motion: what a
+    /// support moves receives its prescribed values, and along a direction that turns with θ(t),
     ///
     /// ```text
     /// r' = y e,   ṙ' = ẏ e + y θ̇ n,   r̈' = (ÿ − y θ̇²) e + (2 ẏ θ̇ + y θ̈) n,   e = (cos θ, sin θ), n = (−sin θ, cos θ).
@@ -362,7 +367,8 @@ impl Supports {
         }
     }
 
-    /// The unknowns of a motion from positions and velocities in fixed axes: the inverse of [`Self::carry`].
+    /// The unknowns of a motion from positions and velocities in fixed axes: the inverse of
+    /// [`Self::carry`].
     pub fn uncarry(&self, time: f64, q: &mut [f64], v: &mut [f64]) {
         for held in self.held.iter().filter(|held| held.turns()) {
             let (frame, _) = held.frame(time);

@@ -86,7 +86,8 @@ impl View {
         Fields { position, gradient, second }
     }
 
-    /// What the first point has of a vector of coordinates: its position, of their velocities its velocity.
+    /// What the first point has of a vector of coordinates: its position, of their velocities its
+    /// velocity.
     pub fn at_point(&self, vector: &[f64]) -> [f64; 2] {
         self.combine(0, 0, vector)
     }

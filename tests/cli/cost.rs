@@ -1,4 +1,5 @@
-//! What accuracy costs: settings are measured against a reference, and the cheapest one that is good enough is a scene.
+//! What accuracy costs: settings are measured against a reference, and the cheapest one that is
+//! good enough is a scene.
 
 use super::commands::{ROLL_UP, ancf, entries, folder, status, stderr};
 use super::output::elements;
@@ -120,7 +121,8 @@ fn a_scene_that_cannot_be_solved_has_no_reference() {
     assert_eq!(entries(folder.path()), ["scene.toml"]);
 }
 
-/// A study whose numbers are made up: discretisations of every kind on three meshes, one of them with other solvers, too.
+/// A study whose numbers are made up: discretisations of every kind on three meshes, one of them
+/// with other solvers, too.
 fn study() -> Study {
     let scene = ancf::scene::parse("roll-up.toml", ROLL_UP).expect("a legal scene");
     let alpha = |step| Integrator::GeneralizedAlpha { step, spectral_radius: 0.9, newton_tolerance: 1e-10 };

@@ -1,4 +1,5 @@
-//! What input may not do: command a terminal, make a spreadsheet compute, take a name twice, or memory that is not there.
+//! What input may not do: command a terminal, make a spreadsheet compute, take a name twice, or
+//! memory that is not there.
 
 use super::commands::{ROLL_UP, ancf, folder, status, stderr};
 use std::fs;

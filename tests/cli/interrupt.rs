@@ -14,7 +14,8 @@ fn summary(folder: &Path) -> serde_json::Value {
     serde_json::from_str(&text).expect("JSON")
 }
 
-/// Runs `scene.toml` and sends SIGINT, `times` times, once its directory has been made: the program listens by then.
+/// Runs `scene.toml` and sends SIGINT, `times` times, once its directory has been made: the program
+/// listens by then.
 #[cfg(unix)]
 fn interrupted(folder: &Path, times: usize) -> Output {
     let arguments = ["run", "scene.toml", "--json"];

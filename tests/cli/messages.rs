@@ -208,7 +208,8 @@ const OVERRIDES: &[&str] = &[
     "support.0.fix=['x', 'y']",
 ];
 
-/// The scene is legal before each change, each change is refused, and the message says so in these words.
+/// The scene is legal before each change, each change is refused, and the message says so in these
+/// words.
 #[test]
 fn scene_messages() {
     scene::parse("arm.toml", BASE).unwrap_or_else(|e| panic!("{e}"));

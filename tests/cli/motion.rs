@@ -93,7 +93,8 @@ fn velocities_of_the_scene_are_where_the_motion_starts() {
     assert!(stderr(&output).contains("moves what a support holds"), "{}", stderr(&output));
 }
 
-/// A velocity given by points turns no section that a clamp holds; a polynomial is what it is, and may be refused.
+/// A velocity given by points turns no section that a clamp holds; a polynomial is what it is, and
+/// may be refused.
 #[test]
 fn velocities_along_a_clamped_beam() {
     let clamped =
@@ -111,7 +112,8 @@ fn velocities_along_a_clamped_beam() {
     }
 }
 
-/// A step in which the beam would turn by half a radian or more cannot be solved as a whole; it is divided, and said so.
+/// A step in which the beam would turn by half a radian or more cannot be solved as a whole; it is
+/// divided, and said so.
 #[test]
 fn a_step_that_cannot_be_solved_is_divided() {
     let scene = PENDULUM.replace("\"1 ms\"", "\"100 ms\"").replace("10 ms", "100 ms");
@@ -123,7 +125,8 @@ fn a_step_that_cannot_be_solved_is_divided() {
     assert!(drift < 1.0, "the energy stays bounded: {drift}");
 }
 
-/// No step is short enough for a weight that overflows: the message says when and where, and nothing is left behind.
+/// No step is short enough for a weight that overflows: the message says when and where, and
+/// nothing is left behind.
 #[test]
 fn a_motion_that_cannot_start_says_when_and_where() {
     let folder = folder(&PENDULUM.replace("-9.81", "-1e305"));

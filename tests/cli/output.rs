@@ -426,7 +426,8 @@ fn equal_lengths_are_equal_in_the_picture() {
     assert!(wide > 100.0 && (wide - high).abs() <= 2.0, "{wide} × {high}");
 }
 
-/// What a picture shows, a line each: texts with their places, curves by their number of points, ends and extent, lines, marks, and their colours.
+/// What a picture shows, a line each: texts with their places, curves by their number of points,
+/// ends and extent, lines, marks, and their colours.
 pub(super) fn elements(svg: &str) -> String {
     let mut lines = String::new();
     for element in svg.split('<').skip(1).filter(|element| !element.starts_with('/')) {
@@ -477,8 +478,8 @@ pub(super) fn elements(svg: &str) -> String {
     lines
 }
 
-/// The pictures of a motion and of modes whose numbers are made up, so that no solver moves a point: whoever changes how something is drawn sees here what it
-/// changes.
+/// The pictures of a motion and of modes whose numbers are made up, so that no solver moves a
+/// point: whoever changes how something is drawn sees here what it changes.
 #[test]
 fn regress_pictures() {
     let directory = tempfile::tempdir().expect("a directory");

@@ -1,4 +1,5 @@
-//! Branch jumps: whatever step the control chooses, it ends at the equilibrium to which the path leads.
+//! Branch jumps: whatever step the control chooses, it ends at the equilibrium to which the path
+//! leads.
 
 use crate::property::cases;
 use crate::property::generators::clamp;
@@ -28,8 +29,9 @@ fn discretization() -> impl Strategy<Value = Discretization> {
     ]
 }
 
-/// The largest EA L²/EI for which the beam's equilibria are those of the discretisation: beyond it few cable elements with full quadrature lock and have folds
-/// and branches of their own, a load step apart.
+/// The largest EA L²/EI for which the beam's equilibria are those of the discretisation: beyond it
+/// few cable elements with full quadrature lock and have folds and branches of their own, a load
+/// step apart.
 fn stiffest(discretization: &Discretization) -> f64 {
     match discretization {
         Discretization::Ancf { nodes: Nodes::Uniform(nodes) } => 1e4 * ((nodes - 1) as f64).powi(2),
@@ -141,9 +143,11 @@ fn ends_agree(model: &Model) -> Result<(), TestCaseError> {
         (None, None) => prop_assert!(apart(&chosen, &small) < 1e-6, "{chosen:?} {small:?}"),
         // A limit point, which both find.
         (Some(a), Some(b)) if (a - b).abs() < 1e-3 => {}
-        // A fold of few elements that lock, shorter than a step: beyond it the path goes on, and there lies the solution.
+        // A fold of few elements that lock, shorter than a step: beyond it the path goes on, and
+        // there lies the solution.
         (stopped, Some(limit)) if stopped.is_none_or(|load| load > limit) => {
-            // At a limit point, shortly before it, from where the state is as far as the root of what is left of the load.
+            // At a limit point, shortly before it, from where the state is as far as the root of
+            // what is left of the load.
             let (load, allowed) = stopped.map_or((1.0, 1e-6), |load| (load - 1e-4, 5e-2));
             let path = along_path(model, load);
             prop_assert!(apart(&chosen, &path) < allowed, "{chosen:?} {path:?}");
@@ -154,7 +158,8 @@ fn ends_agree(model: &Model) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    // Two of ten thousand jump between branches of a mesh that locks (`solve::path` says which): the same beams each time, and all that once failed.
+    // Two of ten thousand jump between branches of a mesh that locks (`solve::path` says which):
+    // the same beams each time, and all that once failed.
     #![proptest_config(Config { rng_seed: RngSeed::Fixed(2018), ..cases(200) })]
 
     #[test]

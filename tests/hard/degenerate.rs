@@ -1,11 +1,12 @@
-//! Degenerate scenes: solved, or refused with a message that names the cause and the place; never a panic, a hang, or a
-//! meaningless state with exit status 0.
+//! Degenerate scenes: solved, or refused with a message that names the cause and the place; never a
+//! panic, a hang, or a meaningless state with exit status 0.
 
 use ancf::run::{Control, run};
 use ancf::scene;
 use ancf::trajectory::Trajectory;
 
-/// A beam of 1 m with EI = 1, ρA = 1; what differs from scene to scene comes as tables of the scene file.
+/// A beam of 1 m with EI = 1, ρA = 1; what differs from scene to scene comes as tables of the scene
+/// file.
 #[derive(Clone, Copy)]
 struct Scene {
     basis: &'static str,
@@ -69,7 +70,8 @@ fn tip(trajectory: &Trajectory) -> [f64; 2] {
 const PUSH: &str = "[[effect.force]]\nbeam = 'arm'\nat = 'end'\nvalue = [-2e4, 0.0]";
 const LIFT: &str = "[[effect.force]]\nbeam = 'arm'\nat = 'end'\nvalue = [0.0, 1.0]";
 
-/// EA ε = P gives |r'| = 1 + P/EA, which is zero at half the load; Green's force has its extreme at |r'| = 1/√3.
+/// EA ε = P gives |r'| = 1 + P/EA, which is zero at half the load; Green's force has its extreme at
+/// |r'| = 1/√3.
 #[test]
 fn a_beam_pushed_together_says_that_it_is_crushed() {
     let place = ["at a node", "of beam `arm`"];
@@ -108,7 +110,8 @@ fn a_fold_between_two_elements_is_refused_with_its_place() {
     ]);
 }
 
-/// A load that acts at once and the other way: statics knows no before, and in motion it is one step of the load.
+/// A load that acts at once and the other way: statics knows no before, and in motion it is one
+/// step of the load.
 #[test]
 fn a_load_reversed_at_once_is_solved() {
     let down = "[[effect.force]]\nbeam = 'arm'\nat = 'end'\nvalue = [0.0, -10.0]";
@@ -177,7 +180,8 @@ fn where_everything_is_held_nothing_moves_or_vibrates() {
     modal.refused(&["nothing is left that could move", "more elements"]);
 }
 
-/// Round-off of positions makes forces of ε EI L/h³: at h = L/1e5 a thirtieth of the load, at two nodes that nearly coincide far more.
+/// Round-off of positions makes forces of ε EI L/h³: at h = L/1e5 a thirtieth of the load, at two
+/// nodes that nearly coincide far more.
 #[test]
 fn what_double_precision_cannot_resolve_says_so() {
     let nodes = "two nodes coincide";

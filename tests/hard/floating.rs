@@ -1,4 +1,5 @@
-//! The edge of floating point: what overflows or is no number is found at once, and the same run gives the same bits.
+//! The edge of floating point: what overflows or is no number is found at once, and the same run
+//! gives the same bits.
 
 use ancf::model::{Analysis, Load, Model};
 use ancf::restart::SavedState;
@@ -48,7 +49,8 @@ fn loads_that_are_no_numbers_are_found_at_once() {
     }
 }
 
-/// Sizes from the smallest number to the largest: an answer, or a message, and every number of an answer is one.
+/// Sizes from the smallest number to the largest: an answer, or a message, and every number of an
+/// answer is one.
 #[test]
 fn numbers_of_any_size_give_finite_results_or_a_message() {
     let extremes = ["5e-324", "1e-310", "1e-300", "1e-160", "1e160", "1e300", "1.7e308"];

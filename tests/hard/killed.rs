@@ -1,5 +1,5 @@
-//! The end of the process or the disk at any moment: nothing half-written has a final name, and what was finished is not
-//! done again.
+//! The end of the process or the disk at any moment: nothing half-written has a final name, and
+//! what was finished is not done again.
 
 use crate::cli::commands::{ROLL_UP, ancf, entries, folder, status, stderr};
 use std::fs;
@@ -192,7 +192,8 @@ fn a_folder_that_cannot_be_written_is_refused_before_anything_is_solved() {
     assert_eq!(entries(folder.path()), ["scene.toml"]);
 }
 
-/// A motion that is killed goes on from its last checkpoint, and ends to the last bit where the whole motion does.
+/// A motion that is killed goes on from its last checkpoint, and ends to the last bit where the
+/// whole motion does.
 #[test]
 fn a_killed_motion_goes_on_from_its_checkpoint() {
     let text = PENDULUM.replace("\"2.5 s\"", "\"60 s\"").replace("\"10 ms\"", "\"1 s\"");

@@ -1,5 +1,5 @@
-//! What happens when it gets hard: branches, degenerate scenes, scales, numbers at the edge of floating point, the end of
-//! the process or the disk.
+//! What happens when it gets hard: branches, degenerate scenes, scales, numbers at the edge of
+//! floating point, the end of the process or the disk.
 
 mod branch;
 mod degenerate;

@@ -1,5 +1,5 @@
-//! Motions as they come: random beams, supports and loads, which no method was measured on. None may fail, and none may err by more than ten times its
-//! tolerance.
+//! Motions as they come: random beams, supports and loads, which no method was measured on. None
+//! may fail, and none may err by more than ten times its tolerance.
 
 use ancf::run::{Control, RunError, run};
 use ancf::scene::parse;
@@ -106,7 +106,8 @@ fn random_motions_meet_their_tolerance_by_every_integrator() {
         let reference = moved(&scene, "radau = { stages = 3, tolerance = 1e-8 }").expect("a reference");
         for (i, integrator) in integrators.iter().enumerate() {
             for (tolerance, text) in [(1e-3, "1e-3"), (1e-5, "1e-5")] {
-                // Methods of second order take very many steps for five digits: a motion each will do.
+                // Methods of second order take very many steps for five digits: a motion each will
+                // do.
                 if tolerance < 1e-4 && [0, 5].contains(&i) && seed % 4 != i as u64 % 2 {
                     continue;
                 }

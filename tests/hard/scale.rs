@@ -1,5 +1,5 @@
-//! Scales: one problem from a micrometre to a thousand kilometres, in any units of force and time, has one dimensionless
-//! answer, by every analysis.
+//! Scales: one problem from a micrometre to a thousand kilometres, in any units of force and time,
+//! has one dimensionless answer, by every analysis.
 
 use crate::property::generators::clamp;
 use ancf::model::{
@@ -20,7 +20,8 @@ struct Units {
 
 const ONE: Units = Units { length: 1.0, force: 1.0, time: 1.0 };
 
-/// A part of a microsystem, a tether, a nanobeam in zeptonewtons, a beam of which the numbers are the size of its mountain.
+/// A part of a microsystem, a tether, a nanobeam in zeptonewtons, a beam of which the numbers are
+/// the size of its mountain.
 const SCALES: [Units; 5] = [
     Units { length: 1e-6, force: 1e-9, time: 1e-7 },
     Units { length: 1e6, force: 1e5, time: 3e3 },

@@ -22,7 +22,8 @@ fn an_actuated_beam_takes_its_own_shape() {
     assert!(arm.axial_force.iter().all(|n| n.abs() < 2.0), "{:?}", arm.axial_force);
 }
 
-/// A beam dropped on a plane bounces; the contact gives back what it takes, friction takes for good.
+/// A beam dropped on a plane bounces; the contact gives back what it takes, friction takes for
+/// good.
 #[test]
 fn a_beam_bounces_from_a_plane() {
     let contact = |friction| Contact {
@@ -58,7 +59,8 @@ fn a_beam_bounces_from_a_plane() {
             "{contact} at {begin} s"
         );
         assert!((1e-3..0.1).contains(&(end - begin)), "it touches until {end} s");
-        // It leaves as fast as it came, by an oscillation on the penalty about the depth at which that bears the weight.
+        // It leaves as fast as it came, by an oscillation on the penalty about the depth at which
+        // that bears the weight.
         let (mass, speed, frequency) = (0.4 * LENGTH, 9.81 * begin, (1e4 / 0.4_f64).sqrt());
         let impulse = mass * (2.0 * speed + 9.81 * (end - begin));
         let force =

@@ -1,4 +1,5 @@
-//! The two discretisations solve the same beam: random scenes on fine meshes must give the same answer.
+//! The two discretisations solve the same beam: random scenes on fine meshes must give the same
+//! answer.
 
 use super::generators::clamp;
 use ancf::model::{
@@ -8,7 +9,8 @@ use ancf::model::{
 use ancf::run::{Control, Progress, run};
 use proptest::prelude::*;
 
-/// A random problem without its discretisation; lengths and forces are scaled so that all are equally hard.
+/// A random problem without its discretisation; lengths and forces are scaled so that all are
+/// equally hard.
 #[derive(Clone, Debug)]
 struct Problem {
     length: f64,
@@ -28,8 +30,9 @@ struct Problem {
 
 fn problem() -> impl Strategy<Value = Problem> {
     let load = || -2.0..2.0_f64;
-    // With the distributed load below what buckles a cantilever (2.47, 7.84 if distributed): beyond it a beam that its moment bends to the other side
-    // snaps through before the full load is reached.
+    // With the distributed load below what buckles a cantilever (2.47, 7.84 if distributed): beyond
+    // it a beam that its moment bends to the other side snaps through before the full load is
+    // reached.
     let force = || -1.1..1.1_f64;
     (
         (-1.0..1.0_f64, 0.0..6.2_f64, -3.0..3.0_f64, 3.0..6.0_f64, any::<bool>()),
@@ -155,8 +158,8 @@ impl Problem {
 proptest! {
     #![proptest_config(super::cases(24))]
 
-    /// 24 uneven cells: RPIM errs by some 1e-7, ANCF with each cell in four by some 1e-7 too, more where an end
-    /// load presses along the beam.
+    /// 24 uneven cells: RPIM errs by some 1e-7, ANCF with each cell in four by some 1e-7 too, more
+    /// where an end load presses along the beam.
     #[test]
     fn both_discretisations_find_the_same_equilibrium(problem in problem()) {
         let disagreement = problem.disagreement(&clamp(), &Analysis::Static(Static::default()));
@@ -167,8 +170,8 @@ proptest! {
 proptest! {
     #![proptest_config(super::cases(6))]
 
-    /// The same beams hinged and let go under their distributed load. A sudden tip moment would excite waves as short as the cells,
-    /// which no two meshes carry alike.
+    /// The same beams hinged and let go under their distributed load. A sudden tip moment would
+    /// excite waves as short as the cells, which no two meshes carry alike.
     #[test]
     fn both_discretisations_move_alike(problem in problem()) {
         let problem = Problem { force: [0.0; 2], moment: 0.0, ..problem };

@@ -1,4 +1,5 @@
-//! Energies of actuated beams, warnings of a balance that does not hold, and of what an analysis leaves out.
+//! Energies of actuated beams, warnings of a balance that does not hold, and of what an analysis
+//! leaves out.
 
 use ancf::run::{Control, run};
 use ancf::scene::parse;
@@ -20,8 +21,8 @@ fn arm(more: &str) -> String {
 const CLAMP: &str = "[[support]]\nbeam = 'arm'\nat = 'start'\nfix = ['x', 'y', 'angle']\n";
 const ACTUATION: &str = "[[effect.actuation]]\nbeam = 'arm'\ncurvature = 0.3\nstrain = 1e-3\n";
 
-/// A beam that may take the shape that it would take by itself has no elastic energy, straight or curved; one that may not has all of it,
-/// which the actuator has put in.
+/// A beam that may take the shape that it would take by itself has no elastic energy, straight or
+/// curved; one that may not has all of it, which the actuator has put in.
 #[test]
 fn an_actuated_beam_has_the_energy_of_what_it_is_kept_from() {
     let free = solved(&arm(&format!("{CLAMP}{ACTUATION}[analysis.static]\n")));

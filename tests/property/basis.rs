@@ -1,4 +1,5 @@
-//! Shape functions: what defines them holds for every mesh, kernel and length, or the refusal says what to change.
+//! Shape functions: what defines them holds for every mesh, kernel and length, or the refusal says
+//! what to change.
 
 use ancf::basis::{Basis, BasisError, BasisTable, Quadrature};
 use ancf::model::{Discretization, Kernel, Nodes, SideCondition};
@@ -28,7 +29,8 @@ fn spacings() -> impl Strategy<Value = Vec<f64>> {
     prop_oneof![
         (cells.clone(), 0.0..3.0f64)
             .prop_map(|(n, log)| (0..n).map(|i| if i % 2 == 0 { 1.0 } else { 10f64.powf(log) }).collect()),
-        // As far as double precision can hold the nodes: 13 digits between the smallest spacing and the length.
+        // As far as double precision can hold the nodes: 13 digits between the smallest spacing and
+        // the length.
         (cells.clone(), 0.0..3.0f64, any::<bool>()).prop_map(|(n, log, grows)| {
             let log = log.min(12.0 / n as f64) * if grows { 1.0 } else { -1.0 };
             (0..n).map(|i| 10f64.powf(log * i as f64)).collect()
@@ -56,8 +58,9 @@ fn rpim(nodes: Vec<f64>, kernel: Kernel, side_condition: SideCondition, neighbou
     }
 }
 
-/// Largest defect of Σ N_j u_j against a polynomial's derivative, over all points and orders of a table, relative to
-/// the sum of absolute terms or, where all terms vanish, to the size of the derivative that a cell could resolve.
+/// Largest defect of Σ N_j u_j against a polynomial's derivative, over all points and orders of a
+/// table, relative to the sum of absolute terms or, where all terms vanish, to the size of the
+/// derivative that a cell could resolve.
 fn reproduction(basis: &Basis, table: &BasisTable, polynomial: impl Fn(f64, usize) -> f64) -> f64 {
     let mut worst = 0.0f64;
     for (index, cell) in table.cells.iter().enumerate() {
@@ -134,8 +137,9 @@ proptest! {
 proptest! {
     #![proptest_config(super::cases(12))]
 
-    /// ∫ N_j⁽ᵈ⁺¹⁾ ds over a cell is the difference of N_j⁽ᵈ⁾ between its ends, which is a difference of Kronecker deltas: ties
-    /// values, first and second derivatives at interior points to what defines the functions, for all of them at once.
+    /// ∫ N_j⁽ᵈ⁺¹⁾ ds over a cell is the difference of N_j⁽ᵈ⁾ between its ends, which is a
+    /// difference of Kronecker deltas: ties values, first and second derivatives at interior points
+    /// to what defines the functions, for all of them at once.
     #[test]
     fn derivatives_integrate_to_kronecker_deltas(
         spacings in prop::collection::vec(0.4..1.6f64, 1..7), kernel in multiquadric(), side in side_condition(),
@@ -176,7 +180,8 @@ proptest! {
         }
     }
 
-    /// The same beam in another unit: rows of order d scale with length^−d, those of slopes with one power more.
+    /// The same beam in another unit: rows of order d scale with length^−d, those of slopes with
+    /// one power more.
     #[test]
     fn rows_do_not_depend_on_the_unit_of_length(
         spacings in prop::collection::vec(0.1..1.0f64, 1..6), kernel in multiquadric(), side in side_condition(),
@@ -334,7 +339,8 @@ fn hopeless_choices_are_refused_with_their_reason() {
     }
 }
 
-/// What decides is the widest support, which stands in the middle of the beam, and not those clipped at its ends.
+/// What decides is the widest support, which stands in the middle of the beam, and not those
+/// clipped at its ends.
 #[test]
 fn a_support_that_is_too_wide_is_refused_wherever_it_stands() {
     let nodes: Vec<f64> = (0..81).map(f64::from).collect();
@@ -361,7 +367,8 @@ fn the_condition_number_is_told() {
     assert!((8.5..13.5).contains(&four), "shape 4: {four}");
 }
 
-/// Powers of two are exact: whatever is measured in units of a function's own scale is the same to the last bit on any of them.
+/// Powers of two are exact: whatever is measured in units of a function's own scale is the same to
+/// the last bit on any of them.
 #[test]
 fn quality_does_not_depend_on_the_unit_of_length() {
     let of = |nodes: Nodes, kernel: Kernel, length: f64| {

@@ -1,10 +1,13 @@
-//! Couples between the ends of a beam: its curvature jumps there, and so may that of the discretisation.
+//! Couples between the ends of a beam: its curvature jumps there, and so may that of the
+//! discretisation.
 //!
-//! Moments alone bend a beam into arcs, each of the curvature M/EI of the moments beyond it; with a support or a spring that is still known in closed form.
+//! Moments alone bend a beam into arcs, each of the curvature M/EI of the moments beyond it; with a
+//! support or a spring that is still known in closed form.
 
 use ancf::run::{Control, run};
 
-/// A support, spring or moment at `s`, and what it does to the moment that the beam before it bears.
+/// A support, spring or moment at `s`, and what it does to the moment that the beam before it
+/// bears.
 struct Couple {
     s: f64,
     text: String,
@@ -33,10 +36,12 @@ fn angle(s: f64) -> Couple {
     Couple { s, text, holds: true, moment: 0.0, spring: 0.0 }
 }
 
-/// The tip of a beam of length 1 that starts in the origin along x, by a chain of arcs. With one spring at most.
+/// The tip of a beam of length 1 that starts in the origin along x, by a chain of arcs. With one
+/// spring at most.
 fn tip(couples: &[Couple]) -> [f64; 2] {
     let holds = couples.iter().filter(|couple| couple.holds).map(|couple| couple.s).fold(0.0, f64::max);
-    // The moment that each piece bears, without the springs, which a linear equation for the angle at the spring then gives.
+    // The moment that each piece bears, without the springs, which a linear equation for the angle
+    // at the spring then gives.
     let beyond =
         |s: f64| couples.iter().filter(|couple| couple.s > s).map(|couple| couple.moment).sum::<f64>();
     let mut ends: Vec<f64> = couples.iter().map(|couple| couple.s).chain([0.0, 1.0]).collect();

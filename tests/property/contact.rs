@@ -1,4 +1,5 @@
-//! Contact: what is summed is the gap of the curve, and nothing is crossed by steps of whatever kind.
+//! Contact: what is summed is the gap of the curve, and nothing is crossed by steps of whatever
+//! kind.
 
 use super::generators;
 use ancf::effect::{Contact, Density, Obstacle, Penalty};
@@ -90,13 +91,15 @@ proptest! {
         system.force(0.0, &q, &mut force);
         let slope: f64 = force.iter().zip(&direction).map(|(f, d)| f * d).sum();
         let by_difference = (energy(&step(h)) - energy(&step(-h))) / (2.0 * h);
-        // What a sharp corner leaves: the rule's points move over a distance that is not smooth to the third derivative.
+        // What a sharp corner leaves: the rule's points move over a distance that is not smooth to
+        // the third derivative.
         let size: f64 = force.iter().zip(&direction).map(|(f, d)| (f * d).abs()).sum();
         prop_assert!((slope - by_difference).abs() <= 2e-3 * size + 1e-6, "{slope:e}, not {by_difference:e}");
     }
 }
 
-/// A rod in the air above an obstacle whose surface is at y = 0, `left` of the rod's middle lying over it.
+/// A rod in the air above an obstacle whose surface is at y = 0, `left` of the rod's middle lying
+/// over it.
 fn falling(obstacle: &str, basis: &str, left: f64, speed: f64, integrator: &str) -> String {
     format!(
         "beam.a = {{ start = [{}, 0.3], end = [{}, 0.3], axial_stiffness = 1e5, bending_stiffness = 10, mass_per_length = 1, basis.{basis} }}\n\
@@ -112,7 +115,8 @@ fn falling(obstacle: &str, basis: &str, left: f64, speed: f64, integrator: &str)
     )
 }
 
-/// Whatever is thrown at an obstacle stays on its side: thin boxes and small discs, between nodes and on them, by steps of any length.
+/// Whatever is thrown at an obstacle stays on its side: thin boxes and small discs, between nodes
+/// and on them, by steps of any length.
 #[test]
 fn nothing_is_crossed_in_motion() {
     let plate = ("box = { center = [0, -0.01], size = [2, 0.02] }", 0.02);
@@ -148,7 +152,8 @@ fn nothing_is_crossed_in_motion() {
     }
 }
 
-/// A pin that is too soft to stop what strikes it gives way, which is said; what it takes from the energy it gives back.
+/// A pin that is too soft to stop what strikes it gives way, which is said; what it takes from the
+/// energy it gives back.
 #[test]
 fn what_gives_way_is_told() {
     let pin = "circle = { center = [0, -0.001], radius = 0.001 }";
@@ -162,7 +167,8 @@ fn what_gives_way_is_told() {
     }
 }
 
-/// A cantilever is bent against a thin shelf; mirrored, turned, by cells of either kind, by any number of load steps.
+/// A cantilever is bent against a thin shelf; mirrored, turned, by cells of either kind, by any
+/// number of load steps.
 #[test]
 fn nothing_is_crossed_in_statics() {
     for (turn, sign, basis, analysis) in [
@@ -195,7 +201,8 @@ fn nothing_is_crossed_in_statics() {
     }
 }
 
-/// A hinged beam, turned by an angle, falls on a peg and is bent around it: the places of its tip in its own frame.
+/// A hinged beam, turned by an angle, falls on a peg and is bent around it: the places of its tip
+/// in its own frame.
 fn around_a_peg(turn: f64, friction: &str, integrator: &str) -> Vec<[f64; 2]> {
     let (sine, cosine) = f64::sin_cos(turn);
     let at = |x: f64, y: f64| format!("[{}, {}]", cosine * x - sine * y, sine * x + cosine * y);
@@ -215,7 +222,8 @@ fn around_a_peg(turn: f64, friction: &str, integrator: &str) -> Vec<[f64; 2]> {
     trajectory.probes[0].samples.iter().map(back).collect()
 }
 
-/// With contact and with friction the error of every method stays within five times the tolerance, in whatever direction the scene lies.
+/// With contact and with friction the error of every method stays within five times the tolerance,
+/// in whatever direction the scene lies.
 #[test]
 fn tolerances_are_kept_with_contact() {
     for (friction, tolerances) in [("", [1e-4, 1e-6]), ("friction.coefficient = 0.3,", [1e-4, 1e-5])] {
@@ -231,8 +239,9 @@ fn tolerances_are_kept_with_contact() {
     }
 }
 
-/// A long beam is pushed past a soft pin by a moment that swings: the force on the pin begins, turns and ends, and the error of the generalised-α method,
-/// which remembers accelerations from before, falls with the tolerance all the same. It was 28 tolerances here.
+/// A long beam is pushed past a soft pin by a moment that swings: the force on the pin begins,
+/// turns and ends, and the error of the generalised-α method, which remembers accelerations from
+/// before, falls with the tolerance all the same. It was 28 tolerances here.
 #[test]
 fn a_pin_that_is_pushed_past_leaves_no_error_behind() {
     let tip = |integrator: &str| {

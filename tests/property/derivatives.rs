@@ -1,5 +1,6 @@
-//! Forces are derivatives of energies and tangents of forces, at random states: the assembled vectors and matrices
-//! against dual numbers, effect by effect, with the energies written down a second time here from their formulas.
+//! Forces are derivatives of energies and tangents of forces, at random states: the assembled
+//! vectors and matrices against dual numbers, effect by effect, with the energies written down a
+//! second time here from their formulas.
 
 use super::generators::{beam, clamp, free, noise, perturbed};
 use ancf::basis::{Basis, BasisTable, Quadrature};
@@ -87,7 +88,8 @@ fn assembled(system: &System, load: f64, q: &[f64]) -> (DVector<f64>, nalgebra::
 }
 
 fn close(what: &str, ours: &nalgebra::DMatrix<f64>, reference: &nalgebra::DMatrix<f64>, tolerance: f64) {
-    // Relative to each row's and column's own size: entries of positions and gradients have different units.
+    // Relative to each row's and column's own size: entries of positions and gradients have
+    // different units.
     let size = |i: usize| reference.row(i).amax().max(reference.column(i.min(reference.ncols() - 1)).amax());
     let largest = reference.amax();
     for i in 0..reference.nrows() {
@@ -252,8 +254,9 @@ proptest! {
         prop_assert!((system.energy(0.5, &q, None).potential + 0.5 * work).abs() <= 1e-13 * (1.0 + work.abs()));
     }
 
-    /// With extrapolated stress resultants the tangent is that of the mixed problem: at z⁻ = z it is the ordinary one,
-    /// and along z − z⁻ it differs by the resultants' error, which is of second order.
+    /// With extrapolated stress resultants the tangent is that of the mixed problem: at z⁻ = z it
+    /// is the ordinary one, and along z − z⁻ it differs by the resultants' error, which is of
+    /// second order.
     #[test]
     fn extrapolated_tangent_tends_to_the_ordinary_one(beam in beam(), noise in noise()) {
         let system = free(&beam);

@@ -1,4 +1,5 @@
-//! What depends on time and velocity: damping, drag, hubs that turn by laws; orders of methods and the balance of energy.
+//! What depends on time and velocity: damping, drag, hubs that turn by laws; orders of methods and
+//! the balance of energy.
 
 use super::arm::{LENGTH, gauss, imbalance, methods, moved, one, support};
 use ancf::effect::{
@@ -9,7 +10,8 @@ use ancf::run::{Control, run};
 use ancf::system::assembly::Part;
 use std::sync::Arc;
 
-/// A hub that is turned by a law, with all that depends on velocity: supports whose frames turn, damping matrices, laws of time.
+/// A hub that is turned by a law, with all that depends on velocity: supports whose frames turn,
+/// damping matrices, laws of time.
 fn driven(rotation: FixedRotation, duration: f64) -> Model {
     let hub = Support {
         displacement: Displacement { x: 0.05, y: 0.0, angle: 0.7 },
@@ -52,9 +54,10 @@ fn driven(rotation: FixedRotation, duration: f64) -> Model {
     model
 }
 
-/// Places after a short while with three steps, each half of the one before. Catches a term of time or velocity that is taken at
-/// another time than its method wants, which costs a method its order. Steps are such that the fastest waves are
-/// resolved, without which no order shows, and changes are a hundred times round-off, without which chance decides.
+/// Places after a short while with three steps, each half of the one before. Catches a term of time
+/// or velocity that is taken at another time than its method wants, which costs a method its order.
+/// Steps are such that the fastest waves are resolved, without which no order shows, and changes
+/// are a hundred times round-off, without which chance decides.
 #[test]
 fn what_depends_on_time_and_velocity_keeps_the_order_of_every_method() {
     const ROUND_OFF: f64 = 1e-14;
@@ -106,7 +109,8 @@ fn damping_hides_no_gain() {
     let path = ancf_check::Suite::here().cases_folder().join("hard-coarse-steps/scene.toml");
     let scene = ancf::scene::Scene::load(&path, &[coarse, damped].map(String::from)).expect("a legal scene");
     let trajectory = run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("a motion");
-    // Of the first step, which starts from rest, the trapezoidal rule counts a larger loss than there is.
+    // Of the first step, which starts from rest, the trapezoidal rule counts a larger loss than
+    // there is.
     for pair in trajectory.energy[1..].windows(2) {
         let gain = (pair[1].total() - pair[0].total()) / pair[0].kinetic.max(pair[1].kinetic);
         assert!(gain < 5e-3, "a step gains {gain} of the kinetic energy");
@@ -129,7 +133,8 @@ fn mass_damping_slows_free_flight() {
     assert!((last.y - (1.0 - left) / alpha).abs() < 1e-9, "{last:?}");
 }
 
-/// A hub at rest that starts to turn with constant speed, without bending it, carries the beam as a rigid body if that starts so too.
+/// A hub at rest that starts to turn with constant speed, without bending it, carries the beam as a
+/// rigid body if that starts so too.
 #[test]
 fn a_hub_of_constant_speed_keeps_a_rigid_rotation_in_its_equilibrium() {
     let speed = 4.0;
@@ -145,7 +150,8 @@ fn a_hub_of_constant_speed_keeps_a_rigid_rotation_in_its_equilibrium() {
     model.initial_velocities = vec![InitialVelocity { rotation: speed, ..InitialVelocity::default() }];
     let trajectory = moved(&model, 6.0, gauss(2e-3));
     let last = trajectory.probes[0].samples.last().expect("a record");
-    // The stretched radius: u'' EA + ρA Ω² (s + u) = 0, u(0) = 0, u'(L) = 0, so s + u = sin(ks)/(k cos(kL)).
+    // The stretched radius: u'' EA + ρA Ω² (s + u) = 0, u(0) = 0, u'(L) = 0, so s + u = sin(ks)/(k
+    // cos(kL)).
     let k = speed * (0.4_f64 / 2e3).sqrt();
     let radius = (k * LENGTH).tan() / k;
     assert!((last.x.hypot(last.y) - radius).abs() < 1e-8, "radius {} and not {radius}", last.x.hypot(last.y));

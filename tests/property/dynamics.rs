@@ -1,4 +1,5 @@
-//! Motion: exact where it must be, of the order that each method promises, energy and momentum kept, restarts bit for bit.
+//! Motion: exact where it must be, of the order that each method promises, energy and momentum
+//! kept, restarts bit for bit.
 
 use ancf::effect::{Contact, Obstacle};
 use ancf::model::{
@@ -147,7 +148,8 @@ fn free_fall_is_exact() {
     }
 }
 
-/// The highest axial vibration has a period of 1.7 ms: its phase, too, must be right for the order to show.
+/// The highest axial vibration has a period of 1.7 ms: its phase, too, must be right for the order
+/// to show.
 #[test]
 fn errors_fall_with_the_order_of_the_method() {
     for (integrator, expected) in methods() {
@@ -192,7 +194,8 @@ fn constraints_keep_the_order_and_are_kept() {
     }
 }
 
-/// A direction held at a slope of 30° needs the turned frame in mass matrix, tangent and velocities alike.
+/// A direction held at a slope of 30° needs the turned frame in mass matrix, tangent and velocities
+/// alike.
 #[test]
 fn a_motion_does_not_depend_on_the_axes() {
     let turn = 0.5_f64;
@@ -206,7 +209,8 @@ fn a_motion_does_not_depend_on_the_axes() {
         turned.beams[0].centreline = Centreline::Line { start: [0.0; 2], end: rotate([LENGTH, 0.0]) };
         turned.loads = vec![Load::Gravity { acceleration: rotate(GRAVITY) }];
         for (integrator, _) in methods() {
-            // Generalised-α stops its iteration at 1e-11 a step, which velocities multiply by 2/h; the others at round-off.
+            // Generalised-α stops its iteration at 1e-11 a step, which velocities multiply by 2/h;
+            // the others at round-off.
             let allowed = if matches!(integrator, Integrator::GeneralizedAlpha { .. }) { 1e-8 } else { 1e-9 };
             let [a, b] = [&straight, &turned].map(|model| moved(&build(model), 0.1, integrator, 5e-4));
             for (a, b) in last(&a).q.chunks_exact(2).zip(last(&b).q.chunks_exact(2)) {
@@ -261,8 +265,8 @@ fn the_energy_of_a_hinged_beam_errs_by_the_order_of_the_method() {
     }
 }
 
-/// The trapezoidal rule is not symplectic, but conjugate to the midpoint rule: its energy wavers and does not drift. 100 s are 40,000
-/// steps and some 60 swings.
+/// The trapezoidal rule is not symplectic, but conjugate to the midpoint rule: its energy wavers
+/// and does not drift. 100 s are 40,000 steps and some 60 swings.
 #[test]
 fn the_energy_of_the_trapezoidal_rule_is_bounded_for_long_times() {
     let system = system(Discretization::Ancf { nodes: Nodes::Uniform(4) }, vec![hinge(0.0)]);
@@ -303,7 +307,8 @@ fn momenta(system: &System, state: &State) -> [f64; 3] {
     mass.multiply_add(1.0, &state.v, &mut p);
     let mut sums = [0.0; 3];
     for (i, (q, p)) in state.q.chunks_exact(2).zip(p.chunks_exact(2)).enumerate() {
-        // Positions of all nodes together carry the beam's translation; gradients are invariant under it.
+        // Positions of all nodes together carry the beam's translation; gradients are invariant
+        // under it.
         if i % 2 == 0 {
             sums[0] += p[0];
             sums[1] += p[1];
@@ -316,7 +321,8 @@ fn momenta(system: &System, state: &State) -> [f64; 3] {
 proptest! {
     #![proptest_config(super::cases(12))]
 
-    /// Gauss' methods keep quadratic invariants: linear and angular momentum to round-off, whatever the step.
+    /// Gauss' methods keep quadratic invariants: linear and angular momentum to round-off, whatever
+    /// the step.
     #[test]
     fn a_free_beam_keeps_its_momentum(
         vx in -3.0..3.0_f64, vy in -3.0..3.0_f64, rotation in -20.0..20.0_f64,
@@ -358,7 +364,8 @@ proptest! {
         prop_assert!(drift < 2e-7 * kinetic.max(0.5), "drift {drift} J of {kinetic} J");
     }
 
-    /// A run interrupted anywhere and continued from its checkpoint, through the text of its file, ends in the same bits.
+    /// A run interrupted anywhere and continued from its checkpoint, through the text of its file,
+    /// ends in the same bits.
     #[test]
     fn a_restart_continues_bit_for_bit(stop in 1..30_usize, method in 0..7_usize, controlled: bool) {
         let [ancf, _] = either();
@@ -379,7 +386,8 @@ proptest! {
     }
 }
 
-/// What a beam has of momentum when it is in the air again is its weight's part and the impulses of the contacts that have ended.
+/// What a beam has of momentum when it is in the air again is its weight's part and the impulses of
+/// the contacts that have ended.
 #[test]
 fn impulses_of_contacts_balance_the_momentum() {
     let contact =
@@ -420,7 +428,8 @@ fn impulses_of_contacts_balance_the_momentum() {
     }
 }
 
-/// A velocity that grows evenly along a straight beam is a rotation, given as a polynomial or by points; momenta and the energy have closed forms.
+/// A velocity that grows evenly along a straight beam is a rotation, given as a polynomial or by
+/// points; momenta and the energy have closed forms.
 #[test]
 fn a_linear_velocity_field_is_a_rotation() {
     let rotation = 3.0;
@@ -454,7 +463,8 @@ fn a_linear_velocity_field_is_a_rotation() {
             let task = Task { start, ..task(&system, 0.3, with_step(GAUSS, StepControl::Fixed(2e-3))) };
             last(&finished(solve(&system, &task, &mut |_, _, _| true))).q.clone()
         });
-        // Free flight: the centre goes straight up while the beam turns about it, drawn out a little by its own rotation.
+        // Free flight: the centre goes straight up while the beam turns about it, drawn out a
+        // little by its own rotation.
         let turned = 0.3 * rotation;
         let centre = [LENGTH / 2.0, 0.3 * rotation * LENGTH / 2.0];
         let q = &ends[0];
@@ -469,7 +479,8 @@ fn a_linear_velocity_field_is_a_rotation() {
     }
 }
 
-/// What a velocity of cubic shape has of energy and momentum, by integration of the polynomial; elements of third degree have it exactly.
+/// What a velocity of cubic shape has of energy and momentum, by integration of the polynomial;
+/// elements of third degree have it exactly.
 #[test]
 fn a_cubic_velocity_field_has_its_energy() {
     let [discretization, _] = either();
@@ -490,8 +501,9 @@ fn a_cubic_velocity_field_has_its_energy() {
     assert!((px - 0.4 * moment(a, one)).abs() < 1e-12 && (py - 0.4 * moment(b, one)).abs() < 1e-12);
 }
 
-/// A hundred revolutions of a free beam, 20,000 steps: momenta stay to round-off, the energy wavers no more in the second half than in the
-/// first, and a run continued from the middle ends in the same bits.
+/// A hundred revolutions of a free beam, 20,000 steps: momenta stay to round-off, the energy wavers
+/// no more in the second half than in the first, and a run continued from the middle ends in the
+/// same bits.
 #[test]
 fn a_spinning_beam_keeps_momenta_and_energy_for_long_times_and_restarts_in_their_middle() {
     let mut model = model(Discretization::Ancf { nodes: Nodes::Uniform(4) }, vec![]);
@@ -556,8 +568,8 @@ fn steps_meet_the_stated_accuracy() {
     }
 }
 
-/// Records lie where they were asked for, also between steps, and the last at the end; between steps they are as
-/// accurate as the steps themselves.
+/// Records lie where they were asked for, also between steps, and the last at the end; between
+/// steps they are as accurate as the steps themselves.
 #[test]
 fn records_stand_at_the_times_asked_for() {
     let [ancf, _] = either();
@@ -603,7 +615,8 @@ fn events_are_located_to_the_accuracy_of_the_motion() {
             let numbers: Vec<usize> = solution.events.iter().map(|(watch, _)| *watch).collect();
             assert_eq!(numbers, [1, 2], "the rising one does not happen");
             assert!((last(&solution).time - time).abs() < 1e-9, "{} instead of {time}", last(&solution).time);
-            // A method goes on from before the step that the event cuts short, which is taken once more.
+            // A method goes on from before the step that the event cuts short, which is taken once
+            // more.
             let checkpoint = solution.checkpoint.as_ref().expect("a checkpoint");
             assert!(checkpoint.state.time < time && checkpoint.state.time + 0.013 > time);
             assert_eq!(checkpoint.reached().time, last(&solution).time);
@@ -612,7 +625,8 @@ fn events_are_located_to_the_accuracy_of_the_motion() {
     }
 }
 
-/// What a support holds cannot have a velocity; a rotation about the hinge is legal, and so is a free beam's.
+/// What a support holds cannot have a velocity; a rotation about the hinge is legal, and so is a
+/// free beam's.
 #[test]
 fn velocities_against_supports_are_refused() {
     let [ancf, _] = either();

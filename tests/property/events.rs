@@ -1,4 +1,5 @@
-//! Events of a motion: every time at which a probe's coordinate reaches a value, whatever the steps.
+//! Events of a motion: every time at which a probe's coordinate reaches a value, whatever the
+//! steps.
 
 use ancf::run::{Control, run};
 use ancf::trajectory::{Event, Trajectory};
@@ -17,7 +18,8 @@ const INTEGRATORS: [&str; 7] = [
     "radau = { tolerance = 1e-8 }",
 ];
 
-/// A beam thrown in the direction `turn` degrees from up, against a weight along it, by which no point of it bends; the events watch its middle.
+/// A beam thrown in the direction `turn` degrees from up, against a weight along it, by which no
+/// point of it bends; the events watch its middle.
 fn thrown(integrator: &str, axis: &str, sign: f64, scale: f64, events: &[(f64, &str, bool)]) -> Trajectory {
     let vector = |value: f64| if axis == "x" { format!("[{value}, 0]") } else { format!("[0, {value}]") };
     let events: Vec<String> = events
@@ -51,7 +53,8 @@ fn times(trajectory: &Trajectory) -> Vec<f64> {
 proptest! {
     #![proptest_config(super::cases(24))]
 
-    /// A throw reaches every height below its apex twice, at the roots of a parabola, also where both lie within one step.
+    /// A throw reaches every height below its apex twice, at the roots of a parabola, also where
+    /// both lie within one step.
     #[test]
     fn a_throw_reaches_every_height_twice(
         method in 0..INTEGRATORS.len(), along_x: bool, down: bool, exponent in -7..0_i32, digits in 1.0..10.0_f64, size in -6..4_i32,
@@ -84,13 +87,15 @@ proptest! {
             &[(apex, "any", false), (apex, away, false), (apex, back, true), (apex * (1.0 + 1e-7), "any", true)],
         );
         let found = times(&trajectory);
-        // A motion that rises higher by its own error passes the height, up and down, at once; here by less than 1e-8 beam lengths.
+        // A motion that rises higher by its own error passes the height, up and down, at once; here
+        // by less than 1e-8 beam lengths.
         prop_assert!(matches!(found.len(), 2 | 4), "{:?}", found);
         prop_assert!(found.iter().all(|time| (time - UP / G).abs() < 5e-5), "{:?} for {}", found, UP / G);
     }
 }
 
-/// Steps that end at the very top, or where a height is reached, count nothing twice and lose nothing.
+/// Steps that end at the very top, or where a height is reached, count nothing twice and lose
+/// nothing.
 #[test]
 fn steps_that_end_at_an_event_count_it_once() {
     let apex = UP * UP / (2.0 * G);
@@ -107,7 +112,8 @@ fn steps_that_end_at_an_event_count_it_once() {
     }
 }
 
-/// Both ends of a swing, many times, with steps that are long and short against it: a hinged rigid rod in no gravity turns evenly.
+/// Both ends of a swing, many times, with steps that are long and short against it: a hinged rigid
+/// rod in no gravity turns evenly.
 #[test]
 fn every_turn_of_a_spinning_rod_is_seen() {
     for integrator in

@@ -1,4 +1,5 @@
-//! Motion does not know the axes, the handedness of the plane, nor the units: every support, joint and effect, by every integrator.
+//! Motion does not know the axes, the handedness of the plane, nor the units: every support, joint
+//! and effect, by every integrator.
 
 use ancf::run::{Control, run};
 use ancf::scene::parse;
@@ -6,7 +7,8 @@ use ancf::trajectory::Trajectory;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 
-/// From where a motion is looked at: the scene is mirrored at the x axis, turned, and written in other units.
+/// From where a motion is looked at: the scene is mirrored at the x axis, turned, and written in
+/// other units.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     turn: f64,
@@ -56,7 +58,8 @@ impl Frame {
         self.force() * self.length
     }
 
-    /// The axes of the frame exist in the other one only where it is turned by right angles: there a support's `x` may be its `y`.
+    /// The axes of the frame exist in the other one only where it is turned by right angles: there
+    /// a support's `x` may be its `y`.
     fn square(&self) -> Self {
         Self { turn: (self.turn / FRAC_PI_2).round() * FRAC_PI_2, ..*self }
     }
@@ -66,8 +69,9 @@ impl Frame {
         ["x", "y"][if swapped { 1 - axis } else { axis }]
     }
 
-    /// Fills the gaps of a scene: `{f:1,2}` is the vector (1, 2) in units of force, `{l 3}` the number 3 in units of length, `{m~ 3}` a moment, whose sign
-    /// the mirror changes, `{axis 0}` the name of an axis.
+    /// Fills the gaps of a scene: `{f:1,2}` is the vector (1, 2) in units of force, `{l 3}` the
+    /// number 3 in units of length, `{m~ 3}` a moment, whose sign the mirror changes, `{axis 0}`
+    /// the name of an axis.
     fn write(&self, template: &str) -> String {
         let mut text = String::new();
         let mut rest = template;
@@ -287,7 +291,8 @@ fn seen(frame: &Frame, trajectory: &Trajectory) -> Vec<f64> {
         .collect()
 }
 
-/// Which motions suit a scene: without damping the axial force of a beam that keeps its length errs ever more.
+/// Which motions suit a scene: without damping the axial force of a beam that keeps its length errs
+/// ever more.
 fn suits(name: &str, integrator: &str) -> bool {
     name != "inextensible" || !integrator.starts_with("gauss")
 }
@@ -300,7 +305,8 @@ fn motions_do_not_depend_on_axes_handedness_or_units() {
         {
             let basis =
                 if (number + i) % 3 == 0 { "basis.rpim.nodes = 6" } else { "basis.ancf.elements = 6" };
-            // With a tolerance round-off decides here and there about an iteration or a step: positions must agree to the tolerance.
+            // With a tolerance round-off decides here and there about an iteration or a step:
+            // positions must agree to the tolerance.
             let tolerance =
                 integrator.split("tolerance = ").nth(1).and_then(|rest| rest[..4].parse::<f64>().ok());
             let numbers = |frame: &Frame| {
@@ -310,7 +316,8 @@ fn motions_do_not_depend_on_axes_handedness_or_units() {
             };
             let expected = numbers(&HERE);
             let fastest = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
-            // Generalised-α stops its iteration at 1e-11 a step, which velocities multiply by the stiffest frequency.
+            // Generalised-α stops its iteration at 1e-11 a step, which velocities multiply by the
+            // stiffest frequency.
             let allowed = tolerance.map_or(1e-7, |tolerance| 2.0 * tolerance);
             for frame in [FRAMES[0], FRAMES[1 + (number + i) % 7]] {
                 let frame = if *square { frame.square() } else { frame };

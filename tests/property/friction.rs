@@ -1,4 +1,5 @@
-//! Dry friction: what sticks rests, what slides is slowed as Coulomb says, and what is lost is friction's work.
+//! Dry friction: what sticks rests, what slides is slowed as Coulomb says, and what is lost is
+//! friction's work.
 
 use ancf::effect::{Contact, Friction, Held, InternalVariables, Obstacle, Workspace};
 use ancf::linear::Matrix;
@@ -25,7 +26,8 @@ fn solved(text: &str) -> Result<Trajectory, RunError> {
 proptest! {
     #![proptest_config(super::cases(48))]
 
-    /// The tangent against differences of the force, from states that stick and states that slide; and the same force from the slips that a state leaves.
+    /// The tangent against differences of the force, from states that stick and states that slide;
+    /// and the same force from the slips that a state leaves.
     #[test]
     fn the_tangent_is_that_of_the_mapping(
         rpim in any::<bool>(), which in 0..3_usize, push in -0.02..0.02_f64, noise in prop::collection::vec(-1.0..1.0_f64, 40),
@@ -88,7 +90,8 @@ proptest! {
         let largest = product.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
         for ((p, a), b) in product.iter().zip(after).zip(before) {
             let difference = (a - b) / (2.0 * h);
-            // Points at the edges of a contact have come to touch, and take the secant: those have a tenth of the stiffness here.
+            // Points at the edges of a contact have come to touch, and take the secant: those have
+            // a tenth of the stiffness here.
             prop_assert!((p - difference).abs() <= 0.15 * largest + 1e-6, "{p}, not {difference} of {largest}");
         }
         // What is remembered of a state gives its force.
@@ -101,7 +104,8 @@ proptest! {
     }
 }
 
-/// A rod on a slope of `angle` degrees, with friction 0.5 and in the depth at which the ground bears it, or touching it only.
+/// A rod on a slope of `angle` degrees, with friction 0.5 and in the depth at which the ground
+/// bears it, or touching it only.
 fn slope(angle: f64, depth: f64, duration: f64, basis: &str, integrator: &str) -> String {
     let (sine, cosine) = angle.to_radians().sin_cos();
     let at = |along: f64| format!("[{}, {}]", along * cosine + depth * sine, along * sine - depth * cosine);
@@ -129,7 +133,8 @@ fn slid(trajectory: &Trajectory, angle: f64) -> f64 {
 const METHODS: [&str; 3] =
     ["gauss.tolerance = 1e-5", "radau.tolerance = 1e-5", "generalized_alpha.tolerance = 1e-5"];
 
-/// Below the angle of friction a rod rests, to the springs' give; beyond it, it slides with g (sin − μ cos).
+/// Below the angle of friction a rod rests, to the springs' give; beyond it, it slides with g (sin
+/// − μ cos).
 #[test]
 fn a_rod_rests_on_a_slope_or_slides() {
     for (integrator, basis) in
@@ -161,7 +166,8 @@ fn a_rod_rests_on_a_slope_or_slides() {
     }
 }
 
-/// A long rest on a slope, by fixed steps from the surface's edge: pressure and traction swing together.
+/// A long rest on a slope, by fixed steps from the surface's edge: pressure and traction swing
+/// together.
 #[test]
 fn a_rod_does_not_creep() {
     let trajectory =
@@ -207,7 +213,8 @@ fn a_restart_goes_on_bit_for_bit() {
     }
 }
 
-/// In statics: a rod on the ground that is pulled by a third of what moves it, against a soft spring; and by twice of that.
+/// In statics: a rod on the ground that is pulled by a third of what moves it, against a soft
+/// spring; and by twice of that.
 #[test]
 fn a_rod_sticks_in_statics() {
     for (pull, steps) in [
@@ -246,7 +253,8 @@ fn a_rod_sticks_in_statics() {
     }
 }
 
-/// Capstan: a thin belt that hangs over a disc is pulled at one end and held at the other by the pull times e^(−μφ).
+/// Capstan: a thin belt that hangs over a disc is pulled at one end and held at the other by the
+/// pull times e^(−μφ).
 #[test]
 fn a_belt_over_a_disc_is_held_as_a_capstan_holds_it() {
     for (basis, coefficient) in [("ancf.elements", 0.3), ("rpim.nodes", 0.2)] {

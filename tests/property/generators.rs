@@ -72,8 +72,8 @@ pub fn clamp() -> Support {
     }
 }
 
-/// The reference state, each coordinate changed by up to `size` (positions in beam lengths) from a list of numbers in
-/// [−1, 1].
+/// The reference state, each coordinate changed by up to `size` (positions in beam lengths) from a
+/// list of numbers in [−1, 1].
 pub fn perturbed(system: &System, size: f64, noise: &[f64]) -> Vec<f64> {
     let reference = system.reference().iter().enumerate();
     reference

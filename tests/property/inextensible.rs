@@ -1,4 +1,5 @@
-//! Beams that name no axial stiffness: the rows that keep their length, and what they do in statics, vibrations and motion.
+//! Beams that name no axial stiffness: the rows that keep their length, and what they do in
+//! statics, vibrations and motion.
 
 use super::generators;
 use ancf::effect::Kind;
@@ -169,7 +170,8 @@ fn fall(basis: &str, method: &str) -> Scene {
     scene(basis, HINGE, &FALL.replace("METHOD", method))
 }
 
-/// Radau's positions and those of generalised-α converge to each other, with lengths and energies kept.
+/// Radau's positions and those of generalised-α converge to each other, with lengths and energies
+/// kept.
 #[test]
 fn a_fall_converges_with_every_method_that_damps() {
     let reference = solve(&fall(ANCF, "radau = { step = '0.5 ms' }"));
@@ -218,7 +220,8 @@ fn a_motion_goes_on_as_if_it_had_not_stopped() {
     }
 }
 
-/// The accelerations that start a motion obey g̈ = 0: a rotating bar is pulled to its hinge by ω² ∫ s ds.
+/// The accelerations that start a motion obey g̈ = 0: a rotating bar is pulled to its hinge by ω² ∫
+/// s ds.
 #[test]
 fn a_bar_that_rotates_pulls_at_its_hinge() {
     let scene = scene(
@@ -283,7 +286,8 @@ fn a_chain_on_one_hook_finds_its_way_down() {
     assert!(parse("arm.toml", &text).expect_err("refused").to_string().contains("under-supported"));
 }
 
-/// Two beams that cannot stretch, welded to one that can: each keeps the length of its own gradient.
+/// Two beams that cannot stretch, welded to one that can: each keeps the length of its own
+/// gradient.
 #[test]
 fn what_is_welded_keeps_its_own_length() {
     let beam = |name: &str, start: &str, end: &str, more: &str| {
@@ -335,7 +339,8 @@ fn what_cannot_be_done_is_refused_with_what_to_try() {
     assert!(refused(&scene(ANCF, CLAMP, &held)).contains("the length that beam `arm` keeps"));
 }
 
-/// Units do not decide what a beam may do: a velocity that keeps its length is taken in millimetres and microseconds as in metres and seconds.
+/// Units do not decide what a beam may do: a velocity that keeps its length is taken in millimetres
+/// and microseconds as in metres and seconds.
 #[test]
 fn units_do_not_decide_about_velocities() {
     let tip = |length: f64, mass: f64, time: f64| {

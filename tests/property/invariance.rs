@@ -1,4 +1,5 @@
-//! Invariances of the continuous beam that the discrete one must keep: rigid motions, orientation, units.
+//! Invariances of the continuous beam that the discrete one must keep: rigid motions, orientation,
+//! units.
 
 use super::generators::{beam, clamp, free, noise, perturbed};
 use ancf::model::{
@@ -79,7 +80,8 @@ proptest! {
     }
 }
 
-/// A clamped beam with a dead or follower tip force, everything in multiples of a unit of length and one of force.
+/// A clamped beam with a dead or follower tip force, everything in multiples of a unit of length
+/// and one of force.
 fn cantilever(metre: f64, newton: f64, angle: f64, discretization: Discretization, follower: bool) -> Model {
     let turned = |x: f64, y: f64| {
         let (s, c) = angle.sin_cos();

@@ -4,7 +4,8 @@ use super::arm::{LENGTH, ancf, beam, gauss, imbalance, methods, moved, one, stil
 use ancf::model::*;
 use ancf::trajectory::Trajectory;
 
-/// One beam and two that are welded are the same but for the stretch at the weld, which is free to jump there: with finer meshes they become one.
+/// One beam and two that are welded are the same but for the stretch at the weld, which is free to
+/// jump there: with finer meshes they become one.
 #[test]
 fn a_weld_makes_one_beam_of_two() {
     let half = 0.5 * LENGTH;
@@ -42,7 +43,8 @@ fn a_weld_makes_one_beam_of_two() {
     }
 }
 
-/// Right angle: the corner stays one, both beams bend, and what supports and joints bear is in equilibrium with the load.
+/// Right angle: the corner stays one, both beams bend, and what supports and joints bear is in
+/// equilibrium with the load.
 #[test]
 fn a_corner_keeps_its_angle_and_passes_forces_on() {
     let mut model = one(vec![support(0.0, FixedRotation::Angle)], vec![]);

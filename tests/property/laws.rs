@@ -1,5 +1,5 @@
-//! Loads and supports that follow laws of time: nothing moves before its cause, kinks cost no accuracy, and what happens between the points at which a method
-//! looks is not lost on it.
+//! Loads and supports that follow laws of time: nothing moves before its cause, kinks cost no
+//! accuracy, and what happens between the points at which a method looks is not lost on it.
 
 use ancf::run::{Control, run};
 use ancf::scene::parse;
@@ -100,10 +100,13 @@ fn nothing_moves_before_its_cause_and_kinks_cost_no_accuracy() {
     }
 }
 
-/// A rod at rest lies along x and turns freely about its start, which a support suddenly carries across with the speed V, and stops later. In axes that move
-/// with the support no force has a moment about it, so that the rod keeps its angular momentum there: it turns at 3 V/2 L, and at the stop that changes
-/// by 3 V/2 L cos θ. What the jumps excite is damped within hundredths of a second, in which the rod turns by 5e-5 rad less. The support gives the momentum
-/// ρA L (V − ¾ V cos θ) and with it V times as much work, half of it at once to the mass of the node that it holds.
+/// A rod at rest lies along x and turns freely about its start, which a support suddenly carries
+/// across with the speed V, and stops later. In axes that move with the support no force has a
+/// moment about it, so that the rod keeps its angular momentum there: it turns at 3 V/2 L, and at
+/// the stop that changes by 3 V/2 L cos θ. What the jumps excite is damped within hundredths of a
+/// second, in which the rod turns by 5e-5 rad less. The support gives the momentum ρA L (V − ¾ V
+/// cos θ) and with it V times as much work, half of it at once to the mass of the node that it
+/// holds.
 #[test]
 fn a_support_that_sets_off_and_stops_turns_a_rod_as_momentum_tells() {
     let (speed, turning) = (1.0_f64, 1.5);
@@ -147,8 +150,9 @@ fn a_support_that_sets_off_and_stops_turns_a_rod_as_momentum_tells() {
     }
 }
 
-/// Steps of given length are solved on meshes so fine that a load which sets in at once would carry their first node through many elements, were it followed
-/// with its first acceleration. Without the second prediction they are not solved at all; by Radau's method few steps are divided.
+/// Steps of given length are solved on meshes so fine that a load which sets in at once would carry
+/// their first node through many elements, were it followed with its first acceleration. Without
+/// the second prediction they are not solved at all; by Radau's method few steps are divided.
 #[test]
 fn steps_of_given_length_bear_fine_meshes() {
     let at = |elements: usize, method: &str| {
@@ -172,7 +176,8 @@ fn steps_of_given_length_bear_fine_meshes() {
     }
 }
 
-/// A load that comes later moves the beam as one that acts at once does, later: to round-off, where it comes at the end of a step.
+/// A load that comes later moves the beam as one that acts at once does, later: to round-off, where
+/// it comes at the end of a step.
 #[test]
 fn a_load_that_comes_later_does_the_same_later() {
     for integrator in FIXED {
@@ -207,7 +212,8 @@ fn kinks_do_not_cost_the_order() {
     }
 }
 
-/// What oscillates faster than the steps is seen all the same: forces, moments, supports that shake, loads that run over the beam.
+/// What oscillates faster than the steps is seen all the same: forces, moments, supports that
+/// shake, loads that run over the beam.
 #[test]
 fn a_tolerance_holds_for_loads_of_any_frequency() {
     let held = "[[support]]\nbeam = \"a\"\nat = \"start\"\nfix = [\"x\", \"y\", \"angle\"]\n";

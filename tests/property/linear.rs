@@ -45,7 +45,8 @@ fn row(n: usize) -> Vec<(usize, f64)> {
 proptest! {
     #![proptest_config(super::cases(64))]
 
-    /// K + ζ M of a collocation method's stages, banded, without symmetry, and bordered: what comes out is put back into the equations.
+    /// K + ζ M of a collocation method's stages, banded, without symmetry, and bordered: what comes
+    /// out is put back into the equations.
     #[test]
     fn complex_systems_are_solved(
         nodes in 1..12_usize, blocks in 1..7_usize, numbers in numbers(),
@@ -86,7 +87,8 @@ proptest! {
         agree(&back_im, &b[size..], 1e-9)?;
     }
 
-    /// K + c M in one pass is the sum factorised: to round-off where that is eliminated from one end and the other from both.
+    /// K + c M in one pass is the sum factorised: to round-off where that is eliminated from one
+    /// end and the other from both.
     #[test]
     fn shifted_systems_are_solved(
         nodes in 1..12_usize, blocks in 1..7_usize, numbers in numbers(), c in 0.0..5.0_f64,

@@ -35,8 +35,9 @@ mod winding;
 
 use proptest::test_runner::{Config, FileFailurePersistence, RngSeed};
 
-/// So many cases, the same in every run: what a change breaks must not depend on luck. The nightly run draws others, by
-/// `PROPTEST_RNG_SEED`. What once failed is kept beside the test and tried again first.
+/// So many cases, the same in every run: what a change breaks must not depend on luck. The nightly
+/// run draws others, by `PROPTEST_RNG_SEED`. What once failed is kept beside the test and tried
+/// again first.
 pub fn cases(count: u32) -> Config {
     let beside = FileFailurePersistence::WithSource("regressions");
     let default = Config::default();

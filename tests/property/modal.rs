@@ -121,8 +121,8 @@ proptest! {
         }
     }
 
-    /// Both methods find the same, whatever holds the beam, at nodes or between them; and two beams alike have every
-    /// frequency twice.
+    /// Both methods find the same, whatever holds the beam, at nodes or between them; and two beams
+    /// alike have every frequency twice.
     #[test]
     fn dense_and_lanczos_agree(
         discretization in either(),
@@ -185,8 +185,9 @@ proptest! {
         prop_assert_eq!(at(force, About::Reference), rest);
     }
 
-    /// Catches a geometric stiffness that is left out, and modes of another state. The modes of a loaded state are orthonormal in
-    /// the mass, leave supports where they are, and their frequencies are those at which the forces around the equilibrium swing.
+    /// Catches a geometric stiffness that is left out, and modes of another state. The modes of a
+    /// loaded state are orthonormal in the mass, leave supports where they are, and their
+    /// frequencies are those at which the forces around the equilibrium swing.
     #[test]
     fn modes_of_an_equilibrium_solve_its_equations(discretization in either(), force in prop::array::uniform2(-3.0..3.0)) {
         let model = pulled(model(vec![beam(discretization, 0.4)], vec![clamp()]), force);
@@ -204,9 +205,9 @@ proptest! {
             }
             let at_clamp = view.fields(shape);
             prop_assert!(at_clamp.position.iter().all(|c| c.abs() < 1e-12));
-            // K φ by differences of forces: what is left beside ω² M φ must be reactions, which do no work. Near
-            // buckling ω² is what is left of large terms, and a single quotient errs by 6e-5 of it; two, extrapolated,
-            // err with the fourth power of the step.
+            // K φ by differences of forces: what is left beside ω² M φ must be reactions, which do
+            // no work. Near buckling ω² is what is left of large terms, and a single quotient errs
+            // by 6e-5 of it; two, extrapolated, err with the fourth power of the step.
             let quotient = |h: f64| -> f64 {
                 let (mut ahead, mut behind) = (vec![0.0; q.len()], vec![0.0; q.len()]);
                 let moved = |h: f64| q.iter().zip(shape).map(|(q, v)| q + h * v).collect::<Vec<_>>();
@@ -222,7 +223,8 @@ proptest! {
     }
 }
 
-/// Motions that nothing resists have 0 Hz, come first and are all found, with few unknowns and with many.
+/// Motions that nothing resists have 0 Hz, come first and are all found, with few unknowns and with
+/// many.
 #[test]
 fn free_bodies_have_frequencies_of_zero() {
     for nodes in [4, 12, 400] {
@@ -278,8 +280,8 @@ fn unstable_states_are_refused_with_advice() {
     }
 }
 
-/// Slightly oblique compression beyond the critical load bends the column far: that equilibrium is stable, and found
-/// although one long step leads past it.
+/// Slightly oblique compression beyond the critical load bends the column far: that equilibrium is
+/// stable, and found although one long step leads past it.
 #[test]
 fn a_bent_column_vibrates_about_its_stable_branch() {
     for nodes in [9, 41] {

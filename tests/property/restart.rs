@@ -1,4 +1,5 @@
-//! Going on: a motion in parts is the motion as a whole, to the last bit; what starts elsewhere is at rest where it should be, or refused.
+//! Going on: a motion in parts is the motion as a whole, to the last bit; what starts elsewhere is
+//! at rest where it should be, or refused.
 
 use ancf::restart::SavedState;
 use ancf::run::{Control, RunError, run, run_from};
@@ -26,7 +27,8 @@ fn go_on(text: &str, from: &Trajectory) -> Result<Trajectory, RunError> {
     run_from(scene.model(), scene.analysis(), Some(&saved), &mut |_| Control::Continue)
 }
 
-/// Everything that has a memory: loads without potential, damping, contact, a support that turns, a beam that keeps its length.
+/// Everything that has a memory: loads without potential, damping, contact, a support that turns, a
+/// beam that keeps its length.
 const MOTIONS: [&str; 6] = [
     "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 0.1, mass_per_length = 1, basis.ancf.elements = 4 }
      support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]
@@ -115,7 +117,8 @@ fn a_motion_that_an_event_ended_goes_on() {
     }
 }
 
-/// An equilibrium that a static run found is one of the motion: bent by a force and a moment, clamped or with a clamp that was moved; and a cable.
+/// An equilibrium that a static run found is one of the motion: bent by a force and a moment,
+/// clamped or with a clamp that was moved; and a cable.
 #[test]
 fn a_motion_from_an_equilibrium_stays_there() {
     let beam = "beam.arm = { start = [0, 0], end = [0.6, 0.8], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.BASIS }
@@ -168,7 +171,8 @@ fn a_motion_from_an_equilibrium_stays_there() {
     }
 }
 
-/// With other loads it leaves the equilibrium, with a velocity of the scene too; work counts from there.
+/// With other loads it leaves the equilibrium, with a velocity of the scene too; work counts from
+/// there.
 #[test]
 fn a_motion_from_an_equilibrium_may_have_other_loads_and_a_velocity() {
     let arm = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 6 }

@@ -1,4 +1,5 @@
-//! Whatever is done to the text of a legal scene, reading it never panics, and every refusal names a place.
+//! Whatever is done to the text of a legal scene, reading it never panics, and every refusal names
+//! a place.
 
 use ancf::model::{Analysis, Discretization, Integrator, Nodes, StepControl};
 use ancf::scene::{self, Scene, SceneError};

@@ -1,4 +1,5 @@
-//! Section forces and reactions balance what acts on the beam, whatever its stiffness, its discretisation and its motion.
+//! Section forces and reactions balance what acts on the beam, whatever its stiffness, its
+//! discretisation and its motion.
 
 use ancf::run::{Control, run};
 use ancf::scene::parse;
@@ -45,8 +46,8 @@ fn differs(shape: &Shape, i: usize, [fx, fy]: [f64; 2], moment: f64) -> [f64; 3]
     ]
 }
 
-/// A cantilever that a dead force P bends to an elastica carries P in every section, and the moment of P about it: for
-/// EA L²/EI from 1e2 to 1e10, in all directions, from micrometres to kilometres.
+/// A cantilever that a dead force P bends to an elastica carries P in every section, and the moment
+/// of P about it: for EA L²/EI from 1e2 to 1e10, in all directions, from micrometres to kilometres.
 #[test]
 fn a_cantilever_carries_its_load_in_every_section() {
     for basis in BASES {
@@ -78,7 +79,8 @@ fn a_cantilever_carries_its_load_in_every_section() {
     }
 }
 
-/// At forces, moments and supports between the ends there are two rows, which differ by what acts there.
+/// At forces, moments and supports between the ends there are two rows, which differ by what acts
+/// there.
 #[test]
 fn section_forces_jump_by_what_acts_in_a_point() {
     for basis in BASES {
@@ -134,8 +136,9 @@ fn section_forces_jump_by_what_acts_in_a_point() {
     }
 }
 
-/// A cantilever that a pull along it and a load across it press on the ground: behind the contact, at the free end, nothing is left of the forces, and at the clamp
-/// they are the reactions'. With friction the ground pulls back.
+/// A cantilever that a pull along it and a load across it press on the ground: behind the contact,
+/// at the free end, nothing is left of the forces, and at the clamp they are the reactions'. With
+/// friction the ground pulls back.
 #[test]
 fn section_forces_balance_contacts_and_friction() {
     for (friction, analysis) in [
@@ -188,7 +191,8 @@ fn section_forces_pass_through_a_weld() {
         let top = post.s.len() - 1;
         let joint = trajectory.reactions[2].samples.last().expect("a record");
         let hinge = trajectory.reactions[1].samples.last().expect("a record");
-        // The joint's force on the bar is what the post's last section gives to what is beyond it, turned about.
+        // The joint's force on the bar is what the post's last section gives to what is beyond it,
+        // turned about.
         for (shape, i) in [(post, top), (bar, 0)] {
             let found = differs(shape, i, [-joint.fx, -joint.fy], -joint.moment);
             assert!(found.iter().all(|d| *d < 1e-6), "EA = {ea:e}: {found:?}");
@@ -196,7 +200,8 @@ fn section_forces_pass_through_a_weld() {
         let end = bar.s.len() - 1;
         let found = differs(bar, end, [hinge.fx, hinge.fy], 0.0);
         assert!(found.iter().all(|d| *d < 1e-6), "EA = {ea:e}: {found:?}");
-        // Stiffness times curvature says the same of the moment, but for the accuracy of second derivatives.
+        // Stiffness times curvature says the same of the moment, but for the accuracy of second
+        // derivatives.
         for shape in [post, bar] {
             let largest = shape.bending_moment.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
             for (m, kappa) in shape.bending_moment.iter().zip(&shape.curvature) {
@@ -206,7 +211,8 @@ fn section_forces_pass_through_a_weld() {
     }
 }
 
-/// A rod that turns steadily about its end carries N = ½ ρA ω² (L² − s²), and its hinge pulls as much.
+/// A rod that turns steadily about its end carries N = ½ ρA ω² (L² − s²), and its hinge pulls as
+/// much.
 #[test]
 fn a_rotating_rod_carries_its_centrifugal_force() {
     let (omega, length) = (4.0, 0.8_f64);
@@ -234,7 +240,8 @@ fn a_rotating_rod_carries_its_centrifugal_force() {
                     method
                 );
             }
-            // It starts without strain, and so without force, and would ring for ever: methods with steps too long for that damp it.
+            // It starts without strain, and so without force, and would ring for ever: methods with
+            // steps too long for that damp it.
             for (sample, time) in trajectory.reactions[0].samples.iter().zip(&trajectory.parameter).skip(2) {
                 let angle = turn + omega * time;
                 let off = (sample.fx + most * angle.cos()).hypot(sample.fy + most * angle.sin());
@@ -244,8 +251,8 @@ fn a_rotating_rod_carries_its_centrifugal_force() {
     }
 }
 
-/// A crank that is spun up: its hub takes the moment that its inertia asks for, puts in what becomes kinetic energy, and
-/// no stiff vibration of a small error.
+/// A crank that is spun up: its hub takes the moment that its inertia asks for, puts in what
+/// becomes kinetic energy, and no stiff vibration of a small error.
 #[test]
 fn a_hub_takes_the_moment_of_inertia_and_puts_in_the_kinetic_energy() {
     let (duration, length) = (0.5, 0.25_f64);

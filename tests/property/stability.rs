@@ -1,4 +1,5 @@
-//! Inertia of bordered matrices, stability of paths, buckling after bending, equilibria of mechanisms, redundant joints.
+//! Inertia of bordered matrices, stability of paths, buckling after bending, equilibria of
+//! mechanisms, redundant joints.
 
 use ancf::linear::bordered::BorderRow;
 use ancf::linear::{Factor, Matrix};
@@ -56,7 +57,8 @@ const ANCF: &str =
     "{ ancf = { elements = 16, gauss_points = { stretch = 3, bend = 2, stretch_rule = 'lobatto' } } }";
 const RPIM: &str = "{ rpim = { nodes = 10 } }";
 
-/// An orthonormal basis of what the rows leave of the coordinates `free`; nothing if they depend on each other.
+/// An orthonormal basis of what the rows leave of the coordinates `free`; nothing if they depend on
+/// each other.
 fn allowed(rows: &[BorderRow], free: &[usize]) -> Option<Mat<f64>> {
     let (n, m) = (free.len(), rows.len());
     if m == 0 {
@@ -81,7 +83,8 @@ fn dense(matrix: &Matrix, of: &[usize]) -> Mat<f64> {
 proptest! {
     #![proptest_config(super::cases(12))]
 
-    /// The number of negative eigenvalues on the allowed motions, whether K is regular, singular or indefinite beyond them, and however far rows reach.
+    /// The number of negative eigenvalues on the allowed motions, whether K is regular, singular or
+    /// indefinite beyond them, and however far rows reach.
     #[test]
     fn directions_are_counted_as_a_dense_solution_counts_them(
         entries in proptest::collection::vec(-1.0..1.0_f64, 24 * 24),
@@ -119,8 +122,9 @@ proptest! {
         prop_assert_eq!(factor.negative_directions(&k, &border), Some(expected));
     }
 
-    /// A structure's frequencies are the same however many are asked for, by either method, and those of a dense solution: also with strings, which nothing
-    /// resists across, and with masses and stiffnesses of all sizes.
+    /// A structure's frequencies are the same however many are asked for, by either method, and
+    /// those of a dense solution: also with strings, which nothing resists across, and with masses
+    /// and stiffnesses of all sizes.
     #[test]
     fn frequencies_do_not_depend_on_how_many_are_wanted(
         columns in 1..4_usize,
@@ -191,8 +195,8 @@ proptest! {
     }
 }
 
-/// A column of one beam or two, with axial stiffness or without, on supports at nodes: all reach the same equilibrium beside their bifurcation, and all say
-/// where a perfect one passes it.
+/// A column of one beam or two, with axial stiffness or without, on supports at nodes: all reach
+/// the same equilibrium beside their bifurcation, and all say where a perfect one passes it.
 #[test]
 fn columns_of_every_kind_leave_the_unstable_branch_or_say_where_it_begins() {
     let (ea, none) = ("bending_stiffness = 1.0\naxial_stiffness = 1e6", "bending_stiffness = 1.0");
@@ -228,7 +232,8 @@ fn columns_of_every_kind_leave_the_unstable_branch_or_say_where_it_begins() {
     }
 }
 
-/// A frame whose legs are pinned and hinged to a beam that a load presses: P = π² EI of a leg whose top a brace holds.
+/// A frame whose legs are pinned and hinged to a beam that a load presses: P = π² EI of a leg whose
+/// top a brace holds.
 #[test]
 fn a_hinged_leg_buckles_with_a_warning() {
     let leg = "axial_stiffness = 1e6\nbending_stiffness = 1.0";
@@ -248,7 +253,8 @@ fn a_hinged_leg_buckles_with_a_warning() {
 proptest! {
     #![proptest_config(super::cases(8))]
 
-    /// π²/4, whatever the axial stiffness, the direction, the basis, and a little force across; and bending alone is told from buckling.
+    /// π²/4, whatever the axial stiffness, the direction, the basis, and a little force across; and
+    /// bending alone is told from buckling.
     #[test]
     fn a_little_bending_does_not_change_a_critical_load(
         log in 3.0..9.0_f64,
@@ -278,7 +284,8 @@ proptest! {
         prop_assert!(bent.load_factors.is_empty() || bent.warnings[0].contains("arc_length"), "{:?}", bent.warnings);
     }
 
-    /// One stiff rod on a hinge swings by 3g/2L, two by the frequencies of the double pendulum, from wherever they start, upright included.
+    /// One stiff rod on a hinge swings by 3g/2L, two by the frequencies of the double pendulum,
+    /// from wherever they start, upright included.
     #[test]
     fn hinged_rods_hang_still_and_swing_by_closed_forms(
         starts in proptest::collection::vec(-PI..PI, 2),
@@ -347,7 +354,8 @@ fn mechanisms_that_nothing_holds_are_refused() {
         );
     }
     refused(format!("{weight}{pinned}[analysis.buckling]\ncount = 1\n"), &["under-supported"]);
-    // With weight, other loads of fixed direction take part: 10 N each way at the end of the lower rod, and 9.81 N of each rod.
+    // With weight, other loads of fixed direction take part: 10 N each way at the end of the lower
+    // rod, and 9.81 N of each rod.
     let [x, y] = tip(&solve(&format!(
         "{weight}{pinned}{next}{}{}[analysis.static]\n",
         probe("b"),
@@ -401,7 +409,8 @@ fn redundant_joints_are_named() {
         &[&named_weld, "the length that beam `a` keeps", "the support at s = 1.0000 m of beam `b`"],
     );
     solve(&format!("{}{weld}{far}", beams(elastic)));
-    // Held once more than it needs to be, but not twice alike: a square with one diagonal, a ring, an arch of straight rods.
+    // Held once more than it needs to be, but not twice alike: a square with one diagonal, a ring,
+    // an arch of straight rods.
     let corner = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let mut square = String::new();
     for i in 0..4 {
@@ -459,7 +468,8 @@ fn a_path_that_does_not_reach_its_target_is_incomplete() {
     }
 }
 
-/// Exact roots of a clamped beam with a mass and a rotary inertia at its tip, and no frequency between them on any mesh.
+/// Exact roots of a clamped beam with a mass and a rotary inertia at its tip, and no frequency
+/// between them on any mesh.
 #[test]
 fn rotary_inertia_of_a_point_makes_no_mode_of_its_own() {
     let arm = |basis: &str| {
@@ -480,7 +490,8 @@ fn rotary_inertia_of_a_point_makes_no_mode_of_its_own() {
     }
 }
 
-/// A flywheel on a free stiff rod, off its middle: by every integrator energy and angular momentum stay, and the rod turns at the speed at which it starts.
+/// A flywheel on a free stiff rod, off its middle: by every integrator energy and angular momentum
+/// stay, and the rod turns at the speed at which it starts.
 #[test]
 fn a_flywheel_keeps_energy_and_momentum() {
     for method in [
@@ -509,8 +520,9 @@ fn a_flywheel_keeps_energy_and_momentum() {
     }
 }
 
-/// A column on an elastic hinge that is pushed by one per cent, and one that heat compresses to 2.4 times its critical load in a slight flow: however many load
-/// steps there are, they bend to the side to which they begin to.
+/// A column on an elastic hinge that is pushed by one per cent, and one that heat compresses to 2.4
+/// times its critical load in a slight flow: however many load steps there are, they bend to the
+/// side to which they begin to.
 #[test]
 fn the_number_of_load_steps_does_not_choose_the_branch() {
     let pushed = "beam.a = { start = [0, 0], end = [1, 0], axial_stiffness = 259100, bending_stiffness = 1, basis.ancf.nodes = 6 }

@@ -23,7 +23,8 @@ fn a_string_has_no_bending() {
     assert!(imbalance(&trajectory) < 1e-4, "{}", imbalance(&trajectory));
 }
 
-/// A slack cable between two supports, laid out as an arc, hangs as a catenary: y = a cosh(x/a) with 2 a sinh(w/2a) = L.
+/// A slack cable between two supports, laid out as an arc, hangs as a catenary: y = a cosh(x/a)
+/// with 2 a sinh(w/2a) = L.
 #[test]
 fn a_slack_cable_hangs_as_a_catenary() {
     let (radius, half) = (1.0_f64, 1.0_f64);
@@ -39,7 +40,8 @@ fn a_slack_cable_hangs_as_a_catenary() {
     model.probes = tip(0, 0.5 * length);
     let trajectory = still(&model);
     let [a, b] = [-2.0_f64, 0.0].map(|angle| [radius * angle.cos(), radius * angle.sin()]);
-    // The catenary through both ends: √(L² − v²) = 2 c sinh(h/2c), h and v the distances along x and y.
+    // The catenary through both ends: √(L² − v²) = 2 c sinh(h/2c), h and v the distances along x
+    // and y.
     let (h, v) = (b[0] - a[0], b[1] - a[1]);
     let mut bracket = (0.05_f64, 50.0_f64);
     for _ in 0..200 {
@@ -92,7 +94,8 @@ fn a_string_without_load_stays() {
     }
 }
 
-/// A straight string whose end is brought nearer at once may be left with a fold, and says so; by small steps it hangs without one.
+/// A straight string whose end is brought nearer at once may be left with a fold, and says so; by
+/// small steps it hangs without one.
 #[test]
 fn a_folded_string_is_named() {
     let cable = |steps| {

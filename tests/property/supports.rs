@@ -1,4 +1,5 @@
-//! Supports hold what they name, at nodes and between them, alone and together, at rest and in motion.
+//! Supports hold what they name, at nodes and between them, alone and together, at rest and in
+//! motion.
 
 use super::generators::clamp;
 use ancf::model::{
@@ -56,7 +57,8 @@ fn rotation() -> impl Strategy<Value = FixedRotation> {
 proptest! {
     #![proptest_config(super::cases(40))]
 
-    /// The clamp at the start moves as prescribed; a second support somewhere holds any combination.
+    /// The clamp at the start moves as prescribed; a second support somewhere holds any
+    /// combination.
     #[test]
     fn supports_hold_and_move_what_they_name(
         discretization in either(),
@@ -137,8 +139,8 @@ fn a_bifurcation_is_reported_with_its_load() {
     );
 }
 
-/// A pinned column with a support between nodes in its middle buckles in two half waves, four times later than without,
-/// and stability is judged alike in all units.
+/// A pinned column with a support between nodes in its middle buckles in two half waves, four times
+/// later than without, and stability is judged alike in all units.
 #[test]
 fn stability_between_constraint_rows_does_not_depend_on_units() {
     for metre in [1e-6, 1.0, 1e6] {
@@ -193,7 +195,8 @@ fn stopping_ends_the_analysis() {
     assert_eq!(recorded(4), [0.0, 0.25, 0.5, 0.75, 1.0]);
 }
 
-/// What one support holds of a node and another holds of it too add up; the same component twice is a contradiction.
+/// What one support holds of a node and another holds of it too add up; the same component twice is
+/// a contradiction.
 #[test]
 fn supports_at_one_node_add_up() {
     let support =
@@ -213,7 +216,8 @@ fn supports_at_one_node_add_up() {
     assert!(tip(vec![support(true, true), support(false, true)]).is_err(), "y is held twice");
 }
 
-/// The path's tangent carries moved supports along: where all is nearly linear the first prediction leaves next to nothing to correct.
+/// The path's tangent carries moved supports along: where all is nearly linear the first prediction
+/// leaves next to nothing to correct.
 #[test]
 fn the_prediction_moves_with_the_supports() {
     let moved = Support { displacement: Displacement { x: 2e-5, y: -3e-5, angle: 1e-5 }, ..clamp() };

@@ -19,8 +19,9 @@ fn held(beam: Beam, supports: Vec<Support>) -> System {
     System::build(&model, Needs::default()).expect("a legal model")
 }
 
-/// What linear theory says of a straight cantilever under a tip moment, for whatever angle, taken along finite turns: a circle. Of it a chord misses
-/// the fourth order of a cell's angle, (δ/2)⁴/120 of its length.
+/// What linear theory says of a straight cantilever under a tip moment, for whatever angle, taken
+/// along finite turns: a circle. Of it a chord misses the fourth order of a cell's angle,
+/// (δ/2)⁴/120 of its length.
 #[test]
 fn a_straight_cantilever_turns_into_a_circle() {
     let cells = 16;
@@ -63,7 +64,8 @@ fn ancf_beam(nodes: Nodes) -> Beam {
 proptest! {
     #![proptest_config(super::cases(60))]
 
-    /// Newton's convergence needs no more than that: what the turns change is of second order. And nothing that is held moves otherwise than it is told to.
+    /// Newton's convergence needs no more than that: what the turns change is of second order. And
+    /// nothing that is held moves otherwise than it is told to.
     #[test]
     fn turns_differ_from_sums_in_the_second_order(beam in beam(), noise in noise(), both in any::<bool>()) {
         let end = Support { at: Place { beam: 0, s: free(&beam).beams()[0].basis.length() }, ..clamp() };
@@ -91,7 +93,8 @@ proptest! {
         prop_assert!((2.5..6.0).contains(&ratio), "half the increment divides the difference by {ratio}");
     }
 
-    /// Four states side by side feel what each feels alone: beams of all kinds, with loads that turn and loads that do not.
+    /// Four states side by side feel what each feels alone: beams of all kinds, with loads that
+    /// turn and loads that do not.
     #[test]
     fn forces_of_four_states_are_those_of_each(beam in beam(), noise in noise(), follower in any::<bool>()) {
         let s = 0.4 * free(&beam).beams()[0].basis.length();
@@ -117,8 +120,8 @@ proptest! {
         }
     }
 
-    /// Cells by fours are cells, whether their density knows four points or one: forces, and tangents after an iterate, where the curvature without stress differs from
-    /// point to point.
+    /// Cells by fours are cells, whether their density knows four points or one: forces, and
+    /// tangents after an iterate, where the curvature without stress differs from point to point.
     #[test]
     fn cells_by_fours_are_cells(noise in noise()) {
         let system = held(ancf_beam(Nodes::Uniform(15)), Vec::new());

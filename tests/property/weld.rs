@@ -14,7 +14,8 @@ fn end(trajectory: &Trajectory, probe: usize) -> [f64; 2] {
     [sample.x, sample.y]
 }
 
-/// Beams from point to point, each welded to the one before it, the first clamped at its start, a probe at the last one's end.
+/// Beams from point to point, each welded to the one before it, the first clamped at its start, a
+/// probe at the last one's end.
 fn chain(points: &[[f64; 2]], beams: &[(&str, &str)], rest: &str) -> String {
     let mut text = String::new();
     for (i, ((section, basis), ends)) in beams.iter().zip(points.windows(2)).enumerate() {
@@ -61,7 +62,8 @@ fn bars_in_series_bear_the_same_force() {
     }
 }
 
-/// A frame of three beams with different stiffnesses under a small force: the unit-load theorem, ∫ N n/EA + M m/EI ds.
+/// A frame of three beams with different stiffnesses under a small force: the unit-load theorem, ∫
+/// N n/EA + M m/EI ds.
 #[test]
 fn a_frame_of_different_stiffnesses_is_as_soft_as_linear_theory_says() {
     let points = [[0.0, 0.0], [0.3, 1.1], [1.2, 0.9], [1.5, 1.6]];

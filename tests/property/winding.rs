@@ -1,4 +1,5 @@
-//! Torsion springs count all turns: statics, motion, restarts and vibrations of what is wound up, against closed forms.
+//! Torsion springs count all turns: statics, motion, restarts and vibrations of what is wound up,
+//! against closed forms.
 
 use ancf::run::{Control, run};
 use ancf::trajectory::Trajectory;
@@ -76,7 +77,8 @@ fn a_rod_swings_through_all_turns_of_its_spring() {
     }
 }
 
-/// A couple winds the spring up by ten radians; the rod vibrates about it as about the stress-free state: f = √(k/J)/2π.
+/// A couple winds the spring up by ten radians; the rod vibrates about it as about the stress-free
+/// state: f = √(k/J)/2π.
 #[test]
 fn a_wound_spring_vibrates_as_a_slack_one() {
     let exact = 2_f64.sqrt() / TAU;

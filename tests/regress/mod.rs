@@ -1,5 +1,5 @@
-//! What a change of the solver would shift without breaking a tolerance: what is built for each case's scenes, and how
-//! much work they take. Accept a wanted change with `cargo insta review`.
+//! What a change of the solver would shift without breaking a tolerance: what is built for each
+//! case's scenes, and how much work they take. Accept a wanted change with `cargo insta review`.
 
 use ancf::run::{Control, inspect, run};
 use ancf::scene::Scene;
@@ -47,8 +47,8 @@ fn regress_inventories() {
     snapshot("inventories", &text);
 }
 
-/// Counts, not clocks, which depend on decisions of the step control alone, and round-off hardly ever turns those; and what the
-/// runs find, to ten digits.
+/// Counts, not clocks, which depend on decisions of the step control alone, and round-off hardly
+/// ever turns those; and what the runs find, to ten digits.
 #[test]
 fn regress_statistics_and_results() {
     let (mut counts, mut results) = (String::new(), String::new());
@@ -77,11 +77,13 @@ fn regress_statistics_and_results() {
     let stored = std::fs::read_to_string(stored).unwrap_or_default();
     // After the header, which ends with the second line of dashes.
     let stored = stored.splitn(3, "---\n").nth(2).unwrap_or_default();
-    // Asserted in either case: a snapshot that no test asserts is refused by `cargo insta test --unreferenced=reject`.
+    // Asserted in either case: a snapshot that no test asserts is refused by
+    // `cargo insta test --unreferenced=reject`.
     snapshot("results", if agree(stored, &results) { stored } else { &results });
 }
 
-/// What a stated accuracy takes, by every method: error estimates and tolerances of iterations that were off by some factor would show nowhere else.
+/// What a stated accuracy takes, by every method: error estimates and tolerances of iterations that
+/// were off by some factor would show nowhere else.
 #[test]
 fn regress_work_for_a_tolerance() {
     let pendulum = Suite::here().cases_folder().join("soft-pendulum/scene.toml");
@@ -137,8 +139,9 @@ fn found(name: &str, trajectory: &Trajectory) -> String {
     lines.join("\n") + "\n\n"
 }
 
-/// Another machine rounds otherwise; a motion of thousands of steps carries that to so many parts of the largest number in a line, or
-/// of 1 where all are smaller: what is zero but for round-off has no digits to compare.
+/// Another machine rounds otherwise; a motion of thousands of steps carries that to so many parts
+/// of the largest number in a line, or of 1 where all are smaller: what is zero but for round-off
+/// has no digits to compare.
 const ROUND_OFF: f64 = 1e-8;
 
 fn agree(stored: &str, now: &str) -> bool {

@@ -1,6 +1,7 @@
 //! The solver against `reference_data`: every case under `verification/cases`, every number of it.
 //!
-//! Cases, tolerances and the reasons for them are read from the case folders; there is no list here to keep up to date.
+//! Cases, tolerances and the reasons for them are read from the case folders; there is no list here
+//! to keep up to date.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

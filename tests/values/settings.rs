@@ -219,7 +219,8 @@ fn a_moment_that_follows_is_the_same_moment() {
     assert_eq!(bent(""), bent(", follower = true"));
 }
 
-/// An end that is typed with fewer digits than the length has is the end, twelve digits are no other place, and what lies beyond is refused.
+/// An end that is typed with fewer digits than the length has is the end, twelve digits are no
+/// other place, and what lies beyond is refused.
 #[test]
 fn places_are_where_the_scene_says() {
     let of = |at: &str| {
@@ -238,7 +239,8 @@ fn places_are_where_the_scene_says() {
     assert!(parse("scene.toml", &of("1.4142136")).is_err());
 }
 
-/// Two supports at one place may share the work, but not hold the same twice; as many polynomial terms as a support of shape functions can carry are legal.
+/// Two supports at one place may share the work, but not hold the same twice; as many polynomial
+/// terms as a support of shape functions can carry are legal.
 #[test]
 fn what_is_legal_up_to_its_bound() {
     let of = |supports: &str, terms: u32| {
@@ -283,7 +285,8 @@ fn nodes_of_a_shape_are_on_it() {
     assert!(shape.nodes[4][1] > 0.5);
 }
 
-/// A string carries nothing but its tension, and what moves has an energy but no force of its own in `effects.csv`.
+/// A string carries nothing but its tension, and what moves has an energy but no force of its own
+/// in `effects.csv`.
 #[test]
 fn a_string_has_no_shear_and_inertia_no_force() {
     let found = Written::of(

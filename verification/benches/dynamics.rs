@@ -1,5 +1,6 @@
-//! What motion costs: the soft pendulum by the trapezoidal rule and by Gauss collocation, and the time of a step as the number of
-//! elements grows. `cargo bench -p ancf-verification --bench dynamics`.
+//! What motion costs: the soft pendulum by the trapezoidal rule and by Gauss collocation, and the
+//! time of a step as the number of elements grows.
+//! `cargo bench -p ancf-verification --bench dynamics`.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! What statics cost: one Newton iteration, a whole roll-up, the tables of radial point interpolation, and the
-//! factorisations against each other. `cargo bench -p ancf-verification`.
+//! What statics cost: one Newton iteration, a whole roll-up, the tables of radial point
+//! interpolation, and the factorisations against each other. `cargo bench -p ancf-verification`.
 
 use std::hint::black_box;
 

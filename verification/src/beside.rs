@@ -9,8 +9,9 @@ use ancf_verification::{Failure, peers};
 
 use crate::chosen;
 
-/// Runs the cases by Exudyn and by ours, and prints the last place of every probe, or the frequencies, side by side. No case
-/// named: those with a peer among their oracles. The answer is whether any scene could be compared.
+/// Runs the cases by Exudyn and by ours, and prints the last place of every probe, or the
+/// frequencies, side by side. No case named: those with a peer among their oracles. The answer is
+/// whether any scene could be compared.
 pub fn print(suite: &Suite, cases: &[String]) -> Result<bool, Failure> {
     let mut compared = 0;
     for name in chosen(suite, cases)? {

@@ -1,7 +1,8 @@
 //! Python inside this process: scripts are loaded once, take JSON and give JSON.
 //!
-//! JSON keeps every digit (both sides print the shortest text that reads back the same number), and it keeps scripts free
-//! of Rust and Rust free of Python's types: a script can be tried at a prompt with the very same text.
+//! JSON keeps every digit (both sides print the shortest text that reads back the same number), and
+//! it keeps scripts free of Rust and Rust free of Python's types: a script can be tried at a prompt
+//! with the very same text.
 
 use std::ffi::CString;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,10 @@
 //! `verify browser`: the pages in a real browser.
 //!
-//! Runs, a cost study and a sweep are made anew; `browser/look.py` opens their pages and the report's in Chromium, and
-//! says what is wrong: messages on the console, pictures without a size or with nothing in them, movies that do
-//! not advance or do not stop, numbers that are not those of the files beside them. With `prove`, pages
-//! that are damaged in each of these ways must be found out.
+//! Runs, a cost study and a sweep are made anew; `browser/look.py` opens their pages and the
+//! report's in Chromium, and says what is wrong: messages on the console, pictures without a size
+//! or with nothing in them, movies that do not advance or do not stop, numbers that are not those
+//! of the files beside them. With `prove`, pages that are damaged in each of these ways must be
+//! found out.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -22,7 +23,8 @@ use crate::report;
 /// Where pages, pictures of them and `found.json` are written, from the root of the repository.
 pub const FOLDER: &str = "target/verification/browser";
 
-/// A page of every kind: few states and many, vibrations, critical loads, a path that turns back, obstacles, several beams.
+/// A page of every kind: few states and many, vibrations, critical loads, a path that turns back,
+/// obstacles, several beams.
 const RUNS: [(&str, &str); 8] = [
     ("roll-up", "verification/cases/roll-up-shapes/rpim.toml"),
     ("soft-pendulum", "tests/scenes/soft-pendulum.toml"),
@@ -42,7 +44,8 @@ const CASES: [&str; 4] = ["distributed-load", "euler-column", "hard-shape-parame
 /// Pages of the report of which a picture is kept.
 const PICTURES: [&str; 4] = ["overview", "hard-cases", "distributed-load", "roll-up-table-4"];
 
-/// What is replaced in the page of a falling pendulum, by what, and the problem that must then be found.
+/// What is replaced in the page of a falling pendulum, by what, and the problem that must then be
+/// found.
 const DAMAGES: [(&str, &str, &str); 10] = [
     ("\"use strict\";", "\"use strict\"; console.warn(\"a message\");", "console: "),
     ("const margin = 26;", "const margin = missing;", "console: "),
@@ -108,7 +111,8 @@ struct Seen {
     frames: usize,
 }
 
-/// Looks at the pages, those of `report` among them or else of a report on some cases; the answer is whether nothing is wrong.
+/// Looks at the pages, those of `report` among them or else of a report on some cases; the answer
+/// is whether nothing is wrong.
 pub fn print(suite: &Suite, report: Option<&Path>, prove: bool) -> Result<bool, Failure> {
     let folder = suite.root.join(FOLDER);
     // What an earlier version wrote is not to be looked at.

@@ -15,8 +15,8 @@ pub const FOLDER: &str = "target/verification/work-precision";
 /// Steps of the progress bar.
 const PARTS: f64 = 1000.0;
 
-/// Measures problems, all if none is named, writes their files into `out` and prints what became of the claims. The answer is
-/// whether no claim failed.
+/// Measures problems, all if none is named, writes their files into `out` and prints what became of
+/// the claims. The answer is whether no claim failed.
 pub fn print(suite: &Suite, names: &[String], quick: bool, out: &Path) -> Result<bool, Failure> {
     let all = work::names(suite)?;
     if let Some(unknown) = names.iter().find(|name| !all.contains(name)) {

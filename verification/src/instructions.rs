@@ -1,5 +1,6 @@
-//! `verify instructions`: what runs cost, counted instead of timed. Clocks of shared machines lie by tens of per cent; instructions
-//! counted by valgrind's callgrind repeat to a part in a thousand.
+//! `verify instructions`: what runs cost, counted instead of timed. Clocks of shared machines lie
+//! by tens of per cent; instructions counted by valgrind's callgrind repeat to a part in a
+//! thousand.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -69,8 +70,8 @@ pub struct Day {
     pub prices: Vec<(String, f64)>,
 }
 
-/// Counts with `program`, prints the counts beside those of `against` or else of the last time, and adds them to the history. The answer is whether
-/// none grew by more than 1 %.
+/// Counts with `program`, prints the counts beside those of `against` or else of the last time, and
+/// adds them to the history. The answer is whether none grew by more than 1 %.
 pub fn print(suite: &Suite, program: &Path, against: Option<&Path>) -> Result<bool, Failure> {
     let list: List = toml::from_str(&read(&suite.root.join(LIST))?).map_err(|e| format!("{LIST}: {e}"))?;
     let file = suite.root.join(HISTORY);

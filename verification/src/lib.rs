@@ -1,4 +1,5 @@
-//! What verification needs besides pure Rust: Python, and in it the codes that ours is compared with.
+//! What verification needs besides pure Rust: Python, and in it the codes that ours is compared
+//! with.
 //!
 //! ```text
 //! scene.toml ──ancf::scene──► Model + Analysis ─┬─► ancf::run                                   ─► tips, energies, …
@@ -12,8 +13,8 @@
 //! | [`peers`] | a scene in the words of another code, and its answer |
 //! | [`work`] | what accuracy costs, ours and another code's |
 //!
-//! Nothing outside this package links Python. Where Python or a package is missing, whatever asks for it fails and says
-//! what to install; nothing is skipped.
+//! Nothing outside this package links Python. Where Python or a package is missing, whatever asks
+//! for it fails and says what to install; nothing is skipped.
 #![warn(missing_docs)]
 
 pub mod bridge;

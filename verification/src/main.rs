@@ -1,4 +1,5 @@
-//! `verify`: makes the reference data of the verification cases, and reports how the solver compares with it.
+//! `verify`: makes the reference data of the verification cases, and reports how the solver
+//! compares with it.
 
 mod beside;
 mod browser;
@@ -26,7 +27,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Run every case and write index.html and report.json; exit status 1 if any claim does not hold
+    /// Run every case and write index.html and report.json; exit status 1 if any claim does not
+    /// hold
     Report {
         /// Folder of the report
         #[arg(short, long, default_value = "target/verification")]
@@ -50,8 +52,9 @@ enum Command {
         /// Cases; those with reference data by a peer if none is named
         cases: Vec<String>,
     },
-    /// Measure what accuracy costs, ours and Exudyn's in turn, and write tables and diagrams; exit status 1 if a claim about
-    /// time does not hold. For numbers that count: a release build, and a machine that does nothing else
+    /// Measure what accuracy costs, ours and Exudyn's in turn, and write tables and diagrams; exit
+    /// status 1 if a claim about time does not hold. For numbers that count: a release build, and a
+    /// machine that does nothing else
     WorkPrecision {
         /// Leave out the slow settings of other codes
         #[arg(long)]
@@ -62,10 +65,11 @@ enum Command {
         /// Problems, files of verification/work-precision; all if none is named
         problems: Vec<String>,
     },
-    /// Open the pages of runs, of a cost study and of the report in Chromium and say what is wrong with them; exit status 1 if
-    /// anything is. Needs chromium and chromedriver
+    /// Open the pages of runs, of a cost study and of the report in Chromium and say what is wrong
+    /// with them; exit status 1 if anything is. Needs chromium and chromedriver
     Browser {
-        /// A report's index.html with report.json beside it; one of some cases is made if none is named
+        /// A report's index.html with report.json beside it; one of some cases is made if none is
+        /// named
         #[arg(long, value_name = "HTML")]
         report: Option<PathBuf>,
         /// Damage pages too: every damage must be found out
@@ -74,10 +78,11 @@ enum Command {
     },
     /// Compute the numbers that the documents quote; exit status 1 if one of them is false
     Numbers,
-    /// Measure what a time step costs per element, and the memory it takes, from 100 to 100,000 elements
+    /// Measure what a time step costs per element, and the memory it takes, from 100 to 100,000
+    /// elements
     Scaling,
-    /// Count the instructions of some runs with valgrind, keep them for the report, and compare them with another build's or the last
-    /// time's; exit status 1 if a count grew by more than 1 %
+    /// Count the instructions of some runs with valgrind, keep them for the report, and compare
+    /// them with another build's or the last time's; exit status 1 if a count grew by more than 1 %
     Instructions {
         /// The program of another build
         #[arg(long, value_name = "PROGRAM")]

@@ -1,9 +1,10 @@
 //! `verify numbers`: are the numbers of the documents still true?
 //!
-//! `verification/numbers.toml` quotes them. A `[[number]]` is computed anew, by a scene and a check as in `case.toml`, and must lie
-//! in the interval that its digits mean. What a clock says is `[[measured]]`, with the command that measures it; what a
-//! test or a case holds is `[[held]]`, with its name. Every number of the documents that is written with a power of ten must be
-//! quoted, so that none is added without saying where it comes from.
+//! `verification/numbers.toml` quotes them. A `[[number]]` is computed anew, by a scene and a check
+//! as in `case.toml`, and must lie in the interval that its digits mean. What a clock says is
+//! `[[measured]]`, with the command that measures it; what a test or a case holds is `[[held]]`,
+//! with its name. Every number of the documents that is written with a power of ten must be quoted,
+//! so that none is added without saying where it comes from.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -78,7 +79,8 @@ impl Numbers {
     }
 }
 
-/// Computes the numbers and prints them beside their words; the answer is whether all of them are true.
+/// Computes the numbers and prints them beside their words; the answer is whether all of them are
+/// true.
 pub fn print(suite: &Suite) -> Result<bool, Failure> {
     let numbers = Numbers::read(suite)?;
     let problems = problems(suite, &numbers)?;
@@ -116,7 +118,8 @@ fn compute(suite: &Suite, number: &Number) -> Result<f64, Failure> {
     Ok(compare::member(&tables, 0, &number.check, 0, &run)?.error)
 }
 
-/// Words that are not in their document, numbers of documents that are not quoted, cases that are not there.
+/// Words that are not in their document, numbers of documents that are not quoted, cases that are
+/// not there.
 fn problems(suite: &Suite, numbers: &Numbers) -> Result<Vec<String>, Failure> {
     let mut problems = Vec::new();
     let mut texts = BTreeMap::new();
@@ -190,7 +193,8 @@ fn powers_of_ten(text: &str) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// Catches a document that was changed without its numbers, and a new number that nobody computes.
+    /// Catches a document that was changed without its numbers, and a new number that nobody
+    /// computes.
     #[test]
     fn every_number_of_the_documents_says_where_it_comes_from() {
         let suite = Suite::here();

@@ -9,7 +9,8 @@ use serde::Deserialize;
 
 use crate::Failure;
 
-/// The interpreter that this program is linked to. Another one's environment would have packages for another version.
+/// The interpreter that this program is linked to. Another one's environment would have packages
+/// for another version.
 const INTERPRETER: &str = env!("ANCF_PYTHON");
 
 /// What to install where something is missing.
@@ -60,8 +61,8 @@ print(json.dumps({
 "#;
 
 impl Python {
-    /// The environment with the packages that `requirements.txt` of the oracles and of the peers pin; installs them
-    /// where they are not there or no longer the same.
+    /// The environment with the packages that `requirements.txt` of the oracles and of the peers
+    /// pin; installs them where they are not there or no longer the same.
     ///
     /// # Errors
     /// Where the interpreter, its venv module or a package is missing.

@@ -1,4 +1,5 @@
-//! `verify scaling`: what a time step costs per element as elements become many, and the memory that it takes.
+//! `verify scaling`: what a time step costs per element as elements become many, and the memory
+//! that it takes.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -12,13 +13,15 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::report::{machine, now};
 
-/// Where the results are written, and where the report looks for them, from the root of the repository.
+/// Where the results are written, and where the report looks for them, from the root of the
+/// repository.
 pub const FILE: &str = "target/verification/scaling.json";
 
 /// Elements of 6 cm, hanging from one end.
 const ELEMENTS: [usize; 4] = [100, 1_000, 10_000, 100_000];
-/// Steps of 1 ms, of which those after the first few are measured: what comes before belongs to no step, and with many elements the operating system takes as
-/// long as 10 steps to clear the memory that is touched for the first time. A motion is repeated until this much time has gone.
+/// Steps of 1 ms, of which those after the first few are measured: what comes before belongs to no
+/// step, and with many elements the operating system takes as long as 10 steps to clear the memory
+/// that is touched for the first time. A motion is repeated until this much time has gone.
 const STEPS: usize = 40;
 const FIRST: usize = 10;
 const LEAST: Duration = Duration::from_secs(2);
@@ -41,7 +44,8 @@ pub struct Row {
     pub elements: usize,
     /// Shortest time of a step, per element \[s\].
     pub seconds: f64,
-    /// Shortest time until the first step is done, the system's construction included, per element \[s\].
+    /// Shortest time until the first step is done, the system's construction included, per element
+    /// \[s\].
     pub start: f64,
     /// Peak memory of the process above that before the run \[MB\], where the system tells.
     pub megabytes: Option<f64>,
@@ -125,7 +129,8 @@ pub fn read(file: &Path) -> Result<Option<Scaling>, Failure> {
     Ok(Some(serde_json::from_str(&text).map_err(|e| format!("{}: {e}", file.display()))?))
 }
 
-/// Peak resident memory \[MB\] where the system tells; with `reset` that of now, from which it counts anew.
+/// Peak resident memory \[MB\] where the system tells; with `reset` that of now, from which it
+/// counts anew.
 fn peak(reset: bool) -> Option<f64> {
     if reset {
         std::fs::write("/proc/self/clear_refs", "5").ok()?;

@@ -6,13 +6,15 @@ use std::path::Path;
 use ancf::cost::{LeftOut, Report, ReportedRung};
 use ancf::output::plot::human;
 
-/// A setting is close to the front where nothing with its error takes less than this part of its time.
+/// A setting is close to the front where nothing with its error takes less than this part of its
+/// time.
 const CLOSE: f64 = 0.8;
 
 /// Settings left out for one reason that are named on the terminal.
 const NAMED: usize = 3;
 
-/// The settings on the front and close to it, and the lines for the cheapest one that meets the target.
+/// The settings on the front and close to it, and the lines for the cheapest one that meets the
+/// target.
 pub fn table(report: &Report<'_>, directory: &Path) -> String {
     let error = |rung: &ReportedRung| rung.measured.deviation.error;
     let close = |rung: &ReportedRung| {
@@ -129,7 +131,8 @@ mod tests {
         }
     }
 
-    /// Settings on the front and those close to it, by their time; one that takes 1.3 times as long for the same is left out.
+    /// Settings on the front and those close to it, by their time; one that takes 1.3 times as long
+    /// for the same is left out.
     #[test]
     fn the_table_reads_as_reviewed() {
         let error = |error: f64| Deviation { error, ..Deviation::default() };

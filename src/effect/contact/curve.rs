@@ -1,10 +1,13 @@
 //! The curve of a cell as a polynomial in Bernstein's form, r(ξ) = Σ_j B_j(ξ) P_j with ξ ∈ [0, 1].
 //!
-//! The curve lies within the convex hull of its control points P_j, which tells in one look what is far from an obstacle; and a polynomial has at most as many
-//! roots as its coefficients have changes of sign (Farin, *Curves and Surfaces for CAGD*, 2002, ch. 5), which finds all places where a curve crosses a border.
+//! The curve lies within the convex hull of its control points P_j, which tells in one look what is
+//! far from an obstacle; and a polynomial has at most as many roots as its coefficients have
+//! changes of sign (Farin, *Curves and Surfaces for CAGD*, 2002, ch. 5), which finds all places
+//! where a curve crosses a border.
 //!
-//! Control points are linear in the beam's coordinates. The cable element's cubic is exact; shape functions that are no polynomials are interpolated between
-//! Lobatto points, by as high a degree as they need.
+//! Control points are linear in the beam's coordinates. The cable element's cubic is exact; shape
+//! functions that are no polynomials are interpolated between Lobatto points, by as high a degree
+//! as they need.
 
 use crate::basis::{Basis, BasisError, Quadrature};
 use nalgebra::{DMatrix, Vector2};
@@ -182,7 +185,8 @@ impl Polynomial {
         second.roots(zero, [middle, to], roots);
     }
 
-    /// The only root, by false position that halves the value at an end that stays (the Illinois rule).
+    /// The only root, by false position that halves the value at an end that stays (the Illinois
+    /// rule).
     fn root(&self, [mut low, mut high]: [f64; 2]) -> f64 {
         let (mut from, mut to, mut side) = (0.0, 1.0, 0_i8);
         let mut x = 0.0;

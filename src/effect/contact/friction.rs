@@ -1,7 +1,8 @@
 //! Dry friction of a contact: elastic tangential springs with Coulomb's limit.
 //!
-//! Every point of the beam that touches is held to the obstacle by a spring of its own along the surface. With the elastic slip eₙ that it had in the last accepted
-//! state and the way Δσ that it has gone along the surface since,
+//! Every point of the beam that touches is held to the obstacle by a spring of its own along the
+//! surface. With the elastic slip eₙ that it had in the last accepted state and the way Δσ that it
+//! has gone along the surface since,
 //!
 //! ```text
 //! trial     e' = eₙ + Δσ
@@ -10,11 +11,14 @@
 //! traction  t = −k_t e                    per length, stored ½ k_t e², lost the rest of its work
 //! ```
 //!
-//! (the return mapping of elastoplasticity; Wriggers, *Computational Contact Mechanics*, 2006, ch. 5 and 10). σ counts along the surface of the obstacle at the beam's distance, so
-//! that the spring turns with the surface's normal. A point that has come to touch since the last state counts the part of its way that it touched.
+//! (the return mapping of elastoplasticity; Wriggers, *Computational Contact Mechanics*, 2006, ch.
+//! 5 and 10). σ counts along the surface of the obstacle at the beam's distance, so that the spring
+//! turns with the surface's normal. A point that has come to touch since the last state counts the
+//! part of its way that it touched.
 //!
-//! The tangent is that of the mapping: with sliding it is not symmetric. Newton's method leaves a concave force behind if it starts far in the sliding range, so that
-//! points that have only come to touch take the secant μ p/|e'| instead.
+//! The tangent is that of the mapping: with sliding it is not symmetric. Newton's method leaves a
+//! concave force behind if it starts far in the sliding range, so that points that have only come
+//! to touch take the secant μ p/|e'| instead.
 
 use super::Pressing;
 use super::curve::{Curve, MOST};
@@ -25,11 +29,13 @@ use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Part of the limit from which on a point counts as sliding: one that slid in the last state goes on, as the tangent there has to know.
+/// Part of the limit from which on a point counts as sliding: one that slid in the last state goes
+/// on, as the tangent there has to know.
 const AT_LIMIT: f64 = 1e-9;
 
-/// Parts of a cell in each of which friction is summed and remembered by two points. What is remembered moves with the edges of a contact only in the parts
-/// where these are, in which little is borne.
+/// Parts of a cell in each of which friction is summed and remembered by two points. What is
+/// remembered moves with the edges of a contact only in the parts where these are, in which little
+/// is borne.
 const PARTS: f64 = 4.0;
 /// The rule of Gauss with two points on (0, 1).
 const RULE: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
@@ -94,7 +100,8 @@ impl Rubbing {
         (self.contact.cells.count() * PARTS as usize * RULE.len(), 0)
     }
 
-    /// Calls `visit` with the points of the pieces that touch in the state `q`: cell, piece, and points in the order of the rule.
+    /// Calls `visit` with the points of the pieces that touch in the state `q`: cell, piece, and
+    /// points in the order of the rule.
     fn for_touching(&self, held: &Held, q: &[f64], mut visit: impl FnMut(usize, [f64; 2], &Touching)) {
         let contact = &*self.contact;
         let empty = Vec::new();
@@ -113,7 +120,8 @@ impl Rubbing {
         }
     }
 
-    /// Calls `visit` with the pieces of a cell that touch, divided at places that do not move with the edges of the contact.
+    /// Calls `visit` with the pieces of a cell that touch, divided at places that do not move with
+    /// the edges of the contact.
     fn for_pieces(&self, curve: &Curve, mut visit: impl FnMut([f64; 2])) {
         self.contact.for_pieces(curve, |mut from, to| {
             while from < to {
@@ -139,7 +147,8 @@ impl Rubbing {
         let (distance, normal, _) = penalty.obstacle.distance(&r);
         let depth = penalty.gap - distance;
         let (way, along, bend) = penalty.obstacle.travel(penalty.gap, &start, &r);
-        // Of a point that did not touch before: the part of the way on which it does, and how that part grows.
+        // Of a point that did not touch before: the part of the way on which it does, and how that
+        // part grows.
         let away = penalty.gap_at(&start).max(0.0);
         let new = slip.is_none();
         let (share, growth) = match depth + away {
@@ -159,7 +168,8 @@ impl Rubbing {
         Touching { weight, values, slip, along, limit, slides, stiffness }
     }
 
-    /// `f += ` the forces ∂U/∂q that the springs would have in the state `q`, where `held` was the last.
+    /// `f += ` the forces ∂U/∂q that the springs would have in the state `q`, where `held` was the
+    /// last.
     pub fn add_force(&self, held: &Held, q: &[f64], f: &mut [f64]) {
         let mut sum = ControlForces::default();
         self.for_touching(held, q, |cell, _, point| {
@@ -241,7 +251,8 @@ impl Rubbing {
         sum.add_spread(RULE.len(), values);
     }
 
-    /// Whether points slide that can bear more than half of what all can, and then whether against friction; `v` are the velocities.
+    /// Whether points slide that can bear more than half of what all can, and then whether against
+    /// friction; `v` are the velocities.
     pub fn sliding(&self, held: &Held, q: &[f64], v: &[f64]) -> Option<bool> {
         let (mut power, mut balance) = (0.0, 0.0);
         self.for_touching(held, q, |cell, _, point| {

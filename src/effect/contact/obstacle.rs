@@ -121,7 +121,8 @@ impl Obstacle {
         }
     }
 
-    /// How deep a point can be within what begins at the distance `gap`: infinite where there is no other side.
+    /// How deep a point can be within what begins at the distance `gap`: infinite where there is no
+    /// other side.
     pub fn deepest(&self, gap: f64) -> f64 {
         match *self {
             Self::Circle { radius, inside: false, .. } => radius + gap,
@@ -165,8 +166,8 @@ impl Obstacle {
         }
     }
 
-    /// By how much a point that goes from `start` to `r` moves along the surface at the distance `gap`, counter-clockwise \[m\]; its gradient and second
-    /// derivative by `r`.
+    /// By how much a point that goes from `start` to `r` moves along the surface at the distance
+    /// `gap`, counter-clockwise \[m\]; its gradient and second derivative by `r`.
     pub fn travel(
         &self,
         gap: f64,
@@ -233,7 +234,8 @@ impl Obstacle {
     }
 }
 
-/// Gradient and second derivative of the way along a circle of radius `reach` by the point `d` from its centre.
+/// Gradient and second derivative of the way along a circle of radius `reach` by the point `d` from
+/// its centre.
 fn around(d: &Vector2<f64>, reach: f64) -> (Vector2<f64>, Matrix2<f64>) {
     let square = d.norm_squared();
     if square == 0.0 {
@@ -244,7 +246,8 @@ fn around(d: &Vector2<f64>, reach: f64) -> (Vector2<f64>, Matrix2<f64>) {
     (across * (reach / square), bend)
 }
 
-/// The place along the border of a box with half sides `half`, rounded by `gap`, that is nearest to `r`: counter-clockwise from the start of its side at x > 0.
+/// The place along the border of a box with half sides `half`, rounded by `gap`, that is nearest to
+/// `r`: counter-clockwise from the start of its side at x > 0.
 fn along_box(half: [f64; 2], gap: f64, r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>) {
     let mut offset = 0.0;
     let mut nearest = (f64::NEG_INFINITY, 0.0, Vector2::zeros());

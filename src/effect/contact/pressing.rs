@@ -8,12 +8,15 @@ use crate::effect::{Action, Actions, Density, Earlier, Effect, Kind, Workspace};
 use crate::linear::Matrix;
 use nalgebra::Vector2;
 
-/// Points of the rule on a piece, beyond the polynomial's degree: with a straight border forces are then exact.
+/// Points of the rule on a piece, beyond the polynomial's degree: with a straight border forces are
+/// then exact.
 const MORE_POINTS: usize = 2;
-/// Length of a part of a piece against its distance from the point that the obstacle's distance is measured from, at most. That distance is a root of a polynomial, which
-/// the rule sums the worse the nearer its branch points are: with this length to 1e-5 (3.3⁻¹⁰ for five points).
+/// Length of a part of a piece against its distance from the point that the obstacle's distance is
+/// measured from, at most. That distance is a root of a polynomial, which the rule sums the worse
+/// the nearer its branch points are: with this length to 1e-5 (3.3⁻¹⁰ for five points).
 const LENGTH_TO_MIDDLE: f64 = 4.0 / 3.0;
-/// Most parts of a piece: beyond them the beam has come too near to the obstacle's middle, which analyses refuse or report.
+/// Most parts of a piece: beyond them the beam has come too near to the obstacle's middle, which
+/// analyses refuse or report.
 const MOST_PARTS: f64 = 16.0;
 /// Pieces shorter than this part of a cell are none.
 const SHORTEST: f64 = 1e-12;
@@ -60,7 +63,8 @@ impl Pressing {
         cells.filter(|(_, curve)| self.penalty.obstacle.clearance(curve.points().iter()) < self.penalty.gap)
     }
 
-    /// Calls `visit` with the pieces of a cell that touch, in order: intervals of ξ in which the distance is smooth.
+    /// Calls `visit` with the pieces of a cell that touch, in order: intervals of ξ in which the
+    /// distance is smooth.
     pub(super) fn for_pieces(&self, curve: &Curve, mut visit: impl FnMut(f64, f64)) {
         let mut roots = Vec::new();
         self.borders.iter().for_each(|border| border.crossings(curve, &mut roots));

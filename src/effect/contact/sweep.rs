@@ -1,9 +1,11 @@
 //! What a beam passes on its way from one state to another.
 //!
-//! Between two states coordinates are taken to move along a cubic of a parameter θ ∈ [0, 1]. A cell then sweeps a patch r(ξ, θ), a polynomial in both, which lies in the
-//! convex hull of its control points. Patches that this shows to be clear of the obstacle are done with; others are divided, in θ or in ξ, and the
-//! earlier half is looked at first. So the first θ is found at which any point of the curve is deeper than a given level, however thin the
-//! obstacle and however long the way.
+//! Between two states coordinates are taken to move along a cubic of a parameter θ ∈ [0, 1]. A cell
+//! then sweeps a patch r(ξ, θ), a polynomial in both, which lies in the convex hull of its control
+//! points. Patches that this shows to be clear of the obstacle are done with; others are divided,
+//! in θ or in ξ, and the earlier half is looked at first. So the first θ is found at which any
+//! point of the curve is deeper than a given level, however thin the obstacle and however long the
+//! way.
 
 use super::Pressing;
 use super::curve::Curve;
@@ -59,7 +61,8 @@ impl Patch {
 }
 
 impl Pressing {
-    /// The first θ at which a point of the beam is deeper than `level` \[m\] on its way, if there is one. Depths are found to `fine` \[m\].
+    /// The first θ at which a point of the beam is deeper than `level` \[m\] on its way, if there
+    /// is one. Depths are found to `fine` \[m\].
     pub fn first_deeper(&self, way: Way<'_>, level: f64, fine: f64) -> Option<f64> {
         let mut first = f64::INFINITY;
         let (mut patches, mut left) = (0, Vec::new());
@@ -101,8 +104,9 @@ impl Pressing {
         self.first_deeper(way, GRAZE * shortest, GRAZE * shortest)
     }
 
-    /// The first θ at which the beam is deeper than before by so much of the obstacle's thickness that the force on the way is not seen; and, unless it
-    /// `may_cross`, at which it might leave the obstacle on the other side.
+    /// The first θ at which the beam is deeper than before by so much of the obstacle's thickness
+    /// that the force on the way is not seen; and, unless it `may_cross`, at which it might leave
+    /// the obstacle on the other side.
     pub fn conflict(&self, way: Way<'_>, may_cross: bool) -> Option<f64> {
         let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
         if deepest.is_infinite() {

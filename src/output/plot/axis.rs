@@ -20,8 +20,8 @@ pub struct Axis {
     pub scale: Scale,
     /// The range to show; `None`: that of the data, with a margin.
     pub range: Option<[f64; 2]>,
-    /// Values whose magnitude stays below this are zero to the reader: the axis then spans ± this much, so that
-    /// round-off does not look like a signal.
+    /// Values whose magnitude stays below this are zero to the reader: the axis then spans ± this
+    /// much, so that round-off does not look like a signal.
     pub negligible: f64,
     /// Ticks at whole numbers only.
     pub whole: bool,

@@ -39,7 +39,8 @@ fn failed(error: impl Display) -> PlotError {
     PlotError::Drawing(error.to_string())
 }
 
-/// Drawing units per pixel: the library rounds to whole units, and whole pixels would show as jitter.
+/// Drawing units per pixel: the library rounds to whole units, and whole pixels would show as
+/// jitter.
 const UNIT: f64 = 10.0;
 /// Height of ordinary text \[px\].
 const TEXT: f64 = 12.5;
@@ -91,7 +92,8 @@ struct Entry {
 
 const LEGEND_LINE: f64 = 20.0;
 
-/// Part of the picture's height that the legend takes at most: of hundreds of beams the last are drawn without their names.
+/// Part of the picture's height that the legend takes at most: of hundreds of beams the last are
+/// drawn without their names.
 const LEGEND_PART: f64 = 0.3;
 
 /// Room for the sample of a series in the legend \[px\].
@@ -118,7 +120,8 @@ fn layout(chart: &Chart) -> Result<Layout, PlotError> {
     let title = if chart.title.is_empty() { 0.0 } else { 1.9 * TEXT };
     let bottom = 0.5 * GAP + 1.7 * TEXT + desc(&chart.x.label);
     let right = 2.0 * GAP;
-    // The ticks of y decide the room on the left, and for equal lengths the reverse: take the widest tick first.
+    // The ticks of y decide the room on the left, and for equal lengths the reverse: take the
+    // widest tick first.
     let draft = Ruler::new(&chart.y, y_span, 6.0);
     let left = GAP + desc(&chart.y.label) + CHARACTER * draft.widest().max(3) as f64 + GAP;
     let plot_width = width - left - right;

@@ -1,5 +1,5 @@
-//! Plots described as data and drawn as SVG text, without fonts or files: for the results of a run and for the
-//! verification report alike.
+//! Plots described as data and drawn as SVG text, without fonts or files: for the results of a run
+//! and for the verification report alike.
 //!
 //! ```
 //! use ancf::output::plot::{Axis, Chart, PALETTE, Series};
@@ -24,8 +24,8 @@ pub use number::human;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Colour(pub u8, pub u8, pub u8);
 
-/// Colours that stay distinct to colour-blind readers and in grey print (M. Okabe, K. Ito, *Color Universal Design*,
-/// 2008), strongest first.
+/// Colours that stay distinct to colour-blind readers and in grey print (M. Okabe, K. Ito, *Color
+/// Universal Design*, 2008), strongest first.
 pub const PALETTE: [Colour; 8] = [
     Colour(0, 114, 178),
     Colour(213, 94, 0),
@@ -128,7 +128,8 @@ pub struct Chart {
     pub series: Vec<Series>,
     /// Faint vertical lines at these x.
     pub separators: Vec<f64>,
-    /// One metre is as long on both axes (both linear); the height then follows from the data, up to `height`.
+    /// One metre is as long on both axes (both linear); the height then follows from the data, up
+    /// to `height`.
     pub equal_aspect: bool,
     /// Width of the picture \[px\].
     pub width: u32,

@@ -22,8 +22,8 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// `value` for a table: up to `digits` significant digits, trailing zeros dropped, powers of ten for what is very
-/// large or small.
+/// `value` for a table: up to `digits` significant digits, trailing zeros dropped, powers of ten
+/// for what is very large or small.
 ///
 /// ```
 /// use ancf::output::plot::human;

@@ -40,7 +40,8 @@ pub struct StaticTable {
 pub struct ArcLengthTable {
     /// Stop when the load factor first reaches this value.
     pub until_load: Option<Quantity<Ratio>>,
-    /// Stop after this many points on the path; 1000 when left out. A path that has not reached its `until` by then is incomplete.
+    /// Stop after this many points on the path; 1000 when left out. A path that has not reached its
+    /// `until` by then is incomplete.
     pub max_points: Option<Located<Count<1>>>,
     /// Longest step, as a fraction of the beam's length.
     pub max_step: Option<Quantity<Ratio, Positive>>,
@@ -61,7 +62,8 @@ pub struct UntilProbeTable {
     pub y: Option<Quantity<Length>>,
 }
 
-/// Motion in time; at most one integrator, `radau` with three stages and a tolerance of 1e-6 when left out.
+/// Motion in time; at most one integrator, `radau` with three stages and a tolerance of 1e-6 when
+/// left out.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DynamicTable {
@@ -71,16 +73,19 @@ pub struct DynamicTable {
     pub output_every: Option<Located<Quantity<Time, Positive>>>,
     /// Chung and Hulbert's generalised-α method.
     pub generalized_alpha: Option<Located<GeneralizedAlphaTable>>,
-    /// Gauss collocation, of order 2, 4 or 6: symplectic with a fixed `step`; with a `tolerance` it damps what is too fast to be followed.
+    /// Gauss collocation, of order 2, 4 or 6: symplectic with a fixed `step`; with a `tolerance` it
+    /// damps what is too fast to be followed.
     pub gauss: Option<Located<GaussTable>>,
-    /// Radau IIA collocation, of order 3 or 5: damps what is too fast to be followed; the one that is taken when none is named.
+    /// Radau IIA collocation, of order 3 or 5: damps what is too fast to be followed; the one that
+    /// is taken when none is named.
     pub radau: Option<Located<RadauTable>>,
     /// Probes' coordinates that cross a value.
     #[serde(default)]
     pub event: Vec<EventTable>,
 }
 
-/// A probe's coordinate reaches a value, `x` or `y`, from one side: also where it turns back there, and as often as it does within a step.
+/// A probe's coordinate reaches a value, `x` or `y`, from one side: also where it turns back there,
+/// and as often as it does within a step.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["x"] }, { "required": ["y"] }]))]
@@ -124,7 +129,8 @@ pub struct GeneralizedAlphaTable {
     /// Spectral radius at infinite frequency, from 0 to 1; 0.9 when left out.
     #[schemars(range(min = 0, max = 1))]
     pub spectral_radius: Option<Located<Quantity<Ratio>>>,
-    /// With `step`: error of positions, in beam lengths, that the iteration of a step may leave; 1e-11 when left out.
+    /// With `step`: error of positions, in beam lengths, that the iteration of a step may leave;
+    /// 1e-11 when left out.
     pub newton_tolerance: Option<Located<Quantity<Ratio, Positive>>>,
 }
 

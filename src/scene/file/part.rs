@@ -1,4 +1,5 @@
-//! Tables of what takes part besides beams, supports and loads: damping, springs, masses, fluids, contacts; and of joints.
+//! Tables of what takes part besides beams, supports and loads: damping, springs, masses, fluids,
+//! contacts; and of joints.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -35,9 +36,11 @@ pub struct SpringTable {
     pub beam: Located<String>,
     /// Which point of it.
     pub at: Located<At>,
-    /// The end on the ground; without it the point is tied to where it is in the stress-free shape, in all directions.
+    /// The end on the ground; without it the point is tied to where it is in the stress-free shape,
+    /// in all directions.
     pub anchor: Option<Vector<Length>>,
-    /// Length without force, of a spring with an anchor; that of the stress-free shape when left out.
+    /// Length without force, of a spring with an anchor; that of the stress-free shape when left
+    /// out.
     pub length: Option<Located<Quantity<Length>>>,
     /// Force per length.
     pub stiffness: Option<Quantity<ForcePerLength, Positive>>,
@@ -45,7 +48,8 @@ pub struct SpringTable {
     pub damping: Option<Quantity<TranslationalDamping, Positive>>,
 }
 
-/// A torsional spring and dashpot on the direction of r' at a point; `stiffness`, `damping` or both.
+/// A torsional spring and dashpot on the direction of r' at a point; `stiffness`, `damping` or
+/// both.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TorsionSpringTable {
@@ -206,7 +210,8 @@ pub struct BoxTable {
     pub angle: Option<Quantity<Angle>>,
 }
 
-/// Dry friction: points that touch stick by elastic springs along the surface, up to Coulomb's limit.
+/// Dry friction: points that touch stick by elastic springs along the surface, up to Coulomb's
+/// limit.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionTable {

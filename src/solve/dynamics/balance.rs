@@ -1,4 +1,5 @@
-//! The balance of energy of a motion: what loads and supports put in, what damping takes, and steps that gain what nobody put in.
+//! The balance of energy of a motion: what loads and supports put in, what damping takes, and steps
+//! that gain what nobody put in.
 
 use super::State;
 use super::integrate::Driver;
@@ -42,7 +43,8 @@ impl Driver<'_, '_> {
             || self.system.supports().moves_in_time()
     }
 
-    /// Gives a state of the present step its internal variables. What the springs of friction hold is not lost.
+    /// Gives a state of the present step its internal variables. What the springs of friction hold
+    /// is not lost.
     pub(super) fn settle(&self, state: &mut State) {
         if self.system.has_history() {
             state.variables = self.system.internal_variables(&self.held, &state.q);
@@ -50,14 +52,16 @@ impl Driver<'_, '_> {
         }
     }
 
-    /// Refuses a step in which a torsion spring turns so far that it could have turned the other way.
+    /// Refuses a step in which a torsion spring turns so far that it could have turned the other
+    /// way.
     pub(super) fn not_overwound(&self, new: &State) -> Result<(), Failure> {
         let turn = self.system.winding_turn(&self.held, &new.q);
         if turn > LARGEST_WINDING { Err(Failure::Overwound { turn }) } else { Ok(()) }
     }
 
-    /// Work of the loads without potential and of moving supports, and what damping and friction took, until `time` in the step to `new`: of what a state
-    /// tells by the trapezoidal rule where the method itself is of second order, and else by three Gauss points.
+    /// Work of the loads without potential and of moving supports, and what damping and friction
+    /// took, until `time` in the step to `new`: of what a state tells by the trapezoidal rule where
+    /// the method itself is of second order, and else by three Gauss points.
     pub(super) fn work(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> (f64, f64) {
         let (mut work, mut lost) = (self.state.work, self.state.lost);
         if !self.has_work() {
@@ -93,7 +97,8 @@ impl Driver<'_, '_> {
         (work, lost)
     }
 
-    /// Power at the start of the step, which was its end before, unless an attempt since then ended elsewhere. Friction counts from another state since.
+    /// Power at the start of the step, which was its end before, unless an attempt since then ended
+    /// elsewhere. Friction counts from another state since.
     pub(super) fn power_at_start(&mut self) -> (f64, f64) {
         let known = self.powers.iter().find(|(time, _)| *time == self.state.time).map(|(_, power)| *power);
         let power = known.filter(|_| !self.system.has_friction()).unwrap_or_else(|| {

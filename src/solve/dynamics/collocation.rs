@@ -1,66 +1,86 @@
 //! Collocation by Gauss' and Radau's methods for M q̈ + f(q) = 0.
 //!
-//! Applied to (q, v), the stages are Q_i = q₀ + c_i h v₀ + Y_i with Y = h² A² Q̈, so that with the displacements Y as unknowns
+//! Applied to (q, v), the stages are Q_i = q₀ + c_i h v₀ + Y_i with Y = h² A² Q̈, so that with the
+//! displacements Y as unknowns
 //!
 //! ```text
 //! h⁻² Σ_j (A⁻²)_ij M Y_j + f(q₀ + c_i h v₀ + Y_i) = 0
 //! q₁ = q₀ + h v₀ + bᵀA⁻¹ Y,   v₁ = v₀ + h⁻¹ bᵀA⁻² Y
 //! ```
 //!
-//! Newton's method with one tangent K for all stages turns, by A⁻¹ = T Λ T⁻¹, into one system (ζ²/h² M + K) w = r for each
-//! eigenvalue ζ of A⁻¹: a real one and a complex one for three stages, both as banded as K is (Butcher, *BIT* 16, 1976, 237–240; Bickart). Its
-//! convergence is linear, at a rate that the change of K within the step decides.
+//! Newton's method with one tangent K for all stages turns, by A⁻¹ = T Λ T⁻¹, into one system
+//! (ζ²/h² M + K) w = r for each eigenvalue ζ of A⁻¹: a real one and a complex one for three stages,
+//! both as banded as K is (Butcher, *BIT* 16, 1976, 237–240; Bickart). Its convergence is linear,
+//! at a rate that the change of K within the step decides.
 //!
 //! # The tangent turns with the nodes
-//! What changes K most is the beam's rotation. The tangent is taken at the start of the step, where the axial force is right (at a
-//! predicted state a large EA makes it meaningless), and turned with the nodes to each stage ([`super::turns`]). On the soft pendulum
-//! (20 nodes, 4 ms) that takes a third fewer iterations than the tangent at the mean of the stages, and converges where that does
-//! not (5 ms). Anderson's acceleration on top of it saved another tenth of the iterations and no failure, and was left out.
+//! What changes K most is the beam's rotation. The tangent is taken at the start of the step, where
+//! the axial force is right (at a predicted state a large EA makes it meaningless), and turned with
+//! the nodes to each stage ([`super::turns`]). On the soft pendulum (20 nodes, 4 ms) that takes a
+//! third fewer iterations than the tangent at the mean of the stages, and converges where that does
+//! not (5 ms). Anderson's acceleration on top of it saved another tenth of the iterations and no
+//! failure, and was left out.
 //!
 //! # A tangent for many steps
-//! Where steps are chosen by a tolerance, tangent and factors are kept, turned with the nodes, as long as the length of the step stays and the
-//! increments shrink to 5 % and less from one iteration to the next. A tangent with its factors costs as much as two iterations. Where it is kept and
-//! found slow, one is taken at the start of the step, and at the mean of the stages if that is slow too. Radau's method with a tolerance of 3e-5 (soft
-//! pendulum, 20 nodes) takes a tangent every fourth step and is a quarter cheaper for the same error; with 1e-3 most steps take one, and nothing is lost.
-//! To factorise a kept tangent anew for another length of the step takes as many iterations more as it saves. So does a tangent that is kept over steps of
-//! given length, whose stages are solved almost to round-off.
+//! Where steps are chosen by a tolerance, tangent and factors are kept, turned with the nodes, as
+//! long as the length of the step stays and the increments shrink to 5 % and less from one
+//! iteration to the next. A tangent with its factors costs as much as two iterations. Where it is
+//! kept and found slow, one is taken at the start of the step, and at the mean of the stages if
+//! that is slow too. Radau's method with a tolerance of 3e-5 (soft pendulum, 20 nodes) takes a
+//! tangent every fourth step and is a quarter cheaper for the same error; with 1e-3 most steps take
+//! one, and nothing is lost. To factorise a kept tangent anew for another length of the step takes
+//! as many iterations more as it saves. So does a tangent that is kept over steps of given length,
+//! whose stages are solved almost to round-off.
 //!
 //! # Predicted stages
-//! A motion begins with its first acceleration. With that of a load which sets in at once a node of a fine mesh would go through many elements; where the iteration
-//! goes astray, the mean of all nodes takes its place, with which a body flies, and the first iteration finds the rest.
+//! A motion begins with its first acceleration. With that of a load which sets in at once a node of
+//! a fine mesh would go through many elements; where the iteration goes astray, the mean of all
+//! nodes takes its place, with which a body flies, and the first iteration finds the rest.
 //!
-//! Then the polynomial of the last step's accelerations is continued. Where steps are chosen by a tolerance it, or the accelerations' mean: whichever would have
-//! come closer to the last stage of the last step. Gauss' methods do not damp what is too stiff to be followed, whose accelerations a polynomial continues to a
-//! hundred times what they were; with a tolerance of 1e-4 the soft pendulum (20 nodes) takes half the iterations from the mean. Radau's methods would take a fifth more,
-//! and Gauss' in a smooth motion a third. With steps of given length the choice saves a tenth of the iterations in the pendulums and costs a half more
-//! in small damped vibrations, although the mean comes nearer by a factor of eight there.
+//! Then the polynomial of the last step's accelerations is continued. Where steps are chosen by a
+//! tolerance it, or the accelerations' mean: whichever would have come closer to the last stage of
+//! the last step. Gauss' methods do not damp what is too stiff to be followed, whose accelerations
+//! a polynomial continues to a hundred times what they were; with a tolerance of 1e-4 the soft
+//! pendulum (20 nodes) takes half the iterations from the mean. Radau's methods would take a fifth
+//! more, and Gauss' in a smooth motion a third. With steps of given length the choice saves a tenth
+//! of the iterations in the pendulums and costs a half more in small damped vibrations, although
+//! the mean comes nearer by a factor of eight there.
 //!
 //! # Gauss' methods with a tolerance
-//! They neither damp nor follow what oscillates many times in a step: axial waves of fine meshes, which loads, kinks and the error of the stages
-//! excite, are carried on with changing sign, until stages take ever more iterations and steps are wrong that the estimate, blind to them, accepts. Where
-//! steps are chosen by a tolerance, so that most are too long for some of the waves, the end of a step is drawn towards its last stage:
+//! They neither damp nor follow what oscillates many times in a step: axial waves of fine meshes,
+//! which loads, kinks and the error of the stages excite, are carried on with changing sign, until
+//! stages take ever more iterations and steps are wrong that the estimate, blind to them, accepts.
+//! Where steps are chosen by a tolerance, so that most are too long for some of the waves, the end
+//! of a step is drawn towards its last stage:
 //!
 //! ```text
 //! q₁ ← q₁ − Fˢ⁺¹ (q₁ − Q_s),   v₁ ← v₁ − Fˢ⁺¹ (v₁ − V_s),   F = (γ²/h² M + K)⁻¹ K
 //! ```
 //!
-//! F leaves alone what moves slowly, as (ω h/γ)², and takes all of what is infinitely fast, whose stages are in equilibrium. The differences are of
-//! the order h, so that what is changed is two orders smaller than the method's error; no amplitude grows by it at any frequency: ω h = 1 loses
-//! 2e-8 a step with three stages (Radau IIA: 1.3e-4), ω h = 30 four fifths. Linear momentum is kept. K (q₁ − Q_s) is taken as the
-//! difference of the forces, and K (v₁ − V_s) as that of their rates: a beam that turns as a whole has none. What is changed of slow motions counts as an
-//! error of the step: where a stiff rod turns, its end leaves the circle, and drawn back to it takes some of its angular momentum away, step after step.
-//! With steps of given length the methods remain symplectic.
+//! F leaves alone what moves slowly, as (ω h/γ)², and takes all of what is infinitely fast, whose
+//! stages are in equilibrium. The differences are of the order h, so that what is changed is two
+//! orders smaller than the method's error; no amplitude grows by it at any frequency: ω h = 1 loses
+//! 2e-8 a step with three stages (Radau IIA: 1.3e-4), ω h = 30 four fifths. Linear momentum is
+//! kept. K (q₁ − Q_s) is taken as the difference of the forces, and K (v₁ − V_s) as that of their
+//! rates: a beam that turns as a whole has none. What is changed of slow motions counts as an error
+//! of the step: where a stiff rod turns, its end leaves the circle, and drawn back to it takes some
+//! of its angular momentum away, step after step. With steps of given length the methods remain
+//! symplectic.
 //!
 //! # Error of a step
-//! The polynomial of the stage accelerations is compared with the acceleration at the start, where it has no node. Its defect
-//! δ = q̈(t₀) − Σ ℓ_j(0) Q̈_j = O(hˢ), applied through the step's own matrix, e = (γ²/h² M + K)⁻¹ M δ = O(hˢ⁺²), does not see
-//! what oscillates too fast to be followed (Hairer & Wanner do the same for Radau IIA). The step itself is of higher order. Of a vibration with ω, whatever
-//! its amplitude, F multiplies e by (ω h/γ)², so that |e| (|F e|/|e|)^{(p − 1 − s)/2} is O(h^{p+1}) and a constant times its error: a tenth is
-//! about right for all methods. Of F e, F (1 − F) e is taken: what is too fast to be followed is lost once, and its error does not add up. What turns or
-//! flies has little stiffness, and its error is modelled as e to the power that makes it O(h^{p+1}). The larger counts.
+//! The polynomial of the stage accelerations is compared with the acceleration at the start, where
+//! it has no node. Its defect δ = q̈(t₀) − Σ ℓ_j(0) Q̈_j = O(hˢ), applied through the step's own
+//! matrix, e = (γ²/h² M + K)⁻¹ M δ = O(hˢ⁺²), does not see what oscillates too fast to be followed
+//! (Hairer & Wanner do the same for Radau IIA). The step itself is of higher order. Of a vibration
+//! with ω, whatever its amplitude, F multiplies e by (ω h/γ)², so that |e| (|F e|/|e|)^{(p − 1 −
+//! s)/2} is O(h^{p+1}) and a constant times its error: a tenth is about right for all methods. Of F
+//! e, F (1 − F) e is taken: what is too fast to be followed is lost once, and its error does not
+//! add up. What turns or flies has little stiffness, and its error is modelled as e to the power
+//! that makes it O(h^{p+1}). The larger counts.
 //!
-//! What loads and supports do between the stages, which these do not see ([`crate::system::laws`]), is added to it through the same matrix. Its mean and
-//! first moment are also given to the end of the step, for a load that is looked at always in the same phase would push on and on.
+//! What loads and supports do between the stages, which these do not see ([`crate::system::laws`]),
+//! is added to it through the same matrix. Its mean and first moment are also given to the end of
+//! the step, for a load that is looked at always in the same phase would push on and on.
 
 use super::State;
 use super::method::Method;
@@ -77,23 +97,29 @@ use crate::solve::newton::{Failure, Iterations};
 use crate::system::laws::Look;
 use nalgebra::{Complex, DMatrix, RowDVector};
 
-/// Error of the stages of a step of given length, relative to the displacement in the step: the velocity takes the same relative error.
+/// Error of the stages of a step of given length, relative to the displacement in the step: the
+/// velocity takes the same relative error.
 const TOLERANCE: f64 = 1e-11;
-/// The same against the error that a step may make, for methods that do not damp and for those that do. Increments are the largest of any node, gradients too,
-/// and the error of a step is a mean of positions: with thirty times smaller tolerances the pendulum errs the same. What Gauss' methods leave adds up in a
-/// stiff rod that turns: with ten times the error it turns at the wrong speed by three times as much as without.
+/// The same against the error that a step may make, for methods that do not damp and for those that
+/// do. Increments are the largest of any node, gradients too, and the error of a step is a mean of
+/// positions: with thirty times smaller tolerances the pendulum errs the same. What Gauss' methods
+/// leave adds up in a stiff rod that turns: with ten times the error it turns at the wrong speed by
+/// three times as much as without.
 const TOLERANCE_OF_ERROR: [f64; 2] = [1.0, 10.0];
 /// The error of a vibration in a step against the defect's, with the power of the step that it has.
 const ERROR_OF_DEFECT: f64 = 0.1;
-/// By how much more errors of the damping at the ends of steps count: they have the same sign in every step.
+/// By how much more errors of the damping at the ends of steps count: they have the same sign in
+/// every step.
 const ERRORS_OF_DAMPING: f64 = 3.0;
 /// Largest error of a step to which the stages' error is measured.
 const LARGEST_ERROR: f64 = 1e-6;
-/// Increments in beam lengths below which a beam rests: without a floor one that nothing moves yet would be solved for the round-off of zero.
+/// Increments in beam lengths below which a beam rests: without a floor one that nothing moves yet
+/// would be solved for the round-off of zero.
 const REST: f64 = 1e-26;
 /// Increments that no longer shrink count as converged below this size: what is left is round-off.
 const ROUND_OFF: f64 = 1e-8;
-/// Increments in beam lengths with which an iteration has gone astray: round-off makes smaller ones.
+/// Increments in beam lengths with which an iteration has gone astray: round-off makes smaller
+/// ones.
 const FAR: f64 = 1.0;
 /// Most iterations of a step.
 const ITERATIONS: usize = 25;
@@ -103,7 +129,8 @@ const SLOW: f64 = 0.4;
 const KEEP: f64 = 0.05;
 /// A step that could grow by less than this keeps its length.
 const HOLD: f64 = 1.2;
-/// Steps by which the polynomial of the last one is continued, at most: after a short one before a kink of a load it would lead anywhere.
+/// Steps by which the polynomial of the last one is continued, at most: after a short one before a
+/// kink of a load it would lead anywhere.
 const LONGEST: f64 = 4.0;
 /// Relative change of the step's length that is none.
 const SAME_STEP: f64 = 1e-6;
@@ -185,7 +212,8 @@ impl<'a> Collocation<'a> {
         }
     }
 
-    /// What makes Y_i of the accelerations of the last step: their polynomial, continued, or their mean.
+    /// What makes Y_i of the accelerations of the last step: their polynomial, continued, or their
+    /// mean.
     fn extrapolation(&self, h: f64, smooth: bool) -> DMatrix<f64> {
         let Tableau { nodes, a_squared, weights, .. } = &self.tableau;
         let (ratio, shift) = if self.last_step > 0.0 { (h / self.last_step, 1.0) } else { (0.0, 0.0) };
@@ -234,7 +262,8 @@ impl<'a> Collocation<'a> {
         self.stages.place(from, self.in_lanes(|i| self.tableau.nodes[i] * h));
     }
 
-    /// How far from the last stage of the last attempt it would have been predicted, by the polynomial and by the mean.
+    /// How far from the last stage of the last attempt it would have been predicted, by the
+    /// polynomial and by the mean.
     fn misses(&mut self) -> [f64; 2] {
         let last = self.tableau.stages() - 1;
         let rows =
@@ -345,15 +374,17 @@ impl<'a> Collocation<'a> {
         let fits = |kept: &Kept| kept.rate <= KEEP && (kept.step - h).abs() <= SAME_STEP * h;
         let mut tangent = Taken::Before;
         if !(keep && self.kept.as_ref().is_some_and(fits)) {
-            // At the converged state, whose axial force is right: that of a predicted one is not, with a large EA.
+            // At the converged state, whose axial force is right: that of a predicted one is not,
+            // with a large EA.
             self.linearize(from, self.multipliers(), h)?;
             tangent = Taken::AtStart;
         }
         self.turn();
-        // Sizes of the last two increments with the present tangent; rates alternate, and two together tell more than one.
+        // Sizes of the last two increments with the present tangent; rates alternate, and two
+        // together tell more than one.
         let mut last = [0.0_f64; 2];
-        // The rate of the last step tells how far the first increment is from the solution, unless it is too good: where steps take one iteration
-        // each it is not measured again.
+        // The rate of the last step tells how far the first increment is from the solution, unless
+        // it is too good: where steps take one iteration each it is not measured again.
         let mut rate = last_rate.clamp(if keep { KEEP } else { 0.01 }, 1.0);
         for iteration in 0..ITERATIONS {
             let (size, residual) = self.iterate(from, h);
@@ -400,13 +431,15 @@ impl<'a> Collocation<'a> {
         Err(Failure::TooSlow { iterations: ITERATIONS, last: last[1] })
     }
 
-    /// The defect of the polynomial of accelerations at `x` (0: start, 1: end of the step), where the coordinates are `q`, through the
-    /// step's own matrix: (ζ²/h² M + K)⁻¹ M (q̈ − Σ ℓ_j(x) Q̈_j), in fixed axes. Also the polynomial there, and ζ²/h² where it is real.
+    /// The defect of the polynomial of accelerations at `x` (0: start, 1: end of the step), where
+    /// the coordinates are `q`, through the step's own matrix: (ζ²/h² M + K)⁻¹ M (q̈ − Σ ℓ_j(x)
+    /// Q̈_j), in fixed axes. Also the polynomial there, and ζ²/h² where it is real.
     fn defect(&mut self, x: f64, state: &State) -> (Vec<f64>, f64) {
         let n = self.motion.coordinates();
         let h = self.trial_step;
         self.polynomial(x);
-        // −M Σ ℓ_j(x) Q̈_j − f(q) is M times the defect but for the forces of supports and constraints, which the solution removes.
+        // −M Σ ℓ_j(x) Q̈_j − f(q) is M times the defect but for the forces of supports and
+        // constraints, which the solution removes.
         let mut e = vec![0.0; self.motion.unknowns()];
         let a = Acceleration::constant(&self.acceleration);
         let rates = Rates { time: state.time, v: &state.v, a };
@@ -432,7 +465,8 @@ impl<'a> Collocation<'a> {
         real.or(first).unwrap_or_default()
     }
 
-    /// The real part of (ζ²/h² M + K)⁻¹ `factor` e, in the supports' frames, with the tangent where it is turned to.
+    /// The real part of (ζ²/h² M + K)⁻¹ `factor` e, in the supports' frames, with the tangent where
+    /// it is turned to.
     fn solve_turned(&self, factor: Complex<f64>, e: &mut [f64]) {
         let n = self.motion.coordinates();
         self.turns.back(&mut e[..n]);
@@ -455,7 +489,8 @@ impl<'a> Collocation<'a> {
         self.turns.forth(&mut e[..n]);
     }
 
-    /// (ζ²/h² M + K)⁻¹ e in the state `state`, from the supports' frames into fixed axes; returns |ζ|².
+    /// (ζ²/h² M + K)⁻¹ e in the state `state`, from the supports' frames into fixed axes; returns
+    /// |ζ|².
     fn filter(&mut self, state: &State, e: &mut [f64]) -> f64 {
         if let Some(Kept { at, .. }) = &self.kept {
             self.turns.measure(&at.q, &state.q);
@@ -497,8 +532,9 @@ impl<'a> Collocation<'a> {
         free.max(ERROR_OF_DEFECT * size * fast.powf(0.5 * (order - 1.0 - s)))
     }
 
-    /// Draws the unknowns `to` at the end of the step to its last stage, as far as they move too fast for the step. Returns by how much the position errs in the
-    /// step for what is changed of slow motions.
+    /// Draws the unknowns `to` at the end of the step to its last stage, as far as they move too
+    /// fast for the step. Returns by how much the position errs in the step for what is changed of
+    /// slow motions.
     fn damp(&mut self, from: &State, to: &mut State) -> f64 {
         let (n, last, h) = (self.motion.coordinates(), self.tableau.stages() - 1, self.end - from.time);
         let weights =
@@ -534,8 +570,10 @@ impl<'a> Collocation<'a> {
         ERRORS_OF_DAMPING * error
     }
 
-    /// Makes up in `to` for what the stages do not see of loads, as far as what they drive can be followed, so that it does not add up; returns by how much
-    /// the position would err for it, and for what they do not see of supports. `state` is the start of the step in fixed axes, `from` its unknowns.
+    /// Makes up in `to` for what the stages do not see of loads, as far as what they drive can be
+    /// followed, so that it does not add up; returns by how much the position would err for it, and
+    /// for what they do not see of supports. `state` is the start of the step in fixed axes, `from`
+    /// its unknowns.
     fn make_up(&mut self, state: &State, from: &State, to: &mut State) -> f64 {
         let h = self.end - from.time;
         let Tableau { nodes, weights, .. } = &self.tableau;
@@ -564,8 +602,8 @@ impl<'a> Collocation<'a> {
         self.stages.sum(|j| if j < s { weights(j) } else { 0.0 }, &mut self.acceleration);
     }
 
-    /// q̈ at an end of the step without what oscillates faster than the step can follow: that part, however small its amplitude, would
-    /// dominate an interpolation by accelerations.
+    /// q̈ at an end of the step without what oscillates faster than the step can follow: that part,
+    /// however small its amplitude, would dominate an interpolation by accelerations.
     fn smooth_acceleration(&mut self, x: f64, state: &State) -> Vec<f64> {
         let state = &self.motion.unknowns_of(state);
         let (defect, factor) = self.defect(x, state);

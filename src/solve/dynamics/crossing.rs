@@ -1,12 +1,15 @@
 //! Where in a step a coordinate of a probe reaches a value.
 //!
-//! A coordinate is linear in q, so that in a step it is one polynomial of time, the Hermite interpolation of what is known at both ends: positions and
-//! velocities (cubic), and accelerations (quintic). Between the zeros of its derivative a polynomial rises or falls throughout and has at most one zero, and
-//! the derivative's zeros are found in the same way: so none is missed, and none is looked for by sampling.
+//! A coordinate is linear in q, so that in a step it is one polynomial of time, the Hermite
+//! interpolation of what is known at both ends: positions and velocities (cubic), and accelerations
+//! (quintic). Between the zeros of its derivative a polynomial rises or falls throughout and has at
+//! most one zero, and the derivative's zeros are found in the same way: so none is missed, and none
+//! is looked for by sampling.
 //!
-//! A value is reached from below (rising) or from above (falling). A coordinate that turns back at the value has reached it too, once; within round-off
-//! it cannot be told from one that turns just before or just beyond. So a coordinate is *at* the value within [`NEAR`] beam lengths where it turns or a
-//! step ends, and must leave it by more to reach it again.
+//! A value is reached from below (rising) or from above (falling). A coordinate that turns back at
+//! the value has reached it too, once; within round-off it cannot be told from one that turns just
+//! before or just beyond. So a coordinate is *at* the value within [`NEAR`] beam lengths where it
+//! turns or a step ends, and must leave it by more to reach it again.
 
 /// Distance from a value that is none, in beam lengths: what round-off leaves of positions.
 pub(super) const NEAR: f64 = 1e-9;
@@ -29,7 +32,8 @@ pub(super) struct Reached {
 }
 
 impl Polynomial {
-    /// With the value, h times the velocity and, if they are given, h²/2 times the acceleration at both ends of a step of length h.
+    /// With the value, h times the velocity and, if they are given, h²/2 times the acceleration at
+    /// both ends of a step of length h.
     pub(super) fn hermite([q0, q1]: [f64; 2], [v0, v1]: [f64; 2], halves: Option<[f64; 2]>) -> Self {
         let rise = q1 - q0;
         let Some([a0, a1]) = halves else {
@@ -78,7 +82,8 @@ impl Polynomial {
         turns.filter(|x| *x < 1.0).collect()
     }
 
-    /// Where in the step zero is reached, in order of time; what is nearer to zero than `near` is there already.
+    /// Where in the step zero is reached, in order of time; what is nearer to zero than `near` is
+    /// there already.
     pub(super) fn reaches_zero(&self, near: f64) -> Vec<Reached> {
         let mut found = Vec::new();
         // On which side it last was; zero where it was on none.
@@ -110,7 +115,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// c Π (x − root), and what is made of its values, slopes and half second derivatives at both ends.
+    /// c Π (x − root), and what is made of its values, slopes and half second derivatives at both
+    /// ends.
     fn with_roots(scale: f64, roots: &[f64]) -> Polynomial {
         let mut c = [0.0; DEGREE + 1];
         c[0] = scale;

@@ -1,4 +1,5 @@
-//! Forces and powers of a motion from the stages of its steps, in which the equations of motion hold.
+//! Forces and powers of a motion from the stages of its steps, in which the equations of motion
+//! hold.
 
 use super::State;
 use super::integrate::Driver;
@@ -23,7 +24,8 @@ fn integrals(times: &[f64], start: f64, end: f64) -> Vec<f64> {
 }
 
 impl<'a> Driver<'_, 'a> {
-    /// Work of moving supports until `time` in the step to `new`, by the quadrature that the method itself is.
+    /// Work of moving supports until `time` in the step to `new`, by the quadrature that the method
+    /// itself is.
     pub(super) fn work_of_supports(&mut self, new: &State, time: f64) -> f64 {
         if !self.system.supports().moves_in_time() {
             return 0.0;
@@ -38,9 +40,10 @@ impl<'a> Driver<'_, 'a> {
         self.until(time, &self.support_powers)
     }
 
-    /// What damping takes until `time` in the step to `new`, by the quadrature that the method itself is: of what decays faster than a step can follow, that alone
-    /// is what the motion loses, and the powers at the step's ends are arbitrarily larger. Methods of second order take, in a whole step, what the mean of its
-    /// ends takes.
+    /// What damping takes until `time` in the step to `new`, by the quadrature that the method
+    /// itself is: of what decays faster than a step can follow, that alone is what the motion
+    /// loses, and the powers at the step's ends are arbitrarily larger. Methods of second order
+    /// take, in a whole step, what the mean of its ends takes.
     pub(super) fn taken_by_damping(&mut self, new: &State, time: f64) -> f64 {
         if !self.system.is_damped() {
             return 0.0;
@@ -71,7 +74,8 @@ impl<'a> Driver<'_, 'a> {
         weights.iter().zip(powers).map(|(weight, (_, power))| weight * power).sum()
     }
 
-    /// The equations of motion for looking at states, apart from those of the method and its counts; friction counts from the last state.
+    /// The equations of motion for looking at states, apart from those of the method and its
+    /// counts; friction counts from the last state.
     fn observer(&mut self) -> Option<&mut Motion<'a>> {
         if self.observer.is_none() {
             self.observer = Motion::new(self.system).ok();
@@ -94,7 +98,8 @@ impl<'a> Driver<'_, 'a> {
         self.settled(state, rates, h)
     }
 
-    /// All forces in the first record `first`: exact where nothing has led to it, and otherwise a part of a step after the last state.
+    /// All forces in the first record `first`: exact where nothing has led to it, and otherwise a
+    /// part of a step after the last state.
     pub(super) fn balance_at_start(&mut self, first: &State) -> Option<Balance> {
         if self.state.time > 0.0 {
             let (rates, h) = (self.method.end_rates(), self.last_step);
@@ -116,8 +121,9 @@ impl<'a> Driver<'_, 'a> {
         (finite(&balance.state.q) && finite(&balance.state.v)).then_some(balance)
     }
 
-    /// Whether states between the ends of steps are moved into balance: where forces are wanted, and where moving supports ask for the balance of energy,
-    /// in which the strain of an interpolated state would count.
+    /// Whether states between the ends of steps are moved into balance: where forces are wanted,
+    /// and where moving supports ask for the balance of energy, in which the strain of an
+    /// interpolated state would count.
     pub(super) fn settles(&self) -> bool {
         self.task.reactions || self.system.supports().moves_in_time()
     }

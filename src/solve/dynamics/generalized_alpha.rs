@@ -1,8 +1,9 @@
 //! The generalised-α method (Chung, Hulbert, *J. Appl. Mech.* 60, 1993, 371–375).
 //!
-//! Second order; the spectral radius ρ∞ ∈ [0, 1] sets how fast the highest frequencies die out: 1 is the trapezoidal rule,
-//! 0 kills them in one step. Equilibrium holds at the end of each step, and an algorithmic acceleration a carries the
-//! averaging (Arnold, Brüls, *Multibody Syst. Dyn.* 18, 2007, 185–202):
+//! Second order; the spectral radius ρ∞ ∈ [0, 1] sets how fast the highest frequencies die out: 1
+//! is the trapezoidal rule, 0 kills them in one step. Equilibrium holds at the end of each step,
+//! and an algorithmic acceleration a carries the averaging (Arnold, Brüls, *Multibody Syst. Dyn.*
+//! 18, 2007, 185–202):
 //!
 //! ```text
 //! q₁ = q₀ + h v₀ + h² ((½ − β) a₀ + β a₁)      v₁ = v₀ + h ((1 − γ) a₀ + γ a₁)
@@ -11,17 +12,19 @@
 //! ```
 //!
 //! # Error of a step
-//! a lies (α_m − α_f) h away from q̈ in time, so that the position errs by h³ q⃛ (β + (α_m − α_f)/2 − 1/6) in a step. With
-//! h q⃛ ≈ q̈₁ − q̈₀ that is known at no cost; multiplied by (K + cM)⁻¹ cM it leaves out what lies above the step's own
-//! frequency and would not be followed anyway. What loads and supports do between the ends of the step ([`crate::system::laws`]) is added to it, and made up
-//! for, through the same matrix.
+//! a lies (α_m − α_f) h away from q̈ in time, so that the position errs by h³ q⃛ (β + (α_m − α_f)/2
+//! − 1/6) in a step. With h q⃛ ≈ q̈₁ − q̈₀ that is known at no cost; multiplied by (K + cM)⁻¹ cM it
+//! leaves out what lies above the step's own frequency and would not be followed anyway. What loads
+//! and supports do between the ends of the step ([`crate::system::laws`]) is added to it, and made
+//! up for, through the same matrix.
 //!
 //! Where a contact begins, ends, or turns, a starts anew from the q̈ of the equations of motion: a carries the force that was before into the steps behind,
 //! by which a hinged beam on a stiff box erred by 364 times a tolerance of 1e-5, and q̈ of the formula rings, by which it still erred by 40.
 //!
 //! # A tangent for many steps
-//! The tangent is kept, turned with the nodes ([`super::turns`]), as long as the increments shrink to 0.6 % and less from one iteration to the next; then it is
-//! taken anew at the last equilibrium. A residual costs a third of a tangent with its factorisation and substitution. Where that
+//! The tangent is kept, turned with the nodes ([`super::turns`]), as long as the increments shrink
+//! to 0.6 % and less from one iteration to the next; then it is taken anew at the last equilibrium.
+//! A residual costs a third of a tangent with its factorisation and substitution. Where that
 //! iteration does not converge, Newton's method with a tangent at every iterate solves the step.
 
 use super::State;
@@ -33,8 +36,8 @@ use crate::linear::{Factor, Singular};
 use crate::solve::Statistics;
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
 
-/// Newton tolerance relative to the displacement in the step and to the absolute tolerance: it counts where steps are very short, for the
-/// velocity takes the same relative error.
+/// Newton tolerance relative to the displacement in the step and to the absolute tolerance: it
+/// counts where steps are very short, for the velocity takes the same relative error.
 const RELATIVE_TOLERANCE: f64 = 10.0;
 /// The same as a part of the error that a step may make.
 const TOLERANCE_OF_ERROR: f64 = 0.02;
@@ -140,7 +143,8 @@ struct Kept {
 }
 
 impl<'a> GeneralizedAlpha<'a> {
-    /// The method with spectral radius `rho`; the iteration of a step of fixed length may leave an error of `newton_tolerance` beam lengths.
+    /// The method with spectral radius `rho`; the iteration of a step of fixed length may leave an
+    /// error of `newton_tolerance` beam lengths.
     pub fn new(motion: Motion<'a>, rho: f64, newton_tolerance: f64) -> Self {
         let (n, unknowns) = (motion.coordinates(), motion.unknowns());
         let last = Accelerations {
@@ -172,7 +176,8 @@ impl<'a> GeneralizedAlpha<'a> {
         self.kept = Some(Kept { at: at.clone(), multipliers, c: 0.0, rate });
     }
 
-    /// Factorises K + dD + cM, unless that is what is there but for the round-off of the step's length.
+    /// Factorises K + dD + cM, unless that is what is there but for the round-off of the step's
+    /// length.
     fn factorize(&mut self, c: f64, d: f64) -> Result<(), Singular> {
         if let Some(kept) = &mut self.kept
             && (kept.c - c).abs() > ROUND_OFF * c
@@ -214,7 +219,8 @@ impl<'a> GeneralizedAlpha<'a> {
                 self.motion.statistics.newton_iterations += 1;
                 record.residuals.push(residual);
                 record.increments.push(size);
-                // Far from the solution there may be another one, and Newton's method finds the nearer of them. Also true for a NaN.
+                // Far from the solution there may be another one, and Newton's method finds the
+                // nearer of them. Also true for a NaN.
                 if !(size <= LARGEST_CORRECTION && residual.is_finite()) {
                     break;
                 }
@@ -285,8 +291,9 @@ impl<'a> GeneralizedAlpha<'a> {
         self.motion.distance(e)
     }
 
-    /// Makes up in `to` for what both ends of a step do not see of loads, as far as what they drive can be followed, so that it does not add up; returns by how
-    /// much the position would err for it, and for what they do not see of supports.
+    /// Makes up in `to` for what both ends of a step do not see of loads, as far as what they drive
+    /// can be followed, so that it does not add up; returns by how much the position would err for
+    /// it, and for what they do not see of supports.
     fn make_up(&mut self, from: &State, to: &mut State, c: f64) -> f64 {
         let h = to.time - from.time;
         // What varies evenly between the ends has these moments.
@@ -384,7 +391,8 @@ impl Method for GeneralizedAlpha<'_> {
             _ => (0.0, algorithmic),
         };
         let (of_algorithmic, of_physical) = (alpha_m / (1.0 - alpha_f), alpha_f / (1.0 - alpha_f));
-        // What is known of the position at the end. It is computed where it is needed: to keep it would be one pass over memory more.
+        // What is known of the position at the end. It is computed where it is needed: to keep it
+        // would be one pass over memory more.
         let known = |q: f64, v: f64, a: f64| q + h * (v + h * (0.5 - beta) * a);
         for i in 0..n {
             let a = algorithmic[i];

@@ -1,26 +1,33 @@
-//! The driver of all methods: chooses steps, records states, locates events, keeps what a restart needs.
+//! The driver of all methods: chooses steps, records states, locates events, keeps what a restart
+//! needs.
 //!
 //! # Steps that meet a stated accuracy
-//! The tolerance is the wanted error of positions at the end, root mean square over the nodes, relative to the beam length. A step may
-//! err by a fixed part of it; with an estimate of order p + 1 the step for that follows, by the proportional–integral rule of Gustafsson (*ACM Trans. Math. Softw.* 20,
-//! 1994, 496–517). Of methods that gain by it a step that could grow by
-//! little keeps its length ([`Method::hold`]).
+//! The tolerance is the wanted error of positions at the end, root mean square over the nodes,
+//! relative to the beam length. A step may err by a fixed part of it; with an estimate of order p +
+//! 1 the step for that follows, by the proportional–integral rule of Gustafsson (*ACM Trans. Math.
+//! Softw.* 20, 1994, 496–517). Of methods that gain by it a step that could grow by little keeps
+//! its length ([`Method::hold`]).
 //!
-//! Two other choices were tried and left. An allowance in proportion to the step asks for ever smaller steps once a high frequency rings,
-//! whose share in the error does not add up. The largest change of any gradient, in place of positions, sees the shortest waves most, which the
-//! sudden release of a beam excites: steps were then four times as many as needed, and not fewer for looser tolerances.
+//! Two other choices were tried and left. An allowance in proportion to the step asks for ever
+//! smaller steps once a high frequency rings, whose share in the error does not add up. The largest
+//! change of any gradient, in place of positions, sees the shortest waves most, which the sudden
+//! release of a beam excites: steps were then four times as many as needed, and not fewer for
+//! looser tolerances.
 //!
 //! # Kinks
-//! Where a load or a support's motion is not smooth a step ends, whatever the method and however steps are chosen: the last stage sees what was just before,
-//! the next step begins with what is just after (`Driver::pass_kinks`), and no interpolation reaches over it. Where a contact begins, ends, or turns, a step that is to meet an accuracy ends too, and what
-//! the method remembers of the acceleration is made anew ([`Method::renew`]). A step of fixed length is divided there, and all
-//! later ones end where they would have.
+//! Where a load or a support's motion is not smooth a step ends, whatever the method and however
+//! steps are chosen: the last stage sees what was just before, the next step begins with what is
+//! just after (`Driver::pass_kinks`), and no interpolation reaches over it. Where a contact begins,
+//! ends, or turns, a step that is to meet an accuracy ends too, and what the method remembers of
+//! the acceleration is made anew ([`Method::renew`]). A step of fixed length is divided there, and
+//! all later ones end where they would have.
 //!
 //! # Steps of fixed length
-//! Where the equations of a step cannot be solved, that step is divided, which the counts of rejected steps and a warning tell; all others
-//! keep their length and their places. The equations of a step in which nodes turn far have several solutions, and the trapezoidal
-//! rule pumps energy into a stiff beam there; so a step that turns a node by more than 0.1 rad is divided too if it gains energy, and one whose
-//! way leads through an obstacle (the private module `touch`).
+//! Where the equations of a step cannot be solved, that step is divided, which the counts of
+//! rejected steps and a warning tell; all others keep their length and their places. The equations
+//! of a step in which nodes turn far have several solutions, and the trapezoidal rule pumps energy
+//! into a stiff beam there; so a step that turns a node by more than 0.1 rad is divided too if it
+//! gains energy, and one whose way leads through an obstacle (the private module `touch`).
 
 use super::collocation::Collocation;
 use super::contact::Touch;
@@ -81,10 +88,10 @@ pub struct Watch {
     pub stop: bool,
 }
 
-/// Part of the tolerance that a step may err by: as if ten thousand errors added up; a shorter step by its part of the time until its end, so that steps do
-/// not depend on when the motion ends. Measured on
-/// the soft pendulum (2.5 s) with all methods and tolerances from 1e-3 to 1e-6, the largest error of the tip is then 0.01 to 2.7 times the
-/// tolerance.
+/// Part of the tolerance that a step may err by: as if ten thousand errors added up; a shorter step
+/// by its part of the time until its end, so that steps do not depend on when the motion ends.
+/// Measured on the soft pendulum (2.5 s) with all methods and tolerances from 1e-3 to 1e-6, the
+/// largest error of the tip is then 0.01 to 2.7 times the tolerance.
 const STEP_PART: f64 = 1e-4;
 /// The longest first step, per period of the slowest vibration: nothing may move yet.
 const FIRST_STEP: f64 = 0.01;
@@ -96,9 +103,11 @@ const LIMITS: (f64, f64) = (0.2, 4.0);
 const SHRINK: f64 = 0.3;
 /// Smallest step, relative to the duration.
 const SMALLEST_STEP: f64 = 1e-12;
-/// Smallest part of a step of fixed length into which it is divided where its equations cannot be solved.
+/// Smallest part of a step of fixed length into which it is divided where its equations cannot be
+/// solved.
 pub(super) const SMALLEST_PART: f64 = 1e-3;
-/// Part of a step of fixed length by which its end is moved to a kink, so that no sliver is left: round-off in accelerations grows with its inverse square.
+/// Part of a step of fixed length by which its end is moved to a kink, so that no sliver is left:
+/// round-off in accelerations grows with its inverse square.
 const NEAR: f64 = 1e-3;
 /// Iterations beyond which a step does not grow: the next tangent would be worse.
 const MANY_ITERATIONS: usize = 10;
@@ -109,8 +118,8 @@ const HISTORY: usize = 20_000;
 /// Time by which a record or an end may miss a step's end, relative to the step.
 pub(super) const SLACK: f64 = 1e-9;
 
-/// Integrates `task`. `observe` is called with (time, next step, counts) after every step and ends the integration by
-/// returning false.
+/// Integrates `task`. `observe` is called with (time, next step, counts) after every step and ends
+/// the integration by returning false.
 pub fn solve(
     system: &System,
     task: &Task<'_>,
@@ -157,7 +166,8 @@ pub(super) struct Driver<'t, 'a> {
     pub(super) rejected: bool,
     /// The state in which the motion was taken up: what happened until then has been reported.
     pub(super) first: State,
-    /// What there was before the step that the end of the motion or an event cuts short, once it is taken.
+    /// What there was before the step that the end of the motion or an event cuts short, once it is
+    /// taken.
     whole: Option<Checkpoint>,
     pub(super) stride: usize,
     /// Times at which loads or supports are not smooth, rising.
@@ -168,7 +178,8 @@ pub(super) struct Driver<'t, 'a> {
     pub(super) touching: Vec<Touch>,
     /// Times and powers at the start and the end of the last step.
     pub(super) powers: [(f64, (f64, f64)); 2],
-    /// Times and powers of moving supports in the stages of the last attempt; empty before they are asked for.
+    /// Times and powers of moving supports in the stages of the last attempt; empty before they are
+    /// asked for.
     pub(super) support_powers: Vec<(f64, f64)>,
     /// The same of what damping takes.
     pub(super) damping_powers: Vec<(f64, f64)>,
@@ -183,7 +194,8 @@ pub(super) struct Driver<'t, 'a> {
 enum End {
     /// Of them only loads and supports may have a kink there, and those are known beforehand.
     Smooth,
-    /// A contact begins, ends, or turns: accelerations from before say nothing about those afterwards.
+    /// A contact begins, ends, or turns: accelerations from before say nothing about those
+    /// afterwards.
     ContactChanges,
 }
 
@@ -334,7 +346,8 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
-    /// Whether the next step is shorter for the end of the motion, which another duration would have elsewhere.
+    /// Whether the next step is shorter for the end of the motion, which another duration would
+    /// have elsewhere.
     fn end_cuts(&self) -> bool {
         match self.control {
             StepControl::Fixed(step) => {
@@ -522,7 +535,8 @@ impl<'t, 'a> Driver<'t, 'a> {
         Ok(())
     }
 
-    /// Keeps every second record of the past where there are too many; rejected ones stay unless they are the most.
+    /// Keeps every second record of the past where there are too many; rejected ones stay unless
+    /// they are the most.
     fn remember(&mut self, record: StepRecord) {
         let steps = self.method.statistics().steps;
         if record.accepted && !steps.is_multiple_of(self.stride) {
@@ -551,7 +565,8 @@ pub(super) fn turned(directions: &[View], state: &State) -> Vec<f64> {
     angles.map(|(angle, near)| unfold(angle, near.is_finite().then_some(near))).collect()
 }
 
-/// Whether a time lies in the step of fixed length that is to be taken next; a saved state may say otherwise.
+/// Whether a time lies in the step of fixed length that is to be taken next; a saved state may say
+/// otherwise.
 fn on_grid(control: StepControl, (start, taken): (f64, u64), time: f64) -> bool {
     match control {
         StepControl::Fixed(step) => {
@@ -571,7 +586,8 @@ fn first_step(
 ) -> f64 {
     let by_speed = step_by(system, method, tolerance, 1, velocity);
     let by_acceleration = step_by(system, method, tolerance, 2, acceleration);
-    // A motion that is interrupted has the steps of one that is not: they do not depend on when it ends.
+    // A motion that is interrupted has the steps of one that is not: they do not depend on when it
+    // ends.
     by_speed.min(by_acceleration).min(FIRST_STEP * TAU / system.lowest_vibration_scale().sqrt())
 }
 

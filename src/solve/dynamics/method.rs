@@ -6,12 +6,14 @@ use crate::linear::Singular;
 use crate::solve::Statistics;
 use crate::solve::newton::{Failure, Iterations};
 
-/// A method of time integration. It keeps what it carries from step to step (accelerations, last stages).
+/// A method of time integration. It keeps what it carries from step to step (accelerations, last
+/// stages).
 pub trait Method {
     /// Order p: the local error is of the order p + 1.
     fn order(&self) -> f64;
 
-    /// A step that could grow by less than this factor keeps its length: what was factorised for it serves again.
+    /// A step that could grow by less than this factor keeps its length: what was factorised for it
+    /// serves again.
     fn hold(&self) -> f64 {
         1.0
     }
@@ -22,12 +24,14 @@ pub trait Method {
     /// [`Singular`] where a coordinate has no mass.
     fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular>;
 
-    /// Tries a step from `from` to the time `end` and writes the state that it leads to; loads and supports are smooth between. `accuracy` is the error that the step
-    /// may make, relative to the beam length, where the caller controls it; the method then returns an estimate of it, and
+    /// Tries a step from `from` to the time `end` and writes the state that it leads to; loads and
+    /// supports are smooth between. `accuracy` is the error that the step may make, relative to the
+    /// beam length, where the caller controls it; the method then returns an estimate of it, and
     /// otherwise zero.
     ///
     /// # Errors
-    /// [`Failure`] where the equations of the step could not be solved; `record` says how the iteration went.
+    /// [`Failure`] where the equations of the step could not be solved; `record` says how the
+    /// iteration went.
     fn attempt(
         &mut self,
         from: &State,
@@ -40,15 +44,16 @@ pub trait Method {
     /// Takes over what the last attempt found.
     fn accept(&mut self);
 
-    /// Goes on from `state`, at a time at which loads or supports are not smooth, instead of from the end of the last step at `before`, just before it. Returns by
-    /// how much the accelerations jump.
+    /// Goes on from `state`, at a time at which loads or supports are not smooth, instead of from
+    /// the end of the last step at `before`, just before it. Returns by how much the accelerations
+    /// jump.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
     fn pass(&mut self, before: f64, state: &mut State) -> Result<Vec<f64>, Singular>;
 
-    /// Forgets accelerations from before `state`, the end of the last step, for forces have changed there. Nothing has to be done where the past only
-    /// serves to predict.
+    /// Forgets accelerations from before `state`, the end of the last step, for forces have changed
+    /// there. Nothing has to be done where the past only serves to predict.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
@@ -56,8 +61,8 @@ pub trait Method {
         Ok(())
     }
 
-    /// The accelerations at both ends of the last attempt by which it is to be interpolated; none where positions and velocities
-    /// alone match the order of the method.
+    /// The accelerations at both ends of the last attempt by which it is to be interpolated; none
+    /// where positions and velocities alone match the order of the method.
     fn end_accelerations(&mut self, from: &State, to: &State) -> Option<[Vec<f64>; 2]>;
 
     /// The stages of the last attempt, which led from `from` to `to`, in the order of their times.

@@ -1,4 +1,5 @@
-//! Motion in time: M q̈ + f_int(q) + f_load(q) + Bᵀμ = 0 with g(q) = 0, all loads at their full values.
+//! Motion in time: M q̈ + f_int(q) + f_load(q) + Bᵀμ = 0 with g(q) = 0, all loads at their full
+//! values.
 //!
 //! | file | what it holds |
 //! |---|---|
@@ -10,9 +11,11 @@
 //! | [`integrate`] | the driver: steps, restart; with its records and events in `record` and `crossing`, forces and powers in `forces`, steps that gain energy in `balance`, contacts in `touch` |
 //!
 //! # No explicit method
-//! Störmer's and Verlet's rule and the six-stage method of order 4 of Blanes and Moan were built and measured on the soft pendulum (E = 68.95 MPa, the least stiff
-//! scene at hand): axial waves limit the step to 90 µs with 23 cable elements and to 70 µs with 20 RPIM nodes, so that the cheaper of the two
-//! took 1.8 times (ANCF) and 2.5 times (RPIM) as long as Gauss' method with three stages and 4 ms, whose error is smaller. They were left out.
+//! Störmer's and Verlet's rule and the six-stage method of order 4 of Blanes and Moan were built
+//! and measured on the soft pendulum (E = 68.95 MPa, the least stiff scene at hand): axial waves
+//! limit the step to 90 µs with 23 cable elements and to 70 µs with 20 RPIM nodes, so that the
+//! cheaper of the two took 1.8 times (ANCF) and 2.5 times (RPIM) as long as Gauss' method with
+//! three stages and 4 ms, whose error is smaller. They were left out.
 //!
 //! # No energy–momentum scheme
 //! Schemes that keep the discrete energy exactly (discrete gradients; Simo & Tarnow 1992, Gonzalez 2000) are of second order, and their tangent is
@@ -73,7 +76,8 @@ impl State {
         Self { q: q.to_vec(), v: vec![0.0; q.len()], ..Self::default() }
     }
 
-    /// The two inner control states of the cubic that has positions and velocities of this state and a later one.
+    /// The two inner control states of the cubic that has positions and velocities of this state
+    /// and a later one.
     pub fn controls(&self, later: &Self) -> [Vec<f64>; 2] {
         let third = (later.time - self.time) / 3.0;
         let moved =
@@ -81,8 +85,9 @@ impl State {
         [moved(self, third), moved(later, -third)]
     }
 
-    /// The state at `time` between this one and a later one, by the polynomial that has positions and velocities of both (cubic, error
-    /// of the fourth order in the step), and with `accelerations` those too (quintic, sixth order). Work, loss and angles are this state's.
+    /// The state at `time` between this one and a later one, by the polynomial that has positions
+    /// and velocities of both (cubic, error of the fourth order in the step), and with
+    /// `accelerations` those too (quintic, sixth order). Work, loss and angles are this state's.
     pub fn between(&self, later: &Self, time: f64, accelerations: Option<[&[f64]; 2]>) -> Self {
         let h = later.time - self.time;
         let x = (time - self.time) / h;
@@ -95,7 +100,8 @@ impl State {
             variables: InternalVariables::default(),
             angles: self.angles.clone(),
         };
-        // From the start: q = q₀ + x h v₀ + x² …; the end's data enter through their defects against the lower terms.
+        // From the start: q = q₀ + x h v₀ + x² …; the end's data enter through their defects
+        // against the lower terms.
         for i in 0..self.q.len() {
             let (q0, v0, v1) = (self.q[i], h * self.v[i], h * later.v[i]);
             let rise = later.q[i] - q0;
@@ -164,7 +170,8 @@ pub struct Checkpoint {
     pub last_ratio: f64,
     /// Where steps of fixed length are counted from \[s\], and how many were taken.
     pub origin: (f64, u64),
-    /// The state that was reached, where the motion's end or an event cut the step from `state` short: this step is taken once more.
+    /// The state that was reached, where the motion's end or an event cut the step from `state`
+    /// short: this step is taken once more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cut: Option<State>,
 }

@@ -4,26 +4,33 @@
 //! M q̈ + f(q, t) + f_d(q, q̇) + Bᵀ μ = 0,   g(q) = 0,   f = f_int + f_load
 //! ```
 //!
-//! What supports hold at nodes is eliminated from every matrix *before* it is factorised, the mass matrix included: solving with
-//! the mass matrix of the free beam and clearing the held components afterwards would give wrong accelerations to all others.
-//! Supports between nodes and joints are linear in q with constant rows, so that a method which satisfies them in its stages integrates
+//! What supports hold at nodes is eliminated from every matrix *before* it is factorised, the mass
+//! matrix included: solving with the mass matrix of the free beam and clearing the held components
+//! afterwards would give wrong accelerations to all others. Supports between nodes and joints are
+//! linear in q with constant rows, so that a method which satisfies them in its stages integrates
 //! an ordinary differential equation on the subspace g(q) = 0, with all of its order.
 //!
 //! # Inextensible beams
-//! Their rows follow the gradients, and the equations are differential-algebraic of index 3: the constraint is an equation of every stage, and after a step
-//! positions and velocities are put back onto it ([`Motion::project`]; Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, ch. VII). Methods that
-//! damp infinite frequencies serve: Radau IIA, and generalised-α with ρ∞ < 1. Gauss' methods and the trapezoidal rule carry an error of the axial
-//! force on from step to step, undamped, and are refused.
+//! Their rows follow the gradients, and the equations are differential-algebraic of index 3: the
+//! constraint is an equation of every stage, and after a step positions and velocities are put back
+//! onto it ([`Motion::project`]; Hairer, Wanner, *Solving Ordinary Differential Equations II*,
+//! 1996, ch. VII). Methods that damp infinite frequencies serve: Radau IIA, and generalised-α with
+//! ρ∞ < 1. Gauss' methods and the trapezoidal rule carry an error of the axial force on from step
+//! to step, undamped, and are refused.
 //!
 //! # Welds
-//! The gradients of welded nodes are polar: length y and direction θ are the unknowns, in which a weld's rows are linear and constant
-//! ([`crate::system::polar`]). Rows and forces are computed in fixed axes and turned into these unknowns; the mass matrix follows the state there.
+//! The gradients of welded nodes are polar: length y and direction θ are the unknowns, in which a
+//! weld's rows are linear and constant ([`crate::system::polar`]). Rows and forces are computed in
+//! fixed axes and turned into these unknowns; the mass matrix follows the state there.
 //!
 //! # Supports that move
-//! A coordinate that moves by a law of time has its exact value, velocity and acceleration in every stage, whatever a method makes of them; what is left is
-//! again an ordinary differential equation for the others. Of a gradient whose *direction* θ(t) is prescribed the length y along that direction is the
-//! unknown, and the method integrates (y, ẏ); fixed axes are met here only, with the centrifugal and Coriolis terms of the turning direction
-//! ([`crate::system::supports::Supports::carry`]). The mass matrix in that frame turns too and is formed anew with each tangent.
+//! A coordinate that moves by a law of time has its exact value, velocity and acceleration in every
+//! stage, whatever a method makes of them; what is left is again an ordinary differential equation
+//! for the others. Of a gradient whose *direction* θ(t) is prescribed the length y along that
+//! direction is the unknown, and the method integrates (y, ẏ); fixed axes are met here only, with
+//! the centrifugal and Coriolis terms of the turning direction
+//! ([`crate::system::supports::Supports::carry`]). The mass matrix in that frame turns too and is
+//! formed anew with each tangent.
 
 mod laws;
 mod reactions;
@@ -70,7 +77,8 @@ impl<'r> Acceleration<'r> {
     }
 }
 
-/// Forces, tangent and mass of a system in motion. Unknowns are the system's coordinates followed by the scaled multipliers.
+/// Forces, tangent and mass of a system in motion. Unknowns are the system's coordinates followed
+/// by the scaled multipliers.
 pub struct Motion<'a> {
     pub(super) system: &'a System,
     pub(super) mass: Inertia,
@@ -82,7 +90,8 @@ pub struct Motion<'a> {
     tangent: Matrix,
     /// Of the forces that depend on velocities, likewise; none where there are none.
     damping: Option<Matrix>,
-    /// Whether unknowns are not all coordinates in fixed axes with rates of their own: where supports move with time, and where gradients are polar.
+    /// Whether unknowns are not all coordinates in fixed axes with rates of their own: where
+    /// supports move with time, and where gradients are polar.
     pub(super) carries: bool,
     /// Whether the border follows the state.
     follows: bool,
@@ -102,7 +111,8 @@ pub struct Motion<'a> {
     pub statistics: Statistics,
 }
 
-/// The mass matrix of the unknowns in the state `q` in fixed axes: with zeros for the held coordinates, and with their diagonal.
+/// The mass matrix of the unknowns in the state `q` in fixed axes: with zeros for the held
+/// coordinates, and with their diagonal.
 fn free_mass(system: &System, time: f64, q: &[f64], mass: &Inertia) -> [Matrix; 2] {
     let mut free = mass.to_matrix();
     system.add_turning_mass(q, &mut free);
@@ -155,7 +165,8 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Whether tangents depend on the way to the last accepted state: with friction, and with springs that are wound up.
+    /// Whether tangents depend on the way to the last accepted state: with friction, and with
+    /// springs that are wound up.
     pub fn remembers(&self) -> bool {
         self.system.has_friction() || self.held.variables.winding != 0.0
     }
@@ -175,7 +186,8 @@ impl<'a> Motion<'a> {
         Turns::new(self.coordinates() / 4, self.still())
     }
 
-    /// Nodes that a tangent does not turn with: a held component of a position must stay what it is, and polar gradients turn by themselves.
+    /// Nodes that a tangent does not turn with: a held component of a position must stay what it
+    /// is, and polar gradients turn by themselves.
     pub fn still(&self) -> Vec<usize> {
         self.system.supports().half_held().chain(self.system.polar().nodes()).collect()
     }
@@ -190,13 +202,15 @@ impl<'a> Motion<'a> {
         self.system.coordinates() + self.system.multipliers()
     }
 
-    /// Whether a residual depends on velocities: by damping, or by the terms of a frame, a gradient or an inertia that turns.
+    /// Whether a residual depends on velocities: by damping, or by the terms of a frame, a gradient
+    /// or an inertia that turns.
     pub fn needs_velocity(&self) -> bool {
         self.damping.is_some() || self.system.has_turning_inertia() || self.system.turns()
     }
 
-    /// Factorises the mass matrix of the unknowns at `time` in the state `q` in fixed axes, if it is not constant, with the constraints' rows, if they follow it.
-    /// The mass and the rows beside the tangent remain those of its state, so that a saved motion finds them again.
+    /// Factorises the mass matrix of the unknowns at `time` in the state `q` in fixed axes, if it
+    /// is not constant, with the constraints' rows, if they follow it. The mass and the rows beside
+    /// the tangent remain those of its state, so that a saved motion finds them again.
     fn mass_at(&mut self, time: f64, q: &[f64]) -> Result<(), Singular> {
         if self.system.turns() || self.system.has_turning_inertia() || self.follows {
             let border = self.system.border_in_motion(time, q);
@@ -219,7 +233,8 @@ impl<'a> Motion<'a> {
         Ok(())
     }
 
-    /// −f, and −B q̈ of supports that move and directions that turn, as if no unknown had an acceleration.
+    /// −f, and −B q̈ of supports that move and directions that turn, as if no unknown had an
+    /// acceleration.
     fn free_forces(&mut self, state: &State) -> Vec<f64> {
         let n = self.coordinates();
         let mut forces = vec![0.0; self.unknowns()];
@@ -250,7 +265,8 @@ impl<'a> Motion<'a> {
         Ok(())
     }
 
-    /// The velocity nearest to `v`, in the norm of the kinetic energy, that supports and constraints allow in the state `q` at `time`.
+    /// The velocity nearest to `v`, in the norm of the kinetic energy, that supports and
+    /// constraints allow in the state `q` at `time`.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
@@ -275,7 +291,8 @@ impl<'a> Motion<'a> {
         Ok(wanted)
     }
 
-    /// Writes −(M a + f(q) + Bᵀμ) and −g to `negative`, in the supports' frames; returns the scaled residual.
+    /// Writes −(M a + f(q) + Bᵀμ) and −g to `negative`, in the supports' frames; returns the scaled
+    /// residual.
     pub fn residual(&mut self, x: &[f64], rates: Rates<'_>, negative: &mut [f64]) -> f64 {
         let scale = self.balance(x, rates, negative);
         negate(self.system, scale, negative, |_| ())
@@ -342,7 +359,8 @@ impl<'a> Motion<'a> {
         negate(self.system, scale, negative, |_| ())
     }
 
-    /// The tangent ∂f/∂q in the state `state` of unknowns, with the scaled `multipliers`, and the mass and the constraints' rows there.
+    /// The tangent ∂f/∂q in the state `state` of unknowns, with the scaled `multipliers`, and the
+    /// mass and the constraints' rows there.
     pub fn tangent_at(&mut self, state: &State, multipliers: &[f64]) {
         let rates = Rates { time: state.time, v: &state.v, a: Acceleration::constant(&state.v) };
         let mut x = state.q.clone();
@@ -356,7 +374,8 @@ impl<'a> Motion<'a> {
         self.force = force;
     }
 
-    /// Calls `f` with positions, velocities and accelerations in fixed axes, those of moving supports as prescribed.
+    /// Calls `f` with positions, velocities and accelerations in fixed axes, those of moving
+    /// supports as prescribed.
     fn with_carried<T>(
         &mut self,
         x: &[f64],
@@ -403,7 +422,8 @@ impl<'a> Motion<'a> {
         self.statistics.tangent_evaluations += 1;
     }
 
-    /// Adds to the forces in `r` what is left to add; returns the largest of them beside the inertia.
+    /// Adds to the forces in `r` what is left to add; returns the largest of them beside the
+    /// inertia.
     fn finish(&mut self, x: &[f64], rates: Rates<'_>, r: &mut [f64]) -> f64 {
         let n = self.coordinates();
         if self.damping.is_some() {
@@ -426,7 +446,8 @@ impl<'a> Motion<'a> {
         scale
     }
 
-    /// K q̇ in the unknowns `earlier` less that in the unknowns `later`: by how much the forces' rates differ, in the supports' frames.
+    /// K q̇ in the unknowns `earlier` less that in the unknowns `later`: by how much the forces'
+    /// rates differ, in the supports' frames.
     pub fn rate_of_forces(&mut self, earlier: &State, later: &State) -> Vec<f64> {
         let n = self.coordinates();
         let mut product = vec![0.0; n];
@@ -484,7 +505,8 @@ impl<'a> Motion<'a> {
         ComplexFactor::again(earlier, &real, &imaginary, c64::new(0.0, 1.0), &self.border)
     }
 
-    /// Multiplies by the mass matrix without the held coordinates: `b += factor · M d`, both in the supports' frames.
+    /// Multiplies by the mass matrix without the held coordinates: `b += factor · M d`, both in the
+    /// supports' frames.
     pub fn multiply_free_mass(&self, factor: f64, d: &[f64], b: &mut [f64]) {
         let n = self.coordinates();
         self.free_mass.multiply_add(factor, &d[..n], &mut b[..n]);
@@ -524,7 +546,8 @@ impl<'a> Motion<'a> {
         std::borrow::Cow::Owned(state)
     }
 
-    /// Turns the state of unknowns at the end of a step into fixed axes; what is held receives its prescribed values.
+    /// Turns the state of unknowns at the end of a step into fixed axes; what is held receives its
+    /// prescribed values.
     pub fn carry(&self, state: &mut State) {
         self.impose(state.time, &mut state.q);
         self.release(&mut state.v);
@@ -534,7 +557,8 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Accelerations in fixed axes from those of the unknowns in the state `state`, which is in fixed axes.
+    /// Accelerations in fixed axes from those of the unknowns in the state `state`, which is in
+    /// fixed axes.
     pub fn carried_acceleration(&self, state: &State, mut acceleration: Vec<f64>) -> Vec<f64> {
         if self.carries {
             let mut state = self.unknowns_of(state).into_owned();
@@ -543,8 +567,9 @@ impl<'a> Motion<'a> {
         acceleration
     }
 
-    /// Moves a state onto the constraints, which holds to round-off only in the step's equations: what they leave in position and velocity adds up over
-    /// many steps. The change is the smallest in the norm of the kinetic energy.
+    /// Moves a state onto the constraints, which holds to round-off only in the step's equations:
+    /// what they leave in position and velocity adds up over many steps. The change is the smallest
+    /// in the norm of the kinetic energy.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
@@ -592,7 +617,8 @@ impl<'a> Motion<'a> {
         largest.size()
     }
 
-    /// Turns an increment forth node by node and back from the supports' frames, and adds it to `x`; returns its size.
+    /// Turns an increment forth node by node and back from the supports' frames, and adds it to
+    /// `x`; returns its size.
     pub fn update(&self, turns: &Turns, increment: &mut [f64], x: &mut [f64]) -> f64 {
         // Both turn in the plane: which is first does not matter.
         self.from_frames(increment);

@@ -7,7 +7,8 @@ use crate::model::Crossing;
 use crate::solve::newton::Failure;
 
 impl Driver<'_, '_> {
-    /// Records and events of the step from the last state to `new`, which an event may cut short; true where the motion ends.
+    /// Records and events of the step from the last state to `new`, which an event may cut short;
+    /// true where the motion ends.
     pub(super) fn look(&mut self, new: &mut State) -> bool {
         let slack = SLACK * (new.time - self.state.time);
         let due = self.next_record as f64 * self.task.output_every < new.time - slack;
@@ -76,7 +77,8 @@ impl Driver<'_, '_> {
         state
     }
 
-    /// Notes the events of the step to `new` in the order of time; returns the state of the first that ends the motion.
+    /// Notes the events of the step to `new` in the order of time; returns the state of the first
+    /// that ends the motion.
     fn note_events(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) -> Option<State> {
         let h = new.time - self.state.time;
         let near = NEAR * self.system.length();

@@ -1,7 +1,10 @@
-//! The stages of a collocation method side by side: stage i of every unknown in lane i of a register.
+//! The stages of a collocation method side by side: stage i of every unknown in lane i of a
+//! register.
 //!
-//! All stages ask the same of every cell, so that forces, products with the mass matrix and turns are computed for all of them at once. Lanes beyond the
-//! last stage repeat it. Substitutions go through one vector after the other; between them and the lanes blocks of 4 × 4 numbers are transposed.
+//! All stages ask the same of every cell, so that forces, products with the mass matrix and turns
+//! are computed for all of them at once. Lanes beyond the last stage repeat it. Substitutions go
+//! through one vector after the other; between them and the lanes blocks of 4 × 4 numbers are
+//! transposed.
 
 use super::State;
 use super::motion::{Acceleration, Motion, Rates};
@@ -153,7 +156,8 @@ impl Stages {
         }
     }
 
-    /// Turns the residual back to where the tangent was taken, mixes the stages and writes them to `rows`.
+    /// Turns the residual back to where the tangent was taken, mixes the stages and writes them to
+    /// `rows`.
     pub fn take_apart(&mut self, mixture: &Mixture, rows: &mut [Vec<f64>]) {
         let nodes = self.residual.as_chunks_mut::<4>().0;
         for (turn, node) in self.turns.iter().zip(nodes) {
@@ -199,7 +203,8 @@ impl Motion<'_> {
         Stages::new(self.coordinates(), self.unknowns(), self.needs_velocity() || self.carries, self.still())
     }
 
-    /// [`Self::residual`] of the stages of a step at their `times`, the first `count` lanes: leaves those of all in `stages`, returns the largest.
+    /// [`Self::residual`] of the stages of a step at their `times`, the first `count` lanes: leaves
+    /// those of all in `stages`, returns the largest.
     pub fn residuals(&mut self, times: [f64; 4], count: usize, stages: &mut Stages) -> f64 {
         if self.carries || self.system.multipliers() > 0 || self.system.has_turning_inertia() {
             let mut largest = 0.0_f64;

@@ -1,4 +1,5 @@
-//! Where a motion starts: at rest, with given velocities, or in a state that another analysis has left.
+//! Where a motion starts: at rest, with given velocities, or in a state that another analysis has
+//! left.
 
 use super::{Checkpoint, State};
 use crate::linear::Singular;
@@ -6,7 +7,8 @@ use crate::model::InitialVelocity;
 use crate::solve::dynamics::motion::Motion;
 use crate::system::System;
 
-/// Difference between given and admissible velocities, relative to the largest, and between places in beam lengths, that counts as round-off.
+/// Difference between given and admissible velocities, relative to the largest, and between places
+/// in beam lengths, that counts as round-off.
 const ROUND_OFF: f64 = 1e-9;
 /// The same of joints, which equations keep.
 const JOINED: f64 = 1e-6;
@@ -95,16 +97,18 @@ fn jump(system: &System, at: usize, time: f64, change: f64) -> StartError {
 /// The stress-free state with the given velocities.
 ///
 /// # Errors
-/// [`StartError::Held`] where supports do not allow them, [`StartError::Jump`] where a support starts elsewhere.
+/// [`StartError::Held`] where supports do not allow them, [`StartError::Jump`] where a support
+/// starts elsewhere.
 pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Checkpoint, StartError> {
     from_state(system, State::at_rest(system.reference()), velocities)
 }
 
-/// A state with the given velocities added to its own. What supports that move at once make of them is work.
+/// A state with the given velocities added to its own. What supports that move at once make of them
+/// is work.
 ///
 /// # Errors
-/// [`StartError::Held`] where supports do not allow the velocities, [`StartError::Jump`] where a support is elsewhere, [`StartError::Open`] where a
-/// joint is open.
+/// [`StartError::Held`] where supports do not allow the velocities, [`StartError::Jump`] where a
+/// support is elsewhere, [`StartError::Open`] where a joint is open.
 pub fn from_state(
     system: &System,
     mut state: State,

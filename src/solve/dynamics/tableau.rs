@@ -1,14 +1,17 @@
-//! The coefficients of collocation methods, and the transformation that takes their stage systems apart.
+//! The coefficients of collocation methods, and the transformation that takes their stage systems
+//! apart.
 //!
-//! A method with the nodes c_i integrates ẏ = F(y) by the polynomial that satisfies the equation at the nodes:
+//! A method with the nodes c_i integrates ẏ = F(y) by the polynomial that satisfies the equation at
+//! the nodes:
 //!
 //! ```text
 //! a_ij = ∫₀^{c_i} ℓ_j dτ,   b_j = ∫₀¹ ℓ_j dτ,   ℓ_j the Lagrange polynomials of the nodes
 //! ```
 //!
-//! Gauss: the zeros of the Legendre polynomial shifted to [0, 1], order 2s, symplectic and symmetric. Radau IIA: the zeros of
-//! d^{s−1}/dx^{s−1} (x^{s−1} (x − 1)^s), order 2s − 1, c_s = 1, damps what is infinitely stiff in one step
-//! (Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, IV.5, IV.8).
+//! Gauss: the zeros of the Legendre polynomial shifted to [0, 1], order 2s, symplectic and
+//! symmetric. Radau IIA: the zeros of d^{s−1}/dx^{s−1} (x^{s−1} (x − 1)^s), order 2s − 1, c_s = 1,
+//! damps what is infinitely stiff in one step (Hairer, Wanner, *Solving Ordinary Differential
+//! Equations II*, 1996, IV.5, IV.8).
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -48,7 +51,8 @@ pub struct Tableau {
     pub inverse_squared: DMatrix<f64>,
     /// b.
     pub weights: Vec<f64>,
-    /// bᵀ A⁻¹ and bᵀ A⁻²: weights of the stage displacements in the position at the end, and in h times the velocity there.
+    /// bᵀ A⁻¹ and bᵀ A⁻²: weights of the stage displacements in the position at the end, and in h
+    /// times the velocity there.
     pub end: DMatrix<f64>,
     /// T of A⁻¹ = T Λ T⁻¹.
     pub transformation: DMatrix<f64>,
@@ -82,7 +86,8 @@ impl Tableau {
 
     fn new(nodes: Vec<f64>, order: f64) -> Self {
         let s = nodes.len();
-        // With V_ij = c_i^j: ∫₀^{c_i} x^j = c_i^{j+1}/(j + 1), so A = C V⁻¹ and bᵀ = (1, 1/2, …) V⁻¹.
+        // With V_ij = c_i^j: ∫₀^{c_i} x^j = c_i^{j+1}/(j + 1), so A = C V⁻¹ and bᵀ = (1, 1/2, …)
+        // V⁻¹.
         let powers = DMatrix::from_fn(s, s, |i, j| nodes[i].powi(j as i32));
         let inverse_powers = invert(&powers);
         let integrals = DMatrix::from_fn(s, s, |i, j| nodes[i].powi(j as i32 + 1) / (j + 1) as f64);
@@ -111,7 +116,8 @@ impl Tableau {
         self.nodes.len()
     }
 
-    /// Whether what oscillates infinitely fast dies out in one step: where the last stage is the end of the step.
+    /// Whether what oscillates infinitely fast dies out in one step: where the last stage is the
+    /// end of the step.
     pub fn damps(&self) -> bool {
         self.nodes.last() == Some(&1.0)
     }
@@ -127,7 +133,8 @@ fn lagrange(nodes: &[f64], x: f64) -> Vec<f64> {
     (0..nodes.len()).map(|j| (0..nodes.len()).filter(|k| *k != j).map(|k| factor(j, k)).product()).collect()
 }
 
-/// Of the matrices of this module, which are fixed and regular; a failure shows as NaN in the first test.
+/// Of the matrices of this module, which are fixed and regular; a failure shows as NaN in the first
+/// test.
 fn invert(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     matrix.clone().try_inverse().unwrap_or_else(|| matrix.map(|_| f64::NAN))
 }
@@ -143,7 +150,8 @@ fn diagonalise(matrix: &DMatrix<f64>) -> (DMatrix<f64>, Vec<Block>) {
             columns.push(eigenvector(matrix, Complex::new(value.re, 0.0)).map(|v| v.re));
             blocks.push(Block::Real { gamma: value.re, row });
         } else if value.im < 0.0 {
-            // W (p + iq) = (α − iβ)(p + iq) makes W [p q] = [p q] [α −β; β α], which maps w₁ + i w₂ by α + iβ.
+            // W (p + iq) = (α − iβ)(p + iq) makes W [p q] = [p q] [α −β; β α], which maps w₁ + i w₂
+            // by α + iβ.
             let vector = eigenvector(matrix, *value);
             columns.push(vector.map(|v| v.re));
             columns.push(vector.map(|v| v.im));

@@ -1,13 +1,15 @@
 //! Contacts of a motion: when they begin and end, what they did, and steps that end where they do.
 //!
-//! Where a contact begins or ends the force has a kink. A step across it has an error of low order, which estimates that presume a smooth motion do not
-//! see: with Gauss' method and a tolerance of 1e-8 a rod that falls flat left the ground at a height wrong by 1e-3. So a step that is to meet an
-//! accuracy ends at the kink: the place is found by the interpolated motion of the step, which is tried again until it hits. The rod then
-//! errs by 1e-10.
+//! Where a contact begins or ends the force has a kink. A step across it has an error of low order,
+//! which estimates that presume a smooth motion do not see: with Gauss' method and a tolerance of
+//! 1e-8 a rod that falls flat left the ground at a height wrong by 1e-3. So a step that is to meet
+//! an accuracy ends at the kink: the place is found by the interpolated motion of the step, which
+//! is tried again until it hits. The rod then errs by 1e-10.
 //!
-//! Nothing is crossed. The way of every step, on which it is interpolated, is swept ([`crate::effect::Pressing`]): a step that carries the beam deeper into a thin obstacle than
-//! a part of its thickness is rejected, so that the force is seen before the beam is through; and a step of fixed length is divided where it touches and
-//! leaves an obstacle unseen.
+//! Nothing is crossed. The way of every step, on which it is interpolated, is swept
+//! ([`crate::effect::Pressing`]): a step that carries the beam deeper into a thin obstacle than a
+//! part of its thickness is rejected, so that the force is seen before the beam is through; and a
+//! step of fixed length is divided where it touches and leaves an obstacle unseen.
 
 use super::State;
 use super::contact::{Change, Touch};
@@ -27,7 +29,8 @@ const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 impl Driver<'_, '_> {
-    /// Refuses a step to `new` whose way leads through an obstacle, and one of fixed length that would not see that it touches one.
+    /// Refuses a step to `new` whose way leads through an obstacle, and one of fixed length that
+    /// would not see that it touches one.
     pub(super) fn not_crossed(&self, new: &State) -> Result<(), Failure> {
         if self.touching.is_empty() {
             return Ok(());
@@ -74,7 +77,8 @@ impl Driver<'_, '_> {
         (self.state.time + near..new.time - near).contains(&first).then_some(first)
     }
 
-    /// A time in the step to `new` at which a contact that gives way begins to push the other way; `after` is the state after its beginning.
+    /// A time in the step to `new` at which a contact that gives way begins to push the other way;
+    /// `after` is the state after its beginning.
     fn turn_within(&self, new: &State, after: &State) -> Option<f64> {
         let mut scratch = vec![0.0; new.q.len()];
         let mut forces = |state: &State| -> Vec<[f64; 2]> {
@@ -98,7 +102,8 @@ impl Driver<'_, '_> {
         self.first_change(new, 1.0, |state| sliding(state) != begun)
     }
 
-    /// When states first are `changed` in the first `part` of the step to `new`: bisection of the interpolated motion.
+    /// When states first are `changed` in the first `part` of the step to `new`: bisection of the
+    /// interpolated motion.
     fn first_change(&self, new: &State, part: f64, mut changed: impl FnMut(&State) -> bool) -> Option<f64> {
         let (start, h) = (self.state.time, new.time - self.state.time);
         let mut changed = |part: f64| changed(&self.state.between(new, start + part * h, None));

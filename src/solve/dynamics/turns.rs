@@ -1,9 +1,10 @@
 //! A tangent that turns with the nodes.
 //!
-//! What changes a slender beam's tangent K most is rotation. Between the state q₀ at which K was taken and the state q, node i turns by
-//! φ_i, the angle from r'_i(q₀) to r'_i(q); with R = diag(R(φ_i)) over the pairs (x, y) and (x', y') of the nodes, R K Rᵀ is K at
-//! q but for the change of stress and shape. So a residual is turned back by Rᵀ, solved for with the old factorisation, and the increment turned
-//! forth by R.
+//! What changes a slender beam's tangent K most is rotation. Between the state q₀ at which K was
+//! taken and the state q, node i turns by φ_i, the angle from r'_i(q₀) to r'_i(q); with R =
+//! diag(R(φ_i)) over the pairs (x, y) and (x', y') of the nodes, R K Rᵀ is K at q but for the
+//! change of stress and shape. So a residual is turned back by Rᵀ, solved for with the old
+//! factorisation, and the increment turned forth by R.
 
 use crate::lanes::{Pair, Real, cross, dot};
 

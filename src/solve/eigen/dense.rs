@@ -20,7 +20,8 @@ const DEPENDENT: f64 = 1e-12;
 /// [`EigenError`] where A is singular or indefinite on the allowed motions.
 pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, EigenError> {
     let free: Vec<usize> = (0..pencil.held.len()).filter(|&i| !pencil.held[i]).collect();
-    // Positions and gradients have different units: every coordinate is measured by its own stiffness.
+    // Positions and gradients have different units: every coordinate is measured by its own
+    // stiffness.
     let scale: Vec<f64> = free
         .iter()
         .map(|&i| pencil.a.get(i, i))
@@ -70,7 +71,8 @@ pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, E
     Ok(pairs)
 }
 
-/// Orthonormal columns that span the motions which the constraint rows allow, in scaled free coordinates.
+/// Orthonormal columns that span the motions which the constraint rows allow, in scaled free
+/// coordinates.
 fn null_space(pencil: &Pencil<'_>, free: &[usize], scale: &[f64]) -> Result<Option<Mat<f64>>, EigenError> {
     let (n, m) = (free.len(), pencil.border.len());
     if m == 0 {

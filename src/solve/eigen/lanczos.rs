@@ -1,8 +1,9 @@
 //! Lanczos' method for the operator A⁻¹ B in the inner product of A, with full reorthogonalisation.
 //!
-//! One factorisation of A serves all steps. A Krylov space holds one vector of every eigenspace, so that a structure with
-//! equal frequencies (two beams alike, the rigid motions of a free one) hides the others from it. What has converged is
-//! therefore set aside, and the search repeated orthogonally to it until nothing larger turns up.
+//! One factorisation of A serves all steps. A Krylov space holds one vector of every eigenspace, so
+//! that a structure with equal frequencies (two beams alike, the rigid motions of a free one) hides
+//! the others from it. What has converged is therefore set aside, and the search repeated
+//! orthogonally to it until nothing larger turns up.
 
 use super::{EigenError, NEGLIGIBLE, Pairs, Pencil, dot};
 use crate::linear::{Factor, Matrix};
@@ -79,7 +80,8 @@ impl Search<'_> {
     /// The largest pairs orthogonal to those found, up to `count`; none where there are none.
     fn krylov(&mut self, count: usize) -> Result<Vec<Pair>, EigenError> {
         let n = self.pencil.a.size();
-        // A start with a share of every mode: low-discrepancy numbers, others in every search, the same in every run.
+        // A start with a share of every mode: low-discrepancy numbers, others in every search, the
+        // same in every run.
         self.searches += 1;
         let shift = self.searches as f64 * 0.754_877_666_246_693;
         let seed: Vec<f64> =

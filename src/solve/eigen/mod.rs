@@ -1,9 +1,11 @@
-//! A few eigenpairs of A φ = θ B φ on the allowed motions, with A symmetric and positive definite there and B symmetric.
+//! A few eigenpairs of A φ = θ B φ on the allowed motions, with A symmetric and positive definite
+//! there and B symmetric.
 //!
-//! The largest 1/θ are wanted: the lowest vibrations (A the stiffness, B the mass matrix) and the lowest critical loads
-//! (B the negative geometric stiffness, which need not be definite). Both methods work with A⁻¹, in which the wanted
-//! pairs are the dominant ones; M⁻¹ K would leave them an error of the round-off of the highest frequency. (Measured for a
-//! cantilever of 100 elements with EA L²/EI = 1e6, error of the first frequency: 1e-9 with A⁻¹, 2e-7 with M⁻¹ K, 1e-7 with
+//! The largest 1/θ are wanted: the lowest vibrations (A the stiffness, B the mass matrix) and the
+//! lowest critical loads (B the negative geometric stiffness, which need not be definite). Both
+//! methods work with A⁻¹, in which the wanted pairs are the dominant ones; M⁻¹ K would leave them
+//! an error of the round-off of the highest frequency. (Measured for a cantilever of 100 elements
+//! with EA L²/EI = 1e6, error of the first frequency: 1e-9 with A⁻¹, 2e-7 with M⁻¹ K, 1e-7 with
 //! faer's generalised decomposition by QZ, which takes seven times as long.)
 //!
 //! | unknowns | method | file |
@@ -66,7 +68,8 @@ pub enum EigenError {
     },
 }
 
-/// The matrices of A φ = θ B φ in the supports' frames. Held rows are those of a diagonal matrix in A, and zero in B.
+/// The matrices of A φ = θ B φ in the supports' frames. Held rows are those of a diagonal matrix in
+/// A, and zero in B.
 #[derive(Clone, Copy, Debug)]
 pub struct Pencil<'a> {
     /// A.
@@ -99,17 +102,19 @@ pub struct Pairs {
 /// A reciprocal smaller than this fraction of the largest one is round-off.
 const NEGLIGIBLE: f64 = 1e-13;
 
-/// Up to so many motions all eigenpairs are computed, however few are wanted. Measured for five of a cantilever: 33
-/// motions 0.1 ms by either method, 65 motions 0.3 against 0.1 ms, 401 motions 20 against 0.6 ms.
+/// Up to so many motions all eigenpairs are computed, however few are wanted. Measured for five of
+/// a cantilever: 33 motions 0.1 ms by either method, 65 motions 0.3 against 0.1 ms, 401 motions 20
+/// against 0.6 ms.
 const FEW: usize = 60;
-/// Up to so many times the wanted number of motions all eigenpairs are computed: of 129 motions a quarter takes 1.4 against
-/// 1.7 ms, of 401 20 ms by either method.
+/// Up to so many times the wanted number of motions all eigenpairs are computed: of 129 motions a
+/// quarter takes 1.4 against 1.7 ms, of 401 20 ms by either method.
 const SHARE: usize = 4;
 
 /// The `count` largest positive 1/θ, fewer where there are not so many.
 ///
 /// # Errors
-/// [`EigenError`] where there are no allowed motions, A is singular or indefinite on them, or an iteration fails.
+/// [`EigenError`] where there are no allowed motions, A is singular or indefinite on them, or an
+/// iteration fails.
 pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, EigenError> {
     if pencil.motions() == 0 {
         return Err(EigenError::NoMotion);

@@ -9,7 +9,8 @@ use crate::{Case, Error, Result, Suite};
 /// Everything that is wrong with the folders of cases and references; empty if nothing is.
 ///
 /// - every case has `scene.toml`, `case.toml` and `README.md`, and every scene beside them is used;
-/// - every folder and file of `reference_data` belongs to an oracle of a case, and the other way round;
+/// - every folder and file of `reference_data` belongs to an oracle of a case, and the other way
+///   round;
 /// - every oracle is compared with something;
 /// - tables are byte by byte what `verify freeze` wrote, and so is what they were made from;
 /// - provenance says what the case says.

@@ -35,11 +35,13 @@
 //! why = "What limits the agreement."
 //! ```
 //!
-//! An oracle `peer = "exudyn"` is what Exudyn makes of a family, `run = "loads"`; its columns are the family's variables,
-//! then `probe`, `parameter` (load factor or time), `x`, `y`, or in a modal analysis `mode`, `frequency`.
-//! `{name}` stands for the value that the member of the family has for this variable; values may contain
-//! further ones. With `along = "s"` the rows that `where` leaves form a curve over that column. With
-//! `order = { against = "elements", expected = 4, within = 0.3 }` the observed order of the error is a further number that must hold.
+//! An oracle `peer = "exudyn"` is what Exudyn makes of a family, `run = "loads"`; its columns are
+//! the family's variables, then `probe`, `parameter` (load factor or time), `x`, `y`, or in a modal
+//! analysis `mode`, `frequency`. `{name}` stands for the value that the member of the family has
+//! for this variable; values may contain further ones. With `along = "s"` the rows that `where`
+//! leaves form a curve over that column. With
+//! `order = { against = "elements", expected = 4, within = 0.3 }` the observed order of the error
+//! is a further number that must hold.
 
 use std::path::{Path, PathBuf};
 
@@ -71,7 +73,8 @@ pub struct CaseText {
     pub claim: String,
     /// Where the problem comes from.
     pub source: String,
-    /// Takes longer than some seconds: compared by the report and by `cargo test -- --ignored` alone.
+    /// Takes longer than some seconds: compared by the report and by `cargo test -- --ignored`
+    /// alone.
     #[serde(default)]
     pub nightly: bool,
     /// Why this is difficult; the report has a page of such cases.
@@ -79,7 +82,8 @@ pub struct CaseText {
     /// References, by the name of their file.
     #[serde(default)]
     pub oracle: IndexMap<String, Oracle>,
-    /// Families of runs, by name. None given: one family `run` of one member, `scene.toml` as it stands.
+    /// Families of runs, by name. None given: one family `run` of one member, `scene.toml` as it
+    /// stands.
     #[serde(default)]
     pub run: IndexMap<String, Family>,
     /// What must hold.
@@ -180,8 +184,8 @@ pub struct Family {
     /// Overrides `PATH=VALUE`.
     #[serde(default)]
     pub set: Vec<String>,
-    /// Do not solve: give every node the exact position and gradient of the beam's stress-free centreline
-    /// and look at what the discretisation makes of it.
+    /// Do not solve: give every node the exact position and gradient of the beam's stress-free
+    /// centreline and look at what the discretisation makes of it.
     #[serde(default)]
     pub interpolate: bool,
     /// Axes: variable → values.
@@ -252,7 +256,8 @@ pub struct Check {
     /// Members of the family that it concerns, by the values of their variables. Default: all.
     #[serde(default)]
     pub only: IndexMap<String, Scalar>,
-    /// See [`crate::quantity`]. Several are the components of a point, compared by Euclidean distance.
+    /// See [`crate::quantity`]. Several are the components of a point, compared by Euclidean
+    /// distance.
     pub quantity: OneOrMore,
     /// What of a series over time or load is compared, where no curve is.
     #[serde(default)]
@@ -277,8 +282,8 @@ pub struct Check {
     pub allowed: Option<Scalar>,
     /// Smallest error: for claims that a method is *not* good at something.
     pub at_least: Option<f64>,
-    /// Unit of the last digit that a publication prints; an error beyond it is pointed out in the report
-    /// even where more is allowed.
+    /// Unit of the last digit that a publication prints; an error beyond it is pointed out in the
+    /// report even where more is allowed.
     pub last_digit: Option<f64>,
     /// Observed order of the error.
     pub order: Option<Order>,

@@ -48,7 +48,8 @@ pub struct Verdict {
     pub at_least: Option<f64>,
     /// The error keeps the limits.
     pub pass: bool,
-    /// The error keeps the limits, but is larger than one unit of the last digit that the publication prints.
+    /// The error keeps the limits, but is larger than one unit of the last digit that the
+    /// publication prints.
     pub beyond_last_digit: bool,
     /// What is wrong besides the size of the error.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -153,8 +154,8 @@ fn one(examined: &Examined, number: usize, check: &Check) -> std::result::Result
 
 /// Compares what one run left with what the check asks for.
 ///
-/// `number` and `index` are those of the check in its case and of the run in its family; `tables` are references by the names
-/// under which checks know them.
+/// `number` and `index` are those of the check in its case and of the run in its family; `tables`
+/// are references by the names under which checks know them.
 ///
 /// # Errors
 /// Where the check asks for what is not there.
@@ -317,7 +318,8 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// The value at `at`: a record where there is one, otherwise the cubic through the four nearest records.
+/// The value at `at`: a record where there is one, otherwise the cubic through the four nearest
+/// records.
 fn interpolated(abscissa: &[f64], values: &[f64], at: f64) -> std::result::Result<f64, String> {
     let (Some(first), Some(last)) = (abscissa.first(), abscissa.last()) else {
         return Err("the run recorded nothing".to_owned());
@@ -337,7 +339,8 @@ fn interpolated(abscissa: &[f64], values: &[f64], at: f64) -> std::result::Resul
             return Ok(*y);
         }
     }
-    // A place that is there twice, because a force acts in a point, ends one curve and begins the next.
+    // A place that is there twice, because a force acts in a point, ends one curve and begins the
+    // next.
     let twice = |w: &[f64]| matches!(w, [a, b] if a == b);
     let from = abscissa[..right].windows(2).rposition(twice).map_or(0, |i| i + 1);
     let to = abscissa[right..].windows(2).position(twice).map_or(abscissa.len(), |i| right + i + 1);
@@ -370,7 +373,8 @@ fn groups<'a>(runs: &[Run], outcomes: &'a [Outcome], against: &str) -> Vec<(Stri
     groups
 }
 
-/// The observed order over a group of runs: minus the slope of ln error over ln n, by least squares.
+/// The observed order over a group of runs: minus the slope of ln error over ln n, by least
+/// squares.
 fn rate(
     examined: &Examined,
     number: usize,

@@ -59,8 +59,8 @@ impl Examined {
 /// Reads, runs and compares one case.
 ///
 /// # Errors
-/// Unreadable files, scenes that the solver refuses, and checks that ask for what is not there. Numbers that
-/// miss their tolerance are failed outcomes.
+/// Unreadable files, scenes that the solver refuses, and checks that ask for what is not there.
+/// Numbers that miss their tolerance are failed outcomes.
 pub fn examine(suite: &Suite, name: &str) -> Result<Examined> {
     let case = suite.case(name)?;
     let tables = case

@@ -30,7 +30,8 @@ impl Member {
         fill(template, &self.variables, 0)
     }
 
-    /// The member in one line, such as `nodes = 4, RPIM`: of each axis its variable `label`, or else its first.
+    /// The member in one line, such as `nodes = 4, RPIM`: of each axis its variable `label`, or
+    /// else its first.
     pub fn label(&self) -> String {
         self.label_without("")
     }

@@ -28,8 +28,9 @@ pub struct Figure {
     pub curve: Vec<Curve>,
 }
 
-/// One curve for each member of a family that `only` leaves, from the run or, with `oracle`, from the reference. With `check`,
-/// one for each set of runs that differ in nothing but the variable `x`.
+/// One curve for each member of a family that `only` leaves, from the run or, with `oracle`, from
+/// the reference. With `check`, one for each set of runs that differ in nothing but the variable
+/// `x`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Curve {

@@ -1,7 +1,8 @@
 //! What a discretisation makes of exact nodal values, without any equilibrium.
 //!
-//! Every node is given the exact position and gradient of the beam's centreline; between the nodes the shape
-//! functions decide. The strain that appears there is wrong throughout ("pseudo-strain"), since the exact curve has none.
+//! Every node is given the exact position and gradient of the beam's centreline; between the nodes
+//! the shape functions decide. The strain that appears there is wrong throughout ("pseudo-strain"),
+//! since the exact curve has none.
 
 use ancf::basis::{Basis, BasisTable, Quadrature};
 use ancf::centreline::Curve;
@@ -13,7 +14,8 @@ const PLACES: usize = 201;
 /// An interpolated centreline.
 #[derive(Clone, Debug)]
 pub struct Interpolation {
-    /// ½∫ EA ε² ds by the beam's own quadrature \[J\]; ε of the interpolated curve. None without EA.
+    /// ½∫ EA ε² ds by the beam's own quadrature \[J\]; ε of the interpolated curve. None without
+    /// EA.
     pub stretch: Option<f64>,
     /// ½∫ EI κ² ds by the beam's own quadrature \[J\]. None without EI.
     pub bend: Option<f64>,

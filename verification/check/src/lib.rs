@@ -1,4 +1,5 @@
-//! Verification cases: what is claimed, against which reference, to which tolerance, and whether it holds.
+//! Verification cases: what is claimed, against which reference, to which tolerance, and whether it
+//! holds.
 //!
 //! A case is a folder `verification/cases/<name>/`:
 //!
@@ -8,9 +9,10 @@
 //! README.md      source, goal, sketch
 //! ```
 //!
-//! and its references are `reference_data/<name>/<oracle>.csv` with `<oracle>.provenance.toml` beside it, written by
-//! `verify freeze` alone. The tests of the root package, the report and the documentation all read cases through this
-//! crate; there is no second list, and adding a case is adding a folder.
+//! and its references are `reference_data/<name>/<oracle>.csv` with `<oracle>.provenance.toml`
+//! beside it, written by `verify freeze` alone. The tests of the root package, the report and the
+//! documentation all read cases through this crate; there is no second list, and adding a case is
+//! adding a folder.
 //!
 //! ```text
 //! case.toml ──► Case ─┬─ families ──► Member (scene, overrides) ──► Run (trajectory) ─┐
@@ -18,7 +20,8 @@
 //!                     └─ checks ── quantity, norm, tolerance, why ────────────────────┘
 //! ```
 //!
-//! The crate is pure Rust and starts no process, so that `cargo test` of the root package needs nothing else.
+//! The crate is pure Rust and starts no process, so that `cargo test` of the root package needs
+//! nothing else.
 
 #![warn(missing_docs)]
 
@@ -41,7 +44,8 @@ pub use suite::Suite;
 
 use std::path::PathBuf;
 
-/// Why a case cannot be examined. A number that misses its tolerance is no error but a failed [`Outcome`].
+/// Why a case cannot be examined. A number that misses its tolerance is no error but a failed
+/// [`Outcome`].
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A file or folder cannot be read.

@@ -51,7 +51,8 @@ pub enum Values {
 }
 
 impl Values {
-    /// One number: of a series what `pick` says. `over` replaces the abscissa in the search for a maximum.
+    /// One number: of a series what `pick` says. `over` replaces the abscissa in the search for a
+    /// maximum.
     pub fn number(&self, pick: Pick, over: Option<&[f64]>) -> std::result::Result<f64, String> {
         match self {
             Self::Number(v) => Ok(*v),

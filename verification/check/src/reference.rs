@@ -124,12 +124,13 @@ impl Table {
 
 /// Of a column's largest number, what another processor's round-off may move.
 const ROUND_OFF: f64 = 1e-9;
-/// Two units of the last of the twelve decimals that many oracles print: where a column is zero but for
-/// round-off there is no largest number to speak of.
+/// Two units of the last of the twelve decimals that many oracles print: where a column is zero but
+/// for round-off there is no largest number to speak of.
 const LAST_DECIMAL: f64 = 2e-12;
 
-/// Where a table made today is not the one that was frozen but for another processor's round-off: the header and
-/// words differ, or numbers by more than 1e-9 of their column's largest. `None` where it is the same.
+/// Where a table made today is not the one that was frozen but for another processor's round-off:
+/// the header and words differ, or numbers by more than 1e-9 of their column's largest. `None`
+/// where it is the same.
 pub fn difference(today: &str, frozen: &str) -> Option<String> {
     let rows = |text: &str| -> Vec<Vec<String>> {
         text.lines().map(|line| line.split(',').map(|cell| cell.trim().to_owned()).collect()).collect()
@@ -169,8 +170,8 @@ mod tests {
 
     const FROZEN: &str = "load,x,y\n1,0.500000000000,1e-17\n2,-20.0,3e-16\n";
 
-    /// Catches a comparison that lets a digit go, a row, a column or a word, and one that takes round-off for a
-    /// difference, be it in the last decimal or of a number that is zero.
+    /// Catches a comparison that lets a digit go, a row, a column or a word, and one that takes
+    /// round-off for a difference, be it in the last decimal or of a number that is zero.
     #[test]
     fn round_off_is_no_difference_and_a_digit_is() {
         for same in [

@@ -121,7 +121,8 @@ pub fn meet(input: &Input, write: bool) -> Result<Reached, String> {
     Ok(Reached::Run)
 }
 
-/// The saved state that a text is, if it is one: as damaged as it is, for a checksum would refuse all alike. Files are read too.
+/// The saved state that a text is, if it is one: as damaged as it is, for a checksum would refuse
+/// all alike. Files are read too.
 fn load(text: &str) -> Result<Option<SavedState>, String> {
     let file = tempfile::NamedTempFile::new().map_err(|error| error.to_string())?;
     std::fs::write(file.path(), text).map_err(|error| error.to_string())?;
@@ -140,7 +141,8 @@ fn finite(t: &Trajectory) -> Result<(), String> {
     }
 }
 
-/// The scene with the state that its motion has after some steps, where it has a motion and is small.
+/// The scene with the state that its motion has after some steps, where it has a motion and is
+/// small.
 pub fn saved(scene: &str) -> Option<(String, serde_json::Value)> {
     let parsed = scene::parse("seed", scene).ok()?;
     if nodes(parsed.model()) > RUN || !is_small(parsed.analysis()) {

@@ -1,10 +1,11 @@
-//! `fuzz`: feeds the solver damaged scenes and saved states, and keeps those that it does not take well; with `--agree` legal ones, each in
-//! several ways that must agree ([`mod@agree`]).
+//! `fuzz`: feeds the solver damaged scenes and saved states, and keeps those that it does not take
+//! well; with `--agree` legal ones, each in several ways that must agree ([`mod@agree`]).
 //!
-//! The seeds are all scenes of the repository. A worker process damages them, as trees of values and as text, reads,
-//! inspects and, where they are small, runs them for a few steps and writes the results. Findings are panics, states with
-//! numbers that are not finite, inputs that take too long or too much memory, and messages without a place. The worker may
-//! die of one; the parent then keeps the input that it had in hand and starts another.
+//! The seeds are all scenes of the repository. A worker process damages them, as trees of values
+//! and as text, reads, inspects and, where they are small, runs them for a few steps and writes the
+//! results. Findings are panics, states with numbers that are not finite, inputs that take too long
+//! or too much memory, and messages without a place. The worker may die of one; the parent then
+//! keeps the input that it had in hand and starts another.
 
 mod agree;
 mod damage;

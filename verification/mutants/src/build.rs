@@ -96,7 +96,8 @@ impl Place {
 }
 
 impl Message {
-    /// The mutants that it is about: by its first places, otherwise by the others, otherwise by what it adds.
+    /// The mutants that it is about: by its first places, otherwise by the others, otherwise by
+    /// what it adds.
     fn blame(&self, spliced: &[(String, Spliced)]) -> BTreeSet<usize> {
         for primary in [true, false] {
             let places = self.spans.iter().filter(|place| place.is_primary == primary);

@@ -28,7 +28,8 @@ pub struct Workshop {
 }
 
 impl Workshop {
-    /// That of a repository. It lies in `target`, so that the copy is built with the repository's own `.cargo/config.toml`.
+    /// That of a repository. It lies in `target`, so that the copy is built with the repository's
+    /// own `.cargo/config.toml`.
     pub fn new(root: &Path) -> Result<Self, Failure> {
         let folder = root.join("target").join("mutants");
         let workshop = Self {
@@ -44,8 +45,9 @@ impl Workshop {
         Ok(workshop)
     }
 
-    /// Makes the copy equal to the repository but for sources with mutants, by files that git knows or would take.
-    /// What is equal already keeps its time, and so need not be built anew. Returns a fingerprint of all files.
+    /// Makes the copy equal to the repository but for sources with mutants, by files that git knows
+    /// or would take. What is equal already keeps its time, and so need not be built anew. Returns
+    /// a fingerprint of all files.
     pub fn fill(&self, spliced: &[(String, Spliced)], number: usize) -> Result<u64, Failure> {
         let listed = Command::new("git")
             .arg("-C")

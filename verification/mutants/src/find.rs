@@ -8,8 +8,9 @@
 //! | number | 0 for 1, 1 for 0 and for 2, otherwise one more; so are indices exchanged |
 //! | method | `max` for `min`, `cos` for `sin`, `last` for `first` and the like |
 //!
-//! Not looked at: tests, constants, `const fn`, patterns, types and lengths, for no switch can stand there; macros other
-//! than those that format text and make vectors; `Debug`, which nobody relies upon.
+//! Not looked at: tests, constants, `const fn`, patterns, types and lengths, for no switch can
+//! stand there; macros other than those that format text and make vectors; `Debug`, which nobody
+//! relies upon.
 
 use std::ops::Range;
 
@@ -70,7 +71,8 @@ impl Mutant {
         format!("{}:{}:{}: {}", self.file, self.line, self.column, self.change)
     }
 
-    /// The part of `src` that it belongs to: `src/linear` of `src/linear/band.rs`, and of `src/linear.rs`.
+    /// The part of `src` that it belongs to: `src/linear` of `src/linear/band.rs`, and of
+    /// `src/linear.rs`.
     pub fn folder(&self) -> String {
         let parts: Vec<&str> = self.file.split('/').take(2).collect();
         let folder = parts.join("/");
@@ -454,7 +456,8 @@ mod tests {
         assert_eq!(mutants[3].name(), "src/a.rs:2:10: replace < with <= in f");
     }
 
-    /// Would catch switches where the compiler wants a constant or a pattern, and faults in what is no product.
+    /// Would catch switches where the compiler wants a constant or a pattern, and faults in what is
+    /// no product.
     #[test]
     fn no_mutants_where_no_switch_can_stand() {
         for text in [

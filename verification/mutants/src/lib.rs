@@ -1,8 +1,9 @@
-//! Do the tests catch faults? A *mutant* is one small fault put into the sources. It is *caught* where a test fails or
-//! does not come to its end, *missed* where all tests pass, *unviable* where it does not compile.
+//! Do the tests catch faults? A *mutant* is one small fault put into the sources. It is *caught*
+//! where a test fails or does not come to its end, *missed* where all tests pass, *unviable* where
+//! it does not compile.
 //!
-//! A build per mutant takes minutes. Here all mutants of a sample stand in one copy of the sources, each behind a
-//! switch that an environment variable turns at run time, and the copy is built once:
+//! A build per mutant takes minutes. Here all mutants of a sample stand in one copy of the sources,
+//! each behind a switch that an environment variable turns at run time, and the copy is built once:
 //!
 //! ```text
 //! a - b   ─►   (if crate::mutant_switch::on(17) { (a) + (b) } else { a - b })

@@ -1,4 +1,5 @@
-//! `ancf-mutants`: do the tests catch faults that are put into the sources? Writes `verification/mutants.toml`.
+//! `ancf-mutants`: do the tests catch faults that are put into the sources? Writes
+//! `verification/mutants.toml`.
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -24,8 +24,9 @@ impl Survivor {
     }
 }
 
-/// Survivors with the reasons that were written for the same ones before. Lines move, so places do not count; where one text
-/// stands for several places, these are taken in their order as long as there are as many, otherwise by their lines.
+/// Survivors with the reasons that were written for the same ones before. Lines move, so places do
+/// not count; where one text stands for several places, these are taken in their order as long as
+/// there are as many, otherwise by their lines.
 pub fn explain(missed: &[&str], before: &[Survivor]) -> Vec<Survivor> {
     let mut old: HashMap<String, Vec<&Survivor>> = HashMap::new();
     for survivor in before {
@@ -99,7 +100,8 @@ mod tests {
             explain(&names, &before).into_iter().map(|s| s.reason).collect::<Vec<_>>()
         };
         assert_eq!(reasons(&[11, 21]), ["first", "second"]);
-        // Caught at one of the places: the line tells which is left, and where it does not, nobody guesses.
+        // Caught at one of the places: the line tells which is left, and where it does not, nobody
+        // guesses.
         assert_eq!(reasons(&[20]), ["second"]);
         assert_eq!(reasons(&[25]), [UNEXPLAINED]);
     }

@@ -55,7 +55,8 @@ impl Counts {
         self.tried - self.unviable.min(self.tried)
     }
 
-    /// Part of the viable mutants that was caught, those timed out among them. None where none was viable.
+    /// Part of the viable mutants that was caught, those timed out among them. None where none was
+    /// viable.
     pub fn score(&self) -> Option<f64> {
         (self.viable() > 0).then(|| (self.caught + self.timed_out) as f64 / self.viable() as f64)
     }

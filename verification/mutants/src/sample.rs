@@ -4,11 +4,13 @@ use indexmap::IndexMap;
 
 use crate::find::Mutant;
 
-/// The golden ratio less one: its multiples are spread evenly over the unit interval, however many there are
-/// (J. F. Koksma; L. Kuipers, H. Niederreiter, *Uniform Distribution of Sequences*, 1974, p. 7).
+/// The golden ratio less one: its multiples are spread evenly over the unit interval, however many
+/// there are (J. F. Koksma; L. Kuipers, H. Niederreiter, *Uniform Distribution of Sequences*, 1974,
+/// p. 7).
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// For each folder, how many mutants are wanted and all of its own, in the order in which to take them.
+/// For each folder, how many mutants are wanted and all of its own, in the order in which to take
+/// them.
 pub struct Part {
     /// So many viable ones.
     pub wanted: usize,
@@ -16,7 +18,8 @@ pub struct Part {
     pub order: Vec<usize>,
 }
 
-/// Divides a number of mutants among folders by size, but with at least so many in each as long as there are any.
+/// Divides a number of mutants among folders by size, but with at least so many in each as long as
+/// there are any.
 pub fn parts(mutants: &[Mutant], number: usize, least: usize, seed: u32) -> IndexMap<String, Part> {
     let mut folders: IndexMap<String, Vec<usize>> = IndexMap::new();
     for (i, mutant) in mutants.iter().enumerate() {

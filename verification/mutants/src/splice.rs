@@ -33,8 +33,8 @@ struct Wrap {
     mutants: Vec<usize>,
 }
 
-/// Puts mutants with their numbers into the text that they were found in. `on` is the path of the function that tells
-/// whether a number is switched on.
+/// Puts mutants with their numbers into the text that they were found in. `on` is the path of the
+/// function that tells whether a number is switched on.
 pub fn splice(text: &str, mutants: &[(usize, &Mutant)], on: &str) -> Spliced {
     let mut wraps: Vec<Wrap> = Vec::new();
     for &(number, mutant) in mutants {
@@ -118,8 +118,8 @@ impl Spliced {
         self.text.push_str(&old[at..range.end]);
     }
 
-    /// Mutants that a message about some bytes of the new text is about: that whose code it is, otherwise those of the
-    /// innermost switch around it, otherwise all in the same function.
+    /// Mutants that a message about some bytes of the new text is about: that whose code it is,
+    /// otherwise those of the innermost switch around it, otherwise all in the same function.
     pub fn blame(&self, bytes: &Range<usize>) -> Vec<usize> {
         let around = |r: &&Region| r.range.start <= bytes.start && bytes.end <= r.range.end;
         for own in [true, false] {
@@ -207,7 +207,8 @@ mod tests {
         assert_eq!(with("a.b(c).min(d.max(e))", "replace min with max"), "a.b(c).max(d.max(e))");
     }
 
-    /// Would catch switches within switches that break the text: of all sources of the solver, with all mutants at once.
+    /// Would catch switches within switches that break the text: of all sources of the solver, with
+    /// all mutants at once.
     #[test]
     fn all_sources_with_all_their_mutants_are_rust() {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

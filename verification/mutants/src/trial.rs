@@ -53,8 +53,8 @@ pub enum Outcome {
     Missed(usize),
 }
 
-/// All tests with what they reach, found by running each once; what is known from an earlier run of the same sources is
-/// not run again.
+/// All tests with what they reach, found by running each once; what is known from an earlier run of
+/// the same sources is not run again.
 pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Result<Vec<Test>, Failure> {
     let path = workshop.outcomes.join(format!("{fingerprint:016x}-tests.jsonl"));
     let mut tests: Vec<Test> = lines(&path)?;
@@ -97,8 +97,8 @@ pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Res
     Ok(tests)
 }
 
-/// The outcome of each mutant, by number, of so many tried at a time. What is known from an earlier run of the same
-/// sources is not tried again.
+/// The outcome of each mutant, by number, of so many tried at a time. What is known from an earlier
+/// run of the same sources is not tried again.
 pub fn outcomes(
     workshop: &Workshop,
     tests: &[Test],
@@ -233,7 +233,8 @@ fn wait(mut child: Child, limit: Duration) -> Result<End, Failure> {
     }
 }
 
-/// What stands in the lines of a file, nothing where there is none. The last line may have been broken off.
+/// What stands in the lines of a file, nothing where there is none. The last line may have been
+/// broken off.
 fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, Failure> {
     let text = fs::read_to_string(path).unwrap_or_default();
     let Some((whole, broken)) = text.rsplit_once('\n') else { return Ok(Vec::new()) };

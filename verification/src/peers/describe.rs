@@ -1,4 +1,5 @@
-//! A model in plain words: nodes, numbers, supports and loads at nodes. The one translation to other codes.
+//! A model in plain words: nodes, numbers, supports and loads at nodes. The one translation to
+//! other codes.
 //!
 //! Whatever these words cannot say is an error that names it; nothing is left out silently.
 
@@ -53,8 +54,8 @@ struct Support {
     x: bool,
     y: bool,
     rotation: &'static str,
-    /// What the held quantities have moved by, x \[m\], y \[m\], angle \[rad\], at the start and at the
-    /// end of every step.
+    /// What the held quantities have moved by, x \[m\], y \[m\], angle \[rad\], at the start and at
+    /// the end of every step.
     moved: Option<Vec<[f64; 3]>>,
 }
 
@@ -367,8 +368,8 @@ at = "end"
         );
     }
 
-    /// Another code takes the coefficients themselves, c = η EA and η EI; without them its beam would
-    /// swing on.
+    /// Another code takes the coefficients themselves, c = η EA and η EI; without them its beam
+    /// would swing on.
     #[test]
     fn damping_is_said_in_newton_seconds() {
         let damping = "[[effect.damping]]\nbeam = \"b\"\nstrain = 0.5\ncurvature = 0.25";

@@ -1,9 +1,10 @@
 //! Other codes, asked about the very scenes that ours solves.
 //!
-//! [`describe`](mod@describe) says a scene in plain words; `verification/peers/exudyn_scene.py` says these to Exudyn, whose ANCFCable2D
-//! is the element of our ANCF with engineering strain: same coordinates, same strain and curvature, same Gauss points.
-//! Where mesh, Gauss points and (in dynamics) method and step are the same, so are the numbers.
-//! `scikit_fem_scene.py` makes of the same words the linear beam, which ours becomes as deflections become small.
+//! [`describe`](mod@describe) says a scene in plain words; `verification/peers/exudyn_scene.py`
+//! says these to Exudyn, whose ANCFCable2D is the element of our ANCF with engineering strain: same
+//! coordinates, same strain and curvature, same Gauss points. Where mesh, Gauss points and (in
+//! dynamics) method and step are the same, so are the numbers. `scikit_fem_scene.py` makes of the
+//! same words the linear beam, which ours becomes as deflections become small.
 
 pub mod describe;
 mod table;

@@ -82,7 +82,8 @@ fn found(examined: &Examined) -> Found<'_> {
     }
 }
 
-/// The README without its heading and source, which the page shows elsewhere: paragraphs, and sketches between fences.
+/// The README without its heading and source, which the page shows elsewhere: paragraphs, and
+/// sketches between fences.
 fn paragraphs(readme: &str) -> Vec<Paragraph> {
     let mut parts = Vec::new();
     for (k, block) in readme.split("```").enumerate() {

@@ -1,4 +1,5 @@
-//! A check on the page of its case: what was compared, how and why so exactly, as a table and as drawings.
+//! A check on the page of its case: what was compared, how and why so exactly, as a table and as
+//! drawings.
 
 use ancf_check::case::{Check, Norm, Per};
 use ancf_check::{Examined, Outcome};

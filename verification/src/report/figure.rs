@@ -1,5 +1,5 @@
-//! Drawings of a case page: the figures that `case.toml` asks for, and for every check along a curve our curve upon the
-//! reference and their difference.
+//! Drawings of a case page: the figures that `case.toml` asks for, and for every check along a
+//! curve our curve upon the reference and their difference.
 
 use ancf::output::plot::{Axis, Chart, Colour, Mark, PALETTE, Series};
 use ancf_check::case::{Check, Curve, Figure, Line, Scalar};
@@ -37,7 +37,8 @@ pub fn of_case(examined: &Examined, figure: &Figure) -> FigureView {
     FigureView { title: figure.title.clone(), caption: figure.caption.clone(), drawing }
 }
 
-/// What a check shows of itself: errors over the variable of an order; or along a curve, ours upon the reference, and the error.
+/// What a check shows of itself: errors over the variable of an order; or along a curve, ours upon
+/// the reference, and the error.
 pub fn of_check(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Vec<FigureView> {
     if check.order.is_some() {
         return convergence(examined, check, outcomes).into_iter().collect();
@@ -73,7 +74,8 @@ fn appearance(number: usize) -> (Colour, f64) {
     (colour(number % INK), if number < INK { 1.0 } else { 0.45 })
 }
 
-/// Series of a figure with their names: curves of one name have one colour and are in the legend once.
+/// Series of a figure with their names: curves of one name have one colour and are in the legend
+/// once.
 #[derive(Default)]
 struct Traces {
     named: Vec<(String, Series)>,
@@ -147,7 +149,8 @@ fn curves(examined: &Examined, curves: &[Curve]) -> Result<Vec<Series>, String> 
     Ok(traces.series())
 }
 
-/// Errors of a check over the variable on the horizontal axis; one set for each of the other axes' points.
+/// Errors of a check over the variable on the horizontal axis; one set for each of the other axes'
+/// points.
 fn errors(
     examined: &Examined,
     check: usize,
@@ -264,7 +267,8 @@ fn convergence(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Opt
     logarithmic("Convergence", caption, Axis::log(order.against.as_str()), series)
 }
 
-/// A line with a mark at every point, unless there are too many; each further one in the next colour.
+/// A line with a mark at every point, unless there are too many; each further one in the next
+/// colour.
 fn marked(series: &mut Vec<Series>, label: &str, points: Points) {
     let (colour, opacity) = appearance(series.len() / 2);
     let marks = if points.len() <= MARKS { points.clone() } else { Points::new() };

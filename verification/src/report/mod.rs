@@ -8,7 +8,8 @@
 //! | `check`, `figure`, `number` | parts of a case's page |
 //! | `before` | an earlier report, to compare with |
 //!
-//! A further kind of page is a module with a template that returns a [`Page`], and a line in [`pages`].
+//! A further kind of page is a module with a template that returns a [`Page`], and a line in
+//! [`pages`].
 
 mod before;
 mod case;
@@ -72,8 +73,8 @@ struct JsonCase<'a> {
     outcomes: &'a [Outcome],
 }
 
-/// Runs the cases and writes `index.html` and `report.json` into `out`. The answer is whether every claim holds, and
-/// no error is ten times what it was in the report `against`.
+/// Runs the cases and writes `index.html` and `report.json` into `out`. The answer is whether every
+/// claim holds, and no error is ten times what it was in the report `against`.
 pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]) -> Result<bool, Failure> {
     let names = chosen(suite, cases)?;
     let before = against.map(Before::read).transpose()?;
@@ -151,7 +152,8 @@ pub fn write(suite: &Suite, out: &Path, against: Option<&Path>, cases: &[String]
     Ok(passed && !lost)
 }
 
-/// A tolerance may be so many times the largest error that it is for; beyond, it holds nothing, unless its reason says why.
+/// A tolerance may be so many times the largest error that it is for; beyond, it holds nothing,
+/// unless its reason says why.
 const WIDE: f64 = 30.0;
 /// Errors below this are a few roundings, which differ from machine to machine.
 const ROUNDINGS: f64 = 1e-15;
@@ -257,7 +259,8 @@ pub fn machine() -> String {
 mod tests {
     use super::*;
 
-    /// Cases run as ever, one that compares curves and one that is hard, and one that cannot be run.
+    /// Cases run as ever, one that compares curves and one that is hard, and one that cannot be
+    /// run.
     fn file() -> String {
         let suite = Suite::here();
         let names = ["distributed-load", "euler-column", "hard-shape-parameter"].map(str::to_owned);

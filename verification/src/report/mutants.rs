@@ -69,8 +69,8 @@ fn percent(part: f64) -> String {
     format!("{:.0} %", if part < 1.0 { (100.0 * part).round().min(99.0) } else { 100.0 })
 }
 
-/// The interval that covers the score of all mutants with 95 %, from a sample of them (E. B. Wilson, J. Am. Stat. Assoc. 22,
-/// 1927, 209–212).
+/// The interval that covers the score of all mutants with 95 %, from a sample of them (E. B.
+/// Wilson, J. Am. Stat. Assoc. 22, 1927, 209–212).
 fn interval(sample: &Counts) -> [f64; 2] {
     const QUANTILE: f64 = 1.96;
     let (Some(p), n) = (sample.score(), sample.viable() as f64) else { return [0.0, 1.0] };

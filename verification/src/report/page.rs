@@ -1,7 +1,7 @@
 //! Pages, and the one file that holds them all.
 //!
-//! A page is addressed by its id, `index.html#roll-up`. The style shows the page that the address names, or the first one; printing
-//! shows all. No script takes part.
+//! A page is addressed by its id, `index.html#roll-up`. The style shows the page that the address
+//! names, or the first one; printing shows all. No script takes part.
 
 use std::collections::HashSet;
 

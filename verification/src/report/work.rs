@@ -50,7 +50,8 @@ struct Overview<'a> {
     missing: Vec<String>,
 }
 
-/// A page of all claims, and one per problem that was measured. Where none was, the first says how to.
+/// A page of all claims, and one per problem that was measured. Where none was, the first says how
+/// to.
 pub fn pages(suite: &Suite, folder: &Path) -> Result<Vec<Page>, Failure> {
     let (mut measured, mut missing) = (Vec::new(), Vec::new());
     for name in work::names(suite)? {

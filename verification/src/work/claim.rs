@@ -20,7 +20,8 @@ pub struct Verdict {
     pub theirs: Option<Cheapest>,
     /// Their time by ours.
     pub ratio: Option<f64>,
-    /// Whether the claim holds; none where no setting that ours is compared with was run and is good enough.
+    /// Whether the claim holds; none where no setting that ours is compared with was run and is
+    /// good enough.
     pub met: Option<bool>,
 }
 
@@ -35,7 +36,8 @@ pub struct Cheapest {
     pub seconds: f64,
 }
 
-/// The point with the least median time among those whose error in `limit`'s norm is at most the limit's.
+/// The point with the least median time among those whose error in `limit`'s norm is at most the
+/// limit's.
 pub fn cheapest<'a>(
     points: impl Iterator<Item = &'a Point>,
     limit: Option<(&str, f64)>,

@@ -1,7 +1,8 @@
 //! Error against time, both logarithmic.
 //!
-//! Every line of the diagram is the front of its methods, the settings that no other of the same line beats; all settings have a
-//! mark. Lines of other codes are dashed. A ring is around what nothing in the diagram beats.
+//! Every line of the diagram is the front of its methods, the settings that no other of the same
+//! line beats; all settings have a mark. Lines of other codes are dashed. A ring is around what
+//! nothing in the diagram beats.
 
 use ancf::output::plot::{Axis, Chart, GREY, Mark, PlotError, Series, colour};
 

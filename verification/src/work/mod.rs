@@ -1,12 +1,14 @@
-//! What accuracy costs: error against time of ours and of other codes, in the same process and minute.
+//! What accuracy costs: error against time of ours and of other codes, in the same process and
+//! minute.
 //!
 //! ```text
 //! work-precision/<name>.toml ──► Problem ──► Task per setting ──► times, errors ──► Point ──► claims, diagram, csv, json
 //! ```
 //!
-//! All settings of a problem, ours and theirs in turn, run once before any runs again, so that a machine that becomes slower
-//! becomes so for all. Timed is the solution alone, on one thread, with no other output than the error needs. One function, that
-//! of the verification cases, takes every error.
+//! All settings of a problem, ours and theirs in turn, run once before any runs again, so that a
+//! machine that becomes slower becomes so for all. Timed is the solution alone, on one thread, with
+//! no other output than the error needs. One function, that of the verification cases, takes every
+//! error.
 
 mod claim;
 mod diagram;
@@ -64,10 +66,12 @@ pub struct Made {
     pub tools: String,
 }
 
-/// Measures a problem. `tell` is called before each run of a setting, with the part that is done and the setting's name.
+/// Measures a problem. `tell` is called before each run of a setting, with the part that is done
+/// and the setting's name.
 ///
 /// # Errors
-/// Where the problem cannot be set up: illegal scenes, missing references. A setting that fails is left out with its reason.
+/// Where the problem cannot be set up: illegal scenes, missing references. A setting that fails is
+/// left out with its reason.
 pub fn measure(
     suite: &Suite,
     name: &str,
@@ -161,7 +165,8 @@ fn leave_out(list: &mut Vec<LeftOut>, line: &str, setting: &str, why: String) {
     }
 }
 
-/// Numbers of the settings in the order in which they run: ours and theirs in turn as long as there are both.
+/// Numbers of the settings in the order in which they run: ours and theirs in turn as long as there
+/// are both.
 fn alternating(codes: &[Code]) -> Vec<usize> {
     let of = |ours: bool| (0..codes.len()).filter(move |&k| (codes[k] == Code::Ours) == ours);
     let (mut ours, mut theirs) = (of(true), of(false));
@@ -175,7 +180,8 @@ impl Task<'_> {
         let mut outcome = self.run(1);
         let often = self.seconds.last().map_or(0.0, |took| (TURN / took).clamp(0.0, OFTEN)) as usize;
         if outcome.is_ok() && often > 0 {
-            // The first run of a turn finds nothing in the processor's caches: of short runs it is no measurement.
+            // The first run of a turn finds nothing in the processor's caches: of short runs it is
+            // no measurement.
             self.seconds.pop();
             self.build.pop();
             outcome = self.run(often);

@@ -1,5 +1,5 @@
-//! Other codes, timed: the same description as in the comparison of numbers, with settings of their own, and what they find in the
-//! form in which ours leaves it, so that one norm judges all.
+//! Other codes, timed: the same description as in the comparison of numbers, with settings of their
+//! own, and what they find in the form in which ours leaves it, so that one norm judges all.
 
 use std::f64::consts::TAU;
 
@@ -55,7 +55,8 @@ pub struct Timed {
 /// Solves a scene `repeat` times.
 ///
 /// # Errors
-/// What of the scene has no counterpart, a Python that cannot be had, and what the other code raises.
+/// What of the scene has no counterpart, a Python that cannot be had, and what the other code
+/// raises.
 pub fn solve(
     script: &Script,
     scene: &Scene,

@@ -1,4 +1,5 @@
-//! The format of `verification/work-precision/<name>.toml`: what is solved, how it is judged, by which methods, and what is claimed.
+//! The format of `verification/work-precision/<name>.toml`: what is solved, how it is judged, by
+//! which methods, and what is claimed.
 //!
 //! ```toml
 //! title = "Half circle by an end moment"

@@ -1,4 +1,5 @@
-//! What was measured, as files: `<problem>.json` with everything, `<problem>.csv` with a row per setting.
+//! What was measured, as files: `<problem>.json` with everything, `<problem>.csv` with a row per
+//! setting.
 
 use std::path::Path;
 

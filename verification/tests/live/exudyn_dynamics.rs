@@ -44,16 +44,17 @@ const SOFT: f64 = 68.95e6;
 const STIFF: f64 = 68.95e9;
 const STEPS: [f64; 3] = [2e-3, 1e-3, 0.5e-3];
 
-/// With the equations of a step solved to round-off: what the usual 1e-11 leaves of them swings axially in a stiff beam, and the tips of the
-/// stiff pendulum are then 2e-7 m apart.
+/// With the equations of a step solved to round-off: what the usual 1e-11 leaves of them swings
+/// axially in a stiff beam, and the tips of the stiff pendulum are then 2e-7 m apart.
 fn generalized_alpha(step: f64, radius: f64) -> String {
     format!(
         "generalized_alpha = {{ step = {step:?}, spectral_radius = {radius:?}, newton_tolerance = 1e-14 }}"
     )
 }
 
-/// Ours and Exudyn's tips stay together over half a second, and energies with them. Where both solve the equations of a step to a
-/// relative 1e-9 or so, that adds up to 1e-9 m over a thousand steps.
+/// Ours and Exudyn's tips stay together over half a second, and energies with them. Where both
+/// solve the equations of a step to a relative 1e-9 or so, that adds up to 1e-9 m over a thousand
+/// steps.
 fn together(modulus: f64, radius: f64) {
     for step in STEPS {
         let (ours, theirs) = both(Peer::Exudyn, &pendulum(modulus, 8, &generalized_alpha(step, radius)));
@@ -85,9 +86,10 @@ fn exudyn_moves_the_pendulums_alike_with_damping_of_the_highest_frequencies() {
     together(STIFF, 0.8);
 }
 
-/// Both have one error, that of the step: against collocation of order 6 it falls with order 2, as the trapezoidal rule's
-/// must once the step resolves the fastest waves. With four soft elements their period is some 2 ms; those of the stiff ones
-/// are thirty times as fast, and no order is to be seen there down to steps of 0.025 ms.
+/// Both have one error, that of the step: against collocation of order 6 it falls with order 2, as
+/// the trapezoidal rule's must once the step resolves the fastest waves. With four soft elements
+/// their period is some 2 ms; those of the stiff ones are thirty times as fast, and no order is to
+/// be seen there down to steps of 0.025 ms.
 #[test]
 fn exudyn_errs_by_its_step_with_order_2() {
     let exact = ours(&pendulum(SOFT, 4, "gauss = { stages = 3, step = 0.1e-3 }"));
@@ -101,7 +103,8 @@ fn exudyn_errs_by_its_step_with_order_2() {
     assert!(errors[2] < 5e-6 * 1.8, "{errors:?} m");
 }
 
-/// Steps of 10 ms are far too long for 120 soft elements, and Exudyn gives up: an error, after which it can be asked again.
+/// Steps of 10 ms are far too long for 120 soft elements, and Exudyn gives up: an error, after
+/// which it can be asked again.
 #[test]
 fn exudyn_that_gives_up_is_an_error() {
     let text = pendulum(SOFT, 120, &generalized_alpha(1e-2, 1.0)).replace("duration = 0.5", "duration = 2.5");
@@ -111,7 +114,8 @@ fn exudyn_that_gives_up_is_an_error() {
     both(Peer::Exudyn, &pendulum(SOFT, 2, &generalized_alpha(1e-2, 1.0)));
 }
 
-/// Two beams, one flying and spinning freely, one along y that is hit at its end by a follower: ours and Exudyn's together.
+/// Two beams, one flying and spinning freely, one along y that is hit at its end by a follower:
+/// ours and Exudyn's together.
 #[test]
 fn exudyn_lets_beams_fly_alike() {
     let text = r#"

@@ -35,7 +35,8 @@ fn exudyn_has_the_same_frequencies() {
         println!("{:?}\n{:?}", ours.frequencies, theirs.frequencies);
         assert_eq!((ours.frequencies.len(), theirs.frequencies.len()), (6, 6));
         for (a, b) in ours.frequencies.iter().zip(&theirs.frequencies) {
-            // The rotation about the pin has 0 Hz; what round-off of a stiffness of 1e9 makes of it is far below 1e-2 Hz.
+            // The rotation about the pin has 0 Hz; what round-off of a stiffness of 1e9 makes of it
+            // is far below 1e-2 Hz.
             let allowed = if *a == 0.0 { 1e-2 } else { 1e-7 * a };
             assert!((a - b).abs() <= allowed, "{fix}: ours {a} Hz, Exudyn {b} Hz");
         }

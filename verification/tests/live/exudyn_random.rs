@@ -1,5 +1,5 @@
-//! Twenty random cantilevers: the same elements by Exudyn agree to the accuracy of Newton's method, and RPIM with half as many cells to
-//! that of the elements.
+//! Twenty random cantilevers: the same elements by Exudyn agree to the accuracy of Newton's method,
+//! and RPIM with half as many cells to that of the elements.
 
 use ancf_check::case::Peer;
 
@@ -8,7 +8,8 @@ use crate::{both, distance, ours};
 /// Scenes of the sample.
 const SAMPLE: u32 = 20;
 
-/// Numbers of a low-discrepancy sequence in [−1, 1), the same in every run (Roberts' generalised golden ratios).
+/// Numbers of a low-discrepancy sequence in [−1, 1), the same in every run (Roberts' generalised
+/// golden ratios).
 struct Numbers {
     index: u32,
     dimension: i32,
@@ -23,7 +24,8 @@ impl Numbers {
     }
 }
 
-/// Arc lengths of `cells` cells between 0.7 and 1.3 of the average width, the same beam's for any number of cells.
+/// Arc lengths of `cells` cells between 0.7 and 1.3 of the average width, the same beam's for any
+/// number of cells.
 fn nodes(length: f64, cells: u32, strength: f64) -> String {
     let place = |x: f64| length * (x + strength * (std::f64::consts::TAU * x).sin() / std::f64::consts::TAU);
     let s: Vec<String> = (0..=cells)

@@ -1,4 +1,5 @@
-//! Equilibria of a cantilever: the same elements, so the same tips to the accuracy of Newton's method.
+//! Equilibria of a cantilever: the same elements, so the same tips to the accuracy of Newton's
+//! method.
 
 use ancf_check::case::Peer;
 

@@ -1,6 +1,8 @@
-//! The solver beside other codes that run in this process, on the same scenes, meshes, Gauss points and steps.
+//! The solver beside other codes that run in this process, on the same scenes, meshes, Gauss points
+//! and steps.
 //!
-//! Every test needs the bridge to Python. Where it cannot be had the tests fail; nothing is skipped.
+//! Every test needs the bridge to Python. Where it cannot be had the tests fail; nothing is
+//! skipped.
 
 mod exudyn_dynamics;
 mod exudyn_frequencies;

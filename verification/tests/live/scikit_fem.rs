@@ -51,7 +51,8 @@ fn scikit_fem_deflects_the_clamped_beam_alike() {
 
 #[test]
 fn scikit_fem_has_the_same_frequencies() {
-    // the motions along the beam, which the linear one does not know, come later: the first has √(EA/ρA)/4L = 35 Hz
+    // the motions along the beam, which the linear one does not know, come later: the first has
+    // √(EA/ρA)/4L = 35 Hz
     for fix in [CLAMP, r#""x", "y""#] {
         let (ours, theirs) = both(Peer::ScikitFem, &beam(fix, "[analysis.modal]\ncount = 3"));
         println!("{:?} {:?}", ours.frequencies, theirs.frequencies);

@@ -1,4 +1,5 @@
-//! Laws of time in a motion: what a step does not see of them, and what changes where they are not smooth.
+//! Laws of time in a motion: what a step does not see of them, and what changes where they are not
+//! smooth.
 
 use super::super::State;
 use super::Motion;
@@ -6,8 +7,8 @@ use crate::linear::Singular;
 use crate::system::laws::Look;
 
 impl Motion<'_> {
-    /// Mean and first moment of the loads from `state`, in fixed axes, to the time `end`, less what `looks` have of them; in the supports' frames. None where no
-    /// load follows time.
+    /// Mean and first moment of the loads from `state`, in fixed axes, to the time `end`, less what
+    /// `looks` have of them; in the supports' frames. None where no load follows time.
     pub fn unseen_loads(&self, state: &State, end: f64, looks: &[Look]) -> Option<[Vec<f64>; 2]> {
         if !self.system.loads_follow_time() {
             return None;
@@ -33,8 +34,9 @@ impl Motion<'_> {
         }
     }
 
-    /// Goes from `before`, just before a time at which loads or supports are not smooth, to the time of `state`, just after it: what supports move receives its
-    /// velocity there, and all else what an impulse of theirs gives it. Returns by how much accelerations and multipliers jump.
+    /// Goes from `before`, just before a time at which loads or supports are not smooth, to the
+    /// time of `state`, just after it: what supports move receives its velocity there, and all else
+    /// what an impulse of theirs gives it. Returns by how much accelerations and multipliers jump.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.

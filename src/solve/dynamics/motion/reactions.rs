@@ -1,17 +1,20 @@
 //! What supports and joints do to a motion: their forces, and the power that moving ones put in.
 //!
 //! # Forces in a recorded state
-//! Positions of a recorded state err by a part of the tolerance, and stiffness times such an error is no force. What a step knows of forces is
-//! the inertia in its stages. Their accelerations a, continued to the record, are first freed of what would strain the beam faster than a step of
-//! length h can follow, then the state is moved by a δ of the size of its error until it balances them:
+//! Positions of a recorded state err by a part of the tolerance, and stiffness times such an error
+//! is no force. What a step knows of forces is the inertia in its stages. Their accelerations a,
+//! continued to the record, are first freed of what would strain the beam faster than a step of
+//! length h can follow, then the state is moved by a δ of the size of its error until it balances
+//! them:
 //!
 //! ```text
 //! (K + c M) w + Bᵀν = −(K a + D²f[v, v])            B w = −B a − Ḃ v         a ← a + w       c = (4/h)², d = 4/h
 //! (K + d D + c M) δ + Bᵀμ = −(M a + f(q) + f_d(q, v))      B c δ = −B a − Ḃ v      q ← q + δ, v ← v + d δ, a ← a + c δ
 //! ```
 //!
-//! K a + D²f[v, v] is f̈: what is stiff moves as a constraint would let it. What moves slowly gets the acceleration of its forces, what
-//! is too fast to be followed the quasi-static force under the inertia of the rest.
+//! K a + D²f[v, v] is f̈: what is stiff moves as a constraint would let it. What moves slowly gets
+//! the acceleration of its forces, what is too fast to be followed the quasi-static force under the
+//! inertia of the rest.
 
 use super::super::State;
 use super::{Acceleration, Motion, Rates};
@@ -57,7 +60,8 @@ const PASSES: usize = 2;
 const DIFFERENCE: f64 = 1e-4;
 
 impl Motion<'_> {
-    /// Forces of supports and joints on the beams in the state `state`, whose positions are taken to be exact.
+    /// Forces of supports and joints on the beams in the state `state`, whose positions are taken
+    /// to be exact.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
@@ -90,7 +94,8 @@ impl Motion<'_> {
         Ok(Stage { state, rates })
     }
 
-    /// The state `state`, to which a step of length `h` has led with the accelerations and multipliers `rates` of the unknowns, moved into balance.
+    /// The state `state`, to which a step of length `h` has led with the accelerations and
+    /// multipliers `rates` of the unknowns, moved into balance.
     ///
     /// # Errors
     /// [`Singular`] where the step's matrix has no inverse.
@@ -127,7 +132,8 @@ impl Motion<'_> {
         Ok(self.balance_of(stage))
     }
 
-    /// −f̈ = −(K a + D²f\[v, v\]) of the elastic forces in the supports' frames, and zeros for the multipliers.
+    /// −f̈ = −(K a + D²f\[v, v\]) of the elastic forces in the supports' frames, and zeros for the
+    /// multipliers.
     fn rate_of_rates(&self, Stage { state, rates }: &Stage) -> Vec<f64> {
         let (n, time) = (self.coordinates(), state.time);
         let [q, v, a] = self.in_fixed_axes(state, &rates[..n]);
@@ -195,8 +201,9 @@ impl Motion<'_> {
 
     /// Power \[W\] that moving supports put in, in a stage.
     ///
-    /// It is R·v with their velocities v, and with those of all else as well, for M q̈ + f vanishes there. It does so only as far as the stages were
-    /// solved. The beam follows its supports, so that the stiff forces, in which that shows, do no work on the latter velocities.
+    /// It is R·v with their velocities v, and with those of all else as well, for M q̈ + f vanishes
+    /// there. It does so only as far as the stages were solved. The beam follows its supports, so
+    /// that the stiff forces, in which that shows, do no work on the latter velocities.
     pub fn support_power(&self, stage: Stage) -> f64 {
         let (balance, force) = self.forces_of(stage);
         force.iter().zip(&balance.state.v).map(|(force, v)| force * v).sum()

@@ -7,7 +7,8 @@ use toml::{Table, Value};
 use super::frame::{list, vector};
 use super::settings;
 
-/// The scene with one straight or circular beam in two pieces, which a weld joins where a node was; none where this cannot be written.
+/// The scene with one straight or circular beam in two pieces, which a weld joins where a node was;
+/// none where this cannot be written.
 pub fn cut(scene: &Table) -> Option<Table> {
     let (name, beam) = settings::beams(scene).find(|(_, beam)| !beam.contains_key("points"))?;
     let name = name.clone();

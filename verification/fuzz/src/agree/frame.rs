@@ -1,10 +1,12 @@
-//! Units, direction and place in which a scene is written down. What is drawn is drawn in natural units: L = 1, EI = 1, ρA = 1.
+//! Units, direction and place in which a scene is written down. What is drawn is drawn in natural
+//! units: L = 1, EI = 1, ρA = 1.
 
 use toml::{Table, Value};
 
 use super::quantity::{Dimension, Nature, axes, nature};
 
-/// How natural coordinates become those of a scene: mirrored first, then turned, stretched and shifted.
+/// How natural coordinates become those of a scene: mirrored first, then turned, stretched and
+/// shifted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Natural units of length, mass and time in SI.

@@ -5,7 +5,8 @@ use super::outcome::{Sample, Seen};
 /// Differences of one scene's outcomes, each per the size of what differs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gap {
-    /// Positions at probes and along beams \[natural lengths\], and eigenvalues \[of their size\]: what a tolerance speaks of.
+    /// Positions at probes and along beams \[natural lengths\], and eigenvalues \[of their size\]:
+    /// what a tolerance speaks of.
     pub places: f64,
     /// The largest of all differences.
     pub all: f64,

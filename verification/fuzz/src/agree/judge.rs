@@ -22,7 +22,8 @@ const EIGENVALUES: f64 = 1e-7;
 /// Accuracy of forces and other things than positions, for which nothing is asked.
 const FORCES: f64 = 1e-5;
 
-/// A scene in natural units, with the frame in which it is run and what its other ways are drawn from.
+/// A scene in natural units, with the frame in which it is run and what its other ways are drawn
+/// from.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub scene: Table,
@@ -116,7 +117,8 @@ fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng)
     }
     let factor = match neighbour::growth(&case.scene, &case.frame, rng) {
         Growth::Unknown => return Verdict::Unstable,
-        // Nearly any shape is one: a string without a load across it, a column at its critical load.
+        // Nearly any shape is one: a string without a load across it, a column at its critical
+        // load.
         Growth::By { places, .. } if places > NEUTRAL => return Verdict::Unstable,
         Growth::By { places: grown, .. } if places => grown,
         Growth::By { all, .. } => all,
@@ -220,7 +222,8 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
     let Some(changed) = changed else { return Verdict::NotApplicable };
     let path = settings::get(scene, &["analysis", "static", "arc_length"]).is_some();
     if path && matches!(way, Way::Mesh | Way::Welded | Way::Basis) {
-        // Where a path ends by its points depends on the mesh, and where it ends by a place it may pass it again.
+        // Where a path ends by its points depends on the mesh, and where it ends by a place it may
+        // pass it again.
         let until = settings::get(scene, &["analysis", "static", "arc_length", "until_load"]).is_some();
         if !until {
             return Verdict::NotApplicable;

@@ -1,8 +1,9 @@
-//! The differential fuzzer: draws legal scenes over the whole vocabulary, and runs each in several ways that must agree.
+//! The differential fuzzer: draws legal scenes over the whole vocabulary, and runs each in several
+//! ways that must agree.
 //!
-//! A finding is a run of status 0 without a warning that disagrees by more than ten times what was asked for, one that has a result
-//! in one of two equivalent ways alone, or a panic. Scenes that no computation can hold still are known by their neighbours, which
-//! depart as much.
+//! A finding is a run of status 0 without a warning that disagrees by more than ten times what was
+//! asked for, one that has a result in one of two equivalent ways alone, or a panic. Scenes that no
+//! computation can hold still are known by their neighbours, which depart as much.
 
 mod balance;
 mod cut;

@@ -1,4 +1,5 @@
-//! Momentum of what nothing holds: forces that stay as they are change it in proportion to time, and without forces it stays, as its moment does.
+//! Momentum of what nothing holds: forces that stay as they are change it in proportion to time,
+//! and without forces it stays, as its moment does.
 
 use ancf::scene;
 use ancf::system::{Needs, System};
@@ -45,7 +46,8 @@ pub fn is_known(scene: &Table) -> bool {
         && !settings::items(scene, &["effect", "damping"]).any(drawn)
 }
 
-/// What the momentum at the end of the motion lacks against that at the end of its first part and the forces since, per what it is made of.
+/// What the momentum at the end of the motion lacks against that at the end of its first part and
+/// the forces since, per what it is made of.
 pub fn lacks(scene: &Table, first: &Seen, whole: &Seen) -> Option<(f64, String)> {
     let [before, after] = [first, whole].map(|seen| momentum(scene, seen));
     let (before, after) = (before?, after?);
@@ -69,7 +71,8 @@ pub fn lacks(scene: &Table, first: &Seen, whole: &Seen) -> Option<(f64, String)>
     Some(worst)
 }
 
-/// The momentum in the state that a motion has left: M v, on the velocities of a rigid body. In natural units.
+/// The momentum in the state that a motion has left: M v, on the velocities of a rigid body. In
+/// natural units.
 fn momentum(natural: &Table, seen: &Seen) -> Option<Momentum> {
     let text = Frame::default().write(natural).to_string();
     let scene = scene::parse("drawn.toml", &text).ok()?;

@@ -1,4 +1,5 @@
-//! Neighbours of a scene, and how far they depart: what no computation can hold still is no finding.
+//! Neighbours of a scene, and how far they depart: what no computation can hold still is no
+//! finding.
 
 use fastrand::Rng;
 use toml::{Table, Value};
@@ -8,8 +9,8 @@ use super::gap::{self, Records};
 use super::outcome::{self, Outcome};
 use super::settings;
 
-/// The scene with loads, stiffnesses and prescribed motions that differ by about `share`. A vector changes its direction too, so that
-/// symmetry does not hide that it can be lost.
+/// The scene with loads, stiffnesses and prescribed motions that differ by about `share`. A vector
+/// changes its direction too, so that symmetry does not hide that it can be lost.
 pub fn near(scene: &Table, share: f64, rng: &mut Rng) -> Table {
     let mut near = scene.clone();
     for key in ["effect", "initial_velocity", "support"] {
@@ -17,7 +18,8 @@ pub fn near(scene: &Table, share: f64, rng: &mut Rng) -> Table {
             shake(key, value, share, rng);
         }
     }
-    // A force that was not there tells what nothing holds: a string without a load across it, a column at its critical load.
+    // A force that was not there tells what nothing holds: a string without a load across it, a
+    // column at its critical load.
     let beams: Vec<String> = settings::beams(scene).map(|(name, _)| name.clone()).collect();
     for beam in beams {
         let (sine, cosine) = (std::f64::consts::TAU * rng.f64()).sin_cos();
@@ -62,8 +64,9 @@ fn shake(key: &str, value: &mut Value, share: f64, rng: &mut Rng) {
     }
 }
 
-/// By how much an error grows in a scene: the departure of neighbours per difference, 1 at least. Of a motion both are computed a
-/// hundred times more accurately than was asked for, so that the integrator's own error does not look like sensitivity.
+/// By how much an error grows in a scene: the departure of neighbours per difference, 1 at least.
+/// Of a motion both are computed a hundred times more accurately than was asked for, so that the
+/// integrator's own error does not look like sensitivity.
 pub fn growth(scene: &Table, frame: &Frame, rng: &mut Rng) -> Growth {
     let (scene, share) = match settings::motion(scene) {
         None => (scene.clone(), 1e-7),

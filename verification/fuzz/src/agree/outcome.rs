@@ -1,4 +1,5 @@
-//! Runs a scene, and keeps what there is to compare: in natural units, turned back to where the scene was drawn.
+//! Runs a scene, and keeps what there is to compare: in natural units, turned back to where the
+//! scene was drawn.
 
 use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
@@ -11,7 +12,8 @@ use toml::Table;
 
 use super::frame::Frame;
 
-/// Newton iterations times nodes after which a run is given up: about a second. No clock decides, so that a seed gives the same verdicts.
+/// Newton iterations times nodes after which a run is given up: about a second. No clock decides,
+/// so that a seed gives the same verdicts.
 const WORK: usize = 60_000;
 /// Steps after which a run is given up.
 const STEPS: usize = 4_000;

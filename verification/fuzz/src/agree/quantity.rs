@@ -1,7 +1,8 @@
-//! What the numbers of a scene mean: by which units they are measured, and what becomes of them when the scene is turned or mirrored.
+//! What the numbers of a scene mean: by which units they are measured, and what becomes of them
+//! when the scene is turned or mirrored.
 //!
-//! A key that is missing here would keep its number in every frame, and the exact ways would disagree at once: the table is tested by
-//! every scene that is drawn.
+//! A key that is missing here would keep its number in every frame, and the exact ways would
+//! disagree at once: the table is tested by every scene that is drawn.
 
 /// Powers of length, mass and time.
 pub type Dimension = [i32; 3];
@@ -35,7 +36,8 @@ const FORCE_PER_LENGTH: Dimension = [0, 1, -2];
 const STRESS: Dimension = [-1, 1, -2];
 const MASS_PER_LENGTH: Dimension = [-1, 1, 0];
 
-/// Of the key at a path without list indices, beams going by `*`; none where it is no quantity, or holds tables.
+/// Of the key at a path without list indices, beams going by `*`; none where it is no quantity, or
+/// holds tables.
 pub fn nature(path: &str) -> Option<Nature> {
     use Nature::{Point, Polar, Polynomial, Scalar, Turning, Vector};
     if let Some((_, law)) = path.split_once(".in_time.") {
@@ -104,7 +106,8 @@ pub fn nature(path: &str) -> Option<Nature> {
     })
 }
 
-/// Of tables with one key for each axis: the keys, the dimension, and whether they are places rather than differences.
+/// Of tables with one key for each axis: the keys, the dimension, and whether they are places
+/// rather than differences.
 pub fn axes(path: &str) -> Option<([&'static str; 2], Dimension, bool)> {
     match path {
         "support.move" => Some((["x", "y"], LENGTH, false)),

@@ -121,7 +121,8 @@ pub fn cells(basis: &Table) -> usize {
     basis.iter().next().map_or(1, |(_, kind)| of(kind))
 }
 
-/// Largest EA L²/EI in natural units, a string's stiffness counting against its loads, an inextensible beam's not.
+/// Largest EA L²/EI in natural units, a string's stiffness counting against its loads, an
+/// inextensible beam's not.
 pub fn stiffness_ratio(scene: &Table) -> f64 {
     let of = |beam: &Table| {
         let float = |key: &str| beam.get(key).and_then(Value::as_float);
@@ -145,7 +146,8 @@ pub fn has_friction(scene: &Table) -> bool {
     items(scene, &["effect", "contact"]).any(|contact| contact.contains_key("friction"))
 }
 
-/// Whether an equilibrium is that of a string that nothing pulls along the whole of its length: any of its shapes is one.
+/// Whether an equilibrium is that of a string that nothing pulls along the whole of its length: any
+/// of its shapes is one.
 pub fn is_slack(scene: &Table) -> bool {
     let bends =
         |beam: &Table| ["bending_stiffness", "second_moment"].iter().any(|key| beam.contains_key(*key));
@@ -196,7 +198,8 @@ fn halved(list: &[Value]) -> Option<Vec<Value>> {
     Some(all)
 }
 
-/// The other discretisation, with the same nodes and the settings that it takes when nothing is said.
+/// The other discretisation, with the same nodes and the settings that it takes when nothing is
+/// said.
 pub fn other_basis(scene: &Table) -> Option<Table> {
     map_bases(scene, |basis| {
         let (name, kind) = basis.iter().next()?;

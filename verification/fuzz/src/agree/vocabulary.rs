@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
-/// All keys of the schema, as paths without list indices, beams going by `*`. A law is one, wherever it is.
+/// All keys of the schema, as paths without list indices, beams going by `*`. A law is one,
+/// wherever it is.
 pub fn keys() -> BTreeSet<String> {
     let schema = ancf::scene::schema();
     let mut keys = BTreeSet::new();

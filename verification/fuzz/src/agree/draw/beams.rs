@@ -40,7 +40,8 @@ impl Draw<'_> {
 
     fn beam(&mut self, name: &str, axial: Option<f64>, like: Option<Table>, count: usize) -> Table {
         let (geometry, centreline) = self.geometry(count);
-        // Points that double back are refused by the reader too; a straight beam keeps the draw going.
+        // Points that double back are refused by the reader too; a straight beam keeps the draw
+        // going.
         let (geometry, centreline, curve) = match Curve::new(&centreline) {
             Ok(curve) => (geometry, centreline, curve),
             Err(_) => self.fallback(),
@@ -138,7 +139,8 @@ impl Draw<'_> {
         }
     }
 
-    /// Joins the next beam to beam `last`; from which arc length of it, and whether by other than a weld along the tangent.
+    /// Joins the next beam to beam `last`; from which arc length of it, and whether by other than a
+    /// weld along the tangent.
     fn joint(&mut self, last: usize) -> (f64, bool) {
         let drawn = &self.beams[last];
         let (name, length, straight) = (drawn.name.clone(), drawn.length, drawn.straight);

@@ -309,7 +309,8 @@ impl Draw<'_> {
         if !self.is_motion() || !self.chance(0.6) {
             return;
         }
-        // What is held at the start must not move: beyond a pin all may turn about it, beyond a clamp a beam may bend.
+        // What is held at the start must not move: beyond a pin all may turn about it, beyond a
+        // clamp a beam may bend.
         let held: Vec<Table> = super::super::settings::items(&self.scene, &["support"]).cloned().collect();
         let slides = super::super::settings::items(&self.scene, &["joint"])
             .any(|joint| joint.get("type").and_then(Value::as_str) == Some("slider"));

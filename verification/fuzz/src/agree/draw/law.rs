@@ -5,7 +5,8 @@ use toml::{Table, Value};
 use super::Draw;
 
 impl Draw<'_> {
-    /// A law that changes within the motion; `smooth` where what it drives must not jump, and start at rest.
+    /// A law that changes within the motion; `smooth` where what it drives must not jump, and start
+    /// at rest.
     pub(super) fn law(&mut self, smooth: bool) -> Table {
         let duration = self.duration;
         let mut law = Table::new();

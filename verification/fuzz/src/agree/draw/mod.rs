@@ -1,4 +1,5 @@
-//! Draws random scenes over the whole vocabulary, in natural units: L = 1, EI = 1, ρA = 1. Most of them are legal; the reader decides.
+//! Draws random scenes over the whole vocabulary, in natural units: L = 1, EI = 1, ρA = 1. Most of
+//! them are legal; the reader decides.
 
 mod analysis;
 mod beams;
@@ -67,7 +68,8 @@ pub fn scene(rng: &mut Rng) -> Table {
     draw.scene
 }
 
-/// A frame for a scene: units from µm to km, from µg to kt, from µs to minutes; any direction that the scene allows.
+/// A frame for a scene: units from µm to km, from µg to kt, from µs to minutes; any direction that
+/// the scene allows.
 pub fn frame(rng: &mut Rng, scene: &Table) -> Frame {
     let mut power = |low: f64, high: f64| 10f64.powf(low + (high - low) * rng.f64());
     let units = [power(-6.0, 3.0), power(-9.0, 6.0), power(-6.0, 2.0)];
