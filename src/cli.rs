@@ -163,7 +163,7 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
     let outcome = match arguments.checkpoint {
         None => run::run_from(scene.model(), scene.analysis(), saved.as_ref(), observer),
         Some(every) => {
-            let keep = Some(run::Keep { every, take: &take });
+            let keep = Some(run::Checkpointing { every, take: &take });
             run::run_keeping(scene.model(), scene.analysis(), saved.as_ref(), keep, observer)
         }
     };

@@ -3,9 +3,9 @@
 mod angle;
 mod error;
 mod locking;
-mod look;
 mod memory;
 mod modes;
+mod sampler;
 
 pub use error::RunError;
 
@@ -16,7 +16,7 @@ use crate::solve::statics::{self, Target};
 use crate::solve::{buckling, dynamics};
 use crate::system::{Inventory, Needs, System};
 use crate::trajectory::{Statistics, Trajectory};
-use look::Look;
+use sampler::Sampler;
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
@@ -93,7 +93,7 @@ pub fn run_from(
 
 /// Takes the states from which a motion could go on, every so often by the clock.
 #[derive(Clone, Copy)]
-pub struct Keep<'k> {
+pub struct Checkpointing<'k> {
     /// Wall time between them.
     pub every: Duration,
     /// Receives them.
@@ -108,7 +108,7 @@ pub fn run_keeping(
     model: &Model,
     analysis: &Analysis,
     saved: Option<&SavedState>,
-    keep: Option<Keep<'_>>,
+    keep: Option<Checkpointing<'_>>,
     observer: Observer<'_>,
 ) -> Result<Trajectory, RunError> {
     let not_a_motion = match analysis {
@@ -129,7 +129,7 @@ pub fn run_keeping(
         Analysis::Dynamic(settings) => Some(beginning(model, settings, &mut system, saved)?),
         _ => None,
     };
-    let look = Look::new(model, &system)?;
+    let look = Sampler::new(model, &system)?;
     let build = start.elapsed().as_secs_f64();
     let start = Instant::now();
     // Solving only, where what is looked at afterwards takes its own time.
@@ -184,7 +184,7 @@ pub fn run_keeping(
                 watches: &watches,
                 reactions: model.outputs.reactions,
                 directions: &directions,
-                keep: keep.map(|keep| dynamics::Keep { every: keep.every, take: &take }),
+                keep: keep.map(|keep| dynamics::Checkpointing { every: keep.every, take: &take }),
             };
             let report = &mut |time: f64, step: f64, statistics: &Statistics| {
                 let newton_iterations = statistics.newton_iterations;

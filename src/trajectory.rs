@@ -1,7 +1,7 @@
 //! What a computation leaves: states at the recorded times or load factors, seen through probes,
 //! energies and shapes. Output and verification read nothing else.
 
-pub use crate::solve::{Blow, Statistics, StepRecord};
+pub use crate::solve::{ContactImpulse, Statistics, StepRecord};
 pub use crate::system::Energy;
 
 use crate::restart::SavedState;
@@ -155,7 +155,7 @@ pub enum Event {
         touches: bool,
         /// What it did while it touched; where it ends.
         #[serde(flatten)]
-        blow: Option<Blow>,
+        impulse: Option<ContactImpulse>,
     },
 }
 

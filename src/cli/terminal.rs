@@ -13,7 +13,7 @@ use ancf::model::Analysis;
 use ancf::output::plot::human;
 use ancf::run::Progress;
 use ancf::sweep;
-use ancf::trajectory::{AnalysisKind, Blow, Event, ProbeSample, Trajectory};
+use ancf::trajectory::{AnalysisKind, ContactImpulse, Event, ProbeSample, Trajectory};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
@@ -254,9 +254,9 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
                 let at = format!("{} s: {axis} = {} m", number(*time), number(*value));
                 row(&format!("event at {probe}"), at);
             }
-            Event::Contact { time, contact, touches, blow } => {
+            Event::Contact { time, contact, touches, impulse } => {
                 let mut what = format!("{} s: {}", number(*time), if *touches { "begins" } else { "ends" });
-                if let Some(Blow { impulse: [x, y], largest_force }) = blow {
+                if let Some(ContactImpulse { impulse: [x, y], largest_force }) = impulse {
                     let (x, y, force) = (number(*x), number(*y), number(*largest_force));
                     what.push_str(&format!(", impulse ({x}, {y}) N s, up to {force} N"));
                 }
@@ -397,12 +397,12 @@ mod tests {
             }],
             events: vec![
                 Event::Crossing { time: 0.5, probe: "tip".into(), axis: "y".into(), value: -0.125 },
-                Event::Contact { time: 0.625, contact: "arm.1".into(), touches: true, blow: None },
+                Event::Contact { time: 0.625, contact: "arm.1".into(), touches: true, impulse: None },
                 Event::Contact {
                     time: 0.6875,
                     contact: "arm.1".into(),
                     touches: false,
-                    blow: Some(Blow { impulse: [0.5, -0.25], largest_force: 32.0 }),
+                    impulse: Some(ContactImpulse { impulse: [0.5, -0.25], largest_force: 32.0 }),
                 },
             ],
             frequencies: vec![0.0, 12.5],

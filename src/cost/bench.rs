@@ -17,7 +17,7 @@ pub(super) const MEASURING: &str = "setting";
 
 /// Why a setting was not measured.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Miss {
+pub(super) enum Unmeasured {
     /// The computation failed, or its result compares with nothing.
     Failed(String),
     /// It took longer than it may.
@@ -31,7 +31,7 @@ pub(super) trait Bench {
     /// Time since the start \[s\].
     fn now(&self) -> f64;
     /// Measures a setting, to be abandoned at the time `deadline` \[s\].
-    fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Miss>;
+    fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Unmeasured>;
 }
 
 /// The problem, with the clock that everything goes by.
@@ -55,18 +55,18 @@ impl Desk<'_> {
     }
 
     /// Runs a setting once, called `doing`, until `deadline` \[s\] at most.
-    pub fn run(&self, setting: &Setting, doing: &str, deadline: f64) -> Result<Trajectory, Miss> {
+    pub fn run(&self, setting: &Setting, doing: &str, deadline: f64) -> Result<Trajectory, Unmeasured> {
         let (model, analysis) = setting.apply(self.model, self.analysis);
         // Some analyses are over before anybody is asked.
-        let mut miss = (self.tell(doing) == Control::Stop).then_some(Miss::Interrupted);
+        let mut miss = (self.tell(doing) == Control::Stop).then_some(Unmeasured::Interrupted);
         if let Some(miss) = miss {
             return Err(miss);
         }
         let observer = &mut |_: &run::Progress| {
             if self.tell(doing) == Control::Stop {
-                miss = Some(Miss::Interrupted);
+                miss = Some(Unmeasured::Interrupted);
             } else if self.now() > deadline {
-                miss = Some(Miss::TooSlow);
+                miss = Some(Unmeasured::TooSlow);
             }
             if miss.is_some() { Control::Stop } else { Control::Continue }
         };
@@ -74,8 +74,8 @@ impl Desk<'_> {
         match (outcome, miss) {
             (Ok(trajectory), _) if trajectory.complete => Ok(trajectory),
             (_, Some(miss)) => Err(miss),
-            (Ok(_), None) => Err(Miss::Failed("it did not come to its end".into())),
-            (Err(error), None) => Err(Miss::Failed(error.to_string())),
+            (Ok(_), None) => Err(Unmeasured::Failed("it did not come to its end".into())),
+            (Err(error), None) => Err(Unmeasured::Failed(error.to_string())),
         }
     }
 }
@@ -93,7 +93,7 @@ impl Bench for Measuring<'_> {
         self.desk.now()
     }
 
-    fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Miss> {
+    fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Unmeasured> {
         self.begun += 1;
         let (desk, mut seconds) = (&self.desk, Vec::with_capacity(MOST_RUNS));
         let doing = format!("{MEASURING} {}", self.begun);
@@ -105,7 +105,7 @@ impl Bench for Measuring<'_> {
             }
             let (model, analysis, reference) = (desk.model, desk.analysis, &self.reference.trajectory);
             let deviation =
-                Deviation::between(model, analysis, &trajectory, reference).map_err(Miss::Failed)?;
+                Deviation::between(model, analysis, &trajectory, reference).map_err(Unmeasured::Failed)?;
             return Ok(Measured {
                 degrees_of_freedom: trajectory.degrees_of_freedom,
                 seconds: median(&mut seconds),

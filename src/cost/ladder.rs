@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use super::bench::{Bench, Miss};
+use super::bench::{Bench, Unmeasured};
 use super::rung::{Rung, front, points};
 use super::setting::{Family, Setting, Solver, cells};
 use crate::model::{Analysis, Integrator, Model, StepControl};
@@ -121,13 +121,13 @@ fn attempt(
     (family, cells): (Family, usize),
     setting: Setting,
     deadline: f64,
-) -> Option<Result<usize, Miss>> {
+) -> Option<Result<usize, Unmeasured>> {
     match bench.measure(&setting, deadline) {
         Ok(measured) => {
             climbed.rungs.push(Rung { family, cells, setting, measured });
             Some(Ok(climbed.rungs.len() - 1))
         }
-        Err(Miss::Interrupted) => None,
+        Err(Unmeasured::Interrupted) => None,
         Err(miss) => Some(Err(miss)),
     }
 }
@@ -176,7 +176,7 @@ fn meshes(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Opt
                 }
                 Err(miss) => {
                     climber.failed += 1;
-                    if miss == Miss::TooSlow || climber.failed >= PATIENCE {
+                    if miss == Unmeasured::TooSlow || climber.failed >= PATIENCE {
                         climbed.leave(from, reason(miss));
                         continue;
                     }
@@ -198,11 +198,11 @@ fn scene_solver(analysis: &Analysis) -> Solver {
     }
 }
 
-fn reason(miss: Miss) -> String {
+fn reason(miss: Unmeasured) -> String {
     match miss {
-        Miss::Failed(why) => format!("it failed: {why}"),
-        Miss::TooSlow => "it took longer than the budget allows".into(),
-        Miss::Interrupted => "interrupted".into(),
+        Unmeasured::Failed(why) => format!("it failed: {why}"),
+        Unmeasured::TooSlow => "it took longer than the budget allows".into(),
+        Unmeasured::Interrupted => "interrupted".into(),
     }
 }
 
@@ -289,7 +289,7 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
                         before = Some([seconds, error]);
                     }
                     Err(miss) => {
-                        let too_slow = miss == Miss::TooSlow;
+                        let too_slow = miss == Unmeasured::TooSlow;
                         climbed.leave(what, reason(miss));
                         if too_slow {
                             break;
@@ -356,9 +356,9 @@ mod tests {
             self.clock
         }
 
-        fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Miss> {
+        fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Unmeasured> {
             if self.interrupt_after == 0 {
-                return Err(Miss::Interrupted);
+                return Err(Unmeasured::Interrupted);
             }
             self.interrupt_after -= 1;
             let (meshfree, nodes) = match &setting.beams[0].0 {
@@ -369,7 +369,7 @@ mod tests {
             let seconds = (self.time)(meshfree, cells);
             if self.clock + seconds > deadline {
                 self.clock = deadline;
-                return Err(Miss::TooSlow);
+                return Err(Unmeasured::TooSlow);
             }
             self.clock += seconds;
             let deviation = Deviation { error: (self.error)(meshfree, cells), ..Deviation::default() };
@@ -467,7 +467,7 @@ mod tests {
             self.clock
         }
 
-        fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Miss> {
+        fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Unmeasured> {
             let (meshfree, nodes) = match &setting.beams[0].0 {
                 Discretization::Ancf { nodes } => (false, nodes),
                 Discretization::Rpim { nodes, .. } => (true, nodes),
@@ -491,7 +491,7 @@ mod tests {
             let error = by_steps + cells.powi(if meshfree { -5 } else { -4 });
             if self.clock + seconds > deadline {
                 self.clock = deadline;
-                return Err(Miss::TooSlow);
+                return Err(Unmeasured::TooSlow);
             }
             self.clock += seconds;
             let statistics =

@@ -1,7 +1,7 @@
 //! What errors are measured against: two runs that share neither the discretisation nor, in motion,
 //! the integrator, made finer until they agree.
 
-use super::bench::{Desk, Miss};
+use super::bench::{Desk, Unmeasured};
 use super::{CostError, Deviation, Family, Setting, Solver};
 use crate::model::{Analysis, Integrator, StepControl};
 use crate::scene::RPIM_GAUSS_POINTS;
@@ -74,11 +74,13 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
         let began = desk.now();
         let run = |i: usize| desk.run(&settings[i].2, &doing, deadline);
         let found = match pool.join(|| run(0), || run(1)) {
-            (Err(Miss::Interrupted), _) | (_, Err(Miss::Interrupted)) => return Err(CostError::Interrupted),
+            (Err(Unmeasured::Interrupted), _) | (_, Err(Unmeasured::Interrupted)) => {
+                return Err(CostError::Interrupted);
+            }
             (Ok(a), Ok(b)) => {
                 let warnings = [&a.warnings[..], &b.warnings].concat();
                 let deviation = Deviation::between(desk.model, desk.analysis, &b, &a);
-                deviation.map(|deviation| (a, deviation, warnings)).map_err(Miss::Failed)
+                deviation.map(|deviation| (a, deviation, warnings)).map_err(Unmeasured::Failed)
             }
             (Err(miss), _) | (_, Err(miss)) => Err(miss),
         };
@@ -92,7 +94,7 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
                     best = Some(Reference { trajectory, uncertainty, warnings, pair: names, seconds: 0.0 });
                 }
             }
-            Err(Miss::Failed(why)) => reason = why,
+            Err(Unmeasured::Failed(why)) => reason = why,
             Err(_) => {
                 reason = format!(
                     "the time is over; the pair with {} cells took more than was left",

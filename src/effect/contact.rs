@@ -15,13 +15,13 @@
 
 mod curve;
 mod friction;
+mod integral;
 mod obstacle;
-mod pressing;
 mod sweep;
 
-pub use friction::{Friction, Piece, Rubbing};
+pub use friction::{Friction, FrictionIntegral, Piece};
+pub use integral::ContactIntegral;
 pub use obstacle::Obstacle;
-pub use pressing::Pressing;
 
 use super::{Density, Gradient, Hessian};
 use crate::system::SystemError;
@@ -48,7 +48,7 @@ impl Part for Contact {
         let beam = assembly.beam("contact", self.beam)?;
         let normal = Penalty { obstacle: self.obstacle, stiffness: self.stiffness, gap: self.half_thickness };
         let part = assembly.discretised(self.beam);
-        let pressing = Pressing::new(normal, self.beam, &part.basis, part.offset());
+        let pressing = ContactIntegral::new(normal, self.beam, &part.basis, part.offset());
         assembly.contact(pressing.map_err(|e| SystemError::basis(&beam.name, e))?, self.friction);
         Ok(())
     }

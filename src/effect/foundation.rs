@@ -1,7 +1,7 @@
 //! Elastic foundation along a beam.
 
 use super::Kind;
-use super::spring::Tie;
+use super::spring::GroundSpring;
 use crate::system::SystemError;
 use crate::system::assembly::{Assembly, Extent, Part};
 use nalgebra::Vector2;
@@ -21,7 +21,7 @@ impl Part for Foundation {
         assembly.beam("a foundation", self.beam)?;
         let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
         assembly.elastic(Kind::Foundation, extent, |z: Vec<[Vector2<f64>; 1]>| {
-            Tie::new(self.stiffness, z.into_iter().map(|[r]| r).collect())
+            GroundSpring::new(self.stiffness, z.into_iter().map(|[r]| r).collect())
         })
     }
 }

@@ -1,7 +1,7 @@
 //! What forces remember: those of dry friction and of springs that are wound up depend on the way
 //! to a state, not on the state alone.
 //!
-//! They are functions of the state and of the last accepted one ([`Held`]), in which their internal
+//! They are functions of the state and of the last accepted one ([`AcceptedState`]), in which their internal
 //! variables are known; an accepted state gets its own. So every force has one value in every state
 //! of a step, and a step that is taken again starts from the same variables.
 
@@ -31,7 +31,7 @@ impl InternalVariables {
 
 /// The last accepted state, from which changes of the internal variables are counted.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Held {
+pub struct AcceptedState {
     /// Its coordinates.
     pub q: Vec<f64>,
     /// Its variables.

@@ -30,7 +30,7 @@ impl Part for Spring {
         if let Some(stiffness) = self.stiffness {
             match self.anchor {
                 None => assembly.elastic(Kind::Spring, extent, |z: Vec<[Vector2<f64>; 1]>| {
-                    Tie::new([stiffness; 2], z.into_iter().map(|[r]| r).collect())
+                    GroundSpring::new([stiffness; 2], z.into_iter().map(|[r]| r).collect())
                 }),
                 Some(anchor) => assembly.elastic(Kind::Spring, extent, |z: Vec<[Vector2<f64>; 1]>| {
                     let anchor = Vector2::from(anchor);
@@ -83,12 +83,12 @@ impl Part for TorsionSpring {
 
 /// W = ½ Σ k_d (r_d − r₀_d)²: a spring or an elastic foundation.
 #[derive(Clone, Debug)]
-pub struct Tie {
+pub struct GroundSpring {
     stiffness: Vector2<f64>,
     reference: Vec<Vector2<f64>>,
 }
 
-impl Tie {
+impl GroundSpring {
     /// k_x, k_y \[N/m\] or, per length, \[N/m²\], and r₀ at each point.
     pub fn new(stiffness: [f64; 2], reference: Vec<Vector2<f64>>) -> Self {
         Self { stiffness: stiffness.into(), reference }
@@ -99,7 +99,7 @@ impl Tie {
     }
 }
 
-impl Density<1> for Tie {
+impl Density<1> for GroundSpring {
     const ORDERS: [usize; 1] = [0];
 
     fn energy(&self, point: usize, z: &Gradient<1>) -> f64 {

@@ -11,7 +11,7 @@
 //! by [`Winding`]: nothing, until the spring has passed half a turn.
 
 use super::direction;
-use super::{Actions, Density, Effect, Gradient, Held, Hessian, InternalVariables, Workspace};
+use super::{AcceptedState, Actions, Density, Effect, Gradient, Hessian, InternalVariables, Workspace};
 use crate::linear::Matrix;
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
@@ -71,7 +71,7 @@ impl Winding {
     }
 
     /// θ in the state `q` \[rad\].
-    pub fn angle(&self, held: &Held, q: &[f64]) -> f64 {
+    pub fn angle(&self, held: &AcceptedState, q: &[f64]) -> f64 {
         let known = held.variables.angles.get(self.number).copied().unwrap_or(0.0);
         let angle = self.direction.energy(q);
         angle + TAU * ((known - angle) / TAU).round()
@@ -89,7 +89,7 @@ impl Winding {
     }
 
     /// `f += ` ∂W/∂q.
-    pub fn add_force(&self, held: &Held, q: &[f64], f: &mut [f64]) {
+    pub fn add_force(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
         self.add_force_at(self.angle(held, q), q, f);
     }
 
@@ -104,7 +104,7 @@ impl Winding {
     /// The same, and `k += ` ∂²W/∂q∂q.
     pub fn add_force_and_tangent(
         &self,
-        held: &Held,
+        held: &AcceptedState,
         q: &[f64],
         f: &mut [f64],
         k: &mut Matrix,
@@ -138,7 +138,7 @@ impl Winding {
     }
 
     /// By how much the spring has turned since the last accepted state \[rad\].
-    pub fn turn(&self, held: &Held, q: &[f64]) -> f64 {
+    pub fn turn(&self, held: &AcceptedState, q: &[f64]) -> f64 {
         let angle = self.angle(held, q);
         angle - held.variables.angles.get(self.number).copied().unwrap_or(0.0)
     }

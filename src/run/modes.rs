@@ -1,6 +1,6 @@
 //! Vibrations and critical loads, as a trajectory shows them.
 
-use super::look::Look;
+use super::sampler::Sampler;
 use super::{Control, Observer, Progress, RunError};
 use crate::effect::InternalVariables;
 use crate::model::{About, Static};
@@ -20,7 +20,7 @@ const STRAIGHT: f64 = 0.1;
 /// Largest displacement of a drawn mode, in beam lengths.
 const DRAWN: f64 = 0.1;
 
-impl Look<'_> {
+impl Sampler<'_> {
     /// The `count` lowest vibrations about a state, which is found first.
     pub(super) fn vibrations(
         &self,

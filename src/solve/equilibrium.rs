@@ -3,7 +3,7 @@
 
 use super::newton::{Equations, RESIDUAL_TOLERANCE};
 use super::retraction::Retraction;
-use crate::effect::{Earlier, Held, InternalVariables, Workspace};
+use crate::effect::{AcceptedState, Earlier, InternalVariables, Workspace};
 use crate::lanes::Lanes;
 use crate::linear::bordered::BorderRow;
 use crate::linear::{Factor, Matrix, Singular};
@@ -25,7 +25,7 @@ pub struct Equilibrium<'a> {
     workspace: Workspace,
     held_rate: Vec<f64>,
     /// The last accepted state, for what depends on the way.
-    held: Held,
+    held: AcceptedState,
     /// Counts so far.
     pub statistics: Statistics,
 }
@@ -42,7 +42,7 @@ impl<'a> Equilibrium<'a> {
             border: Vec::new(),
             workspace: Workspace::default(),
             held_rate: vec![0.0; n],
-            held: Held { q: system.reference().to_vec(), ..Held::default() },
+            held: AcceptedState { q: system.reference().to_vec(), ..AcceptedState::default() },
             statistics: Statistics::default(),
         }
     }
@@ -56,7 +56,7 @@ impl<'a> Equilibrium<'a> {
     pub fn hold(&mut self, x: &[f64]) {
         if self.system.has_history() {
             let variables = self.internal_variables(x);
-            self.held = Held { q: x[..self.system.coordinates()].to_vec(), variables };
+            self.held = AcceptedState { q: x[..self.system.coordinates()].to_vec(), variables };
         }
     }
 

@@ -13,4 +13,4 @@ pub mod relax;
 pub mod retraction;
 pub mod statics;
 
-pub use record::{Blow, Statistics, StepRecord};
+pub use record::{ContactImpulse, Statistics, StepRecord};

@@ -104,7 +104,7 @@ const BELIEVED_STEP: f64 = 1e-5;
 
 /// Why a path could not be followed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stuck {
+pub struct NoStep {
     /// Load factor of the last equilibrium.
     pub load: f64,
     /// The smallest step tried.
@@ -137,7 +137,7 @@ impl<'e, 'a> Path<'e, 'a> {
         parameter: Parameter,
         settings: Settings,
         step: f64,
-    ) -> Result<Self, Stuck> {
+    ) -> Result<Self, NoStep> {
         let mut x = equilibrium.start();
         let n = equilibrium.system().coordinates();
         equilibrium.system().supports().impose(0.0, &mut x[..n]);
@@ -196,8 +196,8 @@ impl<'e, 'a> Path<'e, 'a> {
     /// needed.
     ///
     /// # Errors
-    /// [`Stuck`] where no step converges.
-    pub fn advance(&mut self, end: f64) -> Result<&Point, Stuck> {
+    /// [`NoStep`] where no step converges.
+    pub fn advance(&mut self, end: f64) -> Result<&Point, NoStep> {
         let last = &self.points[self.points.len() - 1];
         self.equilibrium.hold(&last.x);
         if last.rate.is_empty() {
@@ -268,7 +268,7 @@ impl<'e, 'a> Path<'e, 'a> {
                             self.step = point.parameter - here;
                             return Ok(self.accept(point, self.step, turn));
                         }
-                        _ => return Err(Stuck { load: self.last().load, step, failure, at }),
+                        _ => return Err(NoStep { load: self.last().load, step, failure, at }),
                     }
                 }
             }
@@ -345,12 +345,12 @@ impl<'e, 'a> Path<'e, 'a> {
     }
 
     /// Stability and the path's tangent at the start.
-    fn set_out(&mut self) -> Result<(), Stuck> {
+    fn set_out(&mut self) -> Result<(), NoStep> {
         let n = self.equilibrium.unknowns();
         let Point { load, x, .. } = self.points[0].clone();
         let mut rate = vec![0.0; n];
         self.equilibrium.linearize(load, &x, None, &mut vec![0.0; n], &mut rate).map_err(|singular| {
-            Stuck {
+            NoStep {
                 load,
                 step: 0.0,
                 failure: singular.into(),
@@ -360,7 +360,7 @@ impl<'e, 'a> Path<'e, 'a> {
         self.equilibrium.solve(load, &mut rate, true);
         if let Some(unknown) = rate.iter().position(|rate| !rate.is_finite()) {
             let at = self.equilibrium.system().place_of(unknown);
-            return Err(Stuck { load, step: 0.0, failure: Failure::NotFinite, at });
+            return Err(NoStep { load, step: 0.0, failure: Failure::NotFinite, at });
         }
         rate.push(1.0);
         if self.parameter == Parameter::ArcLength {

@@ -38,7 +38,7 @@ pub struct Statistics {
 
 /// What a contact did to a beam from its beginning to its end; without friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Blow {
+pub struct ContactImpulse {
     /// ∫ F dt \[N s\].
     pub impulse: [f64; 2],
     /// The largest \|F\| \[N\] that was seen, at three points of every step and more.

@@ -3,7 +3,7 @@
 
 use super::equilibrium::Equilibrium;
 use super::newton::{Iterations, Settings};
-use super::path::{Parameter, Path, Stuck};
+use super::path::{NoStep, Parameter, Path};
 use super::relax::{Rest, relax};
 use crate::effect::InternalVariables;
 use crate::model::{ArcLength, Static};
@@ -34,7 +34,7 @@ pub struct Solution {
     /// Counts.
     pub statistics: Statistics,
     /// Why the path ends before its target, if it does.
-    pub stuck: Option<Stuck>,
+    pub stuck: Option<NoStep>,
     /// Whether the path has a target and as many points as it may have, but has not reached it.
     pub out_of_points: bool,
 }
@@ -105,7 +105,7 @@ fn along_load(
     newton: Settings,
     solution: &mut Solution,
     observe: Observer<'_>,
-) -> Result<(), Stuck> {
+) -> Result<(), NoStep> {
     let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0)?;
     solution.record(path.equilibrium, 0.0, &path.last().x);
     let parts = settings.steps.unwrap_or(1).max(1);
@@ -144,7 +144,7 @@ fn relaxed(
     newton: Settings,
     solution: &mut Solution,
     observe: Observer<'_>,
-) -> Result<(), Stuck> {
+) -> Result<(), NoStep> {
     let mut x = equilibrium.start();
     solution.record(equilibrium, 0.0, &x);
     let parts = settings.steps.unwrap_or(1).max(1);
@@ -172,7 +172,7 @@ fn relaxed(
             increments: record.increments,
             residuals: record.residuals,
         });
-        outcome.map_err(|failure| Stuck { load: load - step, step, failure, at })?;
+        outcome.map_err(|failure| NoStep { load: load - step, step, failure, at })?;
         equilibrium.statistics.load_steps += 1;
         solution.record(equilibrium, load, &x);
         equilibrium.hold(&x);
@@ -229,7 +229,7 @@ fn along_arc(
     newton: Settings,
     solution: &mut Solution,
     observe: Observer<'_>,
-) -> Result<(), Stuck> {
+) -> Result<(), NoStep> {
     let n = equilibrium.system().coordinates();
     let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
     let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05))?;

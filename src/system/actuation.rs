@@ -11,7 +11,7 @@
 //! ε̇₀ ds − ∫ M κ̇₀ ds.
 
 use super::System;
-use super::course::Amplitude;
+use super::prescribed::Amplitude;
 use crate::effect::Kind;
 use crate::model::Model;
 

@@ -8,11 +8,11 @@
 use super::{Acting, BeamPart, Needs, SystemError, Turning};
 use crate::basis::{Basis, BasisTable, Quadrature};
 use crate::effect::{
-    Damping, Density, Direction, Dissipation, Effect, Friction, Integral, Kind, Pressing, Rayleigh, Rubbing,
-    Travelling, Winding,
+    ContactIntegral, Damping, Density, Direction, Dissipation, Effect, Friction, FrictionIntegral, Integral,
+    Kind, Rayleigh, Travelling, Winding,
 };
 use crate::model::{Beam, Law, Model, Place};
-use crate::system::course::Amplitude;
+use crate::system::prescribed::Amplitude;
 use nalgebra::Vector2;
 use std::any::Any;
 use std::fmt;
@@ -86,8 +86,8 @@ pub struct Assembly<'a> {
     pub(super) turning: Vec<Turning>,
     pub(super) damping: Vec<Box<dyn Damping>>,
     pub(super) travelling: Vec<Travelling>,
-    pub(super) contacts: Vec<Arc<Pressing>>,
-    pub(super) friction: Vec<Rubbing>,
+    pub(super) contacts: Vec<Arc<ContactIntegral>>,
+    pub(super) friction: Vec<FrictionIntegral>,
     pub(super) windings: Vec<Winding>,
     pub(super) left_out: Vec<(Kind, usize)>,
 }
@@ -244,11 +244,11 @@ impl<'a> Assembly<'a> {
     }
 
     /// A contact: an energy that is asked, besides, where it touches; and its friction.
-    pub fn contact(&mut self, contact: Pressing, friction: Option<Friction>) {
+    pub fn contact(&mut self, contact: ContactIntegral, friction: Option<Friction>) {
         let contact = Arc::new(contact);
         self.internal.push(Box::new(Arc::clone(&contact)));
         if let Some(friction) = friction {
-            self.friction.push(Rubbing::new(Arc::clone(&contact), friction, self.friction.len()));
+            self.friction.push(FrictionIntegral::new(Arc::clone(&contact), friction, self.friction.len()));
         }
         self.contacts.push(contact);
     }

@@ -9,7 +9,7 @@
 //! quadratic: its row's normal follows the gradient. So does that of the angle from one direction
 //! to another, which a weld keeps.
 
-use super::course::Course;
+use super::prescribed::Prescribed;
 use crate::basis::BasisTable;
 use crate::effect::Action;
 use nalgebra::Vector2;
@@ -23,7 +23,7 @@ pub enum Row {
         /// 0 for x, 1 for y.
         axis: usize,
         /// Its value.
-        value: Course,
+        value: Prescribed,
     },
     /// Component `axis` of the gradient, R(φ) r'₀.
     Gradient {
@@ -32,10 +32,10 @@ pub enum Row {
         /// r'₀.
         reference: [f64; 2],
         /// φ \[rad\].
-        rotation: Course,
+        rotation: Prescribed,
     },
     /// The direction of the gradient \[rad\].
-    Direction(Course),
+    Direction(Prescribed),
     /// Σ n·r⁽ᵒ⁾ over several points.
     Joint {
         /// Derivative order of r: 0 or 1.

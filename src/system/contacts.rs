@@ -2,7 +2,7 @@
 
 use super::System;
 use super::sums::resultant;
-use crate::effect::{Effect, Held};
+use crate::effect::{AcceptedState, Effect};
 
 impl System {
     /// Whether there are any.
@@ -63,7 +63,7 @@ impl System {
 
     /// Per contact with friction whether the larger part of it slides, and whether against
     /// friction.
-    pub fn sliding(&self, held: &Held, q: &[f64], v: &[f64]) -> Vec<Option<bool>> {
+    pub fn sliding(&self, held: &AcceptedState, q: &[f64], v: &[f64]) -> Vec<Option<bool>> {
         self.friction.iter().map(|friction| friction.sliding(held, q, v)).collect()
     }
 }

@@ -1,8 +1,8 @@
-//! Forces that depend on the way to a state ([`crate::effect::Held`]): dry friction, and torsion
+//! Forces that depend on the way to a state ([`crate::effect::AcceptedState`]): dry friction, and torsion
 //! springs with their turns.
 
 use super::System;
-use crate::effect::{Held, InternalVariables, Workspace};
+use crate::effect::{AcceptedState, InternalVariables, Workspace};
 use crate::linear::Matrix;
 
 impl System {
@@ -17,20 +17,20 @@ impl System {
     }
 
     /// `f += ` these forces in the state `q`, where `held` was the last accepted one.
-    pub fn add_history(&self, held: &Held, q: &[f64], f: &mut [f64]) {
+    pub fn add_history(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
         self.add_friction(held, q, f);
         self.windings.iter().for_each(|winding| winding.add_force(held, q, f));
     }
 
     /// `f += ` those of them that take energy.
-    pub fn add_friction(&self, held: &Held, q: &[f64], f: &mut [f64]) {
+    pub fn add_friction(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
         self.friction.iter().for_each(|friction| friction.add_force(held, q, f));
     }
 
     /// `f += ` all of them, and `k += ` their derivative.
     pub fn add_history_and_tangent(
         &self,
-        held: &Held,
+        held: &AcceptedState,
         q: &[f64],
         f: &mut [f64],
         k: &mut Matrix,
@@ -41,7 +41,7 @@ impl System {
     }
 
     /// The internal variables in the state `q`, where `held` was the last accepted one.
-    pub fn internal_variables(&self, held: &Held, q: &[f64]) -> InternalVariables {
+    pub fn internal_variables(&self, held: &AcceptedState, q: &[f64]) -> InternalVariables {
         let mut variables = InternalVariables::default();
         for friction in &self.friction {
             let (pieces, energy) = friction.slips(held, q);
@@ -57,13 +57,13 @@ impl System {
     }
 
     /// Energy of windings in the state `q`, where `held` was the last accepted one \[J\].
-    pub fn winding_energy(&self, held: &Held, q: &[f64]) -> f64 {
+    pub fn winding_energy(&self, held: &AcceptedState, q: &[f64]) -> f64 {
         self.windings.iter().map(|winding| winding.energy(winding.angle(held, q))).sum()
     }
 
     /// The largest turn of a torsion spring since the last accepted state `held` \[rad\]; beyond π
     /// the spring would seem to have turned the other way.
-    pub fn winding_turn(&self, held: &Held, q: &[f64]) -> f64 {
+    pub fn winding_turn(&self, held: &AcceptedState, q: &[f64]) -> f64 {
         self.windings.iter().fold(0.0, |turn: f64, winding| turn.max(winding.turn(held, q).abs()))
     }
 

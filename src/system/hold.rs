@@ -2,9 +2,9 @@
 //! constraints between nodes.
 
 use super::constraints::{Constraint, Row};
-use super::course::Course;
+use super::prescribed::Prescribed;
 use super::reaction::Source;
-use super::supports::{Held, Hold, Supports};
+use super::supports::{HeldPair, Hold, Supports};
 use super::{Needs, System, SystemError, View};
 use crate::model::{Displacement, FixedRotation, Support};
 
@@ -23,7 +23,7 @@ pub(super) fn hold(
     supports: &[Support],
     needs: Needs,
 ) -> Result<(Supports, Vec<Constraint>, Vec<Source>), SystemError> {
-    let mut held: Vec<Held> = Vec::new();
+    let mut held: Vec<HeldPair> = Vec::new();
     let (mut constraints, mut sources) = (Vec::new(), Vec::new());
     for support in supports {
         let (part, s) = system.part("a support", support.at)?;
@@ -39,22 +39,22 @@ pub(super) fn hold(
         let in_basis = |e| SystemError::basis(&part.name, e);
         let fields = View::point(&part.basis, part.offset(), s).map_err(in_basis)?.fields(&system.reference);
         let (position, gradient) = (fields.position, fields.gradient);
-        let course = |start: f64, change: f64| Course { start, change, law: support.law.clone() };
+        let course = |start: f64, change: f64| Prescribed { start, change, law: support.law.clone() };
         let angle = course(gradient[1].atan2(gradient[0]), support.displacement.angle);
         let rotation = course(0.0, support.displacement.angle);
         let motion = [support.displacement.x, support.displacement.y];
         let fixed = [support.fix.x, support.fix.y];
-        let components: [Option<Course>; 2] =
+        let components: [Option<Prescribed>; 2] =
             std::array::from_fn(|axis| fixed[axis].then(|| course(position[axis], motion[axis])));
         if let Some(node) = part.basis.node_at(s) {
             sources.push(Source::node(part.first_node + node, support));
             let pair = 2 * (part.first_node + node);
             let mut add = |pair: usize, hold: Hold| match held.iter_mut().find(|h| h.pair == pair) {
                 None => {
-                    held.push(Held { pair, hold });
+                    held.push(HeldPair { pair, hold });
                     Ok(())
                 }
-                Some(Held { hold: Hold::Position(there), .. }) => match hold {
+                Some(HeldPair { hold: Hold::Position(there), .. }) => match hold {
                     Hold::Position(new) if (0..2).all(|a| there[a].is_none() || new[a].is_none()) => {
                         *there = std::array::from_fn(|a| there[a].take().or_else(|| new[a].clone()));
                         Ok(())

@@ -7,14 +7,14 @@
 //! ([`crate::model::Law::moments`]). Less the same of what the method sees, they are the change of
 //! velocity and of position that it misses, however fast a law oscillates against the step.
 
-use super::course::Amplitude;
+use super::prescribed::Amplitude;
 use super::{Acting, System};
 use crate::effect::Travelling;
 use crate::model::Law;
 
 /// A time at which a method looks, and its weights in the mean over the step and in the first
 /// moment.
-pub type Look = (f64, [f64; 2]);
+pub type LoadSample = (f64, [f64; 2]);
 
 fn law(load: &Acting) -> Option<&Law> {
     match &load.amplitude {
@@ -24,7 +24,7 @@ fn law(load: &Acting) -> Option<&Law> {
 }
 
 /// Moments of `f` as the looks have them.
-fn seen(looks: &[Look], f: impl Fn(f64) -> f64) -> [f64; 2] {
+fn seen(looks: &[LoadSample], f: impl Fn(f64) -> f64) -> [f64; 2] {
     looks.iter().fold([0.0; 2], |[mean, moment], (time, [a, b])| {
         let f = f(*time);
         [mean + a * f, moment + b * f]
@@ -49,7 +49,7 @@ impl System {
     pub fn add_unseen_loads(
         &self,
         [start, end]: [f64; 2],
-        looks: &[Look],
+        looks: &[LoadSample],
         q: &[f64],
         [mean, moment]: [&mut [f64]; 2],
         scratch: &mut [f64],
@@ -76,9 +76,9 @@ impl System {
 
     /// By how much the supports' motions from `start` to `end` differ from what `looks` at their
     /// accelerations make of them: the largest, positions in beam lengths, angles as they are.
-    pub fn unseen_motion(&self, [start, end]: [f64; 2], looks: &[Look]) -> f64 {
+    pub fn unseen_motion(&self, [start, end]: [f64; 2], looks: &[LoadSample]) -> f64 {
         let h = end - start;
-        let miss = |(course, unit): (&super::course::Course, f64)| {
+        let miss = |(course, unit): (&super::prescribed::Prescribed, f64)| {
             let ([u0, v0, _], [u1, v1, _]) = (course.prescribed(start), course.prescribed(end));
             let [mean, moment] = seen(looks, |time| h * h * course.prescribed(time)[2]);
             let misses = [h * (v1 - v0) - mean, (u1 - u0) - h * v0 - moment];

@@ -18,7 +18,6 @@ mod actuation;
 pub mod assembly;
 pub mod constraints;
 mod contacts;
-pub mod course;
 mod cut;
 mod effects;
 mod energy;
@@ -31,6 +30,7 @@ pub mod joint;
 pub mod laws;
 mod measure;
 pub mod polar;
+pub mod prescribed;
 mod reaction;
 mod redundancy;
 mod rows;
@@ -48,13 +48,13 @@ pub use view::{Fields, View, unfold};
 
 use crate::basis::Basis;
 use crate::centreline::Curve;
-use crate::effect::{Damping, Effect, Kind, Pressing, Rubbing, Travelling, Winding};
+use crate::effect::{ContactIntegral, Damping, Effect, FrictionIntegral, Kind, Travelling, Winding};
 use crate::linear::Matrix;
 use crate::model::freedom::Freedom;
 use crate::model::{Centreline, Discretization, Joint, Model, Place};
 use constraints::Constraint;
-use course::Amplitude;
 use polar::Polar;
+use prescribed::Amplitude;
 use reaction::Source;
 use std::sync::Arc;
 use supports::Supports;
@@ -146,8 +146,8 @@ pub struct System {
     damping: Vec<Box<dyn Damping>>,
     travelling: Vec<Travelling>,
     /// The contacts, which are among the internal effects.
-    contacts: Vec<Arc<Pressing>>,
-    friction: Vec<Rubbing>,
+    contacts: Vec<Arc<ContactIntegral>>,
+    friction: Vec<FrictionIntegral>,
     windings: Vec<Winding>,
     left_out: Vec<(Kind, usize)>,
     supports: Supports,

@@ -1,7 +1,7 @@
 //! Sums over effects: forces, tangents, matrices, energies and powers.
 
 use super::Energy;
-use super::course::Amplitude;
+use super::prescribed::Amplitude;
 use super::{Acting, System};
 use crate::effect::{Earlier, Effect, Kind, Workspace};
 use crate::lanes::{self, Lanes};

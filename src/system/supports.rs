@@ -10,7 +10,7 @@
 //! - a held direction θ lets (x', y') = a (cos θ, sin θ) with a free: in the frame turned by θ the
 //!   second component is fixed to zero.
 
-use super::course::Course;
+use super::prescribed::Prescribed;
 use crate::lanes::Real;
 use crate::linear::Matrix;
 
@@ -18,30 +18,30 @@ use crate::linear::Matrix;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Hold {
     /// One or both components of a position.
-    Position([Option<Course>; 2]),
+    Position([Option<Prescribed>; 2]),
     /// Both components of a gradient, turned by an angle.
     Gradient {
         /// r'₀.
         reference: [f64; 2],
         /// The angle by which it is turned \[rad\].
-        rotation: Course,
+        rotation: Prescribed,
     },
     /// The direction of a gradient \[rad\].
-    Direction(Course),
+    Direction(Prescribed),
 }
 
 /// A pair of coordinates, 2·pair and 2·pair + 1, of which something is held.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Held {
+pub struct HeldPair {
     /// Number of the pair.
     pub pair: usize,
     /// What is held.
     pub hold: Hold,
 }
 
-impl Held {
-    fn courses(&self) -> impl Iterator<Item = &Course> {
-        let all: [Option<&Course>; 2] = match &self.hold {
+impl HeldPair {
+    fn prescribed(&self) -> impl Iterator<Item = &Prescribed> {
+        let all: [Option<&Prescribed>; 2] = match &self.hold {
             Hold::Position(components) => components.each_ref().map(Option::as_ref),
             Hold::Gradient { rotation: course, .. } | Hold::Direction(course) => [Some(course), None],
         };
@@ -84,7 +84,7 @@ impl Held {
 /// All supports at nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Supports {
-    held: Vec<Held>,
+    held: Vec<HeldPair>,
 }
 
 /// Values of a pair of coordinates, their velocities and accelerations.
@@ -105,7 +105,7 @@ fn clear<T: Real>(pair: &mut [T], which: [bool; 2]) {
 
 impl Supports {
     /// The given pairs are held.
-    pub fn new(held: Vec<Held>) -> Self {
+    pub fn new(held: Vec<HeldPair>) -> Self {
         Self { held }
     }
 
@@ -120,7 +120,7 @@ impl Supports {
 
     /// Nodes of which one component of a pair is held and the other free, in the support's frame.
     pub fn half_held(&self) -> impl Iterator<Item = usize> + '_ {
-        let half = |held: &&Held| {
+        let half = |held: &&HeldPair| {
             let (_, [first, second]) = held.frame(0.0);
             first != second
         };
@@ -146,7 +146,7 @@ impl Supports {
 
     /// What follows no law holds what it holds in the state `q` of a system of this `length`.
     pub fn hold_as_in(&mut self, q: &[f64], length: f64) {
-        for Held { pair, hold } in &mut self.held {
+        for HeldPair { pair, hold } in &mut self.held {
             let field = [q[2 * *pair], q[2 * *pair + 1]];
             match hold {
                 Hold::Position(components) => {
@@ -165,7 +165,7 @@ impl Supports {
 
     /// Whether anything moves by prescription.
     pub fn moves(&self) -> bool {
-        self.held.iter().flat_map(Held::courses).any(Course::moves)
+        self.held.iter().flat_map(HeldPair::prescribed).any(Prescribed::moves)
     }
 
     /// Turns a vector of forces or increments into the frames of the supports and clears what is
@@ -234,33 +234,33 @@ impl Supports {
 
     /// Whether anything moves by a law of time.
     pub fn moves_in_time(&self) -> bool {
-        self.held.iter().flat_map(Held::courses).any(Course::moves_in_time)
+        self.held.iter().flat_map(HeldPair::prescribed).any(Prescribed::moves_in_time)
     }
 
     /// What moves by a law of time, each with the unit by which it is measured: `per_length` for
     /// positions, 1 for angles.
-    pub fn moving(&self, per_length: f64) -> impl Iterator<Item = (&Course, f64)> {
-        let of = move |held: &Held| if matches!(held.hold, Hold::Position(_)) { per_length } else { 1.0 };
-        let courses =
-            self.held.iter().flat_map(move |held| held.courses().map(move |course| (course, of(held))));
-        courses.filter(|(course, _)| course.moves_in_time())
+    pub fn moving(&self, per_length: f64) -> impl Iterator<Item = (&Prescribed, f64)> {
+        let of = move |held: &HeldPair| if matches!(held.hold, Hold::Position(_)) { per_length } else { 1.0 };
+        let prescribed =
+            self.held.iter().flat_map(move |held| held.prescribed().map(move |course| (course, of(held))));
+        prescribed.filter(|(course, _)| course.moves_in_time())
     }
 
     /// Whether a held direction turns by a law of time.
     pub fn turn_in_time(&self) -> bool {
-        self.held.iter().any(Held::turns)
+        self.held.iter().any(HeldPair::turns)
     }
 
     /// Whether coordinate `i` belongs to a pair of which something is held, and nothing moves.
     pub fn holds_still(&self, i: usize) -> bool {
-        self.held.iter().any(|held| held.pair == i / 2 && !held.courses().any(Course::moves_in_time))
+        self.held.iter().any(|held| held.pair == i / 2 && !held.prescribed().any(Prescribed::moves_in_time))
     }
 
     /// Times at which a law of motion is not smooth.
     pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
         self.held
             .iter()
-            .flat_map(Held::courses)
+            .flat_map(HeldPair::prescribed)
             .filter_map(|course| course.law.as_ref())
             .flat_map(|law| law.kinks())
     }
@@ -268,11 +268,11 @@ impl Supports {
     /// What jumps by a law: a coordinate, when, and by how much (m, or rad).
     pub fn jumps(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         self.held.iter().flat_map(|held| {
-            let jump = |course: &Course| {
+            let jump = |course: &Prescribed| {
                 let (time, height) = course.law.as_ref()?.jump()?;
                 course.moves().then_some((2 * held.pair, time, height * course.change))
             };
-            held.courses().filter_map(jump)
+            held.prescribed().filter_map(jump)
         })
     }
 
@@ -381,7 +381,7 @@ impl Supports {
     }
 }
 
-impl Held {
+impl HeldPair {
     fn impose(&self, load: f64, pair: &mut [f64]) {
         match &self.hold {
             Hold::Position(components) => {

@@ -47,8 +47,8 @@ fn a_beam_bounces_from_a_plane() {
         assert_eq!(trajectory.outlines, [[[LENGTH, -0.1], [-LENGTH, -0.1]]]);
         // It falls 0.1 m, and is pushed back.
         let [
-            Event::Contact { time: begin, contact, touches: true, blow: None },
-            Event::Contact { time: end, touches: false, blow: Some(blow), .. },
+            Event::Contact { time: begin, contact, touches: true, impulse: None },
+            Event::Contact { time: end, touches: false, impulse: Some(found), .. },
             ..,
         ] = &trajectory.events[..]
         else {
@@ -66,10 +66,10 @@ fn a_beam_bounces_from_a_plane() {
         let force =
             1e4 * LENGTH * (9.81 / frequency.powi(2) + (9.81 / frequency.powi(2)).hypot(speed / frequency));
         assert!(
-            blow.impulse[0].abs() < 1e-9 && (blow.impulse[1] - impulse).abs() < 1e-5 * impulse,
-            "{blow:?}, not {impulse}"
+            found.impulse[0].abs() < 1e-9 && (found.impulse[1] - impulse).abs() < 1e-5 * impulse,
+            "{found:?}, not {impulse}"
         );
-        assert!((0.9..=1.0 + 1e-6).contains(&(blow.largest_force / force)), "{blow:?}, not {force}");
+        assert!((0.9..=1.0 + 1e-6).contains(&(found.largest_force / force)), "{found:?}, not {force}");
         let lost = trajectory.energy.last().expect("a record").lost;
         assert_eq!(friction.is_some(), lost > 1e-3, "lost {lost}");
         let speed = trajectory.probes[0].samples.last().and_then(|s| s.vx).unwrap_or_default();

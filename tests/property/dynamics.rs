@@ -404,7 +404,7 @@ fn impulses_of_contacts_balance_the_momentum() {
         let task = Task { output_every: 1e-3, ..task(&system, 0.6, method) };
         let solution = finished(solve(&system, &task, &mut |_, _, _| true));
         let changes = &solution.contacts;
-        let blows = |time: f64| changes.iter().filter(move |c| c.time <= time).filter_map(|c| c.blow);
+        let ended = |time: f64| changes.iter().filter(move |c| c.time <= time).filter_map(|c| c.impulse);
         let in_the_air = |time: f64| {
             let touches = |contact| {
                 changes.iter().rfind(|c| c.contact == contact && c.time <= time).is_some_and(|c| c.touches)
@@ -412,12 +412,12 @@ fn impulses_of_contacts_balance_the_momentum() {
             !(touches(0) || touches(1))
         };
         let before = momenta(&system, &solution.states[0]);
-        let after = solution.states.iter().filter(|s| in_the_air(s.time) && blows(s.time).count() >= 2);
+        let after = solution.states.iter().filter(|s| in_the_air(s.time) && ended(s.time).count() >= 2);
         let mut count = 0;
         for state in after {
             let found = momenta(&system, state);
             for axis in 0..2 {
-                let impulse: f64 = blows(state.time).map(|blow| blow.impulse[axis]).sum();
+                let impulse: f64 = ended(state.time).map(|ended| ended.impulse[axis]).sum();
                 let expected = before[axis] + 0.4 * LENGTH * GRAVITY[axis] * state.time + impulse;
                 let apart = (found[axis] - expected).abs();
                 assert!(apart < 2e-5, "{apart} N s along {axis} at {} s, impulses {impulse} N s", state.time);

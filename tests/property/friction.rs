@@ -1,7 +1,7 @@
 //! Dry friction: what sticks rests, what slides is slowed as Coulomb says, and what is lost is
 //! friction's work.
 
-use ancf::effect::{Contact, Friction, Held, InternalVariables, Obstacle, Workspace};
+use ancf::effect::{AcceptedState, Contact, Friction, InternalVariables, Obstacle, Workspace};
 use ancf::linear::Matrix;
 use ancf::model::{
     Analysis, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Section, SideCondition,
@@ -65,10 +65,10 @@ proptest! {
             q.iter().zip(noise[from..].iter().cycle()).map(|(q, n)| q + size * n).collect()
         };
         let start = moved(system.reference(), 0.02, 0);
-        let rest = Held { q: start.clone(), variables: InternalVariables::default() };
+        let rest = AcceptedState { q: start.clone(), variables: InternalVariables::default() };
         let mut first = start.clone();
         first.chunks_exact_mut(4).for_each(|node| node[0] += push);
-        let held = Held { variables: system.internal_variables(&rest, &first), q: first.clone() };
+        let held = AcceptedState { variables: system.internal_variables(&rest, &first), q: first.clone() };
         let mut q = moved(&first, 1e-4, 10);
         q.chunks_exact_mut(4).for_each(|node| node[0] += 0.2 * push);
         prop_assume!(push.abs() > 2e-3);

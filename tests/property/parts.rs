@@ -1,8 +1,9 @@
 //! Springs, masses, damping, fluids, contacts: derivatives of their densities against dual numbers.
 
 use ancf::effect::{
-    BendDamping, Dashpot, Density, Dissipation, Drag, Engineering, Green, Gyration, Inertia, Obstacle,
-    Penalty, PreCurvature, PreStrain, RotaryInertia, StretchDamping, Strut, Tie, Torsion, TorsionDashpot,
+    BendDamping, Dashpot, Density, Dissipation, Drag, Engineering, Green, GroundSpring, Gyration, Inertia,
+    Obstacle, Penalty, PreCurvature, PreStrain, RotaryInertia, StretchDamping, Strut, Torsion,
+    TorsionDashpot,
 };
 use nalgebra::{DVector, Dyn, Vector2};
 use num_dual::{Dual2Vec, DualNum, hessian};
@@ -108,7 +109,7 @@ proptest! {
 
     #[test]
     fn energies_of_springs_and_actuations(r in vector(), g in gradient(), c in vector()) {
-        let tie = Tie::new([3.0, 0.5], vec![Vector2::new(0.2, -0.1)]);
+        let tie = GroundSpring::new([3.0, 0.5], vec![Vector2::new(0.2, -0.1)]);
         derivatives(&tie, [r], |z| {
             let [x, y] = minus(&z[0], [0.2, -0.1]);
             square(x) * 1.5 + square(y) * 0.25

@@ -20,10 +20,10 @@
 //! concave force behind if it starts far in the sliding range, so that points that have only come
 //! to touch take the secant μ p/|e'| instead.
 
-use super::Pressing;
+use super::ContactIntegral;
 use super::curve::{Curve, MOST};
 use crate::effect::integral::{add_tiles, multiply_rows};
-use crate::effect::{Action, Actions, Effect, Held, InternalVariables, Workspace};
+use crate::effect::{AcceptedState, Action, Actions, Effect, InternalVariables, Workspace};
 use crate::linear::Matrix;
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -77,16 +77,16 @@ struct Touching {
 
 /// The friction of a contact.
 #[derive(Clone, Debug)]
-pub struct Rubbing {
-    contact: Arc<Pressing>,
+pub struct FrictionIntegral {
+    contact: Arc<ContactIntegral>,
     friction: Friction,
     /// Its number among the contacts with friction.
     number: usize,
 }
 
-impl Rubbing {
+impl FrictionIntegral {
     /// The friction of `contact`, number `number` of those with friction.
-    pub fn new(contact: Arc<Pressing>, friction: Friction, number: usize) -> Self {
+    pub fn new(contact: Arc<ContactIntegral>, friction: Friction, number: usize) -> Self {
         Self { contact, friction, number }
     }
 
@@ -102,7 +102,12 @@ impl Rubbing {
 
     /// Calls `visit` with the points of the pieces that touch in the state `q`: cell, piece, and
     /// points in the order of the rule.
-    fn for_touching(&self, held: &Held, q: &[f64], mut visit: impl FnMut(usize, [f64; 2], &Touching)) {
+    fn for_touching(
+        &self,
+        held: &AcceptedState,
+        q: &[f64],
+        mut visit: impl FnMut(usize, [f64; 2], &Touching),
+    ) {
         let contact = &*self.contact;
         let empty = Vec::new();
         let pieces = held.variables.contacts.get(self.number).unwrap_or(&empty);
@@ -170,7 +175,7 @@ impl Rubbing {
 
     /// `f += ` the forces ∂U/∂q that the springs would have in the state `q`, where `held` was the
     /// last.
-    pub fn add_force(&self, held: &Held, q: &[f64], f: &mut [f64]) {
+    pub fn add_force(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
         let mut sum = ControlForces::default();
         self.for_touching(held, q, |cell, _, point| {
             let force = point.along * (self.friction.stiffness * point.slip * point.weight);
@@ -182,7 +187,7 @@ impl Rubbing {
     /// The same, and `k += ` its derivative.
     pub fn add_force_and_tangent(
         &self,
-        held: &Held,
+        held: &AcceptedState,
         q: &[f64],
         f: &mut [f64],
         k: &mut Matrix,
@@ -202,7 +207,7 @@ impl Rubbing {
     }
 
     /// The pieces that touch in the state `q` with their slips, and the energy of their springs.
-    pub fn slips(&self, held: &Held, q: &[f64]) -> (Vec<Piece>, f64) {
+    pub fn slips(&self, held: &AcceptedState, q: &[f64]) -> (Vec<Piece>, f64) {
         let (mut pieces, mut energy) = (Vec::<Piece>::new(), 0.0);
         self.for_touching(held, q, |cell, [from, to], point| {
             energy += 0.5 * point.weight * self.friction.stiffness * point.slip * point.slip;
@@ -253,7 +258,7 @@ impl Rubbing {
 
     /// Whether points slide that can bear more than half of what all can, and then whether against
     /// friction; `v` are the velocities.
-    pub fn sliding(&self, held: &Held, q: &[f64], v: &[f64]) -> Option<bool> {
+    pub fn sliding(&self, held: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool> {
         let (mut power, mut balance) = (0.0, 0.0);
         self.for_touching(held, q, |cell, _, point| {
             if point.slides {
@@ -276,7 +281,7 @@ struct ControlForces {
 impl ControlForces {
     fn add(
         &mut self,
-        contact: &Pressing,
+        contact: &ContactIntegral,
         cell: usize,
         force: Vector2<f64>,
         values: &[f64; MOST],
@@ -289,7 +294,7 @@ impl ControlForces {
         self.forces.iter_mut().zip(values).for_each(|(sum, value)| *sum += force * *value);
     }
 
-    fn finish(&mut self, contact: &Pressing, f: &mut [f64]) {
+    fn finish(&mut self, contact: &ContactIntegral, f: &mut [f64]) {
         if let Some(cell) = self.cell.take() {
             contact.add_control_forces(cell, &self.forces, f);
             self.forces = [Vector2::zeros(); MOST];

@@ -7,7 +7,7 @@
 //! point of the curve is deeper than a given level, however thin the obstacle and however long the
 //! way.
 
-use super::Pressing;
+use super::ContactIntegral;
 use super::curve::Curve;
 
 /// Control states of a cubic: θ = 0, two between, θ = 1.
@@ -60,7 +60,7 @@ impl Patch {
     }
 }
 
-impl Pressing {
+impl ContactIntegral {
     /// The first θ at which a point of the beam is deeper than `level` \[m\] on its way, if there
     /// is one. Depths are found to `fine` \[m\].
     pub fn first_deeper(&self, way: Way<'_>, level: f64, fine: f64) -> Option<f64> {

@@ -94,7 +94,7 @@ use crate::linear::{Factor, Singular};
 use crate::solve::Statistics;
 use crate::solve::equilibrium::larger;
 use crate::solve::newton::{Failure, Iterations};
-use crate::system::laws::Look;
+use crate::system::laws::LoadSample;
 use nalgebra::{Complex, DMatrix, RowDVector};
 
 /// Error of the stages of a step of given length, relative to the displacement in the step: the
@@ -150,7 +150,7 @@ struct Kept {
 
 /// When the tangent of a step was taken.
 #[derive(Clone, Copy, PartialEq)]
-enum Taken {
+enum TangentAge {
     /// In an earlier step.
     Before,
     /// At the start of this one.
@@ -372,12 +372,12 @@ impl<'a> Collocation<'a> {
     ) -> Result<(), Failure> {
         let last_rate = self.kept.as_ref().map_or(1.0, |kept| kept.rate);
         let fits = |kept: &Kept| kept.rate <= KEEP && (kept.step - h).abs() <= SAME_STEP * h;
-        let mut tangent = Taken::Before;
+        let mut tangent = TangentAge::Before;
         if !(keep && self.kept.as_ref().is_some_and(fits)) {
             // At the converged state, whose axial force is right: that of a predicted one is not,
             // with a large EA.
             self.linearize(from, self.multipliers(), h)?;
-            tangent = Taken::AtStart;
+            tangent = TangentAge::AtStart;
         }
         self.turn();
         // Sizes of the last two increments with the present tangent; rates alternate, and two
@@ -391,7 +391,7 @@ impl<'a> Collocation<'a> {
             record.increments.push(size);
             record.residuals.push(residual);
             let finite = size.is_finite() && residual.is_finite();
-            if !finite && tangent != Taken::Before {
+            if !finite && tangent != TangentAge::Before {
                 return Err(Failure::NotFinite);
             }
             if last[1] > 0.0 {
@@ -410,19 +410,19 @@ impl<'a> Collocation<'a> {
             let slow = rate > SLOW || hopeless;
             last = [last[1], size];
             match tangent {
-                Taken::Before if !finite || (last[0] > 0.0 && slow) => {
+                TangentAge::Before if !finite || (last[0] > 0.0 && slow) => {
                     if !(finite && rate < 1.0) {
                         self.predict(from, h);
                     }
                     self.linearize(from, self.multipliers(), h)?;
-                    tangent = Taken::AtStart;
+                    tangent = TangentAge::AtStart;
                 }
-                Taken::AtStart if known && slow => {
+                TangentAge::AtStart if known && slow => {
                     let mean = self.mean(from, h);
                     self.linearize(&mean, self.multipliers(), h)?;
-                    tangent = Taken::AtMean;
+                    tangent = TangentAge::AtMean;
                 }
-                Taken::AtMean if known && hopeless => return Err(Failure::Diverging { last: size }),
+                TangentAge::AtMean if known && hopeless => return Err(Failure::Diverging { last: size }),
                 _ => continue,
             }
             self.turn();
@@ -578,7 +578,8 @@ impl<'a> Collocation<'a> {
         let h = self.end - from.time;
         let Tableau { nodes, weights, .. } = &self.tableau;
         let pairs = nodes.iter().zip(weights).enumerate();
-        let looks: Vec<Look> = pairs.map(|(i, (c, b))| (self.time(from, i), [*b, b * (1.0 - c)])).collect();
+        let looks: Vec<LoadSample> =
+            pairs.map(|(i, (c, b))| (self.time(from, i), [*b, b * (1.0 - c)])).collect();
         let mut error = self.motion.unseen_motion(from.time, self.end, &looks);
         let Some(moments) = self.motion.unseen_loads(state, self.end, &looks) else { return error };
         for (mut force, (unknowns, unit)) in

@@ -1,14 +1,14 @@
 //! What a motion remembers of its contacts.
 
-use crate::solve::Blow;
+use crate::solve::ContactImpulse;
 
 /// A contact as it is after the last step.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Touch {
+pub(super) struct ContactState {
     /// Whether it touches.
     pub touches: bool,
     /// Since it began.
-    pub blow: Blow,
+    pub impulse: ContactImpulse,
     /// Whether it has given way once.
     pub crossed: bool,
 }
@@ -23,10 +23,10 @@ pub struct Change {
     /// When \[s\].
     pub time: f64,
     /// What it did since it began, or since the motion was taken up; where it ends.
-    pub blow: Option<Blow>,
+    pub impulse: Option<ContactImpulse>,
 }
 
-impl Touch {
+impl ContactState {
     /// A contact that touches already, or not.
     pub(super) fn new(touches: bool) -> Self {
         Self { touches, ..Self::default() }

@@ -30,13 +30,13 @@
 //! gains energy, and one whose way leads through an obstacle (the private module `touch`).
 
 use super::collocation::Collocation;
-use super::contact::Touch;
+use super::contact::ContactState;
 use super::generalized_alpha::GeneralizedAlpha;
 use super::method::Method;
 use super::motion::Motion;
 use super::tableau::Tableau;
-use super::{Checkpoint, Solution, State, Stuck};
-use crate::effect::Held;
+use super::{Checkpoint, NoStep, Solution, State};
+use crate::effect::AcceptedState;
 use crate::linear::Singular;
 use crate::model::{Crossing, Integrator, StepControl};
 use crate::solve::newton::{Failure, Iterations, not_crushed};
@@ -62,12 +62,12 @@ pub struct Task<'t> {
     /// Where to watch directions, whose turns are counted from step to step.
     pub directions: &'t [View],
     /// Where to leave checkpoints on the way.
-    pub keep: Option<Keep<'t>>,
+    pub keep: Option<Checkpointing<'t>>,
 }
 
 /// Takes checkpoints on the way.
 #[derive(Clone, Copy)]
-pub struct Keep<'k> {
+pub struct Checkpointing<'k> {
     /// Wall time between them.
     pub every: Duration,
     /// Receives them.
@@ -130,7 +130,7 @@ pub fn solve(
         Ok(method) => method,
         Err(singular) => {
             let (time, at) = (task.start.state.time, system.place_of(singular.row));
-            solution.stuck = Some(Stuck { time, step: 0.0, failure: singular.into(), at });
+            solution.stuck = Some(NoStep { time, step: 0.0, failure: singular.into(), at });
             return solution;
         }
     };
@@ -173,9 +173,9 @@ pub(super) struct Driver<'t, 'a> {
     /// Times at which loads or supports are not smooth, rising.
     pub(super) kinks: Vec<f64>,
     /// The last state, for what depends on the way.
-    pub(super) held: Held,
+    pub(super) held: AcceptedState,
     /// Per contact, how it is.
-    pub(super) touching: Vec<Touch>,
+    pub(super) touching: Vec<ContactState>,
     /// Times and powers at the start and the end of the last step.
     pub(super) powers: [(f64, (f64, f64)); 2],
     /// Times and powers of moving supports in the stages of the last attempt; empty before they are
@@ -213,7 +213,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         let control = task.integrator.step_control();
         let mut lost = |unknown: usize, failure: Failure| {
             let at = system.place_of(unknown);
-            solution.stuck = Some(Stuck { time: state.time, step: 0.0, failure, at });
+            solution.stuck = Some(NoStep { time: state.time, step: 0.0, failure, at });
         };
         let acceleration = method.start(&state).unwrap_or_else(|singular| {
             lost(singular.row, singular.into());
@@ -230,7 +230,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                 (first_step(system, &*method, [&state.v, &acceleration], tolerance), (state.time, 0))
             }
         };
-        let touching = system.intervals(&state.q).map(|intervals| Touch::new(intervals > 0)).collect();
+        let touching = system.intervals(&state.q).map(|intervals| ContactState::new(intervals > 0)).collect();
         let mut kinks = system.kinks();
         kinks.retain(|kink| *kink > state.time && *kink <= task.duration);
         kinks.sort_by(f64::total_cmp);
@@ -251,7 +251,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             whole: None,
             stride: 1,
             kinks,
-            held: Held::default(),
+            held: AcceptedState::default(),
             touching,
             powers: [(f64::NAN, (0.0, 0.0)); 2],
             support_powers: Vec::new(),
@@ -290,7 +290,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                         self.go_on(end);
                     }
                     self.hold();
-                    if let Some(Keep { every, take }) = self.task.keep
+                    if let Some(Checkpointing { every, take }) = self.task.keep
                         && kept.elapsed() >= every
                     {
                         take(self.checkpoint());
@@ -307,7 +307,7 @@ impl<'t, 'a> Driver<'t, 'a> {
     /// Takes the state for the one from which internal variables are counted.
     fn hold(&mut self) {
         if self.system.has_history() {
-            self.held = Held { q: self.state.q.clone(), variables: self.state.variables.clone() };
+            self.held = AcceptedState { q: self.state.q.clone(), variables: self.state.variables.clone() };
         }
     }
 
@@ -368,7 +368,7 @@ impl<'t, 'a> Driver<'t, 'a> {
     }
 
     /// Takes one step, smaller as often as needed, to `new`.
-    fn advance(&mut self, new: &mut State) -> Result<End, Stuck> {
+    fn advance(&mut self, new: &mut State) -> Result<End, NoStep> {
         let (mut touch, mut cuts) = (f64::INFINITY, 0);
         loop {
             let end = self.next_end(touch);
@@ -439,7 +439,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                     _ => worst(method.last_increment()),
                 };
                 let at = self.system.place_of(unknown);
-                Stuck { time: self.state.time, step: h, failure, at }
+                NoStep { time: self.state.time, step: h, failure, at }
             };
             self.method.statistics().rejected_steps += 1;
             if let Some(time) = kink {
@@ -511,7 +511,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         if let Err(singular) = renewed.and_then(|()| self.pass_kinks()) {
             let at = self.system.place_of(singular.row);
             let (time, step) = (self.state.time, self.step);
-            self.solution.stuck = Some(Stuck { time, step, failure: singular.into(), at });
+            self.solution.stuck = Some(NoStep { time, step, failure: singular.into(), at });
         }
     }
 

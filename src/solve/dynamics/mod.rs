@@ -46,7 +46,7 @@ use crate::system::Reaction;
 use serde::{Deserialize, Serialize};
 
 pub use contact::Change;
-pub use integrate::{Keep, Task, Watch, solve};
+pub use integrate::{Checkpointing, Task, Watch, solve};
 
 /// A state of motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -151,7 +151,7 @@ pub struct Solution {
     /// From which the motion can be continued.
     pub checkpoint: Option<Checkpoint>,
     /// Why it ends before its time, if it does.
-    pub stuck: Option<Stuck>,
+    pub stuck: Option<NoStep>,
 }
 
 /// A state with all that a method carries from step to step.
@@ -185,7 +185,7 @@ impl Checkpoint {
 
 /// Why a step could not be taken.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stuck {
+pub struct NoStep {
     /// Time of the last state \[s\].
     pub time: f64,
     /// The step \[s\].

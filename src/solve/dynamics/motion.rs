@@ -39,7 +39,7 @@ pub use reactions::{Balance, Stage};
 
 use super::State;
 use super::turns::Turns;
-use crate::effect::{Earlier, Held, Workspace};
+use crate::effect::{AcceptedState, Earlier, Workspace};
 use crate::lanes::{Lanes, Real};
 use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
@@ -100,7 +100,7 @@ pub struct Motion<'a> {
     force: Vec<f64>,
     scratch: Vec<f64>,
     /// The last accepted state, for friction.
-    pub(super) held: Held,
+    pub(super) held: AcceptedState,
     /// What forces of several states at once put down in between.
     pub(super) side_by_side: [Vec<f64>; 2],
     /// Of the last accelerations.
@@ -150,7 +150,7 @@ impl<'a> Motion<'a> {
             workspace: Workspace::default(),
             force: vec![0.0; n],
             side_by_side: [0; 2].map(|_| vec![0.0; n]),
-            held: Held { q: system.reference().to_vec(), ..Held::default() },
+            held: AcceptedState { q: system.reference().to_vec(), ..AcceptedState::default() },
             scratch: vec![0.0; if system.is_damped() { n } else { 0 }],
             multipliers: vec![0.0; system.multipliers()],
             carried: [0; 3].map(|_| vec![0.0; carried]),
@@ -161,7 +161,7 @@ impl<'a> Motion<'a> {
     /// Takes a state for the last accepted one, from which internal variables are counted.
     pub fn hold(&mut self, state: &State) {
         if self.system.has_history() {
-            self.held = Held { q: state.q.clone(), variables: state.variables.clone() };
+            self.held = AcceptedState { q: state.q.clone(), variables: state.variables.clone() };
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::crossing::{NEAR, Polynomial};
 use super::integrate::{Driver, SLACK, turned, worst};
-use super::{State, Stuck};
+use super::{NoStep, State};
 use crate::model::Crossing;
 use crate::solve::newton::Failure;
 
@@ -62,7 +62,7 @@ impl Driver<'_, '_> {
             let at = self.system.place_of(worst(&state.v));
             let (time, step) =
                 (self.state.time, if self.solution.states.is_empty() { 0.0 } else { self.step });
-            self.solution.stuck.get_or_insert(Stuck { time, step, failure: Failure::NotFinite, at });
+            self.solution.stuck.get_or_insert(NoStep { time, step, failure: Failure::NotFinite, at });
             return false;
         }
         self.solution.states.push(state);

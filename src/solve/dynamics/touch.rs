@@ -7,15 +7,15 @@
 //! is tried again until it hits. The rod then errs by 1e-10.
 //!
 //! Nothing is crossed. The way of every step, on which it is interpolated, is swept
-//! ([`crate::effect::Pressing`]): a step that carries the beam deeper into a thin obstacle than a
+//! ([`crate::effect::ContactIntegral`]): a step that carries the beam deeper into a thin obstacle than a
 //! part of its thickness is rejected, so that the force is seen before the beam is through; and a
 //! step of fixed length is divided where it touches and leaves an obstacle unseen.
 
 use super::State;
-use super::contact::{Change, Touch};
+use super::contact::{Change, ContactState};
 use super::integrate::{Driver, SMALLEST_PART};
 use crate::model::StepControl;
-use crate::solve::Blow;
+use crate::solve::ContactImpulse;
 use crate::solve::newton::Failure;
 
 /// Parts of a step after which contacts are looked at.
@@ -126,7 +126,7 @@ impl Driver<'_, '_> {
         let now: Vec<bool> = self.system.intervals(&new.q).map(|intervals| intervals > 0).collect();
         let mut scratch = Vec::new();
         for (contact, touches) in now.into_iter().enumerate() {
-            let Touch { touches: touched, mut blow, mut crossed } = self.touching[contact];
+            let ContactState { touches: touched, mut impulse, mut crossed } = self.touching[contact];
             if (touched || touches) && !crossed {
                 let [first, second] = self.state.controls(new);
                 crossed = self.system.crosses(contact, [&self.state.q, &first, &second, &new.q]);
@@ -149,17 +149,17 @@ impl Driver<'_, '_> {
                     let state = self.state.between(new, begin + at * (end - begin), None);
                     let force = self.system.contact_force(contact, &state.q, &mut scratch);
                     let weight = weight * (end - begin);
-                    blow.impulse[0] += weight * force[0];
-                    blow.impulse[1] += weight * force[1];
-                    blow.largest_force = blow.largest_force.max(force[0].hypot(force[1]));
+                    impulse.impulse[0] += weight * force[0];
+                    impulse.impulse[1] += weight * force[1];
+                    impulse.largest_force = impulse.largest_force.max(force[0].hypot(force[1]));
                 }
             }
             if let Some(time) = time {
-                let ended = (!touches).then_some(blow);
-                self.solution.contacts.push(Change { contact, touches, time, blow: ended });
-                blow = if touches { blow } else { Blow::default() };
+                let ended = (!touches).then_some(impulse);
+                self.solution.contacts.push(Change { contact, touches, time, impulse: ended });
+                impulse = if touches { impulse } else { ContactImpulse::default() };
             }
-            self.touching[contact] = Touch { touches, blow, crossed };
+            self.touching[contact] = ContactState { touches, impulse, crossed };
         }
     }
 }

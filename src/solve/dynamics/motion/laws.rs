@@ -4,12 +4,12 @@
 use super::super::State;
 use super::Motion;
 use crate::linear::Singular;
-use crate::system::laws::Look;
+use crate::system::laws::LoadSample;
 
 impl Motion<'_> {
     /// Mean and first moment of the loads from `state`, in fixed axes, to the time `end`, less what
     /// `looks` have of them; in the supports' frames. None where no load follows time.
-    pub fn unseen_loads(&self, state: &State, end: f64, looks: &[Look]) -> Option<[Vec<f64>; 2]> {
+    pub fn unseen_loads(&self, state: &State, end: f64, looks: &[LoadSample]) -> Option<[Vec<f64>; 2]> {
         if !self.system.loads_follow_time() {
             return None;
         }
@@ -26,7 +26,7 @@ impl Motion<'_> {
     }
 
     /// The same of the supports' motions, by which positions may err in beam lengths.
-    pub fn unseen_motion(&self, start: f64, end: f64, looks: &[Look]) -> f64 {
+    pub fn unseen_motion(&self, start: f64, end: f64, looks: &[LoadSample]) -> f64 {
         if self.system.supports().moves_in_time() {
             self.system.unseen_motion([start, end], looks)
         } else {

@@ -36,7 +36,7 @@ pub(super) struct Spot {
 
 /// A contact of one beam with one obstacle, as an effect.
 #[derive(Clone, Debug)]
-pub struct Pressing {
+pub struct ContactIntegral {
     pub(super) penalty: Penalty,
     pub(super) cells: Cells,
     beam: usize,
@@ -45,7 +45,7 @@ pub struct Pressing {
     rule: Vec<(f64, f64)>,
 }
 
-impl Pressing {
+impl ContactIntegral {
     /// `offset` is the first coefficient of beam number `beam` in the system.
     ///
     /// # Errors
@@ -169,7 +169,7 @@ impl Pressing {
     }
 }
 
-impl Effect for Pressing {
+impl Effect for ContactIntegral {
     fn kind(&self) -> Kind {
         Kind::Contact
     }

@@ -9,7 +9,7 @@ use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMe
 use crate::restart::SavedState;
 use crate::solve::dynamics;
 use crate::solve::newton::Failure;
-use crate::solve::path::Stuck;
+use crate::solve::path::NoStep;
 use crate::solve::statics::Solution;
 use crate::system::{Reaction, System, SystemError, View, unfold};
 use crate::trajectory::{
@@ -41,7 +41,7 @@ const LEAST_ENERGY: f64 = 1e-20;
 const FRAMES: usize = 400;
 
 /// Everything needed to look at states of one system.
-pub(super) struct Look<'a> {
+pub(super) struct Sampler<'a> {
     model: &'a Model,
     pub(super) system: &'a System,
     shapes: Vec<View>,
@@ -112,7 +112,7 @@ fn evenly(length: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| length * i as f64 / (count - 1) as f64).collect()
 }
 
-impl<'a> Look<'a> {
+impl<'a> Sampler<'a> {
     pub(super) fn new(model: &'a Model, system: &'a System) -> Result<Self, RunError> {
         let view = |beam: usize, s: &[f64]| {
             let part = &system.beams()[beam];
@@ -474,7 +474,7 @@ impl<'a> Look<'a> {
         folds.collect()
     }
 
-    pub(super) fn stuck(&self, stuck: &Stuck, solution: &Solution) -> RunError {
+    pub(super) fn stuck(&self, stuck: &NoStep, solution: &Solution) -> RunError {
         let (beam, s) = stuck.at;
         let advice = match stuck.failure {
             _ if self.limited_by_round_off(&stuck.failure) => {
@@ -580,9 +580,9 @@ impl<'a> Look<'a> {
             trajectory.events.push(Event::Crossing { time: state.time, probe, axis, value });
         }
         let contacts: Vec<String> = self.system.contact_names().collect();
-        for dynamics::Change { contact, touches, time, blow } in solution.contacts.iter().copied() {
+        for dynamics::Change { contact, touches, time, impulse } in solution.contacts.iter().copied() {
             let contact = contacts.get(contact).cloned().unwrap_or_default();
-            trajectory.events.push(Event::Contact { time, contact, touches, blow });
+            trajectory.events.push(Event::Contact { time, contact, touches, impulse });
         }
         trajectory.events.sort_by(|a, b| a.time().total_cmp(&b.time()));
         for (contact, time) in &solution.crossings {
@@ -610,7 +610,7 @@ impl<'a> Look<'a> {
     pub(super) fn lost(
         &self,
         settings: &Dynamic,
-        stuck: &dynamics::Stuck,
+        stuck: &dynamics::NoStep,
         solution: dynamics::Solution,
     ) -> RunError {
         let (beam, s) = stuck.at;

@@ -30,7 +30,7 @@ impl Amplitude {
 
 /// A prescribed quantity: start + change · (load factor or law of time).
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Course {
+pub struct Prescribed {
     /// Value in the stress-free state.
     pub start: f64,
     /// By how much it changes.
@@ -39,7 +39,7 @@ pub struct Course {
     pub law: Option<Law>,
 }
 
-impl Course {
+impl Prescribed {
     /// The value at load factor or time `parameter`.
     pub fn at(&self, parameter: f64) -> f64 {
         let part = self.law.as_ref().map_or(parameter, |law| law.at(parameter)[0]);
