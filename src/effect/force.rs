@@ -1,174 +1,149 @@
-//! Forces of the cells of a table whose width is known when this is compiled.
-//!
-//! Four cells that are alike, each a node further than the one before, are summed side by side in
-//! the lanes of a register, or one cell in the four states that the stages of a collocation method
-//! are. With 5/3 points an element takes 210 instructions by fours, 520 alone, most of them the
-//! products with the rows; the compiler's own attempts at it stayed scalar.
+//! Forces and moments, concentrated (a table of one point with weight 1) or distributed (a table of
+//! the whole beam).
 
-use super::{Density, Gradient, Integral};
-use crate::lanes::fma;
-use crate::lanes::{self, Lanes, Pair, Points};
-use nalgebra::Vector2;
+use super::{Density, Gradient, Hessian};
+use nalgebra::{Matrix2, Vector2};
 
-impl<D: Density<M>, const M: usize> Integral<D, M> {
-    pub(super) fn force_within<const W: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        if D::BY_FOURS {
-            match self.table.points_per_cell {
-                2 => self.forces_of_fours::<W, 2>(factor, q, f),
-                3 => self.forces_of_fours::<W, 3>(factor, q, f),
-                4 => self.forces_of_fours::<W, 4>(factor, q, f),
-                5 => self.forces_of_fours::<W, 5>(factor, q, f),
-                _ => {}
-            }
-        }
-        for &cell in &self.singles {
-            let cell = cell as usize;
-            let first = self.first(cell);
-            let range = first..first + 2 * W;
-            self.force_of_cell::<W>(cell, factor, &q[range.clone()], &mut f[range]);
-        }
+/// A force of fixed direction, F \[N\] or \[N/m\]: W = −F·(r − r₀). Weight is such a force with F =
+/// ρA g.
+#[derive(Clone, Debug)]
+pub struct DeadForce {
+    force: Vector2<f64>,
+    reference: Vec<Vector2<f64>>,
+}
+
+impl DeadForce {
+    /// The force, and the positions r₀ from which its potential counts.
+    pub fn new(force: [f64; 2], reference: Vec<Vector2<f64>>) -> Self {
+        Self { force: force.into(), reference }
+    }
+}
+
+impl Density<1> for DeadForce {
+    const ORDERS: [usize; 1] = [0];
+    const HAS_TANGENT: bool = false;
+
+    fn energy(&self, point: usize, z: &Gradient<1>) -> f64 {
+        -self.force.dot(&(z[0] - self.reference.get(point).copied().unwrap_or_default()))
     }
 
-    /// `q` and `f` are the coefficients of the cell.
     #[inline(always)]
-    fn force_of_cell<const W: usize>(&self, cell: usize, factor: f64, q: &[f64], f: &mut [f64]) {
-        let (weights, rows) = self.table.block(self.table.cells[cell]);
-        // Both stay in registers while the points go by.
-        let here = coefficients::<W>(q);
-        let mut sums = [[0.0; 2]; W];
-        for (p, (weight, rows)) in weights.iter().zip(rows.as_chunks::<W>().0.chunks_exact(M)).enumerate() {
-            let weight = factor * weight;
-            let gradient = self.density.gradient(cell * weights.len() + p, &fields(rows, &here));
-            for (g, row) in gradient.iter().zip(rows) {
-                let g = [weight * g.x, weight * g.y];
-                for a in 0..W {
-                    sums[a] = [fma(row[a], g[0], sums[a][0]), fma(row[a], g[1], sums[a][1])];
-                }
-            }
-        }
-        for (f, sum) in f.as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
-            *f = [f[0] + sum[0], f[1] + sum[1]];
-        }
+    fn gradient(&self, _: usize, _: &Gradient<1>) -> Gradient<1> {
+        [-self.force]
     }
 
-    /// The same of all cells that come by fours, `P` points in each.
-    fn forces_of_fours<const W: usize, const P: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        for &cell in &self.fours {
-            let cell = cell as usize;
-            let first = self.first(cell);
-            let range = first..first + 2 * W + 12;
-            let here = lanes::gather::<W>(&q[range.clone()]);
-            let sums = self.sums_of_four::<W, P>(cell, P, factor, &here);
-            lanes::scatter(&sums, &mut f[range]);
-        }
-    }
-
-    /// Forces on the coefficients `here` of four cells, the first of them `cell` and each with
-    /// `stride` points more before it; or of one cell in four states, without a stride.
     #[inline(always)]
-    fn sums_of_four<const W: usize, const P: usize>(
+    fn gradient_and_hessian(
         &self,
-        cell: usize,
-        stride: usize,
-        factor: f64,
-        here: &[Pair<Lanes>; W],
-    ) -> [Pair<Lanes>; W] {
-        let (weights, rows) = self.table.block(self.table.cells[cell]);
-        let (weights, rows) = (&weights[..P], &rows.as_chunks::<W>().0[..P * M]);
-        // All points first: the sums would not fit into the registers beside the coefficients.
-        let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
-        for p in 0..P {
-            let z = fields_of_four(&rows[p * M..(p + 1) * M], here);
-            let points = Points { first: cell * P + p, stride };
-            gradients[p] = self.density.gradients(factor * weights[p], points, &z);
-        }
-        // Loaded anew: carried on from above they would be stored to and loaded from the stack, as
-        // all registers are taken.
-        sums_of_points(std::hint::black_box(rows), &gradients)
+        _: usize,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
+        ([-self.force], [[Matrix2::zeros()]])
+    }
+}
+
+/// A force that turns with the section: F = R(θ − θ₀) F₀ with θ = atan2(y', x'). It has no energy.
+///
+/// Along and across the tangent t = r'/|r'| it has constant components (f_t, f_n): F = f_t t + f_n
+/// J t, and ∂F/∂r' = (f_t 1 + f_n J)(1 − t tᵀ)/|r'|.
+#[derive(Clone, Debug)]
+pub struct FollowerForce {
+    /// (f_t, f_n) per point.
+    components: Vec<Vector2<f64>>,
+}
+
+impl FollowerForce {
+    /// The force F₀ in the undeformed state, and the gradients r'₀ there at each point.
+    pub fn new(force: [f64; 2], reference: &[Vector2<f64>]) -> Self {
+        let force = Vector2::from(force);
+        let components = reference
+            .iter()
+            .map(|r| {
+                let t = r / r.norm();
+                Vector2::new(force.dot(&t), t.x * force.y - t.y * force.x)
+            })
+            .collect();
+        Self { components }
     }
 
-    /// All cells in four states.
-    pub(super) fn forces_in_lanes<const W: usize>(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes]) {
-        match self.table.points_per_cell {
-            1 => self.forces_in_lanes_of::<W, 1>(factors, q, f),
-            2 => self.forces_in_lanes_of::<W, 2>(factors, q, f),
-            3 => self.forces_in_lanes_of::<W, 3>(factors, q, f),
-            4 => self.forces_in_lanes_of::<W, 4>(factors, q, f),
-            _ => self.forces_in_lanes_of::<W, 5>(factors, q, f),
-        }
+    #[inline(always)]
+    fn turned(&self, point: usize) -> Matrix2<f64> {
+        let c = self.components.get(point).copied().unwrap_or_default();
+        Matrix2::new(c.x, -c.y, c.y, c.x)
+    }
+}
+
+impl Density<2> for FollowerForce {
+    const ORDERS: [usize; 2] = [0, 1];
+    const SYMMETRIC: bool = false;
+    const CONSERVATIVE: bool = false;
+
+    fn energy(&self, _: usize, _: &Gradient<2>) -> f64 {
+        0.0
     }
 
-    fn forces_in_lanes_of<const W: usize, const P: usize>(
+    #[inline(always)]
+    fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
+        let t = z[1] / z[1].norm_squared().sqrt();
+        [-(self.turned(point) * t), Vector2::zeros()]
+    }
+
+    #[inline(always)]
+    fn gradient_and_hessian(
         &self,
-        factors: Lanes,
-        q: &[Lanes],
-        f: &mut [Lanes],
-    ) {
-        for cell in 0..self.table.cells.len() {
-            let first = self.first(cell);
-            let range = first..first + 2 * W;
-            let Some(here) = q[range.clone()].as_chunks::<2>().0.first_chunk::<W>() else { continue };
-            let sums = self.sums_of_four::<W, P>(cell, 0, 1.0, here);
-            for (f, sum) in f[range].as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
-                *f = [factors.mul_add(sum[0], f[0]), factors.mul_add(sum[1], f[1])];
-            }
-        }
+        point: usize,
+        z: &Gradient<2>,
+        _: &Gradient<2>,
+        _: &Gradient<2>,
+    ) -> (Gradient<2>, Hessian<2>) {
+        let inverse = 1.0 / z[1].norm_squared().sqrt();
+        let t = z[1] * inverse;
+        let turned = self.turned(point);
+        let by_gradient = turned * (Matrix2::identity() - t * t.transpose()) * -inverse;
+        let zero = Matrix2::zeros();
+        ([-(turned * t), Vector2::zeros()], [[zero, by_gradient], [zero, zero]])
     }
 }
 
-/// The coefficients of a cell.
-#[inline(always)]
-pub(super) fn coefficients<const W: usize>(q: &[f64]) -> [Pair<f64>; W] {
-    let mut here = [[0.0; 2]; W];
-    here.copy_from_slice(&q.as_chunks().0[..W]);
-    here
+/// A moment M \[N m\], counter-clockwise: δW = −M δθ with θ = atan2(y', x').
+///
+/// ∂θ/∂r' = J r'/|r'|², symmetric second derivative. Its work M θ is a potential only as long as θ
+/// is counted on through full turns, which no single state can tell; its work is therefore summed
+/// up along the motion.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    /// Counter-clockwise \[N m\].
+    pub moment: f64,
 }
 
-/// The local fields at a point, from its `M` rows.
-#[inline(always)]
-pub(super) fn fields<const M: usize, const W: usize>(
-    rows: &[[f64; W]],
-    here: &[Pair<f64>; W],
-) -> Gradient<M> {
-    let mut z = [Vector2::zeros(); M];
-    for (z, row) in z.iter_mut().zip(rows) {
-        for a in 0..W {
-            *z = Vector2::new(fma(row[a], here[a][0], z.x), fma(row[a], here[a][1], z.y));
-        }
-    }
-    z
-}
+impl Density<1> for Moment {
+    const ORDERS: [usize; 1] = [1];
+    const CONSERVATIVE: bool = false;
 
-/// The same at four points.
-#[inline(always)]
-pub(super) fn fields_of_four<const M: usize, const W: usize>(
-    rows: &[[f64; W]],
-    here: &[Pair<Lanes>; W],
-) -> [Pair<Lanes>; M] {
-    let mut z = [[Lanes::ZERO; 2]; M];
-    for (z, row) in z.iter_mut().zip(rows) {
-        for (n, here) in row.iter().zip(here) {
-            let n = Lanes::splat(*n);
-            *z = [n.mul_add(here[0], z[0]), n.mul_add(here[1], z[1])];
-        }
+    fn energy(&self, _: usize, _: &Gradient<1>) -> f64 {
+        0.0
     }
-    z
-}
 
-/// Forces on the coefficients, from the gradients at all points.
-#[inline(always)]
-pub(super) fn sums_of_points<const M: usize, const W: usize, const P: usize>(
-    rows: &[[f64; W]],
-    gradients: &[[Pair<Lanes>; M]; P],
-) -> [Pair<Lanes>; W] {
-    let mut sums = [[Lanes::ZERO; 2]; W];
-    for (a, sum) in sums.iter_mut().enumerate() {
-        for (p, gradients) in gradients.iter().enumerate() {
-            for (m, g) in gradients.iter().enumerate() {
-                let n = Lanes::splat(rows[p * M + m][a]);
-                *sum = [n.mul_add(g[0], sum[0]), n.mul_add(g[1], sum[1])];
-            }
-        }
+    #[inline(always)]
+    fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
+        let factor = -self.moment / z[0].norm_squared();
+        [Vector2::new(-z[0].y * factor, z[0].x * factor)]
     }
-    sums
+
+    #[inline(always)]
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<1>,
+        _: &Gradient<1>,
+        _: &Gradient<1>,
+    ) -> (Gradient<1>, Hessian<1>) {
+        let (x, y) = (z[0].x, z[0].y);
+        let inverse = 1.0 / z[0].norm_squared();
+        let factor = -self.moment * inverse * inverse;
+        let (diagonal, mixed) = (2.0 * x * y * factor, (y * y - x * x) * factor);
+        (self.gradient(point, z), [[Matrix2::new(diagonal, mixed, mixed, -diagonal)]])
+    }
 }

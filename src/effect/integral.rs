@@ -33,6 +33,9 @@
 //! while forces are computed; fetching factors ahead by instruction and pages of 2 MB changed
 //! nothing.
 
+mod force;
+mod tangent;
+
 use super::{Action, Actions, Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
 use crate::lanes::fma;

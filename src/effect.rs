@@ -40,12 +40,10 @@ mod foundation;
 mod history;
 mod inertia;
 mod integral;
-mod load;
 mod mass;
 mod moving;
 mod spring;
 mod stretch;
-mod tangent;
 mod winding;
 
 pub use action::{Action, Actions, Side};
@@ -55,11 +53,11 @@ pub use contact::{Contact, ContactIntegral, Friction, FrictionIntegral, Obstacle
 pub use damping::{BeamDamping, BendDamping, MassDamping, StretchDamping};
 pub use dissipation::{Damping, Dissipation, Rayleigh};
 pub use drag::{Buoyancy, Drag, SteadyDrag};
+pub use force::{DeadForce, FollowerForce, Moment};
 pub use foundation::Foundation;
 pub use history::{AcceptedState, InternalVariables};
 pub use inertia::Inertia;
 pub use integral::{Integral, Workspace};
-pub use load::{DeadForce, FollowerForce, Moment};
 pub use mass::{Gyration, PointMass, RotaryInertia, SectionInertia};
 pub use moving::{MovingForce, Travelling};
 pub use spring::{Dashpot, GroundSpring, Spring, Strut, Torsion, TorsionDashpot, TorsionSpring};
