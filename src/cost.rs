@@ -26,6 +26,7 @@ mod bench;
 mod deviation;
 mod error;
 mod ladder;
+#[cfg(feature = "report")]
 mod output;
 mod reference;
 mod rung;
@@ -36,6 +37,7 @@ use std::time::{Duration, Instant};
 pub use deviation::Deviation;
 pub use error::CostError;
 pub use ladder::LeftOut;
+#[cfg(feature = "report")]
 pub use output::{Report, ReportedRung, write};
 pub use reference::Reference;
 pub use rung::{Measured, Rung};
@@ -120,11 +122,6 @@ impl Study {
     /// Whether the reference is good enough for the target: its uncertainty a tenth of it at most.
     pub fn reference_is_good(&self) -> bool {
         self.reference.uncertainty.error <= 0.1 * self.options.target * (1.0 + 1e-12)
-    }
-
-    /// Errors below this are not told apart: nobody knows which is smaller, or needs to.
-    fn least(&self) -> f64 {
-        least(self.options.target, &self.reference)
     }
 
     /// What the reader should know.

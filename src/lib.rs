@@ -35,6 +35,11 @@
 //! table and all sources. Below their place only [`model`] and [`effect`] import, and only
 //! [`system::assembly`] with its error: a part of a model says itself how it is assembled.
 //!
+//! # Without the program
+//! The features `cli` and `report`, both on unless they are declined, bring the program `ancf` and
+//! what draws its plots and pages. A program that solves and looks at numbers takes
+//! `ancf = { …, default-features = false }`: statics, motions, sweeps and tables need neither.
+//!
 //! # The beam
 //! | symbol | formula | unit |
 //! |---|---|---|

@@ -11,6 +11,8 @@
 //! | `shape.svg`, `curvature.svg`, … | the page's plots, one each |
 //! | `states.csv`; `states.pvd`, `vtu/` | all recorded states as a table; for ParaView (both when asked for) |
 //!
+//! Pages and plots need the feature `report`, which is on unless it is declined.
+//!
 //! In tables a name that begins as a formula does (`=`, `+`, `-`, `@`) has an apostrophe before it,
 //! which spreadsheets take for the mark of a text.
 //!
@@ -18,9 +20,13 @@
 //! leaves no half-written file under a final name.
 
 mod error;
+#[cfg(feature = "report")]
 mod figures;
+#[cfg(feature = "report")]
 mod motion;
+#[cfg(feature = "report")]
 pub mod plot;
+#[cfg(feature = "report")]
 mod report;
 mod stage;
 mod summary;
@@ -93,7 +99,10 @@ pub fn write(
     let start = Instant::now();
     check(trajectory)?;
     let t = &*trajectory;
+    // Drawn before anything is written: what cannot be drawn leaves nothing behind.
+    #[cfg(feature = "report")]
     let figures = figures::figures(t)?;
+    #[cfg(feature = "report")]
     let page = report::page(t, &Summary::of(t), &figures)?;
     let mut stage = Stage::new(directory)?;
     if !t.parameter.is_empty() {
@@ -130,10 +139,13 @@ pub fn write(
             stage.add(&name, |out| out.write_all(text.as_bytes()))?;
         }
     }
-    for figure in &figures {
-        stage.add(&format!("{}.svg", figure.name), |out| out.write_all(figure.svg.as_bytes()))?;
+    #[cfg(feature = "report")]
+    {
+        for figure in &figures {
+            stage.add(&format!("{}.svg", figure.name), |out| out.write_all(figure.svg.as_bytes()))?;
+        }
+        stage.add("report.html", |out| out.write_all(page.as_bytes()))?;
     }
-    stage.add("report.html", |out| out.write_all(page.as_bytes()))?;
     trajectory.seconds.write += start.elapsed().as_secs_f64();
     let summary = Summary::of(trajectory);
     stage.add("summary.json", |out| out.write_all(summary.to_json()?.as_bytes()))?;

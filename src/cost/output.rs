@@ -16,7 +16,7 @@ use askama::Template;
 use serde::Serialize;
 
 use super::rung::front;
-use super::{Deviation, Family, LeftOut, Measured, Rung, Solver, Study};
+use super::{Deviation, Family, LeftOut, Measured, Rung, Solver, Study, least};
 use crate::model::Integrator;
 use crate::output::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, Series, human};
 use crate::output::{OutputError, Stage, exact};
@@ -212,8 +212,10 @@ fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
         chart = chart.with(Series::dashed(label, ends.map(|x| [x, level]).into(), colour));
     }
     let all: Vec<[f64; 2]> = study.rungs.iter().map(point).collect();
-    let distinct_errors: Vec<[f64; 2]> =
-        all.iter().map(|[cost, error]| [*cost, error.max(study.least())]).collect();
+    let distinct_errors: Vec<[f64; 2]> = all
+        .iter()
+        .map(|[cost, error]| [*cost, error.max(least(study.options.target, &study.reference))])
+        .collect();
     let front = front(&distinct_errors).into_iter().map(|i| all[i]).collect();
     chart = chart.with(Series::line("front", front, GREY).size(7.0).opacity(0.35));
     let families = distinct(study.rungs.iter().map(|rung| rung.family));

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use miette::Diagnostic;
 use thiserror::Error;
 
+#[cfg(feature = "report")]
 use super::plot::PlotError;
 
 /// Why results could not be written. Nothing half-written stays under a final name.
@@ -59,6 +60,7 @@ pub enum OutputError {
         found: usize,
     },
     /// A plot cannot be drawn.
+    #[cfg(feature = "report")]
     #[error("cannot draw `{name}`")]
     #[diagnostic(
         code(ancf::output::plot),
@@ -71,6 +73,7 @@ pub enum OutputError {
         source: PlotError,
     },
     /// The report page cannot be made.
+    #[cfg(feature = "report")]
     #[error("cannot make the report page")]
     #[diagnostic(
         code(ancf::output::page),
