@@ -160,13 +160,9 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
             terminal::note(&format!("{}: no checkpoint: {error}", destination.path().display()));
         }
     };
-    let outcome = match arguments.checkpoint {
-        None => run::run_from(scene.model(), scene.analysis(), saved.as_ref(), observer),
-        Some(every) => {
-            let keep = Some(run::Checkpointing { every, take: &take });
-            run::run_keeping(scene.model(), scene.analysis(), saved.as_ref(), keep, observer)
-        }
-    };
+    let checkpoints = arguments.checkpoint.map(|every| run::Checkpointing { every, take: &take });
+    let options = run::Options { start: saved.as_ref(), observer: Some(observer), checkpoints };
+    let outcome = scene.model().solve_with(scene.analysis(), options);
     progress.clear();
     let (mut trajectory, failure) = match outcome {
         Ok(trajectory) if trajectory.complete => (trajectory, None),

@@ -12,6 +12,28 @@
 //!                  spans      SI            constraints        chosen loads, times
 //! ```
 //!
+//! # A cantilever rolled up into a circle
+//! ```
+//! use ancf::{Analysis, Beam, Discretization, Load, Model, Place, Probe, Section, Static, Support};
+//!
+//! let section = Section::new(1e4, 2.0);
+//! let beam = Beam::line("cantilever", [0.0, 0.0], [1.0, 0.0], section, Discretization::rpim(12));
+//! let (clamp, tip) = (Place::new(0, 0.0), Place::new(0, 1.0));
+//! let model = Model {
+//!     beams: vec![beam],
+//!     supports: vec![Support::clamp(clamp)],
+//!     loads: vec![Load::Moment { at: tip, value: std::f64::consts::TAU * 2.0 }],
+//!     probes: vec![Probe::new("tip", tip)],
+//!     ..Model::default()
+//! };
+//! let trajectory = model.solve(&Analysis::Static(Static::default()))?;
+//! let end = trajectory.probes[0].samples.last().expect("an equilibrium");
+//! assert!(end.x.hypot(end.y) < 1e-4);
+//! # Ok::<(), ancf::RunError>(())
+//! ```
+//! A scene file says the same in words: [`Scene::load`], then
+//! `scene.model().solve(scene.analysis())`. [`Options`] bring a start, an observer and checkpoints.
+//!
 //! # Where things are
 //! | module | subject | imports |
 //! |---|---|---|
@@ -136,54 +158,10 @@
 //! "#)?;
 //! let mut model = scene.model().clone();
 //! model.parts.push(std::sync::Arc::new(Rail { at: Place { beam: 0, s: 1.0 }, stiffness: 7.0 }));
-//! let trajectory = ancf::run::run(&model, scene.analysis(), &mut |_| ancf::run::Control::Continue)?;
+//! let trajectory = model.solve(scene.analysis())?;
 //! let tip = trajectory.probes[0].samples.last().expect("an equilibrium");
 //! assert!((tip.y - 1e-4 / (3.0 + 7.0)).abs() < 1e-9);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
-//! # A beam rolled up into a circle
-//! ```
-//! use ancf::model::*;
-//! use ancf::run::{Control, run};
-//!
-//! let (length, bending_stiffness) = (1.0, 2.0);
-//! let beam = Beam {
-//!     name: "cantilever".into(),
-//!     centreline: Centreline::Line { start: [0.0, 0.0], end: [length, 0.0] },
-//!     section: Section {
-//!         axial_stiffness: Some(1e4),
-//!         bending_stiffness: Some(bending_stiffness),
-//!         mass_per_length: None,
-//!     },
-//!     strain: StrainMeasure::Green,
-//!     discretization: Discretization::Rpim {
-//!         nodes: Nodes::Uniform(12),
-//!         kernel: Kernel::Multiquadric { q: 1.03, shape: 5.0 },
-//!         polynomial_terms: 2,
-//!         side_condition: SideCondition::Plus,
-//!         neighbours: 2,
-//!     },
-//!     gauss_points: GaussPoints { stretch: 4, bend: 4, lobatto: false },
-//! };
-//! let model = Model {
-//!     beams: vec![beam],
-//!     supports: vec![Support {
-//!         at: Place { beam: 0, s: 0.0 },
-//!         fix: Fixed { x: true, y: true, rotation: FixedRotation::Angle },
-//!         ..Support::default()
-//!     }],
-//!     loads: vec![Load::Moment {
-//!         at: Place { beam: 0, s: length },
-//!         value: std::f64::consts::TAU * bending_stiffness / length,
-//!     }],
-//!     probes: vec![Probe { name: "tip".into(), at: Place { beam: 0, s: length } }],
-//!     ..Model::default()
-//! };
-//! let trajectory = run(&model, &Analysis::Static(Static::default()), &mut |_| Control::Continue)?;
-//! let tip = trajectory.probes[0].samples.last().expect("a static run records its last state");
-//! assert!(tip.x.hypot(tip.y) < 1e-4 * length);
-//! # Ok::<(), ancf::run::RunError>(())
 //! ```
 #![warn(missing_docs)]
 
@@ -202,3 +180,11 @@ pub mod solve;
 pub mod sweep;
 pub mod system;
 pub mod trajectory;
+
+pub use model::{
+    Analysis, Beam, Centreline, Discretization, Dynamic, Fixed, GaussPoints, Integrator, Joint, Law, Load,
+    Model, Place, Probe, Section, Static, StepControl, StrainMeasure, Support,
+};
+pub use run::{Control, Options, RunError};
+pub use scene::{Scene, SceneError};
+pub use trajectory::Trajectory;

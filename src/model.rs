@@ -4,12 +4,14 @@
 //! a program that uses the library can fill one directly.
 
 mod analysis;
+mod defaults;
 pub mod freedom;
 mod joint;
 mod law;
 mod velocity;
 
 pub use analysis::*;
+pub use defaults::*;
 pub use joint::Joint;
 pub use law::{Law, Table};
 pub use velocity::{InitialVelocity, Profile};
@@ -114,6 +116,20 @@ pub struct Section {
     pub mass_per_length: Option<f64>,
 }
 
+impl Section {
+    /// A beam that resists stretch by EA \[N\] and bending by EI \[N m²\].
+    pub fn new(axial_stiffness: f64, bending_stiffness: f64) -> Self {
+        let (axial_stiffness, bending_stiffness) = (Some(axial_stiffness), Some(bending_stiffness));
+        Self { axial_stiffness, bending_stiffness, mass_per_length: None }
+    }
+
+    /// The same with ρA \[kg/m\].
+    #[must_use]
+    pub fn weighing(self, mass_per_length: f64) -> Self {
+        Self { mass_per_length: Some(mass_per_length), ..self }
+    }
+}
+
 /// The axial strain ε as a function of the gradient r'.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StrainMeasure {
@@ -156,6 +172,25 @@ pub struct Support {
     pub displacement: Displacement,
     /// How the displacement follows time; needed in a motion, and only there.
     pub law: Option<Law>,
+}
+
+impl Place {
+    /// The point of beam number `beam` at the arc length `s` \[m\].
+    pub fn new(beam: usize, s: f64) -> Self {
+        Self { beam, s }
+    }
+}
+
+impl Support {
+    /// Holds a point and the direction there.
+    pub fn clamp(at: Place) -> Self {
+        Self { at, fix: Fixed { x: true, y: true, rotation: FixedRotation::Angle }, ..Self::default() }
+    }
+
+    /// Holds a point.
+    pub fn pin(at: Place) -> Self {
+        Self { at, fix: Fixed { x: true, y: true, rotation: FixedRotation::Free }, ..Self::default() }
+    }
 }
 
 impl Default for Place {
@@ -249,6 +284,13 @@ pub struct Probe {
     pub name: String,
     /// Where.
     pub at: Place,
+}
+
+impl Probe {
+    /// A probe of that name.
+    pub fn new(name: &str, at: Place) -> Self {
+        Self { name: name.to_owned(), at }
+    }
 }
 
 impl GaussPoints {

@@ -270,7 +270,6 @@ impl SavedState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::{Control, run};
     use crate::scene::{Scene, parse};
     use crate::system::Needs;
 
@@ -286,7 +285,7 @@ mod tests {
 
     fn saved(text: &str) -> SavedState {
         let scene = scene(text);
-        let motion = run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
+        let motion = scene.model().solve(scene.analysis());
         motion.expect("a motion").saved.expect("a state")
     }
 

@@ -68,29 +68,6 @@ pub fn measure(model: &Model, analysis: &Analysis) -> Result<Inventory, RunError
     Ok(System::build(model, needs(analysis))?.measured_inventory())
 }
 
-/// Solves `model`. `observer` is called after every step.
-///
-/// # Errors
-/// [`RunError`]: what was expected, what was found, where, and what to try.
-pub fn run(model: &Model, analysis: &Analysis, observer: Observer<'_>) -> Result<Trajectory, RunError> {
-    run_from(model, analysis, None, observer)
-}
-
-/// The same, a motion starting from a saved state if one is given: it lasts for its duration from
-/// the time of that state on. Supports that follow no law of time hold a beam where the state has
-/// it.
-///
-/// # Errors
-/// As [`run`], and where the saved state does not fit.
-pub fn run_from(
-    model: &Model,
-    analysis: &Analysis,
-    saved: Option<&SavedState>,
-    observer: Observer<'_>,
-) -> Result<Trajectory, RunError> {
-    run_keeping(model, analysis, saved, None, observer)
-}
-
 /// Takes the states from which a motion could go on, every so often by the clock.
 #[derive(Clone, Copy)]
 pub struct Checkpointing<'k> {
@@ -100,11 +77,39 @@ pub struct Checkpointing<'k> {
     pub take: &'k dyn Fn(&SavedState),
 }
 
-/// The same as [`run_from`], leaving checkpoints on the way.
-///
-/// # Errors
-/// As [`run_from`].
-pub fn run_keeping(
+/// What a run takes besides a model and an analysis.
+#[derive(Default)]
+pub struct Options<'o> {
+    /// A saved state from which a motion starts: it lasts for its duration from the time of that
+    /// state on. Supports that follow no law of time hold a beam where the state has it.
+    pub start: Option<&'o SavedState>,
+    /// Called after every step.
+    pub observer: Option<Observer<'o>>,
+    /// Leaves states on the way, from which a motion can go on.
+    pub checkpoints: Option<Checkpointing<'o>>,
+}
+
+impl Model {
+    /// Solves the model from its beginning to the end of the analysis.
+    ///
+    /// # Errors
+    /// [`RunError`]: what was expected, what was found, where, and what to try.
+    pub fn solve(&self, analysis: &Analysis) -> Result<Trajectory, RunError> {
+        self.solve_with(analysis, Options::default())
+    }
+
+    /// The same with a start, an observer, or checkpoints.
+    ///
+    /// # Errors
+    /// As [`Self::solve`], and where the saved state does not fit.
+    pub fn solve_with(&self, analysis: &Analysis, options: Options<'_>) -> Result<Trajectory, RunError> {
+        let Options { start, observer, checkpoints } = options;
+        let mut goes_on = |_: &Progress| Control::Continue;
+        solve(self, analysis, start, checkpoints, observer.unwrap_or(&mut goes_on))
+    }
+}
+
+fn solve(
     model: &Model,
     analysis: &Analysis,
     saved: Option<&SavedState>,

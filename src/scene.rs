@@ -43,13 +43,8 @@ pub(crate) use unit::split_number;
 
 pub use error::{Brief, Invalid, SceneError};
 pub use schema::schema;
-pub use to_analysis::{
-    ARC_LENGTH_MAX_POINTS, DYNAMIC_RECORDS, MAX_RECORDS, MAX_STEPS, SPECTRAL_RADIUS, STEP_CONTROL,
-};
-pub use to_basis::{
-    ANCF_GAUSS_POINTS, MAX_GAUSS_POINTS, MAX_MEMORY, MAX_NEIGHBOURS, MAX_NODES, RPIM_GAUSS_POINTS,
-    RPIM_KERNEL, RPIM_NEIGHBOURS, RPIM_POLYNOMIAL_TERMS, RPIM_SIDE_CONDITION, STRING_GAUSS_POINTS,
-};
+pub use to_analysis::{ARC_LENGTH_MAX_POINTS, DYNAMIC_RECORDS, MAX_RECORDS, MAX_STEPS};
+pub use to_basis::{MAX_GAUSS_POINTS, MAX_MEMORY, MAX_NEIGHBOURS, MAX_NODES};
 
 /// Longest scene file that is read \[bytes\]: more than 10⁷ node places, and a bound for what is no
 /// file at all.

@@ -47,7 +47,7 @@ pub use manifest::MANIFEST;
 pub use shard::Shard;
 
 use crate::output::{Stage, Summary};
-use crate::run::{self, Control};
+use crate::run::Control;
 use crate::scene::Scene;
 use journal::{Finished, Journal, Record};
 use manifest::Manifest;
@@ -147,7 +147,7 @@ impl Sweep {
     fn record(&self, run: usize) -> Record {
         let start = Instant::now();
         let (outcome, message, trajectory) = match self.scene.with(&self.grid.overrides(run)) {
-            Ok(scene) => match run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue) {
+            Ok(scene) => match scene.model().solve(scene.analysis()) {
                 Ok(trajectory) => (Outcome::Solved, None, Some(trajectory)),
                 Err(mut error) => {
                     let refused = error.exit_status() == 2;

@@ -70,7 +70,8 @@ impl Desk<'_> {
             }
             if miss.is_some() { Control::Stop } else { Control::Continue }
         };
-        let outcome = run::run(&model, &analysis, observer);
+        let options = run::Options { observer: Some(observer), ..run::Options::default() };
+        let outcome = model.solve_with(&analysis, options);
         match (outcome, miss) {
             (Ok(trajectory), _) if trajectory.complete => Ok(trajectory),
             (_, Some(miss)) => Err(miss),

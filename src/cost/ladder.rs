@@ -10,8 +10,8 @@ use serde::Serialize;
 use super::bench::{Bench, Unmeasured};
 use super::rung::{Rung, front, points};
 use super::setting::{Family, Setting, Solver, cells};
+use crate::model::SPECTRAL_RADIUS;
 use crate::model::{Analysis, Integrator, Model, StepControl};
-use crate::scene::SPECTRAL_RADIUS;
 
 /// Cells of the meshes.
 const MESHES: [usize; 15] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
@@ -339,8 +339,9 @@ fn picks(rungs: &[Rung], task: &Task<'_>) -> Vec<usize> {
 mod tests {
     use super::*;
     use crate::cost::{Deviation, Measured};
+    use crate::model::STEP_CONTROL;
     use crate::model::{Discretization, Dynamic, Static};
-    use crate::scene::{STEP_CONTROL, parse};
+    use crate::scene::parse;
     use crate::trajectory::Statistics;
 
     /// A bench with a clock of its own, on which `time` and `error` follow from family and cells.

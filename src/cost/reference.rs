@@ -3,8 +3,8 @@
 
 use super::bench::{Desk, Unmeasured};
 use super::{CostError, Deviation, Family, Setting, Solver};
+use crate::model::RPIM_GAUSS_POINTS;
 use crate::model::{Analysis, Integrator, StepControl};
-use crate::scene::RPIM_GAUSS_POINTS;
 use crate::trajectory::Trajectory;
 
 /// Cells of the meshfree run of the first pair.

@@ -6,11 +6,11 @@ use std::fmt::Write as _;
 use toml_edit::Key;
 
 use crate::model::{
-    Analysis, Beam, Discretization, GaussPoints, Integrator, Kernel, Model, Nodes, SideCondition, StepControl,
-};
-use crate::scene::{
     ANCF_GAUSS_POINTS, RPIM_GAUSS_POINTS, RPIM_KERNEL, RPIM_NEIGHBOURS, RPIM_POLYNOMIAL_TERMS,
     RPIM_SIDE_CONDITION, SPECTRAL_RADIUS, STRING_GAUSS_POINTS,
+};
+use crate::model::{
+    Analysis, Beam, Discretization, GaussPoints, Integrator, Kernel, Model, Nodes, SideCondition, StepControl,
 };
 
 /// A kind of discretisation, of any fineness.

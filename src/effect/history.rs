@@ -1,9 +1,9 @@
 //! What forces remember: those of dry friction and of springs that are wound up depend on the way
 //! to a state, not on the state alone.
 //!
-//! They are functions of the state and of the last accepted one ([`AcceptedState`]), in which their internal
-//! variables are known; an accepted state gets its own. So every force has one value in every state
-//! of a step, and a step that is taken again starts from the same variables.
+//! They are functions of the state and of the last accepted one ([`AcceptedState`]), in which their
+//! internal variables are known; an accepted state gets its own. So every force has one value in
+//! every state of a step, and a step that is taken again starts from the same variables.
 
 use super::contact::Piece;
 use serde::{Deserialize, Serialize};

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::model::{
-    About, Analysis, ArcLength, Crossing, Dynamic, Event, Integrator, Model, ProbeTarget, Static,
-    StepControl, Undamped,
+    About, Analysis, ArcLength, Crossing, Dynamic, Event, Integrator, Model, ProbeTarget, SPECTRAL_RADIUS,
+    STEP_CONTROL, Static, StepControl, Undamped,
 };
 
 use super::diagnose::choices;
@@ -22,10 +22,6 @@ pub const ARC_LENGTH_MAX_POINTS: usize = 1000;
 pub const MAX_RECORDS: u64 = 1_000_000;
 /// Most time steps of a run with a fixed step.
 pub const MAX_STEPS: f64 = 1e9;
-/// Accuracy of a motion unless the scene says otherwise.
-pub const STEP_CONTROL: StepControl = StepControl::Tolerance(1e-6);
-/// Spectral radius of the generalised-α method unless the scene says otherwise.
-pub const SPECTRAL_RADIUS: f64 = 0.9;
 /// Records of a dynamic run unless the scene says otherwise.
 pub const DYNAMIC_RECORDS: f64 = 200.0;
 

@@ -1,5 +1,5 @@
-//! Forces that depend on the way to a state ([`crate::effect::AcceptedState`]): dry friction, and torsion
-//! springs with their turns.
+//! Forces that depend on the way to a state ([`crate::effect::AcceptedState`]): dry friction, and
+//! torsion springs with their turns.
 
 use super::System;
 use crate::effect::{AcceptedState, InternalVariables, Workspace};

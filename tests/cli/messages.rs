@@ -1,7 +1,7 @@
 //! What people read when a scene is wrong, word for word.
 
 use ancf::model::Load;
-use ancf::run::{Control, RunError};
+use ancf::run::RunError;
 use ancf::scene::{self, Scene};
 
 const BASE: &str = r#"title = "Cantilever"
@@ -300,7 +300,7 @@ fn nodes_that_nearly_coincide_are_named_where_no_equilibrium_is_found() {
     let text = BASE.replace("elements = 3", "nodes = [0.0, 0.6, 0.600001, 1.2, 1.8]");
     std::fs::write(&path, text).expect("a file");
     let scene = Scene::load(&path, &[]).expect("a legal scene");
-    let found = ancf::run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
+    let found = scene.model().solve(scene.analysis());
     let Err(RunError::NoEquilibrium { advice, .. }) = found else { panic!("forces cannot balance here") };
     assert!(advice.contains("nodes are so close"), "{advice}");
 }

@@ -7,7 +7,7 @@ use ancf::model::{
     Analysis, ArcLength, Beam, Centreline, Discretization, GaussPoints, Kernel, Load, Model, Nodes, Place,
     Probe, Section, SideCondition, Static, StrainMeasure,
 };
-use ancf::run::{Control, RunError, run};
+use ancf::run::RunError;
 use ancf::trajectory::{ProbeSample, Trajectory};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
@@ -105,7 +105,7 @@ fn resolved_cantilever() -> impl Strategy<Value = Model> {
 }
 
 fn analysis(model: &Model, settings: Static) -> Result<Trajectory, RunError> {
-    run(model, &Analysis::Static(settings), &mut |_| Control::Continue)
+    model.solve(&Analysis::Static(settings))
 }
 
 fn last(trajectory: &Trajectory) -> Vec<ProbeSample> {

@@ -1,7 +1,6 @@
 //! Degenerate scenes: solved, or refused with a message that names the cause and the place; never a
 //! panic, a hang, or a meaningless state with exit status 0.
 
-use ancf::run::{Control, run};
 use ancf::scene;
 use ancf::trajectory::Trajectory;
 
@@ -46,7 +45,7 @@ impl Scene {
             let help = miette::Diagnostic::help(&error).map(|help| help.to_string()).unwrap_or_default();
             format!("{error}\n{help}")
         };
-        run(scene.model(), scene.analysis(), &mut |_| Control::Continue).map_err(whole)
+        scene.model().solve(scene.analysis()).map_err(whole)
     }
 
     fn solved(&self) -> Trajectory {

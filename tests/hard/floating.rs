@@ -3,7 +3,7 @@
 
 use ancf::model::{Analysis, Load, Model};
 use ancf::restart::SavedState;
-use ancf::run::{Control, RunError, run, run_from};
+use ancf::run::{Control, Options, Progress, RunError};
 use ancf::scene::{self, Scene};
 use ancf::trajectory::{Seconds, Trajectory};
 
@@ -18,11 +18,12 @@ fn parsed(text: &str) -> Scene {
 
 fn outcome(model: &Model, analysis: &Analysis) -> Result<Trajectory, RunError> {
     let mut steps = 0;
-    run(model, analysis, &mut |_| {
+    let observer = &mut |_: &Progress| {
         steps += 1;
         assert!(steps < 10_000, "no end in sight");
         Control::Continue
-    })
+    };
+    model.solve_with(analysis, Options { observer: Some(observer), ..Options::default() })
 }
 
 fn short() -> String {
@@ -88,7 +89,7 @@ fn subnormal_loads_are_no_load() {
 /// Goes on from a state whatever its checksum says.
 fn resumed(scene: &Scene, state: &serde_json::Value) -> Result<Trajectory, RunError> {
     let saved: SavedState = serde_json::from_str(&state.to_string()).expect("a state");
-    run_from(scene.model(), scene.analysis(), Some(&saved), &mut |_| Control::Continue)
+    scene.model().solve_with(scene.analysis(), Options { start: Some(&saved), ..Options::default() })
 }
 
 /// The state with a value elsewhere, both before and after a step that was cut short.

@@ -1,7 +1,7 @@
 //! Motions as they come: random beams, supports and loads, which no method was measured on. None
 //! may fail, and none may err by more than ten times its tolerance.
 
-use ancf::run::{Control, RunError, run};
+use ancf::run::RunError;
 use ancf::scene::parse;
 use ancf::trajectory::Trajectory;
 use std::fmt::Write;
@@ -83,7 +83,7 @@ fn scene(seed: u64) -> String {
 
 fn moved(scene: &str, integrator: &str) -> Result<Trajectory, RunError> {
     let scene = parse("random.toml", &scene.replace("INTEGRATOR", integrator)).expect("a legal scene");
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
+    scene.model().solve(scene.analysis())
 }
 
 fn positions(trajectory: &Trajectory) -> impl Iterator<Item = [f64; 2]> + '_ {

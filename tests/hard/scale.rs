@@ -7,7 +7,6 @@ use ancf::model::{
     GaussPoints, InitialVelocity, Integrator, Kernel, Load, Model, Nodes, Place, Probe, ProbeTarget, Section,
     SideCondition, Static, StepControl, StrainMeasure, Support,
 };
-use ancf::run::{Control, run};
 use ancf::trajectory::Trajectory;
 
 /// What a length, a force and a time of one are, in metres, newtons and seconds.
@@ -113,7 +112,7 @@ fn arch(units: Units, discretization: &Discretization) -> Model {
 }
 
 fn solved(model: &Model, analysis: &Analysis) -> Trajectory {
-    run(model, analysis, &mut |_| Control::Continue).unwrap_or_else(|error| panic!("{error}"))
+    model.solve(analysis).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// All that a trajectory says, without units.

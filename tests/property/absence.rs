@@ -1,7 +1,7 @@
 //! What a scene does not name is not there: no object, table, matrix or iteration of it.
 
 use ancf::effect::Kind;
-use ancf::run::{Control, inspect, run};
+use ancf::run::inspect;
 use ancf::scene::{Scene, parse};
 use ancf::system::Inventory;
 use std::collections::BTreeMap;
@@ -144,8 +144,7 @@ fn statics_has_no_mass_and_an_undamped_motion_no_damping() {
 #[test]
 fn small_vibrations_need_no_iteration() {
     let scene = scene(&["[beam.arm]\nbending_stiffness = 2.0"], "[analysis.modal]\ncount = 3\n");
-    let trajectory =
-        run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("three vibrations");
+    let trajectory = scene.model().solve(scene.analysis()).expect("three vibrations");
     assert_eq!(trajectory.frequencies.len(), 3);
     assert_eq!((trajectory.statistics.newton_iterations, trajectory.statistics.residual_evaluations), (0, 0));
 }

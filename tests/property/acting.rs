@@ -3,7 +3,6 @@
 use super::arm::{LENGTH, ancf, beam, imbalance, moved, one, still, support};
 use ancf::effect::{Actuation, BeamDamping, Contact, Friction, Obstacle, Spring};
 use ancf::model::*;
-use ancf::run::{Control, run};
 use ancf::trajectory::Event;
 use std::sync::Arc;
 
@@ -86,7 +85,7 @@ fn a_beam_bounces_from_a_plane() {
 #[test]
 fn what_does_not_fit_is_refused_with_its_place() {
     let refused = |model: &Model, words: &str| {
-        let error = run(model, &Analysis::Static(Static::default()), &mut |_| Control::Continue);
+        let error = model.solve(&Analysis::Static(Static::default()));
         let message = error.expect_err("refused").to_string();
         assert!(message.contains(words), "{message}");
     };

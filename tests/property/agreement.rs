@@ -6,7 +6,7 @@ use ancf::model::{
     Analysis, Beam, Centreline, Discretization, Dynamic, Fixed, GaussPoints, Integrator, Kernel, Load, Model,
     Nodes, Place, Probe, Section, SideCondition, Static, StepControl, StrainMeasure, Support,
 };
-use ancf::run::{Control, Progress, run};
+use ancf::run::{Control, Options, Progress};
 use proptest::prelude::*;
 
 /// A random problem without its discretisation; lengths and forces are scaled so that all are
@@ -143,7 +143,9 @@ impl Problem {
                 assert!(progress.newton_iterations < 20_000, "no end in sight: {progress:?}");
                 Control::Continue
             };
-            run(&self.model(discretization, support.clone()), analysis, observer)
+            let options = Options { observer: Some(observer), ..Options::default() };
+            self.model(discretization, support.clone())
+                .solve_with(analysis, options)
                 .expect("a stable cantilever, or a motion")
         });
         let mut largest = 0.0_f64;

@@ -1,7 +1,6 @@
 //! A straight beam for tests of what takes part in statics and motion, and ways to run it.
 
 use ancf::model::*;
-use ancf::run::{Control, run};
 use ancf::system::assembly::Part;
 use ancf::trajectory::Trajectory;
 use std::sync::Arc;
@@ -49,11 +48,11 @@ pub fn one(supports: Vec<Support>, parts: Vec<Arc<dyn Part>>) -> Model {
 pub fn moved(model: &Model, duration: f64, integrator: Integrator) -> Trajectory {
     let analysis =
         Analysis::Dynamic(Dynamic { duration, output_every: duration / 20.0, integrator, events: vec![] });
-    run(model, &analysis, &mut |_| Control::Continue).expect("a motion")
+    model.solve(&analysis).expect("a motion")
 }
 
 pub fn still(model: &Model) -> Trajectory {
-    run(model, &Analysis::Static(Static::default()), &mut |_| Control::Continue).expect("an equilibrium")
+    model.solve(&Analysis::Static(Static::default())).expect("an equilibrium")
 }
 
 pub fn gauss(step: f64) -> Integrator {

@@ -1,14 +1,12 @@
 //! Energies of actuated beams, warnings of a balance that does not hold, and of what an analysis
 //! leaves out.
 
-use ancf::run::{Control, run};
 use ancf::scene::parse;
 use ancf::trajectory::Trajectory;
 
 fn solved(text: &str) -> Trajectory {
     let scene = parse("balances.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
-        .unwrap_or_else(|error| panic!("{error}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 fn arm(more: &str) -> String {

@@ -4,8 +4,6 @@
 //! Moments alone bend a beam into arcs, each of the curvature M/EI of the moments beyond it; with a
 //! support or a spring that is still known in closed form.
 
-use ancf::run::{Control, run};
-
 /// A support, spring or moment at `s`, and what it does to the moment that the beam before it
 /// bears.
 struct Couple {
@@ -83,7 +81,7 @@ fn error(basis: &str, fix: &str, couples: &[Couple]) -> f64 {
         "#
     );
     let scene = ancf::scene::parse("arm.toml", &text).expect("a legal scene");
-    let states = run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("an equilibrium");
+    let states = scene.model().solve(scene.analysis()).expect("an equilibrium");
     let found = states.probes[0].samples.last().expect("a record");
     let [x, y] = tip(couples);
     (found.x - x).hypot(found.y - y)

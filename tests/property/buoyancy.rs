@@ -1,7 +1,5 @@
 //! Lift is weight of the fluid: it follows the same gravity.
 
-use ancf::run::{Control, run};
-
 /// A rod that weighs what it displaces stays where it is, whatever gravity does.
 #[test]
 fn what_floats_stays_under_any_gravity() {
@@ -27,7 +25,7 @@ fn what_floats_stays_under_any_gravity() {
             "#
         );
         let scene = ancf::scene::parse("rod.toml", &text).expect("a legal scene");
-        let motion = run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("a motion");
+        let motion = scene.model().solve(scene.analysis()).expect("a motion");
         for sample in &motion.probes[0].samples {
             let moved = (sample.x - 0.8).hypot(sample.y - 0.6);
             assert!(moved < 1e-12, "{law}: {moved:e} m at {sample:?}");

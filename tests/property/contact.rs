@@ -4,7 +4,7 @@
 use super::generators;
 use ancf::effect::{Contact, Density, Obstacle, Penalty};
 use ancf::model::{Beam, Centreline, Discretization, GaussPoints, Model, Section, StrainMeasure};
-use ancf::run::{Control, RunError, run};
+use ancf::run::RunError;
 use ancf::system::{Needs, System, View};
 use ancf::trajectory::Trajectory;
 use nalgebra::Vector2;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 fn solved(text: &str) -> Result<Trajectory, RunError> {
     let scene = ancf::scene::parse("contact.toml", text).expect("a legal scene");
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
+    scene.model().solve(scene.analysis())
 }
 
 fn obstacle() -> impl Strategy<Value = Obstacle> {

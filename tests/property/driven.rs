@@ -6,7 +6,6 @@ use ancf::effect::{
     Actuation, BeamDamping, Drag, Foundation, PointMass, SectionInertia, Spring, TorsionSpring,
 };
 use ancf::model::*;
-use ancf::run::{Control, run};
 use ancf::system::assembly::Part;
 use std::sync::Arc;
 
@@ -108,7 +107,7 @@ fn damping_hides_no_gain() {
     let damped = "effect.damping=[{beam='arm',mass_proportional=1.0}]";
     let path = ancf_check::Suite::here().cases_folder().join("hard-coarse-steps/scene.toml");
     let scene = ancf::scene::Scene::load(&path, &[coarse, damped].map(String::from)).expect("a legal scene");
-    let trajectory = run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("a motion");
+    let trajectory = scene.model().solve(scene.analysis()).expect("a motion");
     // Of the first step, which starts from rest, the trapezoidal rule counts a larger loss than
     // there is.
     for pair in trajectory.energy[1..].windows(2) {

@@ -649,7 +649,7 @@ fn prescribed_motion_needs_a_law_of_time() {
     let integrator = with_step(ALPHA, StepControl::Fixed(1e-3));
     let analysis =
         Analysis::Dynamic(Dynamic { duration: 0.1, output_every: 0.1, integrator, events: vec![] });
-    let error = ancf::run::run(&model, &analysis, &mut |_| ancf::run::Control::Continue).expect_err("no law");
+    let error = model.solve(&analysis).expect_err("no law");
     assert_eq!(error.exit_status(), 2);
     assert!(error.to_string().contains("does not say how in time"), "{error}");
 }

@@ -1,7 +1,6 @@
 //! Events of a motion: every time at which a probe's coordinate reaches a value, whatever the
 //! steps.
 
-use ancf::run::{Control, run};
 use ancf::trajectory::{Event, Trajectory};
 use proptest::prelude::*;
 
@@ -43,7 +42,7 @@ fn thrown(integrator: &str, axis: &str, sign: f64, scale: f64, events: &[(f64, &
         events = events.join(", "),
     );
     let scene = ancf::scene::parse("thrown.toml", &text).expect("a legal scene");
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("a motion")
+    scene.model().solve(scene.analysis()).expect("a motion")
 }
 
 fn times(trajectory: &Trajectory) -> Vec<f64> {
@@ -128,7 +127,7 @@ fn every_turn_of_a_spinning_rod_is_seen() {
                 {{ probe = \"tip\", y = 0.99 }}, {{ probe = \"tip\", x = -0.99, crossing = \"falling\" }} ] }}"
         );
         let scene = ancf::scene::parse("rod.toml", &text).expect("a legal scene");
-        let trajectory = run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("a motion");
+        let trajectory = scene.model().solve(scene.analysis()).expect("a motion");
         let found = times(&trajectory);
         let apart = 0.99_f64.acos() / std::f64::consts::TAU;
         let turn = |k: i32| {

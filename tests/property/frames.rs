@@ -1,7 +1,6 @@
 //! Motion does not know the axes, the handedness of the plane, nor the units: every support, joint
 //! and effect, by every integrator.
 
-use ancf::run::{Control, run};
 use ancf::scene::parse;
 use ancf::trajectory::Trajectory;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -275,7 +274,7 @@ fn moved(frame: &Frame, scene: &str, basis: &str, integrator: &str) -> Trajector
     }
     let text = frame.write(&template);
     let scene = parse("frame.toml", &text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
-    let found = run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
+    let found = scene.model().solve(scene.analysis());
     found.unwrap_or_else(|error| panic!("{frame:?}: {error}\n{text}"))
 }
 

@@ -7,7 +7,7 @@ use ancf::model::{
     Analysis, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Section, SideCondition,
     StrainMeasure,
 };
-use ancf::run::{Control, RunError, run, run_from};
+use ancf::run::{Options, RunError};
 use ancf::solve::dynamics::start::from_rest;
 use ancf::solve::dynamics::{Solution, Task, solve};
 use ancf::system::{Needs, System};
@@ -20,7 +20,7 @@ const GRAVITY: f64 = 9.81;
 
 fn solved(text: &str) -> Result<Trajectory, RunError> {
     let scene = ancf::scene::parse("friction.toml", text).expect("a legal scene");
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
+    scene.model().solve(scene.analysis())
 }
 
 proptest! {
@@ -242,9 +242,8 @@ fn a_rod_sticks_in_statics() {
         let dynamic = scene
             .replace(&format!("static = {steps}"), "dynamic = { duration = 0.2, radau.tolerance = 1e-6 }");
         let dynamic = ancf::scene::parse("friction.toml", &dynamic).expect("a legal scene");
-        let rest = run_from(dynamic.model(), dynamic.analysis(), trajectory.saved.as_ref(), &mut |_| {
-            Control::Continue
-        });
+        let start = Options { start: trajectory.saved.as_ref(), ..Options::default() };
+        let rest = dynamic.model().solve_with(dynamic.analysis(), start);
         let rest = rest.unwrap_or_else(|e| panic!("{pull} N, {steps}: {e}"));
         for sample in &rest.probes[0].samples {
             let crept = (sample.x - 1.0 - moved).abs();

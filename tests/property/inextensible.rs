@@ -4,7 +4,7 @@
 use super::generators;
 use ancf::effect::Kind;
 use ancf::restart::SavedState;
-use ancf::run::{Control, inspect, run, run_from};
+use ancf::run::{Options, inspect};
 use ancf::scene::{Scene, parse};
 use ancf::solve::dynamics::motion::Motion;
 use ancf::system::{Needs, System};
@@ -25,11 +25,11 @@ fn scene(basis: &str, fix: &str, rest: &str) -> Scene {
 }
 
 fn solve(scene: &Scene) -> Trajectory {
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue).unwrap_or_else(|error| panic!("{error}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn refused(scene: &Scene) -> String {
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect_err("refused").to_string()
+    scene.model().solve(scene.analysis()).expect_err("refused").to_string()
 }
 
 const TIP_FORCE: &str =
@@ -214,7 +214,9 @@ fn a_motion_goes_on_as_if_it_had_not_stopped() {
         )
         .expect("a scene");
         let saved: SavedState = solve(&half).saved.expect("a state");
-        let rest = run_from(half.model(), half.analysis(), Some(&saved), &mut |_| Control::Continue)
+        let rest = half
+            .model()
+            .solve_with(half.analysis(), Options { start: Some(&saved), ..Options::default() })
             .expect("a motion");
         assert_eq!(whole.probes[0].samples.last(), rest.probes[0].samples.last(), "{method}");
     }

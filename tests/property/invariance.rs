@@ -6,7 +6,6 @@ use ancf::model::{
     Analysis, Beam, Centreline, Discretization, Kernel, Load, Model, Nodes, Place, Probe, Section,
     SideCondition, Static, StrainMeasure,
 };
-use ancf::run::{Control, run};
 use ancf::trajectory::Trajectory;
 use proptest::prelude::*;
 
@@ -113,8 +112,7 @@ fn cantilever(metre: f64, newton: f64, angle: f64, discretization: Discretizatio
 }
 
 fn solved(model: &Model) -> Trajectory {
-    run(model, &Analysis::Static(Static::default()), &mut |_| Control::Continue)
-        .expect("a plain cantilever has an equilibrium")
+    model.solve(&Analysis::Static(Static::default())).expect("a plain cantilever has an equilibrium")
 }
 
 fn both() -> impl Strategy<Value = Discretization> {

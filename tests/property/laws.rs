@@ -1,7 +1,6 @@
 //! Loads and supports that follow laws of time: nothing moves before its cause, kinks cost no
 //! accuracy, and what happens between the points at which a method looks is not lost on it.
 
-use ancf::run::{Control, run};
 use ancf::scene::parse;
 use ancf::trajectory::Trajectory;
 
@@ -19,7 +18,7 @@ fn moved(acts: &str, duration: f64, every: f64, integrator: &str) -> Trajectory 
          [analysis.dynamic]\nduration = {duration:?}\noutput_every = {every:?}\n{integrator}\n"
     );
     let scene = parse("laws.toml", &text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
-    let found = run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
+    let found = scene.model().solve(scene.analysis());
     found.unwrap_or_else(|error| panic!("{integrator}: {error}\n{text}"))
 }
 
@@ -132,8 +131,8 @@ fn a_support_that_sets_off_and_stops_turns_a_rod_as_momentum_tells() {
             speed * duration
         );
         let scene = parse("support.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let found = run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
-            .unwrap_or_else(|error| panic!("{integrator}: {error}"));
+        let found =
+            scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{integrator}: {error}"));
         assert_eq!(found.warnings, [""; 0], "{integrator}");
         for ((time, sample), energy) in
             found.parameter.iter().zip(&found.probes[0].samples).zip(&found.energy)
@@ -162,7 +161,7 @@ fn steps_of_given_length_bear_fine_meshes() {
              [[probe]]\nname = 'tip'\nbeam = 'a'\nat = 'end'\n[analysis.dynamic]\nduration = 0.1\noutput_every = 0.1\n{method}.step = 0.01\n"
         );
         let scene = parse("fine.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let found = run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
+        let found = scene.model().solve(scene.analysis());
         let found = found.unwrap_or_else(|error| panic!("{elements} elements, {method}: {error}"));
         let tip = found.probes[0].samples.last().expect("a record");
         ([tip.x, tip.y], found.statistics.rejected_steps)

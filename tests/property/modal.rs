@@ -7,7 +7,7 @@ use ancf::model::{
     About, Analysis, Beam, Centreline, Discretization, Displacement, Fixed, FixedRotation, GaussPoints,
     Kernel, Load, Model, Nodes, Place, Probe, Section, SideCondition, Static, StrainMeasure, Support,
 };
-use ancf::run::{Control, RunError, run};
+use ancf::run::RunError;
 use ancf::solve::eigen::{EigenError, Pairs, Pencil, dense, lanczos};
 use ancf::solve::{modal, statics};
 use ancf::system::{Needs, System, View};
@@ -62,7 +62,7 @@ fn pulled(mut model: Model, force: [f64; 2]) -> Model {
 }
 
 fn solve(model: &Model, count: usize, about: About) -> Result<Trajectory, RunError> {
-    run(model, &Analysis::Modal { count, about }, &mut |_| Control::Continue)
+    model.solve(&Analysis::Modal { count, about })
 }
 
 fn frequencies(model: &Model, count: usize, about: About) -> Vec<f64> {

@@ -2,7 +2,7 @@
 //! at rest where it should be, or refused.
 
 use ancf::restart::SavedState;
-use ancf::run::{Control, RunError, run, run_from};
+use ancf::run::{Options, RunError};
 use ancf::scene::{Scene, parse};
 use ancf::trajectory::{Event, Trajectory};
 
@@ -12,7 +12,7 @@ fn scene(text: &str) -> Scene {
 
 fn solve(text: &str) -> Trajectory {
     let scene = scene(text);
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue).unwrap_or_else(|error| panic!("{error}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// What a file holds of a state.
@@ -24,7 +24,7 @@ fn filed(saved: &SavedState) -> SavedState {
 
 fn go_on(text: &str, from: &Trajectory) -> Result<Trajectory, RunError> {
     let (scene, saved) = (scene(text), filed(from.saved.as_ref().expect("a state")));
-    run_from(scene.model(), scene.analysis(), Some(&saved), &mut |_| Control::Continue)
+    scene.model().solve_with(scene.analysis(), Options { start: Some(&saved), ..Options::default() })
 }
 
 /// Everything that has a memory: loads without potential, damping, contact, a support that turns, a
@@ -210,7 +210,7 @@ fn supports_that_jump_are_refused_at_any_time() {
     let turn = "angle = '90 deg', in_time = { step = { start = '0.1 s' } }";
     for (law, size) in [(jump, "1.000e-1"), (turn, "1.571e0")] {
         let scene = scene(&with(law, 0.2));
-        let error = run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect_err("a jump");
+        let error = scene.model().solve(scene.analysis()).expect_err("a jump");
         assert_eq!(error.exit_status(), 2);
         let text = error.to_string();
         for part in ["beam `arm` near s = 2.000000 m", "t = 0.1 s", size] {

@@ -1,7 +1,6 @@
 //! Section forces and reactions balance what acts on the beam, whatever its stiffness, its
 //! discretisation and its motion.
 
-use ancf::run::{Control, run};
 use ancf::scene::parse;
 use ancf::trajectory::{Shape, Trajectory};
 
@@ -15,8 +14,7 @@ const METHODS: [&str; 4] = [
 
 fn solved(text: &str) -> Trajectory {
     let scene = parse("forces.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
-        .unwrap_or_else(|error| panic!("{error}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 /// A beam of length `l` from `start` in the direction `angle`, with stiffnesses.

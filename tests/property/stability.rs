@@ -3,7 +3,7 @@
 
 use ancf::linear::bordered::BorderRow;
 use ancf::linear::{Factor, Matrix};
-use ancf::run::{Control, RunError, run};
+use ancf::run::RunError;
 use ancf::scene::{Scene, parse};
 use ancf::system::{Needs, System};
 use ancf::trajectory::Trajectory;
@@ -18,7 +18,7 @@ fn scene(text: &str) -> Scene {
 
 fn attempt(text: &str) -> Result<Trajectory, RunError> {
     let scene = scene(text);
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
+    scene.model().solve(scene.analysis())
 }
 
 fn solve(text: &str) -> Trajectory {

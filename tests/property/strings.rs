@@ -2,7 +2,6 @@
 
 use super::arm::{ancf, beam, gauss, imbalance, moved, one, still, support, tip};
 use ancf::model::*;
-use ancf::run::{Control, run};
 
 /// A string: no bending stiffness named, none computed.
 #[test]
@@ -108,7 +107,7 @@ fn a_folded_string_is_named() {
         model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
         model.probes = tip(0, 0.5);
         let settings = Static { steps, ..Static::default() };
-        run(&model, &Analysis::Static(settings), &mut |_| Control::Continue).expect("an equilibrium")
+        model.solve(&Analysis::Static(settings)).expect("an equilibrium")
     };
     for steps in [None, Some(40)] {
         let trajectory = cable(steps);

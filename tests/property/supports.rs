@@ -6,7 +6,6 @@ use ancf::model::{
     Analysis, Beam, Centreline, Discretization, Displacement, Fixed, FixedRotation, GaussPoints, Kernel,
     Load, Model, Nodes, Place, Probe, Section, SideCondition, Static, StrainMeasure, Support,
 };
-use ancf::run::{Control, run};
 use ancf::system::{Needs, System, View};
 use proptest::prelude::*;
 
@@ -130,8 +129,7 @@ fn a_bifurcation_is_reported_with_its_load() {
     let [event] = solution.events[..] else { panic!("one loss of definiteness, not {:?}", solution.events) };
     assert_eq!((event.before, event.after), (0, 1));
     assert!((event.load - 0.5).abs() < 1e-4, "at load factor {}", event.load);
-    let trajectory =
-        run(&column, &Analysis::Static(Static::default()), &mut |_| Control::Continue).expect("solvable");
+    let trajectory = column.solve(&Analysis::Static(Static::default())).expect("solvable");
     assert!(
         trajectory.warnings[0].contains("loses definiteness at load factor 0.5000"),
         "{:?}",
@@ -208,7 +206,7 @@ fn supports_at_one_node_add_up() {
         model.loads[0] =
             Load::Force { at: Place { beam: 0, s: 0.5 * LENGTH }, value: [0.2, 0.3], follower: false };
         let analysis = Analysis::Static(Static::default());
-        run(&model, &analysis, &mut |_| Control::Continue).map(|t| t.probes[1].samples.clone())
+        model.solve(&analysis).map(|t| t.probes[1].samples.clone())
     };
     let together = tip(vec![support(true, true)]).expect("a pinned beam");
     let apart = tip(vec![support(true, false), support(false, true)]).expect("the same");
@@ -223,8 +221,7 @@ fn the_prediction_moves_with_the_supports() {
     let moved = Support { displacement: Displacement { x: 2e-5, y: -3e-5, angle: 1e-5 }, ..clamp() };
     let mut model = model(Discretization::Ancf { nodes: Nodes::Uniform(9) }, 0.4, vec![moved]);
     model.loads.clear();
-    let trajectory = run(&model, &Analysis::Static(Static::default()), &mut |_| Control::Continue)
-        .expect("an equilibrium");
+    let trajectory = model.solve(&Analysis::Static(Static::default())).expect("an equilibrium");
     let first = trajectory.history[0].increments[0];
     assert!(first < 1e-8, "the first correction is {first} of a beam length");
 }

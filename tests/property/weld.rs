@@ -1,12 +1,10 @@
 //! A weld ties positions and directions, and nothing else.
 
-use ancf::run::{Control, run};
 use ancf::trajectory::Trajectory;
 
 fn solved(text: &str) -> Trajectory {
     let scene = ancf::scene::parse("weld.toml", text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
-        .unwrap_or_else(|error| panic!("{error:?}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error:?}\n{text}"))
 }
 
 fn end(trajectory: &Trajectory, probe: usize) -> [f64; 2] {

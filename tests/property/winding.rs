@@ -1,13 +1,12 @@
 //! Torsion springs count all turns: statics, motion, restarts and vibrations of what is wound up,
 //! against closed forms.
 
-use ancf::run::{Control, run};
 use ancf::trajectory::Trajectory;
 use std::f64::consts::TAU;
 
 fn solved(text: &str) -> Trajectory {
     let scene = ancf::scene::parse("winding.toml", text).expect("a legal scene");
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue).unwrap_or_else(|e| panic!("{e}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A clamped beam is coiled up by a couple at its end against a spring at 0.9 m: θ(0.9) = 0.9 M/(EI + 0.9 k).

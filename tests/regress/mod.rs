@@ -1,7 +1,7 @@
 //! What a change of the solver would shift without breaking a tolerance: what is built for each
 //! case's scenes, and how much work they take. Accept a wanted change with `cargo insta review`.
 
-use ancf::run::{Control, inspect, run};
+use ancf::run::inspect;
 use ancf::scene::Scene;
 use ancf::trajectory::Trajectory;
 use ancf_check::Suite;
@@ -54,7 +54,7 @@ fn regress_statistics_and_results() {
     let (mut counts, mut results) = (String::new(), String::new());
     for (name, path) in scenes() {
         let scene = Scene::load(&path, &[]).expect("a case's scene is legal");
-        let trajectory = run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
+        let trajectory = scene.model().solve(scene.analysis());
         let trajectory = trajectory.expect("a case's scene can be solved");
         let s = trajectory.statistics;
         writeln!(
@@ -102,8 +102,7 @@ fn regress_work_for_a_tolerance() {
             let analysis = format!("analysis.dynamic={{duration='0.4 s',output_every='0.4 s',{method}}}");
             let set = ["beam.arm.basis={ancf={elements=12}}".to_owned(), analysis];
             let scene = Scene::load(&pendulum, &set).expect("a legal scene");
-            let trajectory =
-                run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("a motion");
+            let trajectory = scene.model().solve(scene.analysis()).expect("a motion");
             let s = trajectory.statistics;
             writeln!(
                 text,

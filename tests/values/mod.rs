@@ -18,7 +18,6 @@ mod time;
 mod units;
 
 use ancf::output::{OutputOptions, write};
-use ancf::run::{Control, run};
 use ancf::scene::parse;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,7 +30,7 @@ impl Written {
     /// Reads, solves and writes as `ancf run` does.
     pub(crate) fn of(text: &str) -> Self {
         let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let solved = run(scene.model(), scene.analysis(), &mut |_| Control::Continue);
+        let solved = scene.model().solve(scene.analysis());
         let mut trajectory = solved.unwrap_or_else(|error| panic!("{error}\n{text}"));
         let options = OutputOptions { states: scene.output().states, vtu: scene.output().vtu };
         let folder = tempfile::tempdir().expect("a folder");

@@ -5,7 +5,6 @@ use ancf::model::{
     Analysis, ArcLength, Discretization, Dynamic, GaussPoints, Integrator, Kernel, Nodes, ProbeTarget,
     SideCondition, Static, StepControl,
 };
-use ancf::run::{Control, run};
 use ancf::scene::parse;
 use std::f64::consts::PI;
 
@@ -274,7 +273,7 @@ fn nodes_of_a_shape_are_on_it() {
         analysis.static = {}\n",
     )
     .expect("a legal scene");
-    let solved = run(scene.model(), scene.analysis(), &mut |_| Control::Continue).expect("an equilibrium");
+    let solved = scene.model().solve(scene.analysis()).expect("an equilibrium");
     let shape = &solved.last[0];
     let every = (shape.s.len() - 1) / 4;
     assert_eq!(shape.nodes.len(), 5);

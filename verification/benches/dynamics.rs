@@ -5,7 +5,6 @@
 use std::path::Path;
 
 use ancf::model::{Analysis, Centreline, Discretization, Model, Nodes};
-use ancf::run::{Control, run};
 use ancf::scene::Scene;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
@@ -32,7 +31,7 @@ fn soft_pendulum(c: &mut Criterion) {
         let dynamic = format!("{{duration=\"2.5 s\", output_every=\"2.5 s\", {integrator}}}");
         let (model, analysis) = pendulum(basis, &dynamic);
         group.bench_function(name, |b| {
-            b.iter(|| run(&model, &analysis, &mut |_| Control::Continue).expect("it swings"));
+            b.iter(|| model.solve(&analysis).expect("it swings"));
         });
     }
     group.finish();
@@ -49,7 +48,7 @@ fn elements(c: &mut Criterion) {
         model.probes.clear();
         group.throughput(Throughput::Elements(10 * count as u64));
         group.bench_function(BenchmarkId::from_parameter(count), |b| {
-            b.iter(|| run(&model, &analysis, &mut |_| Control::Continue).expect("it falls"));
+            b.iter(|| model.solve(&analysis).expect("it falls"));
         });
     }
     group.finish();

@@ -12,7 +12,6 @@ use ancf::model::{
     Analysis, Beam, Centreline, Discretization, Fixed, FixedRotation, GaussPoints, Kernel, Load, Model,
     Nodes, Place, Section, SideCondition, Static, StrainMeasure, Support,
 };
-use ancf::run::{Control, run};
 use ancf::solve::equilibrium::Equilibrium;
 use ancf::system::{Needs, System};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -111,7 +110,7 @@ fn roll_up(c: &mut Criterion) {
         c.bench_function(&format!("roll-up/{name}"), |b| {
             b.iter(|| {
                 let analysis = Analysis::Static(Static::default());
-                run(&model, &analysis, &mut |_| Control::Continue).expect("the cantilever rolls up")
+                model.solve(&analysis).expect("the cantilever rolls up")
             });
         });
     }

@@ -1,6 +1,5 @@
 //! `verify peers`: what a peer makes of a case's scenes, beside ours.
 
-use ancf::run::Control;
 use ancf::scene::Scene;
 use ancf_check::case::{Family, Peer};
 use ancf_check::family::{Member, members};
@@ -41,7 +40,7 @@ fn beside(case: &Case, member: &Member) -> Result<String, Failure> {
     let scene = Scene::load(&case.folder.join(&member.scene), &member.set)?;
     // First, as it says at once what has no counterpart.
     let theirs = peers::ask(Peer::Exudyn, &scene)?;
-    let ours = ancf::run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue)?;
+    let ours = scene.model().solve(scene.analysis())?;
     let frequencies = ours.frequencies.iter().zip(&theirs.frequencies).enumerate().map(|(k, (a, b))| {
         format!("  frequency {}   ours {a:.12e} Hz   Exudyn {b:.12e} Hz   apart {:.1e}", k + 1, (a - b).abs())
     });

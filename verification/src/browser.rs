@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use ancf::cost;
 use ancf::output::{self, OutputOptions};
-use ancf::run::{self, Control};
+use ancf::run::Control;
 use ancf::scene::Scene;
 use ancf::sweep::{self, Axis, Shard, Sweep};
 use ancf_check::Suite;
@@ -181,8 +181,8 @@ fn proven(suite: &Suite, folder: &Path) -> Result<bool, Failure> {
 fn solved(name: &str, kind: Kind, scene: &Path, set: &[String], folder: &Path) -> Result<Page, Failure> {
     let folder = folder.join(name);
     let scene = Scene::load(scene, set).map_err(|e| e.to_string())?;
-    let mut trajectory = run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
-        .map_err(|error| format!("{}: {error}", scene.name()))?;
+    let mut trajectory =
+        scene.model().solve(scene.analysis()).map_err(|error| format!("{}: {error}", scene.name()))?;
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     output::write(&folder, &mut trajectory, &OutputOptions::default())?;
     Ok(Page { name: name.to_owned(), kind, file: folder.join("report.html") })

@@ -9,7 +9,6 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use ancf::run::{Control, run};
 use ancf::scene::Scene;
 use ancf_check::case::{Check, Family};
 use ancf_check::execute::Run;
@@ -106,7 +105,7 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
 /// The error, or the quantity itself, as a check takes it.
 fn compute(suite: &Suite, number: &Number) -> Result<f64, Failure> {
     let scene = Scene::load(&suite.root.join(&number.scene), &number.set).map_err(|e| e.to_string())?;
-    let trajectory = run(scene.model(), scene.analysis(), &mut |_| Control::Continue)?;
+    let trajectory = scene.model().solve(scene.analysis())?;
     let mut tables = IndexMap::new();
     if let Some(name) = &number.check.oracle {
         let (case, oracle) = name.split_once('/').ok_or("an oracle here is `<case>/<oracle>`")?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use ancf::model::{Centreline, Discretization, Nodes};
-use ancf::run::{Control, run};
+use ancf::run::{Control, Options, Progress};
 use ancf::scene::Scene;
 use ancf_check::Suite;
 use serde::{Deserialize, Serialize};
@@ -80,11 +80,12 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
         let begin = Instant::now();
         while begin.elapsed() < LEAST {
             let (mut ends, clock) = (Vec::with_capacity(STEPS), Instant::now());
-            run(&model, scene.analysis(), &mut |progress| {
+            let observer = &mut |progress: &Progress| {
                 ends.push((Instant::now(), progress.newton_iterations));
                 Control::Continue
-            })
-            .map_err(|e| e.to_string())?;
+            };
+            let options = Options { observer: Some(observer), ..Options::default() };
+            model.solve_with(scene.analysis(), options).map_err(|e| e.to_string())?;
             let (Some(&(first, _)), Some(&(from, before)), Some(&(to, after))) =
                 (ends.first(), ends.get(FIRST - 1), ends.last())
             else {

@@ -23,7 +23,6 @@ pub use results::{Norm, Point, Results, Spread};
 
 use std::time::Duration;
 
-use ancf::run::Control;
 use ancf::scene::Scene;
 use ancf::trajectory::Trajectory;
 use ancf_check::compare::member as compare;
@@ -196,8 +195,7 @@ impl Task<'_> {
             Code::Ours => {
                 let mut last = Err("it was not run".to_owned());
                 for _ in 0..repeat {
-                    let run =
-                        ancf::run::run(self.scene.model(), self.scene.analysis(), &mut |_| Control::Continue);
+                    let run = self.scene.model().solve(self.scene.analysis());
                     let trajectory = run.map_err(|e| e.to_string())?;
                     self.seconds.push(trajectory.seconds.solve);
                     self.build.push(trajectory.seconds.build);

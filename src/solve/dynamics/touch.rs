@@ -7,9 +7,9 @@
 //! is tried again until it hits. The rod then errs by 1e-10.
 //!
 //! Nothing is crossed. The way of every step, on which it is interpolated, is swept
-//! ([`crate::effect::ContactIntegral`]): a step that carries the beam deeper into a thin obstacle than a
-//! part of its thickness is rejected, so that the force is seen before the beam is through; and a
-//! step of fixed length is divided where it touches and leaves an obstacle unseen.
+//! ([`crate::effect::ContactIntegral`]): a step that carries the beam deeper into a thin obstacle
+//! than a part of its thickness is rejected, so that the force is seen before the beam is through;
+//! and a step of fixed length is divided where it touches and leaves an obstacle unseen.
 
 use super::State;
 use super::contact::{Change, ContactState};

@@ -2,7 +2,6 @@
 
 use std::time::{Duration, Instant};
 
-use ancf::run::Control;
 use ancf::scene::Scene;
 use indexmap::IndexMap;
 
@@ -111,8 +110,7 @@ fn run(case: &Case, member: &Member) -> std::result::Result<quantity::Result, St
         };
         return Ok(quantity::Result::Interpolated(Box::new(interpolate(beam)?)));
     }
-    let trajectory = ancf::run::run(scene.model(), scene.analysis(), &mut |_| Control::Continue)
-        .map_err(|error| chain(&error))?;
+    let trajectory = scene.model().solve(scene.analysis()).map_err(|error| chain(&error))?;
     Ok(quantity::Result::Solved(Box::new(trajectory)))
 }
 

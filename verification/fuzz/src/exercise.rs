@@ -99,7 +99,9 @@ pub fn meet(input: &Input, write: bool) -> Result<Reached, String> {
         },
         None => None,
     };
-    let outcome = run::run_from(scene.model(), scene.analysis(), saved.as_ref(), &mut few_steps());
+    let observer = &mut few_steps();
+    let options = run::Options { start: saved.as_ref(), observer: Some(observer), checkpoints: None };
+    let outcome = scene.model().solve_with(scene.analysis(), options);
     let mut trajectory = match outcome {
         Ok(trajectory) => trajectory,
         Err(mut error) => {
@@ -148,6 +150,8 @@ pub fn saved(scene: &str) -> Option<(String, serde_json::Value)> {
     if nodes(parsed.model()) > RUN || !is_small(parsed.analysis()) {
         return None;
     }
-    let trajectory = run::run(parsed.model(), parsed.analysis(), &mut few_steps()).ok()?;
+    let observer = &mut few_steps();
+    let options = run::Options { observer: Some(observer), ..run::Options::default() };
+    let trajectory = parsed.model().solve_with(parsed.analysis(), options).ok()?;
     Some((scene.to_owned(), serde_json::to_value(trajectory.saved?).ok()?))
 }

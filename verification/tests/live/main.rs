@@ -13,7 +13,6 @@ mod scikit_fem;
 mod vtu;
 mod work;
 
-use ancf::run::{Control, run};
 use ancf::trajectory::Trajectory;
 use ancf_check::case::Peer;
 use ancf_verification::peers::{Answer, ask};
@@ -26,7 +25,7 @@ fn both(peer: Peer, text: &str) -> (Trajectory, Answer) {
 
 fn ours(text: &str) -> Trajectory {
     let scene = ancf::scene::parse("live.toml", text).unwrap_or_else(|e| panic!("{e}"));
-    run(scene.model(), scene.analysis(), &mut |_| Control::Continue).unwrap_or_else(|e| panic!("{e}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Where our only probe and theirs are, record by record: (parameter, ours, theirs).

@@ -127,7 +127,8 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
         gave_up = steps > STEPS || progress.newton_iterations * nodes > WORK;
         if gave_up { Control::Stop } else { Control::Continue }
     };
-    let outcome = run::run_from(scene.model(), scene.analysis(), saved, observer);
+    let options = run::Options { start: saved, observer: Some(observer), checkpoints: None };
+    let outcome = scene.model().solve_with(scene.analysis(), options);
     if gave_up {
         return Outcome::TooLong;
     }
