@@ -34,6 +34,8 @@
 //! A scene file says the same in words: [`Scene::load`], then
 //! `scene.model().solve(scene.analysis())`. [`Options`] bring a start, an observer and checkpoints.
 //!
+//! The [`handbook`] says how to choose, what happens when it gets hard, and what a scene can name.
+//!
 //! # Where things are
 //! | module | subject | imports |
 //! |---|---|---|
@@ -165,10 +167,16 @@
 //! ```
 #![warn(missing_docs)]
 
+/// The blocks of README.md are tests, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 pub mod basis;
 pub mod centreline;
 pub mod cost;
 pub mod effect;
+pub mod handbook;
 pub mod lanes;
 pub mod linear;
 pub mod model;

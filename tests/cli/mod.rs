@@ -2,6 +2,7 @@
 
 pub(crate) mod commands;
 mod cost;
+mod documents;
 mod hygiene;
 mod interrupt;
 mod messages;

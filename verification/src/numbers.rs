@@ -21,7 +21,15 @@ use serde::Deserialize;
 use crate::report::short;
 
 /// The documents that are looked through.
-const DOCUMENTS: [&str; 2] = ["README.md", "verification/README.md"];
+const DOCUMENTS: [&str; 7] = [
+    "README.md",
+    "verification/README.md",
+    "src/handbook/motion.md",
+    "src/handbook/mechanisms.md",
+    "src/handbook/choosing.md",
+    "src/handbook/hard.md",
+    "src/handbook/studies.md",
+];
 
 /// `verification/numbers.toml`.
 #[derive(Deserialize)]
