@@ -142,7 +142,8 @@ fn solve(
     let (mut stopped, follows_path) = (false, follows_path(analysis));
     let observer = &mut |progress: &Progress| {
         let control = observer(progress);
-        // Who stops at the end stops nothing. A path may end anywhere.
+        // An observer that says stop after the last step interrupts nothing. Where a path ends is
+        // not known beforehand, so that it is always interrupted.
         stopped |= control == Control::Stop && (follows_path || progress.parameter < progress.target);
         control
     };

@@ -58,7 +58,8 @@ fn transpose(block: Block) -> Block {
 ///
 /// Kept are D⁻¹, by Gauss and Jordan's elimination, whose pivots are those of L D Lᵀ by single
 /// numbers, and the blocks W = D⁻¹ U and Wᵀ right of the diagonal, so that a substitution consists
-/// of products with blocks, none of which but the one with W or Wᵀ waits for the node before.
+/// of products with blocks. Only the product with W or Wᵀ needs the result of the node before; the
+/// others can be computed at any time.
 #[derive(Clone, Debug)]
 pub struct ComplexLdl {
     /// Blocks of a node, the diagonal one included.

@@ -209,9 +209,9 @@ type Block = [Lanes; 4];
 ///
 /// The blocks right of the diagonal hold W = D⁻¹ U, so that a substitution is a product with W or
 /// Wᵀ from node to node: one after the other only as far as it must be, and by whole registers.
-/// Solving with the pivots themselves waits for nothing and is waited for by nothing; with a mass
-/// in the matrix, which bounds its condition, it is a product with D⁻¹, and a substitution executes
-/// three quarters of the instructions.
+/// The solutions with the diagonal blocks D do not depend on each other. Where there is a mass in the
+/// matrix, which bounds its condition, they are products with D⁻¹, which takes a quarter off the
+/// instructions of a substitution.
 #[derive(Clone, Debug)]
 pub struct Ldl {
     /// Blocks of a node, the diagonal one included.

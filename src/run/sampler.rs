@@ -243,7 +243,7 @@ impl<'a> Sampler<'a> {
         settings
     }
 
-    /// The coordinates of coordinates and multipliers.
+    /// Of a vector of all unknowns the coordinates, without the multipliers behind them.
     pub(super) fn coordinates_of<'x>(&self, x: &'x [f64]) -> &'x [f64] {
         &x[..self.system.coordinates()]
     }
