@@ -39,25 +39,27 @@
 //! # Where things are
 //! | module | subject | imports |
 //! |---|---|---|
-//! | [`lanes`] | four numbers side by side, multiply–add | – |
-//! | [`linear`] | block-banded LDLᵀ, real and complex; banded LU, also with constraint rows; bordered sparse LU; inertia | [`lanes`] |
+//! | `lanes` | four numbers side by side, multiply–add | – |
+//! | `linear` | block-banded LDLᵀ, real and complex; banded LU, also with constraint rows; bordered sparse LU; inertia | `lanes` |
 //! | [`centreline`] | stress-free curves | – |
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | – |
 //! | [`model`] | the continuous problem: beams, sections, supports, loads, probes, analyses | [`centreline`], [`basis`], [`system`] |
-//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part of a model that it is | [`lanes`], [`linear`], [`basis`], [`model`], [`system`] |
-//! | [`system`] | coordinates, supports, joints, assembly of parts, sums over effects, inventory | [`lanes`], [`linear`], [`centreline`], [`basis`], [`model`], [`effect`] |
-//! | [`solve`] | Newton, path following, buckling, vibrations, motion | [`lanes`], [`linear`], [`model`], [`effect`], [`system`] |
-//! | [`restart`] | a saved state, from which a motion goes on | [`model`], [`system`], [`solve`] |
-//! | [`trajectory`] | what a run leaves | [`system`], [`solve`], [`restart`] |
-//! | [`run`](mod@run) | one model, one analysis | [`linear`], [`basis`], [`model`], [`effect`], [`system`], [`solve`], [`restart`], [`trajectory`] |
+//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part of a model that it is | `lanes`, `linear`, [`basis`], [`model`], [`system`] |
+//! | [`system`] | coordinates, supports, joints, assembly of parts, sums over effects, inventory | `lanes`, `linear`, [`centreline`], [`basis`], [`model`], [`effect`] |
+//! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `linear`, [`model`], [`effect`], [`system`] |
+//! | [`restart`] | a saved state, from which a motion goes on | [`model`], [`system`], `solve` |
+//! | [`trajectory`] | what a run leaves | [`system`], `solve`, [`restart`] |
+//! | [`run`](mod@run) | one model, one analysis | `linear`, [`basis`], [`model`], [`effect`], [`system`], `solve`, [`restart`], [`trajectory`] |
 //! | [`output`] | files, plots, the report page | [`restart`], [`trajectory`] |
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`model`], [`effect`] |
 //! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`] |
 //! | [`cost`] | what accuracy costs in time: a ladder of settings against a reference | [`centreline`], [`model`], [`trajectory`], [`scene`], [`run`](mod@run), [`output`] |
 //!
-//! A module imports what stands above it, and nothing else but what its row says: a test reads this
-//! table and all sources. Below their place only [`model`] and [`effect`] import, and only
-//! [`system::assembly`] with its error: a part of a model says itself how it is assembled.
+//! `lanes`, `linear` and `solve` are for the crate itself: what a user needs of them stands in
+//! other modules, and they may change with any version. A module imports what stands above it, and
+//! nothing else but what its row says: a test reads this table and all sources. Below their place
+//! only [`model`] and [`effect`] import, and only [`system::assembly`] with its error: a part of a
+//! model says itself how it is assembled.
 //!
 //! # Without the program
 //! The features `cli` and `report`, both on unless they are declined, bring the program `ancf` and
@@ -177,13 +179,16 @@ pub mod centreline;
 pub mod cost;
 pub mod effect;
 pub mod handbook;
+#[doc(hidden)]
 pub mod lanes;
+#[doc(hidden)]
 pub mod linear;
 pub mod model;
 pub mod output;
 pub mod restart;
 pub mod run;
 pub mod scene;
+#[doc(hidden)]
 pub mod solve;
 pub mod sweep;
 pub mod system;

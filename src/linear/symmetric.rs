@@ -208,8 +208,8 @@ type Block = [Lanes; 4];
 /// A = L D Lᵀ without pivoting, D of blocks of 4 × 4, which are D = l d lᵀ in turn.
 ///
 /// The blocks right of the diagonal hold W = D⁻¹ U, so that a substitution is a product with W or
-/// Wᵀ from node to node: one after the other only as far as it must be, and by whole registers.
-/// The solutions with the diagonal blocks D do not depend on each other. Where there is a mass in the
+/// Wᵀ from node to node: one after the other only as far as it must be, and by whole registers. The
+/// solutions with the diagonal blocks D do not depend on each other. Where there is a mass in the
 /// matrix, which bounds its condition, they are products with D⁻¹, which takes a quarter off the
 /// instructions of a substitution.
 #[derive(Clone, Debug)]

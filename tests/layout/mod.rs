@@ -8,18 +8,17 @@ type Imports = BTreeMap<String, BTreeSet<String>>;
 
 /// Modules and what they import, in the order of the table in `src/lib.rs`.
 fn stated(front_page: &str) -> (Vec<String>, Imports) {
-    let links = |cell: &str| -> BTreeSet<String> {
-        let names = cell.split("[`").skip(1).filter_map(|rest| rest.split_once("`]"));
-        names.map(|(name, _)| name.to_owned()).collect()
-    };
+    // Every second part is between two backticks.
+    let named =
+        |cell: &str| -> BTreeSet<String> { cell.split('`').skip(1).step_by(2).map(str::to_owned).collect() };
     let rows = front_page.split_once("| module | subject | imports |").expect("the table").1;
     let rows = rows.lines().skip(2).take_while(|line| line.starts_with("//! |"));
     let (mut order, mut imports) = (Vec::new(), Imports::new());
     for row in rows {
         let cells: Vec<&str> = row.split('|').collect();
         let [_, name, _, depends, _] = cells[..] else { panic!("three cells in {row}") };
-        let name = links(name).pop_first().expect("a module");
-        imports.insert(name.clone(), links(depends));
+        let name = named(name).pop_first().expect("a module");
+        imports.insert(name.clone(), named(depends));
         order.push(name);
     }
     (order, imports)

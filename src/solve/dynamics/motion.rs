@@ -61,8 +61,8 @@ pub struct Rates<'r> {
     pub a: Acceleration<'r>,
 }
 
-/// The acceleration c q + e as a function of the unknowns q: it is evaluated where it is needed, and
-/// no vector holds it.
+/// The acceleration c q + e as a function of the unknowns q: it is evaluated where it is needed,
+/// and no vector holds it.
 #[derive(Clone, Copy, Debug)]
 pub struct Acceleration<'r> {
     /// c \[1/s²\].
