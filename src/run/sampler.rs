@@ -447,27 +447,39 @@ impl<'a> Sampler<'a> {
         self.probes.iter().map(|probe| probe.view.clone()).collect()
     }
 
-    /// Strings that turn back within a cell. Nothing resists such a fold but the string's length,
-    /// so that it may stay where a large step has left it.
+    /// Beams that turn back within a cell. Nothing resists such a fold of a string but its length,
+    /// and in a beam it lies between the points at which bending is summed, so that it may stay
+    /// where a large step has left it.
     fn folds(&self, shapes: &[Shape]) -> Vec<String> {
-        let strings = shapes.iter().zip(self.system.beams()).zip(&self.model.beams);
-        let strings = strings.filter(|(_, beam)| beam.section.bending_stiffness.is_none());
-        let folds = strings.filter_map(|((shape, part), _)| {
+        let beams = shapes.iter().zip(self.system.beams()).zip(&self.model.beams);
+        let folds = beams.filter_map(|((shape, part), beam)| {
+            let is_string = beam.section.bending_stiffness.is_none();
             let s = part.basis.nodes().windows(2).find_map(|cell| match *cell {
                 [start, end] => {
                     let from = shape.s.partition_point(|s| *s < start).saturating_sub(1);
                     let to = (shape.s.partition_point(|s| *s <= end) + 1).min(shape.s.len());
-                    let angles = shape.angle.get(from..to)?.iter();
-                    let (low, high) =
-                        angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
-                    (high - low > FRAC_PI_2).then_some(start)
+                    let angles = shape.angle.get(from..to)?;
+                    let turn = if is_string {
+                        let (low, high) = angles
+                            .iter()
+                            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+                        high - low
+                    } else {
+                        // However much a beam bends, it does so from one point to the next little.
+                        angles.windows(2).fold(0.0_f64, |turn, pair| turn.max((pair[1] - pair[0]).abs()))
+                    };
+                    (turn > FRAC_PI_2).then_some(start)
                 }
                 _ => None,
             })?;
+            let (what, advice) = if is_string {
+                ("string", "begin from an arc of its length, reach the load in smaller `steps`, or use more nodes")
+            } else {
+                ("beam", "reach the load in smaller `steps`, begin nearer to the equilibrium, or use other nodes")
+            };
             Some(format!(
-                "string `{}` turns by more than a right angle within its cell from s = {s:.4} m: it may have folded back, \
-                 which is no equilibrium of a real string; begin from an arc of its length, reach the load in smaller `steps`, \
-                 or use more nodes",
+                "{what} `{}` turns by more than a right angle within its cell from s = {s:.4} m: it may have folded back, \
+                 which is no equilibrium of a real {what}; {advice}",
                 shape.beam
             ))
         });

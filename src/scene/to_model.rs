@@ -212,6 +212,21 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
         if let (None, Some(who)) = (beam.section.mass_per_length, mass) {
             lacks("mass", who, "mass_per_length", ["density", "area"])?;
         }
+        let bedded = !file.effect.foundation.is_empty();
+        if beam.section.bending_stiffness.is_none()
+            && !bedded
+            && matches!(analysis, Analysis::Buckling { .. })
+        {
+            return Err(Fault::new(
+                built.name.span(),
+                format!(
+                    "beam `{}` has no bending stiffness: it resists nothing across it before it is loaded, and \
+                     {kind} starts from the unloaded structure",
+                    beam.name
+                ),
+            )
+            .help("give `bending_stiffness`, use `[analysis.static]` with `arc_length`, or a spring in place of the string"));
+        }
     }
     Ok(())
 }

@@ -11,7 +11,7 @@
 //! An effect whose tangent extrapolates its resultants ([`crate::effect`]) gives K₀ + λ K₁ when it
 //! is asked for the tangent one increment λ u ahead.
 
-use super::eigen::{EigenError, Pencil, largest_reciprocals};
+use super::eigen::{EigenError, Pencil, largest_reciprocals, round_off};
 use super::equilibrium::Equilibrium;
 use crate::effect::{Earlier, Workspace};
 use crate::system::System;
@@ -37,6 +37,9 @@ const FAR_AHEAD: f64 = 1e18;
 /// may leave.
 const ROUND_OFF: f64 = 1e-11;
 
+/// Standard deviations of its round-off that a reciprocal must have to be none.
+const CERTAIN: f64 = 10.0;
+
 /// The `count` lowest positive critical load factors.
 ///
 /// # Errors
@@ -50,11 +53,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let (mut negative, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     equilibrium.linearize(0.0, &x, None, &mut negative, &mut rate)?;
     equilibrium.solve(0.0, &mut rate, true);
-    let size = equilibrium.size(&rate);
     let n = system.coordinates();
-    if size == 0.0 && rate[n..].iter().all(|force| *force == 0.0) {
-        return Ok(Modes::default());
-    }
     let reference = system.reference();
     let mut workspace = Workspace::default();
     let mut tangent = |load: f64, increment: Option<&[f64]>, multipliers: &[f64]| {
@@ -80,7 +79,12 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let mut load = vec![0.0; n];
     system.add_load_rate(1.0, reference, &mut load);
     let least = ROUND_OFF * system.norm(&load) / system.stiffness();
-    let real = pairs.reciprocals.iter().take_while(|reciprocal| **reciprocal > least).count();
+    // Of 1/λ = φᵀ B φ with φᵀ A φ = 1, by the round-off of both matrices.
+    let known = |(reciprocal, shape): (&f64, &Vec<f64>)| {
+        let deviation = round_off(&geometric, shape) + reciprocal * round_off(&stiffness, shape);
+        *reciprocal > least.max(CERTAIN * deviation)
+    };
+    let real = pairs.reciprocals.iter().zip(&pairs.vectors).take_while(|pair| known(*pair)).count();
     pairs.reciprocals.truncate(real);
     pairs.vectors.truncate(real);
     let shapes = pairs.vectors.into_iter().map(|mut v| {

@@ -129,3 +129,12 @@ pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, E
 pub(super) fn dot(u: &[f64], v: &[f64]) -> f64 {
     u.iter().zip(v).map(|(u, v)| u * v).sum()
 }
+
+/// Standard deviation of φᵀ K φ if the entries of K carry independent round-off.
+pub(super) fn round_off(k: &Matrix, shape: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (i, a) in shape.iter().enumerate() {
+        sum += k.columns(i).map(|j| (k.get(i, j) * a * shape[j]).powi(2)).sum::<f64>();
+    }
+    f64::EPSILON * sum.sqrt()
+}

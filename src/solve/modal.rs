@@ -11,7 +11,7 @@
 //! found (Rayleigh and Ritz). With 10 000 elements this leaves 1e-6 to 1e-5 of the first frequency
 //! of a clamped beam, where the matrix alone leaves 5e-2. What cannot be told from zero is zero.
 
-use super::eigen::{EigenError, Pencil, dot, largest_reciprocals};
+use super::eigen::{EigenError, Pencil, dot, largest_reciprocals, round_off};
 use crate::effect::{InternalVariables, Workspace};
 use crate::linear::Matrix;
 use crate::system::System;
@@ -168,15 +168,6 @@ fn point_up(shape: &mut [f64]) {
 /// Largest change of a gradient.
 fn slope(shape: &[f64]) -> f64 {
     shape.chunks_exact(4).fold(0.0, |largest, node| node[2].hypot(node[3]).max(largest))
-}
-
-/// Standard deviation of φᵀ K φ if the entries of K carry independent round-off.
-fn round_off(k: &Matrix, shape: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for (i, a) in shape.iter().enumerate() {
-        sum += k.columns(i).map(|j| (k.get(i, j) * a * shape[j]).powi(2)).sum::<f64>();
-    }
-    f64::EPSILON * sum.sqrt()
 }
 
 /// ω² \[1/s²\] that round-off gives to a translation, which has none.

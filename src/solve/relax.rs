@@ -61,6 +61,13 @@ pub fn relax(
 ) -> Result<(), Failure> {
     let n = equilibrium.system().coordinates();
     let mut increment = vec![0.0; x.len()];
+    // Where supports move together, all moves with them: alone they would fold the cells beside
+    // them back, which nothing unfolds.
+    let shared = equilibrium.system().shared_move(load, &x[..n]);
+    for node in x[..n].chunks_exact_mut(4) {
+        node[0] += shared[0];
+        node[1] += shared[1];
+    }
     equilibrium.system().supports().impose(load, &mut x[..n]);
     let weights = equilibrium.system().weights();
     let (mut sigma, mut first) = (0.0, 0.0);

@@ -129,6 +129,20 @@ impl Constraint {
         Self { fields, places, row: Row::Angle(angle) }
     }
 
+    /// Of a support that holds a component of a position: the axis, and how far it is in `q` from
+    /// its value at load factor `load` \[m\].
+    pub fn position_change(&self, load: f64, q: &[f64]) -> Option<(usize, f64)> {
+        match (&self.row, &self.fields[..]) {
+            (Row::Position { axis, value }, [field]) => Some((*axis, value.at(load) - field.at(q)[*axis])),
+            _ => None,
+        }
+    }
+
+    /// Whether it ties a single point to a line that stands still.
+    pub fn stands_on_the_ground(&self) -> bool {
+        matches!((&self.row, &self.fields[..]), (Row::Joint { .. }, [_]))
+    }
+
     /// Sets what the sum of a joint is.
     pub fn hold(&mut self, held: f64) {
         if let Row::Joint { value, .. } = &mut self.row {

@@ -17,6 +17,26 @@ impl System {
     }
 }
 
+impl System {
+    /// The translation that all supports share where they move from the state `q` to their places
+    /// at load factor `load` \[m\]: per axis the smallest of the changes that they prescribe, and
+    /// none where they part or a slider's line stands still.
+    pub fn shared_move(&self, load: f64, q: &[f64]) -> [f64; 2] {
+        if self.constraints.iter().any(Constraint::stands_on_the_ground) {
+            return [0.0; 2];
+        }
+        let at_nodes = self.supports.position_changes(load, q);
+        let between = self.constraints.iter().filter_map(|row| row.position_change(load, q));
+        let mut shared: [Option<f64>; 2] = [None; 2];
+        for (axis, change) in at_nodes.chain(between) {
+            shared[axis] = Some(shared[axis].map_or(change, |least: f64| {
+                if least * change <= 0.0 { 0.0 } else { least.signum() * least.abs().min(change.abs()) }
+            }));
+        }
+        shared.map(Option::unwrap_or_default)
+    }
+}
+
 /// Eliminated supports and constraint rows.
 pub(super) fn hold(
     system: &System,

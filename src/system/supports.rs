@@ -144,6 +144,24 @@ impl Supports {
         }
     }
 
+    /// Per held component of a position its axis, and how far it is in `q` from its value at load
+    /// factor `load` \[m\].
+    pub fn position_changes<'a>(
+        &'a self,
+        load: f64,
+        q: &'a [f64],
+    ) -> impl Iterator<Item = (usize, f64)> + 'a {
+        self.held.iter().flat_map(move |HeldPair { pair, hold }| {
+            let components = match hold {
+                Hold::Position(components) => components.each_ref(),
+                Hold::Gradient { .. } | Hold::Direction(_) => [&None; 2],
+            };
+            [0, 1].into_iter().filter_map(move |axis| {
+                components[axis].as_ref().map(|value| (axis, value.at(load) - q[2 * pair + axis]))
+            })
+        })
+    }
+
     /// What follows no law holds what it holds in the state `q` of a system of this `length`.
     pub fn hold_as_in(&mut self, q: &[f64], length: f64) {
         for HeldPair { pair, hold } in &mut self.held {

@@ -7,6 +7,7 @@ mod arm;
 mod balances;
 mod basis;
 mod breaks;
+mod buckling;
 mod buoyancy;
 mod contact;
 mod derivatives;

@@ -1,0 +1,91 @@
+//! Critical loads of structures of several beams, and of what has none.
+
+use std::f64::consts::PI;
+
+use ancf::scene::parse;
+use ancf::trajectory::Trajectory;
+use proptest::prelude::*;
+
+/// First solution of tan z = z, squared: the critical load of a column that is clamped at one end and
+/// pinned at the other, in EI/L².
+const CLAMPED_PINNED: f64 = 20.190_728_556_426_63;
+
+fn solve(text: &str) -> Trajectory {
+    let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error:?}\n{text}"))
+}
+
+/// A column of unit length and bending stiffness in the direction `turn`, of as many beams as `cells`
+/// has numbers of elements, one welded to the next; it is clamped at its start, pinned at its end, and
+/// would shrink by `strain`.
+fn column(cells: &[usize], axial_stiffness: f64, turn: f64, strain: f64) -> String {
+    let (sine, cosine) = turn.sin_cos();
+    let at = |k: usize| {
+        let s = k as f64 / cells.len() as f64;
+        format!("[{:?}, {:?}]", s * cosine, s * sine)
+    };
+    let mut text = String::from("[analysis.buckling]\ncount = 1\n");
+    for (k, elements) in cells.iter().enumerate() {
+        text += &format!(
+            "[beam.b{k}]\nstart = {}\nend = {}\naxial_stiffness = {axial_stiffness:e}\nbending_stiffness = 1.0\n\
+             basis.ancf.elements = {elements}\n[[effect.actuation]]\nbeam = \"b{k}\"\nstrain = {strain:?}\n",
+            at(k),
+            at(k + 1)
+        );
+        if k > 0 {
+            text += &format!(
+                "[[joint]]\ntype = \"weld\"\nfirst = {{ beam = \"b{}\", at = \"end\" }}\nsecond = {{ beam = \"b{k}\", at = \"start\" }}\n",
+                k - 1
+            );
+        }
+    }
+    let support = |beam: usize, at: &str, fix: &str| {
+        format!("[[support]]\nbeam = \"b{beam}\"\nat = \"{at}\"\nfix = {fix}\n")
+    };
+    text + &support(0, "start", r#"["x", "y", "angle"]"#) + &support(cells.len() - 1, "end", r#"["x", "y"]"#)
+}
+
+proptest! {
+    #![proptest_config(super::cases(24))]
+
+    /// Held at its length, a column that would shrink is pulled, and buckles under no part of the
+    /// load, however stiff it is and however fine its mesh; one that would grow buckles by Euler's
+    /// formula.
+    #[test]
+    fn a_welded_column_buckles_where_it_is_pressed(
+        cells in proptest::collection::vec(4..30_usize, 1..4),
+        log in 2.0..10.0_f64,
+        turn in prop_oneof![Just(0.0), -PI..PI],
+        strain in 0.001..0.01_f64,
+    ) {
+        let axial_stiffness = 10f64.powf(log);
+        let pulled = solve(&column(&cells, axial_stiffness, turn, -strain));
+        prop_assert!(pulled.load_factors.is_empty(), "{:?}", pulled.load_factors);
+        let pressed = solve(&column(&cells, axial_stiffness, turn, strain));
+        let expected = CLAMPED_PINNED / (axial_stiffness * strain);
+        // Four elements, the fewest, err by 0.1 %.
+        prop_assert!((pressed.load_factors[0] / expected - 1.0).abs() < 2e-3, "{:?} {expected}", pressed.load_factors);
+        prop_assert!(pressed.warnings.is_empty(), "{:?}", pressed.warnings);
+    }
+}
+
+/// A string has no stiffness across it before it is loaded, from which linear buckling would start;
+/// one that rests on a foundation has.
+#[test]
+fn strings_have_no_critical_load() {
+    let text = |turn: f64, more: &str| {
+        let (sine, cosine) = turn.sin_cos();
+        format!(
+            "[beam.cable]\nstart = [0, 0]\nend = [{cosine:?}, {sine:?}]\naxial_stiffness = 100\nmass_per_length = 1\nbasis.ancf.elements = 6\n\
+             [[support]]\nbeam = \"cable\"\nat = \"start\"\nfix = [\"x\", \"y\"]\n\
+             [effect.gravity]\nacceleration = [0, -9.81]\n{more}[analysis.buckling]\ncount = 1\n"
+        )
+    };
+    for turn in [0.0, 0.4, 1.6, -2.5] {
+        let error =
+            parse("scene.toml", &text(turn, "")).expect_err("a string that is asked for its buckling");
+        assert!(error.to_string().contains("no bending stiffness"), "{error}");
+    }
+    let bedded = "[[effect.foundation]]\nbeam = \"cable\"\nstiffness = [10, 10]\n";
+    assert!(parse("scene.toml", &text(0.4, bedded)).is_ok());
+}
