@@ -49,13 +49,13 @@ pub struct Static {
 /// Settings of arc-length continuation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArcLength {
-    /// Stop when the load factor first reaches this value.
+    /// Stop where the load factor first reaches this value.
     pub until_load: Option<f64>,
     /// Stop after this many points on the path.
     pub max_points: usize,
     /// Longest step along the path, as a fraction of the beam's length.
     pub max_step: Option<f64>,
-    /// Stop when a probe's coordinate reaches a value.
+    /// Stop where a probe's coordinate first reaches a value.
     pub until_probe: Option<ProbeTarget>,
 }
 

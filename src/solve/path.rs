@@ -95,6 +95,9 @@ const SURE_TURN: f64 = 0.05;
 const LONG_STEP: f64 = 0.1;
 const STRAIGHT: f64 = 0.1;
 const BETWEEN: u32 = 5;
+/// Most trials for the length of a step that ends where it is told to: halving alone needs as many
+/// as a number has digits.
+const MOST_TRIALS: usize = 60;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
 /// A step of this size in which stability is lost is believed. The knee of an imperfect path is
@@ -569,6 +572,49 @@ impl<'e, 'a> Path<'e, 'a> {
             .fold((0, 0.0), |worst, (i, d)| if d > worst.1 || d.is_nan() { (i, d) } else { worst })
             .0;
         self.equilibrium.system().place_of(4 * node)
+    }
+
+    /// Takes the last step anew, so much shorter that `miss` of its end vanishes to within `near`;
+    /// it must have opposite signs at both ends of the step (the secant method with halved ends,
+    /// known as Illinois).
+    ///
+    /// # Errors
+    /// [`NoStep`] where a shorter step does not converge.
+    pub fn end_where(&mut self, miss: impl Fn(&Point) -> f64, near: f64) -> Result<&Point, NoStep> {
+        let [.., before, point] = &self.points[..] else { return Ok(self.last()) };
+        let mut low = (0.0, miss(before));
+        let mut high = (self.history.last().map_or(0.0, |record| record.step), miss(point));
+        for _ in 0..MOST_TRIALS {
+            let width = high.0 - low.0;
+            if miss(self.last()).abs() <= near || width.abs() <= f64::EPSILON * high.0.abs().max(low.0.abs())
+            {
+                break;
+            }
+            let step = (low.0 - low.1 * width / (high.1 - low.1)).clamp(low.0.min(high.0), low.0.max(high.0));
+            let found = miss(self.retake(step)?);
+            if (found < 0.0) == (high.1 < 0.0) {
+                low.1 *= 0.5;
+            } else {
+                low = high;
+            }
+            high = (step, found);
+        }
+        Ok(self.last())
+    }
+
+    /// Replaces the last step by one of length `step`.
+    fn retake(&mut self, step: f64) -> Result<&Point, NoStep> {
+        self.points.pop();
+        self.history.pop();
+        let parameter = self.last().parameter + step;
+        let predicted = self.predict(parameter);
+        match self.correct(predicted, parameter, step) {
+            Ok((point, _)) => {
+                self.points.push(point);
+                Ok(self.last())
+            }
+            Err((failure, at)) => Err(NoStep { load: self.last().load, step, failure, at }),
+        }
     }
 
     /// The equilibrium at load factor `load`, starting from the state between the last two points

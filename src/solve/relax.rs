@@ -37,17 +37,8 @@ const SETTLED: f64 = 1e-3;
 /// Most iterations.
 const ITERATIONS: usize = 2000;
 
-/// Whereto the creeping motion may lead.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rest {
-    /// Any equilibrium: σ follows the increments alone.
-    Any,
-    /// A minimum of the energy only: K + σ D is kept definite, so that every increment leads
-    /// downhill.
-    Stable,
-}
-
-/// Relaxes `x` to the equilibrium at load factor `load`.
+/// Relaxes `x` to an equilibrium at load factor `load`: a minimum of the energy, or a crest on which
+/// it begins. K + σ D is kept definite, so that every increment leads downhill.
 ///
 /// # Errors
 /// [`Failure`] where it does not come to rest.
@@ -55,7 +46,6 @@ pub fn relax(
     equilibrium: &mut Equilibrium<'_>,
     load: f64,
     x: &mut [f64],
-    rest: Rest,
     settings: &Settings,
     record: &mut Iterations,
 ) -> Result<(), Failure> {
@@ -70,7 +60,7 @@ pub fn relax(
     }
     equilibrium.system().supports().impose(load, &mut x[..n]);
     let weights = equilibrium.system().weights();
-    let (mut sigma, mut first) = (0.0, 0.0);
+    let (mut sigma, mut first, mut on_a_crest) = (0.0, 0.0, false);
     let (mut size, mut before, mut change) = (f64::INFINITY, x.to_vec(), vec![0.0; x.len()]);
     for _ in 0..ITERATIONS {
         let residual = equilibrium.residual(load, x, &mut increment);
@@ -91,11 +81,9 @@ pub fn relax(
         let shift = if sigma < NONE { 0.0 } else { sigma };
         let earlier = Earlier { q: &before, increment: &change };
         match equilibrium.linearize_shifted(load, x, earlier, (shift, &weights), &mut increment) {
-            Ok(())
-                if rest == Rest::Stable
-                    && equilibrium.unstable_directions().is_some_and(|count| count > 0) =>
-            {
+            Ok(()) if equilibrium.unstable_directions().is_some_and(|count| count > 0) => {
                 sigma = sigma.max(NONE) * LIMITS.1;
+                on_a_crest = true;
                 continue;
             }
             Ok(()) => {}
@@ -119,7 +107,9 @@ pub fn relax(
         change.iter_mut().zip(&increment).for_each(|(change, d)| *change = part * d);
         x.iter_mut().zip(&change).for_each(|(x, d)| *x += d);
         equilibrium.follow_windings(x);
-        if size <= settings.tolerance && sigma < SETTLED * first && residual <= settings.residual_tolerance {
+        // On a crest σ stays as large as what there is unstable.
+        let settled = sigma < SETTLED * first || std::mem::take(&mut on_a_crest);
+        if size <= settings.tolerance && settled && residual <= settings.residual_tolerance {
             return Ok(());
         }
     }

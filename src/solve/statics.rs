@@ -3,8 +3,8 @@
 
 use super::equilibrium::Equilibrium;
 use super::newton::{Iterations, Settings};
-use super::path::{NoStep, Parameter, Path};
-use super::relax::{Rest, relax};
+use super::path::{NoStep, Parameter, Path, Point};
+use super::relax::relax;
 use crate::effect::InternalVariables;
 use crate::model::{ArcLength, Static};
 use crate::solve::{Statistics, StepRecord};
@@ -18,6 +18,9 @@ const LAST_INCREMENT: f64 = 1e-6;
 /// Largest push that takes a structure from a crest of its energy: positions in beam lengths,
 /// gradients as they are.
 const PUSH: f64 = 1e-3;
+
+/// By how much a path may miss its target, of the load factor wanted or of a beam length.
+const AT_TARGET: f64 = 1e-12;
 
 /// What a static analysis found.
 #[derive(Clone, Debug, Default)]
@@ -63,6 +66,52 @@ pub struct Target<'a> {
     pub arc: &'a ArcLength,
     /// The probe whose coordinate ends it.
     pub probe: Option<(View, usize, f64)>,
+}
+
+impl Target<'_> {
+    /// What may end the path; `n` is the number of coordinates.
+    fn misses(&self, n: usize) -> Vec<Miss<'_>> {
+        let load = self.arc.until_load.map(Miss::Load);
+        let probe = self.probe.as_ref().map(|(view, axis, value)| Miss::Probe(view, *axis, *value, n));
+        load.into_iter().chain(probe).collect()
+    }
+}
+
+/// What ends a path where it vanishes.
+enum Miss<'a> {
+    /// The load factor, against this one.
+    Load(f64),
+    /// Of a probe the component of the position \[m\], against this value; and the number of
+    /// coordinates.
+    Probe(&'a View, usize, f64, usize),
+}
+
+impl Miss<'_> {
+    fn of(&self, point: &Point) -> f64 {
+        match self {
+            Self::Load(until) => point.load - until,
+            Self::Probe(view, axis, value, n) => view.fields(&point.x[..*n]).position[*axis] - value,
+        }
+    }
+
+    /// Whether it vanishes between two points.
+    fn is_reached(&self, before: &Point, after: &Point) -> bool {
+        (self.of(before) < 0.0) != (self.of(after) < 0.0) || self.of(after) == 0.0
+    }
+
+    /// Ends the path there.
+    fn end(&self, path: &mut Path<'_, '_>, system: &System) -> Result<Point, NoStep> {
+        let near = match self {
+            Self::Load(until) => AT_TARGET * until.abs(),
+            Self::Probe(..) => AT_TARGET * system.length(),
+        };
+        let mut point = path.end_where(|point| self.of(point), near)?.clone();
+        if let Self::Load(until) = self {
+            // That which is missing to the last digit leaves the equilibrium what it is.
+            point.load = *until;
+        }
+        Ok(point)
+    }
 }
 
 /// Whether to go on.
@@ -152,11 +201,11 @@ fn relaxed(
     for part in 1..=parts {
         let load = part as f64 / parts as f64;
         let mut record = Iterations::default();
-        let mut outcome = relax(equilibrium, load, &mut x, Rest::Any, &newton, &mut record);
+        let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
         if outcome.is_ok() && unstable(equilibrium, load, &x) > 0 {
             // On a crest, such as a pendulum that stands on its head.
             push(equilibrium, &mut x);
-            outcome = relax(equilibrium, load, &mut x, Rest::Stable, &newton, &mut record);
+            outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
             let after = unstable(equilibrium, load, &x);
             if outcome.is_ok() && after > before {
                 solution.events.push(Event { load, before, after });
@@ -230,7 +279,8 @@ fn along_arc(
     solution: &mut Solution,
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
-    let n = equilibrium.system().coordinates();
+    let system = equilibrium.system();
+    let n = system.coordinates();
     let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
     let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05))?;
     solution.record(path.equilibrium, 0.0, &path.last().x);
@@ -256,22 +306,25 @@ fn along_arc(
                     };
                     solution.events.push(Event { load, before, after });
                 }
-                let load_reached = target.arc.until_load.is_some_and(|until| {
-                    (previous.load < until) != (point.load < until) || point.load == until
-                });
-                let probe_reached = target.probe.as_ref().is_some_and(|(view, axis, value)| {
-                    let at = |x: &[f64]| view.fields(&x[..n]).position[*axis];
-                    (at(&previous.x) < *value) != (at(&point.x) < *value)
-                });
-                let end = if load_reached {
-                    target.arc.until_load.and_then(|load| path.between(load))
-                } else {
-                    None
+                // Of two targets within a step the one that comes first.
+                let (mut last, mut reached) = (Ok(point), false);
+                for miss in target.misses(n) {
+                    if let Ok(point) = &last
+                        && miss.is_reached(&previous, point)
+                    {
+                        (last, reached) = (miss.end(&mut path, system), true);
+                    }
+                }
+                let point = match last {
+                    Ok(point) => point,
+                    Err(stuck) => {
+                        (outcome, ends) = (Err(stuck), true);
+                        break;
+                    }
                 };
-                let point = end.unwrap_or(point);
                 solution.record(path.equilibrium, point.load, &point.x);
                 let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
-                if load_reached || probe_reached || !go_on {
+                if reached || !go_on {
                     ends = true;
                     break;
                 }

@@ -366,6 +366,53 @@ fn mechanisms_that_nothing_holds_are_refused() {
     assert!((x - rods[0][0] - rods[1][0]).hypot(y - rods[0][1] - rods[1][1]) < 2e-3, "{x} {y}");
 }
 
+/// A path ends where it is told to, however long its last step would have been: at a load factor, or
+/// where a probe is, whichever comes first.
+#[test]
+fn a_path_ends_where_its_target_is() {
+    for (stiffness, cells) in [("1e4", 4), ("1.66e8", 9)] {
+        for until in [
+            "until_load = 1.24",
+            "until_probe = { probe = 'tip', x = 1.1 }",
+            "until_load = 1.24\nuntil_probe = { probe = 'tip', x = 1.1 }",
+        ] {
+            let section = format!("axial_stiffness = {stiffness}\nbending_stiffness = 0.481");
+            let basis = format!("{{ ancf = {{ elements = {cells} }} }}");
+            let found = solve(
+                &(beam("a", [[0.0, 0.0], [0.5, -0.2]], &section, &basis)
+                    + &beam("b", [[0.5, -0.2], [0.935, -0.355]], &section, &basis)
+                    + &joint("weld", ("a", "'end'"), ("b", "'start'"))
+                    + "[[support]]\nbeam = 'a'\nat = 'start'\nfix = ['x', 'y', 'angle']\nmove = { x = 0.173 }\n"
+                    + "[[effect.spring]]\nbeam = 'b'\nat = 0.2\nanchor = [0.294, 0.0263]\nstiffness = 0.385\n"
+                    + &probe("b")
+                    + "[analysis.static.arc_length]\n"
+                    + until),
+            );
+            let (load, x) = (*found.parameter.last().expect("a point"), tip(&found)[0]);
+            if until.contains("probe") {
+                assert!((x - 1.1).abs() < 1e-11 && load < 1.2, "{until}: {x} at {load}");
+            } else {
+                assert_eq!(load, 1.24);
+            }
+            // The same equilibrium as by load steps to that load.
+            let straight = solve(
+                &(beam("a", [[0.0, 0.0], [0.5, -0.2]], &section, &basis)
+                    + &beam("b", [[0.5, -0.2], [0.935, -0.355]], &section, &basis)
+                    + &joint("weld", ("a", "'end'"), ("b", "'start'"))
+                    + &format!(
+                        "[[support]]\nbeam = 'a'\nat = 'start'\nfix = ['x', 'y', 'angle']\nmove = {{ x = {:e} }}\n",
+                        0.173 * load
+                    )
+                    + "[[effect.spring]]\nbeam = 'b'\nat = 0.2\nanchor = [0.294, 0.0263]\nstiffness = 0.385\n"
+                    + &probe("b")
+                    + "[analysis.static]\n"),
+            );
+            let ([x, y], [a, b]) = (tip(&found), tip(&straight));
+            assert!((x - a).hypot(y - b) < 1e-8, "{until}: ({x}, {y}), not ({a}, {b})");
+        }
+    }
+}
+
 /// A rod on a hinge that is carried away hangs from where the hinge is then, however far that is
 /// beyond the cells beside it.
 #[test]

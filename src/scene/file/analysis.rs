@@ -38,14 +38,14 @@ pub struct StaticTable {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ArcLengthTable {
-    /// Stop when the load factor first reaches this value.
+    /// Stop where the load factor first reaches this value.
     pub until_load: Option<Quantity<Ratio>>,
     /// Stop after this many points on the path; 1000 when left out. A path that has not reached its
     /// `until` by then is incomplete.
     pub max_points: Option<Located<Count<1>>>,
     /// Longest step, as a fraction of the beam's length.
     pub max_step: Option<Quantity<Ratio, Positive>>,
-    /// Stop when a probe's coordinate reaches a value.
+    /// Stop where a probe's coordinate first reaches a value.
     pub until_probe: Option<Located<UntilProbeTable>>,
 }
 
