@@ -9,17 +9,25 @@
 //! ```
 //!
 //! is the energy that bending costs beyond its own: by so much a beam is too stiff.
+//!
+//! A string may lock in another way: where its cells are too few for the shape that it wants, it is
+//! held by tensions and thrusts of neighbouring points that cancel, far larger than the force that
+//! the balance of one side of a cut gives. Their energy tells it.
 
 use crate::basis::BasisTable;
 use crate::effect::curvature;
 use crate::model::{GaussPoints, Model, StrainMeasure};
 use crate::system::{Fields, System, SystemError};
+use crate::trajectory::Shape;
 use nalgebra::Vector2;
 
 /// Part of the bending energy beyond which it is said.
 const TOLERATED: f64 = 0.005;
 /// States that bend less, per energy of the one that bends most, are not looked at.
 const STRAIGHT: f64 = 0.1;
+/// Energy of a string's stretch, per energy of the forces that its cuts balance, beyond which most of
+/// it holds itself.
+const JAMMED: f64 = 10.0;
 /// Part of a beam's whole elastic energy below which nothing depends on it.
 const IRRELEVANT: f64 = 1e-3;
 
@@ -47,18 +55,19 @@ struct Watched {
 }
 
 impl Locking {
-    /// Watches all beams but those that resist stretch at no more points than a cell can follow.
+    /// Watches strings, and all beams but those that resist stretch at no more points than a cell
+    /// can follow.
     pub fn new(model: &Model, system: &System) -> Result<Self, SystemError> {
         let mut beams = Vec::new();
         for (beam, part) in model.beams.iter().zip(system.beams()) {
             let points = beam.gauss_points;
-            let (Some(axial), Some(bending)) = (beam.section.axial_stiffness, beam.section.bending_stiffness)
-            else {
-                continue;
-            };
-            if points.stretch <= if points.lobatto { 3 } else { 2 } {
+            let Some(axial) = beam.section.axial_stiffness else { continue };
+            // Resisted at no more points than a cell can follow.
+            let follows = points.stretch <= if points.lobatto { 3 } else { 2 };
+            if beam.section.bending_stiffness.is_some() && follows {
                 continue;
             }
+            let bending = beam.section.bending_stiffness.unwrap_or_default();
             let table = |rule, orders: &[usize]| {
                 part.basis.table(rule, orders).map_err(|e| SystemError::basis(&part.name, e))
             };
@@ -85,6 +94,28 @@ impl Locking {
         for beam in &mut self.beams {
             beam.seen.push(beam.energies(q));
         }
+    }
+
+    /// Of strings that hold themselves in the last state, whose section forces are in `shapes`, with
+    /// an energy that counts against the work `scale` of the loads \[J\].
+    pub fn jammed(&self, shapes: &[Shape], scale: f64) -> impl Iterator<Item = String> {
+        let strings = self.beams.iter().filter(|beam| beam.stiffness[1] == 0.0);
+        strings.filter_map(move |beam| {
+            let shape = shapes.iter().find(|shape| shape.beam == beam.name)?;
+            let stretch = beam.seen.last()?[1];
+            let pieces = shape.s.windows(2).zip(shape.axial_force.windows(2));
+            let squares = pieces.map(|(s, n)| 0.5 * (s[1] - s[0]) * (n[0] * n[0] + n[1] * n[1]));
+            let balanced = 0.5 * squares.sum::<f64>() / beam.stiffness[0];
+            (stretch > JAMMED * balanced && stretch > TOLERATED * scale).then(|| {
+                format!(
+                    "string `{}` holds itself: its stretch takes {:.1} % of the work of the loads, {:.0e} times what its section forces account \
+                     for, so that its cells are too few for the shape; use more elements or nodes, or a smaller `axial_stiffness`",
+                    beam.name,
+                    100.0 * stretch / scale,
+                    stretch / balanced
+                )
+            })
+        })
     }
 
     /// What there is to say.
@@ -157,6 +188,9 @@ impl Watched {
     }
 
     fn warning(&self) -> Option<String> {
+        if self.stiffness[1] == 0.0 {
+            return None;
+        }
         let most = self.seen.iter().fold(0.0_f64, |most, [bend, ..]| most.max(*bend));
         let bent = self.seen.iter().filter(|[bend, ..]| *bend > STRAIGHT * most);
         let relevant = bent.filter(|[bend, stretch, locked]| *locked > IRRELEVANT * (bend + stretch));

@@ -412,6 +412,8 @@ impl<'a> Sampler<'a> {
             trajectory.last = self.loaded(self.coordinates_of(x), &actions);
         }
         trajectory.warnings.extend(self.folds(&trajectory.last));
+        let work = trajectory.energy.last().map_or(0.0, |energy| energy.potential.abs());
+        trajectory.warnings.extend(locking.jammed(&trajectory.last, work));
         trajectory.warnings.extend(locking.warnings());
         trajectory.history = solution.history.clone();
         trajectory.statistics = solution.statistics;

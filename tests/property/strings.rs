@@ -120,3 +120,29 @@ fn a_folded_string_is_named() {
         assert!(symmetric || steps.is_none(), "x = {}", middle.x);
     }
 }
+
+/// A string of few uneven cells that should fold up to its supports' line holds itself in another
+/// shape, by thrusts of a thousand newtons that a load of hundredths cannot cause: it is told. A
+/// cable that hangs between its supports is not.
+#[test]
+fn strings_that_hold_themselves_are_told() {
+    let string = |length: f64, young: &str, nodes: &str, value: [f64; 2], ends: [&str; 2]| {
+        let text = format!(
+            "[beam.a]\nstart = [0, 0]\nend = [{length:?}, 0]\naxial_stiffness = {young}\nmass_per_length = 1\nbasis.ancf.{nodes}\n\
+             [[support]]\nbeam = \"a\"\nat = \"start\"\nfix = {}\n[[support]]\nbeam = \"a\"\nat = \"end\"\nfix = {}\n\
+             [[effect.distributed_force]]\nbeam = \"a\"\nvalue = {value:?}\n[analysis.static]\n",
+            ends[0], ends[1]
+        );
+        let scene = ancf::scene::parse("string.toml", &text).expect("a legal scene");
+        scene.model().solve(scene.analysis()).expect("an equilibrium").warnings
+    };
+    let both = r#"["x", "y"]"#;
+    let nodes = "nodes = [0.0, 0.1, 0.3, 0.4, 0.5, 0.6, 0.8]";
+    let warnings = string(0.8, "2.5e8", nodes, [-0.003, 0.07], [both, r#"["y"]"#]);
+    assert!(warnings.iter().any(|warning| warning.contains("holds itself")), "{warnings:?}");
+    for (stiffness, elements) in [("1e3", 4), ("1e5", 10), ("2.5e8", 6), ("2.5e8", 40)] {
+        let warnings =
+            string(0.8, stiffness, &format!("elements = {elements}"), [-0.003, 0.07], [both, both]);
+        assert!(warnings.is_empty(), "{stiffness} {elements}: {warnings:?}");
+    }
+}

@@ -103,6 +103,10 @@ fn finding(way: Way, what: String, other: String) -> Verdict {
     Verdict::Finding(Finding { way, what, other })
 }
 
+/// Round-off of forces per that of positions: a hundred for the differences of which they are made,
+/// and ten for beams that lie as many lengths from the origin.
+const OF_FORCES: f64 = 1e3;
+
 /// Error of round-off in positions: that of the stretch, which the stiffest beam makes a force.
 fn round_off(scene: &Table) -> f64 {
     1e-9 + 1e-15 * settings::stiffness_ratio(scene) * settings::all_cells(scene) as f64
@@ -189,7 +193,12 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         let what = "a position or an eigenvalue".to_owned();
         Measured { value: gap.places, allowed: places, places: true, what }
     } else {
-        Measured { value: gap.all, allowed: all + 100.0 * round_off(scene), places: false, what: gap.what }
+        Measured {
+            value: gap.all,
+            allowed: all + OF_FORCES * round_off(scene),
+            places: false,
+            what: gap.what,
+        }
     };
     decide(case, way, measured, &text(), rng)
 }
@@ -326,7 +335,7 @@ fn continued(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
     };
     let gap = gap::between(base, &seen, Records::Last);
     // The state goes on bit for bit; forces are computed of it, and are round-off where nothing acts.
-    let allowed = if gap.places > CONTINUED { CONTINUED } else { CONTINUED + 100.0 * round_off(scene) };
+    let allowed = if gap.places > CONTINUED { CONTINUED } else { CONTINUED + OF_FORCES * round_off(scene) };
     let measured = Measured { value: gap.all, allowed, places: false, what: gap.what };
     decide(case, way, measured, &text(), rng)
 }
@@ -334,7 +343,7 @@ fn continued(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
 fn balanced(case: &Case, seen: &Seen, rng: &mut Rng) -> Verdict {
     let Some((off, what)) = balance::worst(&case.scene, seen) else { return Verdict::NotApplicable };
     let tolerance = settings::tolerance(&case.scene);
-    let allowed = 1e-6 + 100.0 * round_off(&case.scene) + ALLOWED * tolerance;
+    let allowed = 1e-6 + OF_FORCES * round_off(&case.scene) + ALLOWED * tolerance;
     let measured = Measured { value: off, allowed, places: false, what };
     decide(case, Way::Balance, measured, "", rng)
 }
