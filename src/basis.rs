@@ -111,7 +111,7 @@ impl Basis {
     /// # Errors
     /// As [`Self::new`].
     pub fn broken(discretization: &Discretization, length: f64, breaks: &[f64]) -> Result<Self, BasisError> {
-        let (Discretization::Ancf { nodes } | Discretization::Rpim { nodes, .. }) = discretization;
+        let nodes = discretization.nodes();
         let places = nodes::arc_lengths(nodes, length)?;
         let (nodes, breaks) = nodes::meet(places, matches!(nodes, Nodes::Given(_)), breaks);
         match discretization {

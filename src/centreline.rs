@@ -14,6 +14,7 @@
 
 /// The stress-free centreline r₀(s), parametrised by arc length s ∈ [0, L].
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Centreline {
     /// Straight from `start` to `end` \[m\].
     Line {
@@ -50,6 +51,7 @@ enum Shape {
 
 /// Why a centreline is no curve.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CurveError {
     /// A coordinate, radius or angle is NaN or infinite, or so large that the length is.
     #[error("its coordinates or its length are not finite numbers")]

@@ -235,6 +235,7 @@ pub struct Displacement {
 
 /// What acts on the beams.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Load {
     /// Concentrated force \[N\]; a follower turns with the section.
     Force {

@@ -62,6 +62,7 @@ struct SavedBeam {
 
 /// Why a saved state cannot be used.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[non_exhaustive]
 pub enum RestartError {
     /// The file cannot be read.
     #[error("{path}: {cause}")]

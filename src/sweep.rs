@@ -27,10 +27,10 @@ mod axis;
 mod error;
 mod grid;
 mod journal;
+mod leaves;
 mod manifest;
 mod shard;
 mod table;
-mod tree;
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -52,7 +52,6 @@ use crate::scene::Scene;
 use journal::{Finished, Journal, Record};
 use manifest::Manifest;
 use table::{Columns, Table};
-use tree::Tree;
 
 /// Name of the table in the directory of the sweep.
 pub const TABLE: &str = "sweep.csv";
@@ -158,7 +157,7 @@ impl Sweep {
             Err(error) => (Outcome::Refused, Some(error.to_string()), None),
         };
         // A summary always has a JSON form.
-        let summary = trajectory.and_then(|trajectory| Tree::of(&Summary::of(&trajectory)).ok());
+        let summary = trajectory.and_then(|trajectory| serde_json::to_value(Summary::of(&trajectory)).ok());
         Record { run, outcome, message, seconds: start.elapsed().as_secs_f64(), summary }
     }
 }

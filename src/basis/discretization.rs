@@ -4,6 +4,7 @@ use std::fmt;
 
 /// How a beam's centreline is approximated between nodes.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Discretization {
     /// Gradient-deficient cable element: cubic Hermite shape functions between neighbouring nodes.
     Ancf {
@@ -25,8 +26,18 @@ pub enum Discretization {
     },
 }
 
+impl Discretization {
+    /// Where the nodes are.
+    pub fn nodes(&self) -> &Nodes {
+        match self {
+            Self::Ancf { nodes } | Self::Rpim { nodes, .. } => nodes,
+        }
+    }
+}
+
 /// The places of the nodes along a beam.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Nodes {
     /// `n` nodes at equal distances.
     Uniform(usize),
@@ -38,6 +49,7 @@ pub enum Nodes {
 
 /// Radial function R(d) of a support, d in units of the average spacing d_c.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Kernel {
     /// (d² + α²)^q
     Multiquadric {

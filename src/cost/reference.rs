@@ -121,7 +121,6 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Discretization;
     use crate::scene::parse;
 
     /// Twice the cells and a quarter of the tolerance from pair to pair; meshfree by Gauss against
@@ -146,9 +145,7 @@ mod tests {
             let [(meshfree, first, gauss), (elements, second, radau)] = pair(&desk, level, 1e-4);
             assert_eq!((first, second), (cells, 4 * cells));
             assert!(matches!(meshfree, Family::Rpim { .. }) && matches!(elements, Family::Ancf(_)));
-            let nodes = |setting: &Setting| match &setting.beams[0].0 {
-                Discretization::Ancf { nodes } | Discretization::Rpim { nodes, .. } => nodes.count(),
-            };
+            let nodes = |setting: &Setting| setting.beams[0].0.nodes().count();
             assert_eq!((nodes(&gauss), nodes(&radau)), (cells + 1, 4 * cells + 1));
             let close = |step: StepControl| match step {
                 StepControl::Tolerance(found) => (found / tolerance - 1.0).abs() < 1e-12,

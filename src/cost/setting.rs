@@ -66,7 +66,7 @@ impl Family {
         let most = model.beams.iter().map(cells_of).max().unwrap_or(1);
         let beam = |beam: &Beam| {
             let share = cells as f64 * cells_of(beam) as f64 / most as f64;
-            let nodes = graded(nodes_of(&beam.discretization), (share.round() as usize).max(1));
+            let nodes = graded(beam.discretization.nodes(), (share.round() as usize).max(1));
             match self {
                 Self::Scene => (beam.discretization.clone(), beam.gauss_points),
                 // What does not lock needs its points: a string folds where too few resist.
@@ -123,15 +123,9 @@ impl fmt::Display for Family {
     }
 }
 
-fn nodes_of(discretization: &Discretization) -> &Nodes {
-    match discretization {
-        Discretization::Ancf { nodes } | Discretization::Rpim { nodes, .. } => nodes,
-    }
-}
-
 /// Cells between the nodes of a beam.
 fn cells_of(beam: &Beam) -> usize {
-    nodes_of(&beam.discretization).count().saturating_sub(1).max(1)
+    beam.discretization.nodes().count().saturating_sub(1).max(1)
 }
 
 /// Cells of the beam of `model` that has the most.

@@ -4,6 +4,7 @@ use std::fmt;
 
 /// What is to be computed.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Analysis {
     /// Equilibrium under the full loads.
     Static(Static),
@@ -108,6 +109,7 @@ pub enum Crossing {
 
 /// A method of time integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Integrator {
     /// Chung and Hulbert's generalised-α method.
     GeneralizedAlpha {
@@ -158,6 +160,17 @@ impl Integrator {
             Self::Radau { .. } => true,
         };
         if damps || !model.is_inextensible() { Ok(()) } else { Err(Undamped { integrator: *self }) }
+    }
+
+    /// The same method with other steps.
+    #[must_use]
+    pub fn with_step(mut self, control: StepControl) -> Self {
+        match &mut self {
+            Self::GeneralizedAlpha { step, .. } | Self::Gauss { step, .. } | Self::Radau { step, .. } => {
+                *step = control;
+            }
+        }
+        self
     }
 
     /// How steps are chosen.

@@ -3,7 +3,8 @@
 //! A planar rigid motion of a beam is (t_x, t_y, ω): the displacement of its start, and its turn
 //! per length. A support at r₀ holds t_x − ω (y₀ − ȳ), t_y + ω (x₀ − x̄) and ω, and a joint equals
 //! those of two beams: one row each. What the rows leave is their null space, by Gauss and Jordan's
-//! elimination.
+//! elimination: a singular value decomposition gives mixtures of motions, which no message could
+//! name, and does not say which row was one too many.
 
 use super::{FixedRotation, Joint, Model, Place};
 

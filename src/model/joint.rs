@@ -4,6 +4,7 @@ use super::Place;
 
 /// A joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Joint {
     /// The two points coincide; their directions are free.
     Hinge {

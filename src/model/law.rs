@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 /// A number as a function of time.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Law {
     /// 0 until `start`, then growing evenly to 1 within `duration`.
     Ramp {

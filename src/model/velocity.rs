@@ -19,6 +19,7 @@ pub struct InitialVelocity {
 
 /// A component of a velocity along the arc length.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Profile {
     /// Zero.
     #[default]

@@ -11,6 +11,7 @@ use super::plot::PlotError;
 
 /// Why results could not be written. Nothing half-written stays under a final name.
 #[derive(Debug, Error, Diagnostic)]
+#[non_exhaustive]
 pub enum OutputError {
     /// The directory of the results cannot be made.
     #[error("cannot create the directory `{}` for the results", path.display())]

@@ -8,6 +8,7 @@ use crate::trajectory::Trajectory;
 
 /// Why there is no result.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[non_exhaustive]
 pub enum RunError {
     /// The model cannot be turned into equations.
     #[error(transparent)]

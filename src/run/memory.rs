@@ -42,9 +42,7 @@ fn needed(model: &Model, analysis: &Analysis) -> f64 {
 }
 
 fn nodes(beam: &Beam) -> f64 {
-    match &beam.discretization {
-        Discretization::Ancf { nodes } | Discretization::Rpim { nodes, .. } => nodes.count() as f64,
-    }
+    beam.discretization.nodes().count() as f64
 }
 
 /// Shape functions over a cell.

@@ -10,6 +10,7 @@ use miette::{Diagnostic, LabeledSpan, NamedSource, SourceSpan};
 /// as a [`Diagnostic`] it also carries the text and the place for a report with the lines
 /// themselves.
 #[derive(Debug, thiserror::Error, Diagnostic)]
+#[non_exhaustive]
 pub enum SceneError {
     /// The file could not be read at all.
     #[error("{}: cannot read the scene: {reason}", path.display())]

@@ -8,6 +8,7 @@ use crate::scene::SceneError;
 
 /// Why a sweep cannot be done, or not be joined. A run that fails is no reason: it is recorded.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[non_exhaustive]
 pub enum SweepError {
     /// An axis is not written as it should be.
     #[error("--vary {option}: {reason}")]

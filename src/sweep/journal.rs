@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::tree::Tree;
 use super::{Shard, SweepError};
 
 const PREFIX: &str = "journal-";
@@ -18,6 +17,7 @@ const SUFFIX: &str = ".jsonl";
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Outcome {
     /// It came to its end.
     Solved,
@@ -50,7 +50,7 @@ pub(super) struct Record {
     /// Wall time \[s\].
     pub seconds: f64,
     /// Its summary, as far as it came.
-    pub summary: Option<Tree>,
+    pub summary: Option<serde_json::Value>,
 }
 
 /// The journals in `directory`, in the order of their names.
@@ -202,7 +202,7 @@ mod tests {
     use super::*;
 
     fn record(run: usize) -> Record {
-        let summary = Tree::of(&vec![0.1, f64::MIN_POSITIVE, run as f64]).unwrap();
+        let summary = serde_json::to_value([0.1, f64::MIN_POSITIVE, run as f64]).unwrap();
         Record { run, outcome: Outcome::Solved, message: None, seconds: 1e-3, summary: Some(summary) }
     }
 

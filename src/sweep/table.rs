@@ -5,6 +5,7 @@ use std::io::{self, Write};
 
 use super::Grid;
 use super::journal::Record;
+use super::leaves;
 use crate::output::cell;
 
 /// Keys of a summary that are no results of a run.
@@ -14,7 +15,7 @@ const LEFT_OUT: [&str; 3] = ["title.", "version.", "seconds."];
 fn cells(record: &Record) -> Vec<(String, String)> {
     let mut cells = Vec::new();
     if let Some(summary) = &record.summary {
-        summary.visit("", &mut |path, text| {
+        leaves::visit(summary, "", &mut |path, text| {
             if !LEFT_OUT.iter().any(|key| format!("{path}.").starts_with(key)) {
                 cells.push((path.to_owned(), text));
             }

@@ -5,6 +5,7 @@ use crate::centreline::CurveError;
 
 /// Why a model could not be turned into equations.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[non_exhaustive]
 pub enum SystemError {
     /// There is nothing to compute.
     #[error("the model has no beam")]

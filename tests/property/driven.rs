@@ -72,7 +72,7 @@ fn what_depends_on_time_and_velocity_keeps_the_order_of_every_method() {
                 _ => (8e-4, 0.5),
             };
             let at = |factor: f64| {
-                let integrator = super::dynamics::with_step(integrator, StepControl::Fixed(factor * step));
+                let integrator = integrator.with_step(StepControl::Fixed(factor * step));
                 let trajectory = moved(&model, 0.0512, integrator);
                 let sample = *trajectory.probes[0].samples.last().expect("a record");
                 [sample.x, sample.y]

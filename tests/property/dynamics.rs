@@ -23,14 +23,6 @@ const fn alpha(step: StepControl, spectral_radius: f64) -> Integrator {
 const ALPHA: Integrator = alpha(StepControl::Fixed(0.0), 0.8);
 const GAUSS: Integrator = Integrator::Gauss { stages: 3, step: StepControl::Fixed(0.0) };
 
-pub fn with_step(integrator: Integrator, step: StepControl) -> Integrator {
-    match integrator {
-        Integrator::GeneralizedAlpha { spectral_radius, .. } => alpha(step, spectral_radius),
-        Integrator::Gauss { stages, .. } => Integrator::Gauss { stages, step },
-        Integrator::Radau { stages, .. } => Integrator::Radau { stages, step },
-    }
-}
-
 /// Every method, with its order.
 fn methods() -> [(Integrator, f64); 7] {
     let step = StepControl::Fixed(0.0);
@@ -112,7 +104,7 @@ fn task(system: &System, duration: f64, integrator: Integrator) -> Task<'static>
 fn moved(system: &System, duration: f64, integrator: Integrator, step: f64) -> Solution {
     finished(solve(
         system,
-        &task(system, duration, with_step(integrator, StepControl::Fixed(step))),
+        &task(system, duration, integrator.with_step(StepControl::Fixed(step))),
         &mut |_, _, _| true,
     ))
 }
@@ -336,7 +328,7 @@ proptest! {
         let mut start = from_rest(&system, &[velocity]).expect("a free beam");
         start.state.v.iter_mut().zip(bump).for_each(|(v, b)| *v += b);
         for integrator in [GAUSS, Integrator::Gauss { stages: 2, step: StepControl::Fixed(0.0) }] {
-            let integrator = with_step(integrator, StepControl::Fixed(2e-3));
+            let integrator = integrator.with_step(StepControl::Fixed(2e-3));
             let task = Task { start: start.clone(), ..task(&system, 0.2, integrator) };
             let solution = finished(solve(&system, &task, &mut |_, _, _| true));
             let before = momenta(&system, &start.state);
@@ -358,7 +350,7 @@ proptest! {
         model.initial_velocities = vec![InitialVelocity { beam: 0, rotation, ..InitialVelocity::default() }];
         let system = build(&model);
         let start = from_rest(&system, &model.initial_velocities).expect("about the hinge");
-        let integrator = with_step(GAUSS, StepControl::Fixed(1e-3));
+        let integrator = GAUSS.with_step(StepControl::Fixed(1e-3));
         let task = Task { start, ..task(&system, 0.5, integrator) };
         let (drift, kinetic) = energies(&system, &finished(solve(&system, &task, &mut |_, _, _| true)));
         prop_assert!(drift < 2e-7 * kinetic.max(0.5), "drift {drift} J of {kinetic} J");
@@ -371,7 +363,7 @@ proptest! {
         let [ancf, _] = either();
         let system = system(ancf, vec![hinge(0.0)]);
         let step = if controlled { StepControl::Tolerance(1e-4) } else { StepControl::Fixed(1.7e-3) };
-        let integrator = with_step(methods()[method].0, step);
+        let integrator = methods()[method].0.with_step(step);
         let whole = finished(solve(&system, &task(&system, 0.1, integrator), &mut |_, _, _| true));
         let mut steps = 0;
         let first = solve(&system, &task(&system, 0.1, integrator), &mut |_, _, _| {
@@ -394,8 +386,7 @@ fn impulses_of_contacts_balance_the_momentum() {
         |obstacle| Contact { beam: 0, obstacle, stiffness: 2e3, half_thickness: 0.01, friction: None };
     let ground = Obstacle::HalfPlane { point: [0.0, -0.3], normal: [0.0, 1.0] };
     let stone = Obstacle::Circle { center: [0.9, -0.2], radius: 0.2, inside: false };
-    let methods =
-        [with_step(GAUSS, StepControl::Tolerance(1e-8)), with_step(ALPHA, StepControl::Fixed(1e-4))];
+    let methods = [GAUSS.with_step(StepControl::Tolerance(1e-8)), ALPHA.with_step(StepControl::Fixed(1e-4))];
     for (discretization, method) in either().into_iter().zip(methods) {
         let mut model = model(discretization, vec![]);
         model.beams[0].centreline = Centreline::Line { start: [0.0; 2], end: [LENGTH * 0.8, LENGTH * 0.6] };
@@ -460,7 +451,7 @@ fn a_linear_velocity_field_is_a_rotation() {
             assert!((vertical - mass * rotation * LENGTH / 2.0).abs() < 1e-12);
             assert!((angular - mass * rotation * LENGTH.powi(2) / 3.0).abs() < 1e-12);
             assert!((energy.kinetic - mass * (rotation * LENGTH).powi(2) / 6.0).abs() < 1e-12);
-            let task = Task { start, ..task(&system, 0.3, with_step(GAUSS, StepControl::Fixed(2e-3))) };
+            let task = Task { start, ..task(&system, 0.3, GAUSS.with_step(StepControl::Fixed(2e-3))) };
             last(&finished(solve(&system, &task, &mut |_, _, _| true))).q.clone()
         });
         // Free flight: the centre goes straight up while the beam turns about it, drawn out a
@@ -517,7 +508,7 @@ fn a_spinning_beam_keeps_momenta_and_energy_for_long_times_and_restarts_in_their
         ..InitialVelocity::default()
     };
     let start = from_rest(&system, &[velocity]).expect("a free beam");
-    let integrator = with_step(GAUSS, StepControl::Fixed(5e-3));
+    let integrator = GAUSS.with_step(StepControl::Fixed(5e-3));
     let whole = Task { start: start.clone(), ..task(&system, 100.0, integrator) };
     let middle = std::cell::Cell::new(0.0);
     let solution = finished(solve(&system, &whole, &mut |_, _, _| true));
@@ -557,7 +548,7 @@ fn steps_meet_the_stated_accuracy() {
     for (integrator, _) in methods() {
         let mut work = 0;
         for tolerance in [1e-3, 1e-5] {
-            let integrator = with_step(integrator, StepControl::Tolerance(tolerance));
+            let integrator = integrator.with_step(StepControl::Tolerance(tolerance));
             let solution = finished(solve(&system, &task(&system, 0.3, integrator), &mut |_, _, _| true));
             let pairs = last(&solution).q.chunks_exact(4).zip(last(&reference).q.chunks_exact(4));
             let error = pairs.fold(0.0_f64, |m, (a, b)| m.max((a[0] - b[0]).hypot(a[1] - b[1])));
@@ -577,7 +568,7 @@ fn records_stand_at_the_times_asked_for() {
     let expected = [0.0, 0.03, 0.06, 0.09, 0.1];
     for ((integrator, order), step) in [(methods()[0], 7e-5), (methods()[4], 4e-4)] {
         let states = |step| {
-            let integrator = with_step(integrator, StepControl::Fixed(step));
+            let integrator = integrator.with_step(StepControl::Fixed(step));
             let task = Task { output_every: 0.03, ..task(&system, 0.1, integrator) };
             finished(solve(&system, &task, &mut |_, _, _| true)).states
         };
@@ -608,7 +599,7 @@ fn events_are_located_to_the_accuracy_of_the_motion() {
         let watches =
             [watch(Crossing::Rising, true), watch(Crossing::Any, false), watch(Crossing::Falling, true)];
         for (integrator, _) in methods() {
-            let integrator = with_step(integrator, StepControl::Fixed(0.013));
+            let integrator = integrator.with_step(StepControl::Fixed(0.013));
             let task = Task { watches: &watches, ..task(&system, 2.0, integrator) };
             let solution = finished(solve(&system, &task, &mut |_, _, _| true));
             let time = (2.0 / -GRAVITY[1]).sqrt();
@@ -646,7 +637,7 @@ fn prescribed_motion_needs_a_law_of_time() {
     let [ancf, _] = either();
     let mut model = model(ancf, vec![hinge(0.0)]);
     model.supports[0].displacement = Displacement { y: 0.1, ..Displacement::default() };
-    let integrator = with_step(ALPHA, StepControl::Fixed(1e-3));
+    let integrator = ALPHA.with_step(StepControl::Fixed(1e-3));
     let analysis =
         Analysis::Dynamic(Dynamic { duration: 0.1, output_every: 0.1, integrator, events: vec![] });
     let error = model.solve(&analysis).expect_err("no law");

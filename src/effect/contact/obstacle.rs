@@ -5,6 +5,7 @@ use nalgebra::{Matrix2, Vector2};
 
 /// What a beam can touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Obstacle {
     /// A disc, or with `inside` the rim of a round hole.
     Circle {

@@ -16,6 +16,7 @@ use super::{Chart, Colour, GREY, Mark, Series};
 
 /// Why a plot could not be drawn.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PlotError {
     /// The picture is too small for its labels.
     #[error(

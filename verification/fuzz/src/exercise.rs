@@ -56,22 +56,14 @@ fn few_steps() -> impl FnMut(&run::Progress) -> Control {
 }
 
 fn nodes(model: &Model) -> usize {
-    model
-        .beams
-        .iter()
-        .map(|beam| match &beam.discretization {
-            ancf::model::Discretization::Ancf { nodes } | ancf::model::Discretization::Rpim { nodes, .. } => {
-                nodes.count()
-            }
-        })
-        .fold(0, usize::saturating_add)
+    model.beams.iter().map(|beam| beam.discretization.nodes().count()).fold(0, usize::saturating_add)
 }
 
 fn is_small(analysis: &Analysis) -> bool {
     match analysis {
-        Analysis::Static(_) => true,
         Analysis::Buckling { count } | Analysis::Modal { count, .. } => *count <= MODES,
         Analysis::Dynamic(dynamic) => dynamic.duration / dynamic.output_every <= RECORDS,
+        _ => true,
     }
 }
 

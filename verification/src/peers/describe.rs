@@ -174,6 +174,7 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
             Load::Gravity { .. } => return Err(none("a weight that follows time")),
             Load::DistributedForce { .. } => return Err(none("a distributed force")),
             Load::InTime { .. } => return Err(none("a load that follows time in statics, or two laws")),
+            load => return Err(none(&format!("{load:?}"))),
         }
     }
     for given in &model.initial_velocities {
@@ -283,6 +284,7 @@ fn question(analysis: &Analysis) -> Result<Question, String> {
         Analysis::Modal { count, about: About::Reference } => Ok(Question::Modal { count: *count }),
         Analysis::Modal { .. } => Err(none("vibrations about an equilibrium")),
         Analysis::Buckling { .. } => Err(none("a buckling analysis")),
+        other => Err(none(&format!("{other:?}"))),
     }
 }
 

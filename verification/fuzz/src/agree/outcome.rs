@@ -120,7 +120,7 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
         Ok(scene) => scene,
         Err(error) => return Outcome::Refused(first_line(&error.to_string())),
     };
-    let nodes: usize = scene.model().beams.iter().map(|beam| count(&beam.discretization)).sum();
+    let nodes: usize = scene.model().beams.iter().map(|beam| beam.discretization.nodes().count()).sum();
     let (mut steps, mut gave_up) = (0, false);
     let observer = &mut |progress: &run::Progress| {
         steps += 1;
@@ -136,13 +136,6 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
         Ok(trajectory) => Outcome::Solved(Box::new(see(&trajectory, frame))),
         Err(error) if error.exit_status() == 2 => Outcome::Refused(first_line(&error.to_string())),
         Err(error) => Outcome::Failed(first_line(&error.to_string())),
-    }
-}
-
-fn count(discretization: &ancf::model::Discretization) -> usize {
-    match discretization {
-        ancf::model::Discretization::Ancf { nodes } => nodes.count(),
-        ancf::model::Discretization::Rpim { nodes, .. } => nodes.count(),
     }
 }
 
