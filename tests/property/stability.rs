@@ -376,7 +376,7 @@ fn a_toggle_leaves_its_line_on_the_side_of_its_weight() {
             let (sine, cosine) = f64::sin_cos(turn);
             let at = |s: f64| [s * cosine, s * sine];
             let section = "axial_stiffness = 3.364e5\nbending_stiffness = 0.5893\nmass_per_length = 1.0";
-            let (x, y) = (-0.1 * side * sine, 0.1 * side * cosine);
+            let (x, y) = (-0.001 * side * sine, 0.001 * side * cosine);
             let grows = |beam: &str| format!("[[effect.actuation]]\nbeam = '{beam}'\nstrain = 4.5e-5\n");
             let found = solve(
                 &(beam("a", [at(0.0), at(0.5)], section, basis)
