@@ -165,7 +165,9 @@ pub struct System {
     stiffness: f64,
     round_off: f64,
     lowest_vibration: f64,
-    floppy: bool,
+    has_strings: bool,
+    /// Motions of the beams that neither supports, joints nor springs resist; in statics.
+    rigid_motions: usize,
 }
 
 impl System {
@@ -237,7 +239,8 @@ impl System {
             length,
             stiffness,
             round_off,
-            floppy: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
+            has_strings: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
+            rigid_motions: 0,
             lowest_vibration: lowest_vibration_scale(model, length),
         };
         let mut assembly = assembly::Assembly::new(model, &system.beams, &system.reference, needs);
@@ -285,7 +288,9 @@ impl System {
         }
         system.check_room()?;
         system.check_rows(model)?;
-        system.floppy |= !needs.motion && system.is_mechanism(model)?;
+        if !needs.motion {
+            system.rigid_motions = system.count_rigid_motions(model)?;
+        }
         Ok(system)
     }
 
@@ -326,11 +331,12 @@ impl System {
         Ok(view.fields(&self.reference))
     }
 
-    /// Whether supports and joints leave the beams a rigid motion that no spring resists.
-    fn is_mechanism(&self, model: &Model) -> Result<bool, SystemError> {
+    /// How many rigid motions supports and joints leave to the beams, none where a spring may resist
+    /// them.
+    fn count_rigid_motions(&self, model: &Model) -> Result<usize, SystemError> {
         let of_beams = |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Contact);
         if !self.internal.iter().all(|effect| of_beams(effect.kind())) {
-            return Ok(false);
+            return Ok(0);
         }
         let supports = model.supports.iter().map(|support| support.at);
         let joints = model.joints.iter().flat_map(Joint::places);
@@ -342,7 +348,7 @@ impl System {
         let position = |place: Place| {
             positions.iter().find(|(at, _)| *at == place).map_or([0.0; 2], |(_, position)| *position)
         };
-        Ok(!Freedom::new(model, self.length, position).motions().is_empty())
+        Ok(Freedom::new(model, self.length, position).motions().len())
     }
 
     /// The beams' parts.
@@ -412,7 +418,13 @@ impl System {
     /// Whether the stress-free structure can move without resistance: strings, and beams that
     /// supports and joints leave a rigid motion.
     pub fn is_floppy(&self) -> bool {
-        self.floppy
+        self.has_strings || self.rigid_motions > 0
+    }
+
+    /// Rigid motions that supports and joints leave to beams that all bend, in statics; none where
+    /// there are strings.
+    pub fn rigid_motions(&self) -> Option<usize> {
+        (!self.has_strings).then_some(self.rigid_motions)
     }
 
     /// Per coordinate EA/L² times the share w of the length that is the node's, for gradients times

@@ -10,7 +10,7 @@ use crate::restart::SavedState;
 use crate::solve::dynamics;
 use crate::solve::newton::Failure;
 use crate::solve::path::NoStep;
-use crate::solve::statics::Solution;
+use crate::solve::statics::{Pressed, Solution};
 use crate::system::{Reaction, System, SystemError, View, unfold};
 use crate::trajectory::{
     AnalysisKind, EffectSeries, Energy, Event, Frame, ProbeSample, ProbeSeries, ReactionSeries, Shape,
@@ -417,6 +417,13 @@ impl<'a> Sampler<'a> {
         trajectory.warnings.extend(locking.warnings());
         trajectory.history = solution.history.clone();
         trajectory.statistics = solution.statistics;
+        if let Some(Pressed { load, unstable, free }) = solution.pressed {
+            trajectory.warnings.push(format!(
+                "the load up to factor {load:.6} presses the structure so that it is unstable in {unstable} directions where it stands, and \
+                 supports and joints leave it {free} to move in: its beams buckle before it moves, and on which side it comes to rest may be \
+                 chance; reach the load in more `steps`"
+            ));
+        }
         for event in &solution.events {
             let (change, advice) = if event.after > event.before {
                 ("loses", "beyond it the equilibrium found is unstable: a bifurcation or a limit point")

@@ -34,6 +34,9 @@ pub struct Solution {
     pub history: Vec<StepRecord>,
     /// Instabilities met.
     pub events: Vec<Event>,
+    /// Where a mechanism that loads press, at its start, is unstable in more directions than it can
+    /// move in freely.
+    pub pressed: Option<Pressed>,
     /// Counts.
     pub statistics: Statistics,
     /// Why the path ends before its target, if it does.
@@ -58,6 +61,18 @@ pub struct Event {
     pub before: usize,
     /// Unstable directions after.
     pub after: usize,
+}
+
+/// A mechanism whose beams buckle where they are before it moves: to which equilibrium it then comes
+/// to rest is left to the smallest of causes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pressed {
+    /// Load factor at which it was relaxed.
+    pub load: f64,
+    /// Unstable directions.
+    pub unstable: usize,
+    /// Rigid motions that supports and joints leave.
+    pub free: usize,
 }
 
 /// Where a path ends.
@@ -200,6 +215,10 @@ fn relaxed(
     let mut before = 0;
     for part in 1..=parts {
         let load = part as f64 / parts as f64;
+        if let (None, Some(free)) = (solution.pressed, equilibrium.system().rigid_motions()) {
+            let unstable = unstable(equilibrium, load, &x);
+            solution.pressed = (unstable > free).then_some(Pressed { load, unstable, free });
+        }
         let mut record = Iterations::default();
         let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
         if outcome.is_ok() && unstable(equilibrium, load, &x) > 0 {

@@ -366,37 +366,50 @@ fn mechanisms_that_nothing_holds_are_refused() {
     assert!((x - rods[0][0] - rods[1][0]).hypot(y - rods[0][1] - rods[1][1]) < 2e-3, "{x} {y}");
 }
 
-/// Two rods in a line, hinged to each other and to the ground, that grow and so must leave the line:
-/// the side is that to which a weight far smaller than their thrust pulls them, in every direction of
-/// the line. (The thrust, 15 N, is less than the 23 N at which a rod by itself would buckle.)
+/// Two rods in the direction `turn`, hinged to each other and to the ground, that grow and so must leave
+/// their line, while a weight pulls to one side.
+fn toggle(axial_stiffness: &str, turn: f64, basis: &str, side: f64) -> Trajectory {
+    let (sine, cosine) = turn.sin_cos();
+    let at = |s: f64| [s * cosine, s * sine];
+    let section =
+        format!("axial_stiffness = {axial_stiffness}\nbending_stiffness = 0.5893\nmass_per_length = 1.0");
+    let (x, y) = (-0.001 * side * sine, 0.001 * side * cosine);
+    let grows = |beam: &str| format!("[[effect.actuation]]\nbeam = '{beam}'\nstrain = 4.5e-5\n");
+    solve(
+        &(beam("a", [at(0.0), at(0.5)], &section, basis)
+            + &beam("b", [at(0.5), at(1.0)], &section, basis)
+            + &joint("hinge", ("a", "'end'"), ("b", "'start'"))
+            + &support("a", "'start'", PIN)
+            + &support("b", "'end'", PIN)
+            + &format!("[effect.gravity]\nacceleration = [{x:?}, {y:?}]\n")
+            + &grows("a")
+            + &grows("b")
+            + &probe("a")
+            + "[analysis.static]\n"),
+    )
+}
+
+/// The side is that to which a weight far smaller than their thrust pulls them, in every direction of
+/// the line, where the thrust, 15 N, is less than the 23 N at which a rod by itself would buckle; where
+/// it is more, a warning says that it may be the other.
 #[test]
 fn a_toggle_leaves_its_line_on_the_side_of_its_weight() {
     for turn in [0.0, 0.4, 1.9, -1.2, 3.0] {
         for (basis, side) in [(RPIM, 1.0), (RPIM, -1.0), (ANCF, 1.0), (ANCF, -1.0)] {
-            let (sine, cosine) = f64::sin_cos(turn);
-            let at = |s: f64| [s * cosine, s * sine];
-            let section = "axial_stiffness = 3.364e5\nbending_stiffness = 0.5893\nmass_per_length = 1.0";
-            let (x, y) = (-0.001 * side * sine, 0.001 * side * cosine);
-            let grows = |beam: &str| format!("[[effect.actuation]]\nbeam = '{beam}'\nstrain = 4.5e-5\n");
-            let found = solve(
-                &(beam("a", [at(0.0), at(0.5)], section, basis)
-                    + &beam("b", [at(0.5), at(1.0)], section, basis)
-                    + &joint("hinge", ("a", "'end'"), ("b", "'start'"))
-                    + &support("a", "'start'", PIN)
-                    + &support("b", "'end'", PIN)
-                    + &format!("[effect.gravity]\nacceleration = [{x:?}, {y:?}]\n")
-                    + &grows("a")
-                    + &grows("b")
-                    + &probe("a")
-                    + "[analysis.static]\n"),
-            );
-            let [px, py] = tip(&found);
-            let across = side * (cosine * (py - at(0.5)[1]) - sine * (px - at(0.5)[0]));
+            let found = toggle("3.364e5", turn, basis, side);
+            let ([px, py], (sine, cosine)) = (tip(&found), turn.sin_cos());
+            let across = side * (cosine * (py - 0.5 * sine) - sine * (px - 0.5 * cosine));
             // Each is the hypotenuse over half of the line: 0.5 √((1 + ε)² − 1).
             let expected = 0.5 * (1.000_045_f64.powi(2) - 1.0).sqrt();
             assert!(
                 (across / expected - 1.0).abs() < 0.02,
                 "{basis} turned by {turn}: {across}, not {expected}"
+            );
+            assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+            let warnings = toggle("3.364e8", turn, basis, side).warnings;
+            assert!(
+                warnings.iter().any(|warning| warning.contains("buckle before it moves")),
+                "{warnings:?}"
             );
         }
     }
