@@ -28,6 +28,8 @@ const STRAIGHT: f64 = 0.1;
 /// Energy of a string's stretch, per energy of the forces that its cuts balance, beyond which most of
 /// it holds itself.
 const JAMMED: f64 = 10.0;
+/// Strain whose energy is never that of a string that holds itself: round-off makes it.
+const LEAST_STRAIN: f64 = 1e-9;
 /// Part of a beam's whole elastic energy below which nothing depends on it.
 const IRRELEVANT: f64 = 1e-3;
 
@@ -106,13 +108,13 @@ impl Locking {
             let pieces = shape.s.windows(2).zip(shape.axial_force.windows(2));
             let squares = pieces.map(|(s, n)| 0.5 * (s[1] - s[0]) * (n[0] * n[0] + n[1] * n[1]));
             let balanced = 0.5 * squares.sum::<f64>() / beam.stiffness[0];
-            (stretch > JAMMED * balanced && stretch > TOLERATED * scale).then(|| {
+            let length = shape.s.last()?;
+            let least = 0.5 * beam.stiffness[0] * length * LEAST_STRAIN * LEAST_STRAIN;
+            (stretch > JAMMED * balanced && stretch > least.max(TOLERATED * scale)).then(|| {
                 format!(
-                    "string `{}` holds itself: its stretch takes {:.1} % of the work of the loads, {:.0e} times what its section forces account \
-                     for, so that its cells are too few for the shape; use more elements or nodes, or a smaller `axial_stiffness`",
+                    "string `{}` holds itself: its stretch takes {stretch:.1e} J, and its section forces account for {balanced:.1e} J, so that \
+                     its cells are too few for the shape; use more elements or nodes, or a smaller `axial_stiffness`",
                     beam.name,
-                    100.0 * stretch / scale,
-                    stretch / balanced
                 )
             })
         })

@@ -212,7 +212,7 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
         if let (None, Some(who)) = (beam.section.mass_per_length, mass) {
             lacks("mass", who, "mass_per_length", ["density", "area"])?;
         }
-        let bedded = !file.effect.foundation.is_empty();
+        let bedded = file.effect.foundation.iter().any(|table| table.beam.get() == &beam.name);
         if beam.section.bending_stiffness.is_none()
             && !bedded
             && matches!(analysis, Analysis::Buckling { .. })

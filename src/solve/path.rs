@@ -89,15 +89,15 @@ const BY_SMALL_STEPS: f64 = 0.5;
 /// A corrector that turns no node by more than this, and by less than was predicted, stays on its
 /// side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
-/// Part of the load beyond which a step without a count of unstable directions is looked at between
-/// its ends where it turns no node by more than this \[rad\], and in how many parts: what is bent
-/// keeps to its side.
-const LONG_STEP: f64 = 0.1;
+/// A step without a count of unstable directions is looked at between its ends where it turns no
+/// node by more than this \[rad\], and in how many parts: what is bent keeps to its side.
 const STRAIGHT: f64 = 0.1;
 const BETWEEN: u32 = 5;
 /// Most trials for the length of a step that ends where it is told to: halving alone needs as many
 /// as a number has digits.
 const MOST_TRIALS: usize = 60;
+/// How many times what was wanted such a step may miss where shorter ones change nothing.
+const ROUND_OFFS: f64 = 1e4;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
 /// A step of this size in which stability is lost is believed. The knee of an imperfect path is
@@ -319,8 +319,8 @@ impl<'e, 'a> Path<'e, 'a> {
     /// tells of stability: at several states between.
     fn crosses_twice(&mut self, point: &Point) -> bool {
         let last = self.last().clone();
-        let long = (point.load - last.load).abs() > LONG_STEP && self.turn(&point.x, &last.x) < STRAIGHT;
-        if point.unstable.is_some() || last.negative.is_none() || !long {
+        let bent = self.turn(&point.x, &last.x) >= STRAIGHT;
+        if point.unstable.is_some() || last.negative.is_none() || bent {
             return false;
         }
         let mut scratch = vec![0.0; point.x.len()];
@@ -579,7 +579,8 @@ impl<'e, 'a> Path<'e, 'a> {
     /// known as Illinois).
     ///
     /// # Errors
-    /// [`NoStep`] where a shorter step does not converge.
+    /// [`NoStep`] where a shorter step does not converge, or leads to another branch on which it
+    /// does not vanish.
     pub fn end_where(&mut self, miss: impl Fn(&Point) -> f64, near: f64) -> Result<&Point, NoStep> {
         let [.., before, point] = &self.points[..] else { return Ok(self.last()) };
         let mut low = (0.0, miss(before));
@@ -599,7 +600,13 @@ impl<'e, 'a> Path<'e, 'a> {
             }
             high = (step, found);
         }
-        Ok(self.last())
+        let last = self.last();
+        if miss(last).abs() <= ROUND_OFFS * near {
+            Ok(last)
+        } else {
+            let at = self.equilibrium.system().place_of(0);
+            Err(NoStep { load: last.load, step: high.0, failure: Failure::Bifurcation, at })
+        }
     }
 
     /// Replaces the last step by one of length `step`.

@@ -108,7 +108,8 @@ pub fn relax(
         x.iter_mut().zip(&change).for_each(|(x, d)| *x += d);
         equilibrium.follow_windings(x);
         // On a crest σ stays as large as what there is unstable.
-        let settled = sigma < SETTLED * first || std::mem::take(&mut on_a_crest);
+        let settled = sigma < SETTLED * first || on_a_crest;
+        on_a_crest = false;
         if size <= settings.tolerance && settled && residual <= settings.residual_tolerance {
             return Ok(());
         }

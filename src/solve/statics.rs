@@ -84,10 +84,10 @@ pub struct Target<'a> {
 }
 
 impl Target<'_> {
-    /// What may end the path; `n` is the number of coordinates.
-    fn misses(&self, n: usize) -> Vec<Miss<'_>> {
+    /// What may end the path.
+    fn misses(&self) -> Vec<Miss<'_>> {
         let load = self.arc.until_load.map(Miss::Load);
-        let probe = self.probe.as_ref().map(|(view, axis, value)| Miss::Probe(view, *axis, *value, n));
+        let probe = self.probe.as_ref().map(|(view, axis, value)| Miss::Probe(view, *axis, *value));
         load.into_iter().chain(probe).collect()
     }
 }
@@ -96,16 +96,15 @@ impl Target<'_> {
 enum Miss<'a> {
     /// The load factor, against this one.
     Load(f64),
-    /// Of a probe the component of the position \[m\], against this value; and the number of
-    /// coordinates.
-    Probe(&'a View, usize, f64, usize),
+    /// Of a probe a component of the position \[m\], against this value.
+    Probe(&'a View, usize, f64),
 }
 
 impl Miss<'_> {
     fn of(&self, point: &Point) -> f64 {
         match self {
             Self::Load(until) => point.load - until,
-            Self::Probe(view, axis, value, n) => view.fields(&point.x[..*n]).position[*axis] - value,
+            Self::Probe(view, axis, value) => view.fields(&point.x).position[*axis] - value,
         }
     }
 
@@ -299,7 +298,6 @@ fn along_arc(
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
     let system = equilibrium.system();
-    let n = system.coordinates();
     let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
     let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05))?;
     solution.record(path.equilibrium, 0.0, &path.last().x);
@@ -315,19 +313,9 @@ fn along_arc(
             }
             Ok(point) => {
                 let point = point.clone();
-                if let (Some(before), Some(after)) = (previous.unstable, point.unstable)
-                    && before != after
-                {
-                    let load = if (point.load - previous.load).abs() < f64::EPSILON {
-                        point.load
-                    } else {
-                        path.extreme_load()
-                    };
-                    solution.events.push(Event { load, before, after });
-                }
                 // Of two targets within a step the one that comes first.
                 let (mut last, mut reached) = (Ok(point), false);
-                for miss in target.misses(n) {
+                for miss in target.misses() {
                     if let Ok(point) = &last
                         && miss.is_reached(&previous, point)
                     {
@@ -341,6 +329,16 @@ fn along_arc(
                         break;
                     }
                 };
+                if let (Some(before), Some(after)) = (previous.unstable, point.unstable)
+                    && before != after
+                {
+                    let load = if (point.load - previous.load).abs() < f64::EPSILON {
+                        point.load
+                    } else {
+                        path.extreme_load()
+                    };
+                    solution.events.push(Event { load, before, after });
+                }
                 solution.record(path.equilibrium, point.load, &point.x);
                 let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
                 if reached || !go_on {

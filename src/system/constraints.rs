@@ -138,8 +138,8 @@ impl Constraint {
         }
     }
 
-    /// Whether it ties a single point to a line that stands still.
-    pub fn stands_on_the_ground(&self) -> bool {
+    /// Whether it is a slider: a single point on a line that stands still.
+    pub fn is_slider(&self) -> bool {
         matches!((&self.row, &self.fields[..]), (Row::Joint { .. }, [_]))
     }
 

@@ -22,7 +22,7 @@ impl System {
     /// at load factor `load` \[m\]: per axis the smallest of the changes that they prescribe, and
     /// none where they part or a slider's line stands still.
     pub fn shared_move(&self, load: f64, q: &[f64]) -> [f64; 2] {
-        if self.constraints.iter().any(Constraint::stands_on_the_ground) {
+        if self.constraints.iter().any(Constraint::is_slider) {
             return [0.0; 2];
         }
         let at_nodes = self.supports.position_changes(load, q);
