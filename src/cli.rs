@@ -248,4 +248,13 @@ mod tests {
     fn results_go_to_out_and_the_stem() {
         assert_eq!(default_directory(Path::new("a/b/roll-up.toml")), Path::new("out/roll-up"));
     }
+
+    #[test]
+    fn times_have_units_and_are_positive() {
+        assert_eq!(duration("10 min"), Ok(Duration::from_secs(600)));
+        assert_eq!(duration("250ms"), Ok(Duration::from_millis(250)));
+        for wrong in ["10", "2 m", "-3 s", "1e30 s"] {
+            assert!(duration(wrong).is_err(), "{wrong}");
+        }
+    }
 }

@@ -69,7 +69,7 @@ impl Model {
 
 impl Load {
     /// Where it gives a couple.
-    fn couple(&self) -> Option<Place> {
+    pub fn couple(&self) -> Option<Place> {
         match self {
             Self::Moment { at, .. } => Some(*at),
             Self::InTime { load, .. } => load.couple(),

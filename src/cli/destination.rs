@@ -58,3 +58,42 @@ impl Drop for Destination {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directories_that_were_made_go_unless_they_are_kept() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let results = folder.path().join("a/b/c");
+        let destination = Destination::prepare(&results).expect("a directory");
+        assert!(destination.path() == results && results.is_dir());
+        drop(destination);
+        assert!(folder.path().is_dir() && !folder.path().join("a").exists());
+        Destination::prepare(&results).expect("a directory").keep();
+        assert!(results.is_dir());
+        assert_eq!(fs::read_dir(&results).expect("a directory").count(), 0, "the trial is over");
+        // What was there before is not made, and so it stays.
+        drop(Destination::prepare(&results).expect("a directory"));
+        assert!(results.is_dir());
+    }
+
+    #[test]
+    fn what_somebody_else_put_there_stays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let destination = Destination::prepare(&folder.path().join("a/b")).expect("a directory");
+        fs::write(folder.path().join("a/notes.txt"), "mine").expect("a file");
+        drop(destination);
+        assert!(folder.path().join("a/notes.txt").is_file() && !folder.path().join("a/b").exists());
+    }
+
+    #[test]
+    fn a_directory_that_cannot_be_made_is_named() {
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("file"), "").expect("a file");
+        let results = folder.path().join("file/results");
+        let failure = Destination::prepare(&results).expect_err("a file is no directory");
+        assert!(matches!(&failure, Failure::Directory { path, .. } if *path == results), "{failure:?}");
+    }
+}

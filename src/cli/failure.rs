@@ -143,3 +143,100 @@ impl Diagnostic for Failure {
         self.inner()?.labels()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ancf::linear::Singular;
+    use ancf::scene;
+    use ancf::solve::eigen::EigenError;
+    use std::error::Error as _;
+
+    fn wrong() -> SceneError {
+        scene::parse("arm.toml", "title = \"Arm\"\nnonsense = 1\n").expect_err("no such key")
+    }
+
+    fn full() -> io::Error {
+        io::Error::other("the disk is full")
+    }
+
+    fn lost() -> RunError {
+        EigenError::Singular(Singular { row: 3 }).into()
+    }
+
+    /// One of each, with its exit status, its causes, and whether it has help.
+    fn all() -> Vec<(Failure, u8, Option<&'static str>, bool)> {
+        let journal = SweepError::Journal { path: "a/journal-1-of-1.jsonl".into(), source: full() };
+        let nothing = SweepError::Grid { reason: "nothing varies".into() };
+        let singular = "the matrix is singular: no pivot in row 3";
+        vec![
+            (Failure::Scene(wrong()), 2, None, true),
+            (Failure::run("a.toml", lost()), 1, Some(singular), true),
+            (Failure::Sweep(journal), 1, Some("the disk is full"), true),
+            (Failure::Sweep(nothing), 2, None, true),
+            (Failure::cost("a.toml", CostError::Lines(wrong())), 1, Some("unknown key `nonsense`"), false),
+            (Failure::cost("a.toml", CostError::Target { target: 2.0 }), 2, None, true),
+            (Failure::Interrupted { scene: "a.toml".into(), results: "out/a".into() }, 1, None, false),
+            (Failure::Directory { path: "out/a".into(), error: full() }, 2, None, true),
+            (
+                Failure::Output(OutputError::Write { path: "a.csv".into(), source: full() }),
+                1,
+                Some("full"),
+                true,
+            ),
+            (Failure::Print(full()), 1, None, false),
+        ]
+    }
+
+    #[test]
+    fn failures_hand_on_status_cause_and_help() {
+        for (failure, status, cause, helps) in all() {
+            assert_eq!(failure.exit_status(), status, "{failure}");
+            let found = failure.source().map(ToString::to_string);
+            assert_eq!(found.is_some(), cause.is_some(), "{failure}: {found:?}");
+            let said = found.unwrap_or_default();
+            assert!(said.contains(cause.unwrap_or_default()), "{failure}: {said}");
+            assert_eq!(failure.help().is_some(), helps, "{failure}");
+        }
+        let blocked = Failure::Directory { path: "out/a".into(), error: full() };
+        let help = blocked.help().map(|help| help.to_string());
+        assert_eq!(help.as_deref(), Some("give a directory that can be written with `-o DIR`"));
+    }
+
+    /// The second line of the text, eight letters of it.
+    #[test]
+    fn the_place_in_a_scene_is_handed_on() {
+        let failure = Failure::Scene(wrong());
+        let labels: Vec<_> = failure.labels().into_iter().flatten().collect();
+        assert_eq!(labels.len(), 1);
+        assert_eq!((labels[0].offset(), labels[0].len()), (14, 8));
+        let code = failure.source_code().expect("the text of the scene");
+        let read = code.read_span(labels[0].inner(), 0, 0).expect("its lines");
+        assert_eq!((read.name(), read.line()), (Some("arm.toml"), 1));
+        let interrupted = Failure::Interrupted { scene: "a.toml".into(), results: "out/a".into() };
+        assert!(interrupted.labels().is_none() && interrupted.source_code().is_none());
+    }
+
+    /// What another part of the library says of a sweep is said as that part says it.
+    #[test]
+    fn a_sweep_fails_as_its_scene_or_its_table_does() {
+        assert!(matches!(Failure::from(SweepError::Scene(wrong())), Failure::Scene(_)));
+        let table = OutputError::Occupied { path: "a/sweep.csv".into() };
+        assert!(matches!(Failure::from(SweepError::Output(table)), Failure::Output(_)));
+        let busy = SweepError::Busy { path: "a".into() };
+        assert!(matches!(Failure::from(busy), Failure::Sweep(SweepError::Busy { .. })));
+    }
+
+    #[test]
+    fn failures_name_what_they_are_about() {
+        let said: Vec<String> = all().iter().map(|(failure, ..)| failure.to_string()).collect();
+        assert_eq!(said[0], "unknown key `nonsense` at the top of the scene");
+        assert!(said[1].starts_with("a.toml: the stiffness matrix cannot be factorised"), "{}", said[1]);
+        assert_eq!(said[3], "these runs are no sweep: nothing varies");
+        assert_eq!(said[5], "a.toml: the target error 2e0 is not between 1e-12 and 1");
+        assert_eq!(said[6], "a.toml: interrupted; what was computed until then is in out/a");
+        assert_eq!(said[7], "cannot write results into out/a: the disk is full");
+        assert_eq!(said[8], "cannot write `a.csv`");
+        assert_eq!(said[9], "cannot write to standard output: the disk is full");
+    }
+}

@@ -40,22 +40,29 @@ pub fn visible(text: &str) -> Cow<'_, str> {
 /// in it.
 pub fn report(failure: &Failure) {
     if io::stderr().is_terminal() {
-        let plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-        let theme = if plain { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
-        let rendered = |theme| {
-            let mut text = String::new();
-            let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(2);
-            handler.render_report(&mut text, failure).is_ok().then_some(text)
-        };
-        // Colours are commands to the terminal, too; there must be no others.
-        let harmless = rendered(GraphicalTheme::unicode_nocolor())
-            .is_some_and(|text| matches!(visible(&text), Cow::Borrowed(_)));
-        if harmless && let Some(text) = rendered(theme) {
+        let colourless = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        if let Some(text) = drawn(failure, colourless) {
             let _ = writeln!(io::stderr().lock(), "{text}");
             return;
         }
     }
     note(&format!("error: {}", plain(failure)));
+}
+
+/// A failure with the lines of the scene that it is about; nothing where these would command the
+/// terminal.
+fn drawn(failure: &Failure, colourless: bool) -> Option<String> {
+    let rendered = |theme| {
+        let mut text = String::new();
+        let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(2);
+        handler.render_report(&mut text, failure).is_ok().then_some(text)
+    };
+    // Colours are commands to the terminal, too; there must be no others.
+    let text = rendered(GraphicalTheme::unicode_nocolor())?;
+    if matches!(visible(&text), Cow::Owned(_)) {
+        return None;
+    }
+    if colourless { Some(text) } else { rendered(GraphicalTheme::unicode()) }
 }
 
 /// The message of a failure with its causes and its help.
@@ -331,15 +338,221 @@ fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ancf::model::{Dynamic, Integrator, STEP_CONTROL, Static};
+    use ancf::output::OutputError;
+    use ancf::scene::{self, SceneError};
     use ancf::trajectory::{Energy, ProbeSeries, Seconds, Statistics};
+    use indicatif::TermLike;
+    use std::sync::{Arc, Mutex};
+
+    /// A terminal that keeps what is written on it.
+    #[derive(Clone, Debug, Default)]
+    struct Screen(Arc<Mutex<String>>);
+
+    impl Screen {
+        /// On which `bar` is drawn from now on.
+        fn of(bar: &ProgressBar) -> Self {
+            let screen = Self::default();
+            bar.set_draw_target(ProgressDrawTarget::term_like(Box::new(screen.clone())));
+            screen
+        }
+
+        /// All that was written.
+        fn text(&self) -> String {
+            self.0.lock().expect("a screen").clone()
+        }
+    }
+
+    impl TermLike for Screen {
+        fn width(&self) -> u16 {
+            200
+        }
+
+        fn move_cursor_up(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn move_cursor_down(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn move_cursor_right(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn move_cursor_left(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn write_line(&self, text: &str) -> io::Result<()> {
+            TermLike::write_str(self, text)
+        }
+
+        fn write_str(&self, text: &str) -> io::Result<()> {
+            self.0.lock().expect("a screen").push_str(text);
+            Ok(())
+        }
+
+        fn clear_line(&self) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn flush(&self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    /// The line is told when it was last brought up to date, so that nothing here waits for the
+    /// clock.
+    #[test]
+    fn the_line_of_a_run_says_where_it_is() {
+        let integrator = Integrator::usual(STEP_CONTROL);
+        let motion = Dynamic { duration: 2.0, output_every: 0.1, integrator, events: vec![] };
+        let at =
+            |parameter: f64, target: f64| Progress { parameter, target, step: 1e-3, newton_iterations: 7 };
+        for (analysis, expected) in [
+            (Analysis::Dynamic(motion), "t = 0.2500 s of 2.0000 s, step 1.00e-3 s, 7 Newton iterations"),
+            (
+                Analysis::Static(Static::default()),
+                "load = 0.2500 of 2.0000, step 1.00e-3, 7 Newton iterations",
+            ),
+        ] {
+            let line = ProgressLine::new(&analysis, true);
+            let (long_ago, later) = (Instant::now() - 2 * TICK, Instant::now() + Duration::from_secs(3600));
+            // There is no terminal.
+            line.shown.set(long_ago);
+            line.show(&at(0.25, 2.0));
+            assert_eq!(line.bar.message(), "");
+            let screen = Screen::of(&line.bar);
+            // It was shown a moment ago.
+            line.shown.set(later);
+            line.show(&at(0.25, 2.0));
+            assert_eq!(line.bar.message(), "");
+            line.shown.set(long_ago);
+            line.show(&at(0.25, 2.0));
+            assert_eq!((line.bar.message().as_str(), line.bar.position()), (expected, 125));
+            line.bar.force_draw();
+            assert!(screen.text().contains(&format!("] {expected} · ")), "{}", screen.text());
+            // Beyond either end; and with a target of zero the bar stays.
+            for (parameter, target, position) in
+                [(3.0, 2.0, 1000), (-1.0, 2.0, 0), (1.0, 2.0, 500), (0.0, 0.0, 500)]
+            {
+                line.shown.set(long_ago);
+                line.show(&at(parameter, target));
+                assert_eq!(line.bar.position(), position, "{parameter} of {target}");
+            }
+            line.clear();
+            assert!(line.bar.is_finished());
+        }
+    }
+
+    #[test]
+    fn the_line_of_a_sweep_counts_runs() {
+        let line = SweepLine::new(true);
+        let screen = Screen::of(&line.0);
+        line.show(&sweep::Progress { finished: 2, runs: 8, unsolved: 0 });
+        assert_eq!((line.0.length(), line.0.position()), (Some(8), 2));
+        assert_eq!(line.0.message(), "2 of 8 runs");
+        line.show(&sweep::Progress { finished: 5, runs: 8, unsolved: 1 });
+        assert_eq!((line.0.length(), line.0.position()), (Some(8), 5));
+        assert_eq!(line.0.message(), "5 of 8 runs, 1 not solved");
+        line.0.force_draw();
+        assert!(screen.text().contains("] 5 of 8 runs, 1 not solved · "), "{}", screen.text());
+        line.clear();
+        assert!(line.0.is_finished());
+    }
+
+    /// A quarter of the budget.
+    #[test]
+    fn the_line_of_a_study_is_its_budget() {
+        let now = cost::Progress { doing: "setting 3", spent: 3.09375, budget: 12.375 };
+        let line = CostLine::new(true);
+        line.show(&now);
+        assert_eq!((line.0.message().as_str(), line.0.position()), ("", 0), "there is no terminal");
+        let screen = Screen::of(&line.0);
+        line.show(&now);
+        let expected = "setting 3, budget 12.4 s";
+        assert_eq!((line.0.message().as_str(), line.0.position()), (expected, 250));
+        line.0.force_draw();
+        assert!(screen.text().contains(&format!("] {expected} · ")), "{}", screen.text());
+        line.clear();
+        assert!(line.0.is_finished());
+    }
+
+    #[test]
+    fn control_characters_are_seen() {
+        let harmless = "90° — é\tü\n";
+        assert!(matches!(visible(harmless), Cow::Borrowed(text) if text == harmless));
+        assert_eq!(visible("é\u{1b}[2J\r\u{9b}\n"), "é\\u{1b}[2J\\r\\u{9b}\n");
+    }
+
+    fn wrong(text: &str) -> Failure {
+        Failure::Scene(scene::parse("arm.toml", text).expect_err("no scene"))
+    }
+
+    const WRONG: &str = "title = \"Arm\"\n# two\n# three\nnonsense = 1\n# five\n# six\n# seven\n";
+
+    /// Two lines on either side of the place.
+    #[test]
+    fn a_failure_is_drawn_with_the_lines_around_it() {
+        let failure = wrong(WRONG);
+        let text = drawn(&failure, true).expect("a drawing");
+        for part in [
+            "unknown key `nonsense`",
+            "[arm.toml:4:1]",
+            " 2 │ # two\n",
+            " 4 │ nonsense = 1\n",
+            "╰── here",
+            " 6 │ # six\n",
+            "help: legal keys: title, beam",
+        ] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        assert!(!text.contains("title = ") && !text.contains("# seven"), "{text}");
+        assert!(!text.contains('\u{1b}'), "{text}");
+        assert!(drawn(&failure, false).is_some_and(|text| text.contains("\u{1b}[")));
+    }
+
+    #[test]
+    fn lines_that_command_the_terminal_are_not_drawn() {
+        let failure = wrong("nonsense = 1 # \u{1b}[2J\n");
+        assert_eq!((drawn(&failure, true), drawn(&failure, false)), (None, None));
+        assert!(plain(&failure).starts_with("arm.toml:1:16: "), "{}", plain(&failure));
+    }
+
+    /// With its place; with its causes; with its help.
+    #[test]
+    fn a_failure_in_plain_text_says_all_of_it() {
+        let text = plain(&wrong(WRONG));
+        assert!(text.starts_with("arm.toml:4:1: unknown key `nonsense`"), "{text}");
+        assert_eq!(text.matches("legal keys").count(), 1, "{text}");
+        let absent = SceneError::Unreadable { path: "a.toml".into(), reason: "it is gone".into() };
+        assert_eq!(
+            plain(&Failure::Scene(absent)),
+            "a.toml: cannot read the scene: it is gone\n    \
+             give the path of a scene file, a text file in the TOML format"
+        );
+        let source = io::Error::other("the disk is full");
+        let full = OutputError::Write { path: "out/energy.csv".into(), source };
+        assert_eq!(
+            plain(&Failure::Output(full)),
+            "cannot write `out/energy.csv`: the disk is full\n    \
+             make the directory writable and free space on its disk, or name another one with `-o DIR`"
+        );
+    }
 
     #[test]
     fn numbers_keep_seven_digits() {
         for (value, text) in [
             (0.0, "0"),
+            (1.0, "1"),
+            (1e-3, "0.001"),
+            (9.99e-4, "9.990000e-4"),
             (-0.316_634_321, "-0.3166343"),
             (360.0, "360"),
             (1_234_567.0, "1234567"),
+            (1_234_567.4, "1234567"),
+            (1e7, "1.000000e7"),
             (12_345_678.0, "1.234568e7"),
             (1e-9, "1.000000e-9"),
             (f64::NAN, "NaN"),
@@ -365,6 +578,27 @@ mod tests {
         assert!(!text.contains("complete"), "{text}");
         let text = table(&Trajectory { complete: false, ..trajectory }, Path::new("out/arm"));
         assert!(text.contains("complete     no, the run ended"), "{text}");
+    }
+
+    /// One of a thing is one; energies that few models have are left out where they are zero.
+    #[test]
+    fn the_table_is_no_longer_than_it_must_be() {
+        let statistics =
+            Statistics { steps: 1, newton_iterations: 1, factorizations: 1, ..Statistics::default() };
+        let trajectory = Trajectory {
+            complete: true,
+            energy: vec![Energy { bend: 0.5, ..Energy::default() }],
+            statistics,
+            ..Trajectory::default()
+        };
+        let expected = "  energy    stretch 0 J, bend 0.5 J, kinetic 0 J, potential 0 J, total 0.5 J
+  unknowns  0
+  work      1 step, 1 Newton iteration, 1 factorisation
+  seconds   build 0.000, solve 0.000, write 0.000
+  report    a/report.html";
+        assert_eq!(table(&trajectory, Path::new("a")), expected);
+        let idle = Trajectory { statistics: Statistics::default(), ..trajectory };
+        assert!(!table(&idle, Path::new("a")).contains("work"));
     }
 
     /// All rows that there are, word for word.

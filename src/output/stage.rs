@@ -108,3 +108,59 @@ impl Drop for Stage {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(directory: &Path) -> Vec<String> {
+        let entries = fs::read_dir(directory).expect("a directory");
+        let mut names: Vec<String> =
+            entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    /// Would catch directories that a failure leaves behind, and one that was there before and goes.
+    #[test]
+    fn what_fails_removes_the_directories_that_it_made_and_no_other() {
+        let own = tempfile::tempdir().expect("a directory");
+        let before = own.path().join("before");
+        fs::create_dir(&before).expect("made");
+        let mut stage = Stage::new(&before.join("new/results")).expect("made");
+        stage.add("one.csv", |out| out.write_all(b"1\n")).expect("written");
+        stage.add("deep/two.csv", |out| out.write_all(b"2\n")).expect("written");
+        let full = stage.add("three.csv", |_| Err(io::Error::other("the disk is full")));
+        assert!(
+            matches!(full, Err(OutputError::Write { path, .. }) if path.ends_with("new/results/three.csv"))
+        );
+        drop(stage);
+        assert_eq!(names(&before), Vec::<String>::new());
+        // What others have put there in the meantime stays.
+        let stage = Stage::new(&before.join("new")).expect("made");
+        fs::write(before.join("new/notes.txt"), "").expect("written");
+        drop(stage);
+        assert_eq!(names(&before.join("new")), ["notes.txt"]);
+    }
+
+    #[test]
+    fn files_appear_when_all_are_there_and_are_for_whom_the_user_likes() {
+        let own = tempfile::tempdir().expect("a directory");
+        let results = own.path().join("results");
+        let mut stage = Stage::new(&results).expect("made");
+        stage.add("deep/two.csv", |out| out.write_all(b"2\n")).expect("written");
+        assert!(stage.holds("deep/two.csv") && !stage.holds("two.csv"));
+        assert!(!results.join("deep/two.csv").exists());
+        stage.commit().expect("renamed");
+        assert_eq!(names(&results), ["deep"]);
+        assert_eq!(names(&results.join("deep")), ["two.csv"]);
+        assert_eq!(fs::read_to_string(results.join("deep/two.csv")).expect("a file"), "2\n");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            let mode = |path: &Path| fs::metadata(path).expect("a file").permissions().mode();
+            fs::write(own.path().join("other"), "").expect("written");
+            assert_eq!(mode(&results.join("deep/two.csv")), mode(&own.path().join("other")));
+        }
+    }
+}

@@ -17,6 +17,8 @@ const TO_THE_END: f64 = 1e-14;
 const FINER: [usize; 2] = [20, 200];
 /// Turn of a node before buckling to which the linear solution is trusted \[rad\].
 const STRAIGHT: f64 = 0.1;
+/// Axial strain before buckling to which it is trusted; critical loads err by as much.
+const STRAINED: f64 = 0.05;
 /// Largest displacement of a drawn mode, in beam lengths.
 const DRAWN: f64 = 0.1;
 
@@ -93,13 +95,7 @@ impl Sampler<'_> {
         let reference = self.system.reference();
         trajectory.modes = modes.shapes.iter().map(|mode| self.mode_shape(reference, mode)).collect();
         trajectory.statistics.factorizations = modes.factorizations;
-        if let (true, Some(load)) = (modes.turn > STRAIGHT, modes.load_factors.first()) {
-            trajectory.warnings.push(format!(
-                "the loads turn the beam by {:.2} rad before it buckles at load factor {load:.6}, by the linear solution, which holds for small turns only: \
-                 follow the path with `arc_length` in [analysis.static], which finds limit points and bifurcations of the bent structure",
-                modes.turn
-            ));
-        }
+        trajectory.warnings.extend(beyond_the_linear(modes));
         trajectory
     }
 
@@ -115,5 +111,32 @@ impl Sampler<'_> {
         let factor = if largest > 0.0 { DRAWN * self.system.length() / largest } else { 0.0 };
         let q: Vec<f64> = q.iter().zip(mode).map(|(q, m)| factor.mul_add(*m, *q)).collect();
         self.shape(&q)
+    }
+}
+
+/// What there is to say about critical loads before which the linear solution turns or strains the
+/// beams by more than it may.
+fn beyond_the_linear(modes: &buckling::Modes) -> Option<String> {
+    let numbered = || modes.load_factors.iter().zip(1..);
+    let (turned, number) = numbered().find(|(load, _)| *load * modes.turn > STRAIGHT).unzip();
+    let (strained, second) = numbered().find(|(load, _)| *load * modes.strain > STRAINED).unzip();
+    let which = |number: Option<usize>| match number {
+        Some(1) | None => String::new(),
+        Some(number) => format!("critical loads from number {number} on are of no use: "),
+    };
+    match (turned, strained) {
+        (Some(load), _) => Some(format!(
+            "{}the loads turn the beam by {:.2} rad before it buckles at load factor {load:.6}, by the linear solution, which holds for small turns only: \
+             follow the path with `arc_length` in [analysis.static], which finds limit points and bifurcations of the bent structure",
+            which(number),
+            load * modes.turn,
+        )),
+        (None, Some(load)) => Some(format!(
+            "{}the loads strain the beam by {:.2} before it buckles at load factor {load:.6}, by the linear solution, which holds for small strains only, as \
+             does the beam itself: give a larger `axial_stiffness`, or ask for fewer critical loads",
+            which(second),
+            load * modes.strain,
+        )),
+        (None, None) => None,
     }
 }

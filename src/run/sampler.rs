@@ -3,6 +3,7 @@
 use super::RunError;
 use super::angle;
 use super::locking::Locking;
+use super::strings;
 use crate::effect::{Actions, InternalVariables, Side};
 use crate::linear::Singular;
 use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
@@ -172,7 +173,7 @@ impl<'a> Sampler<'a> {
             analysis,
             complete: true,
             degrees_of_freedom: self.system.degrees_of_freedom(),
-            warnings: self.left_out(analysis).into_iter().collect(),
+            warnings: self.left_out(analysis).into_iter().chain(strings::couples(self.model)).collect(),
             settings: self.settings(),
             undeformed: self.shape(reference),
             outlines: self.outlines(),

@@ -23,8 +23,10 @@ pub struct Modes {
     pub load_factors: Vec<f64>,
     /// Buckling shapes as changes of the coordinates.
     pub shapes: Vec<Vec<f64>>,
-    /// Largest turn of a node in the linear solution at the lowest of them \[rad\].
+    /// Largest turn of a node in the linear solution, per load factor \[rad\].
     pub turn: f64,
+    /// Largest axial strain of a node in the linear solution, per load factor.
+    pub strain: f64,
     /// Factorisations made.
     pub factorizations: usize,
 }
@@ -92,10 +94,15 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         v
     });
     let load_factors: Vec<f64> = pairs.reciprocals.iter().map(|r| 1.0 / r).collect();
-    let turns = rate[..n].chunks_exact(4).zip(reference.chunks_exact(4));
-    let turn = turns.fold(0.0_f64, |turn, (d, q)| turn.max((q[2] * d[3] - q[3] * d[2]).abs()));
+    let (mut turn, mut strain) = (0.0_f64, 0.0_f64);
+    for (d, q) in rate[..n].chunks_exact(4).zip(reference.chunks_exact(4)) {
+        let squared = q[2] * q[2] + q[3] * q[3];
+        turn = turn.max((q[2] * d[3] - q[3] * d[2]).abs() / squared);
+        strain = strain.max((q[2] * d[2] + q[3] * d[3]).abs() / squared);
+    }
     Ok(Modes {
-        turn: load_factors.first().map_or(0.0, |load| load * turn),
+        turn,
+        strain,
         load_factors,
         shapes: shapes.collect(),
         factorizations: 2,

@@ -132,12 +132,13 @@ mod tests {
     }
 
     /// Settings on the front and those close to it, by their time; one that takes 1.3 times as long
-    /// for the same is left out.
+    /// for the same is left out, one that takes just 1.25 times as long is not.
     #[test]
     fn the_table_reads_as_reviewed() {
         let error = |error: f64| Deviation { error, ..Deviation::default() };
         let full = Deviation { error: 2.5e-5, curvature: Some(1.5e-3), energy: Some(4e-6) };
-        let left = |what: &str| LeftOut { what: what.to_owned(), why: "it was too slow".to_owned() };
+        let left = |what: &str, why: &str| LeftOut { what: what.to_owned(), why: why.to_owned() };
+        let (slow, over, same) = ("it was too slow", "the time is over", "it is the same");
         let report = Report {
             title: "Arm",
             version: "0",
@@ -151,12 +152,26 @@ mod tests {
                 rung("the scene", 5e-3, error(1e-3), [false, false]),
                 rung("dear", 1.3e-3, full, [false, false]),
                 rung("best", 1e-3, full, [true, false]),
-                rung("as good", 1.2e-3, full, [false, false]),
+                rung("as good", 1.2344e-3, full, [false, false]),
+                rung("just so", 1.25e-3, full, [false, false]),
                 rung("exact", 4.5e-2, error(1e-8), [true, true]),
             ],
             best: Some(2),
             lines: Some("elements = 8\n"),
-            left_out: &[left("a"), left("b"), left("c"), left("d"), left("e")],
+            left_out: &[
+                left("a", slow),
+                left("b", slow),
+                left("k", over),
+                left("c", slow),
+                left("d", slow),
+                left("l", over),
+                left("e", slow),
+                left("m", over),
+                left("r", same),
+                left("s", same),
+                left("t", same),
+                left("u", same),
+            ],
             warnings: vec![],
         };
         let expected = "\
@@ -164,7 +179,8 @@ Arm
 
    discretisation  cells  solver           time [ms]  work  error                              curvature  energy
 ►  best            8      as the scene is  1          7     2.5e-5                             1.5e-3     4.0e-6
-   as good         8      as the scene is  1.2        7     2.5e-5                             1.5e-3     4.0e-6
+   as good         8      as the scene is  1.23       7     2.5e-5                             1.5e-3     4.0e-6
+   just so         8      as the scene is  1.25       7     2.5e-5                             1.5e-3     4.0e-6
    the scene       8      as the scene is  5          7     1.0e-3                             –          –
 •  exact           8      as the scene is  45         7     below the reference's uncertainty  –          –
 
@@ -173,12 +189,18 @@ error: position error; work: tangent evaluations and factorisations
 reference: one
 against: other
 uncertainty of the reference: 1.0e-7, of its curvature 2.0e-4, of its energy –
-5 settings measured; details and plots: out/cost.html
+6 settings measured; details and plots: out/cost.html
 left out, because it was too slow: a; b; c; and 2 more
+left out, because the time is over: k; l; m
+left out, because it is the same: r; s; t; and 1 more
 
 In place of the tables of these names (or run out/best.toml):
 
 elements = 8";
         assert_eq!(table(&report, Path::new("out")), expected);
+        let nothing = Report { best: None, lines: None, left_out: &[], ..report };
+        let text = table(&nothing, Path::new("out"));
+        assert!(!text.contains("►  best") && text.contains("•  best"), "{text}");
+        assert!(text.ends_with("details and plots: out/cost.html"), "{text}");
     }
 }

@@ -231,6 +231,179 @@ mod tests {
     }
 
     #[test]
+    fn ranges_hold_the_data_between_margins() {
+        let of = |axis: &Axis, values: &[f64]| axis.span(values.iter().copied(), 0.25);
+        let axis = Axis::linear("");
+        assert_eq!(of(&axis, &[1.0, 3.0, 2.0]), [0.5, 3.5]);
+        assert_eq!(of(&axis, &[-3.0, -1.0]), [-3.5, -0.5]);
+        assert_eq!(of(&axis, &[0.0, 4.0]), [-1.0, 5.0]);
+        assert_eq!(of(&axis, &[]), [-0.25, 1.25], "nothing is shown between 0 and 1");
+        // A range that is given, unless it is none.
+        assert_eq!(of(&axis.clone().range(-2.0, 5.0), &[100.0]), [-2.0, 5.0]);
+        assert_eq!(of(&axis.clone().range(0.0, 1e300), &[1.0]), [0.0, 1e300]);
+        for (low, high) in [(5.0, -2.0), (1.0, 1.0), (f64::NAN, 1.0), (0.0, 2e300)] {
+            assert_eq!(of(&axis.clone().range(low, high), &[1.0, 3.0]), [0.5, 3.5], "{low} to {high}");
+        }
+        assert_eq!(of(&Axis::log("").range(10.0, 1e5), &[7.0]), [1.0, 5.0]);
+        assert_eq!(of(&Axis::log("").range(0.0, 10.0), &[20.0, 300.0]), [1.0, 3.0]);
+    }
+
+    #[test]
+    fn what_is_negligible_or_constant_is_shown_against_zero() {
+        let of = |axis: &Axis, values: &[f64]| axis.span(values.iter().copied(), 0.25);
+        let axis = Axis::linear("").negligible(0.5);
+        assert_eq!(of(&axis, &[0.5, -0.5]), [-0.5, 0.5]);
+        assert_eq!(of(&axis, &[0.25]), [-0.5, 0.5]);
+        assert_eq!(of(&axis, &[1.0, 1.5]), [0.0, 1.875]);
+        assert_eq!(of(&axis, &[-1.5, -1.0]), [-1.875, 0.0]);
+        assert_eq!(of(&axis, &[1.0, 2.0]), [0.75, 2.25]);
+        let axis = Axis::linear("");
+        assert_eq!(of(&axis, &[0.0]), [-1.0, 1.0]);
+        assert_eq!(of(&axis, &[4.0]), [0.0, 5.0]);
+        assert_eq!(of(&axis, &[-4.0]), [-5.0, 0.0]);
+        assert_eq!(of(&axis, &[4.0 - 3e-6, 4.0]), [0.0, 5.0]);
+        let [low, high] = of(&axis, &[4.0 - 5e-6, 4.0]);
+        assert!(low > 3.9 && high > 4.0, "{low} to {high}");
+    }
+
+    #[test]
+    fn logarithmic_ranges_are_whole_decades() {
+        let of = |values: &[f64]| span(&Axis::log(""), values);
+        assert_eq!(of(&[1.0, 1000.0]), [0.0, 3.0]);
+        assert_eq!(of(&[10.0, 1000.0]), [1.0, 3.0]);
+        assert_eq!(of(&[2.0, 3.0]), [0.0, 1.0]);
+        assert_eq!(of(&[0.9, 1.1]), [-1.0, 1.0]);
+        assert_eq!(of(&[10.0]), [0.0, 1.0]);
+        assert_eq!(of(&[100.0]), [1.0, 2.0]);
+        assert_eq!(of(&[-5.0, 0.0, 100.0, 200.0]), [2.0, 3.0]);
+        assert_eq!(of(&[1e-30, 1.0]), [-24.0, 0.0]);
+        assert_eq!(of(&[1e-30, 1e-10]), [-30.0, -10.0]);
+        assert_eq!(of(&[]), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn values_are_mapped_where_they_can_be_shown() {
+        let (linear, log) = (Axis::linear(""), Axis::log(""));
+        for value in [0.0, -3.5, 1e300, -1e300] {
+            assert_eq!(linear.map(value), Some(value));
+        }
+        for value in [2e300, -2e300, f64::INFINITY, f64::NAN] {
+            assert_eq!(linear.map(value), None, "{value}");
+        }
+        for value in [5e-324, 0.5, 7.0, f64::MAX] {
+            assert_eq!(log.map(value), Some(value.log10()));
+        }
+        for value in [0.0, -1.0, f64::INFINITY, f64::NAN] {
+            assert_eq!(log.map(value), None, "{value}");
+        }
+        let extent = |values: &[f64]| linear.extent(values.iter().copied());
+        assert_eq!(extent(&[2.0, f64::NAN, -1.0, f64::INFINITY]), [-1.0, 2.0]);
+        assert_eq!(extent(&[3.0]), [3.0, 3.0]);
+        assert_eq!(extent(&[f64::NAN]), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn steps_are_1_2_or_5() {
+        for (step, expected) in [
+            (0.3, 0.5),
+            (1.0, 1.0),
+            (1.000_000_000_1, 1.0),
+            (1.1, 2.0),
+            (2.0, 2.0),
+            (2.1, 5.0),
+            (5.0, 5.0),
+            (5.1, 10.0),
+            (30.0, 50.0),
+            (1000.0, 1000.0),
+            (0.001, 0.001),
+            (6e-8, 1e-7),
+        ] {
+            let found = nice(step);
+            assert!((found / expected - 1.0).abs() < 1e-12, "{step}: {found}, not {expected}");
+        }
+        for none in [0.0, -1.0, f64::INFINITY, f64::NAN] {
+            assert_eq!(nice(none), 1.0, "{none}");
+        }
+    }
+
+    /// Ticks with their texts, and what these are to be multiplied by.
+    fn texts(ruler: &Ruler) -> (Vec<String>, Option<String>) {
+        (ruler.ticks.iter().map(|&tick| ruler.label(tick)).collect(), ruler.factor())
+    }
+
+    #[test]
+    fn ticks_are_as_many_as_asked_for_or_fewer() {
+        let axis = Axis::linear("");
+        let ticks = |axis: &Axis, span, count| Ruler::new(axis, span, count).ticks;
+        assert_eq!(ticks(&axis, [-10.0, 10.0], 4.0), [-10.0, -5.0, 0.0, 5.0, 10.0]);
+        assert_eq!(ticks(&axis, [0.0, 10.0], 0.5), [0.0, 10.0]);
+        assert_eq!(ticks(&axis, [1.0, 9.0], 4.0), [2.0, 4.0, 6.0, 8.0]);
+        let whole = axis.clone().whole();
+        assert_eq!(ticks(&axis, [0.0, 2.0], 4.0), [0.0, 0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(ticks(&whole, [0.0, 2.0], 4.0), [0.0, 1.0, 2.0]);
+        assert_eq!(ticks(&whole, [0.0, 100.0], 5.0), [0.0, 20.0, 40.0, 60.0, 80.0, 100.0]);
+        // However little of a range f64 resolves.
+        assert_eq!(Ruler::linear([0.0, 1000.0], 1.0).ticks.len(), 101);
+        assert_eq!(Ruler::new(&Axis::log(""), [0.0, 500.0], 1000.0).ticks.len(), 401);
+    }
+
+    #[test]
+    fn texts_of_ticks_have_the_digits_of_their_step() {
+        for ((span, step), expected, factor) in [
+            (([0.1, 0.3], 0.1), &["0.1", "0.2", "0.3"][..], None),
+            (([0.0, 0.15], 0.05), &["0.00", "0.05", "0.10", "0.15"], None),
+            (([-2.0, 1.0], 1.0), &["−2", "−1", "0", "1"], None),
+            (([0.0, 500.0], 200.0), &["0", "200", "400"], None),
+            (([0.0, 1e-3], 5e-4), &["0.0000", "0.0005", "0.0010"], None),
+            (([0.0, 5e-4], 2e-4), &["0", "200", "400"], Some("× 10⁻⁶")),
+            (([0.0, 99_999.0], 5e4), &["0", "50000"], None),
+            (([0.0, 1e5], 5e4), &["0", "50", "100"], Some("× 10³")),
+            (([-2e5, 0.0], 1e5), &["−200", "−100", "0"], Some("× 10³")),
+            (([0.0, 2.5e6], 5e5), &["0.0", "0.5", "1.0", "1.5", "2.0", "2.5"], Some("× 10⁶")),
+            (([0.0, 2e-9], 1e-9), &["0", "1", "2"], Some("× 10⁻⁹")),
+        ] {
+            let ruler = Ruler::linear(span, step);
+            let (written, found) = texts(&ruler);
+            assert_eq!(written, expected);
+            assert_eq!(found.as_deref(), factor, "{expected:?}");
+            let widest = expected.iter().map(|text| text.chars().count()).max();
+            assert_eq!(Some(ruler.widest()), widest, "{expected:?}");
+        }
+    }
+
+    #[test]
+    fn logarithmic_ticks_are_powers_of_ten() {
+        let log = Axis::log("");
+        let few = Ruler::new(&log, [0.0, 3.0], 5.0);
+        let (written, factor) = texts(&few);
+        assert_eq!(written, ["1", "10", "10²", "10³"]);
+        assert_eq!((few.widest(), factor), (3, None));
+        // Between them the whole multiples.
+        assert_eq!(few.minor.len(), 3 * 8);
+        for (i, minor) in few.minor.iter().enumerate() {
+            let (decade, digit) = ((i / 8) as f64, (i % 8 + 2) as f64);
+            assert!((minor - decade - digit.log10()).abs() < 1e-12, "{minor}");
+        }
+        assert_eq!(Ruler::new(&log, [-1.0, 4.0], 5.0).minor.len(), 5 * 8);
+        // In a part of two decades 4 to 9, and 20 and 30.
+        assert_eq!(Ruler::new(&log, [0.5, 1.5], 5.0).minor.len(), 6 + 2);
+        // Of more decades than that the decades, where not each has a tick.
+        let many = Ruler::new(&log, [-1.0, 5.0], 5.0);
+        assert_eq!(many.ticks, [0.0, 2.0, 4.0]);
+        assert_eq!(many.minor, [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+        let each = Ruler::new(&log, [-1.0, 5.0], 6.0);
+        assert_eq!((each.ticks.len(), each.minor.len()), (7, 0));
+        let wide = Ruler::new(&log, [-4.0, 4.0], 3.0);
+        assert_eq!(wide.ticks, [-3.0, 0.0, 3.0]);
+        assert_eq!(wide.minor.len(), 9);
+        assert_eq!(Ruler::new(&log, [-6.0, 0.0], 2.0).ticks, [-6.0, -3.0, 0.0]);
+        assert_eq!(Ruler::new(&log, [0.0, 3.0], 0.2).ticks, [0.0, 3.0]);
+        // Of a given range that ends between decades.
+        assert_eq!(Ruler::new(&log, [0.5, 1.2], 5.0).ticks, [1.0]);
+        assert_eq!(Ruler::new(&log, [-0.5, 6.5], 3.0).minor, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    }
+
+    #[test]
     fn extreme_data_give_finite_axes() {
         for values in [[f64::MIN, f64::MAX], [1e300, 1e300], [f64::NAN, f64::INFINITY], [5e-324, 1e-320]] {
             for axis in [Axis::linear(""), Axis::log("")] {

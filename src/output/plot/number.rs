@@ -63,4 +63,34 @@ mod tests {
         assert_eq!(written, expected);
         assert_eq!(fixed(-0.001, 1), "0.0");
     }
+
+    /// Would catch digits too many or too few, and powers of ten for what is read better without.
+    #[test]
+    fn numbers_have_the_digits_that_are_asked_for() {
+        for (value, digits, expected) in [
+            (1.0, 6, "1"),
+            (-2.0, 3, "−2"),
+            (123.456, 4, "123.5"),
+            (1.234_56e-3, 3, "0.00123"),
+            (120.0, 2, "120"),
+            (1_234_567.0, 3, "1234567"),
+            (1e-4, 6, "0.0001"),
+            (9.9e-5, 6, "9.9 × 10⁻⁵"),
+            (9_999_999.0, 7, "9999999"),
+            (9_999_999.0, 3, "1 × 10⁷"),
+            (1e7, 6, "1 × 10⁷"),
+            (-1.234_56e-9, 3, "−1.23 × 10⁻⁹"),
+            (5.4e123, 1, "5 × 10¹²³"),
+            (f64::INFINITY, 6, "infinite"),
+            (f64::NEG_INFINITY, 6, "infinite"),
+        ] {
+            assert_eq!(human(value, digits), expected);
+        }
+        assert_eq!(superscript(-1_234_567_890), "⁻¹²³⁴⁵⁶⁷⁸⁹⁰");
+        for (value, decimals, expected) in
+            [(-0.04, 1, "0.0"), (-0.06, 1, "−0.1"), (2.5, 2, "2.50"), (-7.0, 0, "−7"), (0.0, 3, "0.000")]
+        {
+            assert_eq!(fixed(value, decimals), expected);
+        }
+    }
 }

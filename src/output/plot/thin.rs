@@ -38,4 +38,20 @@ mod tests {
         assert!(kept.len() < ENOUGH && kept.contains(&[54_321.0, 7.0]));
         assert_eq!((kept.first(), kept.last()), (points.first(), points.last()));
     }
+
+    /// Groups of six whose first, third, fourth and sixth are to stay, and a last group of one.
+    #[test]
+    fn each_group_leaves_its_ends_and_extremes() {
+        let heights = [0.0, 1.0, -2.0, 5.0, 3.0, 0.5];
+        let point = |i: usize| [-(i as f64), heights[i % 6]];
+        let few: Vec<[f64; 2]> = (0..ENOUGH).map(point).collect();
+        assert_eq!(thin(&few), few);
+        let many: Vec<[f64; 2]> = (0..=ENOUGH).map(point).collect();
+        let expected: Vec<[f64; 2]> =
+            (0..=ENOUGH).filter(|i| [0, 2, 3, 5].contains(&(i % 6))).map(point).collect();
+        assert_eq!(thin(&many), expected);
+        // Where an extreme is an end, nothing is there twice.
+        let rising: Vec<[f64; 2]> = (0..=ENOUGH).map(|i| [0.0, i as f64]).collect();
+        assert_eq!(thin(&rising).len(), 2 * ENOUGH / 6 + 1);
+    }
 }

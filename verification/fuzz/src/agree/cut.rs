@@ -67,8 +67,10 @@ pub fn cut(scene: &Table) -> Option<Table> {
     let cut = Cut { name: &name, other: &other, at, length };
     cut.places(&mut scene);
     cut.whole(&mut scene);
+    // A string passes no couple.
+    let stiff = ["bending_stiffness", "second_moment"].iter().any(|key| first.contains_key(*key));
     let mut weld = Table::new();
-    weld.insert("type".into(), "weld".into());
+    weld.insert("type".into(), if stiff { "weld" } else { "hinge" }.into());
     for (key, beam, at) in [("first", &name, "end"), ("second", &other, "start")] {
         let mut point = Table::new();
         point.insert("beam".into(), beam.clone().into());

@@ -143,13 +143,14 @@ impl Draw<'_> {
     /// weld along the tangent.
     fn joint(&mut self, last: usize) -> (f64, bool) {
         let drawn = &self.beams[last];
-        let (name, length, straight) = (drawn.name.clone(), drawn.length, drawn.straight);
+        let (name, length, straight, bends) = (drawn.name.clone(), drawn.length, drawn.straight, drawn.bends);
         let next = ["a", "b", "c"][last + 1];
         // Where a curved beam is between its nodes only the solver knows.
         let middle = straight && self.chance(0.15);
         let (at, s): (Value, f64) =
             if middle { ((0.5 * length).into(), 0.5 * length) } else { ("end".into(), length) };
-        let kind = if self.chance(0.6) { "weld" } else { "hinge" };
+        // Of a string nothing keeps a direction.
+        let kind = if self.chance(0.6) && bends { "weld" } else { "hinge" };
         let point = |beam: &str, at: Value| {
             let mut point = Table::new();
             point.insert("beam".into(), beam.into());

@@ -54,7 +54,10 @@ impl Draw<'_> {
             self.push(&["joint"], table);
             return;
         }
+        // A string passes no couple to its support.
+        let pinned = !self.beams[beam].bends && self.chance(0.9);
         let fix: &[&str] = match kind {
+            "clamp" | "gradient" if pinned => &["x", "y"],
             "clamp" => &["x", "y", "angle"],
             "gradient" => &["x", "y", "gradient"],
             "pin" => &["x", "y"],

@@ -1,0 +1,32 @@
+//! What a model asks of its strings that a string cannot do.
+
+use crate::model::{FixedRotation, Joint, Model, Place};
+
+/// A line for every place where a string, which has no bending stiffness, is held in a direction or
+/// given a couple. It passes none on: its first cells alone would bend, whatever their length, so
+/// that the result depends on the mesh.
+pub(super) fn couples(model: &Model) -> impl Iterator<Item = String> {
+    let supports = model.supports.iter().enumerate();
+    let supports = supports.filter(|(_, support)| support.fix.rotation != FixedRotation::Free);
+    let supports = supports.map(|(i, support)| (format!("support {} holds its direction", i + 1), support.at));
+    let welds = model.joints.iter().enumerate().flat_map(|(i, joint)| {
+        let places = match *joint {
+            Joint::Weld { first, second } => vec![first, second],
+            Joint::Hinge { .. } | Joint::Slider { .. } => Vec::new(),
+        };
+        places.into_iter().map(move |at| (format!("joint {} welds it", i + 1), at))
+    });
+    let moments = model.loads.iter().filter_map(|load| load.couple());
+    let moments = moments.map(|at| ("a moment acts on it".to_owned(), at));
+    let parts = model.parts.iter().filter_map(|part| part.couple());
+    let parts = parts.map(|at| ("a torsion spring or rotary inertia acts on it".to_owned(), at));
+    let on_strings = |(what, at): (String, Place)| {
+        let beam = model.beams.get(at.beam).filter(|beam| beam.section.bending_stiffness.is_none())?;
+        Some(format!(
+            "beam `{}` has no `bending_stiffness`, and {what} at s = {:.6} m: a string passes no couple on and turns freely, so that \
+             the shape there depends on the mesh; leave it out, or give the beam a bending stiffness",
+            beam.name, at.s,
+        ))
+    };
+    supports.chain(welds).chain(moments).chain(parts).filter_map(on_strings)
+}
