@@ -224,12 +224,229 @@ fn watched(model: &Model) -> Model {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::{Integrator, SPECTRAL_RADIUS, StepControl};
+    use crate::trajectory::{AnalysisKind, Statistics, Trajectory};
+    use std::sync::Mutex;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     const ROLL_UP: &str = include_str!("../tests/scenes/roll-up-ancf.toml");
 
     fn scene() -> Scene {
         crate::scene::parse("roll-up", ROLL_UP).unwrap()
+    }
+
+    /// The scene with this analysis instead of its own.
+    fn scene_with(analysis: &str) -> Scene {
+        let (before, _) = ROLL_UP.split_once("[analysis.static]").unwrap();
+        crate::scene::parse("roll-up", &format!("{before}{analysis}\n")).unwrap()
+    }
+
+    /// A cantilever of four elements.
+    fn arm(rest: &str) -> Scene {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, \
+             mass_per_length = 1, basis.ancf.elements = 4 }}\n\
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\n{rest}\n"
+        );
+        crate::scene::parse("arm.toml", &text).unwrap()
+    }
+
+    /// Powers of two, of which sums are exact: the target, and the uncertainty of the reference.
+    pub(super) const TARGET: f64 = 1.0 / 1024.0;
+    pub(super) const UNCERTAINTY: f64 = TARGET / 16.0;
+
+    /// A study whose numbers are made up: of every kind of discretisation, one of them with other
+    /// solvers. The second setting just meets the target, the third one just does not; the fourth
+    /// one errs by the uncertainty, the fifth one by half of that, with a warning.
+    pub(super) fn made_up() -> Study {
+        let alpha = Integrator::GeneralizedAlpha {
+            step: StepControl::Fixed(0.5),
+            spectral_radius: SPECTRAL_RADIUS,
+            newton_tolerance: Integrator::NEWTON_TOLERANCE,
+        };
+        let rpim = |neighbours: usize, shape: f64| Family::Rpim { neighbours, shape, points: 4 };
+        let (scene, other) = (Solver::Scene, Solver::Tolerance(1e-5));
+        let settings = [
+            (Family::Scene, 3, scene, 0.5, 1.0 / 32.0),
+            (Family::FULL, 4, scene, 1.0 / 64.0, TARGET - UNCERTAINTY),
+            (Family::FULL, 8, scene, 0.125, TARGET),
+            (Family::REDUCED, 8, scene, 1.0 / 32.0, UNCERTAINTY),
+            (rpim(2, 5.0), 4, scene, 0.25, UNCERTAINTY / 2.0),
+            (rpim(2, 5.0), 4, other, 1.0, 1.0 / 512.0),
+            (rpim(2, 5.0), 4, Solver::Integrator(alpha), 2.0, 1.0 / 256.0),
+            (rpim(1, 5.0), 4, scene, 4.0, 1.0 / 128.0),
+            (rpim(3, 5.0), 4, scene, 8.0, 1.0 / 64.0),
+            (rpim(2, 6.0), 4, scene, 3.0, 1.0 / 2048.0),
+        ];
+        let rung = |(family, cells, solver, seconds, error): (Family, usize, Solver, f64, f64)| Rung {
+            family,
+            cells,
+            setting: Setting { beams: vec![], solver },
+            measured: Measured {
+                // What the scene itself costs has not been counted.
+                degrees_of_freedom: if family == Family::Scene { 0 } else { 4 * cells },
+                seconds,
+                statistics: Statistics { tangent_evaluations: 1, factorizations: 1, ..Statistics::default() },
+                deviation: Deviation { error, ..Deviation::default() },
+                warnings: if seconds == 0.25 { vec!["it locks".to_owned()] } else { vec![] },
+                ..Measured::default()
+            },
+        };
+        let lines = "[beam.cantilever.basis.ancf]\nelements = 4\n".to_owned();
+        Study {
+            options: Options { target: TARGET, budget: Duration::from_secs(20) },
+            reference: Reference {
+                trajectory: Trajectory {
+                    title: "Made up".to_owned(),
+                    analysis: AnalysisKind::Static,
+                    ..Trajectory::default()
+                },
+                uncertainty: Deviation { error: UNCERTAINTY, curvature: None, energy: None },
+                warnings: vec!["it turns".to_owned()],
+                pair: ["one".to_owned(), "other".to_owned()],
+                seconds: 1.25,
+            },
+            rungs: settings.map(rung).into(),
+            front: vec![1, 3],
+            best: Some(Best { rung: 1, lines, scene: self::scene() }),
+            left_out: vec![],
+            complete: true,
+            seconds: 17.5,
+        }
+    }
+
+    #[test]
+    fn what_the_reader_should_know() {
+        let warned = |change: fn(&mut Study)| {
+            let mut study = made_up();
+            change(&mut study);
+            study.warnings()
+        };
+        let usual =
+            ["the reference: it turns", "RPIM, 2 neighbours, shape 5, 4 cells, as the scene is: it locks"];
+        assert_eq!(warned(|_| {}), usual);
+        let with = |first: &[&str]| -> Vec<String> {
+            first.iter().chain(&usual).map(|warning| (*warning).to_owned()).collect()
+        };
+        let interrupted = "interrupted: what follows was measured until then";
+        assert_eq!(warned(|study| study.complete = false), with(&[interrupted]));
+        let none = "no setting that was tried meets the target 9.765625e-4 without a warning";
+        assert_eq!(warned(|study| study.best = None), with(&[none]));
+        // A tenth of the target is good, an eighth of it is not, and the whole is useless.
+        assert_eq!(warned(|study| study.reference.uncertainty.error = TARGET / 10.0), usual);
+        let uncertain = "the reference is uncertain by 1.2e-4, more than a tenth of the target 9.765625e-4: settings close \
+                         to the target may be judged too strictly; more time (--budget) would make it better";
+        assert_eq!(warned(|study| study.reference.uncertainty.error = TARGET / 8.0), with(&[uncertain]));
+        let useless = "the reference is not good enough for the target: its uncertainty is 9.8e-4, more than the target \
+                       9.765625e-4, so that no setting can be shown to meet it; give more time with --budget, or a larger \
+                       --target";
+        let none_meets = warned(|study| {
+            study.reference.uncertainty.error = TARGET;
+            study.best = None;
+        });
+        assert_eq!(none_meets, with(&[useless]));
+        let nearly = warned(|study| {
+            study.reference.uncertainty.error = TARGET / 8.0;
+            study.best = None;
+        });
+        assert_eq!(nearly, with(&[uncertain, none]));
+    }
+
+    /// What is legal comes as far as the watcher, who wants nothing of it.
+    #[test]
+    fn what_may_be_asked_for() {
+        let asked = |scene: &Scene, target: f64, seconds: f64| {
+            let budget = Duration::from_secs_f64(seconds);
+            study(scene, Options { target, budget }, &|_| Control::Stop).err()
+        };
+        let scene = scene();
+        for target in [1e-12, 0.5, 0.999] {
+            assert!(matches!(asked(&scene, target, 60.0), Some(CostError::Interrupted)), "{target}");
+        }
+        for target in [9e-13, 1.0, -1.0, f64::NAN] {
+            assert!(matches!(asked(&scene, target, 60.0), Some(CostError::Target { .. })), "{target}");
+        }
+        for budget in [0.01, 604_800.0] {
+            assert!(matches!(asked(&scene, 1e-3, budget), Some(CostError::Interrupted)), "{budget}");
+        }
+        for budget in [0.009, 604_800.5] {
+            assert!(matches!(asked(&scene, 1e-3, budget), Some(CostError::Budget { .. })), "{budget}");
+        }
+        for (arc, ends) in [
+            ("until_load = 0.5", true),
+            ("until_probe = { probe = \"tip\", y = 0.1 }", true),
+            ("until_load = 0.5, until_probe = { probe = \"tip\", y = 0.1 }", true),
+            ("max_points = 5", false),
+        ] {
+            let scene = scene_with(&format!("[analysis.static]\narc_length = {{ {arc} }}"));
+            match asked(&scene, 1e-3, 60.0) {
+                Some(CostError::Interrupted) => assert!(ends, "{arc}"),
+                Some(CostError::Path) => assert!(!ends, "{arc}"),
+                other => panic!("{arc}: {other:?}"),
+            }
+        }
+    }
+
+    /// Four cubic elements miss the second frequency of a clamped beam by 1.1652e-3, and the
+    /// reference is uncertain by 1.4e-8: by so much the target has to be larger.
+    #[test]
+    fn the_uncertainty_of_the_reference_is_in_the_target() {
+        let scene = arm("analysis.modal.count = 2");
+        for (target, meets) in [(1.1652e-3, false), (1.17e-3, true)] {
+            let told = Mutex::new(Vec::<String>::new());
+            let watcher = |now: &Progress<'_>| {
+                assert_eq!(now.budget, 60.0);
+                let mut told = told.lock().unwrap();
+                if told.last().is_none_or(|last| *last != now.doing) {
+                    told.push(now.doing.to_owned());
+                }
+                if now.doing == "setting 3" { Control::Stop } else { Control::Continue }
+            };
+            let study = study(&scene, Options { target, ..Options::default() }, &watcher).unwrap();
+            assert_eq!(
+                told.into_inner().unwrap(),
+                ["reference with 16 cells", "setting 1", "setting 2", "setting 3"]
+            );
+            let measured: Vec<(Family, usize)> =
+                study.rungs.iter().map(|rung| (rung.family, rung.cells)).collect();
+            assert_eq!(measured, [(Family::Scene, 4), (Family::FULL, 4)]);
+            for rung in &study.rungs {
+                let error = rung.measured.deviation.error;
+                assert!((error / 1.1652e-3 - 1.0).abs() < 1e-5, "{error}");
+            }
+            assert!(!study.complete);
+            assert_eq!(study.best.is_some(), meets, "{target}: {:?}", study.warnings());
+            if let Some(best) = &study.best {
+                assert_eq!(best.scene.model().beams[0].discretization, scene.model().beams[0].discretization);
+                let fastest = &study.rungs[best.rung].measured.seconds;
+                assert!(study.rungs.iter().all(|rung| rung.measured.seconds >= *fastest));
+            }
+        }
+    }
+
+    /// The watcher alone takes longer than the half of the budget that the reference may take.
+    #[test]
+    fn a_reference_that_takes_too_long_is_given_up() {
+        let scene = arm("effect.force = [{ beam = 'arm', at = 'end', value = [0, 1] }]\n\
+                         analysis.static = { steps = 4 }");
+        let watcher = |_: &Progress<'_>| {
+            std::thread::sleep(Duration::from_millis(30));
+            Control::Continue
+        };
+        let options = Options { target: 1e-3, budget: Duration::from_millis(20) };
+        match study(&scene, options, &watcher) {
+            Err(CostError::NoReference { reason }) => {
+                assert_eq!(reason, "the time is over; the pair with 16 cells took more than was left");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn errors_are_told_apart_down_to_the_reference() {
+        let Study { reference, .. } = made_up();
+        assert_eq!(least(TARGET, &reference), UNCERTAINTY);
+        assert_eq!(least(0.5, &reference), 5e-4);
     }
 
     #[test]
@@ -256,6 +473,7 @@ mod tests {
         let bare = Model { probes: vec![], ..scene.model().clone() };
         let places: Vec<f64> = watched(&bare).probes.iter().map(|probe| probe.at.s).collect();
         assert_eq!(places, [0.0, 0.9, 1.8]);
+        assert_eq!(watched(&bare).probes[1].name, "cantilever, middle");
         assert_eq!(&watched(scene.model()), scene.model());
     }
 }

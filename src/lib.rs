@@ -14,18 +14,19 @@
 //!
 //! # A cantilever rolled up into a circle
 //! ```
-//! use ancf::{Analysis, Beam, Discretization, Load, Model, Place, Probe, Section, Static, Support};
+//! use ancf::effect::Moment;
+//! use ancf::{Analysis, Beam, Discretization, Model, Place, Probe, Section, Static, Support};
 //!
 //! let section = Section::new(1e4, 2.0);
 //! let beam = Beam::line("cantilever", [0.0, 0.0], [1.0, 0.0], section, Discretization::rpim(12));
 //! let (clamp, tip) = (Place::new(0, 0.0), Place::new(0, 1.0));
-//! let model = Model {
+//! let mut model = Model {
 //!     beams: vec![beam],
 //!     supports: vec![Support::clamp(clamp)],
-//!     loads: vec![Load::Moment { at: tip, value: std::f64::consts::TAU * 2.0 }],
 //!     probes: vec![Probe::new("tip", tip)],
 //!     ..Model::default()
 //! };
+//! model.add(Moment::new(tip, std::f64::consts::TAU * 2.0));
 //! let trajectory = model.solve(&Analysis::Static(Static::default()))?;
 //! let end = trajectory.probes[0].samples.last().expect("an equilibrium");
 //! assert!(end.x.hypot(end.y) < 1e-4);
@@ -43,23 +44,24 @@
 //! | `linear` | block-banded LDLᵀ, real and complex; banded LU, also with constraint rows; bordered sparse LU; inertia | `lanes` |
 //! | [`centreline`] | stress-free curves | – |
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | – |
-//! | [`model`] | the continuous problem: beams, sections, supports, loads, probes, analyses | [`centreline`], [`basis`], [`system`] |
-//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part of a model that it is | `lanes`, `linear`, [`basis`], [`model`], [`system`] |
-//! | [`system`] | coordinates, supports, joints, assembly of parts, sums over effects, inventory | `lanes`, `linear`, [`centreline`], [`basis`], [`model`], [`effect`] |
-//! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `linear`, [`model`], [`effect`], [`system`] |
+//! | [`law`] | laws of time | – |
+//! | [`beam`] | a beam with its section and discretisation, and places along it | [`centreline`], [`basis`] |
+//! | [`assembly`] | densities, their sums over tables, and how a part of a model becomes terms of the equations | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`beam`] |
+//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part of a model that it is | `lanes`, `linear`, [`basis`], [`law`], [`beam`], [`assembly`] |
+//! | [`model`] | the continuous problem: beams, supports, joints, parts, probes, analyses | [`centreline`], [`basis`], [`law`], [`beam`], [`assembly`] |
+//! | [`system`] | coordinates, supports, joints, sums over effects, inventory | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`] |
+//! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `linear`, [`assembly`], [`model`], [`system`] |
 //! | [`restart`] | a saved state, from which a motion goes on | [`model`], [`system`], `solve` |
 //! | [`trajectory`] | what a run leaves | [`system`], `solve`, [`restart`] |
-//! | [`run`](mod@run) | one model, one analysis | `linear`, [`basis`], [`model`], [`effect`], [`system`], `solve`, [`restart`], [`trajectory`] |
+//! | [`run`](mod@run) | one model, one analysis | `linear`, [`basis`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`trajectory`] |
 //! | [`output`] | files, plots, the report page | [`restart`], [`trajectory`] |
-//! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`model`], [`effect`] |
+//! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`effect`], [`model`] |
 //! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`] |
 //! | [`cost`] | what accuracy costs in time: a ladder of settings against a reference | [`centreline`], [`model`], [`trajectory`], [`scene`], [`run`](mod@run), [`output`] |
 //!
 //! `lanes`, `linear` and `solve` are for the crate itself: what a user needs of them stands in
 //! other modules, and they may change with any version. A module imports what stands above it, and
-//! nothing else but what its row says: a test reads this table and all sources. Below their place
-//! only [`model`] and [`effect`] import, and only [`system::assembly`] with its error: a part of a
-//! model says itself how it is assembled.
+//! nothing else but what its row says: a test reads this table and all sources.
 //!
 //! # Without the program
 //! The features `cli` and `report`, both on unless they are declined, bring the program `ancf` and
@@ -99,7 +101,7 @@
 //! | scene | part | formula |
 //! |---|---|---|
 //! | `[[joint]]` `hinge`, `weld`, `slider` | [`system::joint`] | constraint rows between two points |
-//! | `move` of a `[[support]]`, `in_time` of a load | [`model::Law`] | ramps, steps, sines, polynomials, tables, spin-up |
+//! | `move` of a `[[support]]`, `in_time` of a load | [`law::Law`] | ramps, steps, sines, polynomials, tables, spin-up |
 //! | `[[effect.damping]]` | [`effect::BeamDamping`] | −α ρA ṙ; EA (ε + η ε̇), EI (κ + η κ̇) |
 //! | `[[effect.spring]]`, `[[effect.torsion_spring]]` | [`effect::Spring`], [`effect::TorsionSpring`] | ½ k (ℓ − ℓ₀)², ½ k (θ − θ₀)², dashpots beside them |
 //! | `[[effect.point_mass]]`, `[[effect.rotary_inertia]]` | [`effect::PointMass`], [`effect::SectionInertia`] | ½ m ṙ·ṙ + ½ J θ̇² |
@@ -114,14 +116,13 @@
 //! ds with the axial force N as an unknown.
 //!
 //! # An effect of one's own
-//! An effect is a density of a few local fields, and a part of the model that says where it is
-//! summed. In this crate it is one file in `src/effect` and one line in the scene's list
+//! Everything that acts is a [`Part`](assembly::Part) of the model: a beam's own resistance and
+//! inertia, a load, a spring, a contact. It consists of densities of a few local fields, and says
+//! where they are summed. In this crate it is one file in `src/effect` and one line in the scene's list
 //! (`src/scene/to_parts.rs`); from outside it is this:
 //! ```
-//! use ancf::effect::{Density, Gradient, Hessian, Kind};
-//! use ancf::model::*;
-//! use ancf::system::SystemError;
-//! use ancf::system::assembly::{Assembly, Extent, Part};
+//! use ancf::Place;
+//! use ancf::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
 //! use nalgebra::{Matrix2, Vector2};
 //!
 //! /// W = ½ k y²: a point is pulled towards the x axis.
@@ -147,7 +148,7 @@
 //! }
 //!
 //! impl Part for Rail {
-//!     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+//!     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
 //!         assembly.elastic(Kind::Other("rail"), Extent::Point(self.at), |_| Pull(self.stiffness))
 //!     }
 //! }
@@ -161,7 +162,7 @@
 //!     analysis.static = {}
 //! "#)?;
 //! let mut model = scene.model().clone();
-//! model.parts.push(std::sync::Arc::new(Rail { at: Place { beam: 0, s: 1.0 }, stiffness: 7.0 }));
+//! model.add(Rail { at: Place { beam: 0, s: 1.0 }, stiffness: 7.0 });
 //! let trajectory = model.solve(scene.analysis())?;
 //! let tip = trajectory.probes[0].samples.last().expect("an equilibrium");
 //! assert!((tip.y - 1e-4 / (3.0 + 7.0)).abs() < 1e-9);
@@ -174,13 +175,16 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+pub mod assembly;
 pub mod basis;
+pub mod beam;
 pub mod centreline;
 pub mod cost;
 pub mod effect;
 pub mod handbook;
 #[doc(hidden)]
 pub mod lanes;
+pub mod law;
 #[doc(hidden)]
 pub mod linear;
 pub mod model;
@@ -195,8 +199,8 @@ pub mod system;
 pub mod trajectory;
 
 pub use model::{
-    Analysis, Beam, Centreline, Discretization, Dynamic, Fixed, GaussPoints, Integrator, Joint, Law, Load,
-    Model, Place, Probe, Section, Static, StepControl, StrainMeasure, Support,
+    Analysis, Beam, Centreline, Discretization, Dynamic, Fixed, GaussPoints, Integrator, Joint, Law, Model,
+    Place, Probe, Section, Static, StepControl, StrainMeasure, Support,
 };
 pub use run::{Control, Options, RunError};
 pub use scene::{Scene, SceneError};

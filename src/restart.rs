@@ -148,8 +148,8 @@ fn sha256(bytes: &[u8]) -> String {
 
 /// A checksum of all of a model that decides on how a motion goes on, and of the integrator.
 pub(crate) fn fingerprint(model: &Model, integrator: Integrator) -> String {
-    let Model { beams, supports, joints, loads, parts, .. } = model;
-    sha256(format!("{beams:?} {supports:?} {joints:?} {loads:?} {parts:?} {integrator:?}").as_bytes())
+    let Model { beams, supports, joints, parts, .. } = model;
+    sha256(format!("{beams:?} {supports:?} {joints:?} {parts:?} {integrator:?}").as_bytes())
 }
 
 impl Saved {
@@ -271,8 +271,8 @@ impl SavedState {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assembly::Needs;
     use crate::scene::{Scene, parse};
-    use crate::system::Needs;
 
     const ARM: &str = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, \
          bending_stiffness = 0.1, mass_per_length = 1, basis.ancf.elements = 2 }\n\

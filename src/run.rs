@@ -10,19 +10,17 @@ mod strings;
 
 pub use error::RunError;
 
+use crate::assembly::Needs;
 use crate::model::{Analysis, Displacement, Dynamic, Model};
 use crate::restart::{self, RestartError, SavedState};
 use crate::solve::dynamics::{Checkpoint, start};
 use crate::solve::statics::{self, Target};
 use crate::solve::{buckling, dynamics};
-use crate::system::{Inventory, Needs, System};
+use crate::system::{Inventory, System};
 use crate::trajectory::{Statistics, Trajectory};
 use sampler::Sampler;
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
-
-/// Difference of two times, relative, that is one of their decimals' round-off.
-const SAME_TIME: f64 = 1e-14;
 
 /// How far a computation is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -269,8 +267,6 @@ fn beginning(
     let (start, same) = saved.take_up(model, system, &motion)?;
     system.hold_as_in(&start.state.q);
     let (begin, end) = (saved.time(), later(saved.time(), settings.duration));
-    // A motion that is to end where a law has a kink ends there whether in parts or as a whole.
-    let end = system.kinks().into_iter().find(|kink| (kink - end).abs() < SAME_TIME * end).unwrap_or(end);
     start::check_jumps(system, begin, end)?;
     let start = match same {
         true => start,

@@ -12,5 +12,7 @@ mod record;
 pub mod relax;
 pub mod retraction;
 pub mod statics;
+mod work;
 
 pub use record::{ContactImpulse, Statistics, StepRecord};
+pub use work::Work;

@@ -265,5 +265,58 @@ mod tests {
         assert_eq!(numbers(&[1, 2, 3, 5, 8, 9]), "1–3, 5, 8–9");
         let odd: Vec<usize> = (0..100).map(|i| 2 * i + 1).collect();
         assert!(numbers(&odd).ends_with("37, 39, …"), "{}", numbers(&odd));
+        // As many as are shown.
+        assert!(numbers(&odd[..20]).ends_with("37, 39"), "{}", numbers(&odd[..20]));
+    }
+
+    /// Three runs, the second of which cannot be started.
+    fn sweep(folder: &Path) -> Sweep {
+        let scene = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1, bending_stiffness = 1, \
+                     mass_per_length = 1, basis.ancf.elements = 1 }\n\
+                     support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+                     analysis.dynamic = { duration = 1e-3, output_every = 1e-3 }\n";
+        let path = folder.join("scene.toml");
+        std::fs::write(&path, scene).unwrap();
+        let axis = Axis::parse("support.0.move={},{ x = 0.001 },{}").unwrap();
+        Sweep::new(&path, &[], vec![axis], 1).unwrap()
+    }
+
+    /// What the observer is told, who ends the sweep after so many calls.
+    fn told(folder: &Path, shard: Shard, calls: usize) -> (Vec<[usize; 3]>, Result<(), SweepError>) {
+        let mut told = Vec::new();
+        let done = sweep(folder).run(folder, shard, &mut |now: &Progress| {
+            told.push([now.finished, now.runs, now.unsolved]);
+            if told.len() == calls { Control::Stop } else { Control::Continue }
+        });
+        (told, done)
+    }
+
+    #[test]
+    fn the_observer_is_told_of_every_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let (calls, done) = told(folder.path(), "2/2".parse().unwrap(), 0);
+        assert_eq!(calls, [[0, 1, 0], [1, 1, 1]]);
+        assert!(done.is_ok(), "{done:?}");
+        // A run of before counts as finished, and no longer as unsolved.
+        let (calls, done) = told(folder.path(), Shard::WHOLE, 0);
+        assert_eq!(calls, [[1, 3, 0], [2, 3, 0], [3, 3, 0]]);
+        assert!(done.is_ok(), "{done:?}");
+        let (calls, _) = told(folder.path(), Shard::WHOLE, 0);
+        assert_eq!(calls, [[3, 3, 0]]);
+        let merged = merge(folder.path()).unwrap();
+        assert_eq!((merged.runs, merged.unsolved), (3, vec![2]));
+    }
+
+    #[test]
+    fn the_observer_ends_the_sweep() {
+        let folder = tempfile::tempdir().unwrap();
+        for (calls, expected) in [(1, 0), (2, 1), (3, 3)] {
+            let (made, done) = told(folder.path(), Shard::WHOLE, calls);
+            assert_eq!(made.len(), calls);
+            match done {
+                Err(SweepError::Interrupted { finished, runs: 3, .. }) => assert_eq!(finished, expected),
+                other => assert!(expected == 3 && other.is_ok(), "{other:?}"),
+            }
+        }
     }
 }

@@ -15,13 +15,10 @@
 //! with the load factor λ ∈ [0, 1]. Loads count as densities of negative work, hence the plus sign.
 
 mod actuation;
-pub mod assembly;
 pub mod constraints;
 mod contacts;
 mod cut;
-mod effects;
 mod energy;
-mod error;
 mod history;
 mod hold;
 pub mod inextensible;
@@ -40,116 +37,36 @@ mod view;
 
 pub use cut::Balanced;
 pub use energy::Energy;
-pub use error::SystemError;
 pub use inventory::{EffectEntry, Inventory};
 pub use measure::Measured;
 pub use reaction::Reaction;
 pub use view::{Fields, View, unfold};
 
+use crate::assembly::{Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Terms};
 use crate::basis::Basis;
 use crate::centreline::Curve;
-use crate::effect::{ContactIntegral, Damping, Effect, FrictionIntegral, Kind, Travelling, Winding};
+use crate::effect;
 use crate::linear::Matrix;
 use crate::model::freedom::Freedom;
 use crate::model::{Centreline, Discretization, Joint, Model, Place};
 use constraints::Constraint;
 use polar::Polar;
-use prescribed::Amplitude;
 use reaction::Source;
-use std::sync::Arc;
 use supports::Supports;
-
-/// What an analysis asks of the system; nothing else is built.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Needs {
-    /// Whether inertia takes part.
-    pub inertia: bool,
-    /// Whether loads and supports follow time, and damping takes part; otherwise loads and
-    /// prescribed displacements follow the load factor.
-    pub motion: bool,
-}
-
-/// A load with its amplitude.
-struct Acting {
-    effect: Box<dyn Effect>,
-    /// None: that of all loads without a law of their own.
-    amplitude: Option<Amplitude>,
-}
-
-/// An inertia whose matrix follows the state.
-struct Turning {
-    /// Its momentum as a function of state and velocity; and so its force as a function of state
-    /// and acceleration, but for what velocities add.
-    momentum: Box<dyn Damping>,
-    /// What velocities add.
-    rate: Box<dyn Damping>,
-}
 
 /// ω² of a hanging chain, in units of its weight on ρA L²; the lowest is 1.45.
 const CHAIN: f64 = 0.1;
 
-/// Distance beyond an end or beside a node, per length, that counts as round-off.
-const PLACE_ROUND_OFF: f64 = 1e-9;
-
-/// A beam's part of the system.
-#[derive(Debug)]
-pub struct BeamPart {
-    /// The beam's name.
-    pub name: String,
-    /// Its shape functions.
-    pub basis: Basis,
-    /// Its first node in the system.
-    pub first_node: usize,
-    /// Whether the stress-free state is straight to round-off, as the shape functions see it.
-    pub straight: bool,
-}
-
-impl BeamPart {
-    /// First coefficient in the system: two a node.
-    pub fn offset(&self) -> usize {
-        2 * self.first_node
-    }
-
-    /// The arc length `s`, where `what` stands; round-off beyond an end and beside a node is cut
-    /// off.
-    ///
-    /// # Errors
-    /// [`SystemError::OffBeam`].
-    pub fn arc_length(&self, what: &'static str, s: f64) -> Result<f64, SystemError> {
-        let length = self.basis.length();
-        // A length computed elsewhere may differ by round-off.
-        if s >= -PLACE_ROUND_OFF * length && s <= (1.0 + PLACE_ROUND_OFF) * length {
-            let nodes = self.basis.nodes();
-            let right = nodes.partition_point(|node| *node < s).min(nodes.len() - 1);
-            let near = |node: &&f64| (**node - s).abs() <= PLACE_ROUND_OFF * length;
-            let node = nodes[right.saturating_sub(1)..=right].iter().find(near);
-            Ok(node.copied().unwrap_or_else(|| s.clamp(0.0, length)))
-        } else {
-            Err(SystemError::OffBeam { what, beam: self.name.clone(), s, length })
-        }
-    }
-}
-
 /// Equations of a model.
 pub struct System {
-    beams: Vec<BeamPart>,
+    beams: Vec<DiscretizedBeam>,
     nodes: usize,
     blocks: usize,
-    internal: Vec<Box<dyn Effect>>,
-    loads: Vec<Acting>,
+    terms: Terms,
     /// Of all loads without a law of their own.
     amplitude: Amplitude,
     /// The sum of those of them that are the same in every state.
     constant_load: Vec<f64>,
-    inertia: Vec<Box<dyn Effect>>,
-    turning: Vec<Turning>,
-    damping: Vec<Box<dyn Damping>>,
-    travelling: Vec<Travelling>,
-    /// The contacts, which are among the internal effects.
-    contacts: Vec<Arc<ContactIntegral>>,
-    friction: Vec<FrictionIntegral>,
-    windings: Vec<Winding>,
-    left_out: Vec<(Kind, usize)>,
     supports: Supports,
     /// Gradients that a motion has in polar coordinates.
     polar: Polar,
@@ -175,17 +92,17 @@ impl System {
     /// supports.
     ///
     /// # Errors
-    /// [`SystemError`] where the model contradicts itself or its shape functions cannot be built.
-    pub fn build(model: &Model, needs: Needs) -> Result<Self, SystemError> {
+    /// [`BuildError`] where the model contradicts itself or its shape functions cannot be built.
+    pub fn build(model: &Model, needs: Needs) -> Result<Self, BuildError> {
         if model.beams.is_empty() {
-            return Err(SystemError::NoBeam);
+            return Err(BuildError::NoBeam);
         }
-        let mut beams: Vec<BeamPart> = Vec::with_capacity(model.beams.len());
+        let mut beams: Vec<DiscretizedBeam> = Vec::with_capacity(model.beams.len());
         let mut reference = Vec::new();
         let (mut stiffness, mut round_off) = (0.0_f64, 0.0_f64);
         for (index, beam) in model.beams.iter().enumerate() {
-            let in_curve = |cause| SystemError::Curve { beam: beam.name.clone(), cause };
-            let in_basis = |e| SystemError::basis(&beam.name, e);
+            let in_curve = |cause| BuildError::Curve { beam: beam.name.clone(), cause };
+            let in_basis = |e| BuildError::basis(&beam.name, e);
             let curve = Curve::new(&beam.centreline).map_err(in_curve)?;
             let basis = Basis::broken(&beam.discretization, curve.length(), &model.breaks(index));
             let basis = basis.map_err(in_basis)?;
@@ -208,7 +125,7 @@ impl System {
             let axial = section.axial_stiffness.unwrap_or(0.0);
             let bending = 12.0 * section.bending_stiffness.unwrap_or(0.0) / spacing.powi(2);
             round_off = round_off.max(f64::EPSILON * axial.max(bending) * curve.length() / spacing);
-            beams.push(BeamPart { name: beam.name.clone(), basis, first_node, straight });
+            beams.push(DiscretizedBeam { name: beam.name.clone(), basis, first_node, straight });
         }
         let nodes = reference.len() / 4;
         let blocks = beams.iter().map(|b| b.basis.width() / 2).max().unwrap_or(1);
@@ -217,18 +134,9 @@ impl System {
             beams,
             nodes,
             blocks,
-            internal: Vec::new(),
-            loads: Vec::new(),
+            terms: Terms::default(),
             amplitude: if needs.motion { Amplitude::Full } else { Amplitude::Proportional },
             constant_load: Vec::new(),
-            inertia: Vec::new(),
-            turning: Vec::new(),
-            damping: Vec::new(),
-            travelling: Vec::new(),
-            contacts: Vec::new(),
-            friction: Vec::new(),
-            windings: Vec::new(),
-            left_out: Vec::new(),
             supports: Supports::default(),
             polar: Polar::default(),
             constraints: Vec::new(),
@@ -243,28 +151,16 @@ impl System {
             rigid_motions: 0,
             lowest_vibration: lowest_vibration_scale(model, length),
         };
-        let mut assembly = assembly::Assembly::new(model, &system.beams, &system.reference, needs);
-        effects::add(&mut assembly)?;
-        let assembly::Assembly {
-            internal,
-            loads,
-            inertia,
-            turning,
-            damping,
-            travelling,
-            contacts,
-            friction,
-            windings,
-            left_out,
-            ..
-        } = assembly;
-        (system.internal, system.loads, system.inertia) = (internal, loads, inertia);
-        (system.turning, system.damping, system.travelling) = (turning, damping, travelling);
-        (system.contacts, system.friction, system.left_out) = (contacts, friction, left_out);
-        system.windings = windings;
+        let masses = model.parts.iter().filter_map(|part| part.mass()).collect();
+        let mut assembly = Assembly::new(&model.beams, &system.beams, &system.reference, masses, needs);
+        for beam in 0..model.beams.len() {
+            effect::of_section(beam).iter().try_for_each(|part| part.add_to(&mut assembly))?;
+        }
+        model.parts.iter().try_for_each(|part| part.add_to(&mut assembly))?;
+        system.terms = assembly.finish();
         system.actuated = actuation::actuated(model, &system);
         system.constant_load = vec![0.0; system.coordinates()];
-        for load in system.loads.iter().filter(|load| load.is_summed()) {
+        for load in system.terms.loads.iter().filter(|load| load.is_summed()) {
             load.effect.add_force(1.0, &system.reference, &mut system.constant_load);
         }
         (system.supports, system.constraints, system.sources) = hold::hold(&system, &model.supports, needs)?;
@@ -297,8 +193,8 @@ impl System {
     /// The arc length of a place on its beam; round-off beyond an end is cut off.
     ///
     /// # Errors
-    /// [`SystemError`] naming `what`, if the place is off the beam.
-    pub fn arc_length(&self, what: &'static str, at: Place) -> Result<f64, SystemError> {
+    /// [`BuildError`] naming `what`, if the place is off the beam.
+    pub fn arc_length(&self, what: &'static str, at: Place) -> Result<f64, BuildError> {
         self.part(what, at).map(|(_, s)| s)
     }
 
@@ -313,29 +209,29 @@ impl System {
             .unwrap_or((0, 0.0))
     }
 
-    fn part(&self, what: &'static str, at: Place) -> Result<(&BeamPart, f64), SystemError> {
-        let none = SystemError::NoSuchBeam { what, beam: at.beam, count: self.beams.len() };
+    fn part(&self, what: &'static str, at: Place) -> Result<(&DiscretizedBeam, f64), BuildError> {
+        let none = BuildError::NoSuchBeam { what, beam: at.beam, count: self.beams.len() };
         let part = self.beams.get(at.beam).ok_or(none)?;
         Ok((part, part.arc_length(what, at.s)?))
     }
 
     /// The gradient of the stress-free shape at a place.
-    fn gradient_of(&self, at: Place) -> Result<[f64; 2], SystemError> {
+    fn gradient_of(&self, at: Place) -> Result<[f64; 2], BuildError> {
         Ok(self.fields_of(at)?.gradient)
     }
 
-    fn fields_of(&self, at: Place) -> Result<Fields, SystemError> {
+    fn fields_of(&self, at: Place) -> Result<Fields, BuildError> {
         let (part, s) = self.part("a joint", at)?;
         let view =
-            View::point(&part.basis, part.offset(), s).map_err(|e| SystemError::basis(&part.name, e))?;
+            View::point(&part.basis, part.offset(), s).map_err(|e| BuildError::basis(&part.name, e))?;
         Ok(view.fields(&self.reference))
     }
 
     /// How many rigid motions supports and joints leave to the beams, none where a spring may resist
     /// them.
-    fn count_rigid_motions(&self, model: &Model) -> Result<usize, SystemError> {
+    fn count_rigid_motions(&self, model: &Model) -> Result<usize, BuildError> {
         let of_beams = |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Contact);
-        if !self.internal.iter().all(|effect| of_beams(effect.kind())) {
+        if !self.terms.internal.iter().all(|effect| of_beams(effect.kind())) {
             return Ok(0);
         }
         let supports = model.supports.iter().map(|support| support.at);
@@ -352,14 +248,14 @@ impl System {
     }
 
     /// The beams' parts.
-    pub fn beams(&self) -> &[BeamPart] {
+    pub fn beams(&self) -> &[DiscretizedBeam] {
         &self.beams
     }
 
     /// Effects that the model names and that cannot take part in the analysis, with their beams'
     /// names.
     pub fn left_out(&self) -> impl Iterator<Item = (Kind, &str)> {
-        self.left_out.iter().map(|(kind, beam)| (*kind, self.beams[*beam].name.as_str()))
+        self.terms.left_out.iter().map(|(kind, beam)| (*kind, self.beams[*beam].name.as_str()))
     }
 
     /// Number of coordinates, held ones included.
@@ -431,7 +327,7 @@ impl System {
     /// w²/10: a mass matrix's diagonal \[N/m, N m\].
     pub fn weights(&self) -> Vec<f64> {
         let scale = self.stiffness / self.length.powi(2);
-        let of_beam = |part: &BeamPart| {
+        let of_beam = |part: &DiscretizedBeam| {
             let nodes = part.basis.nodes().to_vec();
             (0..nodes.len()).flat_map(move |i| {
                 let left = nodes[i.saturating_sub(1)];
@@ -467,25 +363,14 @@ impl System {
 
     /// Whether tangents are symmetric.
     pub fn is_symmetric(&self) -> bool {
-        let loads = self.loads.iter().map(|load| &load.effect);
-        self.friction.is_empty() && self.internal.iter().chain(loads).all(|effect| effect.is_symmetric())
+        let loads = self.terms.loads.iter().map(|load| &load.effect);
+        self.terms.friction.is_empty()
+            && self.terms.internal.iter().chain(loads).all(|effect| effect.is_symmetric())
     }
 
     /// A zero tangent of the right pattern.
     pub fn matrix(&self) -> Matrix {
         Matrix::zeros(self.nodes, self.blocks, self.is_symmetric())
-    }
-}
-
-impl Acting {
-    /// Whether it is part of the sum of loads that are the same in every state.
-    fn is_summed(&self) -> bool {
-        self.amplitude.is_none() && self.effect.is_constant()
-    }
-
-    /// Whether its work is the difference of a potential: of a load that follows time it is not.
-    fn has_potential(&self) -> bool {
-        self.amplitude.is_none() && self.effect.is_conservative()
     }
 }
 

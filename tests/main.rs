@@ -1,9 +1,10 @@
-//! Tests of the whole: properties, validation against reference data, regression snapshots, the
-//! command line.
+//! Tests of the whole: properties, validation against reference data, regression snapshots, files
+//! of results, the command line.
 
 mod cli;
 mod hard;
 mod layout;
+mod output;
 mod property;
 mod regress;
 mod validate;

@@ -130,7 +130,138 @@ fn median(values: &mut [f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::median;
+    use super::*;
+    use crate::cost::{Family, Solver};
+    use crate::model::{Integrator, STEP_CONTROL};
+    use crate::scene::{Scene, parse};
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::thread::sleep;
+    use std::time::Duration;
+
+    /// A cantilever of one element with this stiffness.
+    fn scene(stiffness: &str, analysis: &str) -> Scene {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], bending_stiffness = 1, mass_per_length = 1, \
+             basis.ancf.elements = 1 {stiffness} }}\n\
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+             effect.force = [{{ beam = 'arm', at = 'end', value = [0, 1] }}]\n\
+             probe = [{{ name = 'end', beam = 'arm', at = 'end' }}]\n\
+             analysis.{analysis}\n"
+        );
+        parse("arm.toml", &text).unwrap()
+    }
+
+    /// An equilibrium in four steps at least.
+    fn steps() -> Scene {
+        scene(", axial_stiffness = 1e4", "static = { steps = 4 }")
+    }
+
+    fn as_it_is(scene: &Scene) -> Setting {
+        Setting { beams: Family::Scene.beams(scene.model(), 1), solver: Solver::Scene }
+    }
+
+    fn desk<'a>(scene: &'a Scene, watcher: Watcher<'a>) -> Desk<'a> {
+        Desk {
+            model: scene.model(),
+            analysis: scene.analysis(),
+            start: Instant::now(),
+            budget: 60.0,
+            watcher,
+        }
+    }
+
+    fn reference(trajectory: Trajectory) -> Reference {
+        let pair = [String::new(), String::new()];
+        Reference { trajectory, uncertainty: Deviation::default(), warnings: vec![], pair, seconds: 0.0 }
+    }
+
+    #[test]
+    fn a_run_goes_on_until_it_is_over_or_told_to_end() {
+        let scene = steps();
+        let setting = as_it_is(&scene);
+        // Stopped by the call of this number, counted from 1.
+        let run = |last: usize, deadline: f64| {
+            let calls = AtomicUsize::new(0);
+            let watcher = |now: &Progress<'_>| {
+                assert_eq!((now.doing, now.budget), ("this", 60.0));
+                assert!((0.0..60.0).contains(&now.spent), "{}", now.spent);
+                let call = calls.fetch_add(1, Ordering::Relaxed) + 1;
+                if call == last { Control::Stop } else { Control::Continue }
+            };
+            let found = desk(&scene, &watcher).run(&setting, "this", deadline);
+            (found.map(|trajectory| trajectory.complete), calls.load(Ordering::Relaxed))
+        };
+        let (found, calls) = run(0, f64::INFINITY);
+        assert_eq!(found, Ok(true));
+        assert!(calls > 4, "{calls}: before the first step, and after each");
+        assert_eq!(run(1, f64::INFINITY), (Err(Unmeasured::Interrupted), 1));
+        assert_eq!(run(2, f64::INFINITY), (Err(Unmeasured::Interrupted), 2));
+        assert_eq!(run(0, -1.0), (Err(Unmeasured::TooSlow), 2));
+        // What is over cannot be interrupted.
+        assert_eq!(run(calls, f64::INFINITY), (Ok(true), calls));
+    }
+
+    #[test]
+    fn a_run_that_fails_says_why() {
+        let scene = scene("", "dynamic = { duration = 1e-3, output_every = 1e-3 }");
+        let integrator = Integrator::Gauss { stages: 3, step: STEP_CONTROL };
+        let setting = Setting { solver: Solver::Integrator(integrator), ..as_it_is(&scene) };
+        let watcher = |_: &Progress<'_>| Control::Continue;
+        match desk(&scene, &watcher).run(&setting, "this", f64::INFINITY) {
+            Err(Unmeasured::Failed(why)) => assert!(why.contains("of an inextensible beam"), "{why}"),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_clock_runs_from_the_start() {
+        let scene = steps();
+        let watcher = |_: &Progress<'_>| Control::Continue;
+        let start = Instant::now().checked_sub(Duration::from_secs(2)).expect("two seconds ago");
+        let desk = Desk { start, ..desk(&scene, &watcher) };
+        assert!((2.0..1000.0).contains(&desk.now()), "{}", desk.now());
+        let bench = Measuring { desk, reference: &reference(Trajectory::default()), begun: 0 };
+        assert!((2.0..1000.0).contains(&bench.now()), "{}", bench.now());
+    }
+
+    /// One element has eight coordinates, of which the clamp holds three.
+    #[test]
+    fn short_runs_are_repeated_and_long_ones_are_not() {
+        let scene = steps();
+        let setting = as_it_is(&scene);
+        let reference = reference(scene.model().solve(scene.analysis()).unwrap());
+        let measure = |pause: Duration| {
+            let watcher = |now: &Progress<'_>| {
+                assert_eq!(now.doing, "setting 1");
+                sleep(pause);
+                Control::Continue
+            };
+            let start = Instant::now();
+            let mut bench = Measuring { desk: desk(&scene, &watcher), reference: &reference, begun: 0 };
+            let measured = bench.measure(&setting, f64::INFINITY).unwrap();
+            assert_eq!((measured.degrees_of_freedom, measured.deviation.error), (5, 0.0));
+            assert!(measured.statistics.load_steps >= 4 && measured.warnings.is_empty(), "{measured:?}");
+            (measured, start.elapsed().as_secs_f64())
+        };
+        let (long, _) = measure(Duration::from_millis(20));
+        assert_eq!(long.runs, 1);
+        assert!((0.08..60.0).contains(&long.seconds), "{}", long.seconds);
+        // On a machine that stands still meanwhile no run is short.
+        let (short, elapsed) = measure(Duration::ZERO);
+        assert!(short.runs == 5 || elapsed > 0.05, "{} runs in {elapsed} s", short.runs);
+        assert!(short.seconds > 0.0 && short.seconds < elapsed, "{}", short.seconds);
+    }
+
+    #[test]
+    fn a_run_that_compares_with_nothing_is_not_measured() {
+        let scene = steps();
+        let reference = reference(Trajectory { parameter: vec![0.3], ..Trajectory::default() });
+        let watcher = |_: &Progress<'_>| Control::Continue;
+        let mut bench = Measuring { desk: desk(&scene, &watcher), reference: &reference, begun: 0 };
+        let found = bench.measure(&as_it_is(&scene), f64::INFINITY);
+        let expected = "no record at the times or loads of the reference".to_owned();
+        assert_eq!(found, Err(Unmeasured::Failed(expected)));
+    }
 
     #[test]
     fn a_median_ignores_outliers() {

@@ -137,6 +137,54 @@ fn curvature(run: &[Shape], reference: &[Shape]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::{About, ArcLength, Dynamic, Integrator, Place, Probe, STEP_CONTROL, Static};
+    use crate::trajectory::{Energy, ProbeSample, ProbeSeries};
+
+    /// Probes on two beams, 2 m and 0.5 m long.
+    fn model() -> Model {
+        let probes = [0, 1].map(|beam| Probe::new("probe", Place::new(beam, 0.25)));
+        Model { probes: probes.into(), ..Model::default() }
+    }
+
+    /// A run with these records, of which the probes see the places `first` and `second`.
+    fn run(parameter: &[f64], first: &[[f64; 2]], second: &[[f64; 2]]) -> Trajectory {
+        let series = |places: &[[f64; 2]]| ProbeSeries {
+            name: "probe".into(),
+            samples: places.iter().map(|&[x, y]| ProbeSample { x, y, ..ProbeSample::default() }).collect(),
+        };
+        Trajectory {
+            parameter: parameter.into(),
+            probes: vec![series(first), series(second)],
+            undeformed: [2.0, 0.5].map(|length| Shape { s: vec![0.0, length], ..Shape::default() }).into(),
+            ..Trajectory::default()
+        }
+    }
+
+    fn still() -> Analysis {
+        Analysis::Static(Static::default())
+    }
+
+    fn path() -> Analysis {
+        let arc = ArcLength { until_load: Some(1.0), max_points: 9, max_step: None, until_probe: None };
+        Analysis::Static(Static { arc_length: Some(arc), ..Static::default() })
+    }
+
+    fn error(analysis: &Analysis, ours: &Trajectory, theirs: &Trajectory) -> Result<f64, String> {
+        Deviation::between(&model(), analysis, ours, theirs).map(|deviation| deviation.error)
+    }
+
+    #[test]
+    fn an_error_is_called_what_it_is() {
+        let kinds =
+            [AnalysisKind::Static, AnalysisKind::Dynamic, AnalysisKind::Modal, AnalysisKind::Buckling];
+        let expected = [
+            "position error [beam lengths]",
+            "position error [beam lengths]",
+            "relative error of frequencies",
+            "relative error of load factors",
+        ];
+        assert_eq!(kinds.map(Deviation::name), expected);
+    }
 
     #[test]
     fn records_are_compared_where_both_have_one() {
@@ -145,9 +193,119 @@ mod tests {
         assert!(common(&[0.1], &[0.0, 0.2]).is_err());
     }
 
+    /// To 1e-9 of the last time, which is 1000 s: a microsecond.
+    #[test]
+    fn records_belong_together_whose_times_hardly_differ() {
+        for (apart, together) in [(-1e-7, true), (1e-7, true), (-2e-6, false), (2e-6, false)] {
+            let pairs = common(&[0.0, 500.0 + apart, 1000.0], &[0.0, 500.0, 1000.0]).unwrap();
+            assert_eq!(pairs.contains(&(1, 1)), together, "{apart}: {pairs:?}");
+            assert!(pairs.contains(&(0, 0)) && pairs.contains(&(2, 2)), "{apart}: {pairs:?}");
+        }
+        // A run that ends early, and an equilibrium without a load.
+        assert_eq!(common(&[0.0, 0.5], &[0.0, 0.5, 1.0]).unwrap(), [(0, 0), (1, 1)]);
+        assert_eq!(common(&[0.0], &[0.0]).unwrap(), [(0, 0)]);
+        assert!(common(&[], &[0.0]).is_err() && common(&[0.0], &[]).is_err());
+    }
+
+    /// The first probe is off by (0.75, 1) m of 2 m halfway, the second by 0.25 m of 0.5 m at the
+    /// end.
+    #[test]
+    fn positions_err_by_their_largest_distance_in_lengths() {
+        let (steps, origin) = ([0.0, 0.5, 1.0], [[0.0, 0.0], [1.0, 1.0], [1.0, 1.0]]);
+        let reference = run(&steps, &origin, &origin);
+        let halfway = [[0.0, 0.0], [1.75, 2.0], [1.0, 1.0]];
+        let end = [[0.0, 0.0], [1.0, 1.0], [1.25, 1.0]];
+        assert_eq!(error(&still(), &run(&steps, &halfway, &end), &reference), Ok(0.625));
+        assert_eq!(error(&still(), &run(&steps, &origin, &end), &reference), Ok(0.5));
+        assert_eq!(error(&still(), &reference, &reference), Ok(0.0));
+        let lost = [[0.0, 0.0], [f64::NAN, 1.0], [1.0, 1.0]];
+        let nowhere = error(&still(), &run(&steps, &lost, &end), &reference);
+        assert_eq!(nowhere, Err("its error is not a number".to_owned()));
+        // Ends of a path are compared wherever they are.
+        let ours = run(&[0.0, 0.75], &[[9.0, 9.0], [1.0, 2.25]], &[[0.0, 0.0], [1.0, 1.0]]);
+        assert_eq!(error(&path(), &ours, &reference), Ok(0.625));
+        assert_eq!(error(&path(), &run(&[], &[], &[]), &reference), Err("no record".to_owned()));
+    }
+
+    /// In statics 1.5 J for 2 J; in motion 0.5 J gained, of 2 J of motion at most.
+    #[test]
+    fn energies_err_by_analysis() {
+        let with = |energy: Vec<Energy>| Trajectory { energy, ..run(&[1.0], &[[0.0; 2]], &[[0.0; 2]]) };
+        let strain = |stretch: f64, bend: f64| Energy { stretch, bend, ..Energy::default() };
+        let reference = with(vec![strain(0.5, 1.5)]);
+        let error = |analysis: &Analysis, ours: &Trajectory, theirs: &Trajectory| {
+            Deviation::between(&model(), analysis, ours, theirs).unwrap().energy
+        };
+        let ours = with(vec![strain(7.0, 7.0), strain(0.5, 1.0)]);
+        assert_eq!(error(&still(), &ours, &reference), Some(0.25));
+        assert_eq!(error(&still(), &ours, &with(vec![Energy::default()])), None);
+        assert_eq!(error(&still(), &with(vec![]), &reference), None);
+        let integrator = Integrator::usual(STEP_CONTROL);
+        let motion =
+            Analysis::Dynamic(Dynamic { duration: 1.0, output_every: 1.0, integrator, events: vec![] });
+        let moving = Energy { kinetic: 2.0, potential: -1.5, ..Energy::default() };
+        let ours = with(vec![Energy::default(), moving]);
+        assert_eq!(error(&motion, &ours, &reference), Some(0.25));
+    }
+
     #[test]
     fn eigenvalues_are_compared_one_by_one() {
         assert_eq!(values(&[0.0, 2.2, 4.0], &[1e-13, 2.0, 4.0], "f").unwrap(), 0.10000000000000009);
         assert!(values(&[1.0], &[1.0, 2.0], "f").is_err());
+        assert!(values(&[], &[], "f").is_err());
+        // The frequency of what nothing resists is round-off of the largest one, up to 1e-9 of it.
+        assert_eq!(values(&[0.0, 1000.0], &[1e-8, 1000.0], "f").unwrap(), 1e-8 / 1000.0);
+        assert_eq!(values(&[0.0, 0.25], &[1e-12, 0.25], "f").unwrap(), 4e-12);
+        assert_eq!(values(&[0.0, 1.0], &[1e-9, 1.0], "f").unwrap(), 1e-9);
+        assert_eq!(values(&[-1.5, 0.5], &[-2.0, 0.5], "f").unwrap(), 0.25);
+        let found = Trajectory { frequencies: vec![3.0], load_factors: vec![5.0], ..Trajectory::default() };
+        let right = Trajectory { frequencies: vec![4.0], load_factors: vec![8.0], ..Trajectory::default() };
+        let between = |analysis: Analysis| Deviation::between(&model(), &analysis, &found, &right).unwrap();
+        let modes = Analysis::Modal { count: 1, about: About::Reference };
+        for (analysis, error) in [(modes, 0.25), (Analysis::Buckling { count: 1 }, 0.375)] {
+            assert_eq!(between(analysis), Deviation { error, curvature: None, energy: None });
+        }
+    }
+
+    /// Root mean square of 3, −4 and 0 over the largest curvature.
+    #[test]
+    fn curvatures_err_in_the_mean() {
+        let shape = |length: f64, curvature: &[f64]| Shape {
+            s: vec![0.0, length],
+            curvature: curvature.into(),
+            ..Shape::default()
+        };
+        let reference = [shape(0.5, &[8.0, -10.0]), shape(0.25, &[1.0])];
+        let ours = [shape(0.5, &[11.0, -14.0]), shape(0.25, &[1.0])];
+        let expected = (25.0_f64 / 3.0).sqrt() / 10.0;
+        let found = curvature(&ours, &reference).unwrap();
+        assert!((found - expected).abs() < 1e-15, "{found}");
+        // Where the largest curvature would turn the longest beam by 1e-9 rad nothing bends.
+        let bent = |curvatures: [f64; 2], length: f64| {
+            let [ours, theirs] = curvatures.map(|value| [shape(length, &[value])]);
+            curvature(&ours, &theirs)
+        };
+        assert_eq!(bent([0.0, 0.0], 2.0), None);
+        assert_eq!(bent([0.0, 1e-10], 20.0), Some(1.0));
+        assert_eq!(bent([0.0, 1.5e-9], 0.5), None);
+        assert_eq!(bent([0.0, 1e-9], 1.0), None);
+        assert_eq!(bent([0.03125, 0.0625], 2.0), Some(0.5));
+        // A longer beam counts wherever it stands.
+        let straight = [shape(2.0, &[1e-9]), shape(0.1, &[1e-9])];
+        assert_eq!(curvature(&straight, &straight), Some(0.0));
+    }
+
+    #[test]
+    fn what_has_no_state_has_no_curvature() {
+        let bent = |curvature: f64| Trajectory {
+            last: vec![Shape { s: vec![0.0, 1.0], curvature: vec![curvature], ..Shape::default() }],
+            frequencies: vec![1.0],
+            ..run(&[1.0], &[[0.0; 2]], &[[0.0; 2]])
+        };
+        let curvature = |analysis: &Analysis| {
+            Deviation::between(&model(), analysis, &bent(3.0), &bent(4.0)).unwrap().curvature
+        };
+        assert_eq!(curvature(&still()), Some(0.25));
+        assert_eq!(curvature(&Analysis::Modal { count: 1, about: About::Reference }), None);
     }
 }

@@ -49,7 +49,7 @@ pub enum CostError {
     #[error("internal: the lines for the best setting are not a legal part of the scene")]
     Lines(#[source] SceneError),
     /// The threads cannot be started.
-    #[error("cannot start the threads of the reference: {0}")]
+    #[error("cannot start the threads of the reference")]
     Threads(#[from] rayon::ThreadPoolBuildError),
     /// Results cannot be written.
     #[error(transparent)]

@@ -340,7 +340,7 @@ mod tests {
     use super::*;
     use crate::cost::{Deviation, Measured};
     use crate::model::STEP_CONTROL;
-    use crate::model::{Discretization, Dynamic, Static};
+    use crate::model::{About, Discretization, Dynamic, Static};
     use crate::scene::parse;
     use crate::trajectory::Statistics;
 
@@ -395,14 +395,413 @@ mod tests {
         climb(&task, bench)
     }
 
+    fn motion(duration: f64) -> Analysis {
+        let integrator = Integrator::Gauss { stages: 3, step: STEP_CONTROL };
+        Analysis::Dynamic(Dynamic { duration, output_every: 0.1, integrator, events: vec![] })
+    }
+
+    /// An analysis that has one solver.
+    fn vibrations() -> Analysis {
+        Analysis::Modal { count: 1, about: About::Reference }
+    }
+
+    fn cells_in(setting: &Setting) -> usize {
+        setting.beams[0].0.nodes().count() - 1
+    }
+
+    fn is_meshfree(setting: &Setting) -> bool {
+        matches!(setting.beams[0].0, Discretization::Rpim { .. })
+    }
+
+    fn measured(seconds: f64, error: f64) -> Measured {
+        Measured { seconds, deviation: Deviation { error, ..Deviation::default() }, ..Measured::default() }
+    }
+
+    fn rung(family: Family, seconds: f64, error: f64) -> Rung {
+        let setting = Setting { beams: family.beams(&model(), 8), solver: Solver::Scene };
+        Rung { family, cells: 8, setting, measured: measured(seconds, error) }
+    }
+
+    /// A bench that answers as it is told, and notes what it was asked for until when.
+    struct Told<F> {
+        clock: f64,
+        answer: F,
+        asked: Vec<(Setting, f64)>,
+    }
+
+    impl<F: FnMut(&Setting) -> Result<Measured, Unmeasured>> Told<F> {
+        fn new(answer: F) -> Self {
+            Self { clock: 0.0, answer, asked: Vec::new() }
+        }
+
+        fn solvers(&self) -> Vec<Solver> {
+            self.asked.iter().map(|(setting, _)| setting.solver).collect()
+        }
+    }
+
+    impl<F: FnMut(&Setting) -> Result<Measured, Unmeasured>> Bench for Told<F> {
+        fn now(&self) -> f64 {
+            self.clock
+        }
+
+        fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Unmeasured> {
+            self.asked.push((setting.clone(), deadline));
+            let found = (self.answer)(setting);
+            self.clock += found.as_ref().map_or(0.0, |found| found.seconds);
+            found
+        }
+    }
+
+    /// Numbers of cells at which a family was measured.
+    fn cells_of(climbed: &Climbed, family: Family) -> Vec<usize> {
+        climbed.rungs.iter().filter(|rung| rung.family == family).map(|rung| rung.cells).collect()
+    }
+
+    fn left(climbed: &Climbed) -> Vec<String> {
+        climbed.left_out.iter().map(|left| format!("{}: {}", left.what, left.why)).collect()
+    }
+
+    /// A power of the number of cells through the last two meshes, from the first to the third.
+    #[test]
+    fn times_are_predicted_by_a_power_of_the_cells() {
+        let predict = |times: &[[f64; 2]]| {
+            let climber = Climber { family: Family::FULL, times: times.into(), dominated: 0, failed: 0 };
+            climber.predict(16)
+        };
+        for (times, expected) in [
+            (&[][..], 0.0),
+            (&[[3.0, 4.0]][..], 12.0),
+            (&[[2.0, 4.0], [8.0, 8.0]], 32.0),
+            (&[[7.0, 2.0], [2.0, 4.0], [8.0, 8.0]], 32.0),
+            (&[[2.0, 4.0], [2.5, 8.0]], 5.0),
+            (&[[2.0, 4.0], [64.0, 8.0]], 512.0),
+        ] {
+            assert!((predict(times) - expected).abs() < 1e-9, "{times:?}: {}", predict(times));
+        }
+    }
+
+    /// Of the ten seconds that are left at 100 s, four are kept where there are other solvers.
+    #[test]
+    fn meshes_leave_time_for_other_solvers() {
+        for (analysis, expected) in
+            [(motion(1.0), 106.0), (Analysis::Static(Static::default()), 110.0), (vibrations(), 110.0)]
+        {
+            let mut bench = Told::new(|_: &Setting| Err(Unmeasured::Interrupted));
+            bench.clock = 100.0;
+            let task =
+                Task { model: &model(), analysis: &analysis, target: 1e-4, least: 1e-9, deadline: 110.0 };
+            let climbed = climb(&task, &mut bench);
+            assert!(climbed.interrupted && climbed.rungs.is_empty());
+            let deadlines: Vec<f64> = bench.asked.iter().map(|(_, deadline)| *deadline).collect();
+            assert_eq!(deadlines, [expected]);
+        }
+    }
+
+    /// One family fails on two meshes in succession, one on two that are not, and the meshfree ones
+    /// on every mesh.
+    #[test]
+    fn a_family_that_fails_twice_in_succession_is_left() {
+        let failed = || Err(Unmeasured::Failed("no".into()));
+        let mut bench =
+            Told::new(|setting: &Setting| match (cells_in(setting), setting.beams[0].1.lobatto) {
+                _ if is_meshfree(setting) => failed(),
+                (8 | 16, false) | (12 | 16, true) => failed(),
+                (24, _) => Ok(measured(0.0, 1e-9)),
+                _ => Ok(measured(0.0, 1.0)),
+            });
+        let analysis = vibrations();
+        let task = Task { model: &model(), analysis: &analysis, target: 1e-4, least: 1e-9, deadline: 1.0 };
+        let climbed = climb(&task, &mut bench);
+        assert_eq!(cells_of(&climbed, Family::Scene), [5]);
+        assert_eq!(cells_of(&climbed, Family::FULL), [4, 6, 12, 24]);
+        assert_eq!(cells_of(&climbed, Family::REDUCED), [4, 6, 8]);
+        let (meshfree, elements): (Vec<String>, Vec<String>) =
+            left(&climbed).into_iter().partition(|left| left.starts_with("RPIM"));
+        assert_eq!(
+            elements,
+            [
+                "ANCF, 5/3 points, 8 cells: it failed: no",
+                "ANCF, 3L/2 points, 12 cells: it failed: no",
+                "ANCF, 5/3 points, 16 cells: it failed: no",
+                "ANCF, 3L/2 points, 16 cells and more: it failed: no",
+            ]
+        );
+        assert_eq!(meshfree.len(), 22);
+        assert!(meshfree[..11].iter().all(|left| left.ends_with(", 4 cells: it failed: no")), "{meshfree:?}");
+        assert!(
+            meshfree[11..].iter().all(|left| left.ends_with(", 6 cells and more: it failed: no")),
+            "{meshfree:?}"
+        );
+    }
+
+    /// And a scene that fails itself is no reason not to go on.
+    #[test]
+    fn a_family_that_is_too_slow_is_left_at_once() {
+        let mut first = true;
+        let mut bench = Told::new(|setting: &Setting| {
+            if std::mem::take(&mut first) {
+                Err(Unmeasured::Failed("it is wrong".into()))
+            } else if is_meshfree(setting) {
+                Err(Unmeasured::TooSlow)
+            } else {
+                Ok(measured(0.0, 1e-9))
+            }
+        });
+        let analysis = vibrations();
+        let task = Task { model: &model(), analysis: &analysis, target: 1e-4, least: 1e-9, deadline: 1.0 };
+        let climbed = climb(&task, &mut bench);
+        assert_eq!(climbed.rungs.iter().map(|rung| rung.cells).collect::<Vec<_>>(), [4, 4]);
+        let left = left(&climbed);
+        assert_eq!(left[0], "as the scene is: it failed: it is wrong");
+        assert_eq!(
+            left[1],
+            "RPIM, 2 neighbours, shape 5, 4 cells and more: it took longer than the budget allows"
+        );
+        assert_eq!(left.len(), 12);
+    }
+
+    #[test]
+    fn a_mesh_that_errs_by_the_least_is_the_last() {
+        // (1/16)⁴ is the least.
+        let mut bench = Told::new(|setting: &Setting| Ok(measured(0.0, (cells_in(setting) as f64).powi(-4))));
+        let analysis = vibrations();
+        let least = 1.0 / 65536.0;
+        let task = Task { model: &model(), analysis: &analysis, target: 1e-3, least, deadline: 1.0 };
+        assert_eq!(cells_of(&climb(&task, &mut bench), Family::FULL), [4, 6, 8, 12, 16]);
+    }
+
+    /// One family takes a second a cell, the others are done after a mesh that takes no time: 12
+    /// cells would be over at 18 s + 1.3 × 12 s.
+    #[test]
+    fn a_mesh_is_begun_where_it_can_be_ended() {
+        let analysis = vibrations();
+        let climbed = |deadline: f64| {
+            let mut bench = Told::new(|setting: &Setting| {
+                let cells = cells_in(setting);
+                let full = !is_meshfree(setting) && !setting.beams[0].1.lobatto;
+                Ok(if full { measured(cells as f64, 3.9) } else { measured(0.0, 1.0) })
+            });
+            let task = Task { model: &model(), analysis: &analysis, target: 1e-4, least: 1.0, deadline };
+            climb(&task, &mut bench)
+        };
+        for (deadline, cells, next) in
+            [(33.0, &[4, 6, 8][..], 12), (18.0 + RESERVE * 12.0, &[4, 6, 8], 12), (34.0, &[4, 6, 8, 12], 16)]
+        {
+            let climbed = climbed(deadline);
+            assert_eq!(cells_of(&climbed, Family::FULL), cells);
+            let expected = format!("ANCF, 5/3 points, {next} cells and more: no time is left in the budget");
+            assert_eq!(left(&climbed), [expected]);
+        }
+    }
+
+    /// Four times the error and four times the time, both at once.
+    #[test]
+    fn what_is_far_better_dominates() {
+        let better = rung(Family::FULL, 2.0, 1.0 / 1024.0);
+        let dominated = |seconds: f64, error: f64| {
+            let rungs = [rung(Family::FULL, 9.0, 9.0), better.clone(), rung(Family::REDUCED, seconds, error)];
+            dominated_by(&rungs, 2, 1e-9)
+        };
+        assert_eq!(dominated(8.0, 1.0 / 256.0), Some(1));
+        assert_eq!(dominated(7.9, 1.0), None);
+        assert_eq!(dominated(100.0, 1.0 / 257.0), None);
+        // Below the least nobody is better.
+        let exact = [rung(Family::FULL, 1.0, 1e-12), rung(Family::FULL, 9.0, 1e-9)];
+        assert_eq!(dominated_by(&exact, 1, 1e-9), None);
+    }
+
+    #[test]
+    fn errors_that_differ_by_a_thousandth_are_the_same() {
+        assert!(same(0.0, 0.0) && same(2.0, 2.0));
+        for (other, alike) in [(1.001_000_5, true), (1.001_1, false), (2.0, false)] {
+            assert_eq!((same(1.0, other), same(other, 1.0)), (alike, alike), "{other}");
+        }
+    }
+
+    /// Of a mean step of 32 ms, for a target of 1e-4.
+    #[test]
+    fn motions_are_tried_by_these_solvers() {
+        let (analysis, model) = (motion(3.2), model());
+        let task =
+            |target: f64| Task { model: &model, analysis: &analysis, target, least: 0.0, deadline: 1.0 };
+        let integrators = |tolerances: [f64; 3], method: &dyn Fn(StepControl) -> Integrator| {
+            tolerances.map(|tolerance| Solver::Integrator(method(StepControl::Tolerance(tolerance)))).to_vec()
+        };
+        let alpha = |newton_tolerance: f64| {
+            move |step: StepControl| Integrator::GeneralizedAlpha {
+                step,
+                spectral_radius: 0.9,
+                newton_tolerance,
+            }
+        };
+        let fixed = |steps: [f64; 3], newton_tolerance: f64| {
+            let method = alpha(newton_tolerance);
+            steps.map(|step| Solver::Integrator(method(StepControl::Fixed(step)))).to_vec()
+        };
+        let gauss = |step| Integrator::Gauss { stages: 3, step };
+        let radau = |step| Integrator::Radau { stages: 3, step };
+        let expected = [
+            integrators([1e-3, 1e-4, 1e-5], &gauss),
+            integrators([1e-3, 1e-4, 1e-6], &radau),
+            integrators([1e-3, 1e-4, 1e-5], &alpha(1e-11)),
+            fixed([0.032, 0.008, 0.002], 1e-8),
+        ];
+        assert_eq!(other_solvers(&task(1e-4), 0.032), expected);
+        // The iteration of a step errs by a thousandth of the target, within bounds; no step is
+        // longer than the motion.
+        assert_eq!(other_solvers(&task(1e-6), 0.032)[3], fixed([0.032, 0.008, 0.002], 1e-9));
+        assert_eq!(other_solvers(&task(1e-12), 0.032)[3], fixed([0.032, 0.008, 0.002], 1e-11));
+        assert_eq!(other_solvers(&task(1e-4), 6.4)[3], fixed([3.2, 1.6, 0.4], 1e-8));
+        let still = Analysis::Static(Static::default());
+        let tolerance = other_solvers(&Task { analysis: &still, ..task(1e-4) }, 0.0);
+        assert_eq!(tolerance, [[Solver::Tolerance(1e-5)]]);
+        for other in [vibrations(), Analysis::Buckling { count: 1 }] {
+            assert_eq!(
+                other_solvers(&Task { analysis: &other, ..task(1e-4) }, 0.0),
+                Vec::<Vec<Solver>>::new()
+            );
+        }
+    }
+
+    /// A ladder of one rung with this cost and error, of a hundred steps in 3.2 s.
+    fn one_rung(seconds: f64, error: f64) -> Climbed {
+        let mut only = rung(Family::FULL, seconds, error);
+        only.measured.statistics =
+            Statistics { steps: 100, tangent_evaluations: 10, factorizations: 10, ..Statistics::default() };
+        Climbed { rungs: vec![only], ..Climbed::default() }
+    }
+
+    /// The lists end where the mesh decides, where nothing is left to gain, and where it is too
+    /// slow; a failure ends none.
+    #[test]
+    fn a_list_of_solvers_ends_where_nothing_is_gained() {
+        let (analysis, model) = (motion(3.2), model());
+        let task = Task { model: &model, analysis: &analysis, target: 1e-4, least: 1e-7, deadline: 1e9 };
+        let lists = other_solvers(&task, 0.032);
+        let answers = [
+            // Each error is less than 0.9 times the one before, or just that.
+            (lists[0][0], Ok(5e-4)),
+            (lists[0][1], Ok(0.9 * 5e-4)),
+            (lists[0][2], Ok(1e-4)),
+            (lists[1][0], Ok(5e-4)),
+            (lists[1][1], Ok(4.6e-4)),
+            (lists[2][0], Ok(1e-7)),
+            (lists[3][0], Err(Unmeasured::Failed("no".into()))),
+            (lists[3][1], Err(Unmeasured::TooSlow)),
+        ];
+        let mut bench = Told::new(|setting: &Setting| {
+            let answer = answers.iter().find(|(solver, _)| *solver == setting.solver);
+            let (_, answer) = answer.expect("a solver that is not in vain");
+            answer.clone().map(|error: f64| measured(1.0, error))
+        });
+        let mut climbed = one_rung(1.0, 1e-3);
+        assert_eq!(solvers(&task, &mut bench, &mut climbed), Some(()));
+        assert_eq!(bench.solvers(), answers.each_ref().map(|(solver, _)| *solver));
+        assert!(bench.asked.iter().all(|(setting, deadline)| {
+            setting.beams == climbed.rungs[0].setting.beams && *deadline == 1e9
+        }));
+        assert_eq!(climbed.rungs.len(), 7);
+        let alpha = "ANCF, 5/3 points, 8 cells, generalised-α (ρ∞ = 0.9)";
+        assert_eq!(
+            left(&climbed),
+            [
+                format!("{alpha}, step 0.032 s: it failed: no"),
+                format!("{alpha}, step 0.008 s: it took longer than the budget allows"),
+            ]
+        );
+        // Without a count of steps the mean one is the motion.
+        let mut steps = Vec::new();
+        let mut bench = Told::new(|setting: &Setting| match setting.solver {
+            Solver::Integrator(Integrator::GeneralizedAlpha { step: StepControl::Fixed(step), .. }) => {
+                steps.push(step);
+                Ok(measured(1.0, 1e-3 * step))
+            }
+            _ => Ok(measured(1.0, 1e-7)),
+        });
+        let mut climbed = one_rung(1.0, 1e-3);
+        climbed.rungs[0].measured.statistics.steps = 0;
+        assert_eq!(solvers(&task, &mut bench, &mut climbed), Some(()));
+        assert_eq!(steps, [3.2, 0.8, 0.2]);
+        let mut bench = Told::new(|_: &Setting| Err(Unmeasured::Interrupted));
+        assert_eq!(solvers(&task, &mut bench, &mut one_rung(1.0, 1e-3)), None);
+    }
+
+    /// A solver may take as long as the one that is known; each further one four times as long as
+    /// the one before. Both with a reserve of 0.3 times that.
+    #[test]
+    fn a_solver_is_begun_where_it_can_be_ended() {
+        let (analysis, model) = (motion(3.2), model());
+        // The first solver would be over at 13 s, the second one at 2 s + 10.4 s, the third one at
+        // 4.2 s + 11.44 s.
+        for (deadline, expected) in [(13.0, 0), (13.5, 2), (15.7, 3)] {
+            let task = Task { model: &model, analysis: &analysis, target: 1e-4, least: 1e-9, deadline };
+            let mut calls = 0;
+            let mut bench = Told::new(|_: &Setting| {
+                calls += 1;
+                match calls {
+                    1 => Ok(measured(2.0, 1e-3)),
+                    2 => Ok(measured(2.2, 1e-4)),
+                    3 => Ok(measured(0.1, 1e-5)),
+                    _ => Err(Unmeasured::Interrupted),
+                }
+            });
+            let mut climbed = one_rung(10.0, 1e-2);
+            let _ = solvers(&task, &mut bench, &mut climbed);
+            let is_gauss = |solver: &&Solver| matches!(solver, Solver::Integrator(Integrator::Gauss { .. }));
+            assert_eq!(bench.solvers().iter().filter(is_gauss).count(), expected);
+            let left = left(&climbed);
+            assert_eq!(left.first().is_some_and(|left| left.contains("Gauss")), expected < 3, "{left:?}");
+            assert!(left.iter().all(|left| left.ends_with(": no time is left in the budget")), "{left:?}");
+        }
+    }
+
+    /// A solver that does the same is not kept: the same error by the same work.
+    #[test]
+    fn two_names_of_one_thing_are_one_rung() {
+        let (analysis, model) = (Analysis::Static(Static::default()), model());
+        let task = Task { model: &model, analysis: &analysis, target: 1e-4, least: 1e-9, deadline: 1e9 };
+        for (tangents, error, kept) in
+            [(10, 1e-3, false), (10, 1.0005e-3, false), (10, 2e-3, true), (9, 1e-3, true)]
+        {
+            let mut bench = Told::new(|_: &Setting| {
+                let mut found = measured(1.0, error);
+                found.statistics.tangent_evaluations = tangents;
+                found.statistics.factorizations = 10;
+                Ok(found)
+            });
+            let mut climbed = one_rung(1.0, 1e-3);
+            assert_eq!(solvers(&task, &mut bench, &mut climbed), Some(()));
+            assert_eq!(bench.solvers(), [Solver::Tolerance(1e-5)]);
+            assert_eq!(climbed.rungs.len(), if kept { 2 } else { 1 }, "{tangents} {error}");
+            let what = "ANCF, 5/3 points, 8 cells, tolerance 1e-5: \
+                        it comes to the same by the same work as without it";
+            assert_eq!(left(&climbed), if kept { vec![] } else { vec![what.to_owned()] });
+        }
+    }
+
+    /// Of a front whose errors are halved by twice the time.
+    #[test]
+    fn discretisations_around_the_target_are_picked() {
+        let analysis = vibrations();
+        let picked = |count: i32, target: f64| {
+            let mut rungs = vec![rung(Family::Scene, 0.5, 1.0)];
+            rungs.extend((0..count).map(|i| rung(Family::FULL, 2.0_f64.powi(i), 0.5_f64.powi(i + 1))));
+            // One that is beaten.
+            rungs.push(rung(Family::REDUCED, 1000.0, 1.5));
+            picks(&rungs, &Task { model: &model(), analysis: &analysis, target, least: 1e-9, deadline: 1.0 })
+        };
+        // By their places on the front, from 1: the scene as it is comes before.
+        assert_eq!(picked(8, 0.5_f64.powi(6)), [6, 5, 7, 3]);
+        assert_eq!(picked(8, 0.5_f64.powi(4)), [4, 3, 5, 1]);
+        assert_eq!(picked(8, 1e-6), [8, 7, 5]);
+        assert_eq!(picked(5, 0.5), [1, 2, 5]);
+        assert_eq!(picked(1, 1e-6), [1]);
+        assert_eq!(picked(0, 0.5), [0_usize; 0]);
+    }
+
     #[test]
     fn the_budget_is_kept_and_what_it_forbids_is_named() {
-        let motion = Analysis::Dynamic(Dynamic {
-            duration: 1.0,
-            output_every: 0.1,
-            integrator: Integrator::Gauss { stages: 3, step: STEP_CONTROL },
-            events: vec![],
-        });
+        let motion = motion(1.0);
         for analysis in [&Analysis::Static(Static::default()), &motion] {
             let mut bench = fake();
             let climbed = climbed(&mut bench, analysis, 10.0);
@@ -506,12 +905,7 @@ mod tests {
     /// ladder sees here what becomes of it.
     #[test]
     fn the_order_of_what_is_tried_is_as_reviewed() {
-        let motion = Analysis::Dynamic(Dynamic {
-            duration: 1.0,
-            output_every: 0.1,
-            integrator: Integrator::Gauss { stages: 3, step: STEP_CONTROL },
-            events: vec![],
-        });
+        let motion = motion(1.0);
         let mut text = String::new();
         for (analysis, name) in [(&motion, "motion"), (&Analysis::Static(Static::default()), "statics")] {
             let mut bench = Steps { clock: 0.0 };

@@ -356,3 +356,140 @@ fn html(study: &Study, report: &Report<'_>, figures: &[(&str, String)]) -> Resul
     };
     page.render().map_err(|source| OutputError::Report { source })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cost::tests::{TARGET, UNCERTAINTY, made_up};
+
+    #[test]
+    fn a_report_says_what_each_setting_is_worth() {
+        let study = made_up();
+        let report = study.report();
+        let which = |is: fn(&ReportedRung) -> bool| -> Vec<usize> {
+            report.rungs.iter().enumerate().filter(|(_, rung)| is(rung)).map(|(index, _)| index).collect()
+        };
+        assert_eq!(which(|rung| rung.below_uncertainty), [4]);
+        assert_eq!(which(|rung| rung.meets_target), [1, 3, 9]);
+        assert_eq!(which(|rung| rung.front), [1, 3]);
+        assert_eq!((report.title, report.error), ("Made up", "position error [beam lengths]"));
+        assert_eq!((report.target, report.budget, report.complete), (TARGET, 20.0, true));
+        assert_eq!((report.best, report.rungs.len(), report.warnings.len()), (Some(1), 10, 2));
+        assert_eq!(report.lines, Some("[beam.cantilever.basis.ancf]\nelements = 4\n"));
+        assert_eq!(report.rungs[6].solver, "generalised-α (ρ∞ = 0.9), step 0.5 s");
+    }
+
+    /// Lines are meshes with the first solver of a discretisation, circles and crosses others; of
+    /// one kind of discretisation the first one alone is named.
+    #[test]
+    fn a_chart_shows_every_setting() {
+        let series = |label: &str, points: &[[f64; 2]], mark, colour, [size, opacity]: [f64; 2]| Series {
+            label: label.to_owned(),
+            points: points.to_owned(),
+            mark,
+            colour,
+            size,
+            opacity,
+        };
+        let family = |label: &str, colour: Colour, meshes: &[[f64; 2]], others: [&[[f64; 2]]; 2]| {
+            [
+                series(label, meshes, Mark::Line, colour, [1.1, 0.7]),
+                series("", meshes, Mark::Points, colour, [2.6, 1.0]),
+                series("", others[0], Mark::Circles, colour, [3.4, 1.0]),
+                series("", others[1], Mark::Crosses, colour, [3.4, 1.0]),
+            ]
+        };
+        let (grey, black, red) = (Colour(130, 130, 130), Colour(60, 60, 60), Colour(213, 94, 0));
+        let best = [1.0 / 64.0, TARGET - UNCERTAINTY];
+        let level = |error: f64| [[1.0 / 64.0, error], [8.0, error]];
+        let none: [&[[f64; 2]]; 2] = [&[], &[]];
+        let expected = [
+            vec![
+                series("target", &level(TARGET), Mark::Dashed, black, [1.4, 1.0]),
+                series("uncertainty of the reference", &level(UNCERTAINTY), Mark::Dashed, grey, [1.4, 1.0]),
+                series("front", &[best, [1.0 / 32.0, UNCERTAINTY]], Mark::Line, grey, [7.0, 0.35]),
+            ],
+            family("ANCF, 5/3 points", red, &[best, [0.125, TARGET]], none).into(),
+            family("ANCF, 3L/2 points", Colour(230, 159, 0), &[[1.0 / 32.0, UNCERTAINTY]], none).into(),
+            family(
+                "RPIM, 2 neighbours",
+                Colour(0, 114, 178),
+                &[[0.25, UNCERTAINTY / 2.0]],
+                [&[[1.0, 1.0 / 512.0]], &[[2.0, 1.0 / 256.0]]],
+            )
+            .into(),
+            family("", Colour(0, 114, 178), &[[3.0, 1.0 / 2048.0]], none).into(),
+            family("RPIM, 1 neighbour", Colour(0, 158, 115), &[[4.0, 1.0 / 128.0]], none).into(),
+            family("RPIM, 3 neighbours", Colour(204, 121, 167), &[[8.0, 1.0 / 64.0]], none).into(),
+            vec![
+                series("the scene as it is", &[[0.5, 1.0 / 32.0]], Mark::Points, black, [4.5, 1.0]),
+                series("cheapest that meets the target", &[best], Mark::Circles, red, [6.5, 1.0]),
+            ],
+        ];
+        let study = made_up();
+        let found = chart(&study, "time", |measured| measured.seconds);
+        assert_eq!(found.series, expected.concat());
+        assert_eq!((found.width, found.height), (900, 560));
+        assert_eq!((found.x, found.y), (Axis::log("time"), Axis::log("position error [beam lengths]")));
+        // What costs nothing is on no logarithmic axis: four cells have 16 unknowns, eight 32.
+        let work = chart(&study, "work", Measured::sized_work);
+        assert_eq!(work.series[0].points, [[32.0, TARGET], [64.0, TARGET]]);
+        let bare =
+            chart(&Study { best: None, rungs: study.rungs[1..].to_vec(), ..made_up() }, "work", |_| 2.0);
+        assert_eq!(bare.series.len(), 3 + 6 * 4);
+    }
+
+    /// As many digits as are of use.
+    #[test]
+    fn a_page_reads_as_reviewed() {
+        let mut study = made_up();
+        study.options.target = 1.234_56e-3;
+        study.seconds = 17.456;
+        study.reference.seconds = 1.2345;
+        study.reference.uncertainty = Deviation { error: 1.2345e-5, curvature: Some(2.345e-3), energy: None };
+        let scene = &mut study.rungs[0].measured;
+        scene.seconds = 12.3456e-3;
+        scene.deviation = Deviation { error: 3.456e-2, curvature: Some(5.678e-2), energy: None };
+        study.rungs[1].measured.deviation.error = 1e-6;
+        let page = |study: &Study| html(study, &study.report(), &[]).unwrap();
+        let text = page(&study);
+        for part in [
+            "<h1>Made up: what accuracy costs</h1>",
+            "target 0.00123 (position error [beam lengths]), measured in 17.5 s",
+            "<li>the reference: it turns</li>",
+            "<tr><td>as the scene is</td><td>3</td><td>as the scene is</td><td>0</td><td>0.035</td><td>0.057</td>\
+             <td>–</td><td>12.3</td><td>1, 1</td></tr>",
+            "<tr class=\"front\"><td>ANCF, 5/3 points</td><td>4</td>",
+            "; 1.2 × 10⁻⁵</td>",
+            "<th>they differ by</th><td>1.2 × 10⁻⁵</td>",
+            "<th>their curvatures by</th><td>0.0023</td>",
+            "<th>their energies by</th><td>–</td>",
+            "<th>time to make it</th><td>1.23 s</td>",
+        ] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        // By their times: 12 ms before 16 ms.
+        assert!(text.find("<td>as the scene is</td><td>3</td>") < text.find("<td>ANCF, 5/3 points</td>"));
+        study.reference.trajectory.title = " ".to_owned();
+        assert!(page(&study).contains("<h1>Scene: what accuracy costs</h1>"));
+    }
+
+    #[test]
+    fn a_best_scene_is_of_this_study() {
+        let folder = tempfile::tempdir().unwrap();
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).ok();
+        let mut study = made_up();
+        write(folder.path(), &study).unwrap();
+        assert_eq!(read("best.toml"), study.best.as_ref().map(|best| best.scene.text().to_owned()));
+        assert!(read("cost.json").is_some_and(|text| text.ends_with("}\n")));
+        study.best = None;
+        write(folder.path(), &study).unwrap();
+        assert_eq!(read("best.toml"), None);
+        assert!(FILES.iter().all(|name| *name == "best.toml" || read(name).is_some()));
+    }
+
+    #[test]
+    fn what_is_there_twice_is_kept_once() {
+        assert_eq!(distinct([1, 2, 1, 3, 2].into_iter()), [1, 2, 3]);
+    }
+}

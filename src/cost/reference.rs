@@ -53,6 +53,26 @@ fn pair(desk: &Desk<'_>, level: u32, target: f64) -> [(Family, usize, Setting); 
     )
 }
 
+/// Where the clock stands after a pair \[s\].
+struct Clock {
+    /// Time taken so far.
+    spent: f64,
+    /// What the next pair may take.
+    next: f64,
+    /// Time left to refine.
+    left: f64,
+    /// Time for everything.
+    budget: f64,
+}
+
+/// Whether to refine no further where pairs agree to `error`, and to `before` without the last one.
+fn is_final(error: f64, before: Option<f64>, target: f64, clock: &Clock) -> bool {
+    let stalled = before.is_some_and(|before| error > 0.5 * before);
+    // Beyond what is needed, refinement must be cheap and still gain something.
+    let content = error <= ENOUGH * target && (stalled || clock.spent + clock.next > 0.05 * clock.budget);
+    error <= AMPLE * target || content || clock.next > clock.left
+}
+
 /// Refines until two runs agree well below `target`, or the time `deadline` \[s\] is near.
 pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Reference, CostError> {
     // Gone before the ladder, whose runs are alone.
@@ -103,12 +123,15 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
                 break;
             }
         }
-        let (now, next) = (desk.now(), GROWTH * (desk.now() - began));
+        let now = desk.now();
+        let clock = Clock {
+            spent: now - start,
+            next: GROWTH * (now - began),
+            left: deadline - now,
+            budget: desk.budget,
+        };
         let error = best.as_ref().map_or(f64::INFINITY, |best| best.uncertainty.error);
-        let stalled = agreement.is_some_and(|before| error > 0.5 * before);
-        // Beyond what is needed, refinement must be cheap and still gain something.
-        let content = error <= ENOUGH * target && (stalled || now - start + next > 0.05 * desk.budget);
-        if error <= AMPLE * target || content || now + next > deadline {
+        if is_final(error, agreement, target, &clock) {
             break;
         }
     }
@@ -121,7 +144,12 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::parse;
+    use crate::cost::{Control, Progress};
+    use crate::scene::{Scene, parse};
+    use std::sync::Mutex;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::thread::sleep;
+    use std::time::{Duration, Instant};
 
     /// Twice the cells and a quarter of the tolerance from pair to pair; meshfree by Gauss against
     /// elements by Radau.
@@ -133,11 +161,11 @@ mod tests {
              analysis.dynamic = { duration = 1, output_every = 0.1 }",
         )
         .unwrap();
-        let watcher = |_: &super::super::Progress<'_>| crate::run::Control::Continue;
+        let watcher = |_: &Progress<'_>| Control::Continue;
         let desk = Desk {
             model: scene.model(),
             analysis: scene.analysis(),
-            start: std::time::Instant::now(),
+            start: Instant::now(),
             budget: 1.0,
             watcher: &watcher,
         };
@@ -152,11 +180,123 @@ mod tests {
                 StepControl::Fixed(_) => false,
             };
             assert!(
-                matches!(gauss.solver, Solver::Integrator(Integrator::Gauss { step, .. }) if close(step))
+                matches!(gauss.solver, Solver::Integrator(Integrator::Gauss { stages: 3, step }) if close(step))
             );
             assert!(
                 matches!(radau.solver, Solver::Integrator(Integrator::Radau { stages: 3, step }) if close(step))
             );
         }
+    }
+
+    /// A target of 1024: 0.1 of it is enough, 0.001 of it is ample, and where more than half of the
+    /// error is left nothing is gained. Of a budget of 1000 s, 50 s are cheap.
+    #[test]
+    fn refinement_ends_where_it_gains_too_little_for_its_price() {
+        let ends = |error: f64, before: Option<f64>, [spent, next, left]: [f64; 3]| {
+            is_final(error, before, 1024.0, &Clock { spent, next, left, budget: 1000.0 })
+        };
+        let (cheap, dear) = ([20.0, 30.0, 100.0], [20.0, 30.1, 100.0]);
+        let halved = Some(200.0);
+        for (error, before, clock, expected) in [
+            // Far from what is needed, at any price that is left.
+            (103.0, None, dear, false),
+            (103.0, Some(103.0), dear, false),
+            (103.0, None, [20.0, 100.0, 100.0], false),
+            (103.0, None, [20.0, 100.1, 100.0], true),
+            (f64::INFINITY, None, cheap, false),
+            // Enough: on where it is cheap and gains something.
+            (102.0, None, cheap, false),
+            (102.0, None, dear, true),
+            (100.0, halved, cheap, false),
+            (101.0, halved, cheap, true),
+            (0.1 * 1024.0, None, dear, true),
+            // Ample.
+            (1.1, None, cheap, false),
+            (1.0, None, cheap, true),
+            (1e-3 * 1024.0, None, cheap, true),
+        ] {
+            assert_eq!(ends(error, before, clock), expected, "{error} after {before:?} at {clock:?}");
+        }
+    }
+
+    /// Two frequencies of a clamped beam.
+    fn vibrations() -> Scene {
+        let text = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, \
+                    mass_per_length = 1, basis.ancf.elements = 4 }\n\
+                    support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+                    analysis.modal.count = 2\n";
+        parse("arm.toml", text).unwrap()
+    }
+
+    /// The reference by a clock that has run for 100 s of 1000 s, and what was being done on the
+    /// way.
+    fn made(target: f64, deadline: f64) -> (Reference, Vec<String>) {
+        let (scene, told) = (vibrations(), Mutex::new(Vec::<String>::new()));
+        let watcher = |now: &Progress<'_>| {
+            let mut told = told.lock().unwrap();
+            if told.last().is_none_or(|last| *last != now.doing) {
+                told.push(now.doing.to_owned());
+            }
+            Control::Continue
+        };
+        let desk = Desk {
+            model: scene.model(),
+            analysis: scene.analysis(),
+            start: Instant::now().checked_sub(Duration::from_secs(100)).expect("100 s ago"),
+            budget: 1000.0,
+            watcher: &watcher,
+        };
+        let start = Instant::now();
+        let reference = make(&desk, target, deadline).unwrap();
+        assert!((0.0..=start.elapsed().as_secs_f64()).contains(&reference.seconds), "{}", reference.seconds);
+        (reference, told.into_inner().unwrap())
+    }
+
+    /// Sixty-four cubic elements miss the second frequency by 1.4e-8, twice as many by a sixteenth
+    /// of that and round-off.
+    #[test]
+    fn pairs_are_refined_until_they_agree() {
+        let (reference, told) = made(8e-6, 1e6);
+        assert_eq!(told.len(), 2, "{told:?}");
+        assert_eq!(told[0], "reference with 16 cells");
+        assert!(told[1].starts_with("reference with 32 cells (agreement so far 1.4e-8)"), "{told:?}");
+        assert_eq!(reference.pair, ["RPIM, 2 neighbours, shape 5, 32 cells", "ANCF, 3L/2 points, 128 cells"]);
+        let error = reference.uncertainty.error;
+        assert!(error > 0.0 && error < 8e-9, "{error}");
+        assert!((reference.trajectory.frequencies[0] * std::f64::consts::TAU - 3.516_015).abs() < 1e-4);
+    }
+
+    /// Vibrations are over before anybody looks at the clock.
+    #[test]
+    fn no_pair_is_begun_after_the_time() {
+        let (reference, told) = made(8e-6, 50.0);
+        assert_eq!(told, ["reference with 16 cells"]);
+        assert_eq!(reference.pair[1], "ANCF, 3L/2 points, 64 cells");
+    }
+
+    /// Either run waits for the other one to begin.
+    #[test]
+    fn the_runs_of_a_pair_go_side_by_side() {
+        let (scene, begun) = (vibrations(), AtomicUsize::new(0));
+        let watcher = |_: &Progress<'_>| {
+            begun.fetch_add(1, Ordering::SeqCst);
+            let start = Instant::now();
+            while begun.load(Ordering::SeqCst) < 2 {
+                if start.elapsed() > Duration::from_secs(10) {
+                    return Control::Stop;
+                }
+                sleep(Duration::from_millis(1));
+            }
+            Control::Continue
+        };
+        let desk = Desk {
+            model: scene.model(),
+            analysis: scene.analysis(),
+            start: Instant::now(),
+            budget: 1000.0,
+            watcher: &watcher,
+        };
+        let reference = make(&desk, 1e-2, 1000.0);
+        assert!(reference.is_ok(), "{reference:?}");
     }
 }

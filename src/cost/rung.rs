@@ -78,6 +78,7 @@ pub(super) fn points(rungs: &[Rung], least: f64) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cost::Solver;
 
     #[test]
     fn the_front_holds_what_nothing_beats() {
@@ -91,6 +92,22 @@ mod tests {
         let statistics = Statistics { tangent_evaluations: 3, factorizations: 4, ..Statistics::default() };
         let measured = Measured { degrees_of_freedom: 10, statistics, ..Measured::default() };
         assert_eq!((measured.work(), measured.sized_work()), (7, 70.0));
+    }
+
+    #[test]
+    fn errors_that_nobody_can_tell_apart_are_equal() {
+        let rung = |seconds: f64, error: f64| Rung {
+            family: Family::FULL,
+            cells: 4,
+            setting: Setting { beams: vec![], solver: Solver::Scene },
+            measured: Measured {
+                seconds,
+                deviation: Deviation { error, ..Deviation::default() },
+                ..Measured::default()
+            },
+        };
+        let rungs = [rung(3.0, 1e-2), rung(1.0, 1e-7), rung(2.0, 1e-5)];
+        assert_eq!(points(&rungs, 1e-5), [[3.0, 1e-2], [1.0, 1e-5], [2.0, 1e-5]]);
     }
 
     #[test]

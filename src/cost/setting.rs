@@ -343,11 +343,194 @@ mod tests {
         }
     }
 
+    /// What is the default is left out.
+    #[test]
+    fn lines_say_no_more_than_they_must() {
+        let given = || Nodes::Given(vec![0.0, 0.5, 2.0]);
+        let rpim = |kernel, polynomial_terms, side_condition| Discretization::Rpim {
+            nodes: Nodes::Uniform(7),
+            kernel,
+            polynomial_terms,
+            side_condition,
+            neighbours: 1,
+        };
+        let (usual, plus, minus) = (RPIM_GAUSS_POINTS, SideCondition::Plus, SideCondition::Minus);
+        let points = |stretch, bend, lobatto| GaussPoints { stretch, bend, lobatto };
+        for (discretization, points, expected) in [
+            (Discretization::ancf(8), ANCF_GAUSS_POINTS, "ancf]\nelements = 8\n"),
+            (
+                Discretization::Ancf { nodes: Nodes::Chebyshev(5) },
+                points(5, 3, false),
+                "ancf]\nnodes = 5\nspacing = \"chebyshev\"\ngauss_points = { stretch = 5, bend = 3 }\n",
+            ),
+            (
+                Discretization::Ancf { nodes: given() },
+                points(4, 2, true),
+                "ancf]\nnodes = [0.0, 0.5, 2.0]\n\
+                 gauss_points = { stretch = 4, bend = 2, stretch_rule = \"lobatto\" }\n",
+            ),
+            (
+                rpim(RPIM_KERNEL, 2, plus),
+                usual,
+                "rpim]\nnodes = 7\nneighbours = 1\nkernel.multiquadric = { q = 1.03, shape = 5.0 }\n",
+            ),
+            (
+                rpim(Kernel::ThinPlateSpline { exponent: 5.0 }, 4, minus),
+                usual,
+                "rpim]\nnodes = 7\nneighbours = 1\nkernel.thin_plate_spline = { exponent = 5.0 }\n\
+                 polynomial_terms = 4\nside_condition = \"minus\"\n",
+            ),
+            (
+                rpim(Kernel::Exponential { shape: 0.5 }, 2, plus),
+                points(4, 3, false),
+                "rpim]\nnodes = 7\nneighbours = 1\nkernel.exponential = { shape = 0.5 }\n\
+                 gauss_points = { stretch = 4, bend = 3 }\n",
+            ),
+            (
+                rpim(Kernel::Wendland { radius: 4.0 }, 2, plus),
+                usual,
+                "rpim]\nnodes = 7\nneighbours = 1\nkernel.wendland = { radius = 4.0 }\n",
+            ),
+        ] {
+            let lines = basis("beam.arm.basis", &discretization, points);
+            assert_eq!(lines, format!("[beam.arm.basis.{expected}"));
+        }
+        let step = StepControl::Fixed(0.003);
+        let alpha = |spectral_radius: f64, newton_tolerance: f64| Integrator::GeneralizedAlpha {
+            step,
+            spectral_radius,
+            newton_tolerance,
+        };
+        for (integrator, expected) in [
+            (alpha(0.9, 1e-11), "generalized_alpha]\nstep = 0.003\n"),
+            (alpha(0.5, 1e-11), "generalized_alpha]\nspectral_radius = 0.5\nstep = 0.003\n"),
+            (alpha(0.9, 2e-9), "generalized_alpha]\nnewton_tolerance = 2e-9\nstep = 0.003\n"),
+            (Integrator::Gauss { stages: 2, step }, "gauss]\nstages = 2\nstep = 0.003\n"),
+            (
+                Integrator::Radau { stages: 3, step: StepControl::Tolerance(1e-5) },
+                "radau]\nstages = 3\ntolerance = 1e-5\n",
+            ),
+        ] {
+            assert_eq!(method(&integrator), format!("[analysis.dynamic.{expected}"));
+        }
+    }
+
+    /// Everything that a scene may say of a meshfree basis and of an integrator is legal in a
+    /// scene.
+    #[test]
+    fn lines_of_unusual_settings_are_legal() {
+        let scene = scene("[analysis.dynamic]\nduration = 1.0");
+        let step = StepControl::Fixed(0.003);
+        let solver = Solver::Integrator(Integrator::GeneralizedAlpha {
+            step,
+            spectral_radius: 0.5,
+            newton_tolerance: 2e-9,
+        });
+        for kernel in [Kernel::ThinPlateSpline { exponent: 5.0 }, Kernel::Exponential { shape: 0.5 }] {
+            let beam = Discretization::Rpim {
+                nodes: Nodes::Chebyshev(7),
+                kernel,
+                polynomial_terms: 4,
+                side_condition: SideCondition::Minus,
+                neighbours: 1,
+            };
+            let other = Discretization::Ancf { nodes: Nodes::Given(vec![0.0, 0.5, 2.0]) };
+            let points = GaussPoints { stretch: 4, bend: 2, lobatto: true };
+            let setting = Setting { beams: vec![(beam, RPIM_GAUSS_POINTS), (other, points)], solver };
+            let lines = setting.toml(scene.model());
+            let merged = scene.merged(&lines).unwrap_or_else(|error| panic!("{error}\n{lines}"));
+            let (model, analysis) = setting.apply(scene.model(), scene.analysis());
+            assert_eq!((merged.model(), merged.analysis()), (&model, &analysis), "{lines}");
+        }
+    }
+
+    #[test]
+    fn the_ladder_has_these_families() {
+        let names: Vec<String> = Family::all().iter().map(Family::to_string).collect();
+        let expected = [
+            "ANCF, 5/3 points",
+            "ANCF, 3L/2 points",
+            "RPIM, 2 neighbours, shape 5",
+            "RPIM, 2 neighbours, shape 5, 3 points",
+            "RPIM, 2 neighbours, shape 6",
+            "RPIM, 2 neighbours, shape 3.3",
+            "RPIM, 2 neighbours, shape 10",
+            "RPIM, 1 neighbour, shape 6",
+            "RPIM, 1 neighbour, shape 3.3",
+            "RPIM, 1 neighbour, shape 10",
+            "RPIM, 3 neighbours, shape 6",
+            "RPIM, 3 neighbours, shape 3.3",
+            "RPIM, 3 neighbours, shape 10",
+        ];
+        assert_eq!(names, expected);
+        assert_eq!(Family::Scene.kind(), "as the scene is");
+        assert_eq!(Family::usual(3).kind(), "RPIM, 2 neighbours");
+        assert_eq!(Solver::Tolerance(2e-7).to_string(), "tolerance 2e-7");
+    }
+
+    #[test]
+    fn a_setting_changes_what_it_is_about() {
+        let still = scene("[analysis.static]\nsteps = 2");
+        let beams = Family::FULL.beams(still.model(), 4);
+        let with = |solver: Solver, analysis: &Analysis| {
+            Setting { beams: beams.clone(), solver }.apply(still.model(), analysis)
+        };
+        let (model, analysis) = with(Solver::Tolerance(2e-7), still.analysis());
+        assert_eq!(model.beams[0].discretization, Discretization::ancf(4));
+        assert_eq!(model.beams[0].gauss_points, GaussPoints { stretch: 5, bend: 3, lobatto: false });
+        assert!(
+            matches!(&analysis, Analysis::Static(s) if s.tolerance == Some(2e-7) && s.steps == Some(2)),
+            "{analysis:?}"
+        );
+        let motion = scene("[analysis.dynamic]\nduration = 1.0");
+        let gauss = Integrator::Gauss { stages: 2, step: StepControl::Fixed(0.5) };
+        let (_, analysis) = with(Solver::Integrator(gauss), motion.analysis());
+        assert!(
+            matches!(&analysis, Analysis::Dynamic(d) if d.integrator == gauss && d.duration == 1.0),
+            "{analysis:?}"
+        );
+        // What an analysis does not know leaves it as it is.
+        let (_, analysis) = with(Solver::Tolerance(2e-7), motion.analysis());
+        assert_eq!(&analysis, motion.analysis());
+    }
+
+    /// Eight and two cells become sixteen and four, and one of each at least.
     #[test]
     fn beams_keep_their_proportion_and_grading() {
         let scene = scene("[analysis.static]");
+        assert_eq!(cells(scene.model()), 8);
         let beams = Family::FULL.beams(scene.model(), 16);
         assert_eq!(beams[0].0, Discretization::Ancf { nodes: Nodes::Uniform(17) });
         assert_eq!(beams[1].0, Discretization::Ancf { nodes: Nodes::Given(vec![0.0, 0.25, 0.5, 1.25, 2.0]) });
+        let beams = Family::FULL.beams(scene.model(), 1);
+        assert_eq!(beams[0].0, Discretization::Ancf { nodes: Nodes::Uniform(2) });
+        assert_eq!(beams[1].0, Discretization::Ancf { nodes: Nodes::Given(vec![0.0, 2.0]) });
+        // A third and two thirds of the way along two cells of 0.5 m and 1.5 m.
+        let Nodes::Given(places) = graded(&Nodes::Given(vec![0.0, 0.5, 2.0]), 3) else {
+            panic!("given nodes stay given")
+        };
+        let expected = [0.0, 1.0 / 3.0, 1.0, 2.0];
+        assert!(
+            places.iter().zip(expected).all(|(found, right)| (found - right).abs() < 1e-15),
+            "{places:?}"
+        );
+        assert_eq!(places.len(), 4);
+    }
+
+    /// Neither of them locks.
+    #[test]
+    fn strings_and_inextensible_beams_keep_their_points() {
+        let text = "beam.beam = { start = [0, 0], end = [1, 0], axial_stiffness = 1, bending_stiffness = 1, basis.ancf.elements = 4 }\n\
+                    beam.rope = { start = [0, 1], end = [1, 1], axial_stiffness = 1, basis.ancf.elements = 4 }\n\
+                    beam.rod = { start = [0, 2], end = [1, 2], bending_stiffness = 1, basis.ancf.elements = 4 }\n\
+                    support = [{ beam = 'beam', at = 'start', fix = ['x', 'y', 'angle'] }, \
+                    { beam = 'rope', at = 'start', fix = ['x', 'y'] }, { beam = 'rope', at = 'end', fix = ['x', 'y'] }, \
+                    { beam = 'rod', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+                    analysis.static = {}\n";
+        let scene = parse("scene", text).unwrap();
+        let points: Vec<GaussPoints> =
+            Family::REDUCED.beams(scene.model(), 8).into_iter().map(|(_, points)| points).collect();
+        let full = GaussPoints { stretch: 5, bend: 3, lobatto: false };
+        assert_eq!(points, [GaussPoints { stretch: 3, bend: 2, lobatto: true }, full, full]);
     }
 }

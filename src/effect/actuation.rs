@@ -5,11 +5,11 @@
 //! energy ½ EA (ε − ε₀)² only −EA ε₀ ε does work on the beam: a load with a potential, beside the
 //! elastic energy ½ EA ε², so that it can be switched on like any other load.
 
-use super::{Density, Engineering, Gradient, Green, Hessian, Kind, Strain, bend};
+use super::{Engineering, Green, Strain, bend};
+use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
+use crate::beam::StrainMeasure;
 use crate::lanes;
-use crate::model::{Law, StrainMeasure};
-use crate::system::SystemError;
-use crate::system::assembly::{Assembly, Extent, Part};
+use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
 /// The strain and curvature that a beam would take by itself.
@@ -26,10 +26,9 @@ pub struct Actuation {
 }
 
 impl Part for Actuation {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("pre-strain", self.beam)?;
-        let lacks =
-            |quantity| SystemError::Missing { beam: beam.name.clone(), quantity, needed_by: "pre-strain" };
+        let lacks = |quantity| BuildError::missing(beam, quantity, "pre-strain");
         if let Some(strain) = self.strain {
             let force = strain * beam.section.axial_stiffness.ok_or_else(|| lacks("axial stiffness"))?;
             let extent = Extent::Beam(self.beam, beam.gauss_points.stretch_rule());

@@ -1,8 +1,26 @@
 //! Bending strain energy ½ EI κ².
 
-use super::{Density, Gradient, Hessian};
+use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
 use crate::lanes::{self, Lanes, Pair, Points, Real, Square, cross, dot, outer};
 use nalgebra::{Matrix2, Vector2};
+
+/// The resistance of a beam to bending; none where its section names no bending stiffness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeamBend {
+    /// Index of the beam.
+    pub beam: usize,
+}
+
+impl Part for BeamBend {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
+        let beam = assembly.beam("bending", self.beam)?;
+        let Some(stiffness) = beam.section.bending_stiffness else { return Ok(()) };
+        // Only a curved beam keeps its reference curvatures.
+        let straight = assembly.discretized(self.beam).straight;
+        let extent = Extent::Beam(self.beam, beam.gauss_points.bend_rule());
+        assembly.elastic(Kind::Bend, extent, |z| Bend::new(stiffness, if straight { &[] } else { &z }))
+    }
+}
 
 /// W = ½ EI (κ − κ₀)² with the material curvature κ = (r' × r'')/|r'|², κ₀ that of the stress-free
 /// shape as the discretisation sees it (no table of it for a straight beam).

@@ -19,14 +19,14 @@ mod integral;
 mod obstacle;
 mod sweep;
 
-pub use friction::{Friction, FrictionIntegral, Piece};
+pub use friction::{Friction, FrictionIntegral};
 pub use integral::ContactIntegral;
 pub use obstacle::Obstacle;
 
-use super::{Density, Gradient, Hessian};
-use crate::system::SystemError;
-use crate::system::assembly::{Assembly, Part};
+use crate::assembly::{Assembly, BuildError, Density, Gradient, Hessian, Part, Resistance};
+use crate::beam::Place;
 use nalgebra::{Matrix2, Vector2};
+use std::sync::Arc;
 
 /// Contact of one beam with one obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,13 +44,24 @@ pub struct Contact {
 }
 
 impl Part for Contact {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("contact", self.beam)?;
         let normal = Penalty { obstacle: self.obstacle, stiffness: self.stiffness, gap: self.half_thickness };
-        let part = assembly.discretised(self.beam);
+        let part = assembly.discretized(self.beam);
         let pressing = ContactIntegral::new(normal, self.beam, &part.basis, part.offset());
-        assembly.contact(pressing.map_err(|e| SystemError::basis(&beam.name, e))?, self.friction);
+        let pressing = Arc::new(pressing.map_err(|e| BuildError::basis(&beam.name, e))?);
+        if let Some(friction) = self.friction {
+            let pressing = Arc::clone(&pressing);
+            assembly.friction(|number| Box::new(FrictionIntegral::new(pressing, friction, number)));
+        }
+        assembly.contact(pressing);
         Ok(())
+    }
+
+    fn resists(&self) -> Vec<Resistance> {
+        let start = Place { beam: self.beam, s: 0.0 };
+        let held = [[1.0, 0.0], [0.0, 1.0]].map(|axis| Resistance::Displacement(start, axis));
+        held.into_iter().chain([Resistance::Direction(start)]).collect()
     }
 
     fn outline(&self, size: f64) -> Vec<[f64; 2]> {

@@ -5,10 +5,9 @@
 //! curvature that of Kelvin–Voigt's is η K q̇: Rayleigh's damping, by which a mode of frequency ω
 //! has the damping ratio ζ = ½ (α/ω + η ω).
 
-use super::{Dissipation, Engineering, Gradient, Green, Hessian, Kind, Strain, bend};
-use crate::model::StrainMeasure;
-use crate::system::SystemError;
-use crate::system::assembly::{Assembly, Extent, Part};
+use super::{Engineering, Green, Strain, bend};
+use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
+use crate::beam::StrainMeasure;
 use nalgebra::{Matrix2, Vector2};
 
 /// R = ½ c ṙ·ṙ with c = α ρA \[N s/m²\].
@@ -113,10 +112,10 @@ pub struct BeamDamping {
 }
 
 impl Part for BeamDamping {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("damping", self.beam)?;
         let lacks =
-            |quantity| SystemError::Missing { beam: beam.name.clone(), quantity, needed_by: "damping" };
+            |quantity| BuildError::Missing { beam: beam.name.clone(), quantity, needed_by: "damping" };
         let points = beam.gauss_points;
         if let Some(alpha) = self.mass_proportional {
             let mass = beam.section.mass_per_length.ok_or_else(|| lacks("mass per length"))?;

@@ -1,9 +1,8 @@
 //! Resistance and lift of a fluid around a beam.
 
-use super::{DeadForce, Density, Dissipation, Gradient, Hessian, Kind};
-use crate::model::Law;
-use crate::system::SystemError;
-use crate::system::assembly::{Assembly, Extent, Part};
+use super::DeadForce;
+use crate::assembly::{Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part};
+use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
 /// Drag per length by the velocity u of the section against the fluid, split along and across the
@@ -22,7 +21,7 @@ pub struct Drag {
 }
 
 impl Part for Drag {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         assembly.beam("drag", self.beam)?;
         let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
         let (needs, flows) = (assembly.needs(), self.flow != [0.0; 2]);
@@ -120,7 +119,7 @@ pub struct Buoyancy {
 }
 
 impl Part for Buoyancy {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         assembly.beam("buoyancy", self.beam)?;
         let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
         let force = self.acceleration.map(|g| -self.displaced * g);

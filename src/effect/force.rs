@@ -1,8 +1,104 @@
-//! Forces and moments, concentrated (a table of one point with weight 1) or distributed (a table of
-//! the whole beam).
+//! Forces, concentrated (a table of one point with weight 1) or distributed (a table of the whole
+//! beam).
 
-use super::{Density, Gradient, Hessian};
+use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
+use crate::beam::Place;
+use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
+
+/// A concentrated force \[N\]; a follower turns with the section.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Force {
+    /// Where it acts.
+    pub at: Place,
+    /// Components in the fixed frame; of a follower, those while the beam is undeformed.
+    pub value: [f64; 2],
+    /// Turns with the section.
+    pub follower: bool,
+    /// By what factor it acts, in a motion only; in full from the start where there is none.
+    pub law: Option<Law>,
+}
+
+impl Force {
+    /// A force of fixed direction \[N\].
+    pub fn new(at: Place, value: [f64; 2]) -> Self {
+        Self { at, value, follower: false, law: None }
+    }
+
+    /// One that turns with the section.
+    pub fn following(at: Place, value: [f64; 2]) -> Self {
+        Self { at, value, follower: true, law: None }
+    }
+}
+
+impl Part for Force {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
+        add_force(assembly, Kind::Force, Extent::Point(self.at), self.value, self.follower, self.law.as_ref())
+    }
+}
+
+/// A force per reference length \[N/m\] along a whole beam.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DistributedForce {
+    /// Index of the beam.
+    pub beam: usize,
+    /// Components, as for [`Force`].
+    pub value: [f64; 2],
+    /// Turns with the section.
+    pub follower: bool,
+    /// By what factor it acts, in a motion only; in full from the start where there is none.
+    pub law: Option<Law>,
+}
+
+impl DistributedForce {
+    /// A force of fixed direction \[N/m\].
+    pub fn new(beam: usize, value: [f64; 2]) -> Self {
+        Self { beam, value, follower: false, law: None }
+    }
+
+    /// One that turns with the sections.
+    pub fn following(beam: usize, value: [f64; 2]) -> Self {
+        Self { beam, value, follower: true, law: None }
+    }
+}
+
+impl Part for DistributedForce {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
+        assembly.beam("a distributed force", self.beam)?;
+        let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
+        let law = self.law.as_ref();
+        add_force(assembly, Kind::DistributedForce, extent, self.value, self.follower, law)
+    }
+}
+
+/// Adds a force of fixed direction.
+pub(super) fn add_dead_force(
+    assembly: &mut Assembly<'_>,
+    kind: Kind,
+    extent: Extent,
+    value: [f64; 2],
+    law: Option<&Law>,
+) -> Result<(), BuildError> {
+    assembly.load(kind, extent, law, |z: Vec<[Vector2<f64>; 1]>| {
+        DeadForce::new(value, z.into_iter().map(|[r]| r).collect())
+    })
+}
+
+fn add_force(
+    assembly: &mut Assembly<'_>,
+    kind: Kind,
+    extent: Extent,
+    value: [f64; 2],
+    follower: bool,
+    law: Option<&Law>,
+) -> Result<(), BuildError> {
+    if !follower {
+        return add_dead_force(assembly, kind, extent, value, law);
+    }
+    assembly.load(kind, extent, law, |z: Vec<[Vector2<f64>; 2]>| {
+        FollowerForce::new(value, &z.into_iter().map(|[_, r]| r).collect::<Vec<_>>())
+    })
+}
 
 /// A force of fixed direction, F \[N\] or \[N/m\]: W = −F·(r − r₀). Weight is such a force with F =
 /// ρA g.
@@ -104,46 +200,5 @@ impl Density<2> for FollowerForce {
         let by_gradient = turned * (Matrix2::identity() - t * t.transpose()) * -inverse;
         let zero = Matrix2::zeros();
         ([-(turned * t), Vector2::zeros()], [[zero, by_gradient], [zero, zero]])
-    }
-}
-
-/// A moment M \[N m\], counter-clockwise: δW = −M δθ with θ = atan2(y', x').
-///
-/// ∂θ/∂r' = J r'/|r'|², symmetric second derivative. Its work M θ is a potential only as long as θ
-/// is counted on through full turns, which no single state can tell; its work is therefore summed
-/// up along the motion.
-#[derive(Clone, Debug)]
-pub struct Moment {
-    /// Counter-clockwise \[N m\].
-    pub moment: f64,
-}
-
-impl Density<1> for Moment {
-    const ORDERS: [usize; 1] = [1];
-    const CONSERVATIVE: bool = false;
-
-    fn energy(&self, _: usize, _: &Gradient<1>) -> f64 {
-        0.0
-    }
-
-    #[inline(always)]
-    fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
-        let factor = -self.moment / z[0].norm_squared();
-        [Vector2::new(-z[0].y * factor, z[0].x * factor)]
-    }
-
-    #[inline(always)]
-    fn gradient_and_hessian(
-        &self,
-        point: usize,
-        z: &Gradient<1>,
-        _: &Gradient<1>,
-        _: &Gradient<1>,
-    ) -> (Gradient<1>, Hessian<1>) {
-        let (x, y) = (z[0].x, z[0].y);
-        let inverse = 1.0 / z[0].norm_squared();
-        let factor = -self.moment * inverse * inverse;
-        let (diagonal, mixed) = (2.0 * x * y * factor, (y * y - x * x) * factor);
-        (self.gradient(point, z), [[Matrix2::new(diagonal, mixed, mixed, -diagonal)]])
     }
 }

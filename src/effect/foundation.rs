@@ -1,9 +1,8 @@
 //! Elastic foundation along a beam.
 
-use super::Kind;
 use super::spring::GroundSpring;
-use crate::system::SystemError;
-use crate::system::assembly::{Assembly, Extent, Part};
+use crate::assembly::{Assembly, BuildError, Extent, Kind, Part, Resistance};
+use crate::beam::Place;
 use nalgebra::Vector2;
 
 /// Winkler's foundation, W = ½ (k_x u_x² + k_y u_y²) per length with the displacement u = r − r₀;
@@ -17,11 +16,18 @@ pub struct Foundation {
 }
 
 impl Part for Foundation {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         assembly.beam("a foundation", self.beam)?;
         let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
         assembly.elastic(Kind::Foundation, extent, |z: Vec<[Vector2<f64>; 1]>| {
             GroundSpring::new(self.stiffness, z.into_iter().map(|[r]| r).collect())
         })
+    }
+
+    fn resists(&self) -> Vec<Resistance> {
+        let start = Place { beam: self.beam, s: 0.0 };
+        let axes = [[1.0, 0.0], [0.0, 1.0]].into_iter().zip(self.stiffness);
+        let held = axes.filter(|(_, k)| *k > 0.0).map(|(axis, _)| Resistance::Displacement(start, axis));
+        held.chain([Resistance::Direction(start)]).collect()
     }
 }

@@ -1,7 +1,27 @@
 //! Kinetic energy of the centreline.
 
-use super::{Density, Gradient, Hessian};
+use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
 use nalgebra::Matrix2;
+
+/// The inertia of a beam's mass, in an analysis with inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeamInertia {
+    /// Index of the beam.
+    pub beam: usize,
+}
+
+impl Part for BeamInertia {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
+        if !assembly.needs().inertia {
+            return Ok(());
+        }
+        let beam = assembly.beam("inertia", self.beam)?;
+        let lacks = || BuildError::missing(beam, "mass per length", "inertia");
+        let mass_per_length = beam.section.mass_per_length.ok_or_else(lacks)?;
+        let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
+        assembly.inertia(Kind::Inertia, extent, Inertia { mass_per_length })
+    }
+}
 
 /// W = ½ ρA v·v, a density of the velocity field v = ṙ: its second derivative is the constant mass
 /// matrix.

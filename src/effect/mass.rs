@@ -11,11 +11,10 @@
 //! ½ J ṙ'·ṙ', whose matrix is constant, would give |r'| an inertia too: a point's makes the stretch
 //! of the cells beside it swing, slower on finer meshes, and that of sections holds up axial waves.
 
+use super::Inertia;
 use super::direction;
-use super::{Dissipation, Gradient, Hessian, Inertia, Kind};
-use crate::model::Place;
-use crate::system::SystemError;
-use crate::system::assembly::{Assembly, Extent, Part};
+use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
+use crate::beam::Place;
 
 /// A mass at a point: T = ½ m ṙ·ṙ + ½ J θ̇².
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +28,7 @@ pub struct PointMass {
 }
 
 impl Part for PointMass {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let extent = Extent::Point(self.at);
         if let Some(mass) = self.mass {
             assembly.inertia(Kind::PointMass, extent, Inertia { mass_per_length: mass })?;
@@ -60,7 +59,7 @@ pub struct SectionInertia {
 }
 
 impl Part for SectionInertia {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         assembly.beam("rotary inertia", self.beam)?;
         let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
         let momentum = RotaryInertia { inertia: self.per_length };

@@ -4,10 +4,8 @@
 //! time. They are tabulated at Lobatto points of every cell and interpolated between them by
 //! Lagrange's polynomial of degree 7, which is exact for the cable element's cubics.
 
-use super::{Action, Actions, Kind};
+use crate::assembly::{Action, Actions, Assembly, BuildError, Kind, MovingLoad, Part};
 use crate::basis::{Basis, BasisError, BasisTable, Quadrature};
-use crate::system::SystemError;
-use crate::system::assembly::{Assembly, Part};
 use nalgebra::Vector2;
 
 /// Points a cell.
@@ -29,11 +27,11 @@ pub struct MovingForce {
 }
 
 impl Part for MovingForce {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("a moving force", self.beam)?;
-        let part = assembly.discretised(self.beam);
+        let part = assembly.discretized(self.beam);
         let travelling = Travelling::new(*self, &part.basis, part.offset());
-        assembly.travelling(travelling.map_err(|e| SystemError::basis(&beam.name, e))?)
+        assembly.moving_load(Box::new(travelling.map_err(|e| BuildError::basis(&beam.name, e))?))
     }
 }
 
@@ -58,16 +56,6 @@ impl Travelling {
         Ok(Self { force, table, offset, length: basis.length(), rule: Quadrature::Gauss(RULE).rule()? })
     }
 
-    /// What it is.
-    pub fn kind(&self) -> Kind {
-        Kind::MovingForce
-    }
-
-    /// Index of the beam.
-    pub fn beam(&self) -> usize {
-        self.force.beam
-    }
-
     /// Where it acts at `time`, if it is on the beam.
     fn place(&self, time: f64) -> Option<f64> {
         let [comes, goes] = self.kinks();
@@ -90,23 +78,25 @@ impl Travelling {
             row.iter().enumerate().for_each(|(a, n)| each(first + 2 * a..first + 2 * a + 2, weight * n));
         }
     }
+}
 
-    /// `f −= N(s(t)) F`.
-    pub fn add_force(&self, time: f64, f: &mut [f64]) {
-        self.add_weighted(1.0, time, f);
+impl MovingLoad for Travelling {
+    fn kind(&self) -> Kind {
+        Kind::MovingForce
     }
 
-    /// `f −= factor · N(s(t)) F`.
-    pub fn add_weighted(&self, factor: f64, time: f64, f: &mut [f64]) {
+    fn beam(&self) -> usize {
+        self.force.beam
+    }
+
+    fn add_force(&self, factor: f64, time: f64, f: &mut [f64]) {
         let Some(s) = self.place(time) else { return };
         self.shape(s, |pair, n| {
             f[pair].iter_mut().zip(self.force.value).for_each(|(f, value)| *f -= factor * n * value);
         });
     }
 
-    /// Adds mean and first moment of the force from `start` to `end`
-    /// ([`crate::model::Law::moments`]).
-    pub fn add_moments(&self, start: f64, end: f64, [mean, moment]: [&mut [f64]; 2]) {
+    fn add_moments(&self, start: f64, end: f64, [mean, moment]: [&mut [f64]; 2]) {
         let [comes, goes] = self.kinks();
         if end <= comes || start >= goes {
             return;
@@ -117,28 +107,25 @@ impl Travelling {
             for (at, weight) in self.rule.0.iter().zip(&self.rule.1) {
                 let (x, weight) = ((part as f64 + at) / parts, weight / parts);
                 let time = (end - start).mul_add(x, start);
-                self.add_weighted(weight, time, mean);
-                self.add_weighted((1.0 - x) * weight, time, moment);
+                self.add_force(weight, time, mean);
+                self.add_force((1.0 - x) * weight, time, moment);
             }
         }
     }
 
-    /// What it does to its beam in the state `q`.
-    pub fn add_actions(&self, time: f64, q: &[f64], sum: &mut Actions) {
+    fn add_actions(&self, time: f64, q: &[f64], sum: &mut Actions) {
         let Some(s) = self.place(time) else { return };
         let mut r = Vector2::zeros();
         self.shape(s, |pair, n| r += Vector2::from_column_slice(&q[pair]) * n);
         sum.add_point(s, Action::at(r, self.force.value.into()));
     }
 
-    /// When it comes and goes.
-    pub fn kinks(&self) -> [f64; 2] {
+    fn kinks(&self) -> [f64; 2] {
         let [a, b] = [0.0, self.length].map(|s| (s - self.force.start) / self.force.speed);
         [a.min(b), a.max(b)]
     }
 
-    /// Points, and bytes of its tables.
-    pub fn size(&self) -> (usize, usize) {
+    fn size(&self) -> (usize, usize) {
         (self.table.s.len(), self.table.bytes())
     }
 }

@@ -1,10 +1,10 @@
 //! Springs and dashpots between a point of a beam and the ground.
 
-use super::direction;
-use super::{Density, Dissipation, Gradient, Hessian, Kind};
-use crate::model::Place;
-use crate::system::SystemError;
-use crate::system::assembly::{Assembly, Extent, Part};
+use super::direction::{self, Direction};
+use crate::assembly::{
+    Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part, Resistance,
+};
+use crate::beam::Place;
 use nalgebra::{Matrix2, Vector2};
 
 /// A spring and a dashpot side by side. With an anchor they act along the line from it to the
@@ -25,7 +25,7 @@ pub struct Spring {
 }
 
 impl Part for Spring {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let extent = Extent::Point(self.at);
         if let Some(stiffness) = self.stiffness {
             match self.anchor {
@@ -45,11 +45,16 @@ impl Part for Spring {
         }
         Ok(())
     }
+
+    fn resists(&self) -> Vec<Resistance> {
+        let axes = self.stiffness.map_or(&[][..], |_| &[[1.0, 0.0], [0.0, 1.0]]);
+        axes.iter().map(|axis| Resistance::Displacement(self.at, *axis)).collect()
+    }
 }
 
 /// A torsional spring and dashpot on the direction of r': W = ½ k (θ − θ₀)², R = ½ c θ̇².
 ///
-/// θ counts all turns: those beyond half a turn by [`super::Winding`].
+/// θ counts all turns: those beyond half a turn by [`crate::assembly::Winding`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorsionSpring {
     /// The point.
@@ -61,14 +66,16 @@ pub struct TorsionSpring {
 }
 
 impl Part for TorsionSpring {
-    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), SystemError> {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let extent = Extent::Point(self.at);
         if let Some(stiffness) = self.stiffness {
             assembly.elastic(Kind::TorsionSpring, extent, |z: Vec<[Vector2<f64>; 1]>| {
                 let reference = z.first().map_or(Vector2::x(), |[r]| *r);
                 Torsion { stiffness, reference }
             })?;
-            assembly.winding(self.at, stiffness)?;
+            assembly.winding(Kind::TorsionSpring, self.at, stiffness, |z: Vec<[Vector2<f64>; 1]>| {
+                Direction::new(z.first().map_or(Vector2::x(), |[r]| *r))
+            })?;
         }
         if let Some(coefficient) = self.damping {
             assembly.damping(Kind::TorsionDashpot, extent, |_| TorsionDashpot { coefficient })?;
@@ -78,6 +85,10 @@ impl Part for TorsionSpring {
 
     fn couple(&self) -> Option<Place> {
         Some(self.at)
+    }
+
+    fn resists(&self) -> Vec<Resistance> {
+        self.stiffness.map(|_| Resistance::Direction(self.at)).into_iter().collect()
     }
 }
 

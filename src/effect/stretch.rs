@@ -1,8 +1,36 @@
 //! Axial strain energy ½ EA ε².
 
-use super::{Density, Gradient, Hessian};
+use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
+use crate::beam::StrainMeasure;
 use crate::lanes::{self, Lanes, Pair, Points, Real, Square, dot, outer};
 use nalgebra::Vector2;
+
+/// The resistance of a beam to stretch; none where its section names no axial stiffness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeamStretch {
+    /// Index of the beam.
+    pub beam: usize,
+}
+
+impl Part for BeamStretch {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
+        let beam = assembly.beam("stretch", self.beam)?;
+        let Some(stiffness) = beam.section.axial_stiffness else { return Ok(()) };
+        // Only a curved beam keeps its reference strains.
+        let straight = assembly.discretized(self.beam).straight;
+        let gradients = |z: Vec<[Vector2<f64>; 1]>| -> Vec<_> {
+            if straight { Vec::new() } else { z.into_iter().map(|[r]| r).collect() }
+        };
+        let extent = Extent::Beam(self.beam, beam.gauss_points.stretch_rule());
+        match beam.strain {
+            StrainMeasure::Green => {
+                assembly.elastic(Kind::Stretch, extent, |z| Stretch::<Green>::new(stiffness, &gradients(z)))
+            }
+            StrainMeasure::Engineering => assembly
+                .elastic(Kind::Stretch, extent, |z| Stretch::<Engineering>::new(stiffness, &gradients(z))),
+        }
+    }
+}
 
 /// An axial strain as a function of the gradient r'.
 pub trait Strain: Copy + Send + Sync {

@@ -113,7 +113,7 @@ fn places(n: usize, entries: &[Entry], border: &[BorderRow]) -> Option<Vec<usize
 ///
 /// # Errors
 /// [`Singular`] with the row whose pivot is zero.
-pub fn pivots(size: usize, upper: &[Entry]) -> Result<Vec<f64>, Singular> {
+fn pivots(size: usize, upper: &[Entry]) -> Result<Vec<f64>, Singular> {
     let none = Singular { row: size };
     let matrix = SparseColMat::try_new_from_triplets(size, size, upper).map_err(|_| none)?;
     let parameters = CholeskySymbolicParams {

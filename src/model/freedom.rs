@@ -7,6 +7,7 @@
 //! name, and does not say which row was one too many.
 
 use super::{FixedRotation, Joint, Model, Place};
+use crate::assembly::Resistance;
 
 /// Residual of a row against its size at which it is a combination of others.
 const DEPENDENT: f64 = 1e-9;
@@ -57,16 +58,21 @@ impl Freedom {
         freedom
     }
 
+    /// Holds what the model's parts may resist by elasticity.
+    pub fn resist(&mut self, model: &Model, position: impl Fn(Place) -> [f64; 2]) {
+        for resistance in model.parts.iter().flat_map(|part| part.resists()) {
+            match resistance {
+                Resistance::Displacement(at, axis) => {
+                    self.hold_displacement(&[(at.beam, position(at), axis)]);
+                }
+                Resistance::Direction(at) => self.hold_direction(at.beam),
+            }
+        }
+    }
+
     /// Holds the direction of a beam.
     pub fn hold_direction(&mut self, beam: usize) {
         self.hold_turns(&[(beam, 1.0)]);
-    }
-
-    /// Holds the point of a beam that is at `position`.
-    pub fn hold_point(&mut self, beam: usize, position: [f64; 2]) {
-        for axis in [[1.0, 0.0], [0.0, 1.0]] {
-            self.hold_displacement(&[(beam, position, axis)]);
-        }
     }
 
     /// Σ n·u = 0 over points.

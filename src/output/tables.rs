@@ -24,8 +24,7 @@ pub(crate) fn exact(value: f64) -> String {
 /// A text as a cell of a table: what a spreadsheet would take for a formula has an apostrophe
 /// before it, which makes it text there. Numbers are as they are.
 pub(crate) fn cell(text: &str) -> Cow<'_, str> {
-    let signed =
-        text.starts_with(['+', '-']) && !text[1..].starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    let signed = text.starts_with(['+', '-']) && text.parse::<f64>().is_err();
     if signed || text.starts_with(['=', '@', '\t', '\r']) { format!("'{text}").into() } else { text.into() }
 }
 

@@ -1,11 +1,12 @@
 //! Angles that count turns: a tip that has gone round once stands at 2π, not at 0.
 
-use crate::system::{BeamPart, unfold};
+use crate::assembly::DiscretizedBeam;
+use crate::system::unfold;
 
 /// By how much the node of a beam nearest to `s` has turned between two states. One load step may
 /// wind a beam up by whole turns; but some node has turned by less than half of one, such as one
 /// that is clamped, and the others follow from cell to cell.
-pub(super) fn turn(part: &BeamPart, s: f64, before: &[f64], now: &[f64]) -> f64 {
+pub(super) fn turn(part: &DiscretizedBeam, s: f64, before: &[f64], now: &[f64]) -> f64 {
     let first = 4 * part.first_node;
     let nodes = |q: &'_ [f64]| {
         let angles = q[first..first + 4 * part.basis.nodes().len()].chunks_exact(4).map(|n| n[3].atan2(n[2]));

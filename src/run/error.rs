@@ -1,9 +1,9 @@
 //! Why there is no result.
 
+use crate::assembly::BuildError;
 use crate::model::Undamped;
 use crate::restart::RestartError;
 use crate::solve::dynamics::start::StartError;
-use crate::system::SystemError;
 use crate::trajectory::Trajectory;
 
 /// Why there is no result.
@@ -13,7 +13,7 @@ pub enum RunError {
     /// The model cannot be turned into equations.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    System(#[from] SystemError),
+    System(#[from] BuildError),
     /// No equilibrium was found beyond some load factor.
     #[error(
         "no equilibrium beyond load factor {}: {cause}; smallest step tried {step:.1e}, worst at s = {} m of beam `{beam}`",

@@ -14,10 +14,11 @@
 //! held by tensions and thrusts of neighbouring points that cancel, far larger than the force that
 //! the balance of one side of a cut gives. Their energy tells it.
 
+use crate::assembly::BuildError;
 use crate::basis::BasisTable;
 use crate::effect::curvature;
 use crate::model::{GaussPoints, Model, StrainMeasure};
-use crate::system::{Fields, System, SystemError};
+use crate::system::{Fields, System};
 use crate::trajectory::Shape;
 use nalgebra::Vector2;
 
@@ -59,7 +60,7 @@ struct Watched {
 impl Locking {
     /// Watches strings, and all beams but those that resist stretch at no more points than a cell
     /// can follow.
-    pub fn new(model: &Model, system: &System) -> Result<Self, SystemError> {
+    pub fn new(model: &Model, system: &System) -> Result<Self, BuildError> {
         let mut beams = Vec::new();
         for (beam, part) in model.beams.iter().zip(system.beams()) {
             let points = beam.gauss_points;
@@ -71,7 +72,7 @@ impl Locking {
             }
             let bending = beam.section.bending_stiffness.unwrap_or_default();
             let table = |rule, orders: &[usize]| {
-                part.basis.table(rule, orders).map_err(|e| SystemError::basis(&part.name, e))
+                part.basis.table(rule, orders).map_err(|e| BuildError::basis(&part.name, e))
             };
             let tables = [table(points.stretch_rule(), &[1])?, table(points.bend_rule(), &[1, 2])?];
             let mut watched = Watched {

@@ -2,7 +2,7 @@
 
 use super::sampler::Sampler;
 use super::{Control, Observer, Progress, RunError};
-use crate::effect::InternalVariables;
+use crate::assembly::InternalVariables;
 use crate::model::{About, Static};
 use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};
@@ -49,9 +49,8 @@ impl Sampler<'_> {
                 return Err(self.stuck(stuck, &solution));
             }
             // The way there is of no interest, only that it led there.
-            solution.states.drain(..solution.states.len().saturating_sub(1));
-            solution.variables.drain(..solution.variables.len().saturating_sub(1));
-            let trajectory = Trajectory { analysis: AnalysisKind::Modal, ..self.statics(&solution) };
+            solution.keep_last();
+            let trajectory = self.equilibria(AnalysisKind::Modal, &solution);
             let variables = solution.variables.last().cloned().unwrap_or_default();
             let vibrations = match solution.states.last() {
                 Some((load, x)) if *load == 1.0 => self.modal(trajectory, (*load, x, &variables), count),
@@ -122,7 +121,7 @@ fn beyond_the_linear(modes: &buckling::Modes) -> Option<String> {
     let (strained, second) = numbered().find(|(load, _)| *load * modes.strain > STRAINED).unzip();
     let which = |number: Option<usize>| match number {
         Some(1) | None => String::new(),
-        Some(number) => format!("critical loads from number {number} on are of no use: "),
+        Some(number) => format!("critical loads from number {number} on are beyond the linear solution: "),
     };
     match (turned, strained) {
         (Some(load), _) => Some(format!(

@@ -4,15 +4,16 @@ use super::RunError;
 use super::angle;
 use super::locking::Locking;
 use super::strings;
-use crate::effect::{Actions, InternalVariables, Side};
+use crate::assembly::{Actions, BuildError, InternalVariables, Side};
 use crate::linear::Singular;
 use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
+use crate::solve::Work;
 use crate::solve::dynamics;
 use crate::solve::newton::Failure;
 use crate::solve::path::NoStep;
 use crate::solve::statics::{Pressed, Solution};
-use crate::system::{Reaction, System, SystemError, View, unfold};
+use crate::system::{Reaction, System, View, unfold};
 use crate::trajectory::{
     AnalysisKind, EffectSeries, Energy, Event, Frame, ProbeSample, ProbeSeries, ReactionSeries, Shape,
     Trajectory,
@@ -34,6 +35,8 @@ const STALLED: f64 = 1e-6;
 const TOO_SOFT: &str = "a beam is a model for small strains: use smaller loads, or a larger axial stiffness";
 /// What to try where a beam is pushed through an obstacle.
 const PUSHED_THROUGH: &str = "the obstacle gives way by more than half its thickness: give the contact a larger `stiffness`, or the obstacle a larger size";
+/// Part of the largest energy by which the work of actuators may err without a word.
+const WORK_KNOWN: f64 = 1e-2;
 /// Change of the total energy, relative to the largest energy, that is worth a warning.
 const LARGEST_DRIFT: f64 = 1e-2;
 /// Energies below this, in EA L, are those of the round-off of strains.
@@ -88,6 +91,20 @@ fn unbalanced(energy: &[Energy], least: f64) -> Option<String> {
     })
 }
 
+/// What there is to say about the work of actuators, where it is not known well against the
+/// energies of the state.
+fn put_in(work: &Work, energy: &Energy) -> Option<String> {
+    let parts = [energy.stretch, energy.bend, energy.stored, energy.potential, work.value, work.size];
+    let largest = parts.iter().fold(0.0_f64, |m, part| m.max(part.abs()));
+    (work.error > WORK_KNOWN * largest).then(|| {
+        format!(
+            "the energy that actuation has put in, {:.3e} J, is a sum over the states of the path and may err by {:.0e} J: give more `steps`, \
+             or a smaller `max_step` of the arc length",
+            work.value, work.error
+        )
+    })
+}
+
 /// The places `even`, and those of `jumps` twice; each with the side on which to cut there.
 fn stations(even: &[f64], jumps: &[f64]) -> (Vec<f64>, Vec<Side>) {
     let end = even.last().copied().unwrap_or(0.0);
@@ -117,11 +134,11 @@ impl<'a> Sampler<'a> {
     pub(super) fn new(model: &'a Model, system: &'a System) -> Result<Self, RunError> {
         let view = |beam: usize, s: &[f64]| {
             let part = &system.beams()[beam];
-            View::points(&part.basis, part.offset(), s).map_err(|e| SystemError::basis(&part.name, e))
+            View::points(&part.basis, part.offset(), s).map_err(|e| BuildError::basis(&part.name, e))
         };
         let shapes = (0..system.beams().len())
             .map(|beam| view(beam, &evenly(system.beams()[beam].basis.length(), SHAPE_POINTS)))
-            .collect::<Result<_, SystemError>>()?;
+            .collect::<Result<_, BuildError>>()?;
         let probes = model
             .probes
             .iter()
@@ -136,7 +153,7 @@ impl<'a> Sampler<'a> {
                 };
                 Ok(Watched { name: probe.name.clone(), beam, view, measure, reference_strain })
             })
-            .collect::<Result<_, SystemError>>()?;
+            .collect::<Result<_, BuildError>>()?;
         let locking = Locking::new(model, system)?;
         Ok(Self { model, system, shapes, probes, locking })
     }
@@ -237,8 +254,12 @@ impl<'a> Sampler<'a> {
             ));
         }
         let inventory = self.system.inventory();
-        let mut kinds: Vec<_> = inventory.effects.iter().map(|e| e.kind.name()).collect();
-        kinds.dedup();
+        let mut kinds: Vec<&str> = Vec::new();
+        for name in inventory.effects.iter().map(|effect| effect.kind.name()) {
+            if !kinds.contains(&name) {
+                kinds.push(name);
+            }
+        }
         settings.push(("effects".into(), kinds.join(", ")));
         settings.push(("linear solver".into(), inventory.solver.into()));
         settings
@@ -387,21 +408,22 @@ impl<'a> Sampler<'a> {
     }
 
     pub(super) fn statics(&self, solution: &Solution) -> Trajectory {
-        let mut trajectory = self.empty(AnalysisKind::Static);
+        self.equilibria(AnalysisKind::Static, solution)
+    }
+
+    /// Of equilibria that an analysis needs.
+    pub(super) fn equilibria(&self, analysis: AnalysisKind, solution: &Solution) -> Trajectory {
+        let mut trajectory = self.empty(analysis);
         let every = solution.states.len().div_ceil(FRAMES).max(1);
         let mut locking = self.locking.clone();
-        // Of actuators, by the trapezoidal rule.
-        let (mut work, mut last) = (0.0, (0.0, 0.0));
-        for (i, ((load, x), variables)) in solution.states.iter().zip(&solution.variables).enumerate() {
+        let states = solution.states.iter().zip(&solution.variables).zip(&solution.work);
+        for (i, (((load, x), variables), work)) in states.enumerate() {
             let q = self.coordinates_of(x);
             if self.model.outputs.reactions {
                 self.record_reactions(&mut trajectory, &self.system.static_reactions(*load, x, variables));
             }
             let before = i.checked_sub(1).map(|i| self.coordinates_of(&solution.states[i].1));
-            let rate = self.system.actuators_rate(*load, q);
-            work += 0.5 * (rate + last.1) * (load - last.0);
-            last = (*load, rate);
-            let energy = Energy { work, ..self.system.energy(*load, q, None).with(variables) };
+            let energy = Energy { work: work.value, ..self.system.energy(*load, q, None).with(variables) };
             self.record(&mut trajectory, *load, (History::Before(before), q), (None, variables), energy);
             if i % every == 0 || i + 1 == solution.states.len() {
                 trajectory.frames.push(self.frame(*load, q));
@@ -413,6 +435,8 @@ impl<'a> Sampler<'a> {
             trajectory.last = self.loaded(self.coordinates_of(x), &actions);
         }
         trajectory.warnings.extend(self.folds(&trajectory.last));
+        let known = solution.work.last().zip(trajectory.energy.last());
+        trajectory.warnings.extend(known.and_then(|(work, energy)| put_in(work, energy)));
         let work = trajectory.energy.last().map_or(0.0, |energy| energy.potential.abs());
         trajectory.warnings.extend(locking.jammed(&trajectory.last, work));
         trajectory.warnings.extend(locking.warnings());

@@ -8,7 +8,8 @@ use crate::model::{FixedRotation, Joint, Model, Place};
 pub(super) fn couples(model: &Model) -> impl Iterator<Item = String> {
     let supports = model.supports.iter().enumerate();
     let supports = supports.filter(|(_, support)| support.fix.rotation != FixedRotation::Free);
-    let supports = supports.map(|(i, support)| (format!("support {} holds its direction", i + 1), support.at));
+    let supports =
+        supports.map(|(i, support)| (format!("support {} holds its direction", i + 1), support.at));
     let welds = model.joints.iter().enumerate().flat_map(|(i, joint)| {
         let places = match *joint {
             Joint::Weld { first, second } => vec![first, second],
@@ -16,10 +17,8 @@ pub(super) fn couples(model: &Model) -> impl Iterator<Item = String> {
         };
         places.into_iter().map(move |at| (format!("joint {} welds it", i + 1), at))
     });
-    let moments = model.loads.iter().filter_map(|load| load.couple());
-    let moments = moments.map(|at| ("a moment acts on it".to_owned(), at));
     let parts = model.parts.iter().filter_map(|part| part.couple());
-    let parts = parts.map(|at| ("a torsion spring or rotary inertia acts on it".to_owned(), at));
+    let parts = parts.map(|at| ("a moment, a torsion spring or rotary inertia acts on it".to_owned(), at));
     let on_strings = |(what, at): (String, Place)| {
         let beam = model.beams.get(at.beam).filter(|beam| beam.section.bending_stiffness.is_none())?;
         Some(format!(
@@ -28,5 +27,5 @@ pub(super) fn couples(model: &Model) -> impl Iterator<Item = String> {
             beam.name, at.s,
         ))
     };
-    supports.chain(welds).chain(moments).chain(parts).filter_map(on_strings)
+    supports.chain(welds).chain(parts).filter_map(on_strings)
 }

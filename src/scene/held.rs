@@ -1,8 +1,10 @@
 //! What supports hold: nothing twice, no more than a mesh can give, and in statics every rigid
 //! motion of every beam.
 
+use crate::effect::{DistributedForce, Force, Gravity};
 use crate::model::freedom::{Freedom, Motion};
-use crate::model::{FixedRotation, Joint, Load, Model, Place};
+use crate::model::{FixedRotation, Joint, Law, Model, Place};
+use std::any::Any;
 
 use super::error::Fault;
 use super::file::SceneTable;
@@ -59,6 +61,7 @@ pub(super) fn check_rigid_motions(model: &Model, built: &[Built], resisting: Res
     let length = built.iter().map(|beam| beam.curve.length()).fold(0.0, f64::max);
     let position = |place: Place| built[place.beam].curve.position(place.s);
     let mut held = Freedom::new(model, length, position);
+    held.resist(model, position);
     for (beam, _) in model.beams.iter().enumerate().filter(|(_, b)| b.section.bending_stiffness.is_none()) {
         held.hold_direction(beam);
     }
@@ -146,22 +149,25 @@ fn taut(model: &Model, built: &[Built]) -> Vec<bool> {
 fn acted_upon(model: &Model, built: &[Built]) -> Vec<Place> {
     let ends = |beam: usize| [0.0, built[beam].curve.length()].map(|s| Place { beam, s });
     let acts = |value: &[f64; 2]| value.iter().any(|component| *component != 0.0);
+    let fixed = |follower: bool, law: &Option<Law>| !follower && law.is_none();
     let (mut places, mut weighs) = (Vec::new(), false);
-    for load in &model.loads {
-        match load {
-            Load::Gravity { acceleration } if acts(acceleration) => {
-                weighs = true;
-                let heavy =
-                    |beam: &usize| model.beams[*beam].section.mass_per_length.is_some_and(|mass| mass > 0.0);
-                places.extend((0..model.beams.len()).filter(heavy).flat_map(ends));
-                places.extend(model.parts.iter().filter_map(|part| part.mass()).map(|(place, _)| place));
-            }
-            Load::Force { at, value, follower: false } if acts(value) => places.push(*at),
-            Load::DistributedForce { beam, value, follower: false } if acts(value) => {
-                places.extend(ends(*beam));
-            }
-            _ => {}
+    for part in &model.parts {
+        let part: &dyn Any = part.as_ref();
+        if let Some(gravity) = part.downcast_ref::<Gravity>().filter(|g| acts(&g.acceleration)) {
+            weighs |= gravity.law.is_none();
         }
+        if let Some(force) = part.downcast_ref::<Force>() {
+            places.extend((fixed(force.follower, &force.law) && acts(&force.value)).then_some(force.at));
+        }
+        if let Some(force) = part.downcast_ref::<DistributedForce>() {
+            let acts = fixed(force.follower, &force.law) && acts(&force.value);
+            places.extend(acts.then(|| ends(force.beam)).into_iter().flatten());
+        }
+    }
+    if weighs {
+        let heavy = |beam: &usize| model.beams[*beam].section.mass_per_length.is_some_and(|mass| mass > 0.0);
+        places.extend((0..model.beams.len()).filter(heavy).flat_map(ends));
+        places.extend(model.parts.iter().filter_map(|part| part.mass()).map(|(place, _)| place));
     }
     // Without weight a beam on a hinge is more likely one that lacks a support.
     if weighs { places } else { Vec::new() }

@@ -237,7 +237,7 @@ fn node_places(
     }
     let (Some(first), Some(last), true) = (list.first(), list.last(), list.len() >= 2) else {
         return Err(
-            Fault::new(nodes.span(), format!("found {} nodes, expected 2 or more", list.len())).help(example)
+            Fault::new(nodes.span(), format!("expected 2 nodes or more, found {}", list.len())).help(example)
         );
     };
     for (index, pair) in list.windows(2).enumerate() {

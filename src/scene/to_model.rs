@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use crate::centreline::Curve;
 use crate::model::{
-    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Law, Load, Model, Outputs, Probe,
+    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Law, Model, Outputs, Probe,
     Section, Static, StrainMeasure, Support,
 };
 
 use super::error::Fault;
-use super::file::{BeamTable, FixName, LawTable, MoveTable, SceneTable, StrainName, SupportTable};
+use super::file::{BeamTable, FixName, MoveTable, SceneTable, StrainName, SupportTable};
 use super::held::Resisting;
-use super::place::{Built, beam_index, place};
+use super::place::{Built, place};
 use super::to_basis::{self, Size};
 use super::value::Located;
 use super::{held, to_analysis, to_law, to_parts, to_velocity};
@@ -43,7 +43,6 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
         model.supports.push(support(table, &built)?);
     }
     held::check_duplicates(file, &model, &built)?;
-    loads(file, &built, &mut model)?;
     to_parts::parts(file, &built, &mut model)?;
     to_velocity::initial_velocities(file, &built, &mut model)?;
     probes(file, &built, &mut model)?;
@@ -57,11 +56,7 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
         Analysis::Modal { about, .. } => (*about == About::Equilibrium).then_some(Resisting::Weight),
         Analysis::Dynamic(_) => None,
     };
-    // What springs and foundations hold depends on their stiffness.
-    let elastic = !(file.effect.spring.is_empty()
-        && file.effect.foundation.is_empty()
-        && file.effect.torsion_spring.is_empty());
-    if let (Some(resisting), false) = (resisting, elastic) {
+    if let Some(resisting) = resisting {
         held::check_rigid_motions(&model, &built, resisting)?;
     }
     Ok((model, analysis))
@@ -213,10 +208,12 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
             lacks("mass", who, "mass_per_length", ["density", "area"])?;
         }
         let bedded = file.effect.foundation.iter().any(|table| table.beam.get() == &beam.name);
-        if beam.section.bending_stiffness.is_none()
-            && !bedded
-            && matches!(analysis, Analysis::Buckling { .. })
-        {
+        let unloaded = match analysis {
+            Analysis::Buckling { .. } => Some("a buckling analysis"),
+            Analysis::Static(Static { arc_length: Some(_), .. }) => Some("a path by arc length"),
+            _ => None,
+        };
+        if let (None, Some(kind), false) = (beam.section.bending_stiffness, unloaded, bedded) {
             return Err(Fault::new(
                 built.name.span(),
                 format!(
@@ -225,7 +222,7 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
                     beam.name
                 ),
             )
-            .help("give `bending_stiffness`, use `[analysis.static]` with `arc_length`, or a spring in place of the string"));
+            .help("give `bending_stiffness`, use `[analysis.static]` with `steps`, or a spring in place of the string"));
         }
     }
     Ok(())
@@ -304,35 +301,6 @@ fn prescribed(by: &Located<MoveTable>, fix: Fixed) -> Result<(Displacement, Opti
         ));
     }
     Ok((displacement, law))
-}
-
-fn loads(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {
-    let effects = &file.effect;
-    let mut add = |load: Load, in_time: &Option<Located<LawTable>>| -> Result<(), Fault> {
-        model.loads.push(match in_time {
-            None => load,
-            Some(table) => Load::InTime { load: Box::new(load), law: to_law::law(table)? },
-        });
-        Ok(())
-    };
-    for force in &effects.force {
-        let at = place(&force.beam, &force.at, built)?;
-        add(Load::Force { at, value: force.value.si, follower: force.follower }, &force.in_time)?;
-    }
-    for moment in &effects.moment {
-        let at = place(&moment.beam, &moment.at, built)?;
-        add(Load::Moment { at, value: moment.value.si }, &moment.in_time)?;
-    }
-    for force in &effects.distributed_force {
-        let beam = beam_index(&force.beam, built)?;
-        let load = Load::DistributedForce { beam, value: force.value.si, follower: force.follower };
-        add(load, &force.in_time)?;
-    }
-    if let Some(gravity) = &effects.gravity {
-        let acceleration = gravity.get().acceleration.si;
-        add(Load::Gravity { acceleration }, &gravity.get().in_time)?;
-    }
-    Ok(())
 }
 
 fn probes(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {

@@ -1,10 +1,10 @@
-//! Tables of joints, damping, springs, masses, fluids and contacts → parts of the model.
+//! Tables of joints, loads, damping, springs, masses, fluids and contacts → parts of the model.
 
 use std::sync::Arc;
 
 use crate::effect::{
-    Actuation, BeamDamping, Buoyancy, Contact, Drag, Foundation, Friction, MovingForce, Obstacle, PointMass,
-    SectionInertia, Spring, TorsionSpring,
+    Actuation, BeamDamping, Buoyancy, Contact, DistributedForce, Drag, Force, Foundation, Friction, Gravity,
+    Moment, MovingForce, Obstacle, PointMass, SectionInertia, Spring, TorsionSpring,
 };
 use crate::model::{Joint, Model};
 
@@ -18,6 +18,32 @@ use super::value::Located;
 pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {
     let effects = &file.effect;
     let parts = &mut model.parts;
+    for t in &effects.force {
+        parts.push(Arc::new(Force {
+            at: place(&t.beam, &t.at, built)?,
+            value: t.value.si,
+            follower: t.follower,
+            law: t.in_time.as_ref().map(to_law::law).transpose()?,
+        }));
+    }
+    for t in &effects.moment {
+        let at = place(&t.beam, &t.at, built)?;
+        let law = t.in_time.as_ref().map(to_law::law).transpose()?;
+        parts.push(Arc::new(Moment { at, value: t.value.si, law }));
+    }
+    for t in &effects.distributed_force {
+        parts.push(Arc::new(DistributedForce {
+            beam: beam_index(&t.beam, built)?,
+            value: t.value.si,
+            follower: t.follower,
+            law: t.in_time.as_ref().map(to_law::law).transpose()?,
+        }));
+    }
+    if let Some(gravity) = &effects.gravity {
+        let GravityTable { acceleration, in_time } = gravity.get();
+        let law = in_time.as_ref().map(to_law::law).transpose()?;
+        parts.push(Arc::new(Gravity { acceleration: acceleration.si, law }));
+    }
     for t in &effects.damping {
         let both = t.stiffness_proportional.as_ref();
         if let (Some(both), true) = (both, t.strain.is_some() || t.curvature.is_some()) {

@@ -13,7 +13,7 @@
 
 use super::eigen::{EigenError, Pencil, largest_reciprocals, round_off};
 use super::equilibrium::Equilibrium;
-use crate::effect::{Earlier, Workspace};
+use crate::assembly::{Earlier, Workspace};
 use crate::system::System;
 
 /// Critical loads, lowest first.
@@ -100,11 +100,5 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         turn = turn.max((q[2] * d[3] - q[3] * d[2]).abs() / squared);
         strain = strain.max((q[2] * d[2] + q[3] * d[3]).abs() / squared);
     }
-    Ok(Modes {
-        turn,
-        strain,
-        load_factors,
-        shapes: shapes.collect(),
-        factorizations: 2,
-    })
+    Ok(Modes { turn, strain, load_factors, shapes: shapes.collect(), factorizations: 2 })
 }

@@ -40,7 +40,7 @@ mod touch;
 pub mod turns;
 
 use super::newton::Failure;
-use crate::effect::InternalVariables;
+use crate::assembly::InternalVariables;
 use crate::solve::{Statistics, StepRecord};
 use crate::system::Reaction;
 use serde::{Deserialize, Serialize};

@@ -23,7 +23,7 @@ use crate::linear::{Matrix, Singular};
 #[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
 pub enum EigenError {
     /// The stiffness has no inverse on the allowed motions.
-    #[error("the stiffness matrix cannot be factorised: {0}")]
+    #[error("the stiffness matrix cannot be factorised")]
     #[diagnostic(help("the structure can move without resistance: add supports"))]
     Singular(#[from] Singular),
     /// The stiffness has negative eigenvalues.

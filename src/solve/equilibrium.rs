@@ -3,7 +3,7 @@
 
 use super::newton::{Equations, RESIDUAL_TOLERANCE};
 use super::retraction::Retraction;
-use crate::effect::{AcceptedState, Earlier, InternalVariables, Workspace};
+use crate::assembly::{AcceptedState, Earlier, InternalVariables, Workspace};
 use crate::lanes::Lanes;
 use crate::linear::bordered::BorderRow;
 use crate::linear::{Factor, Matrix, Singular};

@@ -12,7 +12,7 @@
 //! of a clamped beam, where the matrix alone leaves 5e-2. What cannot be told from zero is zero.
 
 use super::eigen::{EigenError, Pencil, dot, largest_reciprocals, round_off};
-use crate::effect::{InternalVariables, Workspace};
+use crate::assembly::{InternalVariables, Workspace};
 use crate::linear::Matrix;
 use crate::system::System;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};

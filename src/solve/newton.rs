@@ -8,7 +8,7 @@
 //! tolerance. The first contraction also tells the caller how far the predictor was from the
 //! solution (Deuflhard, *Newton Methods for Nonlinear Problems*, 2004, ch. 5).
 
-use crate::effect::Earlier;
+use crate::assembly::Earlier;
 use crate::linear::Singular;
 
 /// A nonlinear system of equations.

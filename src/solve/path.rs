@@ -35,7 +35,7 @@
 
 use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
 use super::newton::{self, Failure, Iterations, Settings};
-use crate::effect::Earlier;
+use crate::assembly::Earlier;
 use crate::lanes::{cross, dot};
 use crate::solve::StepRecord;
 use std::f64::consts::TAU;

@@ -19,7 +19,7 @@
 
 use super::equilibrium::Equilibrium;
 use super::newton::{Failure, Iterations, Settings};
-use crate::effect::Earlier;
+use crate::assembly::Earlier;
 use crate::system::System;
 
 /// Largest change of an iterate: positions in beam lengths, gradients as they are.

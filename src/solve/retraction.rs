@@ -50,7 +50,7 @@ impl Retraction {
             return Self { chains: Vec::new() };
         }
         let held: Vec<usize> = system.supports().positions().collect();
-        let chain = |beam: &crate::system::BeamPart| {
+        let chain = |beam: &crate::assembly::DiscretizedBeam| {
             let nodes = beam.first_node..beam.first_node + beam.basis.nodes().len();
             let mut anchors: Vec<usize> = held.iter().copied().filter(|node| nodes.contains(node)).collect();
             anchors.sort_unstable();

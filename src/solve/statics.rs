@@ -5,9 +5,9 @@ use super::equilibrium::Equilibrium;
 use super::newton::{Iterations, Settings};
 use super::path::{NoStep, Parameter, Path, Point};
 use super::relax::relax;
-use crate::effect::InternalVariables;
+use crate::assembly::InternalVariables;
 use crate::model::{ArcLength, Static};
-use crate::solve::{Statistics, StepRecord};
+use crate::solve::{Statistics, StepRecord, Work};
 use crate::system::{System, View};
 
 /// By how much the state at which stability and the path's tangent are judged may miss the
@@ -30,6 +30,8 @@ pub struct Solution {
     pub states: Vec<(f64, Vec<f64>)>,
     /// The internal variables of each of them.
     pub variables: Vec<InternalVariables>,
+    /// What actuators have put in until each of them.
+    pub work: Vec<Work>,
     /// Attempted steps.
     pub history: Vec<StepRecord>,
     /// Instabilities met.
@@ -46,8 +48,17 @@ pub struct Solution {
 }
 
 impl Solution {
-    fn record(&mut self, equilibrium: &Equilibrium<'_>, load: f64, x: &[f64]) {
+    /// Forgets all recorded equilibria but the last.
+    pub fn keep_last(&mut self) {
+        let before = self.states.len().saturating_sub(1);
+        self.states.drain(..before);
+        self.variables.drain(..before);
+        self.work.drain(..before);
+    }
+
+    fn record(&mut self, equilibrium: &Equilibrium<'_>, load: f64, x: &[f64], work: Work) {
         self.states.push((load, x.to_vec()));
+        self.work.push(work);
         self.variables.push(equilibrium.internal_variables(x));
     }
 }
@@ -170,7 +181,8 @@ fn along_load(
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
     let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0)?;
-    solution.record(path.equilibrium, 0.0, &path.last().x);
+    let mut work = Work::default();
+    solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let parts = settings.steps.unwrap_or(1).max(1);
     let mut part = 1;
     let outcome = loop {
@@ -181,9 +193,10 @@ fn along_load(
             Err(stuck) => break Err(stuck),
         };
         notice(&mut path, &mut solution.events);
+        work.add_step(&mut path);
         let at_end = point.load >= end;
         if settings.steps.is_none() || at_end {
-            solution.record(path.equilibrium, point.load, &point.x);
+            solution.record(path.equilibrium, point.load, &point.x, work);
         }
         part += usize::from(at_end);
         let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
@@ -194,7 +207,7 @@ fn along_load(
     // Where the path ends early, its end is worth a record too.
     let last = path.last();
     if solution.states.last().is_none_or(|(load, _)| *load != last.load) {
-        solution.record(path.equilibrium, last.load, &last.x);
+        solution.record(path.equilibrium, last.load, &last.x, work);
     }
     solution.history = std::mem::take(&mut path.history);
     outcome
@@ -209,7 +222,8 @@ fn relaxed(
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
     let mut x = equilibrium.start();
-    solution.record(equilibrium, 0.0, &x);
+    let mut work = Work::default();
+    solution.record(equilibrium, 0.0, &x, work);
     let parts = settings.steps.unwrap_or(1).max(1);
     let mut before = 0;
     for part in 1..=parts {
@@ -218,6 +232,7 @@ fn relaxed(
             let unstable = unstable(equilibrium, load, &x);
             solution.pressed = (unstable > free).then_some(Pressed { load, unstable, free });
         }
+        let start = x.clone();
         let mut record = Iterations::default();
         let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
         if outcome.is_ok() && unstable(equilibrium, load, &x) > 0 {
@@ -241,7 +256,8 @@ fn relaxed(
         });
         outcome.map_err(|failure| NoStep { load: load - step, step, failure, at })?;
         equilibrium.statistics.load_steps += 1;
-        solution.record(equilibrium, load, &x);
+        work.add_states(equilibrium.system(), (load - step, &start), (load, &x));
+        solution.record(equilibrium, load, &x, work);
         equilibrium.hold(&x);
         if !observe(load, step, &equilibrium.statistics) {
             break;
@@ -300,7 +316,8 @@ fn along_arc(
     let system = equilibrium.system();
     let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
     let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05))?;
-    solution.record(path.equilibrium, 0.0, &path.last().x);
+    let mut work = Work::default();
+    solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let mut outcome = Ok(());
     let mut ends = target.arc.until_load.is_none() && target.probe.is_none();
     for _ in 0..target.arc.max_points {
@@ -339,7 +356,8 @@ fn along_arc(
                     };
                     solution.events.push(Event { load, before, after });
                 }
-                solution.record(path.equilibrium, point.load, &point.x);
+                work.add_states(system, (previous.load, &previous.x), (point.load, &point.x));
+                solution.record(path.equilibrium, point.load, &point.x, work);
                 let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
                 if reached || !go_on {
                     ends = true;

@@ -164,7 +164,11 @@ fn range(start: &str, stop: &str, count: &str, logarithmic: bool) -> Result<Vec<
         } else if i == count - 1 {
             to
         } else if logarithmic {
-            from * (to / from).powf(t)
+            // A ratio of numbers that are too far apart has no number.
+            match (to / from).powf(t) {
+                power if power.is_normal() => from * power,
+                _ => from.signum() * from.abs().powf(1.0 - t) * to.abs().powf(t),
+            }
         } else {
             // Not `from + t (to − from)`, whose difference may overflow.
             from * (1.0 - t) + to * t
@@ -207,12 +211,46 @@ mod tests {
         assert_eq!(values("a=-1.7e308:1.7e308:2"), ["-1.7e308", "1.7e308"]);
     }
 
+    /// Both ends are what they are, however far apart, and as short as they may be.
+    #[test]
+    fn ranges_end_where_they_are_told_to() {
+        assert_eq!(values("a=0.1:10:3:log"), ["0.1", "1", "10"]);
+        assert_eq!(values("a=10:0.1:3:log"), ["10", "1", "0.1"]);
+        assert_eq!(values("a=1e-300:1e300:3:log"), ["1e-300", "1", "1e300"]);
+        assert_eq!(values("a=-1e200:-1e-200:3:log"), ["-1e200", "-1", "-1e-200"]);
+        assert_eq!(values("a=9e-5:1e-4:2"), ["9e-5", "0.0001"]);
+        assert_eq!(values("a=999999999999999:1e15:2"), ["999999999999999", "1e15"]);
+        assert_eq!(values("a=3 m:3 m:2"), ["3 m", "3 m"]);
+    }
+
+    #[test]
+    fn lists_know_their_lines() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("runs.csv");
+        std::fs::write(&path, "a.b , c\n\n\n1, x\n 2,y \n").unwrap();
+        let axis = Axis::list(&path).unwrap();
+        assert_eq!(axis.paths, ["a.b", "c"]);
+        assert_eq!(axis.values, [["1", "x"], ["2", "y"]]);
+        let places = [0, 1, 2].map(|value| axis.lines.place(value));
+        let line = |line: usize| Some(format!("{}:{line}", path.display()));
+        assert_eq!(places, [line(4), line(5), None]);
+        assert_eq!(Axis::parse("a=1,2").unwrap().lines.place(0), None);
+        // Where values come from makes no other sweep.
+        assert_eq!(axis, Axis { lines: Lines::default(), ..axis.clone() });
+        std::fs::write(&path, "a.b,c\n").unwrap();
+        let empty = Axis::list(&path).unwrap_err().to_string();
+        assert_eq!(empty, format!("{}: found no line below the header", path.display()));
+    }
+
     #[test]
     fn lists_keep_what_brackets_and_quotes_hold() {
         assert_eq!(values("a=3 kN m, 4 kN m"), ["3 kN m", "4 kN m"]);
         assert_eq!(values(r#"a="x,y:z",[0, "1:2"],'q'"#), [r#""x,y:z""#, r#"[0, "1:2"]"#, "'q'"]);
         assert_eq!(values(r#"a="\"," , {b = [1, 2]}"#), [r#""\",""#, "{b = [1, 2]}"]);
         assert_eq!(values("a=7"), ["7"]);
+        // A backslash stands for itself behind another one, and between single quotes.
+        assert_eq!(values(r#"a="\\",b"#), [r#""\\""#, "b"]);
+        assert_eq!(values(r"a='x\',y"), [r"'x\'", "y"]);
     }
 
     #[test]
@@ -228,6 +266,8 @@ mod tests {
             ("a=1 m:2:3", "same unit"),
             ("a=x:2:3", "decimal number"),
             ("a=0:2:3:log", "same sign"),
+            ("a=2:0:3:log", "same sign"),
+            ("a=2:-1:3:log", "same sign"),
             ("a=-1:2:3:log", "same sign"),
             ("a=1,,2", "empty"),
             ("a=", "empty"),

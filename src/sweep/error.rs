@@ -36,7 +36,7 @@ pub enum SweepError {
         reason: String,
     },
     /// A line of a list makes no legal scene.
-    #[error("{lines}: {source}")]
+    #[error("{lines}: no legal scene")]
     #[diagnostic(help(
         "every line of a list gives each path of the header a value that is legal in the scene"
     ))]
@@ -92,7 +92,7 @@ pub enum SweepError {
         path: PathBuf,
     },
     /// A journal cannot be read or written.
-    #[error("{}: the journal of the sweep: {source}", path.display())]
+    #[error("{}: the journal of the sweep cannot be read or written", path.display())]
     #[diagnostic(help(
         "runs recorded until now are kept: call the same command again once the cause is mended"
     ))]
@@ -103,7 +103,7 @@ pub enum SweepError {
         source: io::Error,
     },
     /// The threads cannot be started.
-    #[error("cannot start the threads of the sweep: {0}")]
+    #[error("cannot start the threads of the sweep")]
     #[diagnostic(help("ask for fewer with --threads"))]
     Threads(#[from] rayon::ThreadPoolBuildError),
     /// Whoever watched wanted it to end.

@@ -97,4 +97,27 @@ mod tests {
         let large = ["a=0:1:1000000", "b=0:1:1000000"].map(|option| Axis::parse(option).unwrap());
         assert!(Grid::new(large.to_vec()).unwrap_err().to_string().contains("more than"));
     }
+
+    #[test]
+    fn there_are_at_most_ten_million_runs() {
+        let grid = |first: &str| {
+            let options = [first, "b=1:1000:1000", "c=1:1000:1000"];
+            Grid::new(options.map(|option| Axis::parse(option).unwrap()).to_vec())
+        };
+        assert_eq!(grid("a=1:10:10").unwrap().runs(), 10_000_000);
+        assert!(grid("a=1:11:11").is_err());
+    }
+
+    #[test]
+    fn runs_know_the_lines_of_their_lists() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("runs.csv");
+        std::fs::write(&path, "a,b\n1,2\n3,4\n").unwrap();
+        let axes = vec![Axis::list(&path).unwrap(), Axis::parse("c=x,y").unwrap()];
+        let grid = Grid::new(axes).unwrap();
+        assert_eq!(grid.paths().collect::<Vec<_>>(), ["a", "b", "c"]);
+        assert_eq!(grid.values(3), ["3", "4", "x"]);
+        assert_eq!(grid.lines(2), [format!("{}:2", path.display())]);
+        assert_eq!(grid.lines(3), [format!("{}:3", path.display())]);
+    }
 }

@@ -241,6 +241,38 @@ mod tests {
     }
 
     #[test]
+    fn other_files_are_no_journals() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["journal-1-of-2.txt", "notes.jsonl", "journal-2-of-2.jsonl", "journal-1-of-2.jsonl"] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        let expected = ["journal-1-of-2.jsonl", "journal-2-of-2.jsonl"].map(|name| folder.path().join(name));
+        assert_eq!(paths(folder.path()).unwrap(), expected);
+    }
+
+    /// What is torn is longer than the parts in which its beginning is looked for.
+    #[test]
+    fn a_long_torn_line_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("journal-1-of-1.jsonl");
+        let size = || fs::metadata(&path).unwrap().len();
+        let mut journal = Journal::open(folder.path(), Shard::WHOLE).unwrap();
+        for run in [1, 2] {
+            journal.append(&record(run)).unwrap();
+            assert_eq!(journal.length, size());
+        }
+        let whole = journal.length;
+        drop(journal);
+        let mut text = fs::read(&path).unwrap();
+        text.resize(text.len() + 200_000, b'x');
+        fs::write(&path, text).unwrap();
+        let mut journal = Journal::open(folder.path(), Shard::WHOLE).unwrap();
+        assert_eq!((journal.length, size()), (whole, whole));
+        journal.append(&record(3)).unwrap();
+        assert_eq!(records(folder.path(), 3), [record(1), record(2), record(3)]);
+    }
+
+    #[test]
     fn one_process_has_a_part() {
         let folder = tempfile::tempdir().unwrap();
         let _first = Journal::open(folder.path(), Shard::WHOLE).unwrap();

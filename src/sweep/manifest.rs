@@ -114,3 +114,75 @@ impl Manifest {
         Err(SweepError::Another { directory: directory.to_owned(), difference })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::parse;
+
+    /// A sweep of a beam of this length.
+    fn manifest(length: u8, set: &[&str], axes: &[&str]) -> Manifest {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [{length}, 0], axial_stiffness = 1, bending_stiffness = 1, \
+             basis.ancf.elements = 1 }}\n\
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+             analysis.static = {{}}\n"
+        );
+        let set: Vec<String> = set.iter().map(|&option| option.to_owned()).collect();
+        let axes = axes.iter().map(|option| Axis::parse(option).unwrap()).collect();
+        Manifest::new(&parse("arm.toml", &text).unwrap(), &set, &Grid::new(axes).unwrap())
+    }
+
+    #[test]
+    fn what_differs_is_named() {
+        let this = manifest(1, &["title=x"], &["b=1,2", "c=3"]);
+        let older = Manifest { version: "0.0.1".into(), ..this.clone() };
+        for (there, difference) in [
+            (&this, ""),
+            (&older, "it was computed by version 0.0.1, and this is "),
+            (&manifest(1, &[], &["b=1,2", "c=3"]), "there --set has nothing, here title=x"),
+            (&manifest(1, &["d=2", "e=3"], &["b=1,2"]), "there --set has d=2, e=3, here title=x"),
+            (
+                &manifest(2, &["title=x"], &["b=1,2"]),
+                "its scene arm.toml had another content than arm.toml has now",
+            ),
+            (&manifest(1, &["title=x"], &["b=1,2"]), "there b vary, here b, c"),
+            (&manifest(1, &["title=x"], &["b=1,2", "c=4"]), "the values of c are others"),
+        ] {
+            let found = this.compare(there, Path::new("s")).err().map(|error| error.to_string());
+            let found = found.unwrap_or_default();
+            let expected = if difference.is_empty() { "" } else { "s holds another sweep: " };
+            assert!(found.starts_with(&format!("{expected}{difference}")), "{found}");
+            assert_eq!(found.is_empty(), difference.is_empty(), "{found}");
+        }
+    }
+
+    #[test]
+    fn a_directory_is_of_one_sweep() {
+        let folder = tempfile::tempdir().unwrap();
+        let (this, other) = (manifest(1, &[], &["b=1,2"]), manifest(1, &[], &["b=1,3"]));
+        assert_eq!(Manifest::read(folder.path()).unwrap(), None);
+        this.claim(folder.path()).unwrap();
+        assert_eq!(Manifest::read(folder.path()).unwrap().as_ref(), Some(&this));
+        assert_eq!(this.grid().unwrap().runs(), 2);
+        this.claim(folder.path()).unwrap();
+        assert!(matches!(other.claim(folder.path()), Err(SweepError::Another { .. })));
+        fs::write(folder.path().join(MANIFEST), "{").unwrap();
+        assert!(matches!(this.claim(folder.path()), Err(SweepError::Manifest { .. })));
+        fs::remove_file(folder.path().join(MANIFEST)).unwrap();
+        fs::write(folder.path().join("journal-1-of-1.jsonl"), "").unwrap();
+        assert!(matches!(this.claim(folder.path()), Err(SweepError::Stray { .. })));
+    }
+
+    /// As any file that this user makes.
+    #[cfg(unix)]
+    #[test]
+    fn others_may_read_it() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        manifest(1, &[], &["b=1,2"]).claim(folder.path()).unwrap();
+        fs::write(folder.path().join("usual"), "").unwrap();
+        let mode = |name: &str| fs::metadata(folder.path().join(name)).unwrap().permissions().mode();
+        assert_eq!(mode(MANIFEST), mode("usual"));
+    }
+}

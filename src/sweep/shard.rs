@@ -56,6 +56,8 @@ mod tests {
         runs.sort_unstable();
         assert!(runs.into_iter().eq(Shard::WHOLE.runs(7)));
         assert_eq!("5/9".parse::<Shard>().unwrap().runs(4).count(), 0);
+        let shard: Shard = "2/3".parse().unwrap();
+        assert_eq!((shard.index(), shard.count(), shard.to_string().as_str()), (2, 3, "2/3"));
         for text in ["0/3", "4/3", "1", "1/0", "a/b", "-1/2"] {
             assert!(text.parse::<Shard>().is_err(), "{text}");
         }

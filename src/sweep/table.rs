@@ -95,3 +95,72 @@ impl<'a> Table<'a> {
         self.writer.flush()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::{Axis, Outcome};
+
+    fn record(run: usize, summary: &str) -> Record {
+        let summary = Some(serde_json::from_str(summary).unwrap());
+        Record { run, outcome: Outcome::Solved, message: None, seconds: 0.5, summary }
+    }
+
+    fn columns(records: &[Record]) -> Columns {
+        let mut columns = Columns::default();
+        records.iter().for_each(|record| columns.add(record));
+        columns
+    }
+
+    #[test]
+    fn columns_keep_the_order_that_runs_give_them() {
+        let summaries = [r#"{"a":1,"b":2,"d":4}"#, r#"{"a":1,"c":3,"d":4}"#, r#"{"b":5,"e":6}"#];
+        let records = summaries.map(|summary| record(1, summary));
+        assert_eq!(columns(&records).0, ["a", "c", "b", "e", "d"]);
+    }
+
+    #[test]
+    fn rows_hold_results_under_their_names() {
+        let failed = Record {
+            outcome: Outcome::Failed,
+            message: Some("no way on".into()),
+            summary: None,
+            ..record(2, "0")
+        };
+        let solved = r#"{"title":"t","b":{"x":0.5},"a":[3,null],"version":"0","seconds":{"solve":1.5}}"#;
+        let records = [record(1, solved), failed, record(3, r#"{"a":[7,8]}"#)];
+        let grid = Grid::new(vec![Axis::parse("x.y=1,=2,3 N").unwrap()]).unwrap();
+        let (columns, mut out) = (columns(&records), Vec::<u8>::new());
+        let mut table = Table::new(&mut out, &grid, &columns).unwrap();
+        records.iter().for_each(|record| table.row(record).unwrap());
+        table.finish().unwrap();
+        let expected = "\
+run,x.y,outcome,message,b.x,a.1,a.2,seconds
+1,1,solved,,5.0000000000000000e-1,3,,0.500000
+2,'=2,failed,no way on,,,,0.500000
+3,3 N,solved,,,7,8,0.500000
+";
+        assert_eq!(String::from_utf8(out).unwrap(), expected);
+    }
+
+    /// A table as short as this one is kept until it is finished.
+    #[test]
+    fn a_table_that_cannot_be_written_is_an_error() {
+        struct Full;
+
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(io::Error::other("the disk is full"))
+            }
+
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+
+        let grid = Grid::new(vec![Axis::parse("a=1").unwrap()]).unwrap();
+        let (columns, mut full) = (Columns::default(), Full);
+        let table = Table::new(&mut full, &grid, &columns).unwrap();
+        assert_eq!(table.finish().unwrap_err().to_string(), "the disk is full");
+    }
+}

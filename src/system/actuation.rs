@@ -11,8 +11,8 @@
 //! ε̇₀ ds − ∫ M κ̇₀ ds.
 
 use super::System;
-use super::prescribed::Amplitude;
-use crate::effect::Kind;
+use crate::assembly::Amplitude;
+use crate::assembly::Kind;
 use crate::model::Model;
 
 /// The strain or the curvature that a beam would take by itself.
@@ -31,7 +31,7 @@ pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
     let mut all = Vec::new();
     for (index, (beam, part)) in model.beams.iter().zip(&system.beams).enumerate() {
         let parts: Vec<_> = model.parts.iter().filter_map(|part| part.actuation(index)).collect();
-        let law = |law: Option<&crate::model::Law>| law.cloned().map(Amplitude::Law);
+        let law = |law: Option<&crate::law::Law>| law.cloned().map(Amplitude::Law);
         let strains = parts.iter().map(|(strain, _, l)| (*strain, law(*l)));
         let curvatures = parts.iter().map(|(_, curvature, l)| (*curvature, law(*l)));
         for (kind, stiffness, own) in [
@@ -60,6 +60,7 @@ impl System {
     /// former times their amplitudes.
     fn coupling(&self, actuated: &Actuated, parameter: f64, q: &[f64]) -> [f64; 2] {
         let of = self
+            .terms
             .loads
             .iter()
             .filter(|load| load.effect.kind() == actuated.kind && load.effect.beam() == actuated.beam);
@@ -86,6 +87,21 @@ impl System {
             }
         }
         (energy, put_in)
+    }
+
+    /// Whether there are any actuators.
+    pub fn has_actuators(&self) -> bool {
+        !self.actuated.is_empty()
+    }
+
+    /// What each actuator would put in if nothing gave way, summed: the size of what cancels where
+    /// beams follow their actuators \[J\].
+    pub fn actuators_size(&self, load: f64) -> f64 {
+        let size = |actuated: &Actuated| {
+            let (own, rate) = self.own(actuated, load);
+            (actuated.stiffness * own * rate).abs()
+        };
+        self.actuated.iter().map(size).sum()
     }
 
     /// What actuators put in as their amplitude grows with the load factor \[J\]: −∫ N ε₀ ds − ∫ M

@@ -10,8 +10,8 @@
 //! to another, which a weld keeps.
 
 use super::prescribed::Prescribed;
+use crate::assembly::Action;
 use crate::basis::BasisTable;
-use crate::effect::Action;
 use nalgebra::Vector2;
 use std::ops::Range;
 

@@ -2,29 +2,29 @@
 
 use super::System;
 use super::sums::resultant;
-use crate::effect::{AcceptedState, Effect};
+use crate::assembly::{AcceptedState, Effect};
 
 impl System {
     /// Whether there are any.
     pub fn has_contacts(&self) -> bool {
-        !self.contacts.is_empty()
+        !self.terms.contacts.is_empty()
     }
 
     /// Per contact, how many separate intervals of the beam touch in the state `q`.
     pub fn intervals<'q>(&'q self, q: &'q [f64]) -> impl Iterator<Item = usize> + 'q {
-        self.contacts.iter().map(|contact| contact.intervals(q))
+        self.terms.contacts.iter().map(|contact| contact.intervals(q))
     }
 
     /// Whether contact number `contact` touches in the state `q`.
     pub fn touches(&self, contact: usize, q: &[f64]) -> bool {
-        self.contacts.get(contact).is_some_and(|contact| contact.touches(q))
+        self.terms.contacts.get(contact).is_some_and(|contact| contact.touches(q))
     }
 
     /// The resultant \[N\] of contact number `contact` on its beam in the state `q`, without
     /// friction; `scratch` is overwritten.
     pub fn contact_force(&self, contact: usize, q: &[f64], scratch: &mut [f64]) -> [f64; 2] {
         scratch.fill(0.0);
-        if let Some(contact) = self.contacts.get(contact) {
+        if let Some(contact) = self.terms.contacts.get(contact) {
             contact.add_force(1.0, q, scratch);
         }
         resultant(scratch)
@@ -32,7 +32,7 @@ impl System {
 
     /// Names of the contacts: the beam and a number, such as `arm.1`.
     pub fn contact_names(&self) -> impl Iterator<Item = String> + '_ {
-        let names = self.contacts.iter().enumerate();
+        let names = self.terms.contacts.iter().enumerate();
         names.map(|(i, contact)| format!("{}.{}", self.beams[contact.beam()].name, i + 1))
     }
 
@@ -40,30 +40,30 @@ impl System {
     /// part of the way that is clear, and the number of the contact. With `may_cross` only what
     /// goes too fast for its force to be seen is in conflict.
     pub fn conflict(&self, way: [&[f64]; 4], may_cross: bool) -> Option<(f64, usize)> {
-        let contacts = self.contacts.iter().enumerate();
+        let contacts = self.terms.contacts.iter().enumerate();
         let met = contacts.filter_map(|(i, contact)| contact.conflict(way, may_cross).map(|part| (part, i)));
         met.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Whether contact number `contact` is crossed on the way.
     pub fn crosses(&self, contact: usize, way: [&[f64]; 4]) -> bool {
-        self.contacts.get(contact).is_some_and(|contact| contact.crosses(way))
+        self.terms.contacts.get(contact).is_some_and(|contact| contact.crosses(way))
     }
 
     /// The part of the way until contact number `contact`, which does not touch at its start,
     /// begins to, if it does.
     pub fn first_touch(&self, contact: usize, way: [&[f64]; 4]) -> Option<f64> {
-        self.contacts.get(contact).and_then(|contact| contact.first_touch(way))
+        self.terms.contacts.get(contact).and_then(|contact| contact.first_touch(way))
     }
 
     /// Whether any contact has friction.
     pub fn has_friction(&self) -> bool {
-        !self.friction.is_empty()
+        !self.terms.friction.is_empty()
     }
 
     /// Per contact with friction whether the larger part of it slides, and whether against
     /// friction.
     pub fn sliding(&self, held: &AcceptedState, q: &[f64], v: &[f64]) -> Vec<Option<bool>> {
-        self.friction.iter().map(|friction| friction.sliding(held, q, v)).collect()
+        self.terms.friction.iter().map(|friction| friction.sliding(held, q, v)).collect()
     }
 }

@@ -14,8 +14,8 @@
 //! thing: its error is that of the strain times EA, of any size against a load that bends a slender
 //! beam.
 
-use super::{System, Turning};
-use crate::effect::{Action, Actions, InternalVariables};
+use super::System;
+use crate::assembly::{Action, Actions, InternalVariables, Turning};
 use nalgebra::Vector2;
 
 /// A state in which all forces balance.
@@ -40,32 +40,32 @@ impl System {
     pub fn actions(&self, state: Balanced<'_>) -> Vec<Actions> {
         let Balanced { parameter, q, motion, held, multipliers, variables } = state;
         let mut actions = vec![Actions::default(); self.beams.len()];
-        for effect in &self.internal {
+        for effect in &self.terms.internal {
             effect.add_actions(1.0, q, q, &mut actions[effect.beam()]);
         }
-        for load in &self.loads {
+        for load in &self.terms.loads {
             let factor = self.amplitude_of(load).at(parameter);
             load.effect.add_actions(factor, q, q, &mut actions[load.effect.beam()]);
         }
-        for force in &self.travelling {
+        for force in &self.terms.moving_loads {
             force.add_actions(parameter, q, &mut actions[force.beam()]);
         }
         if let Some([v, a]) = motion {
-            for effect in &self.inertia {
+            for effect in &self.terms.inertia {
                 effect.add_actions(1.0, q, a, &mut actions[effect.beam()]);
             }
-            for Turning { momentum, rate } in &self.turning {
+            for Turning { momentum, rate } in &self.terms.turning {
                 momentum.add_actions(q, a, &mut actions[momentum.beam()]);
                 rate.add_actions(q, v, &mut actions[rate.beam()]);
             }
-            for damping in &self.damping {
+            for damping in &self.terms.damping {
                 damping.add_actions(q, v, &mut actions[damping.beam()]);
             }
         }
-        for friction in &self.friction {
+        for friction in &self.terms.friction {
             friction.add_held_actions(variables, q, &mut actions[friction.beam()]);
         }
-        for winding in &self.windings {
+        for winding in &self.terms.windings {
             winding.add_actions(variables, q, &mut actions[winding.beam()]);
         }
         for (part, actions) in self.beams.iter().zip(&mut actions) {

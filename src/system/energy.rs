@@ -1,6 +1,6 @@
 //! The energies of a state.
 
-use crate::effect::InternalVariables;
+use crate::assembly::InternalVariables;
 use serde::Serialize;
 
 /// Energies \[J\].
@@ -18,7 +18,7 @@ pub struct Energy {
     pub potential: f64,
     /// Work that loads without a potential (moments, follower forces), moving supports and
     /// actuators that follow a law have done since the start of a motion; in statics that of
-    /// actuators, by the trapezoidal rule over the records.
+    /// actuators along the path.
     pub work: f64,
     /// Energy that damping has taken since the start of a motion.
     pub lost: f64,

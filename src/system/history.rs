@@ -1,30 +1,30 @@
-//! Forces that depend on the way to a state ([`crate::effect::AcceptedState`]): dry friction, and
+//! Forces that depend on the way to a state ([`crate::assembly::AcceptedState`]): dry friction, and
 //! torsion springs with their turns.
 
 use super::System;
-use crate::effect::{AcceptedState, InternalVariables, Workspace};
+use crate::assembly::{AcceptedState, InternalVariables, Workspace};
 use crate::linear::Matrix;
 
 impl System {
     /// Whether there are any.
     pub fn has_history(&self) -> bool {
-        !self.friction.is_empty() || !self.windings.is_empty()
+        !self.terms.friction.is_empty() || !self.terms.windings.is_empty()
     }
 
     /// Whether torsion springs count turns.
     pub fn has_windings(&self) -> bool {
-        !self.windings.is_empty()
+        !self.terms.windings.is_empty()
     }
 
     /// `f += ` these forces in the state `q`, where `held` was the last accepted one.
     pub fn add_history(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
         self.add_friction(held, q, f);
-        self.windings.iter().for_each(|winding| winding.add_force(held, q, f));
+        self.terms.windings.iter().for_each(|winding| winding.add_force(held, q, f));
     }
 
     /// `f += ` those of them that take energy.
     pub fn add_friction(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
-        self.friction.iter().for_each(|friction| friction.add_force(held, q, f));
+        self.terms.friction.iter().for_each(|friction| friction.add_force(held, q, f));
     }
 
     /// `f += ` all of them, and `k += ` their derivative.
@@ -36,19 +36,25 @@ impl System {
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        self.friction.iter().for_each(|friction| friction.add_force_and_tangent(held, q, f, k, workspace));
-        self.windings.iter().for_each(|winding| winding.add_force_and_tangent(held, q, f, k, workspace));
+        self.terms
+            .friction
+            .iter()
+            .for_each(|friction| friction.add_force_and_tangent(held, q, f, k, workspace));
+        self.terms
+            .windings
+            .iter()
+            .for_each(|winding| winding.add_force_and_tangent(held, q, f, k, workspace));
     }
 
     /// The internal variables in the state `q`, where `held` was the last accepted one.
     pub fn internal_variables(&self, held: &AcceptedState, q: &[f64]) -> InternalVariables {
         let mut variables = InternalVariables::default();
-        for friction in &self.friction {
+        for friction in &self.terms.friction {
             let (pieces, energy) = friction.slips(held, q);
             variables.friction += energy;
             variables.contacts.push(pieces);
         }
-        for winding in &self.windings {
+        for winding in &self.terms.windings {
             let angle = winding.angle(held, q);
             variables.winding += winding.energy(angle);
             variables.angles.push(angle);
@@ -58,18 +64,18 @@ impl System {
 
     /// Energy of windings in the state `q`, where `held` was the last accepted one \[J\].
     pub fn winding_energy(&self, held: &AcceptedState, q: &[f64]) -> f64 {
-        self.windings.iter().map(|winding| winding.energy(winding.angle(held, q))).sum()
+        self.terms.windings.iter().map(|winding| winding.energy(winding.angle(held, q))).sum()
     }
 
     /// The largest turn of a torsion spring since the last accepted state `held` \[rad\]; beyond π
     /// the spring would seem to have turned the other way.
     pub fn winding_turn(&self, held: &AcceptedState, q: &[f64]) -> f64 {
-        self.windings.iter().fold(0.0, |turn: f64, winding| turn.max(winding.turn(held, q).abs()))
+        self.terms.windings.iter().fold(0.0, |turn: f64, winding| turn.max(winding.turn(held, q).abs()))
     }
 
     /// `k += ` the tangent of windings in the state `q` that has these internal variables.
     pub fn add_winding_tangent(&self, variables: &InternalVariables, q: &[f64], k: &mut Matrix) {
-        for (winding, angle) in self.windings.iter().zip(&variables.angles) {
+        for (winding, angle) in self.terms.windings.iter().zip(&variables.angles) {
             winding.add_tangent_at(*angle, q, k);
         }
     }
@@ -82,15 +88,15 @@ impl System {
         v: &[f64],
         f: &mut [f64],
     ) {
-        for (winding, angle) in self.windings.iter().zip(&variables.angles) {
+        for (winding, angle) in self.terms.windings.iter().zip(&variables.angles) {
             winding.add_tangent_product_at(*angle, q, v, f);
         }
     }
 
     /// `f += ` the forces in the state `q` that has these internal variables.
     pub fn add_known_history(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]) {
-        self.friction.iter().for_each(|friction| friction.add_held_force(variables, q, f));
-        for (winding, angle) in self.windings.iter().zip(&variables.angles) {
+        self.terms.friction.iter().for_each(|friction| friction.add_held_force(variables, q, f));
+        for (winding, angle) in self.terms.windings.iter().zip(&variables.angles) {
             winding.add_force_at(*angle, q, f);
         }
     }

@@ -5,7 +5,7 @@ use super::constraints::{Constraint, Row};
 use super::prescribed::Prescribed;
 use super::reaction::Source;
 use super::supports::{HeldPair, Hold, Supports};
-use super::{Needs, System, SystemError, View};
+use super::{BuildError, Needs, System, View};
 use crate::model::{Displacement, FixedRotation, Support};
 
 impl System {
@@ -42,21 +42,21 @@ pub(super) fn hold(
     system: &System,
     supports: &[Support],
     needs: Needs,
-) -> Result<(Supports, Vec<Constraint>, Vec<Source>), SystemError> {
+) -> Result<(Supports, Vec<Constraint>, Vec<Source>), BuildError> {
     let mut held: Vec<HeldPair> = Vec::new();
     let (mut constraints, mut sources) = (Vec::new(), Vec::new());
     for support in supports {
         let (part, s) = system.part("a support", support.at)?;
         let moves = support.displacement != Displacement::default();
         match (needs.motion, &support.law) {
-            (true, None) if moves => return Err(SystemError::NoLaw { beam: part.name.clone(), s }),
-            (false, Some(_)) => return Err(SystemError::NoTime { what: "a support" }),
+            (true, None) if moves => return Err(BuildError::NoLaw { beam: part.name.clone(), s }),
+            (false, Some(_)) => return Err(BuildError::NoTime { what: "a support" }),
             (true, Some(_)) if moves && part.basis.node_at(s).is_none() => {
-                return Err(SystemError::MovesBetweenNodes { beam: part.name.clone(), s });
+                return Err(BuildError::MovesBetweenNodes { beam: part.name.clone(), s });
             }
             _ => {}
         }
-        let in_basis = |e| SystemError::basis(&part.name, e);
+        let in_basis = |e| BuildError::basis(&part.name, e);
         let fields = View::point(&part.basis, part.offset(), s).map_err(in_basis)?.fields(&system.reference);
         let (position, gradient) = (fields.position, fields.gradient);
         let course = |start: f64, change: f64| Prescribed { start, change, law: support.law.clone() };
@@ -96,7 +96,7 @@ pub(super) fn hold(
                         add(pair + 1, Hold::Gradient { reference: gradient, rotation })
                     }
                 })
-                .map_err(|what| SystemError::HeldTwice { what, beam: part.name.clone(), s: support.at.s })?;
+                .map_err(|what| BuildError::HeldTwice { what, beam: part.name.clone(), s: support.at.s })?;
         } else {
             let mut rows: Vec<(usize, Row)> = components
                 .into_iter()

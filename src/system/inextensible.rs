@@ -29,7 +29,7 @@
 //! stiffness than ∫ N N'ᵀN' ds misses its fourth frequency by 5e-4.
 
 use super::constraints::Constraint;
-use super::{System, SystemError};
+use super::{BuildError, System};
 use crate::basis::Quadrature;
 use crate::model::{FixedRotation, Model, Place};
 
@@ -46,7 +46,7 @@ pub(super) struct Row {
 }
 
 /// The rows of all inextensible beams in the order of their arc lengths.
-pub(super) fn rows(system: &System, model: &Model) -> Result<(Vec<Row>, Vec<Constraint>), SystemError> {
+pub(super) fn rows(system: &System, model: &Model) -> Result<(Vec<Row>, Vec<Constraint>), BuildError> {
     let held = held_lengths(system, model);
     let (mut places, mut rows) = (Vec::new(), Vec::new());
     for (index, (beam, part)) in model.beams.iter().zip(&system.beams).enumerate() {
@@ -60,7 +60,7 @@ pub(super) fn rows(system: &System, model: &Model) -> Result<(Vec<Row>, Vec<Cons
             let held = |node: usize| held.contains(&(part.first_node + node));
             held(cell) || cell + 2 == nodes.len() && held(cell + 1)
         };
-        let in_basis = |e| SystemError::basis(&part.name, e);
+        let in_basis = |e| BuildError::basis(&part.name, e);
         let table = part.basis.table(Quadrature::Gauss(POINTS), &[1]).map_err(in_basis)?;
         let (xi, _) = Quadrature::Gauss(POINTS).rule().map_err(in_basis)?;
         // Per node, and per cell, the points at which its function does not vanish.

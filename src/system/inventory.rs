@@ -2,7 +2,7 @@
 
 use super::System;
 use super::measure::Measured;
-use crate::effect::Kind;
+use crate::assembly::Kind;
 use crate::linear::condensed::serves;
 use crate::linear::interleaved::fits;
 use serde::Serialize;
@@ -84,18 +84,20 @@ impl System {
     /// Lists what was built.
     pub fn inventory(&self) -> Inventory {
         let mut entries: BTreeMap<(usize, Kind), (usize, usize)> = BTreeMap::new();
-        let loads = self.loads.iter().map(|load| &load.effect);
-        let effects = self.internal.iter().chain(&self.inertia).chain(loads);
+        let loads = self.terms.loads.iter().map(|load| &load.effect);
+        let effects = self.terms.internal.iter().chain(&self.terms.inertia).chain(loads);
         let effects = effects.map(|effect| (effect.beam(), effect.kind(), effect.size()));
-        let turning = self.turning.iter().map(|turning| &turning.momentum);
+        let turning = self.terms.turning.iter().map(|turning| &turning.momentum);
         let damping = self
+            .terms
             .damping
             .iter()
             .chain(turning)
             .map(|damping| (damping.beam(), damping.kind(), damping.size()));
-        let travelling = self.travelling.iter().map(|force| (force.beam(), force.kind(), force.size()));
+        let travelling =
+            self.terms.moving_loads.iter().map(|force| (force.beam(), force.kind(), force.size()));
         let friction =
-            self.friction.iter().map(|friction| (friction.beam(), Kind::Friction, friction.size()));
+            self.terms.friction.iter().map(|friction| (friction.beam(), Kind::Friction, friction.size()));
         let lengths = self.lengths().map(|(beam, bytes)| (beam, Kind::Inextensibility, (1, bytes)));
         for (beam, kind, (points, bytes)) in
             effects.chain(damping).chain(travelling).chain(friction).chain(lengths)
@@ -104,7 +106,8 @@ impl System {
             entry.0 += points;
             entry.1 += bytes;
         }
-        let absent = Kind::ALL.into_iter().filter(|kind| !entries.keys().any(|(_, k)| k == kind)).collect();
+        let absent =
+            Kind::ALL.iter().copied().filter(|kind| !entries.keys().any(|(_, k)| k == kind)).collect();
         let effects = entries
             .into_iter()
             .map(|((beam, kind), (points, bytes))| EffectEntry {
@@ -144,7 +147,7 @@ impl System {
             symmetric,
             half_bandwidth: 4 * self.blocks - 1,
             solver: match (self.constraints.is_empty(), symmetric) {
-                (false, true) if !self.inertia.is_empty() && serves(&matrix, &border) => {
+                (false, true) if !self.terms.inertia.is_empty() && serves(&matrix, &border) => {
                     "banded LDLᵀ, constraints condensed"
                 }
                 (false, _) if fits(&matrix, &border) => "banded LU, constraints among the unknowns",
@@ -153,8 +156,8 @@ impl System {
                 (true, false) => "banded LU",
             },
             matrix_bytes: matrix.bytes(),
-            mass_bytes: if self.inertia.is_empty() { 0 } else { self.damping_pattern().bytes() },
-            damping_bytes: if self.damping.is_empty() { 0 } else { self.damping_pattern().bytes() },
+            mass_bytes: if self.terms.inertia.is_empty() { 0 } else { self.damping_pattern().bytes() },
+            damping_bytes: if self.terms.damping.is_empty() { 0 } else { self.damping_pattern().bytes() },
             measured: None,
         }
     }

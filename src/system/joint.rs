@@ -16,7 +16,7 @@
 
 use super::constraints::Constraint;
 use super::polar::Polar;
-use super::{System, SystemError};
+use super::{BuildError, System};
 use crate::basis::BasisTable;
 use crate::model::{Joint, Place};
 
@@ -24,7 +24,7 @@ use crate::model::{Joint, Place};
 const APART: f64 = 1e-9;
 
 /// The rows of a joint.
-pub(super) fn rows(system: &System, joint: Joint) -> Result<Vec<Constraint>, SystemError> {
+pub(super) fn rows(system: &System, joint: Joint) -> Result<Vec<Constraint>, BuildError> {
     let mut rows = Vec::new();
     match joint {
         Joint::Hinge { first, second } => rows.extend(coincide(system, first, second)?),
@@ -42,7 +42,7 @@ pub(super) fn rows(system: &System, joint: Joint) -> Result<Vec<Constraint>, Sys
 
 const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
-fn coincide(system: &System, first: Place, second: Place) -> Result<[Constraint; 2], SystemError> {
+fn coincide(system: &System, first: Place, second: Place) -> Result<[Constraint; 2], BuildError> {
     let rows = AXES.map(|[x, y]| row(system, 0, &[(first, [-x, -y]), (second, [x, y])]));
     let rows = transpose(rows)?;
     // What the row holds at zero coordinates is the distance in the stress-free shape.
@@ -50,7 +50,7 @@ fn coincide(system: &System, first: Place, second: Place) -> Result<[Constraint;
     let gap = x.hypot(y);
     if gap > APART * system.length() {
         let name = |place: Place| system.beams()[place.beam].name.clone();
-        return Err(SystemError::Apart {
+        return Err(BuildError::Apart {
             first: name(first),
             first_s: first.s,
             second: name(second),
@@ -62,7 +62,7 @@ fn coincide(system: &System, first: Place, second: Place) -> Result<[Constraint;
     Ok(rows.map(|row| row.closed()))
 }
 
-fn keep_angle(system: &System, first: Place, second: Place) -> Result<Constraint, SystemError> {
+fn keep_angle(system: &System, first: Place, second: Place) -> Result<Constraint, BuildError> {
     let ([ax, ay], [bx, by]) = (system.gradient_of(first)?, system.gradient_of(second)?);
     let angle = (ax * by - ay * bx).atan2(ax * bx + ay * by);
     let [(a, of_a), (b, of_b)] = transpose([first, second].map(|place| table(system, 1, place)))?;
@@ -75,7 +75,7 @@ fn transpose<T, E>(results: [Result<T, E>; 2]) -> Result<[T; 2], E> {
 }
 
 /// Σ n·r⁽ᵒ⁾ over the given places, with the value that it has in the stress-free shape.
-fn row(system: &System, order: usize, terms: &[(Place, [f64; 2])]) -> Result<Constraint, SystemError> {
+fn row(system: &System, order: usize, terms: &[(Place, [f64; 2])]) -> Result<Constraint, BuildError> {
     let mut parts = Vec::with_capacity(terms.len());
     for (place, normal) in terms {
         let (table, offset) = table(system, order, *place)?;
@@ -88,15 +88,15 @@ fn row(system: &System, order: usize, terms: &[(Place, [f64; 2])]) -> Result<Con
 }
 
 /// The shape functions of r⁽ᵒ⁾ at a place, and the first coefficient of its beam.
-fn table(system: &System, order: usize, place: Place) -> Result<(BasisTable, usize), SystemError> {
+fn table(system: &System, order: usize, place: Place) -> Result<(BasisTable, usize), BuildError> {
     let (part, s) = system.part("a joint", place)?;
-    let table = part.basis.points(&[s], &[order]).map_err(|e| SystemError::basis(&part.name, e))?;
+    let table = part.basis.points(&[s], &[order]).map_err(|e| BuildError::basis(&part.name, e))?;
     Ok((table, part.offset()))
 }
 
 /// The gradients that a motion has in polar coordinates: those of welded nodes of which supports
 /// hold nothing.
-pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, SystemError> {
+pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, BuildError> {
     let held: Vec<usize> = system.supports.eliminated().map(|i| i / 2).collect();
     let mut pairs = Vec::new();
     for joint in joints {

@@ -4,19 +4,18 @@
 //! A method of integration looks at loads and supports at a few times of a step, and takes them for
 //! what is interpolated between these. What they do beside that is known exactly, for it does not
 //! depend on the motion: of every law the mean over the step and the first moment
-//! ([`crate::model::Law::moments`]). Less the same of what the method sees, they are the change of
+//! ([`crate::law::Law::moments`]). Less the same of what the method sees, they are the change of
 //! velocity and of position that it misses, however fast a law oscillates against the step.
 
-use super::prescribed::Amplitude;
-use super::{Acting, System};
-use crate::effect::Travelling;
-use crate::model::Law;
+use super::System;
+use crate::assembly::{ActingLoad, Amplitude};
+use crate::law::Law;
 
 /// A time at which a method looks, and its weights in the mean over the step and in the first
 /// moment.
 pub type LoadSample = (f64, [f64; 2]);
 
-fn law(load: &Acting) -> Option<&Law> {
+fn law(load: &ActingLoad) -> Option<&Law> {
     match &load.amplitude {
         Some(Amplitude::Law(law)) => Some(law),
         _ => None,
@@ -34,14 +33,14 @@ fn seen(looks: &[LoadSample], f: impl Fn(f64) -> f64) -> [f64; 2] {
 impl System {
     /// Times at which a load or the motion of a support is not smooth, in no order.
     pub fn kinks(&self) -> Vec<f64> {
-        let laws = self.loads.iter().filter_map(law).map(Law::kinks);
-        let travelling = self.travelling.iter().flat_map(Travelling::kinks);
+        let laws = self.terms.loads.iter().filter_map(law).map(Law::kinks);
+        let travelling = self.terms.moving_loads.iter().flat_map(|load| load.kinks());
         laws.flatten().chain(self.supports.kinks()).chain(travelling).collect()
     }
 
     /// Whether a load follows a law of time or moves.
     pub fn loads_follow_time(&self) -> bool {
-        !self.travelling.is_empty() || self.loads.iter().any(|load| law(load).is_some())
+        !self.terms.moving_loads.is_empty() || self.terms.loads.iter().any(|load| law(load).is_some())
     }
 
     /// Adds to `mean` and `moment` those of the loads from `start` to `end`, less what `looks` have
@@ -54,7 +53,7 @@ impl System {
         [mean, moment]: [&mut [f64]; 2],
         scratch: &mut [f64],
     ) {
-        let following = self.loads.iter().filter_map(|load| Some((load, law(load)?)));
+        let following = self.terms.loads.iter().filter_map(|load| Some((load, law(load)?)));
         for (load, law) in following {
             let seen = seen(looks, |time| law.at(time)[0]);
             let unseen = law.moments(start, end);
@@ -65,11 +64,11 @@ impl System {
                 moment[i] += (unseen[1] - seen[1]) * force;
             }
         }
-        for force in &self.travelling {
+        for force in &self.terms.moving_loads {
             force.add_moments(start, end, [mean, moment]);
             for (time, [a, b]) in looks {
-                force.add_weighted(-a, *time, mean);
-                force.add_weighted(-b, *time, moment);
+                force.add_force(-a, *time, mean);
+                force.add_force(-b, *time, moment);
             }
         }
     }

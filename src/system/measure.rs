@@ -2,7 +2,7 @@
 //! tangent, one factorisation, one substitution.
 
 use super::{Inventory, System};
-use crate::effect::{Kind, Workspace};
+use crate::assembly::{Kind, Workspace};
 use crate::linear::Factor;
 use serde::Serialize;
 use std::time::{Duration, Instant};
@@ -47,23 +47,23 @@ impl System {
                 *entry.seconds.get_or_insert(0.0) += seconds;
             }
         };
-        let loads = self.loads.iter().map(|load| &load.effect);
-        for effect in self.internal.iter().chain(loads) {
+        let loads = self.terms.loads.iter().map(|load| &load.effect);
+        for effect in self.terms.internal.iter().chain(loads) {
             let seconds = time(|| effect.add_force_and_tangent(1.0, q, None, &mut f, &mut k, &mut workspace));
             note(&mut inventory, effect.kind(), effect.beam(), seconds);
         }
         if self.is_damped() {
             let (v, mut d) = (vec![0.0; q.len()], self.damping_pattern());
-            for damping in &self.damping {
+            for damping in &self.terms.damping {
                 let seconds = time(|| damping.add_matrix(q, &v, &mut f, &mut d, &mut workspace));
                 note(&mut inventory, damping.kind(), damping.beam(), seconds);
             }
         }
         // Inertia takes part in every residual as one product with the mass matrix.
-        if !self.inertia.is_empty() {
+        if !self.terms.inertia.is_empty() {
             let mass = self.mass_matrix();
             let seconds = time(|| mass.multiply_add(1.0, q, &mut f));
-            if let Some(first) = self.inertia.first() {
+            if let Some(first) = self.terms.inertia.first() {
                 note(&mut inventory, first.kind(), first.beam(), seconds);
             }
         }
@@ -72,7 +72,7 @@ impl System {
         self.supports.eliminate(0.0, &mut k);
         let border = self.border(0.0, q);
         // As a motion with short steps does, where there is one.
-        let mass = (!self.inertia.is_empty()).then(|| self.mass_matrix());
+        let mass = (!self.terms.inertia.is_empty()).then(|| self.mass_matrix());
         let factorize = || match &mass {
             None => Factor::new(&k, &border),
             Some(mass) => {

@@ -1,32 +1,10 @@
-//! How loads and supports follow the parameter of an analysis: the load factor of statics, the time
-//! of a motion.
+//! How supports follow the parameter of an analysis: the load factor of statics, the time of a
+//! motion.
 
-use crate::model::Law;
+use crate::law::Law;
 
 /// Relative difference that is none.
 const ROUND_OFF: f64 = 1e-9;
-
-/// By what factor a load acts.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Amplitude {
-    /// By the load factor.
-    Proportional,
-    /// In full at all times.
-    Full,
-    /// By a law of time.
-    Law(Law),
-}
-
-impl Amplitude {
-    /// The factor at load factor or time `parameter`.
-    pub fn at(&self, parameter: f64) -> f64 {
-        match self {
-            Self::Proportional => parameter,
-            Self::Full => 1.0,
-            Self::Law(law) => law.at(parameter)[0],
-        }
-    }
-}
 
 /// A prescribed quantity: start + change · (load factor or law of time).
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,7 +5,7 @@
 //! for δW = F'·δr' = M δθ with δr' = δθ J r'.
 
 use super::System;
-use crate::effect::InternalVariables;
+use crate::assembly::InternalVariables;
 use crate::model::{FixedRotation, Support};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -109,38 +109,38 @@ impl System {
             sum
         };
         let name =
-            |kind: crate::effect::Kind, beam: usize| format!("{}.{}", kind.name(), self.beams[beam].name);
+            |kind: crate::assembly::Kind, beam: usize| format!("{}.{}", kind.name(), self.beams[beam].name);
         let mut out = Vec::new();
-        for effect in &self.internal {
+        for effect in &self.terms.internal {
             effect.add_force(1.0, q, &mut f);
             out.push((name(effect.kind(), effect.beam()), Some(effect.energy(q)), resultant(&mut f)));
         }
-        for load in &self.loads {
+        for load in &self.terms.loads {
             let amplitude = self.amplitude_of(load).at(parameter);
             load.effect.add_force(amplitude, q, &mut f);
             let energy = load.effect.is_conservative().then(|| amplitude * load.effect.energy(q));
             out.push((name(load.effect.kind(), load.effect.beam()), energy, resultant(&mut f)));
         }
-        for force in &self.travelling {
-            force.add_force(parameter, &mut f);
+        for force in &self.terms.moving_loads {
+            force.add_force(1.0, parameter, &mut f);
             out.push((name(force.kind(), force.beam()), None, resultant(&mut f)));
         }
-        for friction in &self.friction {
+        for friction in &self.terms.friction {
             friction.add_held_force(variables, q, &mut f);
-            out.push((name(crate::effect::Kind::Friction, friction.beam()), None, resultant(&mut f)));
+            out.push((name(crate::assembly::Kind::Friction, friction.beam()), None, resultant(&mut f)));
         }
-        for (winding, angle) in self.windings.iter().zip(&variables.angles) {
-            let kind = crate::effect::Kind::TorsionSpring;
+        for (winding, angle) in self.terms.windings.iter().zip(&variables.angles) {
+            let kind = crate::assembly::Kind::TorsionSpring;
             out.push((name(kind, winding.beam()), Some(winding.energy(*angle)), [0.0; 2]));
         }
         if let Some(v) = velocity {
-            for effect in &self.inertia {
+            for effect in &self.terms.inertia {
                 out.push((name(effect.kind(), effect.beam()), Some(effect.energy(v)), [0.0; 2]));
             }
             for (kind, beam, energy) in self.turning_energies(q, v) {
                 out.push((name(kind, beam), Some(energy), [0.0; 2]));
             }
-            for damping in &self.damping {
+            for damping in &self.terms.damping {
                 damping.add_force(q, v, &mut f);
                 out.push((name(damping.kind(), damping.beam()), None, resultant(&mut f)));
             }

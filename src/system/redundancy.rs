@@ -2,39 +2,39 @@
 //!
 //! The multipliers of rows that depend on each other have no values, and no factorisation a pivot
 //! for them. Whether rows do is seen in the stress-free state from the Gram matrix G = B Bᵀ of the
-//! rows, each of length 1, without what supports at nodes hold: eliminated row by row, its pivots
-//! are the squares of the sines of each row's angle to all before it. A loop of beams that bend may
-//! be closed more often than it needs to be, and keeps its multipliers; one of straight beams that
-//! keep their length may not.
+//! rows, each of length 1, without what supports at nodes hold: its smallest eigenvalue is the square
+//! of the combination of rows, of size 1, that comes nearest to nothing. Inverse iteration finds it
+//! with the combination. (Elimination row by row does not: the rows of a chain of cells that is held
+//! at both ends come exponentially near to each other before the last of them tells whether they
+//! depend.) A loop of beams that bend may be closed more often than it needs to be, and keeps its
+//! multipliers; one of straight beams that keep their length may not.
 
 use super::reaction::Source;
-use super::{System, SystemError};
+use super::{BuildError, System};
 use crate::linear::bordered::BorderRow;
-use crate::linear::inertia;
 use crate::model::{Joint, Model, Place};
 use faer::linalg::solvers::Solve;
-use faer::sparse::Triplet;
+use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 use std::collections::BTreeMap;
 
-/// Square of the sine of an angle that is none: far below that of a shallow arch's thrust, far
-/// above round-off.
+/// Eigenvalue that is none: far below that of a shallow arch's thrust, far above round-off.
 const DEPENDENT: f64 = 1e-12;
+/// What is added to the diagonal, so that it can be factorised where rows depend.
+const SHIFT: f64 = 1e-13;
+/// Inverse iterations: each brings an eigenvalue that is none forward by more than a thousand
+/// against those that are ten thousand times as large.
+const ITERATIONS: usize = 6;
 /// Share of a row in a combination that counts.
 const SHARE: f64 = 1e-6;
-/// Rows up to which the partners of a dependent row are looked for.
-const MOST_ROWS: usize = 2000;
 
 impl System {
     /// Refuses rows that depend on each other.
-    pub(super) fn check_rows(&self, model: &Model) -> Result<(), SystemError> {
+    pub(super) fn check_rows(&self, model: &Model) -> Result<(), BuildError> {
         let rows = self.directions();
-        let Some(dependent) = dependent(&rows) else { return Ok(()) };
-        let mut involved = vec![dependent];
-        if !rows[dependent].is_empty() && dependent <= MOST_ROWS {
-            involved.extend(partners(&rows, dependent));
-        }
-        involved.sort_unstable();
+        let Some(involved) = dependent(&rows) else { return Ok(()) };
+        // A row of which supports at nodes leave nothing.
+        let held = involved.first().copied().filter(|row| rows[*row].is_empty());
         let mut parts: Vec<String> = Vec::new();
         for (source, joint) in self.sources[model.supports.len()..].iter().zip(&model.joints) {
             if let Source::Rows(of_joint) = source
@@ -50,8 +50,8 @@ impl System {
         parts.extend(
             beams.iter().map(|&beam| format!("the length that beam `{}` keeps", self.beams[beam].name)),
         );
-        // A row of which supports at nodes leave nothing names them.
-        let tie = if rows[dependent].is_empty() { self.joint_of(dependent, model) } else { None };
+        // It names them.
+        let tie = held.and_then(|row| self.joint_of(row, model));
         let ties: Vec<Place> = tie.map_or(Vec::new(), |joint| joint.places().collect());
         for (source, support) in self.sources.iter().zip(&model.supports) {
             let takes_part = match source {
@@ -67,8 +67,8 @@ impl System {
             _ => None,
         });
         match itself {
-            Some(joint) => Err(SystemError::ToItself { joint: self.joint_in_words(joint) }),
-            None => Err(SystemError::Redundant { parts: enumerate(parts) }),
+            Some(joint) => Err(BuildError::ToItself { joint: self.joint_in_words(joint) }),
+            None => Err(BuildError::Redundant { parts: enumerate(parts) }),
         }
     }
 
@@ -115,13 +115,13 @@ impl System {
     }
 }
 
-/// The first row that is a combination of those before it.
-fn dependent(rows: &[BorderRow]) -> Option<usize> {
+/// Rows of which one is a combination of the others; one of which nothing is left alone.
+fn dependent(rows: &[BorderRow]) -> Option<Vec<usize>> {
+    if let Some(empty) = rows.iter().position(Vec::is_empty) {
+        return Some(vec![empty]);
+    }
     if rows.is_empty() {
         return None;
-    }
-    if let Some(empty) = rows.iter().position(Vec::is_empty) {
-        return Some(empty);
     }
     let mut touching: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
     for (r, row) in rows.iter().enumerate() {
@@ -131,23 +131,25 @@ fn dependent(rows: &[BorderRow]) -> Option<usize> {
         let later = rows.iter().enumerate();
         later.flat_map(move |(k, &(r, a))| rows[k..].iter().map(move |&(c, b)| Triplet::new(r, c, a * b)))
     });
-    match inertia::pivots(rows.len(), &pairs.collect::<Vec<_>>()) {
-        Ok(pivots) => pivots.iter().position(|pivot| *pivot <= DEPENDENT),
-        Err(singular) => Some(singular.row.min(rows.len() - 1)),
+    let shift = (0..rows.len()).map(|r| Triplet::new(r, r, SHIFT));
+    let gram: Vec<_> = pairs.chain(shift).collect();
+    let gram = SparseColMat::<usize, f64>::try_new_from_triplets(rows.len(), rows.len(), &gram).ok()?;
+    let factor = gram.sp_cholesky(Side::Upper).ok()?;
+    // Shares without any order, the same in every run.
+    let mut shares =
+        Mat::from_fn(rows.len(), 1, |i, _| ((i + 1) as f64 * 0.618_033_988_749_895).fract() - 0.5);
+    for _ in 0..ITERATIONS {
+        shares = factor.solve(&shares);
+        let size = shares.norm_l2();
+        shares *= faer::Scale(1.0 / size);
     }
-}
-
-/// Those rows before row `last` of which it is the combination.
-fn partners(rows: &[BorderRow], last: usize) -> Vec<usize> {
-    let product = |a: &BorderRow, b: &BorderRow| -> f64 {
-        let b: BTreeMap<usize, f64> = b.iter().copied().collect();
-        a.iter().filter_map(|(i, value)| Some(value * b.get(i)?)).sum()
-    };
-    let gram = Mat::from_fn(last, last, |i, j| product(&rows[i], &rows[j]));
-    let side = Mat::from_fn(last, 1, |i, _| product(&rows[i], &rows[last]));
-    let Ok(factor) = gram.llt(Side::Lower) else { return Vec::new() };
-    let shares = factor.solve(&side);
-    (0..last).filter(|i| shares[(*i, 0)].abs() > SHARE).collect()
+    let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
+    for (r, row) in rows.iter().enumerate() {
+        row.iter().for_each(|(i, value)| *sum.entry(*i).or_default() += shares[(r, 0)] * value);
+    }
+    let square: f64 = sum.values().map(|value| value * value).sum();
+    let involved = (0..rows.len()).filter(|r| shares[(*r, 0)].abs() > SHARE);
+    (square <= DEPENDENT).then(|| involved.collect())
 }
 
 /// `a, b and c`.
@@ -155,5 +157,35 @@ fn enumerate(parts: Vec<String>) -> String {
     match &parts[..] {
         [all @ .., last] if !all.is_empty() => format!("{} and {last}", all.join(", ")),
         _ => parts.concat(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of length 1.
+    fn rows(of: &[&[(usize, f64)]]) -> Vec<BorderRow> {
+        let unit = |row: &&[(usize, f64)]| {
+            let size = row.iter().map(|(_, value)| value * value).sum::<f64>().sqrt();
+            row.iter().map(|(i, value)| (*i, value / size)).collect()
+        };
+        of.iter().map(unit).collect()
+    }
+
+    #[test]
+    fn combinations_are_found_with_their_rows() {
+        let (a, b): (&[_], &[_]) = (&[(0, 1.0), (1, 2.0)], &[(1, 1.0), (2, -3.0)]);
+        let sum: &[_] = &[(0, 1.0), (1, 3.0), (2, -3.0)];
+        let other: &[_] = &[(1, 1.0), (4, 1.0)];
+        assert_eq!(dependent(&rows(&[])), None);
+        assert_eq!(dependent(&rows(&[a, other, b])), None);
+        assert_eq!(dependent(&rows(&[a, other, b, sum])), Some(vec![0, 2, 3]));
+        assert_eq!(dependent(&[rows(&[a]), vec![Vec::new()]].concat()), Some(vec![1]));
+        // Off by an angle of 1e-4, of 1e-8.
+        for (angle, found) in [(1e-4, None), (1e-8, Some(vec![0, 2, 3]))] {
+            let nearly: &[_] = &[(0, 1.0), (1, 3.0), (2, -3.0), (5, angle * 19.0_f64.sqrt())];
+            assert_eq!(dependent(&rows(&[a, other, b, nearly])), found);
+        }
     }
 }

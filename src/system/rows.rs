@@ -2,7 +2,7 @@
 
 use super::constraints::Constraint;
 use super::polar::Polar;
-use super::{System, SystemError};
+use super::{BuildError, System};
 use crate::linear::Matrix;
 use crate::linear::bordered::BorderRow;
 use std::collections::BTreeMap;
@@ -102,7 +102,7 @@ impl System {
     }
 
     /// Refuses more constraint rows on the same coordinates than there are free ones.
-    pub(super) fn check_room(&self) -> Result<(), SystemError> {
+    pub(super) fn check_room(&self) -> Result<(), BuildError> {
         let held = self.held();
         let mut rows_of: BTreeMap<(usize, usize), usize> = BTreeMap::new();
         for span in self.constraints.iter().filter_map(Constraint::span) {
@@ -113,12 +113,7 @@ impl System {
             let free = held[span.clone()].iter().filter(|held| !**held).count();
             if rows > free {
                 let (beam, s) = self.place_of(span.start);
-                return Err(SystemError::OverSupported {
-                    beam: self.beams[beam].name.clone(),
-                    s,
-                    rows,
-                    free,
-                });
+                return Err(BuildError::OverSupported { beam: self.beams[beam].name.clone(), s, rows, free });
             }
         }
         Ok(())

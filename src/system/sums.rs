@@ -1,9 +1,9 @@
 //! Sums over effects: forces, tangents, matrices, energies and powers.
 
 use super::Energy;
-use super::prescribed::Amplitude;
-use super::{Acting, System};
-use crate::effect::{Earlier, Effect, Kind, Workspace};
+use super::System;
+use crate::assembly::Amplitude;
+use crate::assembly::{ActingLoad, Earlier, Effect, Kind, Workspace};
 use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 
@@ -11,13 +11,13 @@ impl System {
     /// `f = f_int(q) + f_load(q)` at load factor or time `parameter`.
     pub fn force(&self, parameter: f64, q: &[f64], f: &mut [f64]) {
         self.start_with_constant_load(parameter, f);
-        for effect in &self.internal {
+        for effect in &self.terms.internal {
             effect.add_force(1.0, q, f);
         }
         for (effect, amplitude) in self.varying_loads(parameter) {
             effect.add_force(amplitude, q, f);
         }
-        self.travelling.iter().for_each(|force| force.add_force(parameter, f));
+        self.terms.moving_loads.iter().for_each(|force| force.add_force(1.0, parameter, f));
     }
 
     /// The forces of [`Self::force`] in the states of four lanes, each at its own `parameters`;
@@ -25,15 +25,15 @@ impl System {
     pub fn forces(&self, parameters: [f64; 4], q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
         let factor = Lanes::new(parameters.map(|parameter| self.amplitude.at(parameter)));
         f.iter_mut().zip(&self.constant_load).for_each(|(f, load)| *f = factor * Lanes::splat(*load));
-        for effect in &self.internal {
+        for effect in &self.terms.internal {
             effect.add_forces(Lanes::ONE, q, f, scratch);
         }
-        for load in self.loads.iter().filter(|load| !load.is_summed()) {
+        for load in self.terms.loads.iter().filter(|load| !load.is_summed()) {
             let amplitude = self.amplitude_of(load);
             load.effect.add_forces(Lanes::new(parameters.map(|p| amplitude.at(p))), q, f, scratch);
         }
-        for force in &self.travelling {
-            lanes::one_by_one(q, f, scratch, |lane, _, f| force.add_force(parameters[lane], f));
+        for force in &self.terms.moving_loads {
+            lanes::one_by_one(q, f, scratch, |lane, _, f| force.add_force(1.0, parameters[lane], f));
         }
     }
 
@@ -58,11 +58,11 @@ impl System {
 
     /// Loads that are not part of the constant sum, with their factors.
     fn varying_loads(&self, parameter: f64) -> impl Iterator<Item = (&dyn Effect, f64)> {
-        let loads = self.loads.iter().filter(|load| !load.is_summed());
+        let loads = self.terms.loads.iter().filter(|load| !load.is_summed());
         loads.map(move |load| (&*load.effect, self.amplitude_of(load).at(parameter)))
     }
 
-    pub(super) fn amplitude_of<'a>(&'a self, load: &'a Acting) -> &'a Amplitude {
+    pub(super) fn amplitude_of<'a>(&'a self, load: &'a ActingLoad) -> &'a Amplitude {
         load.amplitude.as_ref().unwrap_or(&self.amplitude)
     }
 
@@ -73,33 +73,33 @@ impl System {
 
     /// Whether there is any load that grows with the load factor or acts in a motion.
     pub fn has_loads(&self) -> bool {
-        !self.loads.is_empty()
+        !self.terms.loads.is_empty()
     }
 
     /// Whether a load does work that no potential counts.
     pub fn has_work(&self) -> bool {
-        !self.travelling.is_empty() || self.loads.iter().any(|load| !load.has_potential())
+        !self.terms.moving_loads.is_empty() || self.terms.loads.iter().any(|load| !load.has_potential())
     }
 
     /// Whether forces depend on velocities.
     pub fn is_damped(&self) -> bool {
-        !self.damping.is_empty()
+        !self.terms.damping.is_empty()
     }
 
     /// Power \[W\] at time `parameter` of the loads without potential in the state (q, v);
     /// `scratch` is overwritten.
     pub fn power(&self, parameter: f64, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
         scratch.fill(0.0);
-        for load in self.loads.iter().filter(|load| !load.has_potential()) {
+        for load in self.terms.loads.iter().filter(|load| !load.has_potential()) {
             load.effect.add_force(self.amplitude_of(load).at(parameter), q, scratch);
         }
-        self.travelling.iter().for_each(|force| force.add_force(parameter, scratch));
+        self.terms.moving_loads.iter().for_each(|force| force.add_force(1.0, parameter, scratch));
         -scratch.iter().zip(v).map(|(f, v)| f * v).sum::<f64>()
     }
 
     /// `f += ` the forces that depend on velocities.
     pub fn add_damping(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
-        for damping in &self.damping {
+        for damping in &self.terms.damping {
             damping.add_force(q, v, f);
         }
     }
@@ -114,7 +114,7 @@ impl System {
         workspace: &mut Workspace,
     ) {
         d.clear();
-        for damping in &self.damping {
+        for damping in &self.terms.damping {
             damping.add_matrix(q, v, f, d, workspace);
         }
     }
@@ -139,20 +139,20 @@ impl System {
     ) {
         self.start_with_constant_load(parameter, f);
         k.clear();
-        for effect in &self.internal {
+        for effect in &self.terms.internal {
             effect.add_force_and_tangent(1.0, q, earlier, f, k, workspace);
         }
         for (effect, amplitude) in self.varying_loads(parameter) {
             effect.add_force_and_tangent(amplitude, q, earlier, f, k, workspace);
         }
-        self.travelling.iter().for_each(|force| force.add_force(parameter, f));
+        self.terms.moving_loads.iter().for_each(|force| force.add_force(1.0, parameter, f));
     }
 
     /// `f = K v` with the tangent of [`Self::force_and_tangent`] at `q`, but to many more digits
     /// where the mesh is fine.
     pub fn tangent_product(&self, parameter: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
-        for effect in &self.internal {
+        for effect in &self.terms.internal {
             effect.add_tangent_product(1.0, q, v, f);
         }
         for (effect, amplitude) in self.varying_loads(parameter).filter(|(_, amplitude)| *amplitude != 0.0) {
@@ -162,35 +162,35 @@ impl System {
 
     /// The tangent of the internal forces alone, which is symmetric.
     pub fn internal_tangent(&self, q: &[f64]) -> Matrix {
-        self.sum_of_tangents(&self.internal, q)
+        self.sum_of_tangents(&self.terms.internal, q)
     }
 
     /// Whether the mass matrix follows the state, as that of rotary inertia follows directions.
     pub fn has_turning_inertia(&self) -> bool {
-        !self.turning.is_empty()
+        !self.terms.turning.is_empty()
     }
 
     /// `m += ` the part of the mass matrix that follows the state `q`.
     pub fn add_turning_mass(&self, q: &[f64], m: &mut Matrix) {
-        if self.turning.is_empty() {
+        if self.terms.turning.is_empty() {
             return;
         }
         let (mut workspace, mut idle) = (Workspace::default(), vec![0.0; q.len()]);
         let still = idle.clone();
-        for turning in &self.turning {
+        for turning in &self.terms.turning {
             turning.momentum.add_matrix(q, &still, &mut idle, m, &mut workspace);
         }
     }
 
     /// `f += ` that part times `v`.
     pub fn add_turning_momentum(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
-        self.turning.iter().for_each(|turning| turning.momentum.add_force(q, v, f));
+        self.terms.turning.iter().for_each(|turning| turning.momentum.add_force(q, v, f));
     }
 
     /// `f += ` its force of inertia at the velocities `v` and accelerations `a`.
     pub fn add_turning_force(&self, q: &[f64], v: &[f64], a: &[f64], f: &mut [f64]) {
         self.add_turning_momentum(q, a, f);
-        self.turning.iter().for_each(|turning| turning.rate.add_force(q, v, f));
+        self.terms.turning.iter().for_each(|turning| turning.rate.add_force(q, v, f));
     }
 
     /// Kinetic energy \[J\] of each inertia whose matrix follows the state: its kind, its beam's
@@ -200,7 +200,7 @@ impl System {
         q: &'q [f64],
         v: &'q [f64],
     ) -> impl Iterator<Item = (Kind, usize, f64)> + 'q {
-        self.turning.iter().map(move |turning| {
+        self.terms.turning.iter().map(move |turning| {
             let mut momentum = vec![0.0; q.len()];
             turning.momentum.add_force(q, v, &mut momentum);
             let twice: f64 = momentum.iter().zip(v).map(|(p, v)| p * v).sum();
@@ -210,7 +210,7 @@ impl System {
 
     /// The constant part of the mass matrix, if inertia was asked for.
     pub fn mass_matrix(&self) -> Matrix {
-        self.sum_of_tangents(&self.inertia, &vec![0.0; self.coordinates()])
+        self.sum_of_tangents(&self.terms.inertia, &vec![0.0; self.coordinates()])
     }
 
     /// A zero matrix for [`Self::damping_matrix`].
@@ -236,17 +236,17 @@ impl System {
             // `sum` of nothing is −0.
             effects.iter().filter(|e| e.kind() == kind).fold(0.0, |sum, e| sum + e.energy(q))
         };
-        let actuates = |load: &Acting| matches!(load.effect.kind(), Kind::PreStrain | Kind::PreCurvature);
-        let with_potential = self.loads.iter().filter(|load| load.has_potential() && !actuates(load));
+        let actuates = |load: &ActingLoad| matches!(load.effect.kind(), Kind::PreStrain | Kind::PreCurvature);
+        let with_potential = self.terms.loads.iter().filter(|load| load.has_potential() && !actuates(load));
         let potential = with_potential.map(|load| load.effect.energy(q)).sum::<f64>();
         let ([stretch, bend], work) = self.actuation_energy(parameter, q);
         Energy {
-            stretch: sum(&self.internal, Kind::Stretch, q) + stretch,
-            bend: sum(&self.internal, Kind::Bend, q) + bend,
+            stretch: sum(&self.terms.internal, Kind::Stretch, q) + stretch,
+            bend: sum(&self.terms.internal, Kind::Bend, q) + bend,
             stored: self.stored_energy(q),
             kinetic: velocity.map_or(0.0, |v| {
                 let turning = self.turning_energies(q, v).map(|(.., energy)| energy);
-                self.inertia.iter().map(|e| e.energy(v)).chain(turning).sum()
+                self.terms.inertia.iter().map(|e| e.energy(v)).chain(turning).sum()
             }),
             potential: self.amplitude.at(parameter) * potential,
             work,
@@ -256,7 +256,7 @@ impl System {
 
     /// Energy \[J\] in springs, foundations and contacts.
     fn stored_energy(&self, q: &[f64]) -> f64 {
-        let others = self.internal.iter().filter(|e| !matches!(e.kind(), Kind::Stretch | Kind::Bend));
+        let others = self.terms.internal.iter().filter(|e| !matches!(e.kind(), Kind::Stretch | Kind::Bend));
         others.map(|e| e.energy(q)).sum()
     }
 }

@@ -90,7 +90,11 @@ fn an_unwritable_destination_ends_with_2_before_solving() {
     fs::write(folder.path().join("occupied"), "a file").unwrap();
     let output = ancf(folder.path(), &["run", "scene.toml", "-o", "occupied/results"]);
     assert_eq!(status(&output), 2, "{}", stderr(&output));
-    assert!(stderr(&output).contains("cannot write results into occupied/results"), "{}", stderr(&output));
+    for part in
+        ["cannot write results into occupied/results", "give a directory that can be written with `-o DIR`"]
+    {
+        assert!(stderr(&output).contains(part), "{part} in {}", stderr(&output));
+    }
     assert_eq!(entries(folder.path()), ["occupied", "scene.toml"]);
 }
 
@@ -165,6 +169,22 @@ fn check_tells_all_that_is_wrong() {
     assert_eq!(entries(folder.path()), ["bad.toml", "scene.toml"]);
 }
 
+/// Wrong input weighs more than memory that is not there, whichever comes first.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_worst_failure_is_the_exit_status() {
+    let folder = folder(&ROLL_UP.replace("elements = 3 ", "elements = 5_000_000 "));
+    fs::write(folder.path().join("bad.toml"), "nonsense = 1").unwrap();
+    for scenes in ["scene.toml bad.toml", "bad.toml scene.toml"] {
+        let line = format!("ulimit -v 2000000; exec {} check {scenes}", env!("CARGO_BIN_EXE_ancf"));
+        let output = Command::new("sh").current_dir(folder.path()).args(["-c", &line]).output().unwrap();
+        assert_eq!(status(&output), 2, "{}", stderr(&output));
+        for part in ["GiB of memory, and", "bad.toml:1:1: unknown key `nonsense`"] {
+            assert!(stderr(&output).contains(part), "{part} in {}", stderr(&output));
+        }
+    }
+}
+
 #[test]
 fn inspect_and_schema_print() {
     let folder = folder(ROLL_UP);
@@ -176,6 +196,31 @@ fn inspect_and_schema_print() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("cantilever"));
     let output = ancf(folder.path(), &["schema"]);
     assert_eq!(serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap(), ancf::scene::schema());
+}
+
+/// A reader that has left, as `head` does, is no failure; a disk that is full is one.
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_takes_nothing() {
+    use std::process::Stdio;
+    let folder = folder(ROLL_UP);
+    let schema = |out: Stdio| {
+        let child = Command::new(env!("CARGO_BIN_EXE_ancf"))
+            .current_dir(folder.path())
+            .arg("schema")
+            .stdout(out)
+            .stderr(Stdio::piped())
+            .spawn();
+        child.unwrap().wait_with_output().unwrap()
+    };
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let output = schema(writer.into());
+    assert_eq!((status(&output), stderr(&output).as_str()), (0, ""));
+    let full = fs::File::options().write(true).open("/dev/full").unwrap();
+    let output = schema(full.into());
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    assert!(stderr(&output).starts_with("error: cannot write to standard output: "), "{}", stderr(&output));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What people read when a scene is wrong, word for word.
 
-use ancf::model::Load;
+use ancf::effect::Force;
 use ancf::run::RunError;
 use ancf::scene::{self, Scene};
 
@@ -260,8 +260,9 @@ fn overrides_replace_entries_of_lists() {
     let before = Scene::load(&path, &[]).expect("a legal scene");
     let option = "effect.force.0={ beam = 'arm', at = 'start', value = [0, 7] }".to_owned();
     let after = Scene::load(&path, &[option]).expect("a legal scene");
-    assert_eq!(after.model().loads.len(), before.model().loads.len());
-    assert!(matches!(after.model().loads[0], Load::Force { value: [0.0, 7.0], .. }));
+    assert_eq!(after.model().parts.len(), before.model().parts.len());
+    let force: &dyn std::any::Any = after.model().parts[0].as_ref();
+    assert_eq!(force.downcast_ref::<Force>().expect("a force").value, [0.0, 7.0]);
     let error = Scene::load(&path, &["effect.force.0=7".to_owned()]).expect_err("no table").to_string();
     assert!(error.contains("`effect.force.0` is a table, found a value of type integer"), "{error}");
 }

@@ -99,7 +99,8 @@ fn threads_shards_and_interruptions_change_no_bit() {
     for (shard, left) in [("3/3", "1–2, 4–5"), ("1/3", "2, 5"), ("2/3", "")] {
         let output = sweep(folder, &["-o", "shards", "--shard", shard]);
         assert_eq!(status(&output), 0, "{}", stderr(&output));
-        assert!(stderr(&output).contains("all of its 2 runs are done"), "{}", stderr(&output));
+        let done = format!("shard {shard}: all of its 2 runs are done");
+        assert!(stderr(&output).contains(&done), "{}", stderr(&output));
         let merged = ancf(folder, &["sweep", "--merge", "shards"]);
         assert_eq!(status(&merged), i32::from(!left.is_empty()), "{}", stderr(&merged));
         assert!(stderr(&merged).contains(left), "{left}: {}", stderr(&merged));

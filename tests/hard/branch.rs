@@ -3,15 +3,18 @@
 
 use crate::property::cases;
 use crate::property::generators::clamp;
+use ancf::assembly::Part;
+use ancf::effect::{DistributedForce, Force, Moment};
 use ancf::model::{
-    Analysis, ArcLength, Beam, Centreline, Discretization, GaussPoints, Kernel, Load, Model, Nodes, Place,
-    Probe, Section, SideCondition, Static, StrainMeasure,
+    Analysis, ArcLength, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Place, Probe,
+    Section, SideCondition, Static, StrainMeasure,
 };
 use ancf::run::RunError;
 use ancf::trajectory::{ProbeSample, Trajectory};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Load steps that follow a path closely: no node turns by more than some 0.1 rad in one.
 const SMALL_STEPS: usize = 200;
@@ -40,7 +43,7 @@ fn stiffest(discretization: &Discretization) -> f64 {
 }
 
 /// Loads on a beam with L = EI = 1, from weak to far beyond what linear theory is good for.
-fn loads() -> impl Strategy<Value = Vec<Load>> {
+fn loads() -> impl Strategy<Value = Vec<Arc<dyn Part>>> {
     let size = |largest: f64| {
         (-2.0..0.0_f64, 0.0..2.0 * PI).prop_map(move |(decades, angle)| {
             let value = largest * 10.0_f64.powf(decades);
@@ -48,16 +51,13 @@ fn loads() -> impl Strategy<Value = Vec<Load>> {
         })
     };
     let tip = Place { beam: 0, s: 1.0 };
-    let force = (size(20.0), 0.3..1.0_f64, any::<bool>()).prop_map(|(value, s, follower)| Load::Force {
-        at: Place { beam: 0, s },
-        value,
-        follower,
+    let force = (size(20.0), 0.3..1.0_f64, any::<bool>()).prop_map(|(value, s, follower)| -> Arc<dyn Part> {
+        Arc::new(Force { at: Place { beam: 0, s }, value, follower, law: None })
     });
-    let moment = (-2.0 * PI..2.0 * PI).prop_map(move |value| Load::Moment { at: tip, value });
-    let distributed = (size(40.0), any::<bool>()).prop_map(|(value, follower)| Load::DistributedForce {
-        beam: 0,
-        value,
-        follower,
+    let moment =
+        (-2.0 * PI..2.0 * PI).prop_map(move |value| -> Arc<dyn Part> { Arc::new(Moment::new(tip, value)) });
+    let distributed = (size(40.0), any::<bool>()).prop_map(|(value, follower)| -> Arc<dyn Part> {
+        Arc::new(DistributedForce { beam: 0, value, follower, law: None })
     });
     prop::collection::vec(prop_oneof![force, moment, distributed], 1..4)
 }
@@ -87,7 +87,7 @@ fn cantilever() -> impl Strategy<Value = Model> {
                 gauss_points: GaussPoints { stretch: 4, bend: 3, lobatto: false },
             }],
             supports: vec![clamp()],
-            loads,
+            parts: loads,
             probes: [0.5, 1.0].map(|s| Probe { name: s.to_string(), at: Place { beam: 0, s } }).to_vec(),
             ..Model::default()
         },

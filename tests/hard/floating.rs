@@ -1,11 +1,13 @@
 //! The edge of floating point: what overflows or is no number is found at once, and the same run
 //! gives the same bits.
 
-use ancf::model::{Analysis, Load, Model};
+use ancf::effect::Force;
+use ancf::model::{Analysis, Model};
 use ancf::restart::SavedState;
 use ancf::run::{Control, Options, Progress, RunError};
 use ancf::scene::{self, Scene};
 use ancf::trajectory::{Seconds, Trajectory};
+use std::sync::Arc;
 
 const TIP_LOAD: &str = include_str!("../scenes/tip-load.toml");
 const PENDULUM: &str = include_str!("../scenes/soft-pendulum.toml");
@@ -38,7 +40,7 @@ fn loads_that_are_no_numbers_are_found_at_once() {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let mut model = scene.model().clone();
             let at = model.probes[0].at;
-            model.loads.push(Load::Force { at, value: [value, 0.0], follower: false });
+            model.parts.push(Arc::new(Force::new(at, [value, 0.0])));
             let error = outcome(&model, scene.analysis()).expect_err("a load that is no number");
             let message = error.to_string();
             assert!(message.contains("not finite"), "{message}");

@@ -2,12 +2,14 @@
 //! has one dimensionless answer, by every analysis.
 
 use crate::property::generators::clamp;
+use ancf::effect::{DistributedForce, Force, Gravity, Moment};
 use ancf::model::{
     About, Analysis, ArcLength, Beam, Centreline, Crossing, Discretization, Dynamic, Event, Fixed,
-    GaussPoints, InitialVelocity, Integrator, Kernel, Load, Model, Nodes, Place, Probe, ProbeTarget, Section,
+    GaussPoints, InitialVelocity, Integrator, Kernel, Model, Nodes, Place, Probe, ProbeTarget, Section,
     SideCondition, Static, StepControl, StrainMeasure, Support,
 };
 use ancf::trajectory::Trajectory;
+use std::sync::Arc;
 
 /// What a length, a force and a time of one are, in metres, newtons and seconds.
 #[derive(Clone, Copy, Debug)]
@@ -65,11 +67,19 @@ fn cantilever(units: Units, discretization: &Discretization) -> Model {
     Model {
         beams: vec![beam(units, discretization, line)],
         supports: vec![clamp()],
-        loads: vec![
-            Load::Force { at: tip, value: [-0.3 * force, 2.0 * force], follower: false },
-            Load::Moment { at: tip, value: 0.8 * force * length },
-            Load::DistributedForce { beam: 0, value: [0.0, 0.4 * force / length], follower: false },
-            Load::Gravity { acceleration: [0.1 * length / time.powi(2), -0.5 * length / time.powi(2)] },
+        parts: vec![
+            Arc::new(Force::new(tip, [-0.3 * force, 2.0 * force])),
+            Arc::new(Moment::new(tip, 0.8 * force * length)),
+            Arc::new(DistributedForce {
+                beam: 0,
+                value: [0.0, 0.4 * force / length],
+                follower: false,
+                law: None,
+            }),
+            Arc::new(Gravity {
+                acceleration: [0.1 * length / time.powi(2), -0.5 * length / time.powi(2)],
+                law: None,
+            }),
         ],
         probes: vec![Probe { name: "tip".into(), at: tip }],
         ..Model::default()
@@ -81,7 +91,7 @@ fn pendulum(units: Units, discretization: &Discretization) -> Model {
     let hinge = Support { fix: Fixed { x: true, y: true, ..Fixed::default() }, ..clamp() };
     let spin = InitialVelocity { rotation: 1.0 / units.time, ..InitialVelocity::default() };
     let mut model = cantilever(units, discretization);
-    model.loads.drain(..3);
+    model.parts.drain(..3);
     Model { supports: vec![hinge], initial_velocities: vec![spin], ..model }
 }
 
@@ -105,7 +115,7 @@ fn arch(units: Units, discretization: &Discretization) -> Model {
     Model {
         beams: vec![beam(units, discretization, centreline)],
         supports: vec![hold(0.0), hold(radius * opening)],
-        loads: vec![Load::Force { at: crown, value: [0.0, -60.0 * force], follower: false }],
+        parts: vec![Arc::new(Force::new(crown, [0.0, -60.0 * force]))],
         probes: vec![Probe { name: "tip".into(), at: crown }],
         ..Model::default()
     }
@@ -176,7 +186,7 @@ fn critical_loads() {
     let column = |units: Units, discretization: &Discretization| {
         let mut model = cantilever(units, discretization);
         let at = Place { beam: 0, s: 1.8 * units.length };
-        model.loads = vec![Load::Force { at, value: [-units.force, 0.0], follower: false }];
+        model.parts = vec![Arc::new(Force::new(at, [-units.force, 0.0]))];
         model
     };
     same_at_all_scales(column, |_| Analysis::Buckling { count: 3 }, 1e-9);

@@ -1,6 +1,6 @@
 //! What a scene does not name is not there: no object, table, matrix or iteration of it.
 
-use ancf::effect::Kind;
+use ancf::assembly::Kind;
 use ancf::run::inspect;
 use ancf::scene::{Scene, parse};
 use ancf::system::Inventory;

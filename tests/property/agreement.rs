@@ -2,12 +2,14 @@
 //! answer.
 
 use super::generators::clamp;
+use ancf::effect::{DistributedForce, Force, Moment};
 use ancf::model::{
-    Analysis, Beam, Centreline, Discretization, Dynamic, Fixed, GaussPoints, Integrator, Kernel, Load, Model,
+    Analysis, Beam, Centreline, Discretization, Dynamic, Fixed, GaussPoints, Integrator, Kernel, Model,
     Nodes, Place, Probe, Section, SideCondition, Static, StepControl, StrainMeasure, Support,
 };
 use ancf::run::{Control, Options, Progress};
 use proptest::prelude::*;
+use std::sync::Arc;
 
 /// A random problem without its discretisation; lengths and forces are scaled so that all are
 /// equally hard.
@@ -119,14 +121,20 @@ impl Problem {
                 gauss_points,
             }],
             supports: vec![support],
-            loads: vec![
-                Load::Force { at: tip, value: scaled(self.force, unit), follower: self.follower },
-                Load::Moment { at: tip, value: self.moment * bending / length },
-                Load::DistributedForce {
+            parts: vec![
+                Arc::new(Force {
+                    at: tip,
+                    value: scaled(self.force, unit),
+                    follower: self.follower,
+                    law: None,
+                }),
+                Arc::new(Moment::new(tip, self.moment * bending / length)),
+                Arc::new(DistributedForce {
                     beam: 0,
                     value: scaled(self.distributed, unit / length),
                     follower: false,
-                },
+                    law: None,
+                }),
             ],
             probes: vec![
                 Probe { name: "tip".into(), at: tip },

@@ -1,7 +1,7 @@
 //! A straight beam for tests of what takes part in statics and motion, and ways to run it.
 
+use ancf::assembly::Part;
 use ancf::model::*;
-use ancf::system::assembly::Part;
 use ancf::trajectory::Trajectory;
 use std::sync::Arc;
 

@@ -89,3 +89,59 @@ fn strings_have_no_critical_load() {
     let bedded = "[[effect.foundation]]\nbeam = \"cable\"\nstiffness = [10, 10]\n";
     assert!(parse("scene.toml", &text(0.4, bedded)).is_ok());
 }
+
+/// Green's strain lets a bar give way at loads of the order of EA, without end and different on every
+/// mesh: what lies so far beyond small strains is told, from its number on. A slender column is not.
+#[test]
+fn critical_loads_at_large_strains_are_told() {
+    for (stiffness, told) in
+        [("80", Some("from number 2 on")), ("1e5", None), ("20", Some("the loads strain"))]
+    {
+        for basis in ["ancf.elements = 12", "rpim.nodes = 13"] {
+            let found = solve(&format!(
+                "[beam.a]\nstart = [0, 0]\nend = [1, 0]\nstrain = \"green\"\naxial_stiffness = {stiffness}\nbending_stiffness = 1\n\
+                 basis.{basis}\n[[support]]\nbeam = \"a\"\nat = \"start\"\nfix = [\"x\", \"y\", \"angle\"]\n\
+                 [[effect.force]]\nbeam = \"a\"\nat = \"end\"\nvalue = [-1, 0]\n[analysis.buckling]\ncount = 3\n"
+            ));
+            let warned = found.warnings.iter().filter(|warning| warning.contains("strain the beam")).count();
+            assert_eq!(warned, usize::from(told.is_some()), "{stiffness}: {:?}", found.warnings);
+            assert!(told.is_none_or(|words| found.warnings[0].contains(words)), "{:?}", found.warnings);
+        }
+    }
+}
+
+/// A beam on a hinge turns without resistance, wherever else a spring stands; a spring on it, or
+/// about the hinge, holds it.
+#[test]
+fn springs_hold_the_motions_that_they_resist_and_no_others() {
+    let structure = |spring: &str| {
+        let text = format!(
+            "beam.a = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = 4 }}
+             beam.b = {{ start = [1, 0], end = [2, 0], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = 4 }}
+             support = [{{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             joint = [{{ type = 'hinge', first = {{ beam = 'a', at = 'end' }}, second = {{ beam = 'b', at = 'start' }} }}]
+             effect.force = [{{ beam = 'b', at = 'end', value = [-1, 0] }}]
+             {spring}\nanalysis.buckling.count = 1\n"
+        );
+        parse("scene.toml", &text).map(|scene| scene.model().solve(scene.analysis()).expect("critical loads"))
+    };
+    for free in [
+        "spring = [{ beam = 'a', at = 'end', stiffness = 10 }]",
+        "torsion_spring = [{ beam = 'a', at = 0.5, stiffness = 1 }]",
+        "foundation = [{ beam = 'a', stiffness = [1, 1] }]",
+    ] {
+        let refused = structure(&format!("effect.{free}")).expect_err("a mechanism").to_string();
+        assert!(
+            refused.contains("beam `b` is under-supported: it is free for rotation about the point (1, 0)"),
+            "{refused}"
+        );
+    }
+    for held in [
+        "spring = [{ beam = 'b', at = 'end', stiffness = 10 }]",
+        "torsion_spring = [{ beam = 'b', at = 'start', stiffness = 1 }]",
+        "foundation = [{ beam = 'b', stiffness = [0, 1] }]",
+    ] {
+        let found = structure(&format!("effect.{held}")).unwrap_or_else(|error| panic!("{held}: {error}"));
+        assert!(!found.load_factors.is_empty(), "{held}");
+    }
+}

@@ -2,10 +2,11 @@
 //! kind.
 
 use super::generators;
-use ancf::effect::{Contact, Density, Obstacle, Penalty};
+use ancf::assembly::{Density, Needs};
+use ancf::effect::{Contact, Obstacle, Penalty};
 use ancf::model::{Beam, Centreline, Discretization, GaussPoints, Model, Section, StrainMeasure};
 use ancf::run::RunError;
-use ancf::system::{Needs, System, View};
+use ancf::system::{System, View};
 use ancf::trajectory::Trajectory;
 use nalgebra::Vector2;
 use proptest::prelude::*;

@@ -3,13 +3,15 @@
 //! second time here from their formulas.
 
 use super::generators::{beam, clamp, free, noise, perturbed};
+use ancf::assembly::{Earlier, Needs, Part, Workspace};
 use ancf::basis::{Basis, BasisTable, Quadrature};
-use ancf::effect::{Earlier, Workspace};
-use ancf::model::{Beam, Load, Model, Place, StrainMeasure};
-use ancf::system::{Needs, System};
+use ancf::effect::{DistributedForce, Force, Gravity, Moment};
+use ancf::model::{Beam, Model, Place, StrainMeasure};
+use ancf::system::System;
 use nalgebra::{DVector, Dyn};
 use num_dual::{Dual2Vec, DualNum, DualVec, hessian, jacobian};
 use proptest::prelude::*;
+use std::sync::Arc;
 
 /// Local fields r⁽ᵒ⁾ of all points of a table, with their weights.
 fn fields<T: DualNum<Primitive = f64, InnerDual = f64>>(
@@ -137,19 +139,19 @@ fn load_forces<T: DualNum<Primitive = f64, InnerDual = f64>>(
     f
 }
 
-fn with_load(beam: &Beam, load: Load) -> System {
+fn with_load(beam: &Beam, load: Arc<dyn Part>) -> System {
     let elastic_free = Beam {
         section: ancf::model::Section { mass_per_length: Some(1.3), ..Default::default() },
         ..beam.clone()
     };
-    let model = Model { beams: vec![elastic_free], supports: vec![], loads: vec![load], ..Model::default() };
+    let model = Model { beams: vec![elastic_free], supports: vec![], parts: vec![load], ..Model::default() };
     System::build(&model, Needs { inertia: false, motion: false }).expect("a legal system")
 }
 
 /// Compares a load's force and tangent with dual numbers.
 fn check_load(
     beam: &Beam,
-    load: Load,
+    load: Arc<dyn Part>,
     noise: &[f64],
     orders: &[usize],
     at: Option<f64>,
@@ -194,7 +196,7 @@ proptest! {
     #[test]
     fn dead_moment(beam in beam(), noise in noise(), value in -5.0..5.0, share in 0.0..1.0) {
         let s = share * free(&beam).beams()[0].basis.length();
-        let load = Load::Moment { at: Place { beam: 0, s }, value };
+        let load = Arc::new(Moment { at: Place { beam: 0, s }, value, law: None });
         check_load(&beam, load, &noise, &[1], Some(s), |_, z| {
             let [x, y] = z[0].clone();
             let factor = (x.clone() * x.clone() + y.clone() * y.clone()).recip() * -value;
@@ -210,7 +212,7 @@ proptest! {
         // Turned by the angle between the gradients now and in the reference.
         let rows = basis.points(&[s], &[1]).expect("on the beam");
         let start = fields(&rows, &DVector::from_column_slice(system.reference()))[0].1[0];
-        let load = Load::Force { at: Place { beam: 0, s }, value: [fx, fy], follower: true };
+        let load = Arc::new(Force::following(Place { beam: 0, s }, [fx, fy]));
         check_load(&beam, load, &noise, &[0, 1], Some(s), |_, z| {
             let turned = turned([fx, fy], start, &z[1]);
             vec![turned, [DualVec::from_re(0.0), DualVec::from_re(0.0)]]
@@ -224,7 +226,7 @@ proptest! {
         let points = beam.gauss_points.stretch.max(4);
         let rows = basis.table(Quadrature::Gauss(points), &[1]).expect("a legal table");
         let start = fields(&rows, &DVector::from_column_slice(system.reference()));
-        let load = Load::DistributedForce { beam: 0, value: [fx, fy], follower: true };
+        let load = Arc::new(DistributedForce { beam: 0, value: [fx, fy], follower: true, law: None });
         check_load(&beam, load, &noise, &[0, 1], None, |point, z| {
             let turned = turned([fx, fy], start[point].1[0], &z[1]);
             vec![turned, [DualVec::from_re(0.0), DualVec::from_re(0.0)]]
@@ -235,18 +237,18 @@ proptest! {
     fn dead_forces_and_gravity(beam in beam(), noise in noise(), fx in -5.0..5.0, fy in -5.0..5.0, share in 0.0..1.0) {
         let s = share * free(&beam).beams()[0].basis.length();
         let constant = move |scale: f64| vec![[fx, fy].map(|f: f64| DualVec::<f64, Dyn>::from_re(-f * scale))];
-        let force = Load::Force { at: Place { beam: 0, s }, value: [fx, fy], follower: false };
+        let force = Arc::new(Force::new(Place { beam: 0, s }, [fx, fy]));
         check_load(&beam, force, &noise, &[0], Some(s), |_, _| constant(1.0));
-        let distributed = Load::DistributedForce { beam: 0, value: [fx, fy], follower: false };
+        let distributed = Arc::new(DistributedForce { beam: 0, value: [fx, fy], follower: false, law: None });
         check_load(&beam, distributed, &noise, &[0], None, |_, _| constant(1.0));
-        let gravity = Load::Gravity { acceleration: [fx, fy] };
+        let gravity = Arc::new(Gravity::new([fx, fy]));
         check_load(&beam, gravity, &noise, &[0], None, |_, _| constant(1.3));
     }
 
     #[test]
     fn potential_of_dead_loads_is_their_negative_work(beam in beam(), noise in noise(), fx in -5.0..5.0) {
-        let load = Load::Force { at: Place { beam: 0, s: 0.0 }, value: [fx, 2.0], follower: false };
-        let model = Model { beams: vec![beam], supports: vec![clamp()], loads: vec![load], ..Model::default() };
+        let load = Arc::new(Force::new(Place { beam: 0, s: 0.0 }, [fx, 2.0]));
+        let model = Model { beams: vec![beam], supports: vec![clamp()], parts: vec![load], ..Model::default() };
         let system = System::build(&model, Needs { inertia: false, motion: false }).expect("a legal system");
         let q = perturbed(&system, 0.3, &noise);
         let (dx, dy) = (q[0] - system.reference()[0], q[1] - system.reference()[1]);

@@ -2,11 +2,12 @@
 //! the balance of energy.
 
 use super::arm::{LENGTH, gauss, imbalance, methods, moved, one, support};
+use ancf::assembly::Part;
 use ancf::effect::{
     Actuation, BeamDamping, Drag, Foundation, PointMass, SectionInertia, Spring, TorsionSpring,
 };
+use ancf::effect::{Force, Gravity};
 use ancf::model::*;
-use ancf::system::assembly::Part;
 use std::sync::Arc;
 
 /// A hub that is turned by a law, with all that depends on velocity: supports whose frames turn,
@@ -45,11 +46,9 @@ fn driven(rotation: FixedRotation, duration: f64) -> Model {
         }),
     ];
     let mut model = one(vec![hub], parts);
-    let push = Load::Force { at, value: [0.0, 0.3], follower: true };
-    model.loads = vec![
-        Load::Gravity { acceleration: [0.0, -9.81] },
-        Load::InTime { load: Box::new(push), law: Law::Harmonic { frequency: 20.0, phase: 0.0 } },
-    ];
+    let law = Some(Law::Harmonic { frequency: 20.0, phase: 0.0 });
+    model.add(Gravity::new([0.0, -9.81]));
+    model.add(Force { at, value: [0.0, 0.3], follower: true, law });
     model
 }
 

@@ -1,15 +1,17 @@
 //! Motion: exact where it must be, of the order that each method promises, energy and momentum
 //! kept, restarts bit for bit.
 
+use ancf::assembly::Needs;
 use ancf::effect::{Contact, Obstacle};
+use ancf::effect::{Force, Gravity, Moment};
 use ancf::model::{
     Beam, Centreline, Crossing, Discretization, Fixed, FixedRotation, GaussPoints, InitialVelocity,
-    Integrator, Kernel, Load, Model, Nodes, Place, Profile, Section, SideCondition, StepControl,
-    StrainMeasure, Support, Table,
+    Integrator, Kernel, Model, Nodes, Place, Profile, Section, SideCondition, StepControl, StrainMeasure,
+    Support, Table,
 };
 use ancf::solve::dynamics::start::from_rest;
 use ancf::solve::dynamics::{Checkpoint, Solution, State, Task, Watch, solve};
-use ancf::system::{Needs, System, View};
+use ancf::system::{System, View};
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -53,7 +55,7 @@ fn model(discretization: Discretization, supports: Vec<Support>) -> Model {
             gauss_points: GaussPoints { stretch: 4, bend: 4, lobatto: false },
         }],
         supports,
-        loads: vec![Load::Gravity { acceleration: GRAVITY }],
+        parts: vec![Arc::new(Gravity::new(GRAVITY))],
         ..Model::default()
     }
 }
@@ -199,7 +201,7 @@ fn a_motion_does_not_depend_on_the_axes() {
         let straight = model(discretization, vec![clamp]);
         let mut turned = straight.clone();
         turned.beams[0].centreline = Centreline::Line { start: [0.0; 2], end: rotate([LENGTH, 0.0]) };
-        turned.loads = vec![Load::Gravity { acceleration: rotate(GRAVITY) }];
+        turned.parts = vec![Arc::new(Gravity::new(rotate(GRAVITY)))];
         for (integrator, _) in methods() {
             // Generalised-α stops its iteration at 1e-11 a step, which velocities multiply by 2/h;
             // the others at round-off.
@@ -278,8 +280,8 @@ fn the_work_of_loads_without_potential_closes_the_balance() {
     for discretization in [ancf, rpim] {
         let mut model = model(discretization, vec![hinge(0.0)]);
         let at = Place { beam: 0, s: LENGTH };
-        model.loads =
-            vec![Load::Moment { at, value: 0.3 }, Load::Force { at, value: [0.05, 0.2], follower: true }];
+        model.parts =
+            vec![Arc::new(Moment { at, value: 0.3, law: None }), Arc::new(Force::following(at, [0.05, 0.2]))];
         let system = build(&model);
         let drift = |step| {
             let solution = moved(&system, 0.4, GAUSS, step);
@@ -322,7 +324,7 @@ proptest! {
     ) {
         let [ancf, rpim] = either();
         let mut model = model(if meshfree { rpim } else { ancf }, vec![]);
-        model.loads.clear();
+        model.parts.clear();
         let system = build(&model);
         let velocity = InitialVelocity { translation: [vx, vy], rotation, center: [0.2, -0.1], ..InitialVelocity::default() };
         let mut start = from_rest(&system, &[velocity]).expect("a free beam");
@@ -390,7 +392,8 @@ fn impulses_of_contacts_balance_the_momentum() {
     for (discretization, method) in either().into_iter().zip(methods) {
         let mut model = model(discretization, vec![]);
         model.beams[0].centreline = Centreline::Line { start: [0.0; 2], end: [LENGTH * 0.8, LENGTH * 0.6] };
-        model.parts = vec![Arc::new(contact(ground)), Arc::new(contact(stone))];
+        model.add(contact(ground));
+        model.add(contact(stone));
         let system = build(&model);
         let task = Task { output_every: 1e-3, ..task(&system, 0.6, method) };
         let solution = finished(solve(&system, &task, &mut |_, _, _| true));
@@ -442,7 +445,7 @@ fn a_linear_velocity_field_is_a_rotation() {
     ];
     for discretization in either() {
         let mut model = model(discretization, vec![]);
-        model.loads.clear();
+        model.parts.clear();
         let system = build(&model);
         let ends = fields.clone().map(|field| {
             let start = from_rest(&system, &[field]).expect("a free beam");
@@ -498,7 +501,7 @@ fn a_cubic_velocity_field_has_its_energy() {
 #[test]
 fn a_spinning_beam_keeps_momenta_and_energy_for_long_times_and_restarts_in_their_middle() {
     let mut model = model(Discretization::Ancf { nodes: Nodes::Uniform(4) }, vec![]);
-    model.loads.clear();
+    model.parts.clear();
     let system = build(&model);
     let (translation, center) = ([0.03, 0.01], [LENGTH / 2.0, 0.0]);
     let velocity = InitialVelocity {

@@ -1,7 +1,8 @@
 //! Dry friction: what sticks rests, what slides is slowed as Coulomb says, and what is lost is
 //! friction's work.
 
-use ancf::effect::{AcceptedState, Contact, Friction, InternalVariables, Obstacle, Workspace};
+use ancf::assembly::{AcceptedState, InternalVariables, Needs, Workspace};
+use ancf::effect::{Contact, Friction, Obstacle};
 use ancf::linear::Matrix;
 use ancf::model::{
     Analysis, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Section, SideCondition,
@@ -10,7 +11,7 @@ use ancf::model::{
 use ancf::run::{Options, RunError};
 use ancf::solve::dynamics::start::from_rest;
 use ancf::solve::dynamics::{Solution, Task, solve};
-use ancf::system::{Needs, System};
+use ancf::system::System;
 use ancf::trajectory::Trajectory;
 use proptest::prelude::*;
 use std::f64::consts::PI;

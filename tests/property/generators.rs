@@ -1,10 +1,11 @@
 //! Random models and states.
 
+use ancf::assembly::Needs;
 use ancf::model::{
     Beam, Centreline, Discretization, Fixed, FixedRotation, GaussPoints, Kernel, Model, Nodes, Place,
     Section, SideCondition, StrainMeasure, Support,
 };
-use ancf::system::{Needs, System};
+use ancf::system::System;
 use proptest::prelude::*;
 
 /// Either discretisation with a few nodes.

@@ -2,12 +2,12 @@
 //! statics, vibrations and motion.
 
 use super::generators;
-use ancf::effect::Kind;
+use ancf::assembly::{Kind, Needs};
 use ancf::restart::SavedState;
 use ancf::run::{Options, inspect};
 use ancf::scene::{Scene, parse};
 use ancf::solve::dynamics::motion::Motion;
-use ancf::system::{Needs, System};
+use ancf::system::System;
 use ancf::trajectory::Trajectory;
 use proptest::prelude::*;
 
@@ -371,5 +371,31 @@ fn units_do_not_decide_about_velocities() {
         let found = tip(length, mass, time);
         let apart = (found[0] - expected[0]).hypot(found[1] - expected[1]);
         assert!(apart < 1e-6, "L = {length}, M = {mass}, T = {time}: {apart:e} apart");
+    }
+}
+
+proptest! {
+    #![proptest_config(super::cases(48))]
+
+    /// A straight beam that keeps its length and is held at two points is held once too often, and
+    /// refused whatever its direction, place and mesh; one with a little sag is not.
+    #[test]
+    fn what_holds_a_length_twice_is_refused_in_every_direction(
+        turn in -3.2..3.2_f64, x in -3.0..3.0_f64, y in -3.0..3.0_f64,
+        elements in 3..60_usize, share in 1..100_usize, angle: bool,
+    ) {
+        let (sine, cosine) = turn.sin_cos();
+        let s = (1 + share * elements / 101).min(elements) as f64 / elements as f64;
+        let fix = if angle { CLAMP } else { HINGE };
+        let rest = format!(
+            "[[support]]\nbeam = 'arm'\nat = {s:?}\nfix = ['x', 'y']\n[[effect.distributed_force]]\nbeam = 'arm'\nvalue = [0.3, -0.4]\n[analysis.static]\n"
+        );
+        let basis = format!("{{ ancf = {{ elements = {elements} }} }}");
+        let text = format!("{}{rest}", ARM.replace("BASIS", &basis).replace("FIX", fix))
+            .replace("start = [0.0, 0.0]", &format!("start = [{x:?}, {y:?}]"))
+            .replace("end = [1.0, 0.0]", &format!("end = [{:?}, {:?}]", x + cosine, y + sine));
+        let scene = parse("arm.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let message = scene.model().solve(scene.analysis()).expect_err("refused").to_string();
+        prop_assert!(message.contains("hold the same motion more than once"), "{message}");
     }
 }

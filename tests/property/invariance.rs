@@ -2,12 +2,14 @@
 //! units.
 
 use super::generators::{beam, clamp, free, noise, perturbed};
+use ancf::effect::Force;
 use ancf::model::{
-    Analysis, Beam, Centreline, Discretization, Kernel, Load, Model, Nodes, Place, Probe, Section,
-    SideCondition, Static, StrainMeasure,
+    Analysis, Beam, Centreline, Discretization, Kernel, Model, Nodes, Place, Probe, Section, SideCondition,
+    Static, StrainMeasure,
 };
 use ancf::trajectory::Trajectory;
 use proptest::prelude::*;
+use std::sync::Arc;
 
 fn moved(q: &[f64], angle: f64, shift: [f64; 2]) -> Vec<f64> {
     let (s, c) = angle.sin_cos();
@@ -101,11 +103,12 @@ fn cantilever(metre: f64, newton: f64, angle: f64, discretization: Discretizatio
             gauss_points: ancf::model::GaussPoints { stretch: 4, bend: 4, lobatto: false },
         }],
         supports: vec![clamp()],
-        loads: vec![Load::Force {
+        parts: vec![Arc::new(Force {
             at: Place { beam: 0, s: length },
             value: turned(20.0 * newton, 150.0 * newton),
             follower,
-        }],
+            law: None,
+        })],
         probes: vec![Probe { name: "tip".into(), at: Place { beam: 0, s: length } }],
         ..Model::default()
     }

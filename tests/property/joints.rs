@@ -1,8 +1,10 @@
 //! Beams that are joined: welds, corners, chains of hinges.
 
 use super::arm::{LENGTH, ancf, beam, gauss, imbalance, methods, moved, one, still, support, tip};
+use ancf::effect::{Force, Gravity};
 use ancf::model::*;
 use ancf::trajectory::Trajectory;
+use std::sync::Arc;
 
 /// One beam and two that are welded are the same but for the stretch at the weld, which is free to
 /// jump there: with finer meshes they become one.
@@ -24,10 +26,8 @@ fn a_weld_makes_one_beam_of_two() {
             probes: tip(1, half),
             ..whole.clone()
         };
-        whole.loads =
-            vec![Load::Force { at: Place { beam: 0, s: LENGTH }, value: [-0.1, 0.6], follower: true }];
-        parts.loads =
-            vec![Load::Force { at: Place { beam: 1, s: half }, value: [-0.1, 0.6], follower: true }];
+        whole.parts = vec![Arc::new(Force::following(Place { beam: 0, s: LENGTH }, [-0.1, 0.6]))];
+        parts.parts = vec![Arc::new(Force::following(Place { beam: 1, s: half }, [-0.1, 0.6]))];
         let [a, b] =
             [&whole, &parts].map(|model| *compute(model).probes[0].samples.last().expect("a record"));
         assert!((a.y).abs() > 0.05, "it bends");
@@ -51,7 +51,7 @@ fn a_corner_keeps_its_angle_and_passes_forces_on() {
     model.beams.push(beam("up", [LENGTH, 0.0], [LENGTH, 0.8], ancf(5)));
     model.joints =
         vec![Joint::Weld { first: Place { beam: 0, s: LENGTH }, second: Place { beam: 1, s: 0.0 } }];
-    model.loads = vec![Load::Force { at: Place { beam: 1, s: 0.8 }, value: [0.2, 0.1], follower: false }];
+    model.parts = vec![Arc::new(Force::new(Place { beam: 1, s: 0.8 }, [0.2, 0.1]))];
     model.probes = vec![
         Probe { name: "corner".into(), at: Place { beam: 0, s: LENGTH } },
         Probe { name: "foot".into(), at: Place { beam: 1, s: 0.0 } },
@@ -95,7 +95,7 @@ fn a_chain_of_hinges_keeps_together_and_its_energy() {
             beam("lower", [half, 0.0], [LENGTH, 0.0], rpim),
         ],
         joints: vec![Joint::Hinge { first: Place { beam: 0, s: half }, second: Place { beam: 1, s: 0.0 } }],
-        loads: vec![Load::Gravity { acceleration: [0.0, -9.81] }],
+        parts: vec![Arc::new(Gravity::new([0.0, -9.81]))],
         probes: vec![
             Probe { name: "a".into(), at: Place { beam: 0, s: half } },
             Probe { name: "b".into(), at: Place { beam: 1, s: 0.0 } },

@@ -1,20 +1,22 @@
 //! Vibrations about the stress-free state and about equilibria, by both methods for eigenpairs.
 
 use super::generators::clamp;
-use ancf::effect::InternalVariables;
+use ancf::assembly::{InternalVariables, Needs};
+use ancf::effect::{Force, Moment};
 use ancf::linear::Matrix;
 use ancf::model::{
     About, Analysis, Beam, Centreline, Discretization, Displacement, Fixed, FixedRotation, GaussPoints,
-    Kernel, Load, Model, Nodes, Place, Probe, Section, SideCondition, Static, StrainMeasure, Support,
+    Kernel, Model, Nodes, Place, Probe, Section, SideCondition, Static, StrainMeasure, Support,
 };
 use ancf::run::RunError;
 use ancf::solve::eigen::{EigenError, Pairs, Pencil, dense, lanczos};
 use ancf::solve::{modal, statics};
-use ancf::system::{Needs, System, View};
+use ancf::system::{System, View};
 use ancf::trajectory::Trajectory;
 use miette::Diagnostic;
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 const LENGTH: f64 = 1.5;
 
@@ -57,7 +59,7 @@ fn support(s: f64, x: bool, y: bool, rotation: FixedRotation) -> Support {
 }
 
 fn pulled(mut model: Model, force: [f64; 2]) -> Model {
-    model.loads.push(Load::Force { at: Place { beam: 0, s: LENGTH }, value: force, follower: false });
+    model.parts.push(Arc::new(Force::new(Place { beam: 0, s: LENGTH }, force)));
     model
 }
 
@@ -295,7 +297,7 @@ fn a_bent_column_vibrates_about_its_stable_branch() {
 #[test]
 fn where_statics_fails_its_message_is_given() {
     let mut wheel = model(vec![beam(ancf(9), 0.0)], vec![support(0.0, true, true, FixedRotation::Free)]);
-    wheel.loads.push(Load::Moment { at: Place { beam: 0, s: LENGTH }, value: 1.0 });
+    wheel.parts.push(Arc::new(Moment::new(Place { beam: 0, s: LENGTH }, 1.0)));
     let error = solve(&wheel, 3, About::Equilibrium).expect_err("it turns for ever");
     assert!(matches!(error, RunError::NoEquilibrium { .. }), "{error}");
     assert!(error.help().expect("advice").to_string().contains("loads of fixed direction"));
@@ -305,7 +307,7 @@ fn where_statics_fails_its_message_is_given() {
 fn follower_loads_matter_only_where_they_act() {
     let mut beam = model(vec![beam(ancf(9), 0.0)], vec![clamp()]);
     let rest = frequencies(&beam, 3, About::Reference);
-    beam.loads.push(Load::Force { at: Place { beam: 0, s: LENGTH }, value: [0.0, 1.0], follower: true });
+    beam.parts.push(Arc::new(Force::following(Place { beam: 0, s: LENGTH }, [0.0, 1.0])));
     assert_eq!(frequencies(&beam, 3, About::Reference), rest);
     let error = solve(&beam, 3, About::Equilibrium).expect_err("no symmetric tangent");
     assert!(matches!(error, RunError::Eigen(EigenError::NotSymmetric { analysis: "modal" })), "{error}");
@@ -331,4 +333,28 @@ fn moved_supports_and_records_of_the_equilibrium() {
     assert!((found.energy[0].stretch - 0.5 * 1e5 * strain * strain * LENGTH).abs() < 1e-9);
     assert!(found.probes[0].samples.len() == 1 && found.energy.len() == 1 && found.modes.len() == 1);
     assert!(solve(&string, 1, About::Reference).expect("stable").parameter.is_empty());
+}
+
+/// What an equilibrium is needed for is told by the name of what asked for it, and its energies are
+/// those of its own state: of a beam that bends freely as its actuator wants none is stored, and of
+/// one that is held all of what is put in.
+#[test]
+fn vibrations_about_an_equilibrium_speak_of_themselves() {
+    let about = |rest: &str| {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 6 }}
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             {rest}\nanalysis.modal = {{ count = 1, about = 'equilibrium' }}\n"
+        );
+        let scene = ancf::scene::parse("arm.toml", &text).unwrap_or_else(|error| panic!("{error:?}"));
+        scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error:?}"))
+    };
+    let damped = about("effect.spring = [{ beam = 'arm', at = 'end', damping = 1 }]");
+    assert!(damped.warnings[0].contains("takes no part in a modal analysis"), "{:?}", damped.warnings);
+    let tied = about(
+        "effect.actuation = [{ beam = 'arm', curvature = 2 }]\neffect.spring = [{ beam = 'arm', at = 'end', stiffness = 20 }]",
+    );
+    let energy = tied.energy.last().expect("an equilibrium");
+    let stored = energy.stretch + energy.bend + energy.stored;
+    assert!(stored > 0.1 && (energy.work - stored).abs() < 1e-6 * stored, "{} {stored}", energy.work);
 }

@@ -1,9 +1,9 @@
 //! Springs, masses, damping, fluids, contacts: derivatives of their densities against dual numbers.
 
+use ancf::assembly::{Density, Dissipation};
 use ancf::effect::{
-    BendDamping, Dashpot, Density, Dissipation, Drag, Engineering, Green, GroundSpring, Gyration, Inertia,
-    Obstacle, Penalty, PreCurvature, PreStrain, RotaryInertia, StretchDamping, Strut, Torsion,
-    TorsionDashpot,
+    BendDamping, Dashpot, Drag, Engineering, Green, GroundSpring, Gyration, Inertia, Obstacle, Penalty,
+    PreCurvature, PreStrain, RotaryInertia, StretchDamping, Strut, Torsion, TorsionDashpot,
 };
 use nalgebra::{DVector, Dyn, Vector2};
 use num_dual::{Dual2Vec, DualNum, hessian};
@@ -63,7 +63,7 @@ fn rates<D: Dissipation<M>, const M: usize>(
             rate: &[Vector2<f64>; M],
             _: &[Vector2<f64>; M],
             _: &[Vector2<f64>; M],
-        ) -> ([Vector2<f64>; M], ancf::effect::Hessian<M>) {
+        ) -> ([Vector2<f64>; M], ancf::assembly::Hessian<M>) {
             self.0.force_and_matrix(point, &self.1, rate)
         }
     }

@@ -1,14 +1,16 @@
 //! Strings: beams without a bending stiffness, taut and slack.
 
 use super::arm::{ancf, beam, gauss, imbalance, moved, one, still, support, tip};
+use ancf::effect::Gravity;
 use ancf::model::*;
+use std::sync::Arc;
 
 /// A string: no bending stiffness named, none computed.
 #[test]
 fn a_string_has_no_bending() {
     let mut model = one(vec![support(0.0, FixedRotation::Free)], vec![]);
     model.beams[0].section.bending_stiffness = None;
-    model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+    model.parts = vec![Arc::new(Gravity::new([0.0, -9.81]))];
     let analysis = Analysis::Dynamic(Dynamic {
         duration: 0.1,
         output_every: 0.1,
@@ -16,7 +18,7 @@ fn a_string_has_no_bending() {
         events: vec![],
     });
     let inventory = ancf::run::inspect(&model, &analysis).expect("a string");
-    assert!(inventory.effects.iter().all(|effect| effect.kind != ancf::effect::Kind::Bend));
+    assert!(inventory.effects.iter().all(|effect| effect.kind != ancf::assembly::Kind::Bend));
     let trajectory = moved(&model, 0.3, gauss(1e-3));
     assert!(trajectory.energy.iter().all(|e| e.bend == 0.0));
     assert!(imbalance(&trajectory) < 1e-4, "{}", imbalance(&trajectory));
@@ -35,7 +37,7 @@ fn a_slack_cable_hangs_as_a_catenary() {
     let ends = [0.0, length].map(|s| support(s, FixedRotation::Free));
     let mut model = one(ends.to_vec(), vec![]);
     model.beams = vec![cable];
-    model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+    model.parts = vec![Arc::new(Gravity::new([0.0, -9.81]))];
     model.probes = tip(0, 0.5 * length);
     let trajectory = still(&model);
     let [a, b] = [-2.0_f64, 0.0].map(|angle| [radius * angle.cos(), radius * angle.sin()]);
@@ -104,7 +106,7 @@ fn a_folded_string_is_named() {
         model.beams[0].section =
             Section { axial_stiffness: Some(100.0), bending_stiffness: None, mass_per_length: Some(1.0) };
         model.supports[1].displacement = Displacement { x: -0.4, ..Displacement::default() };
-        model.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+        model.parts = vec![Arc::new(Gravity::new([0.0, -9.81]))];
         model.probes = tip(0, 0.5);
         let settings = Static { steps, ..Static::default() };
         model.solve(&Analysis::Static(settings)).expect("an equilibrium")
@@ -144,5 +146,48 @@ fn strings_that_hold_themselves_are_told() {
         let warnings =
             string(0.8, stiffness, &format!("elements = {elements}"), [-0.003, 0.07], [both, both]);
         assert!(warnings.is_empty(), "{stiffness} {elements}: {warnings:?}");
+    }
+}
+
+/// A string passes no couple on: where it is held in a direction, welded, or given a moment, the shape
+/// depends on the mesh, and is told.
+#[test]
+fn couples_on_strings_are_told() {
+    let warnings = |fix: &str, effects: &str| {
+        let text = format!(
+            "beam.a = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e3, mass_per_length = 1, basis.ancf.elements = 12 }}
+             beam.b = {{ start = [1, 0], end = [2, 0], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }}
+             support = [{{ beam = 'a', at = 'start', fix = {fix} }}, {{ beam = 'b', at = 'end', fix = ['x', 'y', 'angle'] }}]
+             effect.gravity.acceleration = [0, -1]\n{effects}\nanalysis.static = {{}}\n"
+        );
+        let scene = ancf::scene::parse("string.toml", &text).unwrap_or_else(|error| panic!("{error:?}"));
+        scene.model().solve(scene.analysis()).expect("an equilibrium").warnings
+    };
+    let joint = |kind: &str| {
+        format!(
+            "joint = [{{ type = '{kind}', first = {{ beam = 'a', at = 'end' }}, second = {{ beam = 'b', at = 'start' }} }}]"
+        )
+    };
+    let (pin, hinge) = ("['x', 'y']", joint("hinge"));
+    assert_eq!(warnings(pin, &hinge), Vec::<String>::new());
+    for (fix, effects, words) in [
+        ("['x', 'y', 'angle']", hinge.clone(), "support 1 holds its direction at s = 0.000000 m"),
+        ("['x', 'y', 'gradient']", hinge.clone(), "support 1 holds its direction at s = 0.000000 m"),
+        (pin, joint("weld"), "joint 1 welds it at s = 1.000000 m"),
+        (
+            pin,
+            hinge.clone() + "\neffect.moment = [{ beam = 'a', at = 0.5, value = 0.01 }]",
+            "a moment, a torsion spring or rotary inertia acts on it at s = 0.500000 m",
+        ),
+        (
+            pin,
+            hinge.clone() + "\neffect.torsion_spring = [{ beam = 'a', at = 0.25, stiffness = 1 }]",
+            "a moment, a torsion spring or rotary inertia acts on it at s = 0.250000 m",
+        ),
+    ] {
+        let warnings = warnings(fix, &effects);
+        let told = |warning: &&String| warning.contains("beam `a` has no `bending_stiffness`");
+        assert_eq!(warnings.iter().filter(told).count(), 1, "{words}: {warnings:?}");
+        assert!(warnings.iter().any(|warning| warning.contains(words)), "{words}: {warnings:?}");
     }
 }

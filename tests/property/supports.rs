@@ -2,12 +2,15 @@
 //! motion.
 
 use super::generators::clamp;
+use ancf::assembly::Needs;
+use ancf::effect::Force;
 use ancf::model::{
     Analysis, Beam, Centreline, Discretization, Displacement, Fixed, FixedRotation, GaussPoints, Kernel,
-    Load, Model, Nodes, Place, Probe, Section, SideCondition, Static, StrainMeasure, Support,
+    Model, Nodes, Place, Probe, Section, SideCondition, Static, StrainMeasure, Support,
 };
-use ancf::system::{Needs, System, View};
+use ancf::system::{System, View};
 use proptest::prelude::*;
+use std::sync::Arc;
 
 const LENGTH: f64 = 2.0;
 
@@ -27,7 +30,7 @@ fn model(discretization: Discretization, angle: f64, supports: Vec<Support>) -> 
             gauss_points: GaussPoints { stretch: 4, bend: 4, lobatto: false },
         }],
         supports,
-        loads: vec![Load::Force { at: Place { beam: 0, s: LENGTH }, value: [0.2, 0.3], follower: false }],
+        parts: vec![Arc::new(Force::new(Place { beam: 0, s: LENGTH }, [0.2, 0.3]))],
         probes: vec![
             Probe { name: "held".into(), at: Place { beam: 0, s: 0.0 } },
             Probe { name: "tip".into(), at: Place { beam: 0, s: LENGTH } },
@@ -119,11 +122,7 @@ fn a_bifurcation_is_reported_with_its_load() {
     let mut column = model(Discretization::Ancf { nodes: Nodes::Uniform(9) }, 0.0, vec![clamp()]);
     column.beams[0].section.axial_stiffness = Some(1e6);
     let critical = std::f64::consts::PI.powi(2) / (4.0 * LENGTH * LENGTH);
-    column.loads = vec![Load::Force {
-        at: Place { beam: 0, s: LENGTH },
-        value: [-2.0 * critical, 0.0],
-        follower: false,
-    }];
+    column.parts = vec![Arc::new(Force::new(Place { beam: 0, s: LENGTH }, [-2.0 * critical, 0.0]))];
     let system = System::build(&column, Needs { inertia: false, motion: false }).expect("a legal model");
     let solution = ancf::solve::statics::solve(&system, &Static::default(), None, &mut |_, _, _| true);
     let [event] = solution.events[..] else { panic!("one loss of definiteness, not {:?}", solution.events) };
@@ -158,11 +157,7 @@ fn stability_between_constraint_rows_does_not_depend_on_units() {
         column.supports = vec![pin(0.0, true), pin(0.5 * length, false), pin(length, false)];
         column.probes.clear();
         let critical = 4.0 * std::f64::consts::PI.powi(2) / (LENGTH * LENGTH);
-        column.loads = vec![Load::Force {
-            at: Place { beam: 0, s: length },
-            value: [-2.0 * critical, 0.0],
-            follower: false,
-        }];
+        column.parts = vec![Arc::new(Force::new(Place { beam: 0, s: length }, [-2.0 * critical, 0.0]))];
         let system = System::build(&column, Needs { inertia: false, motion: false }).expect("a legal model");
         assert_eq!(system.multipliers(), 1, "the middle lies between nodes");
         let solution = ancf::solve::statics::solve(&system, &Static::default(), None, &mut |_, _, _| true);
@@ -203,8 +198,7 @@ fn supports_at_one_node_add_up() {
         let far = Support { at: Place { beam: 0, s: LENGTH }, ..support(false, true) };
         let discretization = Discretization::Ancf { nodes: Nodes::Uniform(7) };
         let mut model = model(discretization, 0.3, [supports, vec![far]].concat());
-        model.loads[0] =
-            Load::Force { at: Place { beam: 0, s: 0.5 * LENGTH }, value: [0.2, 0.3], follower: false };
+        model.parts[0] = Arc::new(Force::new(Place { beam: 0, s: 0.5 * LENGTH }, [0.2, 0.3]));
         let analysis = Analysis::Static(Static::default());
         model.solve(&analysis).map(|t| t.probes[1].samples.clone())
     };
@@ -220,7 +214,7 @@ fn supports_at_one_node_add_up() {
 fn the_prediction_moves_with_the_supports() {
     let moved = Support { displacement: Displacement { x: 2e-5, y: -3e-5, angle: 1e-5 }, ..clamp() };
     let mut model = model(Discretization::Ancf { nodes: Nodes::Uniform(9) }, 0.4, vec![moved]);
-    model.loads.clear();
+    model.parts.clear();
     let trajectory = model.solve(&Analysis::Static(Static::default())).expect("an equilibrium");
     let first = trajectory.history[0].increments[0];
     assert!(first < 1e-8, "the first correction is {first} of a beam length");

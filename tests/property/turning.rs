@@ -1,17 +1,20 @@
 //! Finite turns of nodes and chords, and forces of several states at once.
 
 use super::generators::{beam, clamp, free, noise, perturbed};
+use ancf::assembly::{Density, Earlier, Effect, Gradient, Hessian, Integral, Kind, Needs, Workspace};
 use ancf::basis::Quadrature;
-use ancf::effect::{Bend, Density, Earlier, Effect, Gradient, Hessian, Integral, Kind, Workspace};
+use ancf::effect::Bend;
+use ancf::effect::{Force, Moment};
 use ancf::lanes::Lanes;
 use ancf::model::{
-    Analysis, ArcLength, Beam, Centreline, Discretization, Load, Model, Nodes, Place, Probe, Static, Support,
+    Analysis, ArcLength, Beam, Centreline, Discretization, Model, Nodes, Place, Probe, Static, Support,
 };
 use ancf::solve::retraction::Retraction;
-use ancf::system::{Needs, System};
+use ancf::system::System;
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 fn held(beam: Beam, supports: Vec<Support>) -> System {
     let model = Model { beams: vec![beam], supports, ..Model::default() };
@@ -97,8 +100,8 @@ proptest! {
     #[test]
     fn forces_of_four_states_are_those_of_each(beam in beam(), noise in noise(), follower in any::<bool>()) {
         let s = 0.4 * free(&beam).beams()[0].basis.length();
-        let load = Load::Force { at: Place { beam: 0, s }, value: [3.0, -2.0], follower };
-        let model = Model { beams: vec![beam], loads: vec![load], ..Model::default() };
+        let load = Arc::new(Force { at: Place { beam: 0, s }, value: [3.0, -2.0], follower, law: None });
+        let model = Model { beams: vec![beam], parts: vec![load], ..Model::default() };
         let system = System::build(&model, Needs::default()).expect("a legal model");
         let n = system.coordinates();
         let states: Vec<Vec<f64>> = (0..4)
@@ -189,7 +192,7 @@ fn angles_count_the_turns_of_one_step() {
         let model = Model {
             beams: vec![ancf_beam(Nodes::Uniform(33))],
             supports: vec![Support { at: Place { beam: 0, s: clamped }, ..clamp() }],
-            loads: vec![Load::Moment { at: free, value: 1.5 * TAU }],
+            parts: vec![Arc::new(Moment::new(free, 1.5 * TAU))],
             probes: vec![Probe { name: "free".into(), at: free }],
             ..Model::default()
         };
@@ -211,7 +214,7 @@ fn a_path_ends_at_its_load_between_long_steps() {
     let model = Model {
         beams: vec![ancf_beam(Nodes::Uniform(97))],
         supports: vec![clamp()],
-        loads: vec![Load::Moment { at: tip, value: 3.0 * TAU }],
+        parts: vec![Arc::new(Moment::new(tip, 3.0 * TAU))],
         probes: vec![Probe { name: "tip".into(), at: tip }],
         ..Model::default()
     };

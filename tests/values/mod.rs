@@ -6,16 +6,30 @@
 //! a factor or a neighbouring index gives another result. `keys.toml` and `columns.toml` say which
 //! test looks at what; [`covered`] holds them against the schema and the headers.
 
+mod actuators;
+mod bounds;
 mod covered;
 mod effects;
 mod energies;
+mod fault_parts;
+mod faults;
 mod files;
+mod folds;
+mod locking;
+mod memory;
+mod modes;
+mod observers;
 mod obstacles;
 mod pictures;
+mod records;
+mod refusals;
 mod settings;
+mod starts;
 mod studies;
 mod time;
 mod units;
+mod warnings;
+mod words;
 
 use ancf::output::{OutputOptions, write};
 use ancf::scene::parse;

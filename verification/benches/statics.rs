@@ -1,6 +1,8 @@
 //! What statics cost: one Newton iteration, a whole roll-up, the tables of radial point
 //! interpolation, and the factorisations against each other. `cargo bench -p ancf-verification`.
 
+use ancf::assembly::Needs;
+use ancf::effect::Moment;
 use std::hint::black_box;
 
 use ancf::basis::{Basis, Quadrature};
@@ -9,12 +11,13 @@ use ancf::linear::band::BandLu;
 use ancf::linear::bordered::Bordered;
 use ancf::linear::symmetric::Ldl;
 use ancf::model::{
-    Analysis, Beam, Centreline, Discretization, Fixed, FixedRotation, GaussPoints, Kernel, Load, Model,
-    Nodes, Place, Section, SideCondition, Static, StrainMeasure, Support,
+    Analysis, Beam, Centreline, Discretization, Fixed, FixedRotation, GaussPoints, Kernel, Model, Nodes,
+    Place, Section, SideCondition, Static, StrainMeasure, Support,
 };
 use ancf::solve::equilibrium::Equilibrium;
-use ancf::system::{Needs, System};
+use ancf::system::System;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use std::sync::Arc;
 
 const LENGTH: f64 = 1.8;
 const EI: f64 = 68.95e9 * 0.130e-8;
@@ -49,7 +52,11 @@ fn cantilever(discretization: Discretization, gauss_points: GaussPoints, angle: 
             fix: Fixed { x: true, y: true, rotation: FixedRotation::Angle },
             ..Support::default()
         }],
-        loads: vec![Load::Moment { at: Place { beam: 0, s: LENGTH }, value: angle * EI / LENGTH }],
+        parts: vec![Arc::new(Moment {
+            at: Place { beam: 0, s: LENGTH },
+            value: angle * EI / LENGTH,
+            law: None,
+        })],
         ..Model::default()
     }
 }

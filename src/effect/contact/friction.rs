@@ -22,11 +22,12 @@
 
 use super::ContactIntegral;
 use super::curve::{Curve, MOST};
-use crate::effect::integral::{add_tiles, multiply_rows};
-use crate::effect::{AcceptedState, Action, Actions, Effect, InternalVariables, Workspace};
+use crate::assembly::{
+    AcceptedState, Action, Actions, ContactPiece, Effect, FrictionEffect, InternalVariables, Workspace,
+    add_tiles, multiply_rows,
+};
 use crate::linear::Matrix;
 use nalgebra::{Matrix2, Vector2};
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Part of the limit from which on a point counts as sliding: one that slid in the last state goes
@@ -47,15 +48,6 @@ pub struct Friction {
     pub coefficient: f64,
     /// k_t \[N/m²\]: traction per length and elastic slip.
     pub stiffness: f64,
-}
-
-/// A piece of a cell that touches, with the elastic slip at the points of its rule \[m\].
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Piece {
-    cell: usize,
-    from: f64,
-    to: f64,
-    slip: Vec<f64>,
 }
 
 /// A point that touches.
@@ -88,16 +80,6 @@ impl FrictionIntegral {
     /// The friction of `contact`, number `number` of those with friction.
     pub fn new(contact: Arc<ContactIntegral>, friction: Friction, number: usize) -> Self {
         Self { contact, friction, number }
-    }
-
-    /// Index of the beam.
-    pub fn beam(&self) -> usize {
-        self.contact.beam()
-    }
-
-    /// Points; its tables are those of its contact.
-    pub fn size(&self) -> (usize, usize) {
-        (self.contact.cells.count() * PARTS as usize * RULE.len(), 0)
     }
 
     /// Calls `visit` with the points of the pieces that touch in the state `q`: cell, piece, and
@@ -172,10 +154,18 @@ impl FrictionIntegral {
         let stiffness = (along * change.transpose() + bend * slip) * stiffness;
         Touching { weight, values, slip, along, limit, slides, stiffness }
     }
+}
 
-    /// `f += ` the forces ∂U/∂q that the springs would have in the state `q`, where `held` was the
-    /// last.
-    pub fn add_force(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
+impl FrictionEffect for FrictionIntegral {
+    fn beam(&self) -> usize {
+        self.contact.beam()
+    }
+
+    fn size(&self) -> (usize, usize) {
+        (self.contact.cells.count() * PARTS as usize * RULE.len(), 0)
+    }
+
+    fn add_force(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
         let mut sum = ControlForces::default();
         self.for_touching(held, q, |cell, _, point| {
             let force = point.along * (self.friction.stiffness * point.slip * point.weight);
@@ -184,8 +174,7 @@ impl FrictionIntegral {
         sum.finish(&self.contact, f);
     }
 
-    /// The same, and `k += ` its derivative.
-    pub fn add_force_and_tangent(
+    fn add_force_and_tangent(
         &self,
         held: &AcceptedState,
         q: &[f64],
@@ -206,23 +195,21 @@ impl FrictionIntegral {
         });
     }
 
-    /// The pieces that touch in the state `q` with their slips, and the energy of their springs.
-    pub fn slips(&self, held: &AcceptedState, q: &[f64]) -> (Vec<Piece>, f64) {
-        let (mut pieces, mut energy) = (Vec::<Piece>::new(), 0.0);
+    fn slips(&self, held: &AcceptedState, q: &[f64]) -> (Vec<ContactPiece>, f64) {
+        let (mut pieces, mut energy) = (Vec::<ContactPiece>::new(), 0.0);
         self.for_touching(held, q, |cell, [from, to], point| {
             energy += 0.5 * point.weight * self.friction.stiffness * point.slip * point.slip;
             match pieces.last_mut() {
                 Some(piece) if (piece.cell, piece.from, piece.to) == (cell, from, to) => {
                     piece.slip.push(point.slip)
                 }
-                _ => pieces.push(Piece { cell, from, to, slip: vec![point.slip] }),
+                _ => pieces.push(ContactPiece { cell, from, to, slip: vec![point.slip] }),
             }
         });
         (pieces, energy)
     }
 
-    /// `f += ` the forces of springs whose slips are known in the state `q`.
-    pub fn add_held_force(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]) {
+    fn add_held_force(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]) {
         let contact = &*self.contact;
         // A saved state may be that of another scene.
         let pieces = variables.contacts.get(self.number).into_iter().flatten();
@@ -239,8 +226,7 @@ impl FrictionIntegral {
         }
     }
 
-    /// What these springs do to their beam in the state `q`.
-    pub fn add_held_actions(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions) {
+    fn add_held_actions(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions) {
         let contact = &*self.contact;
         let pieces = variables.contacts.get(self.number).into_iter().flatten();
         let mut values = Vec::new();
@@ -256,9 +242,7 @@ impl FrictionIntegral {
         sum.add_spread(RULE.len(), values);
     }
 
-    /// Whether points slide that can bear more than half of what all can, and then whether against
-    /// friction; `v` are the velocities.
-    pub fn sliding(&self, held: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool> {
+    fn sliding(&self, held: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool> {
         let (mut power, mut balance) = (0.0, 0.0);
         self.for_touching(held, q, |cell, _, point| {
             if point.slides {
@@ -303,7 +287,7 @@ impl ControlForces {
 }
 
 /// The elastic slip at ξ of a cell, from that at the points of a piece that has it.
-fn slip_at(piece: &Piece, place: f64) -> Option<f64> {
+fn slip_at(piece: &ContactPiece, place: f64) -> Option<f64> {
     if !(piece.from..=piece.to).contains(&place) {
         return None;
     }

@@ -2,9 +2,8 @@
 
 use super::Penalty;
 use super::curve::{self, Border, Cells, Curve, MOST};
+use crate::assembly::{Action, Actions, Density, Earlier, Effect, Kind, Workspace, add_tiles, multiply_rows};
 use crate::basis::{Basis, BasisError, Quadrature};
-use crate::effect::integral::{add_tiles, multiply_rows};
-use crate::effect::{Action, Actions, Density, Earlier, Effect, Kind, Workspace};
 use crate::linear::Matrix;
 use nalgebra::Vector2;
 
@@ -129,24 +128,6 @@ impl ContactIntegral {
             curve::bernstein(self.cells.degree(), place, &mut values);
             Spot { place, weight: length * weight, values, r: curve.at(&values) }
         })
-    }
-
-    /// Whether anything touches in the state `q`.
-    pub fn touches(&self, q: &[f64]) -> bool {
-        self.intervals(q) > 0
-    }
-
-    /// Number of separate intervals of the beam that touch in the state `q`.
-    pub fn intervals(&self, q: &[f64]) -> usize {
-        let (mut count, mut last) = (0, f64::NEG_INFINITY);
-        for (cell, curve) in self.near(q) {
-            self.for_pieces(&curve, |from, to| {
-                let start = cell as f64 + from;
-                count += usize::from(start - last > SHORTEST * self.cells.count() as f64);
-                last = cell as f64 + to;
-            });
-        }
-        count
     }
 
     /// How deep the deepest of the points is at which the contact is summed in the state `q` \[m\].

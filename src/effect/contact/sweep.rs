@@ -9,9 +9,7 @@
 
 use super::ContactIntegral;
 use super::curve::Curve;
-
-/// Control states of a cubic: θ = 0, two between, θ = 1.
-pub type Way<'q> = [&'q [f64]; 4];
+use crate::assembly::{ContactEffect, Way};
 
 /// Most patches that are looked at; what is not clear by then counts as met.
 const PATCHES: usize = 20_000;
@@ -96,18 +94,28 @@ impl ContactIntegral {
         }
         first.is_finite().then_some(first)
     }
+}
 
-    /// The first θ at which the beam touches by more than round-off, if it does.
-    pub fn first_touch(&self, way: Way<'_>) -> Option<f64> {
+impl ContactEffect for ContactIntegral {
+    fn intervals(&self, q: &[f64]) -> usize {
+        let (mut count, mut last) = (0, f64::NEG_INFINITY);
+        for (cell, curve) in self.near(q) {
+            self.for_pieces(&curve, |from, to| {
+                let start = cell as f64 + from;
+                count += usize::from(start - last > SHORTEST * self.cells.count() as f64);
+                last = cell as f64 + to;
+            });
+        }
+        count
+    }
+
+    fn first_touch(&self, way: Way<'_>) -> Option<f64> {
         let shortest =
             (0..self.cells.count()).map(|cell| self.cells.length(cell)).fold(f64::INFINITY, f64::min);
         self.first_deeper(way, GRAZE * shortest, GRAZE * shortest)
     }
 
-    /// The first θ at which the beam is deeper than before by so much of the obstacle's thickness
-    /// that the force on the way is not seen; and, unless it `may_cross`, at which it might leave
-    /// the obstacle on the other side.
-    pub fn conflict(&self, way: Way<'_>, may_cross: bool) -> Option<f64> {
+    fn conflict(&self, way: Way<'_>, may_cross: bool) -> Option<f64> {
         let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
         if deepest.is_infinite() {
             return None;
@@ -119,8 +127,7 @@ impl ContactIntegral {
         self.first_deeper(way, level, FINE * deepest)
     }
 
-    /// Whether the beam might leave the obstacle on the other side.
-    pub fn crosses(&self, way: Way<'_>) -> bool {
+    fn crosses(&self, way: Way<'_>) -> bool {
         let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
         deepest.is_finite() && self.first_deeper(way, MIDDLE * deepest, FINE * deepest).is_some()
     }

@@ -131,7 +131,10 @@ impl Ruler {
     pub(super) fn new(axis: &Axis, [low, high]: [f64; 2], count: f64) -> Self {
         match axis.scale {
             Scale::Linear => {
+                // A single number, or none, tells no scale.
+                let tells = |step: &f64| (low / step - 1e-9).ceil() < (high / step + 1e-9).floor();
                 let step = nice((high - low) / count.max(1.0));
+                let step = if tells(&step) { step } else { nice(0.3 * (high - low)) };
                 Self::linear([low, high], if axis.whole { step.max(1.0) } else { step })
             }
             Scale::Log => Self::log([low, high], count),
@@ -145,16 +148,16 @@ impl Ruler {
         let decimals = (f64::from(exponent) - step.log10() - 1e-9).ceil().clamp(0.0, 15.0) as usize;
         let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
         // A range far from zero that f64 hardly resolves would give ticks without end.
-        let count = (last - first).clamp(0.0, 100.0) as usize;
-        let ticks = (0..=count).map(|i| (first + i as f64) * step).collect();
+        let count = (last - first + 1.0).clamp(0.0, 101.0) as usize;
+        let ticks = (0..count).map(|i| (first + i as f64) * step).collect();
         Self { low, high, ticks, minor: Vec::new(), decimals, exponent, scale: Scale::Linear }
     }
 
     fn log([low, high]: [f64; 2], count: f64) -> Self {
         let stride = ((high - low) / count.max(1.0)).ceil().max(1.0);
         let first = (low / stride - 1e-9).ceil() * stride;
-        let number = ((high - first) / stride + 1e-9).floor().clamp(0.0, 400.0) as usize;
-        let ticks = (0..=number).map(|i| first + stride * i as f64).collect();
+        let count = (((high - first) / stride + 1e-9).floor() + 1.0).clamp(0.0, 401.0) as usize;
+        let ticks = (0..count).map(|i| first + stride * i as f64).collect();
         let mut minor = Vec::new();
         if high - low <= 5.0 {
             for decade in low.floor() as i32..=high.ceil() as i32 {
@@ -207,6 +210,14 @@ mod tests {
 
     fn span(axis: &Axis, values: &[f64]) -> [f64; 2] {
         axis.span(values.iter().copied(), 0.05)
+    }
+
+    #[test]
+    fn no_tick_lies_beyond_its_range() {
+        assert_eq!(Ruler::linear([0.2, 0.8], 1.0).ticks, Vec::<f64>::new());
+        assert_eq!(Ruler::new(&Axis::log(""), [0.3, 0.7], 5.0).ticks, Vec::<f64>::new());
+        let narrow = Ruler::new(&Axis::linear(""), [0.21, 0.79], 0.5);
+        assert!(!narrow.ticks.is_empty() && narrow.ticks.iter().all(|tick| (0.21..0.79).contains(tick)));
     }
 
     #[test]

@@ -31,7 +31,7 @@ use super::State;
 use super::method::Method;
 use super::motion::{Acceleration, Motion, Rates, Stage};
 use super::turns::Turns;
-use crate::effect::Earlier;
+use crate::assembly::Earlier;
 use crate::linear::{Factor, Singular};
 use crate::solve::Statistics;
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};

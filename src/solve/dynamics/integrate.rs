@@ -36,7 +36,7 @@ use super::method::Method;
 use super::motion::Motion;
 use super::tableau::Tableau;
 use super::{Checkpoint, NoStep, Solution, State};
-use crate::effect::AcceptedState;
+use crate::assembly::AcceptedState;
 use crate::linear::Singular;
 use crate::model::{Crossing, Integrator, StepControl};
 use crate::solve::newton::{Failure, Iterations, not_crushed};

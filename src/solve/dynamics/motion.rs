@@ -39,7 +39,7 @@ pub use reactions::{Balance, Stage};
 
 use super::State;
 use super::turns::Turns;
-use crate::effect::{AcceptedState, Earlier, Workspace};
+use crate::assembly::{AcceptedState, Earlier, Workspace};
 use crate::lanes::{Lanes, Real};
 use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;

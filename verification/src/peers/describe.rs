@@ -7,9 +7,9 @@ use std::any::Any;
 
 use ancf::basis::Basis;
 use ancf::centreline::Curve;
-use ancf::effect::BeamDamping;
+use ancf::effect::{self, BeamDamping, Gravity};
 use ancf::model::{
-    About, Analysis, Beam, Centreline, Discretization, FixedRotation, Integrator, Law, Load, Model, Place,
+    About, Analysis, Beam, Centreline, Discretization, FixedRotation, Integrator, Law, Model, Place,
     StepControl, StrainMeasure,
 };
 use serde::Serialize;
@@ -122,13 +122,6 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
     if let Some(joint) = model.joints.first() {
         return Err(none(&format!("{joint:?}")));
     }
-    for part in &model.parts {
-        let part: &dyn Any = part.as_ref();
-        let Some(damping) = part.downcast_ref::<BeamDamping>() else {
-            return Err(none(&format!("{:?}", model.parts)));
-        };
-        add_damping(&mut description.beams, damping)?;
-    }
     for support in &model.supports {
         let by = support.displacement;
         let by = [by.x, by.y, by.angle];
@@ -153,28 +146,26 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
         let (x, y) = (support.fix.x, support.fix.y);
         description.supports.push(Support { beam, node, x, y, rotation, moved });
     }
-    for load in &model.loads {
-        let (load, factors) = match (load, &times) {
-            (Load::InTime { load, law }, Some(times)) => (load.as_ref(), Some(values(law, times))),
-            _ => (load, None),
+    for part in &model.parts {
+        let any: &dyn Any = part.as_ref();
+        let factors = |law: &Option<Law>| match (law, &times) {
+            (None, _) => Ok(None),
+            (Some(law), Some(times)) => Ok(Some(values(law, times))),
+            (Some(_), None) => Err(none("a load that follows time in statics")),
         };
-        match load {
-            Load::Force { at, value, follower } => {
-                let (beam, node) = (at.beam, node("a force", at)?);
-                description.forces.push(Force { beam, node, value: *value, follower: *follower, factors });
-            }
-            Load::Moment { at, value } => {
-                let (beam, node) = (at.beam, node("a moment", at)?);
-                description.moments.push(Moment { beam, node, value: *value, factors });
-            }
-            Load::Gravity { acceleration: [x, y] } if factors.is_none() => {
-                description.gravity[0] += x;
-                description.gravity[1] += y;
-            }
-            Load::Gravity { .. } => return Err(none("a weight that follows time")),
-            Load::DistributedForce { .. } => return Err(none("a distributed force")),
-            Load::InTime { .. } => return Err(none("a load that follows time in statics, or two laws")),
-            load => return Err(none(&format!("{load:?}"))),
+        if let Some(damping) = any.downcast_ref::<BeamDamping>() {
+            add_damping(&mut description.beams, damping)?;
+        } else if let Some(effect::Force { at, value, follower, law }) = any.downcast_ref() {
+            let (beam, node, factors) = (at.beam, node("a force", at)?, factors(law)?);
+            description.forces.push(Force { beam, node, value: *value, follower: *follower, factors });
+        } else if let Some(effect::Moment { at, value, law }) = any.downcast_ref() {
+            let (beam, node, factors) = (at.beam, node("a moment", at)?, factors(law)?);
+            description.moments.push(Moment { beam, node, value: *value, factors });
+        } else if let Some(Gravity { acceleration: [x, y], law: None }) = any.downcast_ref() {
+            description.gravity[0] += x;
+            description.gravity[1] += y;
+        } else {
+            return Err(none(&format!("{part:?}")));
         }
     }
     for given in &model.initial_velocities {

@@ -68,9 +68,9 @@ pub fn cut(scene: &Table) -> Option<Table> {
     cut.places(&mut scene);
     cut.whole(&mut scene);
     // A string passes no couple.
-    let stiff = ["bending_stiffness", "second_moment"].iter().any(|key| first.contains_key(*key));
+    let kind = if settings::bends(&first) { "weld" } else { "hinge" };
     let mut weld = Table::new();
-    weld.insert("type".into(), if stiff { "weld" } else { "hinge" }.into());
+    weld.insert("type".into(), kind.into());
     for (key, beam, at) in [("first", &name, "end"), ("second", &other, "start")] {
         let mut point = Table::new();
         point.insert("beam".into(), beam.clone().into());

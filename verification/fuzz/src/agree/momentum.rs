@@ -1,8 +1,9 @@
 //! Momentum of what nothing holds: forces that stay as they are change it in proportion to time,
 //! and without forces it stays, as its moment does.
 
+use ancf::assembly::Needs;
 use ancf::scene;
-use ancf::system::{Needs, System};
+use ancf::system::System;
 use toml::{Table, Value};
 
 use super::frame::Frame;

@@ -149,8 +149,6 @@ pub fn has_friction(scene: &Table) -> bool {
 /// Whether an equilibrium is that of a string that nothing pulls along the whole of its length: any
 /// of its shapes is one.
 pub fn is_slack(scene: &Table) -> bool {
-    let bends =
-        |beam: &Table| ["bending_stiffness", "second_moment"].iter().any(|key| beam.contains_key(*key));
     let pulled = |beam: &str| {
         items(scene, &["effect", "distributed_force"])
             .filter(|load| load.get("follower").and_then(Value::as_bool) != Some(true))
@@ -216,4 +214,9 @@ pub fn other_basis(scene: &Table) -> Option<Table> {
         basis.insert(if name == "ancf" { "rpim" } else { "ancf" }.into(), other.into());
         Some(basis)
     })
+}
+
+/// Whether a beam resists bending, and is no string.
+pub fn bends(beam: &Table) -> bool {
+    ["bending_stiffness", "second_moment"].iter().any(|key| beam.contains_key(*key))
 }

@@ -125,8 +125,7 @@ pub fn load_steps(scene: &Table, rng: &mut Rng) -> Option<Table> {
 
 /// Whether a path is refused where an equilibrium is not.
 fn rests_on_weight(scene: &Table) -> bool {
-    settings::beams(scene)
-        .any(|(_, beam)| !beam.contains_key("bending_stiffness") && !beam.contains_key("second_moment"))
+    settings::beams(scene).any(|(_, beam)| !settings::bends(beam))
 }
 
 /// The same by a hundredth of the tolerance.

@@ -17,7 +17,7 @@
 //! one at a time with four columns of a tile in the lanes.
 
 use super::force::{coefficients, fields, fields_of_four, sums_of_points};
-use crate::effect::{Density, Earlier, Integral, Workspace};
+use crate::assembly::{Density, Earlier, Integral, Workspace};
 use crate::lanes::fma;
 use crate::lanes::{self, Lanes, Pair, Points};
 use crate::linear::Matrix;

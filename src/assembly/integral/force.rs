@@ -5,7 +5,7 @@
 //! are. With 5/3 points an element takes 210 instructions by fours, 520 alone, most of them the
 //! products with the rows; the compiler's own attempts at it stayed scalar.
 
-use crate::effect::{Density, Gradient, Integral};
+use crate::assembly::{Density, Gradient, Integral};
 use crate::lanes::fma;
 use crate::lanes::{self, Lanes, Pair, Points};
 use nalgebra::Vector2;

@@ -47,7 +47,7 @@ use nalgebra::Vector2;
 /// loops.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
-    pub(super) products: Vec<f64>,
+    pub(crate) products: Vec<f64>,
     pub(super) lanes: Vec<Lanes>,
     pub(super) pairs: Vec<Pair<Lanes>>,
 }
@@ -300,7 +300,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
 }
 
 /// `P_md[2b + e] = w Σ_n H_mn(d, e) N_b⁽ᵒⁿ⁾`.
-pub(super) fn multiply_rows<const M: usize>(
+pub(crate) fn multiply_rows<const M: usize>(
     weight: f64,
     hessian: &Hessian<M>,
     rows: &[f64],
@@ -328,7 +328,7 @@ pub(super) fn multiply_rows<const M: usize>(
 }
 
 /// Adds all tiles of a cell to the matrix; the cell's first node is `node` of the system.
-pub(super) fn add_tiles<const M: usize>(
+pub(crate) fn add_tiles<const M: usize>(
     rows: &[f64],
     products: &[f64],
     width: usize,

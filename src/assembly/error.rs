@@ -1,12 +1,13 @@
 //! Why a model could not be turned into equations.
 
 use crate::basis::BasisError;
+use crate::beam::Beam;
 use crate::centreline::CurveError;
 
 /// Why a model could not be turned into equations.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 #[non_exhaustive]
-pub enum SystemError {
+pub enum BuildError {
     /// There is nothing to compute.
     #[error("the model has no beam")]
     #[diagnostic(help("add at least one beam with a geometry, a section and a basis"))]
@@ -153,7 +154,11 @@ pub enum SystemError {
     },
 }
 
-impl SystemError {
+impl BuildError {
+    pub(crate) fn missing(beam: &Beam, quantity: &'static str, needed_by: &'static str) -> Self {
+        Self::Missing { beam: beam.name.clone(), quantity, needed_by }
+    }
+
     pub(crate) fn basis(beam: &str, source: BasisError) -> Self {
         Self::Basis { beam: beam.to_owned(), cause: Box::new(source) }
     }

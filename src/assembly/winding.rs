@@ -2,7 +2,7 @@
 //!
 //! A torsion spring has W = ½ k θ² with the angle θ = α + 2πn of all turns. Of a state one knows α,
 //! from −π to π; n is that by which θ is nearest to the angle θ_h of the last accepted state. The
-//! part ½ k α² is summed as all elastic energies are ([`super::Torsion`]), and what a winding adds,
+//! part ½ k α² is summed as all elastic energies are, and what a winding adds,
 //!
 //! ```text
 //! W = 2πn k (α + πn),   ∂W/∂α = 2πn k,
@@ -10,46 +10,9 @@
 //!
 //! by [`Winding`]: nothing, until the spring has passed half a turn.
 
-use super::direction;
-use super::{AcceptedState, Actions, Density, Effect, Gradient, Hessian, InternalVariables, Workspace};
+use super::{AcceptedState, Actions, Effect, InternalVariables, Workspace};
 use crate::linear::Matrix;
-use nalgebra::Vector2;
 use std::f64::consts::TAU;
-
-/// The angle from r'₀ to r' as an energy of unit moment.
-#[derive(Clone, Debug)]
-pub struct Direction {
-    reference: Vector2<f64>,
-}
-
-impl Direction {
-    /// From r'₀.
-    pub fn new(reference: Vector2<f64>) -> Self {
-        Self { reference }
-    }
-}
-
-impl Density<1> for Direction {
-    const ORDERS: [usize; 1] = [1];
-
-    fn energy(&self, _: usize, z: &Gradient<1>) -> f64 {
-        direction::angle(&self.reference, &z[0])
-    }
-
-    fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
-        [direction::gradient(&z[0])]
-    }
-
-    fn gradient_and_hessian(
-        &self,
-        point: usize,
-        z: &Gradient<1>,
-        _: &Gradient<1>,
-        _: &Gradient<1>,
-    ) -> (Gradient<1>, Hessian<1>) {
-        (self.gradient(point, z), [[direction::hessian(&z[0])]])
-    }
-}
 
 /// What a torsion spring adds where it has passed half a turn.
 pub struct Winding {
@@ -59,7 +22,7 @@ pub struct Winding {
 }
 
 impl Winding {
-    /// Of the spring with k = `stiffness` \[N m/rad\] on `direction` ([`Direction`]), number
+    /// Of the spring with k = `stiffness` \[N m/rad\] on the density `direction` of the angle, number
     /// `number` of all.
     pub fn new(direction: Box<dyn Effect>, stiffness: f64, number: usize) -> Self {
         Self { direction, stiffness, number }

@@ -1,0 +1,264 @@
+//! How parts become the terms of the equations.
+
+use super::{
+    ActingLoad, Amplitude, BuildError, ContactEffect, Density, DiscretizedBeam, Dissipation, Extent,
+    FrictionEffect, Integral, Kind, MovingLoad, Needs, Rayleigh, Terms, Turning, Winding,
+};
+use crate::basis::{Basis, BasisTable, Quadrature};
+use crate::beam::{Beam, Place};
+use crate::law::Law;
+use nalgebra::Vector2;
+use std::sync::Arc;
+
+/// The equations under assembly.
+pub struct Assembly<'a> {
+    beams: &'a [Beam],
+    discretized: &'a [DiscretizedBeam],
+    reference: &'a [f64],
+    masses: Vec<(Place, f64)>,
+    needs: Needs,
+    terms: Terms,
+}
+
+impl<'a> Assembly<'a> {
+    /// Of `beams`, which are `discretized` in that order, with masses \[kg\] at points of them;
+    /// `reference` are the coordinates of the stress-free state.
+    pub fn new(
+        beams: &'a [Beam],
+        discretized: &'a [DiscretizedBeam],
+        reference: &'a [f64],
+        masses: Vec<(Place, f64)>,
+        needs: Needs,
+    ) -> Self {
+        Self { beams, discretized, reference, masses, needs, terms: Terms::default() }
+    }
+
+    /// What the parts have added.
+    pub fn finish(self) -> Terms {
+        self.terms
+    }
+
+    /// All beams.
+    pub fn beams(&self) -> &'a [Beam] {
+        self.beams
+    }
+
+    /// The masses \[kg\] at points of the beams.
+    pub fn masses(&self) -> &[(Place, f64)] {
+        &self.masses
+    }
+
+    /// What the analysis asks for.
+    pub fn needs(&self) -> Needs {
+        self.needs
+    }
+
+    /// A beam, as `what` refers to it.
+    ///
+    /// # Errors
+    /// [`BuildError::NoSuchBeam`].
+    pub fn beam(&self, what: &'static str, beam: usize) -> Result<&'a Beam, BuildError> {
+        let none = BuildError::NoSuchBeam { what, beam, count: self.beams.len() };
+        self.beams.get(beam).ok_or(none)
+    }
+
+    /// A beam's shape functions and its place among the coordinates.
+    pub fn discretized(&self, beam: usize) -> &'a DiscretizedBeam {
+        &self.discretized[beam]
+    }
+
+    /// A rule that integrates products of two shape functions: exact for the cable element's mass
+    /// matrix (degree 6).
+    pub fn mass_rule(&self, beam: usize) -> Quadrature {
+        let points = self.beams[beam].gauss_points;
+        Quadrature::Gauss(points.stretch.max(points.bend).max(4))
+    }
+
+    /// Something with an energy: springs, foundations, contacts, a beam's own elasticity. `density`
+    /// receives the fields of the stress-free state at the points.
+    ///
+    /// # Errors
+    /// [`BuildError`] where the extent is off the beam, naming the kind.
+    pub fn elastic<D: Density<M> + 'static, const M: usize>(
+        &mut self,
+        kind: Kind,
+        extent: Extent,
+        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<(), BuildError> {
+        let effect = self.integral(kind, extent, D::ORDERS, density)?;
+        self.terms.internal.push(Box::new(effect));
+        Ok(())
+    }
+
+    /// A load: grows with the load factor in statics; acts in full, or by `law`, in a motion.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`], and where there is a law of time in an analysis without time.
+    pub fn load<D: Density<M> + 'static, const M: usize>(
+        &mut self,
+        kind: Kind,
+        extent: Extent,
+        law: Option<&Law>,
+        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<(), BuildError> {
+        if law.is_some() && !self.needs.motion {
+            return Err(BuildError::NoTime { what: "a load" });
+        }
+        let effect = self.integral(kind, extent, D::ORDERS, density)?;
+        self.terms
+            .loads
+            .push(ActingLoad { effect: Box::new(effect), amplitude: law.cloned().map(Amplitude::Law) });
+        Ok(())
+    }
+
+    /// A kinetic energy, quadratic in the velocities, with a constant matrix; nothing in an
+    /// analysis without inertia.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`].
+    pub fn inertia<D: Density<M> + 'static, const M: usize>(
+        &mut self,
+        kind: Kind,
+        extent: Extent,
+        density: D,
+    ) -> Result<(), BuildError> {
+        if self.needs.inertia {
+            let effect = self.integral(kind, extent, D::ORDERS, |_| density)?;
+            self.terms.inertia.push(Box::new(effect));
+        } else if !matches!(kind, Kind::Inertia | Kind::PointMass) {
+            // Of masses there is the weight.
+            self.terms.left_out.push((kind, extent.beam()));
+        }
+        Ok(())
+    }
+
+    /// A kinetic energy, quadratic in the velocities, with a matrix that follows the state:
+    /// `momentum` is its derivative by the rates of the fields, and `rate` the force of inertia of
+    /// fields that do not accelerate. Nothing in an analysis without inertia.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`].
+    pub fn turning_inertia<D, E, const M: usize>(
+        &mut self,
+        kind: Kind,
+        extent: Extent,
+        momentum: D,
+        rate: E,
+    ) -> Result<(), BuildError>
+    where
+        D: Dissipation<M> + 'static,
+        E: Dissipation<M> + 'static,
+    {
+        if self.needs.inertia {
+            let momentum = Box::new(self.integral(kind, extent, D::ORDERS, |_| Rayleigh(momentum))?);
+            let rate = Box::new(self.integral(kind, extent, E::ORDERS, |_| Rayleigh(rate))?);
+            self.terms.turning.push(Turning { momentum, rate });
+        }
+        Ok(())
+    }
+
+    /// A dissipation function; nothing in an analysis without motion, which says so.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`].
+    pub fn damping<D: Dissipation<M> + 'static, const M: usize>(
+        &mut self,
+        kind: Kind,
+        extent: Extent,
+        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<(), BuildError> {
+        if self.needs.motion {
+            let effect = self.integral(kind, extent, D::ORDERS, |fields| Rayleigh(density(fields)))?;
+            self.terms.damping.push(Box::new(effect));
+        } else {
+            self.terms.left_out.push((kind, extent.beam()));
+        }
+        Ok(())
+    }
+
+    /// A contact: an energy that is asked, besides, where it touches.
+    pub fn contact(&mut self, contact: Arc<dyn ContactEffect>) {
+        self.terms.internal.push(Box::new(Arc::clone(&contact)));
+        self.terms.contacts.push(contact);
+    }
+
+    /// The friction of a contact, which is told its number among those of the system.
+    pub fn friction(&mut self, friction: impl FnOnce(usize) -> Box<dyn FrictionEffect>) {
+        self.terms.friction.push(friction(self.terms.friction.len()));
+    }
+
+    /// The turns of a torsion spring with the energy ½ k θ²: `direction` is the density θ, from −π to
+    /// π, of the fields of the stress-free state at the point.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`].
+    pub fn winding<D: Density<M> + 'static, const M: usize>(
+        &mut self,
+        kind: Kind,
+        at: Place,
+        stiffness: f64,
+        direction: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<(), BuildError> {
+        let direction = self.integral(kind, Extent::Point(at), D::ORDERS, direction)?;
+        self.terms.windings.push(Winding::new(Box::new(direction), stiffness, self.terms.windings.len()));
+        Ok(())
+    }
+
+    /// A force whose place moves.
+    ///
+    /// # Errors
+    /// [`BuildError::NoTime`] in an analysis without time.
+    pub fn moving_load(&mut self, load: Box<dyn MovingLoad>) -> Result<(), BuildError> {
+        if !self.needs.motion {
+            return Err(BuildError::NoTime { what: "a moving force" });
+        }
+        self.terms.moving_loads.push(load);
+        Ok(())
+    }
+
+    fn integral<D, const M: usize>(
+        &self,
+        kind: Kind,
+        extent: Extent,
+        orders: [usize; M],
+        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<Integral<D, M>, BuildError>
+    where
+        D: Density<M>,
+    {
+        let index = extent.beam();
+        let beam = self.beam(kind.name(), index)?;
+        let part = &self.discretized[index];
+        let table = match extent {
+            Extent::Beam(_, rule) => part.basis.table(rule, &orders),
+            Extent::Point(place) => part.basis.points(&[part.arc_length(kind.name(), place.s)?], &orders),
+        };
+        let table = table.map_err(|e| BuildError::basis(&beam.name, e))?;
+        let fields = reference_fields::<M>(&table, part.offset(), self.reference);
+        Ok(Integral::new(kind, index, part.offset(), table, density(fields)))
+    }
+
+    /// The shape functions of a beam.
+    pub fn basis(&self, beam: usize) -> &'a Basis {
+        &self.discretized[beam].basis
+    }
+}
+
+/// The fields of the reference state at all points of a table: one `[z_0, z_1, …]` a point.
+fn reference_fields<const M: usize>(table: &BasisTable, offset: usize, q: &[f64]) -> Vec<[Vector2<f64>; M]> {
+    let width = table.width;
+    let mut fields = Vec::with_capacity(table.s.len());
+    for entry in &table.cells {
+        let (_, rows) = table.block(*entry);
+        let q = &q[2 * (offset + entry.first as usize)..];
+        for rows in rows.chunks_exact(M * width) {
+            fields.push(std::array::from_fn(|m| {
+                let row = &rows[m * width..(m + 1) * width];
+                row.iter()
+                    .zip(q.chunks_exact(2))
+                    .fold(Vector2::zeros(), |sum, (n, q)| sum + Vector2::new(q[0], q[1]) * *n)
+            }));
+        }
+    }
+    fields
+}

@@ -1,0 +1,82 @@
+//! What effects are, for energies and inventories.
+
+/// The enumeration, its list and its names from one list.
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal,)*) => {
+        /// What an effect is, for energies and inventories.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Kind {
+            $($(#[$doc])* $variant,)*
+            /// An effect that another crate brings.
+            Other(&'static str),
+        }
+
+        impl Kind {
+            /// All kinds that exist here.
+            pub const ALL: &[Self] = &[$(Self::$variant,)*];
+
+            /// The name used in scenes and inventories.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)*
+                    Self::Other(name) => name,
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// Axial strain energy.
+    Stretch = "stretch",
+    /// An axis that keeps its length, by constraint.
+    Inextensibility = "inextensibility",
+    /// Bending strain energy.
+    Bend = "bend",
+    /// Kinetic energy of the centreline.
+    Inertia = "inertia",
+    /// Weight.
+    Gravity = "gravity",
+    /// Concentrated force.
+    Force = "force",
+    /// Concentrated moment.
+    Moment = "moment",
+    /// Force per length.
+    DistributedForce = "distributed_force",
+    /// Damping of a beam's motion and deformation.
+    Damping = "damping",
+    /// Spring to the ground.
+    Spring = "spring",
+    /// Dashpot to the ground.
+    Dashpot = "dashpot",
+    /// Torsional spring to the ground.
+    TorsionSpring = "torsion_spring",
+    /// Torsional dashpot to the ground.
+    TorsionDashpot = "torsion_dashpot",
+    /// Mass at a point.
+    PointMass = "point_mass",
+    /// Rotary inertia of a point or of sections.
+    RotaryInertia = "rotary_inertia",
+    /// Elastic foundation.
+    Foundation = "foundation",
+    /// Strain that a beam would take by itself.
+    PreStrain = "pre_strain",
+    /// Curvature that a beam would take by itself.
+    PreCurvature = "pre_curvature",
+    /// Resistance of a fluid.
+    Drag = "drag",
+    /// Lift by a displaced fluid.
+    Buoyancy = "buoyancy",
+    /// Contact with an obstacle.
+    Contact = "contact",
+    /// Friction in a contact.
+    Friction = "friction",
+    /// Force that travels along a beam.
+    MovingForce = "moving_force",
+}
+
+impl serde::Serialize for Kind {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}

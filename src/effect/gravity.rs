@@ -1,0 +1,39 @@
+//! Weight.
+
+use super::force::add_dead_force;
+use crate::assembly::{Assembly, BuildError, Extent, Kind, Part};
+use crate::law::Law;
+
+/// Weight of every beam and point that has mass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gravity {
+    /// \[m/s²\].
+    pub acceleration: [f64; 2],
+    /// By what factor it acts, in a motion only; in full from the start where there is none.
+    pub law: Option<Law>,
+}
+
+impl Gravity {
+    /// Of this acceleration \[m/s²\].
+    pub fn new(acceleration: [f64; 2]) -> Self {
+        Self { acceleration, law: None }
+    }
+}
+
+impl Part for Gravity {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
+        let beams = assembly.beams();
+        let weights = beams.iter().enumerate().filter_map(|(index, beam)| {
+            Some((Extent::Beam(index, assembly.mass_rule(index)), beam.section.mass_per_length?))
+        });
+        let points = assembly.masses().iter().map(|(at, mass)| (Extent::Point(*at), *mass));
+        let weights: Vec<(Extent, f64)> = weights.chain(points).collect();
+        if let (true, Some(first)) = (weights.is_empty(), beams.first()) {
+            return Err(BuildError::missing(first, "mass per length", "gravity"));
+        }
+        weights.into_iter().try_for_each(|(extent, mass)| {
+            let force = self.acceleration.map(|g| mass * g);
+            add_dead_force(assembly, Kind::Gravity, extent, force, self.law.as_ref())
+        })
+    }
+}

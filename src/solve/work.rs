@@ -1,0 +1,97 @@
+//! The work of actuators along a path of equilibria.
+//!
+//! What actuators put in as the load factor grows, W = ∫ P(λ, q(λ)) dλ with P that of
+//! [`System::actuators_rate`], depends on the whole path. Its steps are long where the equations
+//! converge well, so that between their ends P is looked at until Simpson's rule no longer changes.
+
+use super::path::Path;
+use crate::system::System;
+
+/// Change of Simpson's rule by a halving that ends the halvings, against the work that there would be
+/// if nothing gave way.
+const CHANGE: f64 = 1e-7;
+/// Most halvings.
+const HALVINGS: usize = 8;
+
+/// Work so far, with its estimated error.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Work {
+    /// \[J\]
+    pub value: f64,
+    /// \[J\]
+    pub error: f64,
+    /// What it would be if nothing gave way \[J\].
+    pub size: f64,
+    /// dP/dλ in the last step between whose ends nothing is known.
+    slope: Option<f64>,
+}
+
+/// P at a load factor.
+type Sample = (f64, f64);
+
+impl Work {
+    /// Adds that of the path's last step along the load factor.
+    pub fn add_step(&mut self, path: &mut Path<'_, '_>) {
+        let system = path.equilibrium.system();
+        let Some([a, b]) = path.last_two().filter(|_| system.has_actuators()) else { return };
+        let (from, to) = (sample(system, a.load, &a.x), sample(system, b.load, &b.x));
+        self.size += unyielding(system, from.0, to.0);
+        match between(path, from, to) {
+            Some(middle) => self.add_piece(path, [from, middle, to], HALVINGS),
+            None => self.add_straight(from, to),
+        }
+    }
+
+    /// Adds that between two states of which nothing between is known, by the trapezoidal rule.
+    pub fn add_states(&mut self, system: &System, (from, x): (f64, &[f64]), (to, y): (f64, &[f64])) {
+        if system.has_actuators() {
+            self.size += unyielding(system, from, to);
+            self.add_straight(sample(system, from, x), sample(system, to, y));
+        }
+    }
+
+    fn add_straight(&mut self, from: Sample, to: Sample) {
+        let (step, change) = (to.0 - from.0, to.1 - from.1);
+        self.value += 0.5 * (from.1 + to.1) * step;
+        // The rule errs by a twelfth of P'' h³, and P'' h is the change of slope from step to step.
+        let slope = if step == 0.0 { 0.0 } else { change / step };
+        self.error += (step * step * (slope - self.slope.unwrap_or(0.0))).abs() / 12.0;
+        self.slope = Some(slope);
+    }
+
+    fn add_piece(&mut self, path: &mut Path<'_, '_>, [from, middle, to]: [Sample; 3], halvings: usize) {
+        let whole = simpson([from, middle, to]);
+        let halves = (between(path, from, middle), between(path, middle, to));
+        let (Some(first), Some(second)) = halves else {
+            self.value += whole;
+            self.error += (whole - 0.5 * (from.1 + to.1) * (to.0 - from.0)).abs();
+            return;
+        };
+        let halves = [[from, first, middle], [middle, second, to]];
+        let sum: f64 = halves.iter().copied().map(simpson).sum();
+        if (sum - whole).abs() <= CHANGE * self.size || halvings == 0 {
+            self.value += sum;
+            self.error += (sum - whole).abs();
+        } else {
+            halves.into_iter().for_each(|half| self.add_piece(path, half, halvings - 1));
+        }
+    }
+}
+
+fn sample(system: &System, load: f64, x: &[f64]) -> Sample {
+    (load, system.actuators_rate(load, &x[..system.coordinates()]))
+}
+
+/// The work from one load factor to another if nothing gave way.
+fn unyielding(system: &System, from: f64, to: f64) -> f64 {
+    0.5 * (system.actuators_size(from) + system.actuators_size(to)) * (to - from).abs()
+}
+
+fn between(path: &mut Path<'_, '_>, from: Sample, to: Sample) -> Option<Sample> {
+    let point = path.between(0.5 * (from.0 + to.0))?;
+    Some(sample(path.equilibrium.system(), point.load, &point.x))
+}
+
+fn simpson([from, middle, to]: [Sample; 3]) -> f64 {
+    (to.0 - from.0) / 6.0 * (from.1 + 4.0 * middle.1 + to.1)
+}

@@ -1,0 +1,300 @@
+//! The numbers and words of what a run warns of: energies that go astray, steps that were divided,
+//! obstacles that gave way, stability lost and regained, and what an analysis leaves out.
+
+use super::near;
+use ancf::run::Options;
+use ancf::scene::parse;
+use ancf::trajectory::{Energy, Event, Trajectory};
+use std::f64::consts::PI;
+
+fn solved(text: &str) -> Trajectory {
+    let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// The number that stands between two texts.
+fn between(text: &str, before: &str, after: &str) -> f64 {
+    let part = text.split(before).nth(1).and_then(|rest| rest.split(after).next());
+    part.and_then(|part| part.parse().ok()).unwrap_or_else(|| panic!("`{before}` number `{after}`: {text}"))
+}
+
+/// A clamped beam of the length L, EA = 1e4 L² and EI = L⁴ in these units, so that it swings alike
+/// whatever its length, pushed off by V at its end.
+fn swinging(length: f64, speed: f64, more: &str, integrator: &str) -> Trajectory {
+    let (axial, bending, rate) = (1e4 * length.powi(2), length.powi(4), speed / length.powi(2));
+    solved(&format!(
+        "beam.arm = {{ start = [0, 0], end = [{length:?}, 0], axial_stiffness = {axial:e}, bending_stiffness = {bending:e}, \
+         mass_per_length = 1, basis.ancf.elements = 2 }}
+         support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+         initial_velocity = [{{ beam = 'arm', polynomial = {{ vy = [0, 0, {rate:e}] }} }}]
+         {more}
+         analysis.dynamic = {{ duration = 1, output_every = 0.1, {integrator} }}\n"
+    ))
+}
+
+const LOSSY: &str = "generalized_alpha = { step = 0.1, spectral_radius = 0.0 }";
+const EXACT: &str = "radau.tolerance = 1e-6";
+
+fn extremes(energy: &[Energy]) -> [f64; 2] {
+    let totals = || energy.iter().map(Energy::total);
+    [totals().fold(f64::INFINITY, f64::min), totals().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+/// A motion that begins with all of its energy as speed: what it has lost or gained is told with
+/// its part of that, however small both are.
+///
+/// Would catch a balance of other records than the first and the farthest, shares of one joule in
+/// place of the motion's own energy, and losses that are told as gains.
+#[test]
+fn energy_that_goes_astray_is_told_with_its_share() {
+    // ½ V² ∫ s⁴ ds at the start.
+    for speed in [1.0, 1e-2, 1e-6] {
+        let found = swinging(1.0, speed, "", LOSSY);
+        let (first, [least, most]) = (found.energy[0].total(), extremes(&found.energy));
+        near(first / (0.1 * speed * speed), 1.0, 1e-9, "the first energy");
+        assert!(first - least > 0.1 * first && most <= first * (1.0 + 1e-9), "{least} to {most} of {first}");
+        let expected = format!(
+            "the motion has lost {:.2e} J, {:.2} of its largest energy, that no damping took",
+            first - least,
+            (first - least) / first
+        );
+        assert!(found.warnings[0].starts_with(&expected), "{expected}: {:?}", found.warnings);
+    }
+    let found = swinging(1.0, 1.0, "", "gauss = { stages = 1, step = 0.1 }");
+    let (first, [least, most]) = (found.energy[0].total(), extremes(&found.energy));
+    assert!(most > 1.02 * first && least > 0.999 * first, "{least} to {most} of {first}");
+    let parts = |e: &Energy| [e.stretch, e.bend, e.kinetic];
+    let largest = found.energy.iter().flat_map(parts).fold(0.0, f64::max);
+    let expected = format!(
+        "the motion has gained {:.2e} J, {:.2} of its largest energy, that nothing put in",
+        most - first,
+        (most - first) / largest
+    );
+    assert!(found.warnings[0].starts_with(&expected), "{expected}: {:?}", found.warnings);
+    assert_eq!(swinging(1.0, 1.0, "", EXACT).warnings, Vec::<String>::new());
+    // A loss of less than a hundredth is none.
+    let found = swinging(1.0, 1e-2, "", "radau = { stages = 2, step = 0.05 }");
+    let (first, [least, _]) = (found.energy[0].total(), extremes(&found.energy));
+    assert!(first - least > 1e-4 * first && first - least < 0.01 * first, "{least} of {first}");
+    assert_eq!(found.warnings, Vec::<String>::new());
+}
+
+/// A rod that hangs has fallen by five joules, which no swing of some millijoules changes: shares
+/// are of what changes.
+#[test]
+fn a_deep_potential_hides_no_loss() {
+    let rod = "beam.rod = { start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1e4, mass_per_length = 1, basis.ancf.elements = 2 }
+        support = [{ beam = 'rod', at = 'start', fix = ['x', 'y'] }]
+        effect.gravity.acceleration = [0, -10]\n";
+    let hanging = solved(&format!("{rod}analysis.static = {{}}\n"));
+    let text = format!(
+        "{rod}initial_velocity = [{{ beam = 'rod', rotation = 0.1 }}]
+         analysis.dynamic = {{ duration = 2, output_every = 0.1, {LOSSY} }}\n"
+    );
+    let scene = parse("scene.toml", &text).expect("a legal scene");
+    let options = Options { start: hanging.saved.as_ref(), ..Options::default() };
+    let found = scene.model().solve_with(scene.analysis(), options).expect("a motion");
+    let (first, [least, _]) = (&found.energy[0], extremes(&found.energy));
+    near(first.potential, -5.0, 1e-3, "of 1 kg whose middle is 0.5 m below");
+    near(first.kinetic, 0.5 * 0.01 / 3.0, 1e-6, "of the rotation");
+    let lost = first.total() - least;
+    assert!(lost > 0.1 * first.kinetic, "{lost} J of {} J", first.kinetic);
+    let expected =
+        format!("the motion has lost {lost:.2e} J, {:.2} of its largest energy", lost / first.kinetic);
+    assert!(found.warnings[0].starts_with(&expected), "{expected}: {:?}", found.warnings);
+}
+
+/// Energies below 1e-20 EA L are those of round-off, about which nothing is said: 1e-12 J of a beam
+/// of 100 m with 1e8 N are, 1e-8 J are not.
+#[test]
+fn energies_of_round_off_are_not_told() {
+    let start = |speed: f64| swinging(100.0, speed, "", LOSSY);
+    // ½ V² L/5
+    for (energy, told) in [(1e-12, false), (1e-8, true)] {
+        let found = start(f64::sqrt(0.1 * energy));
+        near(found.energy[0].kinetic / energy, 1.0, 1e-6, "the energy at the start");
+        assert_eq!(!found.warnings.is_empty(), told, "{energy} J: {:?}", found.warnings);
+    }
+}
+
+/// Would catch counts that are of other steps, the largest step for the smallest, and a word for
+/// several where there is one.
+#[test]
+fn divided_steps_are_counted_and_measured() {
+    for (integrator, times) in [
+        ("generalized_alpha = { step = 0.1, spectral_radius = 1.0 }", "1 time,"),
+        ("gauss = { stages = 1, step = 0.1 }", "10 times,"),
+    ] {
+        let found = swinging(1.0, 1.0, "", integrator);
+        let divided = found.statistics.rejected_steps;
+        assert!(times.starts_with(&format!("{divided} ")), "{integrator}: {divided} divided steps");
+        // Half of what was asked for was short enough.
+        let expected = format!("the step was divided {times} down to 5.0e-2 s, because");
+        let told = found.warnings.iter().find(|warning| warning.contains("divided")).expect("a warning");
+        assert!(told.starts_with(&expected), "{told}");
+    }
+    let found = swinging(1.0, 1.0, "", "gauss = { stages = 1, tolerance = 1e-4 }");
+    assert!(found.warnings.iter().all(|warning| !warning.contains("divided")), "{:?}", found.warnings);
+}
+
+/// A rod that falls onto a pin too soft to stop it: the pin is the second contact, and gives way
+/// when the rod is at the height of its middle.
+#[test]
+fn what_gives_way_is_told_with_its_time() {
+    for integrator in ["gauss.tolerance = 1e-5", "radau.step = 0.01"] {
+        let found = solved(&format!(
+            "beam.a = {{ start = [-0.54, 0.3], end = [0.46, 0.3], axial_stiffness = 1e5, bending_stiffness = 10, mass_per_length = 1, \
+             basis.ancf.elements = 12 }}
+             effect.gravity.acceleration = [0, -9.81]
+             initial_velocity = [{{ beam = 'a', value = [0, -10] }}]
+             effect.contact = [{{ beam = 'a', half_plane = {{ point = [0, -5], normal = [0, 1] }}, stiffness = 1e5 }}, \
+             {{ beam = 'a', circle = {{ center = [0, -0.001], radius = 0.001 }}, stiffness = 1e7 }}]
+             analysis.dynamic = {{ duration = 0.06, output_every = 0.02, {integrator} }}\n"
+        ));
+        let told = found.warnings.iter().find(|warning| warning.contains("gave way")).expect("a warning");
+        assert!(told.starts_with("contact a.2 gave way at t = "), "{told}");
+        // 0.301 m at 10 m/s and by its weight.
+        let time = (f64::sqrt(100.0 + 2.0 * 9.81 * 0.301) - 10.0) / 9.81;
+        near(between(told, "gave way at t = ", " s: the beam"), time, 2e-5, integrator);
+        let [
+            Event::Contact { time: from, touches: true, .. },
+            Event::Contact { time: to, touches: false, .. },
+        ] = &found.events[..]
+        else {
+            panic!("{:?}", found.events)
+        };
+        assert!(*from < time && time < *to, "{from} to {to}");
+    }
+}
+
+/// A perfect column passes its critical loads π²/4, 9π²/4, 25π²/4 in EI/L²: each is told with its
+/// factor of the load and the number of directions that are unstable then.
+#[test]
+fn stability_lost_is_told_with_its_load_and_directions() {
+    let found = solved(
+        "beam.column = { start = [0, 0], end = [0.6, 0.8], axial_stiffness = 1e7, bending_stiffness = 1, basis.ancf.elements = 16 }
+        support = [{ beam = 'column', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.force = [{ beam = 'column', at = 'end', value = [-54, -72] }]
+        analysis.static = {}\n",
+    );
+    assert_eq!(found.warnings.len(), 3, "{:?}", found.warnings);
+    for (n, warning) in found.warnings.iter().enumerate() {
+        let critical = (PI * (n as f64 + 0.5)).powi(2) / 90.0;
+        let load = between(warning, "the tangent loses definiteness at load factor ", ":");
+        near(load / critical, 1.0, 1e-3, warning);
+        let directions = match n {
+            0 => "0 unstable directions before, 1 after",
+            1 => "1 unstable direction before, 2 after",
+            _ => "2 unstable directions before, 3 after",
+        };
+        let advice = "beyond it the equilibrium found is unstable: a bifurcation or a limit point";
+        assert!(warning.ends_with(&format!(": {directions}; {advice}")), "{warning}");
+    }
+}
+
+/// A bar that is pushed through its flat position, by 1 m along x: N/EA = ℓ/ℓ₀ − 1 and P = N y/ℓ
+/// have their extreme (1 − (1/ℓ₀)^⅔)^1½ EA. The vertex between points of the path is nearer to it
+/// than any of them.
+#[test]
+fn limit_points_are_told_nearer_than_any_point_of_the_path() {
+    let found = solved(
+        "beam.bar = { start = [0, 0], end = [1, 0.3], axial_stiffness = 1e4, bending_stiffness = 1e3, basis.ancf.elements = 2 }
+        support = [{ beam = 'bar', at = 'start', fix = ['x', 'y'] }, { beam = 'bar', at = 'end', fix = ['x'] }]
+        effect.force = [{ beam = 'bar', at = 'end', value = [0, -100] }]
+        probe = [{ name = 'end', beam = 'bar', at = 'end' }]
+        analysis.static.arc_length = { until_probe = { probe = 'end', y = -0.29 }, max_step = 0.02 }\n",
+    );
+    let exact = 1e4 * (1.0 - 1.09_f64.powf(-1.0 / 3.0)).powf(1.5) / 100.0;
+    let [lost, regained] = &found.warnings[..] else { panic!("{:?}", found.warnings) };
+    let loads = || found.parameter.iter().copied();
+    let (up, down) = (loads().fold(f64::NEG_INFINITY, f64::max), loads().fold(f64::INFINITY, f64::min));
+    let load = between(lost, "the tangent loses definiteness at load factor ", ":");
+    assert!((load - exact).abs() < 0.5 * (up - exact).abs(), "{load} and {up}, of {exact}");
+    assert!(lost.contains(": 0 unstable directions before, 1 after; beyond it"), "{lost}");
+    let load = between(regained, "the tangent regains definiteness at load factor ", ":");
+    assert!((load + exact).abs() < 0.7 * (down + exact).abs(), "{load} and {down}, of {}", -exact);
+    let rest = ": 1 unstable direction before, 0 after; the path is back on a more stable branch";
+    assert!(regained.ends_with(rest), "{regained}");
+}
+
+/// Two rods that are hinged to each other and to the ground and grow: pressed by P = EA ε they
+/// buckle n² π² EI/l² ≤ P times each, and stand beside the line as the one mechanism that there is.
+#[test]
+fn a_pressed_mechanism_is_told_with_its_unstable_directions() {
+    let toggle = |strain: &str, steps: usize| {
+        solved(&format!(
+            "beam.a = {{ start = [0, 0], end = [0.5, 0], axial_stiffness = 3.364e8, bending_stiffness = 0.5893, mass_per_length = 1, basis.ancf.elements = 16 }}
+             beam.b = {{ start = [0.5, 0], end = [1, 0], axial_stiffness = 3.364e8, bending_stiffness = 0.5893, mass_per_length = 1, basis.ancf.elements = 16 }}
+             joint = [{{ type = 'hinge', first = {{ beam = 'a', at = 'end' }}, second = {{ beam = 'b', at = 'start' }} }}]
+             support = [{{ beam = 'a', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'b', at = 'end', fix = ['x', 'y'] }}]
+             effect.gravity.acceleration = [0, 0.001]
+             effect.actuation = [{{ beam = 'a', strain = {strain} }}, {{ beam = 'b', strain = {strain} }}]
+             analysis.static.steps = {steps}\n"
+        ))
+        .warnings
+    };
+    let euler = PI * PI * 0.5893 / 0.25;
+    for (strain, steps) in [("3e-7", 1), ("3e-7", 2), ("1e-6", 1)] {
+        let load = 1.0 / steps as f64;
+        let pressed = 3.364e8 * strain.parse::<f64>().expect("a number") * load;
+        let unstable = 2 * (pressed / euler).sqrt() as usize + 1;
+        let warnings = toggle(strain, steps);
+        let told: Vec<&String> = warnings.iter().filter(|warning| warning.contains("presses")).collect();
+        let [warning] = told[..] else { panic!("{warnings:?}") };
+        let expected = format!(
+            "the load up to factor {load:.6} presses the structure so that it is unstable in {unstable} directions where it stands, and \
+             supports and joints leave it 1 to move in"
+        );
+        assert!(warning.starts_with(&expected), "{expected}: {warning}");
+    }
+    // By small steps it leaves its line before its rods are pressed by as much.
+    assert_eq!(toggle("3e-7", 50), Vec::<String>::new());
+}
+
+/// What names velocities has no part in analyses without: would catch a name that is listed twice,
+/// that is left out, and the name of another analysis.
+#[test]
+fn what_an_analysis_leaves_out_is_told_in_one_line() {
+    let arm = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 2 }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.spring = [{ beam = 'arm', at = 'end', damping = 1 }, { beam = 'arm', at = 0.5, damping = 2 }]\n";
+    let velocity = "initial_velocity = [{ beam = 'arm', polynomial = { vy = [0, 0, 1] } }]\n";
+    for (analysis, name) in [
+        ("analysis.static = {}\n", "statics"),
+        ("analysis.buckling.count = 1\n", "a buckling analysis"),
+        ("analysis.modal.count = 1\n", "a modal analysis"),
+    ] {
+        let rest = "which knows no velocities: [analysis.dynamic] computes the motion with all of it";
+        let one = format!("`dashpot` of beam `arm` takes no part in {name}, {rest}");
+        assert_eq!(solved(&format!("{arm}{analysis}")).warnings, [one]);
+        let two = format!("`dashpot` of beam `arm`, `initial_velocity` take no part in {name}, {rest}");
+        assert_eq!(solved(&format!("{arm}{velocity}{analysis}")).warnings, [two]);
+    }
+    let motion = "analysis.dynamic = { duration = 0.01, output_every = 0.01 }\n";
+    assert_eq!(solved(&format!("{arm}{velocity}{motion}")).warnings, Vec::<String>::new());
+}
+
+/// Loads bend a column before it buckles: by the linear solution its end turns by λ F L²/2EI.
+#[test]
+fn bending_before_buckling_is_told_with_its_angle() {
+    for (across, angle) in [(0.5, Some("0.62")), (0.1, Some("0.12")), (0.02, None)] {
+        let found = solved(&format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1, basis.ancf.elements = 8 }}
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             effect.force = [{{ beam = 'arm', at = 'end', value = [-1, {across}] }}]
+             analysis.buckling.count = 1\n"
+        ));
+        let load = found.load_factors[0];
+        near(load, 0.25 * PI * PI, 1e-3, "the critical load");
+        match angle {
+            None => assert_eq!(found.warnings, Vec::<String>::new()),
+            Some(angle) => {
+                assert_eq!(angle, format!("{:.2}", 0.5 * load * across));
+                let expected = format!(
+                    "the loads turn the beam by {angle} rad before it buckles at load factor {load:.6}, by"
+                );
+                assert!(found.warnings[0].starts_with(&expected), "{expected}: {:?}", found.warnings);
+            }
+        }
+    }
+}
