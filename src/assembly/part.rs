@@ -50,6 +50,8 @@ pub enum Resistance {
     Displacement(Place, [f64; 2]),
     /// Of the direction at a point.
     Direction(Place),
+    /// Of a whole beam, where something presses it to the ground.
+    Contact(usize),
 }
 
 /// Two parts are equal if they describe themselves alike.

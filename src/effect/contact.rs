@@ -24,7 +24,6 @@ pub use integral::ContactIntegral;
 pub use obstacle::Obstacle;
 
 use crate::assembly::{Assembly, BuildError, Density, Gradient, Hessian, Part, Resistance};
-use crate::beam::Place;
 use nalgebra::{Matrix2, Vector2};
 use std::sync::Arc;
 
@@ -59,9 +58,7 @@ impl Part for Contact {
     }
 
     fn resists(&self) -> Vec<Resistance> {
-        let start = Place { beam: self.beam, s: 0.0 };
-        let held = [[1.0, 0.0], [0.0, 1.0]].map(|axis| Resistance::Displacement(start, axis));
-        held.into_iter().chain([Resistance::Direction(start)]).collect()
+        vec![Resistance::Contact(self.beam)]
     }
 
     fn outline(&self, size: f64) -> Vec<[f64; 2]> {

@@ -58,14 +58,25 @@ impl Freedom {
         freedom
     }
 
-    /// Holds what the model's parts may resist by elasticity.
+    /// Holds what the model's parts may resist by elasticity. Contacts count where springs may press
+    /// beams to them.
     pub fn resist(&mut self, model: &Model, position: impl Fn(Place) -> [f64; 2]) {
-        for resistance in model.parts.iter().flat_map(|part| part.resists()) {
+        let all: Vec<_> = model.parts.iter().flat_map(|part| part.resists()).collect();
+        let springs = all.iter().any(|resistance| !matches!(resistance, Resistance::Contact(_)));
+        for resistance in all {
             match resistance {
                 Resistance::Displacement(at, axis) => {
                     self.hold_displacement(&[(at.beam, position(at), axis)]);
                 }
                 Resistance::Direction(at) => self.hold_direction(at.beam),
+                Resistance::Contact(beam) if springs => {
+                    let start = position(Place { beam, s: 0.0 });
+                    for axis in [[1.0, 0.0], [0.0, 1.0]] {
+                        self.hold_displacement(&[(beam, start, axis)]);
+                    }
+                    self.hold_direction(beam);
+                }
+                Resistance::Contact(_) => {}
             }
         }
     }

@@ -449,6 +449,12 @@ impl<'a> Sampler<'a> {
                  chance; reach the load in more `steps`"
             ));
         }
+        if let Some(load) = solution.crest {
+            trajectory.warnings.push(format!(
+                "at load factor {load:.6} the structure stands on a crest of its energy, from which it may come to rest in more than one \
+                 equilibrium: which of them was found is arbitrary; a small load, or a small change of the geometry, decides"
+            ));
+        }
         for event in &solution.events {
             let (change, advice) = if event.after > event.before {
                 ("loses", "beyond it the equilibrium found is unstable: a bifurcation or a limit point")

@@ -68,6 +68,14 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
+    /// What `solve` finds, whose way leaves no trace in the last accepted state.
+    pub fn without_trace<T>(&mut self, solve: impl FnOnce(&mut Self) -> T) -> T {
+        let held = self.held.clone();
+        let found = solve(self);
+        self.held = held;
+        found
+    }
+
     /// The internal variables of the state `x`.
     pub fn internal_variables(&self, x: &[f64]) -> InternalVariables {
         self.system.internal_variables(&self.held, &x[..self.system.coordinates()])

@@ -19,6 +19,9 @@ const LAST_INCREMENT: f64 = 1e-6;
 /// gradients as they are.
 const PUSH: f64 = 1e-3;
 
+/// Difference of two equilibria that are one, positions in beam lengths, gradients as they are.
+const SAME_SIDE: f64 = 1e-5;
+
 /// By how much a path may miss its target, of the load factor wanted or of a beam length.
 const AT_TARGET: f64 = 1e-12;
 
@@ -39,6 +42,9 @@ pub struct Solution {
     /// Where a mechanism that loads press, at its start, is unstable in more directions than it can
     /// move in freely.
     pub pressed: Option<Pressed>,
+    /// Where a mechanism first stood on a crest of its energy, from which it comes to rest in one
+    /// equilibrium or in another.
+    pub crest: Option<f64>,
     /// Counts.
     pub statistics: Statistics,
     /// Why the path ends before its target, if it does.
@@ -237,8 +243,18 @@ fn relaxed(
         let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
         if outcome.is_ok() && unstable(equilibrium, load, &x) > 0 {
             // On a crest, such as a pendulum that stands on its head.
-            push(equilibrium, &mut x);
+            let mut other = x.clone();
+            push(equilibrium, 1.0, &mut x);
+            push(equilibrium, -1.0, &mut other);
+            let falls = equilibrium.without_trace(|equilibrium| {
+                relax(equilibrium, load, &mut other, &newton, &mut Iterations::default()).is_ok()
+            });
             outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
+            let n = equilibrium.system().coordinates();
+            let apart: Vec<f64> = x[..n].iter().zip(&other).map(|(x, other)| x - other).collect();
+            if outcome.is_ok() && falls && equilibrium.size(&apart) > SAME_SIDE {
+                solution.crest.get_or_insert(load);
+            }
             let after = unstable(equilibrium, load, &x);
             if outcome.is_ok() && after > before {
                 solution.events.push(Event { load, before, after });
@@ -273,13 +289,13 @@ fn unstable(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> usize {
     linearized.ok().and_then(|_| equilibrium.unstable_directions()).unwrap_or(0)
 }
 
-/// Moves every free coordinate a little and unevenly, the same in every run.
-fn push(equilibrium: &Equilibrium<'_>, x: &mut [f64]) {
+/// Moves every free coordinate a little and unevenly, the same in every run, to one side or the other.
+fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
     let system = equilibrium.system();
     let mut push: Vec<f64> = (1..=system.coordinates())
         .map(|i| {
             let unit = if i % 4 == 1 || i % 4 == 2 { system.length() } else { 1.0 };
-            PUSH * unit * ((i as f64 * 0.618_033_988_749_895).fract() - 0.4)
+            side * PUSH * unit * ((i as f64 * 0.618_033_988_749_895).fract() - 0.4)
         })
         .collect();
     system.supports().to_frames(0.0, &mut push);

@@ -119,7 +119,7 @@ fn every_kind_is_tested_here() {
     // What comes with every beam, with another block, or needs a companion.
     let others = [Kind::Stretch, Kind::Inextensibility, Kind::Inertia, Kind::PreCurvature, Kind::Buoyancy];
     for kind in Kind::ALL {
-        assert!(tested.contains(&kind) || others.contains(&kind), "{}", kind.name());
+        assert!(tested.contains(kind) || others.contains(kind), "{}", kind.name());
     }
 }
 

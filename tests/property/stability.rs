@@ -688,3 +688,32 @@ fn the_number_of_load_steps_does_not_choose_the_branch() {
         }
     }
 }
+
+/// A rod on a hinge whose other end is brought nearer gives way to one side or the other: with nothing
+/// across it the side is arbitrary, and told; a little weight across decides it. One that stands on
+/// its head falls to where it hangs, on either side.
+#[test]
+fn an_arbitrary_side_is_told() {
+    let rod = |turn: f64, fix: &str, shift: f64, [x, y]: [f64; 2]| {
+        let (s, c) = turn.sin_cos();
+        let text = format!(
+            "beam.rod = {{ start = [0, 0], end = [{c:?}, {s:?}], axial_stiffness = 1e6, bending_stiffness = 1e3, mass_per_length = 1, basis.ancf.elements = 2 }}
+             support = [{{ beam = 'rod', at = 'start', fix = ['x', 'y'] }}{}]
+             effect.gravity.acceleration = [{x:?}, {y:?}]\nprobe = [{{ name = 'tip', beam = 'rod', at = 'end' }}]\nanalysis.static = {{}}\n",
+            if fix.is_empty() { String::new() } else { format!(", {{ beam = 'rod', at = 'end', fix = {fix}, move = {{ x = {shift:?} }} }}") }
+        );
+        let scene = ancf::scene::parse("rod.toml", &text).unwrap_or_else(|error| panic!("{error:?}"));
+        let found = scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error:?}"));
+        let told =
+            found.warnings.iter().any(|warning| warning.contains("which of them was found is arbitrary"));
+        (told, *found.probes[0].samples.last().expect("an equilibrium"))
+    };
+    let (told, tip) = rod(0.0, "['x']", -0.01, [-1.0, 0.0]);
+    assert!(told && (tip.y.abs() - (1.0_f64 - 0.99 * 0.99).sqrt()).abs() < 1e-4, "{told} {tip:?}");
+    for across in [0.1, -0.1] {
+        let (told, tip) = rod(0.0, "['x']", -0.01, [-1.0, across]);
+        assert!(!told && tip.y * across > 0.0, "{told} {tip:?}");
+    }
+    let (told, tip) = rod(PI / 2.0, "", 0.0, [0.0, -9.81]);
+    assert!(!told && (tip.y + 1.0).abs() < 1e-4, "{told} {tip:?}");
+}

@@ -36,7 +36,7 @@ fn loads(tip: [f64; 2], along: [f64; 2]) -> String {
 /// ½ ∫ EA (ε − ε_linear)² ds over the cells of a shape, by Simpson's rule over its rows.
 fn locked(shape: &Shape, cells: usize, axial_stiffness: f64) -> f64 {
     let rows = (shape.s.len() - 1) / cells;
-    assert!(rows % 2 == 0 && rows * cells + 1 == shape.s.len(), "even rows in each cell");
+    assert!(rows.is_multiple_of(2) && rows * cells + 1 == shape.s.len(), "even rows in each cell");
     let mut energy = 0.0;
     for cell in 0..cells {
         let first = cell * rows;
