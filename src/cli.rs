@@ -160,28 +160,32 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
             terminal::note(&format!("{}: no checkpoint: {error}", destination.path().display()));
         }
     };
+    let wanted = OutputOptions { states: scene.output().states, vtu: scene.output().vtu };
     let checkpoints = arguments.checkpoint.map(|every| run::Checkpointing { every, take: &take });
-    let options = run::Options { start: saved.as_ref(), observer: Some(observer), checkpoints };
+    let options = run::Options {
+        start: saved.as_ref(),
+        observer: Some(observer),
+        checkpoints,
+        frames: wanted.frames(),
+    };
     let outcome = scene.model().solve_with(scene.analysis(), options);
     progress.clear();
-    let (mut trajectory, failure) = match outcome {
-        Ok(trajectory) if trajectory.complete => (trajectory, None),
-        Ok(trajectory) => {
+    let (mut results, failure) = match outcome {
+        Ok(results) if results.run().complete => (results, None),
+        Ok(partial) => {
             let (scene, results) = (scene.name().to_owned(), destination.path().to_owned());
-            (trajectory, Some(Failure::Interrupted { scene, results }))
+            (partial, Some(Failure::Interrupted { scene, results }))
         }
         Err(mut error) => match error.take_partial() {
             Some(partial) => (partial, Some(Failure::run(scene.name(), error))),
             None => return Err(Failure::run(scene.name(), error)),
         },
     };
-    terminal::warnings(&trajectory);
-    trajectory.warnings.extend(failure.as_ref().map(Failure::to_string));
-    let options = OutputOptions { states: scene.output().states, vtu: scene.output().vtu };
-    let summary =
-        ancf::output::write(destination.path(), &mut trajectory, &options).map_err(Failure::Output)?;
+    terminal::warnings(results.run());
+    results.states_mut().run.warnings.extend(failure.as_ref().map(Failure::to_string));
+    let summary = ancf::output::write(destination.path(), &mut results, &wanted).map_err(Failure::Output)?;
     if !arguments.quiet {
-        terminal::results(&trajectory, destination.path());
+        terminal::results(&results, destination.path());
     }
     destination.keep();
     if arguments.json {

@@ -225,7 +225,7 @@ fn watched(model: &Model) -> Model {
 mod tests {
     use super::*;
     use crate::model::{Integrator, SPECTRAL_RADIUS, StepControl};
-    use crate::trajectory::{AnalysisKind, Statistics, Trajectory};
+    use crate::results::{AnalysisKind, Run, Statistics, Trajectory};
     use std::sync::Mutex;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -296,11 +296,15 @@ mod tests {
         Study {
             options: Options { target: TARGET, budget: Duration::from_secs(20) },
             reference: Reference {
-                trajectory: Trajectory {
-                    title: "Made up".to_owned(),
-                    analysis: AnalysisKind::Static,
+                results: Trajectory {
+                    run: Run {
+                        title: "Made up".to_owned(),
+                        analysis: AnalysisKind::Static,
+                        ..Run::default()
+                    },
                     ..Trajectory::default()
-                },
+                }
+                .into(),
                 uncertainty: Deviation { error: UNCERTAINTY, curvature: None, energy: None },
                 warnings: vec!["it turns".to_owned()],
                 pair: ["one".to_owned(), "other".to_owned()],

@@ -7,7 +7,7 @@
 //! system sums one over the other; every solver asks the system for the same few things.
 //!
 //! ```text
-//! scene.toml ─parse─► Scene ─► Model ─build─► System ─solve─► Trajectory ─► csv · json · vtu · svg · html
+//! scene.toml ─parse─► Scene ─► Model ─build─► System ─solve─► Results ─► csv · json · vtu · svg · html
 //!   text           checked,   continuous,   tables, effects,   states at
 //!                  spans      SI            constraints        chosen loads, times
 //! ```
@@ -15,7 +15,7 @@
 //! # A cantilever rolled up into a circle
 //! ```
 //! use ancf::effect::Moment;
-//! use ancf::{Analysis, Beam, Discretization, Model, Place, Probe, Section, Static, Support};
+//! use ancf::{Beam, Discretization, Model, Place, Probe, Section, Static, Support};
 //!
 //! let section = Section::new(1e4, 2.0);
 //! let beam = Beam::line("cantilever", [0.0, 0.0], [1.0, 0.0], section, Discretization::rpim(12));
@@ -27,7 +27,7 @@
 //!     ..Model::default()
 //! };
 //! model.add(Moment::new(tip, std::f64::consts::TAU * 2.0));
-//! let trajectory = model.solve(&Analysis::Static(Static::default()))?;
+//! let trajectory = model.solve(&Static::default())?;
 //! let end = trajectory.probes[0].samples.last().expect("an equilibrium");
 //! assert!(end.x.hypot(end.y) < 1e-4);
 //! # Ok::<(), ancf::RunError>(())
@@ -52,12 +52,12 @@
 //! | [`system`] | coordinates, supports, joints, sums over effects, inventory | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`] |
 //! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `linear`, [`assembly`], [`model`], [`system`] |
 //! | [`restart`] | a saved state, from which a motion goes on | [`model`], [`system`], `solve` |
-//! | [`trajectory`] | what a run leaves | [`system`], `solve`, [`restart`] |
-//! | [`run`](mod@run) | one model, one analysis | `linear`, [`basis`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`trajectory`] |
-//! | [`output`] | files, plots, the report page | [`restart`], [`trajectory`] |
+//! | [`results`] | what an analysis leaves | [`system`], `solve`, [`restart`] |
+//! | [`run`](mod@run) | one model, one analysis | `linear`, [`basis`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
+//! | [`output`] | files, plots, the report page | [`restart`], [`results`] |
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`effect`], [`model`] |
 //! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`] |
-//! | [`cost`] | what accuracy costs in time: a ladder of settings against a reference | [`centreline`], [`model`], [`trajectory`], [`scene`], [`run`](mod@run), [`output`] |
+//! | [`cost`] | what accuracy costs in time: a ladder of settings against a reference | [`centreline`], [`model`], [`results`], [`scene`], [`run`](mod@run), [`output`] |
 //!
 //! `lanes`, `linear` and `solve` are for the crate itself: what a user needs of them stands in
 //! other modules, and they may change with any version. A module imports what stands above it, and
@@ -163,8 +163,8 @@
 //! "#)?;
 //! let mut model = scene.model().clone();
 //! model.add(Rail { at: Place { beam: 0, s: 1.0 }, stiffness: 7.0 });
-//! let trajectory = model.solve(scene.analysis())?;
-//! let tip = trajectory.probes[0].samples.last().expect("an equilibrium");
+//! let results = model.solve(scene.analysis())?;
+//! let tip = results.states().probes[0].samples.last().expect("an equilibrium");
 //! assert!((tip.y - 1e-4 / (3.0 + 7.0)).abs() < 1e-9);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -190,18 +190,18 @@ pub mod linear;
 pub mod model;
 pub mod output;
 pub mod restart;
+pub mod results;
 pub mod run;
 pub mod scene;
 #[doc(hidden)]
 pub mod solve;
 pub mod sweep;
 pub mod system;
-pub mod trajectory;
 
 pub use model::{
-    Analysis, Beam, Centreline, Discretization, Dynamic, Fixed, GaussPoints, Integrator, Joint, Law, Model,
-    Place, Probe, Section, Static, StepControl, StrainMeasure, Support,
+    About, Analysis, Beam, Buckling, Centreline, Discretization, Dynamic, Fixed, GaussPoints, Integrator,
+    Joint, Law, Modal, Model, Place, Probe, Section, Static, StepControl, StrainMeasure, Support,
 };
-pub use run::{Control, Options, RunError};
+pub use results::{CriticalLoads, Results, Trajectory, Vibrations};
+pub use run::{Control, Options, RunError, Solve};
 pub use scene::{Scene, SceneError};
-pub use trajectory::Trajectory;

@@ -1,4 +1,4 @@
-//! Files for people and for programs: what a [`Trajectory`] holds, as tables, plots and one page.
+//! Files for people and for programs: what an analysis leaves in [`Results`], as tables, plots and one page.
 //!
 //! | file | holds |
 //! |---|---|
@@ -6,7 +6,8 @@
 //! | `probes.csv`, `energy.csv` | one row per load factor or time; 17 significant digits, SI |
 //! | `shape.csv` | the last state along every beam, with section forces; two rows where a force or a couple acts in a point |
 //! | `state.json` | the last state of a motion, or the equilibrium under the full loads, from which a motion can start |
-//! | `frequencies.csv` or `load_factors.csv`, `modes.csv` | modal analysis or buckling |
+//! | `frequencies.csv` or `load_factors.csv` | modal analysis or buckling |
+//! | `modes.csv` | what each mode changes along the beams: displacements, turn of r', strain, curvature |
 //! | `report.html` | everything to look at, the moving beam included; needs no network |
 //! | `shape.svg`, `curvature.svg`, … | the page's plots, one each |
 //! | `states.csv`; `states.pvd`, `vtu/` | all recorded states as a table; for ParaView (both when asked for) |
@@ -23,6 +24,8 @@ mod error;
 #[cfg(feature = "report")]
 mod figures;
 #[cfg(feature = "report")]
+mod mode;
+#[cfg(feature = "report")]
 mod motion;
 #[cfg(feature = "report")]
 pub mod plot;
@@ -38,10 +41,11 @@ use std::path::Path;
 use std::time::Instant;
 
 pub use error::OutputError;
+pub(crate) use summary::drift;
 pub use summary::{EnergySummary, Summary};
 
 use crate::restart::SavedState;
-use crate::trajectory::{AnalysisKind, Trajectory};
+use crate::results::{PICTURES, Results};
 pub(crate) use stage::Stage;
 pub(crate) use tables::{cell, exact};
 
@@ -52,6 +56,13 @@ pub struct OutputOptions {
     pub states: bool,
     /// `states.pvd` and `vtu/…`: the same for ParaView.
     pub vtu: bool,
+}
+
+impl OutputOptions {
+    /// How many frames a run should keep: all where they are written, else what a page draws.
+    pub fn frames(&self) -> usize {
+        if self.states || self.vtu { usize::MAX } else { PICTURES }
+    }
 }
 
 /// Names that a run may leave; those that this run does not write are removed when it replaces an
@@ -86,24 +97,24 @@ const NAMES: [&str; 25] = [
 
 /// Writes the results into `directory`, which is made where it is missing, and returns what
 /// `summary.json` says. Adds the time taken until the summary was written to
-/// `trajectory.seconds.write`.
+/// `seconds.write`.
 ///
 /// # Errors
 /// [`OutputError`] where the trajectory contradicts itself, or a file cannot be written: then no
 /// file has a new content that is not complete, and directories made for it are removed.
 pub fn write(
     directory: &Path,
-    trajectory: &mut Trajectory,
+    results: &mut Results,
     options: &OutputOptions,
 ) -> Result<Summary, OutputError> {
     let start = Instant::now();
-    check(trajectory)?;
-    let t = &*trajectory;
+    check(results)?;
+    let (t, modes) = (results.states(), results.mode_shapes());
     // Drawn before anything is written: what cannot be drawn leaves nothing behind.
     #[cfg(feature = "report")]
-    let figures = figures::figures(t)?;
+    let figures = figures::figures(results)?;
     #[cfg(feature = "report")]
-    let page = report::page(t, &Summary::of(t), &figures)?;
+    let page = report::page(results, &Summary::of(results), &figures)?;
     let mut stage = Stage::new(directory)?;
     if !t.parameter.is_empty() {
         stage.add("probes.csv", |out| tables::probes(t, out))?;
@@ -119,17 +130,16 @@ pub fn write(
     if let Some(saved) = &t.saved {
         stage.add("state.json", |out| Ok(serde_json::to_writer(out, saved)?))?;
     }
-    match t.analysis {
-        AnalysisKind::Modal => {
-            stage.add("frequencies.csv", |out| tables::eigenvalues("frequency", &t.frequencies, out))?;
-        }
-        AnalysisKind::Buckling => {
-            stage.add("load_factors.csv", |out| tables::eigenvalues("load_factor", &t.load_factors, out))?;
-        }
-        AnalysisKind::Static | AnalysisKind::Dynamic => {}
+    let eigenvalues = match results {
+        Results::Trajectory(_) => None,
+        Results::Vibrations(_) => Some(("frequencies.csv", "frequency")),
+        Results::CriticalLoads(_) => Some(("load_factors.csv", "load_factor")),
+    };
+    if let Some((name, column)) = eigenvalues {
+        stage.add(name, |out| tables::eigenvalues(column, &results.eigenvalues(), out))?;
     }
-    if !t.modes.is_empty() {
-        stage.add("modes.csv", |out| tables::modes(t, out))?;
+    if !modes.is_empty() {
+        stage.add("modes.csv", |out| tables::modes(&modes, out))?;
     }
     if options.states {
         stage.add("states.csv", |out| tables::states(t, out))?;
@@ -146,8 +156,9 @@ pub fn write(
         }
         stage.add("report.html", |out| out.write_all(page.as_bytes()))?;
     }
-    trajectory.seconds.write += start.elapsed().as_secs_f64();
-    let summary = Summary::of(trajectory);
+    let frames = t.frames.len();
+    results.states_mut().run.seconds.write += start.elapsed().as_secs_f64();
+    let summary = Summary::of(results);
     stage.add("summary.json", |out| out.write_all(summary.to_json()?.as_bytes()))?;
     // Only beside a summary are these names surely those of an older run.
     let replaces = directory.join("summary.json").is_file();
@@ -159,7 +170,7 @@ pub fn write(
     }
     if replaces {
         // Frames are numbered without gaps.
-        let first = if options.vtu { trajectory.frames.len() } else { 0 };
+        let first = if options.vtu { frames } else { 0 };
         let _ = (first..).try_for_each(|i| fs::remove_file(directory.join(vtu::frame_name(i))));
         let _ = fs::remove_dir(directory.join("vtu"));
     }
@@ -178,7 +189,8 @@ pub fn save(directory: &Path, state: &SavedState) -> Result<(), OutputError> {
 
 /// Refuses lists whose lengths do not fit together, which would put values beside the wrong
 /// parameter.
-fn check(t: &Trajectory) -> Result<(), OutputError> {
+fn check(results: &Results) -> Result<(), OutputError> {
+    let t = results.states();
     let fits = |quantity: &dyn Fn() -> String, expected: usize, found: usize| {
         if expected == found {
             return Ok(());
@@ -190,12 +202,17 @@ fn check(t: &Trajectory) -> Result<(), OutputError> {
     for probe in &t.probes {
         fits(&|| format!("samples of probe `{}`", probe.name), records, probe.samples.len())?;
     }
-    for shape in t.undeformed.iter().chain(&t.last).chain(t.modes.iter().flatten()) {
+    for shape in t.run.undeformed.iter().chain(&t.last) {
         let values = [&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
         // Section forces belong to states under load alone.
         let forces = [&shape.axial_force, &shape.shear_force, &shape.bending_moment];
         for values in values.into_iter().chain(forces.into_iter().filter(|forces| !forces.is_empty())) {
             fits(&|| format!("values along beam `{}`", shape.beam), shape.s.len(), values.len())?;
+        }
+    }
+    for mode in results.mode_shapes().into_iter().flatten() {
+        for values in [&mode.x, &mode.y, &mode.angle, &mode.strain, &mode.curvature] {
+            fits(&|| format!("values of a mode along beam `{}`", mode.beam), mode.s.len(), values.len())?;
         }
     }
     Ok(())

@@ -287,7 +287,7 @@ mod tests {
     fn saved(text: &str) -> SavedState {
         let scene = scene(text);
         let motion = scene.model().solve(scene.analysis());
-        motion.expect("a motion").saved.expect("a state")
+        motion.expect("a motion").into_states().saved.expect("a state")
     }
 
     /// The state taken up by the model of a text, as the same motion or another.

@@ -5,21 +5,18 @@ mod error;
 mod locking;
 mod memory;
 mod modes;
+mod motion;
 mod sampler;
+mod statics;
 mod strings;
 
 pub use error::RunError;
 
 use crate::assembly::Needs;
-use crate::model::{Analysis, Displacement, Dynamic, Model};
-use crate::restart::{self, RestartError, SavedState};
-use crate::solve::dynamics::{Checkpoint, start};
-use crate::solve::statics::{self, Target};
-use crate::solve::{buckling, dynamics};
+use crate::model::{Analysis, Model};
+use crate::restart::{RestartError, SavedState};
+use crate::results::{PICTURES, Results, Seconds, Statistics, Trajectory};
 use crate::system::{Inventory, System};
-use crate::trajectory::{Statistics, Trajectory};
-use sampler::Sampler;
-use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 /// How far a computation is.
@@ -49,7 +46,7 @@ pub type Observer<'o> = &'o mut dyn FnMut(&Progress) -> Control;
 
 fn needs(analysis: &Analysis) -> Needs {
     let motion = matches!(analysis, Analysis::Dynamic(_));
-    Needs { inertia: motion || matches!(analysis, Analysis::Modal { .. }), motion }
+    Needs { inertia: motion || matches!(analysis, Analysis::Modal(_)), motion }
 }
 
 /// Builds the model's equations and lists them.
@@ -80,7 +77,6 @@ pub struct Checkpointing<'k> {
 }
 
 /// What a run takes besides a model and an analysis.
-#[derive(Default)]
 pub struct Options<'o> {
     /// A saved state from which a motion starts: it lasts for its duration from the time of that
     /// state on. Supports that follow no law of time hold a beam where the state has it.
@@ -89,6 +85,34 @@ pub struct Options<'o> {
     pub observer: Option<Observer<'o>>,
     /// Leaves states on the way, from which a motion can go on.
     pub checkpoints: Option<Checkpointing<'o>>,
+    /// Of so many records, evenly, the centrelines are kept: [`PICTURES`] unless this says
+    /// otherwise.
+    pub frames: usize,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { start: None, observer: None, checkpoints: None, frames: PICTURES }
+    }
+}
+
+impl Options<'_> {
+    /// Refuses a start where nothing moves.
+    fn refuses_a_start(&self, analysis: &'static str) -> Result<(), RunError> {
+        self.start.map_or(Ok(()), |_| Err(RestartError::Analysis { analysis }.into()))
+    }
+}
+
+/// An analysis, with the type of what it finds.
+pub trait Solve {
+    /// What it finds.
+    type Results;
+
+    /// Analyses a model.
+    ///
+    /// # Errors
+    /// As [`Model::solve_with`].
+    fn solve(&self, model: &Model, options: Options<'_>) -> Result<Self::Results, RunError>;
 }
 
 impl Model {
@@ -96,7 +120,7 @@ impl Model {
     ///
     /// # Errors
     /// [`RunError`]: what was expected, what was found, where, and what to try.
-    pub fn solve(&self, analysis: &Analysis) -> Result<Trajectory, RunError> {
+    pub fn solve<A: Solve>(&self, analysis: &A) -> Result<A::Results, RunError> {
         self.solve_with(analysis, Options::default())
     }
 
@@ -104,197 +128,97 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::solve`], and where the saved state does not fit.
-    pub fn solve_with(&self, analysis: &Analysis, options: Options<'_>) -> Result<Trajectory, RunError> {
-        let Options { start, observer, checkpoints } = options;
-        let mut goes_on = |_: &Progress| Control::Continue;
-        solve(self, analysis, start, checkpoints, observer.unwrap_or(&mut goes_on))
+    pub fn solve_with<A: Solve>(&self, analysis: &A, options: Options<'_>) -> Result<A::Results, RunError> {
+        analysis.solve(self, options)
     }
 }
 
-fn solve(
-    model: &Model,
-    analysis: &Analysis,
-    saved: Option<&SavedState>,
-    keep: Option<Checkpointing<'_>>,
-    observer: Observer<'_>,
-) -> Result<Trajectory, RunError> {
-    let not_a_motion = match analysis {
-        Analysis::Static(_) => Some("static"),
-        Analysis::Buckling { .. } => Some("buckling"),
-        Analysis::Modal { .. } => Some("modal"),
-        Analysis::Dynamic(_) => None,
-    };
-    if let (Some(analysis), Some(_)) = (not_a_motion, saved) {
-        return Err(RestartError::Analysis { analysis }.into());
+/// Whichever analysis a scene asks for.
+impl Solve for Analysis {
+    type Results = Results;
+
+    fn solve(&self, model: &Model, options: Options<'_>) -> Result<Results, RunError> {
+        match self {
+            Self::Static(statics) => statics.solve(model, options).map(Results::Trajectory),
+            Self::Dynamic(dynamic) => dynamic.solve(model, options).map(Results::Trajectory),
+            Self::Modal(modal) => modal.solve(model, options).map(Results::Vibrations),
+            Self::Buckling(buckling) => buckling.solve(model, options).map(Results::CriticalLoads),
+        }
     }
-    let start = Instant::now();
-    let model = if saved.is_some() { left_where_it_is(model) } else { Cow::Borrowed(model) };
-    let model = &*model;
-    memory::check(model, analysis)?;
-    let mut system = System::build(model, needs(analysis))?;
-    let beginning = match analysis {
-        Analysis::Dynamic(settings) => Some(beginning(model, settings, &mut system, saved)?),
-        _ => None,
-    };
-    let look = Sampler::new(model, &system)?;
-    let build = start.elapsed().as_secs_f64();
-    let start = Instant::now();
-    // Solving only, where what is looked at afterwards takes its own time.
-    let mut solved = None;
-    let (mut stopped, follows_path) = (false, follows_path(analysis));
-    let observer = &mut |progress: &Progress| {
-        let control = observer(progress);
-        // An observer that says stop after the last step interrupts nothing. Where a path ends is
-        // not known beforehand, so that it is always interrupted.
-        stopped |= control == Control::Stop && (follows_path || progress.parameter < progress.target);
-        control
-    };
-    let mut outcome = match analysis {
-        Analysis::Static(settings) => {
-            let report = &mut |load: f64, step: f64, statistics: &Statistics| {
-                let iterations = statistics.newton_iterations;
-                observer(&Progress { parameter: load, target: 1.0, step, newton_iterations: iterations })
-                    == Control::Continue
-            };
-            let target = match &settings.arc_length {
-                None => None,
-                Some(arc) => Some(Target { arc, probe: look.end_of_path(arc)? }),
-            };
-            let solution = statics::solve(&system, settings, target.as_ref(), report);
-            solved = Some(start.elapsed());
-            match (&solution.stuck, &settings.arc_length) {
-                (Some(stuck), _) => Err(look.stuck(stuck, &solution)),
-                (None, Some(arc)) if solution.out_of_points => Err(look.out_of_points(arc, &solution)),
-                (None, _) => {
-                    let mut trajectory = look.statics(&solution);
-                    trajectory.saved = look.equilibrium(&solution, &trajectory);
-                    Ok(trajectory)
-                }
-            }
-        }
-        Analysis::Buckling { count } => Ok(look.buckling(&buckling::solve(&system, *count)?)),
-        Analysis::Modal { count, about } => look.vibrations(*count, *about, observer),
-        Analysis::Dynamic(settings) => {
-            settings.integrator.suits(model)?;
-            let watches = look.watches(settings)?;
-            let Beginning { start: begin, end, motion, told } = beginning.unwrap_or_default();
-            let directions = look.directions();
-            let take = |checkpoint| {
-                if let Some(keep) = keep {
-                    (keep.take)(&SavedState::new(model, &system, motion.clone(), checkpoint));
-                }
-            };
-            let task = dynamics::Task {
-                duration: end,
-                output_every: settings.output_every,
-                integrator: settings.integrator,
-                start: begin,
-                watches: &watches,
-                reactions: model.outputs.reactions,
-                directions: &directions,
-                keep: keep.map(|keep| dynamics::Checkpointing { every: keep.every, take: &take }),
-            };
-            let report = &mut |time: f64, step: f64, statistics: &Statistics| {
-                let newton_iterations = statistics.newton_iterations;
-                observer(&Progress { parameter: time, target: task.duration, step, newton_iterations })
-                    == Control::Continue
-            };
-            let mut solution = dynamics::solve(&system, &task, report);
-            solved = Some(start.elapsed());
-            let saved = solution.checkpoint.take();
-            let saved = saved.map(|checkpoint| SavedState::new(model, &system, motion.clone(), checkpoint));
-            let mut outcome = match solution.stuck.clone() {
-                None => Ok(look.dynamics(settings, solution)),
-                Some(stuck) => Err(look.lost(settings, &stuck, solution)),
-            };
-            let left = match &mut outcome {
-                Ok(trajectory) => Some(trajectory),
-                Err(error) => error.partial(),
-            };
-            if let Some(trajectory) = left {
-                trajectory.saved = saved;
-                trajectory.settings.extend(told.map(|told| ("continued".into(), told)));
-            }
-            outcome
-        }
-    };
+}
+
+/// Asks the observer after every step.
+struct Watch<'o> {
+    observer: Option<Observer<'o>>,
+    /// Whether nobody knows beforehand where the computation ends: then it is interrupted wherever
+    /// it is stopped.
+    open: bool,
+    /// Whether the observer has stopped a computation that was not at its end.
+    stopped: bool,
+}
+
+impl<'o> Watch<'o> {
+    fn new(observer: Option<Observer<'o>>) -> Self {
+        Self { observer, open: false, stopped: false }
+    }
+
+    /// Whether to go on.
+    fn goes_on(&mut self, parameter: f64, target: f64, step: f64, statistics: &Statistics) -> bool {
+        let Some(observer) = &mut self.observer else { return true };
+        let newton_iterations = statistics.newton_iterations;
+        let control = observer(&Progress { parameter, target, step, newton_iterations });
+        self.stopped |= control == Control::Stop && (self.open || parameter < target);
+        control == Control::Continue
+    }
+}
+
+/// Measures the parts of a run, one after the other.
+struct Stopwatch {
+    since: Instant,
+    seconds: Seconds,
+}
+
+impl Stopwatch {
+    fn start() -> Self {
+        Self { since: Instant::now(), seconds: Seconds::default() }
+    }
+
+    fn lap(&mut self) -> f64 {
+        let lap = self.since.elapsed().as_secs_f64();
+        self.since = Instant::now();
+        lap
+    }
+
+    fn built(&mut self) {
+        self.seconds.build += self.lap();
+    }
+
+    fn solved(&mut self) {
+        self.seconds.solve += self.lap();
+    }
+
+    /// What came since then was looking at the states.
+    fn finish(mut self) -> Seconds {
+        self.seconds.write += self.lap();
+        self.seconds
+    }
+}
+
+/// Says of results, whole or partial, how long they took and whether they were stopped; `states`
+/// are those among whole results.
+fn timed<R>(
+    mut outcome: Result<R, RunError>,
+    states: fn(&mut R) -> &mut Trajectory,
+    watch: &Watch<'_>,
+    stopwatch: Stopwatch,
+) -> Result<R, RunError> {
     let left = match &mut outcome {
-        Ok(trajectory) => Some(trajectory),
+        Ok(results) => Some(states(results)),
         Err(error) => error.partial(),
     };
-    if let Some(trajectory) = left {
-        trajectory.complete &= !stopped;
-        let all = start.elapsed();
-        let solved = solved.unwrap_or(all);
-        trajectory.seconds.solve = solved.as_secs_f64();
-        trajectory.seconds.write = (all - solved).as_secs_f64();
-        trajectory.seconds.build = build;
+    if let Some(Trajectory { run, .. }) = left {
+        run.complete &= !watch.stopped;
+        run.seconds = stopwatch.finish();
     }
     outcome
-}
-
-fn follows_path(analysis: &Analysis) -> bool {
-    matches!(analysis, Analysis::Static(settings) if settings.arc_length.is_some())
-}
-
-/// Where a motion begins, and when it ends.
-#[derive(Default)]
-struct Beginning {
-    start: Checkpoint,
-    /// \[s\]
-    end: f64,
-    /// The motion's fingerprint.
-    motion: String,
-    /// What the reader should know of it.
-    told: Option<String>,
-}
-
-/// Where a motion begins. Of a motion that is taken up, supports that follow no law hold the beams
-/// where the state has them.
-fn beginning(
-    model: &Model,
-    settings: &Dynamic,
-    system: &mut System,
-    saved: Option<&SavedState>,
-) -> Result<Beginning, RunError> {
-    let motion = restart::fingerprint(model, settings.integrator);
-    let Some(saved) = saved else {
-        let start = start::from_rest(system, &model.initial_velocities)?;
-        let end = settings.duration;
-        start::check_jumps(system, 0.0, end)?;
-        return Ok(Beginning { start, end, motion, told: None });
-    };
-    let (start, same) = saved.take_up(model, system, &motion)?;
-    system.hold_as_in(&start.state.q);
-    let (begin, end) = (saved.time(), later(saved.time(), settings.duration));
-    start::check_jumps(system, begin, end)?;
-    let start = match same {
-        true => start,
-        // Velocities of the scene start a motion; one that is under way has its own.
-        false if saved.is_equilibrium() => start::from_state(system, start.state, &model.initial_velocities)?,
-        false => start::from_state(system, start.state, &[])?,
-    };
-    let how = match same {
-        true => "as if it had not stopped",
-        false if saved.is_equilibrium() => "from a static equilibrium",
-        false => "from its positions and velocities alone, for the model or the integrator is another",
-    };
-    let told = format!("for {} s from t = {begin} s to {end} s, {how}", settings.duration);
-    Ok(Beginning { start, end, motion, told: Some(told) })
-}
-
-/// The sum of two times as decimals have it, so that a motion in parts ends when it does as a
-/// whole.
-fn later(time: f64, duration: f64) -> f64 {
-    let sum = time + duration;
-    if time == 0.0 { sum } else { format!("{sum:.14e}").parse().unwrap_or(sum) }
-}
-
-/// The model with supports that hold still unless they follow a law.
-fn left_where_it_is(model: &Model) -> Cow<'_, Model> {
-    let mut model = model.clone();
-    for support in model.supports.iter_mut().filter(|support| support.law.is_none()) {
-        support.displacement = Displacement::default();
-    }
-    Cow::Owned(model)
 }

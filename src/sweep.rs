@@ -47,7 +47,7 @@ pub use manifest::MANIFEST;
 pub use shard::Shard;
 
 use crate::output::{Stage, Summary};
-use crate::run::Control;
+use crate::run::{self, Control};
 use crate::scene::Scene;
 use journal::{Finished, Journal, Record};
 use manifest::Manifest;
@@ -145,9 +145,9 @@ impl Sweep {
     /// Computes one run.
     fn record(&self, run: usize) -> Record {
         let start = Instant::now();
-        let (outcome, message, trajectory) = match self.scene.with(&self.grid.overrides(run)) {
-            Ok(scene) => match scene.model().solve(scene.analysis()) {
-                Ok(trajectory) => (Outcome::Solved, None, Some(trajectory)),
+        let (outcome, message, results) = match self.scene.with(&self.grid.overrides(run)) {
+            Ok(scene) => match scene.model().solve_with(scene.analysis(), numbers_alone()) {
+                Ok(results) => (Outcome::Solved, None, Some(results)),
                 Err(mut error) => {
                     let refused = error.exit_status() == 2;
                     let outcome = if refused { Outcome::Refused } else { Outcome::Failed };
@@ -157,9 +157,14 @@ impl Sweep {
             Err(error) => (Outcome::Refused, Some(error.to_string()), None),
         };
         // A summary always has a JSON form.
-        let summary = trajectory.and_then(|trajectory| serde_json::to_value(Summary::of(&trajectory)).ok());
+        let summary = results.and_then(|results| serde_json::to_value(Summary::of(&results)).ok());
         Record { run, outcome, message, seconds: start.elapsed().as_secs_f64(), summary }
     }
+}
+
+/// A table needs no centrelines.
+fn numbers_alone() -> run::Options<'static> {
+    run::Options { frames: 0, ..run::Options::default() }
 }
 
 /// Where the threads bring their finished runs.

@@ -40,7 +40,7 @@ pub use energy::Energy;
 pub use inventory::{EffectEntry, Inventory};
 pub use measure::Measured;
 pub use reaction::Reaction;
-pub use view::{Fields, View, unfold};
+pub use view::{Change, Fields, View, unfold};
 
 use crate::assembly::{Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Terms};
 use crate::basis::Basis;

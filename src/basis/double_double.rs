@@ -248,4 +248,13 @@ mod tests {
         assert_eq!(DoubleDouble.exp(&DoubleDouble.number(0.0)), ONE);
         assert_eq!(DoubleDouble.ln(&ONE).hi, 0.0);
     }
+
+    /// What an exponential overflows to has a second part that is finite, and is not zero either.
+    #[test]
+    fn a_number_is_finite_where_both_its_parts_are() {
+        let is_finite = |hi, lo| DoubleDouble.is_finite(&Double { hi, lo });
+        assert!(is_finite(1.0, 1e-17));
+        assert!(!is_finite(f64::INFINITY, 0.0) && !is_finite(1.0, f64::NAN));
+        assert!(!DoubleDouble.is_zero(&DoubleDouble.exp(&DoubleDouble.number(1e4))));
+    }
 }

@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 use ancf::cost;
 use ancf::model::Analysis;
 use ancf::output::plot::human;
+use ancf::results::{AnalysisKind, ContactImpulse, Event, ProbeSample, Results, Run};
 use ancf::run::Progress;
 use ancf::sweep;
-use ancf::trajectory::{AnalysisKind, ContactImpulse, Event, ProbeSample, Trajectory};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
@@ -201,25 +201,26 @@ impl CostLine {
 }
 
 /// Prints what the user should know.
-pub fn warnings(trajectory: &Trajectory) {
-    for warning in &trajectory.warnings {
+pub fn warnings(run: &Run) {
+    for warning in &run.warnings {
         note(&format!("warning: {warning}"));
     }
 }
 
 /// Prints the table at the end of a run.
-pub fn results(trajectory: &Trajectory, directory: &Path) {
-    note(&table(trajectory, directory));
+pub fn results(results: &Results, directory: &Path) {
+    note(&table(results, directory));
 }
 
-fn table(trajectory: &Trajectory, directory: &Path) -> String {
+fn table(results: &Results, directory: &Path) -> String {
+    let (trajectory, run) = (results.states(), results.run());
     let mut rows: Vec<(String, String)> = Vec::new();
     let mut row = |name: &str, text: String| rows.push((name.to_owned(), text));
-    if !trajectory.complete {
+    if !run.complete {
         row("complete", "no, the run ended before it was done".into());
     }
     if let Some(last) = trajectory.parameter.last() {
-        match trajectory.analysis {
+        match run.analysis {
             AnalysisKind::Static | AnalysisKind::Modal => row("load factor", number(*last)),
             AnalysisKind::Dynamic => row("time", format!("{} s", number(*last))),
             AnalysisKind::Buckling => {}
@@ -230,12 +231,14 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
             row(&probe.name, sample_text(sample));
         }
     }
-    for (index, frequency) in trajectory.frequencies.iter().enumerate() {
-        let free = if *frequency == 0.0 { " (nothing resists)" } else { "" };
-        row(&format!("frequency {}", index + 1), format!("{} Hz{free}", number(*frequency)));
-    }
-    for (index, factor) in trajectory.load_factors.iter().enumerate() {
-        row(&format!("critical load {}", index + 1), format!("{} × the load", number(*factor)));
+    for (value, mode) in results.eigenvalues().into_iter().zip(1..) {
+        let free = if value == 0.0 { " (nothing resists)" } else { "" };
+        match results {
+            Results::CriticalLoads(_) => {
+                row(&format!("critical load {mode}"), format!("{} × the load", number(value)))
+            }
+            _ => row(&format!("frequency {mode}"), format!("{} Hz{free}", number(value))),
+        }
     }
     if let Some(energy) = trajectory.energy.last() {
         let parts = [
@@ -271,7 +274,7 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
             }
         }
     }
-    let counts = &trajectory.statistics;
+    let counts = &run.statistics;
     let mut work = Vec::new();
     for (count, one, many) in [
         (counts.steps, "step", "steps"),
@@ -283,11 +286,11 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
             work.push(format!("{count} {}", if count == 1 { one } else { many }));
         }
     }
-    row("unknowns", trajectory.degrees_of_freedom.to_string());
+    row("unknowns", run.degrees_of_freedom.to_string());
     if !work.is_empty() {
         row("work", work.join(", "));
     }
-    let seconds = &trajectory.seconds;
+    let seconds = &run.seconds;
     row(
         "seconds",
         format!("build {:.3}, solve {:.3}, write {:.3}", seconds.build, seconds.solve, seconds.write),
@@ -295,7 +298,7 @@ fn table(trajectory: &Trajectory, directory: &Path) -> String {
     row("report", directory.join("report.html").display().to_string());
 
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-    let mut text = trajectory.title.clone();
+    let mut text = run.title.clone();
     for (name, value) in rows {
         let gap = " ".repeat(width - name.chars().count());
         let _ = write!(text, "{}  {name}{gap}  {value}", if text.is_empty() { "" } else { "\n" });
@@ -340,8 +343,11 @@ mod tests {
     use super::*;
     use ancf::model::{Dynamic, Integrator, STEP_CONTROL, Static};
     use ancf::output::OutputError;
+    use ancf::results::{
+        BucklingMode, CriticalLoads, Energy, ProbeSeries, Seconds, Statistics, Trajectory, Vibration,
+        Vibrations,
+    };
     use ancf::scene::{self, SceneError};
-    use ancf::trajectory::{Energy, ProbeSeries, Seconds, Statistics};
     use indicatif::TermLike;
     use std::sync::{Arc, Mutex};
 
@@ -564,19 +570,19 @@ mod tests {
     #[test]
     fn the_table_names_what_was_computed() {
         let trajectory = Trajectory {
-            title: "Arm".into(),
-            complete: true,
+            run: Run { title: "Arm".into(), complete: true, ..Run::default() },
             parameter: vec![1.0],
             probes: vec![ProbeSeries { name: "tip".into(), samples: vec![ProbeSample::default()] }],
             energy: vec![Energy { bend: 0.5, ..Energy::default() }],
             ..Trajectory::default()
         };
-        let text = table(&trajectory, Path::new("out/arm"));
+        let text = table(&trajectory.clone().into(), Path::new("out/arm"));
         for part in ["Arm\n", "load factor  1", "tip          x = 0 m", "bend 0.5 J", "out/arm/report.html"] {
             assert!(text.contains(part), "{part}: {text}");
         }
         assert!(!text.contains("complete"), "{text}");
-        let text = table(&Trajectory { complete: false, ..trajectory }, Path::new("out/arm"));
+        let ended = Trajectory { run: Run { complete: false, ..trajectory.run }, ..trajectory };
+        let text = table(&ended.into(), Path::new("out/arm"));
         assert!(text.contains("complete     no, the run ended"), "{text}");
     }
 
@@ -586,9 +592,8 @@ mod tests {
         let statistics =
             Statistics { steps: 1, newton_iterations: 1, factorizations: 1, ..Statistics::default() };
         let trajectory = Trajectory {
-            complete: true,
+            run: Run { complete: true, statistics, ..Run::default() },
             energy: vec![Energy { bend: 0.5, ..Energy::default() }],
-            statistics,
             ..Trajectory::default()
         };
         let expected = "  energy    stretch 0 J, bend 0.5 J, kinetic 0 J, potential 0 J, total 0.5 J
@@ -596,9 +601,10 @@ mod tests {
   work      1 step, 1 Newton iteration, 1 factorisation
   seconds   build 0.000, solve 0.000, write 0.000
   report    a/report.html";
-        assert_eq!(table(&trajectory, Path::new("a")), expected);
-        let idle = Trajectory { statistics: Statistics::default(), ..trajectory };
-        assert!(!table(&idle, Path::new("a")).contains("work"));
+        assert_eq!(table(&trajectory.clone().into(), Path::new("a")), expected);
+        let idle =
+            Trajectory { run: Run { statistics: Statistics::default(), ..trajectory.run }, ..trajectory };
+        assert!(!table(&idle.into(), Path::new("a")).contains("work"));
     }
 
     /// All rows that there are, word for word.
@@ -614,10 +620,21 @@ mod tests {
             vy: Some(-0.25),
         };
         let trajectory = Trajectory {
-            title: "Arm".into(),
-            analysis: AnalysisKind::Dynamic,
-            complete: true,
-            degrees_of_freedom: 44,
+            run: Run {
+                title: "Arm".into(),
+                analysis: AnalysisKind::Dynamic,
+                complete: true,
+                degrees_of_freedom: 44,
+                statistics: Statistics {
+                    steps: 12,
+                    rejected_steps: 1,
+                    newton_iterations: 24,
+                    factorizations: 0,
+                    ..Statistics::default()
+                },
+                seconds: Seconds { build: 0.125, solve: 1.5, write: 0.0625 },
+                ..Run::default()
+            },
             parameter: vec![0.0, 0.75],
             probes: vec![ProbeSeries { name: "tip".into(), samples: vec![ProbeSample::default(), sample] }],
             energy: vec![Energy {
@@ -639,33 +656,50 @@ mod tests {
                     impulse: Some(ContactImpulse { impulse: [0.5, -0.25], largest_force: 32.0 }),
                 },
             ],
-            frequencies: vec![0.0, 12.5],
-            load_factors: vec![2.467],
-            statistics: Statistics {
-                steps: 12,
-                rejected_steps: 1,
-                newton_iterations: 24,
-                factorizations: 0,
-                ..Statistics::default()
-            },
-            seconds: Seconds { build: 0.125, solve: 1.5, write: 0.0625 },
             ..Trajectory::default()
         };
         let expected = "\
 Arm
-  time             0.75 s
-  tip              x = 0.25 m, y = -1.500000e-4 m, angle = 28.64789°, curvature = 3 /m, strain = 2.000000e-6, vx = 1.5 m/s, vy = -0.25 m/s
-  frequency 1      0 Hz (nothing resists)
-  frequency 2      12.5 Hz
+  time           0.75 s
+  tip            x = 0.25 m, y = -1.500000e-4 m, angle = 28.64789°, curvature = 3 /m, strain = 2.000000e-6, vx = 1.5 m/s, vy = -0.25 m/s
+  energy         stretch 0.125 J, bend 0.5 J, springs and contacts 0.25 J, kinetic 2 J, potential -4 J, put in 8 J, lost 16 J, total 6.875 J
+  event at tip   0.5 s: y = -0.125 m
+  contact arm.1  0.625 s: begins
+  contact arm.1  0.6875 s: ends, impulse (0.5, -0.25) N s, up to 32 N
+  unknowns       44
+  work           12 steps, 1 rejected, 24 Newton iterations
+  seconds        build 0.125, solve 1.500, write 0.062
+  report         out/arm/report.html";
+        assert_eq!(table(&trajectory.into(), Path::new("out/arm")), expected);
+    }
+
+    #[test]
+    fn frequencies_and_critical_loads_are_numbered() {
+        let states = |analysis| Trajectory {
+            run: Run { title: "Arm".into(), analysis, complete: true, ..Run::default() },
+            ..Trajectory::default()
+        };
+        let vibration = |frequency| Vibration { frequency, shape: Vec::new() };
+        let modal = Vibrations {
+            equilibrium: states(AnalysisKind::Modal),
+            modes: vec![vibration(0.0), vibration(12.5)],
+        };
+        let expected = "\
+Arm
+  frequency 1  0 Hz (nothing resists)
+  frequency 2  12.5 Hz
+  unknowns     0
+  seconds      build 0.000, solve 0.000, write 0.000
+  report       a/report.html";
+        assert_eq!(table(&modal.into(), Path::new("a")), expected);
+        let mode = BucklingMode { load_factor: 2.467, shape: Vec::new() };
+        let buckling = CriticalLoads { unloaded: states(AnalysisKind::Buckling), modes: vec![mode] };
+        let expected = "\
+Arm
   critical load 1  2.467 × the load
-  energy           stretch 0.125 J, bend 0.5 J, springs and contacts 0.25 J, kinetic 2 J, potential -4 J, put in 8 J, lost 16 J, total 6.875 J
-  event at tip     0.5 s: y = -0.125 m
-  contact arm.1    0.625 s: begins
-  contact arm.1    0.6875 s: ends, impulse (0.5, -0.25) N s, up to 32 N
-  unknowns         44
-  work             12 steps, 1 rejected, 24 Newton iterations
-  seconds          build 0.125, solve 1.500, write 0.062
-  report           out/arm/report.html";
-        assert_eq!(table(&trajectory, Path::new("out/arm")), expected);
+  unknowns         0
+  seconds          build 0.000, solve 0.000, write 0.000
+  report           a/report.html";
+        assert_eq!(table(&buckling.into(), Path::new("a")), expected);
     }
 }

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::{Control, Deviation, Measured, Progress, Reference, Setting, Watcher};
 use crate::model::{Analysis, Model};
+use crate::results::Results;
 use crate::run;
-use crate::trajectory::Trajectory;
 
 /// Runs shorter than this in all \[s\] are repeated …
 const LONG_ENOUGH: f64 = 0.05;
@@ -55,7 +55,7 @@ impl Desk<'_> {
     }
 
     /// Runs a setting once, called `doing`, until `deadline` \[s\] at most.
-    pub fn run(&self, setting: &Setting, doing: &str, deadline: f64) -> Result<Trajectory, Unmeasured> {
+    pub fn run(&self, setting: &Setting, doing: &str, deadline: f64) -> Result<Results, Unmeasured> {
         let (model, analysis) = setting.apply(self.model, self.analysis);
         // Some analyses are over before anybody is asked.
         let mut miss = (self.tell(doing) == Control::Stop).then_some(Unmeasured::Interrupted);
@@ -70,10 +70,10 @@ impl Desk<'_> {
             }
             if miss.is_some() { Control::Stop } else { Control::Continue }
         };
-        let options = run::Options { observer: Some(observer), ..run::Options::default() };
+        let options = run::Options { observer: Some(observer), frames: 0, ..run::Options::default() };
         let outcome = model.solve_with(&analysis, options);
         match (outcome, miss) {
-            (Ok(trajectory), _) if trajectory.complete => Ok(trajectory),
+            (Ok(results), _) if results.run().complete => Ok(results),
             (_, Some(miss)) => Err(miss),
             (Ok(_), None) => Err(Unmeasured::Failed("it did not come to its end".into())),
             (Err(error), None) => Err(Unmeasured::Failed(error.to_string())),
@@ -99,21 +99,22 @@ impl Bench for Measuring<'_> {
         let (desk, mut seconds) = (&self.desk, Vec::with_capacity(MOST_RUNS));
         let doing = format!("{MEASURING} {}", self.begun);
         loop {
-            let trajectory = desk.run(setting, &doing, deadline)?;
-            seconds.push(trajectory.seconds.build + trajectory.seconds.solve);
+            let results = desk.run(setting, &doing, deadline)?;
+            let run = results.run();
+            seconds.push(run.seconds.build + run.seconds.solve);
             if seconds.len() < MOST_RUNS && seconds.iter().sum::<f64>() < LONG_ENOUGH {
                 continue;
             }
-            let (model, analysis, reference) = (desk.model, desk.analysis, &self.reference.trajectory);
+            let (model, analysis, reference) = (desk.model, desk.analysis, &self.reference.results);
             let deviation =
-                Deviation::between(model, analysis, &trajectory, reference).map_err(Unmeasured::Failed)?;
+                Deviation::between(model, analysis, &results, reference).map_err(Unmeasured::Failed)?;
             return Ok(Measured {
-                degrees_of_freedom: trajectory.degrees_of_freedom,
+                degrees_of_freedom: run.degrees_of_freedom,
                 seconds: median(&mut seconds),
                 runs: seconds.len(),
-                statistics: trajectory.statistics,
+                statistics: run.statistics,
                 deviation,
-                warnings: trajectory.warnings,
+                warnings: run.warnings.clone(),
             });
         }
     }
@@ -133,6 +134,7 @@ mod tests {
     use super::*;
     use crate::cost::{Family, Solver};
     use crate::model::{Integrator, STEP_CONTROL};
+    use crate::results::Trajectory;
     use crate::scene::{Scene, parse};
     use std::sync::atomic::{AtomicUsize, Ordering};
     use std::thread::sleep;
@@ -170,9 +172,9 @@ mod tests {
         }
     }
 
-    fn reference(trajectory: Trajectory) -> Reference {
+    fn reference(results: Results) -> Reference {
         let pair = [String::new(), String::new()];
-        Reference { trajectory, uncertainty: Deviation::default(), warnings: vec![], pair, seconds: 0.0 }
+        Reference { results, uncertainty: Deviation::default(), warnings: vec![], pair, seconds: 0.0 }
     }
 
     #[test]
@@ -189,7 +191,7 @@ mod tests {
                 if call == last { Control::Stop } else { Control::Continue }
             };
             let found = desk(&scene, &watcher).run(&setting, "this", deadline);
-            (found.map(|trajectory| trajectory.complete), calls.load(Ordering::Relaxed))
+            (found.map(|trajectory| trajectory.run().complete), calls.load(Ordering::Relaxed))
         };
         let (found, calls) = run(0, f64::INFINITY);
         assert_eq!(found, Ok(true));
@@ -220,7 +222,7 @@ mod tests {
         let start = Instant::now().checked_sub(Duration::from_secs(2)).expect("two seconds ago");
         let desk = Desk { start, ..desk(&scene, &watcher) };
         assert!((2.0..1000.0).contains(&desk.now()), "{}", desk.now());
-        let bench = Measuring { desk, reference: &reference(Trajectory::default()), begun: 0 };
+        let bench = Measuring { desk, reference: &reference(Trajectory::default().into()), begun: 0 };
         assert!((2.0..1000.0).contains(&bench.now()), "{}", bench.now());
     }
 
@@ -255,7 +257,7 @@ mod tests {
     #[test]
     fn a_run_that_compares_with_nothing_is_not_measured() {
         let scene = steps();
-        let reference = reference(Trajectory { parameter: vec![0.3], ..Trajectory::default() });
+        let reference = reference(Trajectory { parameter: vec![0.3], ..Trajectory::default() }.into());
         let watcher = |_: &Progress<'_>| Control::Continue;
         let mut bench = Measuring { desk: desk(&scene, &watcher), reference: &reference, begun: 0 };
         let found = bench.measure(&as_it_is(&scene), f64::INFINITY);

@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use crate::model::{Analysis, Model};
-use crate::output::Summary;
-use crate::trajectory::{AnalysisKind, Shape, Trajectory};
+use crate::output::drift;
+use crate::results::{AnalysisKind, Results, Shape, Trajectory};
 
 /// Records belong together when their times or load factors differ by less, relative to the last
 /// one.
@@ -42,12 +42,14 @@ impl Deviation {
     pub(super) fn between(
         model: &Model,
         analysis: &Analysis,
-        run: &Trajectory,
-        reference: &Trajectory,
+        run: &Results,
+        reference: &Results,
     ) -> Result<Self, String> {
+        let eigenvalues = |what| values(&run.eigenvalues(), &reference.eigenvalues(), what);
+        let (run, reference) = (run.states(), reference.states());
         let error = match analysis {
-            Analysis::Modal { .. } => values(&run.frequencies, &reference.frequencies, "frequencies")?,
-            Analysis::Buckling { .. } => values(&run.load_factors, &reference.load_factors, "load factors")?,
+            Analysis::Modal(_) => eigenvalues("frequencies")?,
+            Analysis::Buckling(_) => eigenvalues("load factors")?,
             Analysis::Static(settings) if settings.arc_length.is_some() => {
                 let last = |t: &Trajectory| t.parameter.len().checked_sub(1);
                 let ends = last(run).zip(last(reference)).ok_or("no record")?;
@@ -65,8 +67,8 @@ impl Deviation {
                 let error = ((u - exact) / exact).abs();
                 error.is_finite().then_some(error)
             }),
-            Analysis::Dynamic(_) => Summary::of(run).energy.and_then(|energy| energy.drift),
-            Analysis::Modal { .. } | Analysis::Buckling { .. } => None,
+            Analysis::Dynamic(_) => drift(&run.energy),
+            Analysis::Modal(_) | Analysis::Buckling(_) => None,
         };
         let has_state = matches!(analysis, Analysis::Static(_) | Analysis::Dynamic(_));
         let curvature = if has_state { curvature(&run.last, &reference.last) } else { None };
@@ -94,7 +96,7 @@ fn common(run: &[f64], reference: &[f64]) -> Result<Vec<(usize, usize)>, String>
 fn positions(model: &Model, run: &Trajectory, reference: &Trajectory, pairs: &[(usize, usize)]) -> f64 {
     let mut largest = 0.0_f64;
     for ((probe, ours), theirs) in model.probes.iter().zip(&run.probes).zip(&reference.probes) {
-        let length = reference.undeformed.get(probe.at.beam).and_then(|beam| beam.s.last());
+        let length = reference.run.undeformed.get(probe.at.beam).and_then(|beam| beam.s.last());
         for &(i, j) in pairs {
             if let (Some(a), Some(b), Some(length)) = (ours.samples.get(i), theirs.samples.get(j), length) {
                 let distance = (a.x - b.x).hypot(a.y - b.y) / length;
@@ -137,8 +139,12 @@ fn curvature(run: &[Shape], reference: &[Shape]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{About, ArcLength, Dynamic, Integrator, Place, Probe, STEP_CONTROL, Static};
-    use crate::trajectory::{Energy, ProbeSample, ProbeSeries};
+    use crate::model::{
+        About, ArcLength, Buckling, Dynamic, Integrator, Modal, Place, Probe, STEP_CONTROL, Static,
+    };
+    use crate::results::{
+        BucklingMode, CriticalLoads, Energy, ProbeSample, ProbeSeries, Run, Vibration, Vibrations,
+    };
 
     /// Probes on two beams, 2 m and 0.5 m long.
     fn model() -> Model {
@@ -153,11 +159,21 @@ mod tests {
             samples: places.iter().map(|&[x, y]| ProbeSample { x, y, ..ProbeSample::default() }).collect(),
         };
         Trajectory {
+            run: Run {
+                undeformed: [2.0, 0.5]
+                    .map(|length| Shape { s: vec![0.0, length], ..Shape::default() })
+                    .into(),
+                ..Run::default()
+            },
             parameter: parameter.into(),
             probes: vec![series(first), series(second)],
-            undeformed: [2.0, 0.5].map(|length| Shape { s: vec![0.0, length], ..Shape::default() }).into(),
             ..Trajectory::default()
         }
+    }
+
+    fn vibrations(frequency: f64) -> Results {
+        let modes = vec![Vibration { frequency, shape: vec![] }];
+        Vibrations { modes, ..Vibrations::default() }.into()
     }
 
     fn still() -> Analysis {
@@ -170,7 +186,8 @@ mod tests {
     }
 
     fn error(analysis: &Analysis, ours: &Trajectory, theirs: &Trajectory) -> Result<f64, String> {
-        Deviation::between(&model(), analysis, ours, theirs).map(|deviation| deviation.error)
+        Deviation::between(&model(), analysis, &ours.clone().into(), &theirs.clone().into())
+            .map(|deviation| deviation.error)
     }
 
     #[test]
@@ -234,7 +251,9 @@ mod tests {
         let strain = |stretch: f64, bend: f64| Energy { stretch, bend, ..Energy::default() };
         let reference = with(vec![strain(0.5, 1.5)]);
         let error = |analysis: &Analysis, ours: &Trajectory, theirs: &Trajectory| {
-            Deviation::between(&model(), analysis, ours, theirs).unwrap().energy
+            Deviation::between(&model(), analysis, &ours.clone().into(), &theirs.clone().into())
+                .unwrap()
+                .energy
         };
         let ours = with(vec![strain(7.0, 7.0), strain(0.5, 1.0)]);
         assert_eq!(error(&still(), &ours, &reference), Some(0.25));
@@ -258,13 +277,18 @@ mod tests {
         assert_eq!(values(&[0.0, 0.25], &[1e-12, 0.25], "f").unwrap(), 4e-12);
         assert_eq!(values(&[0.0, 1.0], &[1e-9, 1.0], "f").unwrap(), 1e-9);
         assert_eq!(values(&[-1.5, 0.5], &[-2.0, 0.5], "f").unwrap(), 0.25);
-        let found = Trajectory { frequencies: vec![3.0], load_factors: vec![5.0], ..Trajectory::default() };
-        let right = Trajectory { frequencies: vec![4.0], load_factors: vec![8.0], ..Trajectory::default() };
-        let between = |analysis: Analysis| Deviation::between(&model(), &analysis, &found, &right).unwrap();
-        let modes = Analysis::Modal { count: 1, about: About::Reference };
-        for (analysis, error) in [(modes, 0.25), (Analysis::Buckling { count: 1 }, 0.375)] {
-            assert_eq!(between(analysis), Deviation { error, curvature: None, energy: None });
-        }
+        let between = |analysis: &Analysis, found: [Results; 2]| {
+            Deviation::between(&model(), analysis, &found[0], &found[1]).unwrap()
+        };
+        let modal = Analysis::Modal(Modal { count: 1, about: About::Reference });
+        let found = between(&modal, [vibrations(3.0), vibrations(4.0)]);
+        assert_eq!(found, Deviation { error: 0.25, curvature: None, energy: None });
+        let loads = [5.0, 8.0].map(|load_factor| {
+            let modes = vec![BucklingMode { load_factor, shape: vec![] }];
+            CriticalLoads { modes, ..CriticalLoads::default() }.into()
+        });
+        let found = between(&Analysis::Buckling(Buckling { count: 1 }), loads);
+        assert_eq!(found, Deviation { error: 0.375, curvature: None, energy: None });
     }
 
     /// Root mean square of 3, −4 and 0 over the largest curvature.
@@ -299,13 +323,17 @@ mod tests {
     fn what_has_no_state_has_no_curvature() {
         let bent = |curvature: f64| Trajectory {
             last: vec![Shape { s: vec![0.0, 1.0], curvature: vec![curvature], ..Shape::default() }],
-            frequencies: vec![1.0],
             ..run(&[1.0], &[[0.0; 2]], &[[0.0; 2]])
         };
-        let curvature = |analysis: &Analysis| {
-            Deviation::between(&model(), analysis, &bent(3.0), &bent(4.0)).unwrap().curvature
+        let curvature = |analysis: &Analysis, [ours, theirs]: [Results; 2]| {
+            Deviation::between(&model(), analysis, &ours, &theirs).unwrap().curvature
         };
-        assert_eq!(curvature(&still()), Some(0.25));
-        assert_eq!(curvature(&Analysis::Modal { count: 1, about: About::Reference }), None);
+        assert_eq!(curvature(&still(), [3.0, 4.0].map(|k| bent(k).into())), Some(0.25));
+        let modal = Analysis::Modal(Modal { count: 1, about: About::Reference });
+        let vibrating = [3.0, 4.0].map(|k| {
+            let modes = vec![Vibration { frequency: 1.0, shape: vec![] }];
+            Vibrations { equilibrium: bent(k), modes }.into()
+        });
+        assert_eq!(curvature(&modal, vibrating), None);
     }
 }

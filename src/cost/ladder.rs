@@ -217,7 +217,7 @@ fn dominated_by(rungs: &[Rung], index: usize, least: f64) -> Option<usize> {
 fn other_solvers(task: &Task<'_>, mean_step: f64) -> Vec<Vec<Solver>> {
     match task.analysis {
         Analysis::Static(_) => vec![vec![Solver::Tolerance(tolerance(0.1 * task.target))]],
-        Analysis::Buckling { .. } | Analysis::Modal { .. } => vec![],
+        Analysis::Buckling(_) | Analysis::Modal(_) => vec![],
         Analysis::Dynamic(settings) => {
             let by_tolerance = |method: &dyn Fn(StepControl) -> Integrator, parts: &[f64]| {
                 let solver = |part: &f64| {
@@ -340,9 +340,9 @@ mod tests {
     use super::*;
     use crate::cost::{Deviation, Measured};
     use crate::model::STEP_CONTROL;
-    use crate::model::{About, Discretization, Dynamic, Static};
+    use crate::model::{About, Buckling, Discretization, Dynamic, Modal, Static};
+    use crate::results::Statistics;
     use crate::scene::parse;
-    use crate::trajectory::Statistics;
 
     /// A bench with a clock of its own, on which `time` and `error` follow from family and cells.
     struct Fake {
@@ -402,7 +402,7 @@ mod tests {
 
     /// An analysis that has one solver.
     fn vibrations() -> Analysis {
-        Analysis::Modal { count: 1, about: About::Reference }
+        Analysis::Modal(Modal { count: 1, about: About::Reference })
     }
 
     fn cells_in(setting: &Setting) -> usize {
@@ -655,7 +655,7 @@ mod tests {
         let still = Analysis::Static(Static::default());
         let tolerance = other_solvers(&Task { analysis: &still, ..task(1e-4) }, 0.0);
         assert_eq!(tolerance, [[Solver::Tolerance(1e-5)]]);
-        for other in [vibrations(), Analysis::Buckling { count: 1 }] {
+        for other in [vibrations(), Analysis::Buckling(Buckling { count: 1 })] {
             assert_eq!(
                 other_solvers(&Task { analysis: &other, ..task(1e-4) }, 0.0),
                 Vec::<Vec<Solver>>::new()
@@ -821,7 +821,8 @@ mod tests {
     #[test]
     fn meshes_grow_until_the_error_is_least() {
         let mut bench = Fake { time: |_, _| 1e-6, ..fake() };
-        let climbed = climbed(&mut bench, &Analysis::Modal { count: 1, about: Default::default() }, 10.0);
+        let climbed =
+            climbed(&mut bench, &Analysis::Modal(Modal { count: 1, about: Default::default() }), 10.0);
         let cells: Vec<usize> =
             climbed.rungs.iter().filter(|r| r.family == Family::FULL).map(|r| r.cells).collect();
         // 192⁻⁴ < 1e-9 < 128⁻⁴.

@@ -89,11 +89,11 @@ impl Study {
                 && rung.measured.deviation.error <= target - uncertainty.error,
         };
         Report {
-            title: &self.reference.trajectory.title,
+            title: &self.reference.results.run().title,
             version: env!("CARGO_PKG_VERSION"),
             complete: self.complete,
             target,
-            error: Deviation::name(self.reference.trajectory.analysis),
+            error: Deviation::name(self.reference.results.run().analysis),
             budget: self.options.budget.as_secs_f64(),
             reference: &self.reference.pair,
             uncertainty,
@@ -201,7 +201,7 @@ fn table(report: &Report<'_>, out: &mut dyn io::Write) -> io::Result<()> {
 /// Error against some cost, both logarithmic.
 fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
     let point = |rung: &Rung| [cost(&rung.measured), rung.measured.deviation.error];
-    let name = Deviation::name(study.reference.trajectory.analysis);
+    let name = Deviation::name(study.reference.results.run().analysis);
     let mut chart = Chart::new("", Axis::log(axis), Axis::log(name)).sized(900, 560);
     let costs = || study.rungs.iter().map(|rung| cost(&rung.measured)).filter(|c| *c > 0.0);
     let ends = [costs().fold(f64::INFINITY, f64::min), costs().fold(0.0, f64::max)];
@@ -470,7 +470,7 @@ mod tests {
         }
         // By their times: 12 ms before 16 ms.
         assert!(text.find("<td>as the scene is</td><td>3</td>") < text.find("<td>ANCF, 5/3 points</td>"));
-        study.reference.trajectory.title = " ".to_owned();
+        study.reference.results.states_mut().run.title = " ".to_owned();
         assert!(page(&study).contains("<h1>Scene: what accuracy costs</h1>"));
     }
 

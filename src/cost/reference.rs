@@ -5,7 +5,7 @@ use super::bench::{Desk, Unmeasured};
 use super::{CostError, Deviation, Family, Setting, Solver};
 use crate::model::RPIM_GAUSS_POINTS;
 use crate::model::{Analysis, Integrator, StepControl};
-use crate::trajectory::Trajectory;
+use crate::results::Results;
 
 /// Cells of the meshfree run of the first pair.
 const CELLS: usize = 16;
@@ -24,7 +24,7 @@ const AMPLE: f64 = 1e-3;
 #[derive(Clone, Debug)]
 pub struct Reference {
     /// The meshfree run of the pair that agrees best.
-    pub trajectory: Trajectory,
+    pub results: Results,
     /// By how much the other run of the pair differs: the uncertainty of the reference.
     pub uncertainty: Deviation,
     /// What either run warned of.
@@ -98,20 +98,20 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
                 return Err(CostError::Interrupted);
             }
             (Ok(a), Ok(b)) => {
-                let warnings = [&a.warnings[..], &b.warnings].concat();
+                let warnings = [&a.run().warnings[..], &b.run().warnings].concat();
                 let deviation = Deviation::between(desk.model, desk.analysis, &b, &a);
                 deviation.map(|deviation| (a, deviation, warnings)).map_err(Unmeasured::Failed)
             }
             (Err(miss), _) | (_, Err(miss)) => Err(miss),
         };
         match found {
-            Ok((trajectory, mut uncertainty, warnings)) => {
+            Ok((results, mut uncertainty, warnings)) => {
                 if matches!(desk.analysis, Analysis::Dynamic(_)) {
                     // A drift is measured against nothing.
                     uncertainty.energy = None;
                 }
                 if agreement.is_none_or(|error| uncertainty.error < error) {
-                    best = Some(Reference { trajectory, uncertainty, warnings, pair: names, seconds: 0.0 });
+                    best = Some(Reference { results, uncertainty, warnings, pair: names, seconds: 0.0 });
                 }
             }
             Err(Unmeasured::Failed(why)) => reason = why,
@@ -263,7 +263,7 @@ mod tests {
         assert_eq!(reference.pair, ["RPIM, 2 neighbours, shape 5, 32 cells", "ANCF, 3L/2 points, 128 cells"]);
         let error = reference.uncertainty.error;
         assert!(error > 0.0 && error < 8e-9, "{error}");
-        assert!((reference.trajectory.frequencies[0] * std::f64::consts::TAU - 3.516_015).abs() < 1e-4);
+        assert!((reference.results.eigenvalues()[0] * std::f64::consts::TAU - 3.516_015).abs() < 1e-4);
     }
 
     /// Vibrations are over before anybody looks at the clock.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::deviation::Deviation;
 use super::setting::{Family, Setting};
-use crate::trajectory::Statistics;
+use crate::results::Statistics;
 
 /// A setting with what it cost and how far it was off.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,17 +11,25 @@ pub enum Analysis {
     /// Motion in time.
     Dynamic(Dynamic),
     /// Load factors at which the straight path becomes unstable.
-    Buckling {
-        /// How many.
-        count: usize,
-    },
+    Buckling(Buckling),
     /// Natural frequencies and mode shapes.
-    Modal {
-        /// How many, motions without resistance (0 Hz) included.
-        count: usize,
-        /// About which state.
-        about: About,
-    },
+    Modal(Modal),
+}
+
+/// Settings of a buckling analysis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Buckling {
+    /// How many critical loads are wanted.
+    pub count: usize,
+}
+
+/// Settings of a modal analysis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Modal {
+    /// How many vibrations are wanted, motions without resistance (0 Hz) included.
+    pub count: usize,
+    /// The state about which they are small.
+    pub about: About,
 }
 
 /// The state about which vibrations are small.

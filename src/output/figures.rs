@@ -1,8 +1,9 @@
 //! Which plots show a trajectory.
 
 use super::error::OutputError;
+use super::mode::displaced;
 use super::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, PlotError, Series, colour, grid, human};
-use crate::trajectory::{AnalysisKind, ProbeSample, Shape, Trajectory};
+use crate::results::{AnalysisKind, ProbeSample, Results, Shape, Trajectory};
 
 /// A drawn plot with the words below it.
 pub(super) struct Figure {
@@ -43,9 +44,10 @@ impl Sketch {
 /// Size of a plot that stands beside another one \[px\].
 const SMALL: (u32, u32) = (540, 300);
 
-/// All plots of a trajectory, the most telling first.
-pub(super) fn figures(t: &Trajectory) -> Result<Vec<Figure>, OutputError> {
-    let mut sketches = vec![modes(t), shape(t)];
+/// All plots of what was found, the most telling first.
+pub(super) fn figures(results: &Results) -> Result<Vec<Figure>, OutputError> {
+    let t = results.states();
+    let mut sketches = vec![modes(results), shape(t)];
     sketches.extend(along(t));
     sketches.push(position(t));
     sketches.push(angle(t));
@@ -59,7 +61,7 @@ pub(super) fn figures(t: &Trajectory) -> Result<Vec<Figure>, OutputError> {
 
 /// How records are ordered, for an axis.
 fn parameter_axis(t: &Trajectory) -> Axis {
-    match t.analysis {
+    match t.run.analysis {
         AnalysisKind::Static | AnalysisKind::Modal => Axis::linear("load factor"),
         AnalysisKind::Dynamic => Axis::linear("time [s]"),
         AnalysisKind::Buckling => Axis::linear("mode").whole(),
@@ -68,7 +70,7 @@ fn parameter_axis(t: &Trajectory) -> Axis {
 
 /// Load factor or time of the last record, in words.
 fn moment(t: &Trajectory) -> String {
-    match (t.analysis, t.parameter.last()) {
+    match (t.run.analysis, t.parameter.last()) {
         (AnalysisKind::Static | AnalysisKind::Modal, Some(&load)) => {
             format!("at load factor {}", human(load, 6))
         }
@@ -83,7 +85,7 @@ fn centreline(shape: &Shape) -> Vec<[f64; 2]> {
 
 /// Length of the longest beam \[m\].
 fn length(t: &Trajectory) -> f64 {
-    let lengths = t.undeformed.iter().chain(&t.last).filter_map(|b| Some(b.s.last()? - b.s.first()?));
+    let lengths = t.run.undeformed.iter().chain(&t.last).filter_map(|b| Some(b.s.last()? - b.s.first()?));
     lengths.filter(|l| l.is_finite()).fold(0.0, f64::max)
 }
 
@@ -93,7 +95,7 @@ fn negligible(t: &Trajectory) -> f64 {
 }
 
 fn undeformed(t: &Trajectory) -> impl Iterator<Item = Series> + '_ {
-    t.undeformed.iter().enumerate().map(|(i, beam)| {
+    t.run.undeformed.iter().enumerate().map(|(i, beam)| {
         let label = if i == 0 { "undeformed" } else { "" };
         Series::dashed(label, centreline(beam), GREY)
     })
@@ -111,7 +113,7 @@ fn shape(t: &Trajectory) -> Option<Sketch> {
         return None;
     }
     let mut chart = Chart::new("", Axis::linear("x [m]"), Axis::linear("y [m]")).equal_aspect(620);
-    for (i, outline) in t.outlines.iter().enumerate() {
+    for (i, outline) in t.run.outlines.iter().enumerate() {
         let label = if i == 0 { "obstacle" } else { "" };
         chart = chart.with(Series::line(label, outline.clone(), GREY).size(1.6));
     }
@@ -125,7 +127,7 @@ fn shape(t: &Trajectory) -> Option<Sketch> {
     for series in undeformed(t) {
         chart = chart.with(series);
     }
-    if t.analysis == AnalysisKind::Dynamic {
+    if t.run.analysis == AnalysisKind::Dynamic {
         for probe in &t.probes {
             let path = probe.samples.iter().map(|s| [s.x, s.y]).collect();
             let label = format!("path of {}", probe.name);
@@ -218,7 +220,7 @@ fn position(t: &Trajectory) -> Option<Sketch> {
 }
 
 fn velocity(t: &Trajectory) -> Option<Sketch> {
-    if t.analysis != AnalysisKind::Dynamic {
+    if t.run.analysis != AnalysisKind::Dynamic {
         return None;
     }
     let pair: Pair = [("vx", |s| s.vx.unwrap_or(f64::NAN)), ("vy", |s| s.vy.unwrap_or(f64::NAN))];
@@ -248,7 +250,7 @@ fn energy(t: &Trajectory) -> Option<Sketch> {
     if t.parameter.len() < 2 || t.energy.is_empty() {
         return None;
     }
-    let part = |f: fn(&crate::trajectory::Energy) -> f64| over_parameter(t, t.energy.iter().map(f));
+    let part = |f: fn(&crate::results::Energy) -> f64| over_parameter(t, t.energy.iter().map(f));
     let parts = [
         ("stretch", part(|e| e.stretch), PALETTE[2]),
         ("bend", part(|e| e.bend), PALETTE[0]),
@@ -269,8 +271,8 @@ fn energy(t: &Trajectory) -> Option<Sketch> {
             chart = chart.with(Series::line(name, points, colour));
         }
     }
-    chart = chart.with(Series::dashed("total", part(crate::trajectory::Energy::total), PALETTE[6]));
-    let caption = match super::Summary::of(t).energy.and_then(|e| e.drift) {
+    chart = chart.with(Series::dashed("total", part(crate::results::Energy::total), PALETTE[6]));
+    let caption = match super::summary::drift(&t.energy) {
         Some(drift) => {
             format!(
                 "Energies; the total departs from its first value by {} of the largest kinetic energy.",
@@ -348,7 +350,7 @@ fn iterations(t: &Trajectory) -> Sketch {
 
 /// First and last iteration of every step, where there are too many to show each.
 fn last_iterations(t: &Trajectory) -> Sketch {
-    let pick = |values: fn(&crate::trajectory::StepRecord) -> Option<&f64>| -> Vec<[f64; 2]> {
+    let pick = |values: fn(&crate::results::StepRecord) -> Option<&f64>| -> Vec<[f64; 2]> {
         let kept: Vec<_> = t.history.iter().filter(|s| s.accepted).collect();
         // More marks than this lie on each other.
         let stride = kept.len().div_ceil(1200).max(1);
@@ -373,7 +375,7 @@ fn steps(t: &Trajectory) -> Option<Sketch> {
     }
     let sizes = || kept.iter().chain(&rejected).map(|p| p[1]).filter(|s| *s > 0.0);
     let (least, largest) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
-    let label = if t.analysis == AnalysisKind::Dynamic { "step [s]" } else { "step" };
+    let label = if t.run.analysis == AnalysisKind::Dynamic { "step [s]" } else { "step" };
     let axis = if largest > 5.0 * least { Axis::log(label) } else { Axis::linear(label) };
     let mut chart = Chart::new("", parameter_axis(t), axis).sized(SMALL.0, SMALL.1);
     if kept.len() <= 300 {
@@ -389,7 +391,7 @@ fn steps(t: &Trajectory) -> Option<Sketch> {
 /// Newton iterations of every time step: where they grow, the steps are as long as the motion
 /// allows.
 fn newton(t: &Trajectory) -> Option<Sketch> {
-    if t.analysis != AnalysisKind::Dynamic {
+    if t.run.analysis != AnalysisKind::Dynamic {
         return None;
     }
     let points = |accepted: bool| -> Vec<[f64; 2]> {
@@ -413,23 +415,23 @@ fn newton(t: &Trajectory) -> Option<Sketch> {
 }
 
 /// Mode shapes, one small plot each.
-fn modes(t: &Trajectory) -> Option<Sketch> {
-    if t.modes.is_empty() {
+fn modes(results: &Results) -> Option<Sketch> {
+    let (t, modes) = (results.states(), results.mode_shapes());
+    if modes.is_empty() {
         return None;
     }
-    let values = if t.analysis == AnalysisKind::Buckling { &t.load_factors } else { &t.frequencies };
-    let charts = t.modes.iter().enumerate().map(|(i, mode)| {
-        let value = values.get(i).map_or(String::new(), |&v| match t.analysis {
-            AnalysisKind::Buckling => format!(": load factor {}", human(v, 6)),
-            _ => format!(": {} Hz", human(v, 6)),
-        });
+    let charts = modes.into_iter().zip(results.eigenvalues()).enumerate().map(|(i, (mode, value))| {
+        let value = match t.run.analysis {
+            AnalysisKind::Buckling => format!("load factor {}", human(value, 6)),
+            _ => format!("{} Hz", human(value, 6)),
+        };
         let mut chart =
-            Chart::new(format!("mode {}{value}", i + 1), Axis::linear("x [m]"), Axis::linear("y [m]"));
+            Chart::new(format!("mode {}: {value}", i + 1), Axis::linear("x [m]"), Axis::linear("y [m]"));
         for beam in &t.last {
             chart = chart.with(Series::dashed("", centreline(beam), GREY));
         }
-        for (j, beam) in mode.iter().enumerate() {
-            chart = chart.with(Series::line("", centreline(beam), colour_of_beam(j)));
+        for (j, beam) in displaced(&t.last, mode).iter().enumerate() {
+            chart = chart.with(Series::line("", beam.line.clone(), colour_of_beam(j)));
             if beam.nodes.len() <= 60 {
                 chart = chart.with(Series::points("", beam.nodes.clone(), colour_of_beam(j)).size(2.0));
             }

@@ -3,8 +3,9 @@
 
 use serde::Serialize;
 
+use super::mode::{Displaced, displaced};
 use super::tables::parameter_name;
-use crate::trajectory::{AnalysisKind, Shape, Trajectory};
+use crate::results::{AnalysisKind, Results, Shape};
 
 /// Cells of the grid along the longer side of the picture.
 const CELLS: f64 = 8000.0;
@@ -42,9 +43,11 @@ pub(super) struct Motion {
 type Polyline = Vec<[f64; 2]>;
 
 fn polyline(shape: &Shape) -> Polyline {
-    let stride = shape.x.len().div_ceil(MODE_POINTS).max(1);
-    let points = shape.x.iter().zip(&shape.y).map(|(&x, &y)| [x, y]);
-    every(&points.collect::<Vec<_>>(), stride)
+    thinned(&shape.x.iter().zip(&shape.y).map(|(&x, &y)| [x, y]).collect::<Vec<_>>())
+}
+
+fn thinned(points: &[[f64; 2]]) -> Polyline {
+    every(points, points.len().div_ceil(MODE_POINTS).max(1))
 }
 
 /// Every `stride`th entry, and the last one.
@@ -54,15 +57,16 @@ fn every<T: Clone>(all: &[T], stride: usize) -> Vec<T> {
 }
 
 impl Motion {
-    /// The frames of a trajectory, or its mode shapes; `None` where nothing moves.
-    pub(super) fn of(t: &Trajectory) -> Option<Self> {
-        let vibration = matches!(t.analysis, AnalysisKind::Modal | AnalysisKind::Buckling);
-        let rest = if vibration { &t.last } else { &t.undeformed };
+    /// The frames of a trajectory, or the mode shapes; `None` where nothing moves.
+    pub(super) fn of(results: &Results) -> Option<Self> {
+        let t = results.states();
+        let vibration = matches!(t.run.analysis, AnalysisKind::Modal | AnalysisKind::Buckling);
+        let rest = if vibration { &t.last } else { &t.run.undeformed };
         let rest: Vec<Polyline> = rest.iter().map(polyline).collect();
         let (parameter, frames): (Vec<f64>, Vec<Vec<Polyline>>) = if vibration {
-            let values = if t.analysis == AnalysisKind::Modal { &t.frequencies } else { &t.load_factors };
-            let frames: Vec<_> = t.modes.iter().map(|mode| mode.iter().map(polyline).collect()).collect();
-            ((0..frames.len()).map(|i| values.get(i).copied().unwrap_or(f64::NAN)).collect(), frames)
+            let line = |beam: &Displaced| thinned(&beam.line);
+            let frame = |mode| displaced(&t.last, mode).iter().map(line).collect();
+            (results.eigenvalues(), results.mode_shapes().into_iter().map(frame).collect())
         } else {
             let coordinates: usize = t.frames.iter().flat_map(|f| &f.beams).map(|b| 2 * b.len()).sum();
             // First fewer frames, as long as a hundred stay; then fewer points.
@@ -91,7 +95,7 @@ impl Motion {
         let margin = GROUND * longest(extent(low, high));
         let (nearest, farthest) = (low.map(|c| c - margin), high.map(|c| c + margin));
         let near = |p: &&[f64; 2]| (0..2).all(|axis| (nearest[axis]..=farthest[axis]).contains(&p[axis]));
-        for point in t.outlines.iter().flatten().filter(near) {
+        for point in t.run.outlines.iter().flatten().filter(near) {
             for axis in 0..2 {
                 low[axis] = low[axis].min(point[axis]);
                 high[axis] = high[axis].max(point[axis]);
@@ -117,13 +121,13 @@ impl Motion {
         };
         Some(Self {
             vibration,
-            name: match t.analysis {
+            name: match t.run.analysis {
                 AnalysisKind::Static => "load factor",
                 AnalysisKind::Buckling => "load factor of mode",
                 AnalysisKind::Modal => "frequency of mode",
-                AnalysisKind::Dynamic => parameter_name(t.analysis),
+                AnalysisKind::Dynamic => parameter_name(t.run.analysis),
             },
-            unit: match t.analysis {
+            unit: match t.run.analysis {
                 AnalysisKind::Dynamic => "s",
                 AnalysisKind::Modal => "Hz",
                 AnalysisKind::Static | AnalysisKind::Buckling => "",
@@ -132,7 +136,7 @@ impl Motion {
             cell,
             size,
             parameter,
-            ground: cells(&t.outlines),
+            ground: cells(&t.run.outlines),
             rest: cells(&rest),
             frames: frames.iter().map(cells).collect(),
         })

@@ -7,7 +7,7 @@ use super::figures::Figure;
 use super::motion::Motion;
 use super::plot::human;
 use super::summary::Summary;
-use crate::trajectory::{AnalysisKind, Trajectory};
+use crate::results::{AnalysisKind, Results, Trajectory};
 
 #[derive(Template)]
 #[template(path = "report.html", config = "src/output/askama.toml")]
@@ -35,29 +35,33 @@ struct Table {
 }
 
 /// The page.
-pub(super) fn page(t: &Trajectory, summary: &Summary, figures: &[Figure]) -> Result<String, OutputError> {
-    let kind = match t.analysis {
+pub(super) fn page(results: &Results, summary: &Summary, figures: &[Figure]) -> Result<String, OutputError> {
+    let t = results.states();
+    let kind = match t.run.analysis {
         AnalysisKind::Static => "Equilibrium",
         AnalysisKind::Dynamic => "Motion",
         AnalysisKind::Modal => "Natural vibrations",
         AnalysisKind::Buckling => "Critical loads",
     };
-    let title = if t.title.trim().is_empty() { kind } else { &t.title };
+    let title = if t.run.title.trim().is_empty() { kind } else { &t.run.title };
     // The data are numbers and fixed words: they always have a JSON form.
-    let motion = Motion::of(t).and_then(|motion| motion.to_json().ok()).unwrap_or_default();
+    let motion = Motion::of(results).and_then(|motion| motion.to_json().ok()).unwrap_or_default();
     let page = Page {
         title,
         subtitle: format!(
             "{kind} · {} degree{} of freedom",
-            t.degrees_of_freedom,
-            if t.degrees_of_freedom == 1 { "" } else { "s" }
+            t.run.degrees_of_freedom,
+            if t.run.degrees_of_freedom == 1 { "" } else { "s" }
         ),
-        complete: t.complete,
+        complete: t.run.complete,
         style: include_str!("templates/report.css"),
         player: include_str!("templates/player.js"),
-        warnings: &t.warnings,
-        results: [eigenvalues(t), probes(t, summary), energy(t, summary)].into_iter().flatten().collect(),
-        settings: &t.settings,
+        warnings: &t.run.warnings,
+        results: [eigenvalues(results), probes(t, summary), energy(t, summary)]
+            .into_iter()
+            .flatten()
+            .collect(),
+        settings: &t.run.settings,
         counts: counts(t, summary),
         motion,
         figures,
@@ -67,7 +71,7 @@ pub(super) fn page(t: &Trajectory, summary: &Summary, figures: &[Figure]) -> Res
 }
 
 fn last(t: &Trajectory) -> String {
-    match (t.analysis, t.parameter.last()) {
+    match (t.run.analysis, t.parameter.last()) {
         (AnalysisKind::Static | AnalysisKind::Modal, Some(&load)) => {
             format!(" at load factor {}", human(load, 6))
         }
@@ -86,10 +90,10 @@ fn probes(t: &Trajectory, summary: &Summary) -> Option<Table> {
     if moving {
         header.extend(["vx [m/s]", "vy [m/s]"].map(String::from));
     }
-    let length = t.undeformed.iter().filter_map(|b| b.s.last()).fold(0.0_f64, |m, l| m.max(*l));
+    let length = t.run.undeformed.iter().filter_map(|b| b.s.last()).fold(0.0_f64, |m, l| m.max(*l));
     // One digit is enough for round-off.
     let number = |(v, scale): (f64, f64)| human(v, if v.abs() < 1e-12 * scale { 1 } else { 7 });
-    let row = |(name, s): &(String, crate::trajectory::ProbeSample)| {
+    let row = |(name, s): &(String, crate::results::ProbeSample)| {
         let mut row = vec![name.clone()];
         row.extend([(s.x, length), (s.y, length), (s.angle.to_degrees(), 1.0)].map(number));
         row.extend([(s.curvature, 1.0 / length), (s.strain, 1.0)].map(number));
@@ -134,22 +138,20 @@ fn energy(t: &Trajectory, summary: &Summary) -> Option<Table> {
     Some(Table { caption: format!("Energies{}", last(t)), header, rows: vec![row] })
 }
 
-fn eigenvalues(t: &Trajectory) -> Option<Table> {
-    let (caption, name, values) = match t.analysis {
-        AnalysisKind::Modal => ("Natural frequencies", "frequency [Hz]", &t.frequencies),
-        AnalysisKind::Buckling => ("Critical loads", "load factor", &t.load_factors),
-        AnalysisKind::Static | AnalysisKind::Dynamic => return None,
+fn eigenvalues(results: &Results) -> Option<Table> {
+    let (caption, name, none) = match results {
+        Results::Vibrations(_) => ("Natural frequencies", "frequency [Hz]", "0 (nothing resists)"),
+        Results::CriticalLoads(_) => ("Critical loads", "load factor", "0"),
+        Results::Trajectory(_) => return None,
     };
-    let number = |v: f64| match t.analysis {
-        AnalysisKind::Modal if v == 0.0 => "0 (nothing resists)".into(),
-        _ => human(v, 8),
-    };
+    let number = |v: f64| if v == 0.0 { none.into() } else { human(v, 8) };
+    let values = results.eigenvalues();
     let rows = values.iter().enumerate().map(|(i, &v)| vec![format!("{}", i + 1), number(v)]).collect();
     Some(Table { caption: caption.into(), header: vec!["mode".into(), name.into()], rows })
 }
 
 fn counts(t: &Trajectory, summary: &Summary) -> Vec<(&'static str, String)> {
-    let s = &t.statistics;
+    let s = &t.run.statistics;
     let mut counts: Vec<(&'static str, String)> = [
         ("steps", s.steps),
         ("rejected steps", s.rejected_steps),

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::trajectory::{AnalysisKind, Energy, Event, ProbeSample, Seconds, Statistics, Trajectory};
+use crate::results::{AnalysisKind, Energy, Event, ProbeSample, Results, Seconds, Statistics};
 
 /// What `summary.json` holds; keys and their order are the fields and theirs.
 #[derive(Clone, Debug, Serialize)]
@@ -68,16 +68,17 @@ pub struct EnergySummary {
 }
 
 impl Summary {
-    /// Reads the summary off a trajectory.
-    pub fn of(trajectory: &Trajectory) -> Self {
+    /// Reads the summary off what was found.
+    pub fn of(results: &Results) -> Self {
+        let (trajectory, run) = (results.states(), results.run());
         let last_sample =
-            |p: &crate::trajectory::ProbeSeries| p.samples.last().map(|sample| (p.name.clone(), *sample));
+            |p: &crate::results::ProbeSeries| p.samples.last().map(|sample| (p.name.clone(), *sample));
         Self {
-            title: trajectory.title.clone(),
-            analysis: trajectory.analysis,
+            title: run.title.clone(),
+            analysis: run.analysis,
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            complete: trajectory.complete,
-            degrees_of_freedom: trajectory.degrees_of_freedom,
+            complete: run.complete,
+            degrees_of_freedom: run.degrees_of_freedom,
             last: trajectory.parameter.last().copied(),
             probes: trajectory.probes.iter().filter_map(last_sample).collect(),
             energy: trajectory.energy.last().map(|last| EnergySummary {
@@ -92,12 +93,11 @@ impl Summary {
                 drift: drift(&trajectory.energy),
             }),
             events: trajectory.events.clone(),
-            frequencies: (trajectory.analysis == AnalysisKind::Modal).then(|| trajectory.frequencies.clone()),
-            load_factors: (trajectory.analysis == AnalysisKind::Buckling)
-                .then(|| trajectory.load_factors.clone()),
-            warnings: trajectory.warnings.clone(),
-            statistics: trajectory.statistics,
-            seconds: trajectory.seconds,
+            frequencies: (run.analysis == AnalysisKind::Modal).then(|| results.eigenvalues()),
+            load_factors: (run.analysis == AnalysisKind::Buckling).then(|| results.eigenvalues()),
+            warnings: run.warnings.clone(),
+            statistics: run.statistics,
+            seconds: run.seconds,
         }
     }
 
@@ -115,8 +115,8 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-/// max |total − initial total| / max kinetic.
-fn drift(energy: &[Energy]) -> Option<f64> {
+/// max |total − initial total| / max kinetic; none where nothing moves.
+pub(crate) fn drift(energy: &[Energy]) -> Option<f64> {
     let initial = energy.first()?.total();
     let kinetic = energy.iter().fold(0.0_f64, |m, e| m.max(e.kinetic));
     let change = energy.iter().fold(0.0_f64, |m, e| m.max((e.total() - initial).abs()));

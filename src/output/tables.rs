@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-use crate::trajectory::{AnalysisKind, Frame, ProbeSample, Shape, Trajectory};
+use crate::results::{AnalysisKind, Frame, ModeShape, ProbeSample, Trajectory};
 
 /// Name of the first column: what the records are ordered by.
 pub(super) fn parameter_name(analysis: AnalysisKind) -> &'static str {
@@ -65,7 +65,7 @@ pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     if moving {
         quantities.extend(["vx", "vy"]);
     }
-    let mut header = words(&[parameter_name(t.analysis)]);
+    let mut header = words(&[parameter_name(t.run.analysis)]);
     header.extend(t.probes.iter().flat_map(|p| quantities.iter().map(move |q| format!("{}.{q}", p.name))));
     let values = |sample: &ProbeSample| {
         let mut values = vec![sample.x, sample.y, sample.angle, sample.curvature, sample.strain];
@@ -86,7 +86,7 @@ pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
 /// they are not zero throughout `stored` and `lost`.
 pub(super) fn energy(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let mut header =
-        vec![parameter_name(t.analysis), "stretch", "bend", "kinetic", "potential", "work", "total"];
+        vec![parameter_name(t.run.analysis), "stretch", "bend", "kinetic", "potential", "work", "total"];
     let stored = t.energy.iter().any(|e| e.stored != 0.0);
     let lost = t.energy.iter().any(|e| e.lost != 0.0);
     header.extend(
@@ -105,7 +105,7 @@ pub(super) fn energy(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
 /// `reactions.csv`: the parameter, then per support and joint `fx, fy` \[N\] and `moment` \[N m\]
 /// on the beam.
 pub(super) fn reactions(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let mut header = words(&[parameter_name(t.analysis)]);
+    let mut header = words(&[parameter_name(t.run.analysis)]);
     let quantities = ["fx", "fy", "moment"];
     header.extend(t.reactions.iter().flat_map(|r| quantities.map(|q| format!("{}.{q}", r.name))));
     let mut table = Table::new(out, &header)?;
@@ -119,7 +119,7 @@ pub(super) fn reactions(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
 /// `effects.csv`: the parameter, then per effect `energy` \[J\] where it has one, and the resultant
 /// `fx, fy` \[N\] of its forces on the beam.
 pub(super) fn effects(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let mut header = words(&[parameter_name(t.analysis)]);
+    let mut header = words(&[parameter_name(t.run.analysis)]);
     for effect in &t.effects {
         let quantities = ["energy", "fx", "fy"].into_iter().skip(usize::from(!effect.has_energy));
         header.extend(quantities.map(|q| format!("{}.{q}", effect.name)));
@@ -134,18 +134,12 @@ pub(super) fn effects(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     table.finish()
 }
 
-fn shape_rows(table: &mut Table<'_>, lead: &[&str], shape: &Shape, forces: bool) -> io::Result<()> {
-    let mut words = lead.to_vec();
-    words.push(&shape.beam);
-    let mut columns = vec![&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
-    if forces {
-        columns.extend([&shape.axial_force, &shape.shear_force, &shape.bending_moment]);
-    }
-    for (i, &s) in shape.s.iter().enumerate() {
-        let values = columns.iter().map(|c| c.get(i).copied().unwrap_or(f64::NAN));
-        table.row(&words, std::iter::once(s).chain(values))?;
-    }
-    Ok(())
+/// One row for each arc length, the first of the columns; the same words before all.
+fn rows(table: &mut Table<'_>, words: &[&str], columns: &[&Vec<f64>]) -> io::Result<()> {
+    let count = columns.first().map_or(0, |s| s.len());
+    (0..count).try_for_each(|i| {
+        table.row(words, columns.iter().map(|column| column.get(i).copied().unwrap_or(f64::NAN)))
+    })
 }
 
 /// `shape.csv`: the last state,
@@ -165,19 +159,22 @@ pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     ];
     let mut table = Table::new(out, &words(&header))?;
     for shape in &t.last {
-        shape_rows(&mut table, &[], shape, true)?;
+        let state = [&shape.s, &shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
+        let forces = [&shape.axial_force, &shape.shear_force, &shape.bending_moment];
+        rows(&mut table, &[&shape.beam], &[&state[..], &forces].concat())?;
     }
     table.finish()
 }
 
-/// `modes.csv`: the mode shapes, scaled for drawing;
-/// `mode, beam, s, x, y, angle, strain, curvature`.
-pub(super) fn modes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let mut table =
-        Table::new(out, &words(&["mode", "beam", "s", "x", "y", "angle", "strain", "curvature"]))?;
-    for (i, mode) in t.modes.iter().enumerate() {
-        for shape in mode {
-            shape_rows(&mut table, &[&(i + 1).to_string()], shape, false)?;
+/// `modes.csv`: what each mode changes along the beams;
+/// `mode, beam, s, ux, uy, rotation, strain, curvature`.
+pub(super) fn modes(modes: &[&[ModeShape]], out: &mut dyn Write) -> io::Result<()> {
+    let header = ["mode", "beam", "s", "ux", "uy", "rotation", "strain", "curvature"];
+    let mut table = Table::new(out, &words(&header))?;
+    for (i, mode) in modes.iter().enumerate() {
+        for beam in *mode {
+            let columns = [&beam.s, &beam.x, &beam.y, &beam.angle, &beam.strain, &beam.curvature];
+            rows(&mut table, &[&(i + 1).to_string(), &beam.beam], &columns)?;
         }
     }
     table.finish()
@@ -194,12 +191,12 @@ pub(super) fn eigenvalues(name: &str, values: &[f64], out: &mut dyn Write) -> io
 
 /// `states.csv`: every beam at every recorded frame; the parameter, `beam, s, x, y`.
 pub(super) fn states(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let header = [parameter_name(t.analysis), "beam", "s", "x", "y"];
+    let header = [parameter_name(t.run.analysis), "beam", "s", "x", "y"];
     let mut table = Table::new(out, &words(&header))?;
     for frame in &t.frames {
         let parameter = exact(frame.parameter);
         for (beam, points) in frame.beams.iter().enumerate() {
-            let name = t.undeformed.get(beam).map_or("", |shape| &shape.beam);
+            let name = t.run.undeformed.get(beam).map_or("", |shape| &shape.beam);
             for (s, [x, y]) in frame_arc_lengths(t, frame, beam).into_iter().zip(points) {
                 table.row(&[&parameter, name], [s, *x, *y])?;
             }
@@ -211,7 +208,7 @@ pub(super) fn states(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
 /// The arc lengths \[m\] of a frame's points: even, from one end of the beam to the other.
 pub(super) fn frame_arc_lengths(t: &Trajectory, frame: &Frame, beam: usize) -> Vec<f64> {
     let count = frame.beams.get(beam).map_or(0, Vec::len);
-    let s = t.undeformed.get(beam).map_or(&[][..], |shape| &shape.s);
+    let s = t.run.undeformed.get(beam).map_or(&[][..], |shape| &shape.s);
     let (first, last) = (s.first().copied().unwrap_or(0.0), s.last().copied().unwrap_or(1.0));
     let parts = count.saturating_sub(1).max(1) as f64;
     (0..count).map(|i| first + (last - first) * i as f64 / parts).collect()

@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 
 use super::tables::frame_arc_lengths;
-use crate::trajectory::{Shape, Trajectory};
+use crate::results::{Shape, Trajectory};
 
 /// Type number of a polyline in the format.
 const POLY_LINE: u8 = 4;
@@ -37,7 +37,7 @@ pub(super) fn series(t: &Trajectory) -> Vec<(String, String)> {
         let mut displacement = PointData { name: "displacement [m]", components: 3, values: Vec::new() };
         for (beam, points) in frame.beams.iter().enumerate() {
             let arc = frame_arc_lengths(t, frame, beam);
-            if let Some(rest) = t.undeformed.get(beam) {
+            if let Some(rest) = t.run.undeformed.get(beam) {
                 for (s, [x, y]) in arc.iter().zip(points) {
                     let [x0, y0] = position(rest, *s);
                     displacement.values.extend([x - x0, y - y0, 0.0]);

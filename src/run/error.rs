@@ -3,8 +3,8 @@
 use crate::assembly::BuildError;
 use crate::model::Undamped;
 use crate::restart::RestartError;
+use crate::results::{Results, Trajectory};
 use crate::solve::dynamics::start::StartError;
-use crate::trajectory::Trajectory;
 
 /// Why there is no result.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -142,8 +142,9 @@ impl RunError {
 
     /// What was computed before the failure, if it is more than the state at which everything
     /// starts.
-    pub fn take_partial(&mut self) -> Option<Trajectory> {
-        self.partial().filter(|partial| partial.parameter.len() > 1).map(std::mem::take)
+    pub fn take_partial(&mut self) -> Option<Results> {
+        let partial = self.partial().filter(|partial| partial.parameter.len() > 1);
+        partial.map(std::mem::take).map(Results::Trajectory)
     }
 
     /// What was computed before the failure.

@@ -18,8 +18,8 @@ use crate::assembly::BuildError;
 use crate::basis::BasisTable;
 use crate::effect::curvature;
 use crate::model::{GaussPoints, Model, StrainMeasure};
+use crate::results::Shape;
 use crate::system::{Fields, System};
-use crate::trajectory::Shape;
 use nalgebra::Vector2;
 
 /// Part of the bending energy beyond which it is said.
@@ -213,5 +213,38 @@ impl Watched {
             100.0 * too_stiff,
             self.points.stretch,
         ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ½ EA L ε² of ε = 10⁻⁹ is 3·10⁻¹⁴ J for 2 m of 3·10⁴ N: what stores less than that, and has
+    /// no section force at all, is strained by round-off.
+    #[test]
+    fn what_round_off_strains_does_not_hold_itself() {
+        let told = |stretch: f64| {
+            let string = Watched {
+                name: "a".into(),
+                points: GaussPoints { stretch: 5, bend: 3, lobatto: false },
+                cable: true,
+                measure: StrainMeasure::Engineering,
+                stiffness: [3e4, 0.0],
+                offset: 0,
+                tables: [BasisTable::default(), BasisTable::default()],
+                reference: [Vec::new(), Vec::new()],
+                seen: vec![[0.0, stretch, 0.0]],
+            };
+            let slack = Shape {
+                beam: "a".into(),
+                s: vec![0.0, 2.0],
+                axial_force: vec![0.0, 0.0],
+                ..Shape::default()
+            };
+            let locking = Locking { beams: vec![string] };
+            locking.jammed(&[slack], 0.0).count()
+        };
+        assert_eq!([2.9e-14, 3.1e-14].map(told), [0, 1]);
     }
 }

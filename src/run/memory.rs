@@ -2,7 +2,7 @@
 //! ends a program without a word.
 
 use super::RunError;
-use crate::model::{About, Analysis, Beam, Discretization, Model};
+use crate::model::{About, Analysis, Beam, Buckling, Discretization, Modal, Model};
 
 /// Bytes of a number.
 const NUMBER: f64 = 8.0;
@@ -31,8 +31,8 @@ fn needed(model: &Model, analysis: &Analysis) -> f64 {
         Analysis::Static(settings) => {
             (2.0, equilibria(settings.steps.or(settings.arc_length.as_ref().map(|arc| arc.max_points))))
         }
-        Analysis::Buckling { count } => (4.0, 4.0 * *count as f64 * state),
-        Analysis::Modal { count, about } => {
+        Analysis::Buckling(Buckling { count }) => (4.0, 4.0 * *count as f64 * state),
+        Analysis::Modal(Modal { count, about }) => {
             (if *about == About::Equilibrium { 5.0 } else { 4.0 }, 4.0 * *count as f64 * state)
         }
         Analysis::Dynamic(settings) => (4.0, 2.0 * settings.duration / settings.output_every * state),

@@ -1,12 +1,16 @@
-//! Vibrations and critical loads, as a trajectory shows them.
+//! Vibrations and critical loads of a model.
 
 use super::sampler::Sampler;
-use super::{Control, Observer, Progress, RunError};
+use super::{Options, RunError, Solve, Stopwatch, Watch, memory, needs, timed};
 use crate::assembly::InternalVariables;
-use crate::model::{About, Static};
+use crate::model::{About, Analysis, Buckling, Modal, Model, Static};
+use crate::results::{
+    AnalysisKind, BucklingMode, CriticalLoads, ModeShape, Shape, Statistics, Trajectory, Vibration,
+    Vibrations,
+};
 use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};
-use crate::trajectory::{AnalysisKind, Shape, Statistics, Trajectory};
+use crate::system::System;
 
 /// Accuracy of the equilibrium: as far as round-off lets Newton's method come, because stress, and
 /// with it the stiffness, is a small difference of large numbers.
@@ -19,28 +23,60 @@ const FINER: [usize; 2] = [20, 200];
 const STRAIGHT: f64 = 0.1;
 /// Axial strain before buckling to which it is trusted; critical loads err by as much.
 const STRAINED: f64 = 0.05;
-/// Largest displacement of a drawn mode, in beam lengths.
-const DRAWN: f64 = 0.1;
+impl Solve for Modal {
+    type Results = Vibrations;
+
+    fn solve(&self, model: &Model, options: Options<'_>) -> Result<Vibrations, RunError> {
+        options.refuses_a_start("modal")?;
+        let analysis = Analysis::Modal(*self);
+        let mut stopwatch = Stopwatch::start();
+        memory::check(model, &analysis)?;
+        let system = System::build(model, needs(&analysis))?;
+        let sampler = Sampler::new(model, &system, options.frames)?;
+        stopwatch.built();
+        let mut watch = Watch::new(options.observer);
+        let outcome = match self.about {
+            About::Reference => sampler.about_reference(self.count),
+            About::Equilibrium => sampler.about_equilibrium(self.count, &mut watch),
+        };
+        stopwatch.solved();
+        timed(outcome, |vibrations| &mut vibrations.equilibrium, &watch, stopwatch)
+    }
+}
+
+impl Solve for Buckling {
+    type Results = CriticalLoads;
+
+    fn solve(&self, model: &Model, options: Options<'_>) -> Result<CriticalLoads, RunError> {
+        options.refuses_a_start("buckling")?;
+        let analysis = Analysis::Buckling(*self);
+        let mut stopwatch = Stopwatch::start();
+        memory::check(model, &analysis)?;
+        let system = System::build(model, needs(&analysis))?;
+        let sampler = Sampler::new(model, &system, options.frames)?;
+        stopwatch.built();
+        let modes = buckling::solve(&system, self.count)?;
+        stopwatch.solved();
+        let mut loads = sampler.critical_loads(&modes);
+        loads.unloaded.run.seconds = stopwatch.finish();
+        Ok(loads)
+    }
+}
 
 impl Sampler<'_> {
-    /// The `count` lowest vibrations about a state, which is found first.
-    pub(super) fn vibrations(
-        &self,
-        count: usize,
-        about: About,
-        observer: Observer<'_>,
-    ) -> Result<Trajectory, RunError> {
-        if about == About::Reference {
-            let mut trajectory = self.empty(AnalysisKind::Modal);
-            trajectory.last = self.unloaded();
-            let mut x = self.system.reference().to_vec();
-            x.resize(x.len() + self.system.multipliers(), 0.0);
-            return self.modal(trajectory, (0.0, &x, &InternalVariables::default()), count);
-        }
-        let report = &mut |load: f64, step: f64, statistics: &Statistics| {
-            let newton_iterations = statistics.newton_iterations;
-            observer(&Progress { parameter: load, target: 1.0, step, newton_iterations }) == Control::Continue
-        };
+    /// The `count` lowest vibrations about the stress-free state.
+    fn about_reference(&self, count: usize) -> Result<Vibrations, RunError> {
+        let mut trajectory = self.empty(AnalysisKind::Modal);
+        trajectory.last = self.unloaded();
+        let mut x = self.system.reference().to_vec();
+        x.resize(x.len() + self.system.multipliers(), 0.0);
+        self.modal(trajectory, (0.0, &x, &InternalVariables::default()), count)
+    }
+
+    /// The `count` lowest vibrations about the equilibrium under all loads, which is found first.
+    fn about_equilibrium(&self, count: usize, watch: &mut Watch<'_>) -> Result<Vibrations, RunError> {
+        let report =
+            &mut |load: f64, step: f64, statistics: &Statistics| watch.goes_on(load, 1.0, step, statistics);
         let (mut parts, mut finer) = (1, FINER.into_iter());
         loop {
             let settings = Static { tolerance: Some(TO_THE_END), steps: Some(parts), ..Static::default() };
@@ -55,7 +91,7 @@ impl Sampler<'_> {
             let vibrations = match solution.states.last() {
                 Some((load, x)) if *load == 1.0 => self.modal(trajectory, (*load, x, &variables), count),
                 // Stopped on the way.
-                _ => Ok(trajectory),
+                _ => Ok(Vibrations { equilibrium: trajectory, modes: Vec::new() }),
             };
             match (vibrations, finer.next()) {
                 (Err(RunError::Eigen(EigenError::Unstable { .. })), Some(next)) => parts = next,
@@ -66,36 +102,48 @@ impl Sampler<'_> {
 
     fn modal(
         &self,
-        mut trajectory: Trajectory,
+        mut equilibrium: Trajectory,
         (load, x, variables): (f64, &[f64], &InternalVariables),
         count: usize,
-    ) -> Result<Trajectory, RunError> {
+    ) -> Result<Vibrations, RunError> {
+        let run = &mut equilibrium.run;
         if load == 0.0 && self.system.has_loads() {
-            trajectory.warnings.push(
+            run.warnings.push(
                 "loads take no part in vibrations about the stress-free state: `about = \"equilibrium\"` in [analysis.modal] finds those about the \
                  equilibrium under them"
                     .into(),
             );
         }
         let about = if load == 0.0 { "the stress-free state" } else { "the equilibrium under all loads" };
-        trajectory.settings.push(("vibrations about".into(), about.into()));
+        run.settings.push(("vibrations about".into(), about.into()));
         let modes = modal::solve(self.system, load, x, variables, count)?;
+        run.statistics.factorizations += modes.factorizations;
         let q = self.coordinates_of(x);
-        trajectory.modes = modes.shapes.iter().map(|mode| self.mode_shape(q, mode)).collect();
-        trajectory.statistics.factorizations += modes.factorizations;
-        trajectory.frequencies = modes.frequencies;
-        Ok(trajectory)
+        let vibration = |(frequency, mode): (&f64, &Vec<f64>)| Vibration {
+            frequency: *frequency,
+            shape: self.mode_shape(&equilibrium.last, q, mode),
+        };
+        let modes = modes.frequencies.iter().zip(&modes.shapes).map(vibration).collect();
+        Ok(Vibrations { equilibrium, modes })
     }
 
-    pub(super) fn buckling(&self, modes: &buckling::Modes) -> Trajectory {
-        let mut trajectory = self.empty(AnalysisKind::Buckling);
-        trajectory.last = self.unloaded();
-        trajectory.load_factors = modes.load_factors.clone();
+    fn critical_loads(&self, modes: &buckling::Modes) -> CriticalLoads {
+        let mut unloaded = self.empty(AnalysisKind::Buckling);
+        unloaded.last = self.unloaded();
+        unloaded.run.statistics.factorizations = modes.factorizations;
+        unloaded.run.warnings.extend(beyond_the_linear(modes));
         let reference = self.system.reference();
-        trajectory.modes = modes.shapes.iter().map(|mode| self.mode_shape(reference, mode)).collect();
-        trajectory.statistics.factorizations = modes.factorizations;
-        trajectory.warnings.extend(beyond_the_linear(modes));
-        trajectory
+        let mode = |(load_factor, mode): (&f64, &Vec<f64>)| {
+            let largest = mode.chunks_exact(4).fold(0.0_f64, |m, d| m.max(d[0].hypot(d[1])));
+            let scaled: Vec<f64> = mode.iter().map(|change| change / largest).collect();
+            let mode = if largest > 0.0 { &scaled } else { mode };
+            BucklingMode {
+                load_factor: *load_factor,
+                shape: self.mode_shape(&unloaded.last, reference, mode),
+            }
+        };
+        let modes = modes.load_factors.iter().zip(&modes.shapes).map(mode).collect();
+        CriticalLoads { unloaded, modes }
     }
 
     /// The stress-free state.
@@ -104,12 +152,9 @@ impl Sampler<'_> {
         self.loaded(reference, &self.system.static_actions(0.0, reference, &InternalVariables::default()))
     }
 
-    /// The state `q` with a mode added, its largest displacement a tenth of a beam length.
-    fn mode_shape(&self, q: &[f64], mode: &[f64]) -> Vec<Shape> {
-        let largest = mode.chunks_exact(4).fold(0.0_f64, |m, d| m.max(d[0].hypot(d[1])));
-        let factor = if largest > 0.0 { DRAWN * self.system.length() / largest } else { 0.0 };
-        let q: Vec<f64> = q.iter().zip(mode).map(|(q, m)| factor.mul_add(*m, *q)).collect();
-        self.shape(&q)
+    /// A mode of the state `q`, at the arc lengths of its `shapes`.
+    fn mode_shape(&self, shapes: &[Shape], q: &[f64], mode: &[f64]) -> Vec<ModeShape> {
+        shapes.iter().enumerate().map(|(beam, shape)| self.change(beam, &shape.s, q, mode)).collect()
     }
 }
 

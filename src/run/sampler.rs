@@ -8,16 +8,16 @@ use crate::assembly::{Actions, BuildError, InternalVariables, Side};
 use crate::linear::Singular;
 use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
+use crate::results::{
+    AnalysisKind, EffectSeries, Energy, Event, Frame, ModeShape, ProbeSample, ProbeSeries, ReactionSeries,
+    Run, Shape, Trajectory,
+};
 use crate::solve::Work;
 use crate::solve::dynamics;
 use crate::solve::newton::Failure;
 use crate::solve::path::NoStep;
 use crate::solve::statics::{Pressed, Solution};
-use crate::system::{Reaction, System, View, unfold};
-use crate::trajectory::{
-    AnalysisKind, EffectSeries, Energy, Event, Frame, ProbeSample, ProbeSeries, ReactionSeries, Shape,
-    Trajectory,
-};
+use crate::system::{Change, Reaction, System, View, unfold};
 use nalgebra::Vector2;
 use std::f64::consts::FRAC_PI_2;
 
@@ -41,8 +41,8 @@ const WORK_KNOWN: f64 = 1e-2;
 const LARGEST_DRIFT: f64 = 1e-2;
 /// Energies below this, in EA L, are those of the round-off of strains.
 const LEAST_ENERGY: f64 = 1e-20;
-/// Frames kept for the animation.
-const FRAMES: usize = 400;
+/// States, evenly among all, that are looked at for locking, at most.
+const LOOKED_AT: usize = 400;
 
 /// Everything needed to look at states of one system.
 pub(super) struct Sampler<'a> {
@@ -51,6 +51,8 @@ pub(super) struct Sampler<'a> {
     shapes: Vec<View>,
     probes: Vec<Watched>,
     locking: Locking,
+    /// How many frames are kept.
+    frames: usize,
 }
 
 /// A probe with the rows that see its point.
@@ -126,12 +128,23 @@ pub(super) enum History<'h> {
     Angles(&'h [f64]),
 }
 
+/// Whether record `i` is among `most` or about so many that are even among `count`, the last being
+/// one of them.
+fn is_among(i: usize, count: usize, most: usize) -> bool {
+    most > 0 && (i.is_multiple_of(count.div_ceil(most)) || i + 1 == count)
+}
+
+fn incomplete(mut trajectory: Trajectory) -> Trajectory {
+    trajectory.run.complete = false;
+    trajectory
+}
+
 fn evenly(length: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| length * i as f64 / (count - 1) as f64).collect()
 }
 
 impl<'a> Sampler<'a> {
-    pub(super) fn new(model: &'a Model, system: &'a System) -> Result<Self, RunError> {
+    pub(super) fn new(model: &'a Model, system: &'a System, frames: usize) -> Result<Self, RunError> {
         let view = |beam: usize, s: &[f64]| {
             let part = &system.beams()[beam];
             View::points(&part.basis, part.offset(), s).map_err(|e| BuildError::basis(&part.name, e))
@@ -155,7 +168,7 @@ impl<'a> Sampler<'a> {
             })
             .collect::<Result<_, BuildError>>()?;
         let locking = Locking::new(model, system)?;
-        Ok(Self { model, system, shapes, probes, locking })
+        Ok(Self { model, system, shapes, probes, locking, frames })
     }
 
     /// The probe at which a path is to end, as (view, axis, value).
@@ -185,7 +198,7 @@ impl<'a> Sampler<'a> {
 
     pub(super) fn empty(&self, analysis: AnalysisKind) -> Trajectory {
         let reference = self.system.reference();
-        Trajectory {
+        let run = Run {
             title: self.model.title.clone(),
             analysis,
             complete: true,
@@ -194,6 +207,10 @@ impl<'a> Sampler<'a> {
             settings: self.settings(),
             undeformed: self.shape(reference),
             outlines: self.outlines(),
+            ..Run::default()
+        };
+        Trajectory {
+            run,
             last: self.shape(reference),
             probes: self
                 .probes
@@ -299,6 +316,27 @@ impl<'a> Sampler<'a> {
                 *strain -= reference.strain(beam.strain);
             }
         }
+        shape
+    }
+
+    /// What a mode of the state `q` changes along one beam, at the arc lengths `s`.
+    pub(super) fn change(&self, beam: usize, s: &[f64], q: &[f64], mode: &[f64]) -> ModeShape {
+        let part = &self.system.beams()[beam];
+        let (name, measure) = (self.model.beams[beam].name.clone(), self.model.beams[beam].strain);
+        let view = View::points(&part.basis, part.offset(), s);
+        let view = view.as_ref().unwrap_or(&self.shapes[beam]);
+        let mut shape = ModeShape { beam: name, s: view.s().to_vec(), ..ModeShape::default() };
+        for (fields, by) in view.all(q).zip(view.all(mode)) {
+            shape.x.push(by.position[0]);
+            shape.y.push(by.position[1]);
+            let Change { angle, strain, curvature } = fields.change(&by, measure);
+            shape.angle.push(angle);
+            shape.strain.push(strain);
+            shape.curvature.push(curvature);
+        }
+        let first = 4 * part.first_node;
+        let nodes = mode[first..first + 4 * part.basis.nodes().len()].chunks_exact(4);
+        shape.nodes = nodes.map(|n| [n[0], n[1]]).collect();
         shape
     }
 
@@ -414,7 +452,7 @@ impl<'a> Sampler<'a> {
     /// Of equilibria that an analysis needs.
     pub(super) fn equilibria(&self, analysis: AnalysisKind, solution: &Solution) -> Trajectory {
         let mut trajectory = self.empty(analysis);
-        let every = solution.states.len().div_ceil(FRAMES).max(1);
+        let count = solution.states.len();
         let mut locking = self.locking.clone();
         let states = solution.states.iter().zip(&solution.variables).zip(&solution.work);
         for (i, (((load, x), variables), work)) in states.enumerate() {
@@ -425,8 +463,10 @@ impl<'a> Sampler<'a> {
             let before = i.checked_sub(1).map(|i| self.coordinates_of(&solution.states[i].1));
             let energy = Energy { work: work.value, ..self.system.energy(*load, q, None).with(variables) };
             self.record(&mut trajectory, *load, (History::Before(before), q), (None, variables), energy);
-            if i % every == 0 || i + 1 == solution.states.len() {
+            if is_among(i, count, self.frames) {
                 trajectory.frames.push(self.frame(*load, q));
+            }
+            if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
             }
         }
@@ -434,23 +474,23 @@ impl<'a> Sampler<'a> {
             let actions = self.system.static_actions(*load, x, variables);
             trajectory.last = self.loaded(self.coordinates_of(x), &actions);
         }
-        trajectory.warnings.extend(self.folds(&trajectory.last));
+        trajectory.run.warnings.extend(self.folds(&trajectory.last));
         let known = solution.work.last().zip(trajectory.energy.last());
-        trajectory.warnings.extend(known.and_then(|(work, energy)| put_in(work, energy)));
+        trajectory.run.warnings.extend(known.and_then(|(work, energy)| put_in(work, energy)));
         let work = trajectory.energy.last().map_or(0.0, |energy| energy.potential.abs());
-        trajectory.warnings.extend(locking.jammed(&trajectory.last, work));
-        trajectory.warnings.extend(locking.warnings());
+        trajectory.run.warnings.extend(locking.jammed(&trajectory.last, work));
+        trajectory.run.warnings.extend(locking.warnings());
         trajectory.history = solution.history.clone();
-        trajectory.statistics = solution.statistics;
+        trajectory.run.statistics = solution.statistics;
         if let Some(Pressed { load, unstable, free }) = solution.pressed {
-            trajectory.warnings.push(format!(
+            trajectory.run.warnings.push(format!(
                 "the load up to factor {load:.6} presses the structure so that it is unstable in {unstable} directions where it stands, and \
                  supports and joints leave it {free} to move in: its beams buckle before it moves, and on which side it comes to rest may be \
                  chance; reach the load in more `steps`"
             ));
         }
         if let Some(load) = solution.crest {
-            trajectory.warnings.push(format!(
+            trajectory.run.warnings.push(format!(
                 "at load factor {load:.6} the structure stands on a crest of its energy, from which it may come to rest in more than one \
                  equilibrium: which of them was found is arbitrary; a small load, or a small change of the geometry, decides"
             ));
@@ -461,7 +501,7 @@ impl<'a> Sampler<'a> {
             } else {
                 ("regains", "the path is back on a more stable branch")
             };
-            trajectory.warnings.push(format!(
+            trajectory.run.warnings.push(format!(
                 "the tangent {change} definiteness at load factor {:.6}: {} unstable direction{} before, {} after; {advice}",
                 event.load,
                 event.before,
@@ -534,10 +574,6 @@ impl<'a> Sampler<'a> {
                  round-off of positions alone makes forces of their size; use fewer nodes, even spacing, or an axial \
                  stiffness that is not far beyond EI/h² with the spacing h"
             }
-            Failure::Singular(_) if self.model.is_inextensible() && stuck.step == 0.0 => {
-                "an inextensible beam cannot move between supports that hold both ends along its straight axis: let one slide, \
-                 give the beam an `axial_stiffness`, or use more nodes"
-            }
             Failure::Singular(Singular { row }) if row >= self.system.coordinates() => {
                 "supports between nodes hold the same motion more than once: leave some out, or use more nodes"
             }
@@ -565,7 +601,7 @@ impl<'a> Sampler<'a> {
             beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
             s,
             advice: advice.into(),
-            partial: Box::new(Trajectory { complete: false, ..self.statics(solution) }),
+            partial: Box::new(incomplete(self.statics(solution))),
         }
     }
 
@@ -579,7 +615,7 @@ impl<'a> Sampler<'a> {
             points: arc.max_points,
             load: solution.states.last().map_or(0.0, |(load, _)| *load),
             target: load.into_iter().chain(probe).collect::<Vec<_>>().join(" or "),
-            partial: Box::new(Trajectory { complete: false, ..self.statics(solution) }),
+            partial: Box::new(incomplete(self.statics(solution))),
         }
     }
 
@@ -596,8 +632,8 @@ impl<'a> Sampler<'a> {
 
     pub(super) fn dynamics(&self, settings: &Dynamic, solution: dynamics::Solution) -> Trajectory {
         let mut trajectory = self.empty(AnalysisKind::Dynamic);
-        trajectory.settings.push(("integrator".into(), settings.integrator.to_string()));
-        let every = solution.states.len().div_ceil(FRAMES).max(1);
+        trajectory.run.settings.push(("integrator".into(), settings.integrator.to_string()));
+        let count = solution.states.len();
         let mut locking = self.locking.clone();
         for reactions in &solution.reactions {
             self.record_reactions(&mut trajectory, reactions);
@@ -613,13 +649,15 @@ impl<'a> Sampler<'a> {
                 (v, &state.variables),
                 energy,
             );
-            if i % every == 0 || i + 1 == solution.states.len() {
+            if is_among(i, count, self.frames) {
                 trajectory.frames.push(self.frame(state.time, q));
+            }
+            if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
             }
         }
         let least = LEAST_ENERGY * self.system.stiffness() * self.system.length();
-        trajectory.warnings.extend(unbalanced(&trajectory.energy, least));
+        trajectory.run.warnings.extend(unbalanced(&trajectory.energy, least));
         if let Some(state) = solution.states.last() {
             trajectory.last = match &solution.end {
                 Some(balance) => self.loaded(&state.q, &self.system.actions(balance.view())),
@@ -638,24 +676,24 @@ impl<'a> Sampler<'a> {
         }
         trajectory.events.sort_by(|a, b| a.time().total_cmp(&b.time()));
         for (contact, time) in &solution.crossings {
-            trajectory.warnings.push(format!(
+            trajectory.run.warnings.push(format!(
                 "contact {} gave way at t = {time:.6} s: the beam was pushed past the middle of the obstacle, which its `stiffness` \
                  is too small to prevent",
                 contacts.get(*contact).cloned().unwrap_or_default()
             ));
         }
-        trajectory.warnings.extend(locking.warnings());
+        trajectory.run.warnings.extend(locking.warnings());
         let divided = solution.statistics.rejected_steps;
         if divided > 0 && matches!(settings.integrator.step_control(), StepControl::Fixed(_)) {
             let smallest = solution.history.iter().map(|r| r.step).fold(f64::INFINITY, f64::min);
-            trajectory.warnings.push(format!(
+            trajectory.run.warnings.push(format!(
                 "the step was divided {divided} time{}, down to {smallest:.1e} s, because its equations could not be solved or a contact would not have been seen: \
                  give `tolerance` instead of `step`, or a smaller `step`",
                 if divided == 1 { "" } else { "s" }
             ));
         }
         trajectory.history = solution.history;
-        trajectory.statistics = solution.statistics;
+        trajectory.run.statistics = solution.statistics;
         trajectory
     }
 
@@ -688,7 +726,7 @@ impl<'a> Sampler<'a> {
             beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
             s,
             advice: advice.into(),
-            partial: Box::new(Trajectory { complete: false, ..self.dynamics(settings, solution) }),
+            partial: Box::new(incomplete(self.dynamics(settings, solution))),
         }
     }
 }

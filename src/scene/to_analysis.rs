@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::model::{
-    About, Analysis, ArcLength, Crossing, Dynamic, Event, Integrator, Model, ProbeTarget, SPECTRAL_RADIUS,
-    STEP_CONTROL, Static, StepControl, Undamped,
+    About, Analysis, ArcLength, Buckling, Crossing, Dynamic, Event, Integrator, Modal, Model, ProbeTarget,
+    SPECTRAL_RADIUS, STEP_CONTROL, Static, StepControl, Undamped,
 };
 
 use super::diagnose::choices;
@@ -31,14 +31,16 @@ pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<A
     match (&table.statics, &table.dynamic, &table.buckling, &table.modal) {
         (Some(table), None, None, None) => Ok(Analysis::Static(statics(table, model, size)?)),
         (None, Some(table), None, None) => Ok(Analysis::Dynamic(dynamic(table, model, size)?)),
-        (None, None, Some(table), None) => Ok(Analysis::Buckling { count: modes(&table.count, size)? }),
-        (None, None, None, Some(table)) => Ok(Analysis::Modal {
+        (None, None, Some(table), None) => {
+            Ok(Analysis::Buckling(Buckling { count: modes(&table.count, size)? }))
+        }
+        (None, None, None, Some(table)) => Ok(Analysis::Modal(Modal {
             count: modes(&table.count, size)?,
             about: match table.about {
                 AboutName::Reference => About::Reference,
                 AboutName::Equilibrium => About::Equilibrium,
             },
-        }),
+        })),
         (None, None, None, None) => {
             Err(Fault::new(file.analysis.span(), "`analysis` is empty").help(ANALYSES))
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::centreline::Curve;
 use crate::model::{
-    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Law, Model, Outputs, Probe,
+    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Law, Modal, Model, Outputs, Probe,
     Section, Static, StrainMeasure, Support,
 };
 
@@ -49,11 +49,11 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
     let analysis = to_analysis::analysis(file, &model, size)?;
     check_needs(file, &model, &built, &analysis)?;
     let resisting = match &analysis {
-        Analysis::Static(Static { arc_length: Some(_), .. }) | Analysis::Buckling { .. } => {
+        Analysis::Static(Static { arc_length: Some(_), .. }) | Analysis::Buckling(_) => {
             Some(Resisting::Nothing)
         }
         Analysis::Static(_) => Some(Resisting::Weight),
-        Analysis::Modal { about, .. } => (*about == About::Equilibrium).then_some(Resisting::Weight),
+        Analysis::Modal(Modal { about, .. }) => (*about == About::Equilibrium).then_some(Resisting::Weight),
         Analysis::Dynamic(_) => None,
     };
     if let Some(resisting) = resisting {
@@ -186,12 +186,12 @@ fn section(beam: &str, table: &BeamTable) -> Result<Section, Fault> {
 fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Analysis) -> Result<(), Fault> {
     let kind = match analysis {
         Analysis::Static(_) => "a static analysis",
-        Analysis::Buckling { .. } => "a buckling analysis",
-        Analysis::Modal { .. } => "a modal analysis",
+        Analysis::Buckling(_) => "a buckling analysis",
+        Analysis::Modal(_) => "a modal analysis",
         Analysis::Dynamic(_) => "a dynamic analysis",
     };
     let mass = match analysis {
-        Analysis::Modal { .. } | Analysis::Dynamic(_) => Some(kind),
+        Analysis::Modal(_) | Analysis::Dynamic(_) => Some(kind),
         _ if file.effect.gravity.is_some() => Some("gravity"),
         _ => None,
     };
@@ -209,7 +209,7 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
         }
         let bedded = file.effect.foundation.iter().any(|table| table.beam.get() == &beam.name);
         let unloaded = match analysis {
-            Analysis::Buckling { .. } => Some("a buckling analysis"),
+            Analysis::Buckling(_) => Some("a buckling analysis"),
             Analysis::Static(Static { arc_length: Some(_), .. }) => Some("a path by arc length"),
             _ => None,
         };

@@ -655,3 +655,30 @@ impl<'e, 'a> Path<'e, 'a> {
         Some(Point { parameter: load, load, x, unstable, negative: None, rate: Vec::new() })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::Needs;
+    use crate::model::{Beam, Discretization, Model, Place, Section, Support};
+    use crate::system::System;
+
+    /// A step may fail before anything has changed: then the first node is named, and else the one
+    /// whose gradient has changed most.
+    #[test]
+    fn a_failure_has_a_place_even_where_nothing_changed() {
+        let section = Section::new(1.0, 1.0);
+        let beam = Beam::line("arm", [0.0, 0.0], [1.0, 0.0], section, Discretization::ancf(2));
+        let supports = vec![Support::clamp(Place::new(0, 0.0))];
+        let model = Model { beams: vec![beam], supports, ..Model::default() };
+        let system = System::build(&model, Needs::default()).unwrap();
+        let mut equilibrium = Equilibrium::new(&system);
+        let path = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 1.0).unwrap();
+        let still = path.last().x.clone();
+        assert_eq!(path.worst(&still, &still), (0, 0.0));
+        let mut moved = still.clone();
+        moved[4 + 3] += 0.1;
+        moved[8 + 2] += 0.3;
+        assert_eq!(path.worst(&moved, &still), (0, 1.0));
+    }
+}

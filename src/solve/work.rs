@@ -95,3 +95,29 @@ fn between(path: &mut Path<'_, '_>, from: Sample, to: Sample) -> Option<Sample> 
 fn simpson([from, middle, to]: [Sample; 3]) -> f64 {
     (to.0 - from.0) / 6.0 * (from.1 + 4.0 * middle.1 + to.1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::Needs;
+    use crate::model::{Beam, Discretization, Model, Place, Section, Support};
+    use crate::solve::equilibrium::Equilibrium;
+    use crate::solve::newton::Settings;
+    use crate::solve::path::Parameter;
+
+    /// For P = λ² from 0 to 6 Simpson's rule gives 72 J, the trapezoidal rule 108 J. Where no more
+    /// states are found between, as on a path of one state, the work may err by the difference.
+    #[test]
+    fn work_is_doubtful_where_no_more_states_are_found() {
+        let section = Section::new(1.0, 1.0);
+        let beam = Beam::line("arm", [0.0, 0.0], [1.0, 0.0], section, Discretization::ancf(1));
+        let supports = vec![Support::clamp(Place::new(0, 0.0))];
+        let model = Model { beams: vec![beam], supports, ..Model::default() };
+        let system = System::build(&model, Needs::default()).unwrap();
+        let mut equilibrium = Equilibrium::new(&system);
+        let mut path = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 1.0).unwrap();
+        let mut work = Work::default();
+        work.add_piece(&mut path, [(0.0, 0.0), (3.0, 9.0), (6.0, 36.0)], HALVINGS);
+        assert_eq!((work.value, work.error), (72.0, 36.0));
+    }
+}

@@ -174,6 +174,28 @@ mod tests {
         assert!(matches!(this.claim(folder.path()), Err(SweepError::Stray { .. })));
     }
 
+    /// Of two that begin a sweep at once, one finds that the other's manifest is its own: so many
+    /// values take so long to write that the other's is there before.
+    #[test]
+    fn two_may_begin_it_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let (this, ready) = (manifest(1, &[], &["b=1:2:4000"]), folder.path().join("ready"));
+        fs::write(&ready, serde_json::to_vec(&this).unwrap()).unwrap();
+        // Whoever writes has seen that there is none.
+        let writes = || {
+            let mut files = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path());
+            files.any(|path| path.extension().is_some_and(|extension| extension == "part"))
+        };
+        std::thread::scope(|scope| {
+            let claimed = scope.spawn(|| this.claim(folder.path()).map_err(|error| error.to_string()));
+            while !writes() && !claimed.is_finished() {
+                std::thread::yield_now();
+            }
+            fs::rename(&ready, folder.path().join(MANIFEST)).unwrap();
+            assert_eq!(claimed.join().unwrap(), Ok(()));
+        });
+    }
+
     /// As any file that this user makes.
     #[cfg(unix)]
     #[test]

@@ -32,10 +32,36 @@ impl Fields {
         }
     }
 
+    /// What changes to first order where the fields change by `by`.
+    pub fn change(&self, by: &Self, measure: StrainMeasure) -> Change {
+        let [first, second] = [self.gradient, self.second].map(Vector2::from);
+        let [by_first, by_second] = [by.gradient, by.second].map(Vector2::from);
+        let square = first.norm_squared();
+        let (along, across) = (first.dot(&by_first), first.perp(&by_first));
+        let strain = match measure {
+            StrainMeasure::Green => along,
+            StrainMeasure::Engineering => along / square.sqrt(),
+        };
+        let numerator = by_first.perp(&second) + first.perp(&by_second);
+        let curvature = (numerator - 2.0 * self.curvature() * along) / square;
+        Change { angle: across / square, strain, curvature }
+    }
+
     /// Direction of r' in (−π, π].
     pub fn angle(&self) -> f64 {
         self.gradient[1].atan2(self.gradient[0])
     }
+}
+
+/// First variations at a point, of a change of the coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// Of the direction of r' \[rad\].
+    pub angle: f64,
+    /// Of ε.
+    pub strain: f64,
+    /// Of κ \[1/m\].
+    pub curvature: f64,
 }
 
 /// The representative of an angle nearest to `near`.

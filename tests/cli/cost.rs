@@ -7,7 +7,7 @@ use ancf::cost::{
     Best, Deviation, Family, LeftOut, Measured, Options, Reference, Rung, Setting, Solver, Study,
 };
 use ancf::model::{Integrator, StepControl};
-use ancf::trajectory::{AnalysisKind, Statistics, Trajectory};
+use ancf::results::{AnalysisKind, Run, Statistics, Trajectory};
 use std::fs;
 use std::time::Duration;
 
@@ -167,11 +167,11 @@ fn study() -> Study {
     Study {
         options: Options { target: 2e-3, budget: Duration::from_secs(20) },
         reference: Reference {
-            trajectory: Trajectory {
-                title: "Made up".to_owned(),
-                analysis: AnalysisKind::Static,
+            results: Trajectory {
+                run: Run { title: "Made up".to_owned(), analysis: AnalysisKind::Static, ..Run::default() },
                 ..Trajectory::default()
-            },
+            }
+            .into(),
             uncertainty: Deviation { error: 1.5e-4, curvature: Some(2e-3), energy: None },
             warnings: vec!["it locks".to_owned()],
             pair: ["RPIM, 32 cells".to_owned(), "ANCF, 128 cells".to_owned()],

@@ -5,8 +5,9 @@ use std::path::Path;
 
 use ancf::output::plot::{Axis, Chart, PALETTE, PlotError, Series, grid};
 use ancf::output::{OutputError, OutputOptions, Summary, write};
-use ancf::trajectory::{
-    AnalysisKind, Energy, Frame, ProbeSample, ProbeSeries, Shape, StepRecord, Trajectory,
+use ancf::results::{
+    AnalysisKind, CriticalLoads, Energy, Frame, ModeShape, ProbeSample, ProbeSeries, Results, Run, Shape,
+    StepRecord, Trajectory, Vibration, Vibrations,
 };
 
 /// A beam on a line of the given slope, its numbers chosen to need all their digits.
@@ -54,10 +55,14 @@ fn motion(records: u32) -> Trajectory {
         samples: (0..records).map(|i| sample(time(i), Some(1.0 / 3.0))).collect(),
     };
     Trajectory {
-        title: "Arm <&> </script> \"quoted\"".into(),
-        analysis: AnalysisKind::Dynamic,
-        complete: true,
-        degrees_of_freedom: 12,
+        run: Run {
+            title: "Arm <&> </script> \"quoted\"".into(),
+            analysis: AnalysisKind::Dynamic,
+            complete: true,
+            degrees_of_freedom: 12,
+            undeformed: vec![line("arm", 0.0)],
+            ..Run::default()
+        },
         parameter: (0..records).map(time).collect(),
         probes: vec![series("tip"), series("mid, of the arm")],
         energy: (0..records)
@@ -72,7 +77,6 @@ fn motion(records: u32) -> Trajectory {
             })
             .collect(),
         frames: (0..records).map(|i| frame(time(i), time(i), 1)).collect(),
-        undeformed: vec![line("arm", 0.0)],
         last: vec![line("arm", 0.7)],
         history: vec![
             StepRecord {
@@ -88,19 +92,28 @@ fn motion(records: u32) -> Trajectory {
     }
 }
 
-fn modal() -> Trajectory {
-    Trajectory {
-        title: "Modes".into(),
-        analysis: AnalysisKind::Modal,
-        complete: true,
-        degrees_of_freedom: 12,
+fn mode(frequency: f64, slope: f64) -> Vibration {
+    let Shape { beam, s, x, y, angle, strain, curvature, nodes, .. } = line("arm", slope);
+    let x = vec![0.0; x.len()];
+    let nodes = nodes.iter().map(|node| [0.0, node[1]]).collect();
+    Vibration { frequency, shape: vec![ModeShape { beam, s, x, y, angle, strain, curvature, nodes }] }
+}
+
+fn modal() -> Vibrations {
+    let equilibrium = Trajectory {
+        run: Run {
+            title: "Modes".into(),
+            analysis: AnalysisKind::Modal,
+            complete: true,
+            degrees_of_freedom: 12,
+            undeformed: vec![line("arm", 0.0)],
+            ..Run::default()
+        },
         probes: vec![ProbeSeries { name: "tip".into(), samples: vec![] }],
-        undeformed: vec![line("arm", 0.0)],
         last: vec![line("arm", 0.0)],
-        frequencies: vec![6.2, 39.0],
-        modes: vec![vec![line("arm", 0.1)], vec![line("arm", -0.1)]],
         ..Trajectory::default()
-    }
+    };
+    Vibrations { equilibrium, modes: vec![mode(6.2, 0.1), mode(39.0, -0.1)] }
 }
 
 const EVERYTHING: OutputOptions = OutputOptions { states: true, vtu: true };
@@ -132,8 +145,8 @@ fn bits_of(values: &[f64]) -> Vec<u64> {
 #[test]
 fn tables_read_back_to_the_same_bits() {
     let directory = tempfile::tempdir().expect("a directory");
-    let mut t = motion(5);
-    write(directory.path(), &mut t, &EVERYTHING).expect("written");
+    let t = motion(5);
+    write(directory.path(), &mut t.clone().into(), &EVERYTHING).expect("written");
     for plot in ["steps.svg", "newton.svg", "convergence.svg"] {
         assert!(names(directory.path()).contains(&plot.into()), "{plot}");
     }
@@ -203,12 +216,13 @@ fn tables_read_back_to_the_same_bits() {
 #[test]
 fn summary_has_the_keys_of_the_contract() {
     let directory = tempfile::tempdir().expect("a directory");
-    let mut t = motion(5);
-    let summary = write(directory.path(), &mut t, &OutputOptions::default()).expect("written");
+    let mut results = motion(5).into();
+    let summary = write(directory.path(), &mut results, &OutputOptions::default()).expect("written");
+    let t = results.into_states();
     let text = fs::read_to_string(directory.path().join("summary.json")).expect("a summary");
     assert_eq!(text, summary.to_json().expect("JSON"), "the file says what `write` returns");
     let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(json["title"], t.title);
+    assert_eq!(json["title"], t.run.title);
     assert_eq!(json["analysis"], "dynamic");
     assert_eq!(json["version"], env!("CARGO_PKG_VERSION"));
     assert_eq!(json["complete"], true);
@@ -239,16 +253,16 @@ fn summary_has_the_keys_of_the_contract() {
     for key in ["build", "solve", "write"] {
         assert!(json["seconds"][key].is_f64(), "seconds.{key}");
     }
-    assert!(t.seconds.write > 0.0 && json["seconds"]["write"] == t.seconds.write);
+    assert!(t.run.seconds.write > 0.0 && json["seconds"]["write"] == t.run.seconds.write);
     assert!(json.get("frequencies").is_none(), "frequencies are for modal analysis");
-    let still = Summary::of(&Trajectory { energy: vec![Energy::default()], ..Trajectory::default() });
+    let still = Summary::of(&Trajectory { energy: vec![Energy::default()], ..Trajectory::default() }.into());
     assert_eq!(still.energy.and_then(|e| e.drift), None, "nothing moves: no drift");
 }
 
 #[test]
 fn modal_results_hold_frequencies_and_modes() {
     let directory = tempfile::tempdir().expect("a directory");
-    write(directory.path(), &mut modal(), &EVERYTHING).expect("written");
+    write(directory.path(), &mut modal().into(), &EVERYTHING).expect("written");
     let json = fs::read_to_string(directory.path().join("summary.json")).expect("a summary");
     let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     assert_eq!(json["frequencies"], serde_json::json!([6.2, 39.0]));
@@ -263,11 +277,11 @@ fn modal_results_hold_frequencies_and_modes() {
 fn a_later_run_leaves_nothing_of_an_earlier_one() {
     let directory = tempfile::tempdir().expect("a directory");
     fs::write(directory.path().join("notes.txt"), "mine").expect("written");
-    write(directory.path(), &mut motion(5), &EVERYTHING).expect("written");
+    write(directory.path(), &mut motion(5).into(), &EVERYTHING).expect("written");
     assert!(directory.path().join("vtu/state_00004.vtu").is_file());
-    write(directory.path(), &mut motion(3), &EVERYTHING).expect("written");
+    write(directory.path(), &mut motion(3).into(), &EVERYTHING).expect("written");
     assert!(!directory.path().join("vtu/state_00003.vtu").exists());
-    write(directory.path(), &mut modal(), &OutputOptions::default()).expect("written");
+    write(directory.path(), &mut modal().into(), &OutputOptions::default()).expect("written");
     let expected = [
         "frequencies.csv",
         "modes.csv",
@@ -286,7 +300,7 @@ fn a_file_in_the_way_is_named_and_nothing_is_written() {
     let file = directory.path().join("file");
     fs::write(&file, "").expect("written");
     let error =
-        write(&file.join("results"), &mut motion(3), &EVERYTHING).expect_err("a file is no directory");
+        write(&file.join("results"), &mut motion(3).into(), &EVERYTHING).expect_err("a file is no directory");
     assert!(
         matches!(&error, OutputError::Directory { path, .. } if path.ends_with("file/results")),
         "{error:?}"
@@ -300,7 +314,7 @@ fn a_failure_half_way_leaves_nothing() {
     let results = directory.path().join("results");
     // The last file to be written cannot be.
     fs::create_dir_all(results.join("summary.json")).expect("made");
-    let error = write(&results, &mut motion(3), &EVERYTHING).expect_err("a directory is in the way");
+    let error = write(&results, &mut motion(3).into(), &EVERYTHING).expect_err("a directory is in the way");
     assert!(matches!(&error, OutputError::Occupied { path } if path.ends_with("summary.json")), "{error:?}");
     assert_eq!(names(&results), ["summary.json"]);
 }
@@ -312,7 +326,7 @@ fn an_unwritable_directory_stays_empty() {
     let directory = tempfile::tempdir().expect("a directory");
     fs::set_permissions(directory.path(), fs::Permissions::from_mode(0o555)).expect("read-only");
     let superuser = fs::write(directory.path().join("probe"), "").is_ok();
-    let result = write(&directory.path().join("results"), &mut motion(3), &EVERYTHING);
+    let result = write(&directory.path().join("results"), &mut motion(3).into(), &EVERYTHING);
     fs::set_permissions(directory.path(), fs::Permissions::from_mode(0o755)).expect("writable");
     // Permissions do not bind the superuser, as whom containers run.
     if !superuser {
@@ -327,7 +341,7 @@ fn lists_that_do_not_fit_are_refused_before_anything_is_written() {
     let results = directory.path().join("results");
     let mut t = motion(5);
     t.probes[1].samples.pop();
-    let error = write(&results, &mut t, &EVERYTHING).expect_err("a sample is missing");
+    let error = write(&results, &mut t.clone().into(), &EVERYTHING).expect_err("a sample is missing");
     assert_eq!(error.to_string(), "samples of probe `mid, of the arm`: expected 5 entries, found 4");
     assert!(!results.exists());
 }
@@ -339,9 +353,9 @@ fn the_page_is_self_contained_escaped_and_small() {
     for frame in &mut t.frames {
         frame.beams = vec![frame.beams[0].clone(); 12];
     }
-    t.undeformed = vec![line("arm", 0.0); 12];
+    t.run.undeformed = vec![line("arm", 0.0); 12];
     t.last = vec![line("</script>", 0.7); 12];
-    write(directory.path(), &mut t, &OutputOptions::default()).expect("written");
+    write(directory.path(), &mut t.clone().into(), &OutputOptions::default()).expect("written");
     let page = fs::read_to_string(directory.path().join("report.html")).expect("a page");
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
     assert_eq!(page.matches("</script>").count(), 2, "the data and the player, and no title or name");
@@ -357,7 +371,7 @@ fn the_page_is_self_contained_escaped_and_small() {
 #[test]
 fn paraview_series_names_every_frame() {
     let directory = tempfile::tempdir().expect("a directory");
-    write(directory.path(), &mut motion(5), &EVERYTHING).expect("written");
+    write(directory.path(), &mut motion(5).into(), &EVERYTHING).expect("written");
     let index = fs::read_to_string(directory.path().join("states.pvd")).expect("an index");
     assert_eq!(index.matches("<DataSet ").count(), 5);
     for file in index.split("file=\"").skip(1).filter_map(|rest| rest.split('"').next()) {
@@ -371,10 +385,8 @@ fn paraview_series_names_every_frame() {
 #[test]
 fn every_odd_trajectory_gives_files_or_an_error() {
     let directory = tempfile::tempdir().expect("a directory");
-    let mut odd = vec![Trajectory::default(), motion(1), motion(2)];
-    odd.extend(
-        [AnalysisKind::Modal, AnalysisKind::Buckling].map(|analysis| Trajectory { analysis, ..modal() }),
-    );
+    let mut odd: Vec<Results> = vec![Trajectory::default().into(), motion(1).into(), motion(2).into()];
+    odd.extend([Vibrations::default().into(), CriticalLoads::default().into(), modal().into()]);
     for value in [f64::NAN, f64::INFINITY, f64::MAX, f64::MIN_POSITIVE] {
         let mut t = motion(3);
         t.parameter[1] = value;
@@ -383,7 +395,7 @@ fn every_odd_trajectory_gives_files_or_an_error() {
         t.last[0].curvature[7] = value;
         t.history[0].step = value;
         t.history[0].increments[0] = value;
-        odd.push(t);
+        odd.push(t.into());
     }
     for (i, t) in odd.iter_mut().enumerate() {
         let results = directory.path().join(i.to_string());
@@ -484,9 +496,9 @@ pub(super) fn elements(svg: &str) -> String {
 fn regress_pictures() {
     let directory = tempfile::tempdir().expect("a directory");
     let mut text = String::new();
-    for (name, mut trajectory) in [("motion", motion(5)), ("modes", modal())] {
+    for (name, mut found) in [("motion", Results::from(motion(5))), ("modes", modal().into())] {
         let results = directory.path().join(name);
-        write(&results, &mut trajectory, &OutputOptions::default()).expect("written");
+        write(&results, &mut found, &OutputOptions::default()).expect("written");
         for file in names(&results).iter().filter(|file| file.ends_with(".svg")) {
             let svg = fs::read_to_string(results.join(file)).expect("a picture");
             text += &format!("== {name}/{file}\n{}", elements(&svg));

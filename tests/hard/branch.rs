@@ -6,11 +6,11 @@ use crate::property::generators::clamp;
 use ancf::assembly::Part;
 use ancf::effect::{DistributedForce, Force, Moment};
 use ancf::model::{
-    Analysis, ArcLength, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Place, Probe,
-    Section, SideCondition, Static, StrainMeasure,
+    ArcLength, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Place, Probe, Section,
+    SideCondition, Static, StrainMeasure,
 };
+use ancf::results::{ProbeSample, Trajectory};
 use ancf::run::RunError;
-use ancf::trajectory::{ProbeSample, Trajectory};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use std::f64::consts::PI;
@@ -105,7 +105,7 @@ fn resolved_cantilever() -> impl Strategy<Value = Model> {
 }
 
 fn analysis(model: &Model, settings: Static) -> Result<Trajectory, RunError> {
-    model.solve(&Analysis::Static(settings))
+    model.solve(&settings)
 }
 
 fn last(trajectory: &Trajectory) -> Vec<ProbeSample> {

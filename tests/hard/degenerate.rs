@@ -1,8 +1,8 @@
 //! Degenerate scenes: solved, or refused with a message that names the cause and the place; never a
 //! panic, a hang, or a meaningless state with exit status 0.
 
+use ancf::results::Results;
 use ancf::scene;
-use ancf::trajectory::Trajectory;
 
 /// A beam of 1 m with EI = 1, ρA = 1; what differs from scene to scene comes as tables of the scene
 /// file.
@@ -39,7 +39,7 @@ impl Scene {
         )
     }
 
-    fn outcome(&self) -> Result<Trajectory, String> {
+    fn outcome(&self) -> Result<Results, String> {
         let scene = scene::parse("scene.toml", &self.text()).map_err(|error| error.to_string())?;
         let whole = |error: ancf::run::RunError| {
             let help = miette::Diagnostic::help(&error).map(|help| help.to_string()).unwrap_or_default();
@@ -48,7 +48,7 @@ impl Scene {
         scene.model().solve(scene.analysis()).map_err(whole)
     }
 
-    fn solved(&self) -> Trajectory {
+    fn solved(&self) -> Results {
         self.outcome().unwrap_or_else(|message| panic!("{message}"))
     }
 
@@ -61,8 +61,8 @@ impl Scene {
     }
 }
 
-fn tip(trajectory: &Trajectory) -> [f64; 2] {
-    let last = trajectory.probes[0].samples.last().expect("a state");
+fn tip(results: &Results) -> [f64; 2] {
+    let last = results.states().probes[0].samples.last().expect("a state");
     [last.x, last.y]
 }
 
@@ -136,7 +136,7 @@ fn without_load_nothing_moves() {
             assert!((x - 1.0).abs() < 1e-12 && y.abs() < 1e-12, "{analysis}: {x} {y}");
         }
         let buckling = Scene { effects, analysis: "buckling = { count = 3 }", ..PLAIN }.solved();
-        assert!(buckling.load_factors.is_empty(), "{:?}", buckling.load_factors);
+        assert!(buckling.eigenvalues().is_empty(), "{:?}", buckling.eigenvalues());
     }
 }
 
@@ -159,7 +159,7 @@ fn one_element_or_two_nodes_are_a_beam() {
         assert!(tip(&motion)[1].abs() < 1e-3);
     }
     let one = Scene { basis: "ancf = { elements = 1 }", analysis: "modal = { count = 5 }", ..PLAIN };
-    assert_eq!(one.solved().frequencies.len(), 5);
+    assert_eq!(one.solved().eigenvalues().len(), 5);
     Scene { analysis: "modal = { count = 9 }", ..one }.refused(&["found 9 modes", "8 coordinates"]);
 }
 
@@ -256,7 +256,7 @@ fn under_supported_scenes_are_refused_where_there_must_be_an_equilibrium() {
         Scene { analysis, ..hinged }.refused(&["scene.toml:", "free for rotation about the point (0, 0)"]);
     }
     let free = Scene { supports: "", analysis: "modal = { count = 4 }", ..PLAIN }.solved();
-    assert_eq!(free.frequencies[..3], [0.0; 3]);
+    assert_eq!(free.eigenvalues()[..3], [0.0; 3]);
     let [x, y] = tip(&Scene { analysis: "dynamic = { duration = 0.1 }", ..hinged }.solved());
     assert!(x < 1.0 && y > 0.0);
 }

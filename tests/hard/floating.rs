@@ -4,9 +4,9 @@
 use ancf::effect::Force;
 use ancf::model::{Analysis, Model};
 use ancf::restart::SavedState;
+use ancf::results::{Results, Seconds, Trajectory};
 use ancf::run::{Control, Options, Progress, RunError};
 use ancf::scene::{self, Scene};
-use ancf::trajectory::{Seconds, Trajectory};
 use std::sync::Arc;
 
 const TIP_LOAD: &str = include_str!("../scenes/tip-load.toml");
@@ -25,7 +25,9 @@ fn outcome(model: &Model, analysis: &Analysis) -> Result<Trajectory, RunError> {
         assert!(steps < 10_000, "no end in sight");
         Control::Continue
     };
-    model.solve_with(analysis, Options { observer: Some(observer), ..Options::default() })
+    model
+        .solve_with(analysis, Options { observer: Some(observer), ..Options::default() })
+        .map(Results::into_states)
 }
 
 fn short() -> String {
@@ -83,7 +85,7 @@ fn subnormal_loads_are_no_load() {
     let trajectory =
         outcome(parsed(&TIP_LOAD.replace("-5.0]", "-5e-324]")).model(), parsed(TIP_LOAD).analysis())
             .expect("a straight cantilever");
-    assert_eq!(trajectory.statistics.rejected_steps, 0);
+    assert_eq!(trajectory.run.statistics.rejected_steps, 0);
     let tip = trajectory.probes[0].samples.last().expect("a state");
     assert!((tip.x - 1.0).abs() < 1e-15 && tip.y.abs() < 1e-15, "{tip:?}");
 }
@@ -91,7 +93,10 @@ fn subnormal_loads_are_no_load() {
 /// Goes on from a state whatever its checksum says.
 fn resumed(scene: &Scene, state: &serde_json::Value) -> Result<Trajectory, RunError> {
     let saved: SavedState = serde_json::from_str(&state.to_string()).expect("a state");
-    scene.model().solve_with(scene.analysis(), Options { start: Some(&saved), ..Options::default() })
+    scene
+        .model()
+        .solve_with(scene.analysis(), Options { start: Some(&saved), ..Options::default() })
+        .map(Results::into_states)
 }
 
 /// The state with a value elsewhere, both before and after a step that was cut short.
@@ -114,7 +119,7 @@ fn saved_states_that_are_no_numbers_are_refused() {
         let trajectory = outcome(short.model(), short.analysis()).expect("a motion");
         let state = serde_json::to_value(trajectory.saved.expect("a saved state")).expect("JSON");
         let whole = resumed(&short, &state).expect("a sound state");
-        assert!(whole.complete);
+        assert!(whole.run.complete);
         let reference = outcome(long.model(), long.analysis()).expect("a motion");
 
         for (place, value) in [("time", "-1e400"), ("q/5", "1e999"), ("v/5", "NaN"), ("q/5", "null")] {
@@ -150,7 +155,7 @@ fn saved_states_that_are_no_numbers_are_refused() {
 
 fn bits(scene: &Scene) -> String {
     let mut trajectory = outcome(scene.model(), scene.analysis()).expect("a solution");
-    trajectory.seconds = Seconds::default();
+    trajectory.run.seconds = Seconds::default();
     serde_json::to_string(&trajectory).expect("JSON")
 }
 

@@ -1,9 +1,9 @@
 //! Motions as they come: random beams, supports and loads, which no method was measured on. None
 //! may fail, and none may err by more than ten times its tolerance.
 
+use ancf::results::{Results, Trajectory};
 use ancf::run::RunError;
 use ancf::scene::parse;
-use ancf::trajectory::Trajectory;
 use std::fmt::Write;
 
 /// Numbers that are the same on every machine (Knuth's linear congruence).
@@ -83,7 +83,7 @@ fn scene(seed: u64) -> String {
 
 fn moved(scene: &str, integrator: &str) -> Result<Trajectory, RunError> {
     let scene = parse("random.toml", &scene.replace("INTEGRATOR", integrator)).expect("a legal scene");
-    scene.model().solve(scene.analysis())
+    scene.model().solve(scene.analysis()).map(Results::into_states)
 }
 
 fn positions(trajectory: &Trajectory) -> impl Iterator<Item = [f64; 2]> + '_ {

@@ -4,11 +4,11 @@
 use crate::property::generators::clamp;
 use ancf::effect::{DistributedForce, Force, Gravity, Moment};
 use ancf::model::{
-    About, Analysis, ArcLength, Beam, Centreline, Crossing, Discretization, Dynamic, Event, Fixed,
-    GaussPoints, InitialVelocity, Integrator, Kernel, Model, Nodes, Place, Probe, ProbeTarget, Section,
-    SideCondition, Static, StepControl, StrainMeasure, Support,
+    About, Analysis, ArcLength, Beam, Buckling, Centreline, Crossing, Discretization, Dynamic, Event, Fixed,
+    GaussPoints, InitialVelocity, Integrator, Kernel, Modal, Model, Nodes, Place, Probe, ProbeTarget,
+    Section, SideCondition, Static, StepControl, StrainMeasure, Support,
 };
-use ancf::trajectory::Trajectory;
+use ancf::results::{AnalysisKind, Results};
 use std::sync::Arc;
 
 /// What a length, a force and a time of one are, in metres, newtons and seconds.
@@ -121,15 +121,16 @@ fn arch(units: Units, discretization: &Discretization) -> Model {
     }
 }
 
-fn solved(model: &Model, analysis: &Analysis) -> Trajectory {
+fn solved(model: &Model, analysis: &Analysis) -> Results {
     model.solve(analysis).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// All that a trajectory says, without units.
-fn dimensionless(units: Units, t: &Trajectory) -> Vec<f64> {
+/// All that results say, without units.
+fn dimensionless(units: Units, results: &Results) -> Vec<f64> {
+    let t = results.states();
     let Units { length, force, time } = units;
     let mut numbers: Vec<f64> = Vec::new();
-    let dynamic = t.analysis == ancf::trajectory::AnalysisKind::Dynamic;
+    let dynamic = t.run.analysis == AnalysisKind::Dynamic;
     numbers.extend(t.parameter.iter().map(|p| if dynamic { p / time } else { *p }));
     for s in t.probes.iter().flat_map(|probe| &probe.samples) {
         numbers.extend([s.x / length, s.y / length, s.angle, s.curvature * length]);
@@ -138,8 +139,8 @@ fn dimensionless(units: Units, t: &Trajectory) -> Vec<f64> {
     for e in &t.energy {
         numbers.extend([e.bend, e.kinetic, e.potential, e.work].map(|e| e / (force * length)));
     }
-    numbers.extend(t.frequencies.iter().map(|f| f * time));
-    numbers.extend(&t.load_factors);
+    let unit = if t.run.analysis == AnalysisKind::Modal { time } else { 1.0 };
+    numbers.extend(results.eigenvalues().iter().map(|value| value * unit));
     numbers.extend(t.events.iter().map(|event| event.time() / time));
     numbers
 }
@@ -151,8 +152,8 @@ fn same_at_all_scales(
 ) {
     for discretization in discretizations() {
         let find = |units| {
-            let trajectory = solved(&model(units, &discretization), &analysis(units));
-            (dimensionless(units, &trajectory), trajectory.statistics)
+            let results = solved(&model(units, &discretization), &analysis(units));
+            (dimensionless(units, &results), results.run().statistics)
         };
         let (expected, work) = find(ONE);
         assert!(!expected.is_empty());
@@ -189,13 +190,13 @@ fn critical_loads() {
         model.parts = vec![Arc::new(Force::new(at, [-units.force, 0.0]))];
         model
     };
-    same_at_all_scales(column, |_| Analysis::Buckling { count: 3 }, 1e-9);
+    same_at_all_scales(column, |_| Analysis::Buckling(Buckling { count: 3 }), 1e-9);
 }
 
 #[test]
 fn frequencies() {
     for about in [About::Reference, About::Equilibrium] {
-        same_at_all_scales(cantilever, |_| Analysis::Modal { count: 4, about }, 1e-9);
+        same_at_all_scales(cantilever, |_| Analysis::Modal(Modal { count: 4, about }), 1e-9);
     }
 }
 

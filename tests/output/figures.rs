@@ -1,17 +1,17 @@
 //! Which pictures a trajectory has, and what is in them.
 
-use super::made_up::{beam, buckling, level, path, rejected, rise, speck, step, swing, vibrations};
+use super::made_up::{all, beam, buckling, level, path, rejected, rise, step, swing, vibrations};
 use super::picture::{Picture, digest};
 use super::{show, snapshot, written};
-use ancf::trajectory::{AnalysisKind, Energy, ProbeSeries, StepRecord, Trajectory};
+use ancf::results::{AnalysisKind, Energy, ProbeSeries, Results, Run, StepRecord, Trajectory};
 
 /// The colours of series, strongest first.
 const COLOURS: [&str; 8] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#3C3C3C", "#966E3C"];
 const GREY: &str = "#828282";
 
-fn picture(trajectory: &Trajectory, name: &str) -> Picture {
-    let files = written(trajectory);
+fn picture(results: &(impl Clone + Into<Results>), name: &str) -> Picture {
+    let files = written(results);
     Picture::read(files.get(name).unwrap_or_else(|| panic!("no {name} in {:?}", files.keys())))
 }
 
@@ -19,14 +19,8 @@ fn picture(trajectory: &Trajectory, name: &str) -> Picture {
 #[test]
 fn regress_figures() {
     let mut text = String::new();
-    for (name, trajectory) in [
-        ("path", path()),
-        ("swing", swing()),
-        ("vibrations", vibrations()),
-        ("buckling", buckling()),
-        ("speck", speck()),
-    ] {
-        for (file, svg) in written(&trajectory).iter().filter(|(file, _)| file.ends_with(".svg")) {
+    for (name, results) in all() {
+        for (file, svg) in written(&results).iter().filter(|(file, _)| file.ends_with(".svg")) {
             show(&format!("{name}/{file}"), svg);
             text += &format!("== {name}/{file}\n{}", digest(svg));
         }
@@ -35,8 +29,8 @@ fn regress_figures() {
 }
 
 /// The names of the pictures without extension.
-fn names(trajectory: &Trajectory) -> Vec<String> {
-    written(trajectory).into_keys().filter_map(|name| name.strip_suffix(".svg").map(str::to_owned)).collect()
+fn names(results: &(impl Clone + Into<Results>)) -> Vec<String> {
+    written(results).into_keys().filter_map(|name| name.strip_suffix(".svg").map(str::to_owned)).collect()
 }
 
 /// Would catch pictures of nothing, and pictures that are missing.
@@ -49,7 +43,7 @@ fn what_there_is_decides_what_is_drawn() {
     assert_eq!(names(&rise(1)), states);
     assert_eq!(names(&rise(2)), records);
     // Velocities belong to motions, and quantities of probes to probes.
-    let still = Trajectory { analysis: AnalysisKind::Static, ..rise(2) };
+    let still = Trajectory { run: Run { analysis: AnalysisKind::Static, ..rise(2).run }, ..rise(2) };
     assert_eq!(names(&still), records[..6]);
     let unseen = Trajectory { probes: Vec::new(), ..rise(2) };
     assert_eq!(names(&unseen), ["curvature", "energy", "shape", "strain"]);
@@ -70,8 +64,11 @@ fn what_there_is_decides_what_is_drawn() {
     assert_eq!(history(&[idle.clone(), idle.clone()]), with(&["steps"]));
     let settled = step(0.1, 0.1, &[], &[1e-9]);
     assert_eq!(history(&[settled.clone(), settled]), with(&["convergence", "steps"]));
-    let load_steps =
-        Trajectory { analysis: AnalysisKind::Static, history: vec![one.clone(), one], ..rise(1) };
+    let load_steps = Trajectory {
+        run: Run { analysis: AnalysisKind::Static, ..rise(1).run },
+        history: vec![one.clone(), one],
+        ..rise(1)
+    };
     assert_eq!(names(&load_steps), with(&["convergence", "steps"]));
     assert_eq!(names(&buckling()), ["modes"]);
 }
@@ -112,7 +109,12 @@ fn beams_are_told_apart() {
         shape.beam = format!("b{i}");
         shape.curvature = vec![0.1 * i as f64; 3];
     }
-    let several = Trajectory { undeformed: last.clone(), last, frames: Vec::new(), ..rise(1) };
+    let several = Trajectory {
+        run: Run { undeformed: last.clone(), ..rise(1).run },
+        last,
+        frames: Vec::new(),
+        ..rise(1)
+    };
     let expected = [0, 1, 2, 3, 4, 6, 0].map(|i| COLOURS[i]);
     let found = picture(&several, "shape.svg");
     let wide = found.named("polyline").filter(|line| line.word("stroke-width") == "22");
@@ -174,9 +176,10 @@ fn many_nodes_are_drawn_smaller_or_not_at_all() {
         let dots = dots.dots(COLOURS[0]);
         assert_eq!(dots.len(), count + 1);
         assert!(dots.iter().all(|dot| dot.word("r") == radius), "{count}");
-        trajectory.modes = vec![vec![level(0.1)]];
-        trajectory.modes[0][0].nodes = nodes(count, 0.1);
-        let dots = picture(&trajectory, "modes.svg");
+        let mut found = buckling();
+        found.unloaded.last[0].nodes = nodes(count, 0.01);
+        found.modes[0].shape[0].nodes = nodes(count, 0.1);
+        let dots = picture(&found, "modes.svg");
         assert_eq!(dots.dots(COLOURS[0]).len(), of_a_mode);
     }
 }
@@ -245,7 +248,7 @@ fn what_is_negligible_depends_on_the_quantity() {
     shape.s = vec![0.25, 0.5, 0.75];
     shape.strain = vec![4e-10, -9e-10, 0.0];
     shape.curvature = vec![1.5e-9, -1.2e-9, 0.0];
-    (small.undeformed, small.last) = (vec![shape.clone()], vec![shape.clone()]);
+    (small.run.undeformed, small.last) = (vec![shape.clone()], vec![shape.clone()]);
     near(limits(&small, "strain.svg"), 1e-9, "strain");
     near(limits(&small, "curvature.svg"), 2e-9, "curvature");
     shape.strain = vec![4e-9, -4e-9, 0.0];
@@ -447,7 +450,10 @@ fn sizes_of_steps_have_the_axis_that_shows_them() {
         assert_eq!(strokes, if sizes.len() > 2 { 2 * shown + 2 } else { 0 }, "{sizes:?}");
         assert_eq!(found.text("step [s]").word("text-anchor"), "middle");
     }
-    let still = Trajectory { analysis: AnalysisKind::Static, ..sized(&[0.1, 0.2]) };
+    let still = Trajectory {
+        run: Run { analysis: AnalysisKind::Static, ..sized(&[0.1, 0.2]).run },
+        ..sized(&[0.1, 0.2])
+    };
     let found = picture(&still, "steps.svg");
     assert_eq!(found.text("step").word("text-anchor"), "middle");
     assert_eq!(found.text("load factor").word("text-anchor"), "middle");
@@ -487,7 +493,7 @@ fn newton_iterations_are_counted_step_by_step() {
 #[test]
 fn modes_are_numbered_with_their_values() {
     let found = picture(&vibrations(), "modes.svg");
-    for title in ["mode 1: 0 Hz", "mode 2: 12.5 Hz", "mode 3"] {
+    for title in ["mode 1: 0 Hz", "mode 2: 12.5 Hz", "mode 3: 77 Hz"] {
         assert_eq!(found.text(title).word("font-weight"), "bold");
     }
     let places: Vec<_> = found.named("svg").skip(1).map(|svg| (svg.word("x"), svg.word("width"))).collect();

@@ -1,11 +1,12 @@
 //! Trajectories whose numbers are made up, so that no solver moves a point. Sizes are far from one
 //! and from each other, so that a factor that is lost shows.
 
-use ancf::system::Reaction;
-use ancf::trajectory::{
-    AnalysisKind, ContactImpulse, EffectSeries, Energy, Event, Frame, ProbeSample, ProbeSeries,
-    ReactionSeries, Seconds, Shape, Statistics, StepRecord, Trajectory,
+use ancf::results::{
+    AnalysisKind, BucklingMode, ContactImpulse, CriticalLoads, EffectSeries, Energy, Event, Frame, ModeShape,
+    ProbeSample, ProbeSeries, ReactionSeries, Results, Run, Seconds, Shape, Statistics, StepRecord,
+    Trajectory, Vibration, Vibrations,
 };
+use ancf::system::Reaction;
 
 /// A beam through points at even arc lengths, nodes at its ends.
 pub(super) fn beam(name: &str, length: f64, points: &[[f64; 2]]) -> Shape {
@@ -58,15 +59,30 @@ pub(super) fn sample(x: f64, y: f64, angle: f64, velocity: Option<[f64; 2]>) -> 
     }
 }
 
+/// Results of every kind, with their names.
+pub(super) fn all() -> [(&'static str, Results); 5] {
+    [
+        ("path", path().into()),
+        ("swing", swing().into()),
+        ("vibrations", vibrations().into()),
+        ("buckling", buckling().into()),
+        ("speck", speck().into()),
+    ]
+}
+
 /// A motion of one level beam with so many records, 0.125 s apart, that rises by 0.01 m each.
 pub(super) fn rise(records: u32) -> Trajectory {
     let height = |i: u32| 0.01 * f64::from(i);
     let samples = (0..records).map(|i| sample(1.0, height(i), 0.0, Some([0.0, 0.08]))).collect();
     Trajectory {
-        title: "Rise".to_owned(),
-        analysis: AnalysisKind::Dynamic,
-        complete: true,
-        degrees_of_freedom: 12,
+        run: Run {
+            title: "Rise".to_owned(),
+            analysis: AnalysisKind::Dynamic,
+            complete: true,
+            degrees_of_freedom: 12,
+            undeformed: vec![level(0.0)],
+            ..Run::default()
+        },
         parameter: (0..records).map(|i| 0.125 * f64::from(i)).collect(),
         probes: vec![ProbeSeries { name: "end".to_owned(), samples }],
         energy: (0..records)
@@ -78,7 +94,6 @@ pub(super) fn rise(records: u32) -> Trajectory {
                 beams: vec![vec![[0.0, height(i)], [1.0, height(i)]]],
             })
             .collect(),
-        undeformed: vec![level(0.0)],
         last: vec![level(height(records.max(1) - 1))],
         ..Trajectory::default()
     }
@@ -91,11 +106,29 @@ pub(super) fn path() -> Trajectory {
     let leg = |load: f64| [[0.4, 0.1 + 0.12 * load], [0.4 - 0.02 * load, -0.2]];
     let beams = |load: f64| vec![beam("arm", 0.4, &arm(load)), beam("leg", 0.3, &leg(load))];
     Trajectory {
-        title: "Two <beams> & a \"joint\"".to_owned(),
-        analysis: AnalysisKind::Static,
-        complete: true,
-        degrees_of_freedom: 17,
-        settings: vec![("beam arm".into(), "0.4 m <long>".into()), ("linear solver".into(), "banded".into())],
+        run: Run {
+            title: "Two <beams> & a \"joint\"".to_owned(),
+            analysis: AnalysisKind::Static,
+            complete: true,
+            degrees_of_freedom: 17,
+            settings: vec![
+                ("beam arm".into(), "0.4 m <long>".into()),
+                ("linear solver".into(), "banded".into()),
+            ],
+            undeformed: beams(0.0),
+            outlines: vec![vec![[-0.05, -0.21], [0.5, -0.21]], vec![[0.6, 0.0], [0.6, 0.1]]],
+            warnings: vec!["the path turns at load factor 0.9 & <more>".to_owned()],
+            statistics: Statistics {
+                steps: 4,
+                rejected_steps: 1,
+                load_steps: 4,
+                newton_iterations: 10,
+                residual_evaluations: 12,
+                tangent_evaluations: 10,
+                factorizations: 9,
+            },
+            seconds: Seconds { build: 0.0123, solve: 0.1, write: 0.0 },
+        },
         parameter: loads.to_vec(),
         probes: vec![
             ProbeSeries {
@@ -140,9 +173,7 @@ pub(super) fn path() -> Trajectory {
         frames: loads
             .map(|load| Frame { parameter: load, beams: vec![arm(load).to_vec(), leg(load).to_vec()] })
             .to_vec(),
-        undeformed: beams(0.0),
         last: beams(1.0),
-        outlines: vec![vec![[-0.05, -0.21], [0.5, -0.21]], vec![[0.6, 0.0], [0.6, 0.1]]],
         history: vec![
             step(0.25, 0.25, &[1e-2, 1e-5], &[0.4, 1e-4, 3e-9]),
             rejected(step(1.0, 0.75, &[0.3, 0.9, 2.0], &[0.2, 0.5])),
@@ -150,17 +181,6 @@ pub(super) fn path() -> Trajectory {
             step(0.5, 0.25, &[2e-2, 3e-6], &[0.1, 2e-4]),
             step(1.0, -0.5, &[5e-2, 4e-4, 1e-9], &[0.3, 7e-5, 1e-10]),
         ],
-        warnings: vec!["the path turns at load factor 0.9 & <more>".to_owned()],
-        statistics: Statistics {
-            steps: 4,
-            rejected_steps: 1,
-            load_steps: 4,
-            newton_iterations: 10,
-            residual_evaluations: 12,
-            tangent_evaluations: 10,
-            factorizations: 9,
-        },
-        seconds: Seconds { build: 0.0123, solve: 0.1, write: 0.0 },
         ..Trajectory::default()
     }
 }
@@ -175,10 +195,23 @@ pub(super) fn swing() -> Trajectory {
         times.iter().map(|&t| sample(arm(t)[end][0], arm(t)[end][1], 0.1 * t, velocity(t))).collect()
     };
     Trajectory {
-        title: "  ".to_owned(),
-        analysis: AnalysisKind::Dynamic,
-        complete: false,
-        degrees_of_freedom: 1,
+        run: Run {
+            title: "  ".to_owned(),
+            analysis: AnalysisKind::Dynamic,
+            complete: false,
+            degrees_of_freedom: 1,
+            undeformed: vec![beam("arm", 0.6, &arm(0.0))],
+            outlines: vec![vec![[-2.0, -0.65], [0.0, -0.65], [2.0, -0.65]]],
+            warnings: vec!["one".to_owned(), "two".to_owned()],
+            statistics: Statistics {
+                steps: 4,
+                rejected_steps: 1,
+                factorizations: 7,
+                ..Statistics::default()
+            },
+            seconds: Seconds { build: 0.0999, solve: 12.34567, write: 0.5 },
+            ..Run::default()
+        },
         parameter: times.clone(),
         probes: vec![
             ProbeSeries { name: "end".to_owned(), samples: samples(3) },
@@ -197,9 +230,7 @@ pub(super) fn swing() -> Trajectory {
             })
             .collect(),
         frames: times.iter().map(|&t| Frame { parameter: t, beams: vec![arm(t).to_vec()] }).collect(),
-        undeformed: vec![beam("arm", 0.6, &arm(0.0))],
         last: vec![beam("arm", 0.6, &arm(0.08))],
-        outlines: vec![vec![[-2.0, -0.65], [0.0, -0.65], [2.0, -0.65]]],
         history: vec![
             step(0.001, 0.001, &[1e-2, 1e-7], &[1e-1, 1e-6]),
             step(0.02, 0.019, &[1e-3, 1e-6, 1e-12], &[1e-2, 1e-5, 1e-10]),
@@ -207,7 +238,6 @@ pub(super) fn swing() -> Trajectory {
             step(0.05, 0.03, &[1e-3], &[1e-2]),
             step(0.08, 0.03, &[2e-3, 1e-8], &[1e-3, 1e-9]),
         ],
-        warnings: vec!["one".to_owned(), "two".to_owned()],
         events: vec![
             Event::Crossing { time: 0.03, probe: "end".to_owned(), axis: "x".to_owned(), value: 0.48 },
             Event::Contact { time: 0.04, contact: "arm.1".to_owned(), touches: true, impulse: None },
@@ -218,58 +248,82 @@ pub(super) fn swing() -> Trajectory {
                 impulse: Some(ContactImpulse { impulse: [0.25, 1.5], largest_force: 80.0 }),
             },
         ],
-        statistics: Statistics { steps: 4, rejected_steps: 1, factorizations: 7, ..Statistics::default() },
-        seconds: Seconds { build: 0.0999, solve: 12.34567, write: 0.5 },
         ..Trajectory::default()
     }
 }
 
-/// Vibrations of two beams about an equilibrium; the third mode's frequency is not known.
-pub(super) fn vibrations() -> Trajectory {
+/// The change from one shape to another.
+pub(super) fn change(from: &[Shape], to: &[Shape]) -> Vec<ModeShape> {
+    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| b - a).collect::<Vec<f64>>();
+    let beam = |(a, b): (&Shape, &Shape)| ModeShape {
+        beam: a.beam.clone(),
+        s: a.s.clone(),
+        x: apart(&a.x, &b.x),
+        y: apart(&a.y, &b.y),
+        angle: a.s.iter().map(|s| 0.2 * s).collect(),
+        strain: a.s.iter().map(|s| 3e-3 * s).collect(),
+        curvature: a.s.iter().map(|s| -0.6 * s).collect(),
+        nodes: a.nodes.iter().zip(&b.nodes).map(|(a, b)| [b[0] - a[0], b[1] - a[1]]).collect(),
+    };
+    from.iter().zip(to).map(beam).collect()
+}
+
+/// Vibrations of two beams about an equilibrium.
+pub(super) fn vibrations() -> Vibrations {
     let arm = |swing: f64| beam("arm", 0.4, &[[0.0, 0.1], [0.2, 0.1 + swing], [0.4, 0.1 - swing]]);
     let leg = |swing: f64| beam("leg", 0.3, &[[0.4, 0.1 - swing], [0.4 + swing, -0.2]]);
     let both = |swing: f64| vec![arm(swing), leg(swing)];
-    Trajectory {
-        title: "Modes".to_owned(),
-        analysis: AnalysisKind::Modal,
-        complete: true,
-        degrees_of_freedom: 9,
+    let mode =
+        |(frequency, swing): (f64, f64)| Vibration { frequency, shape: change(&both(0.0), &both(swing)) };
+    let equilibrium = Trajectory {
+        run: Run {
+            title: "Modes".to_owned(),
+            analysis: AnalysisKind::Modal,
+            complete: true,
+            degrees_of_freedom: 9,
+            undeformed: both(0.01),
+            ..Run::default()
+        },
         parameter: vec![0.75],
         energy: vec![Energy { bend: 0.25, ..Energy::default() }],
         probes: vec![ProbeSeries { name: "tip".to_owned(), samples: vec![sample(0.4, 0.1, 0.3, None)] }],
         frames: vec![Frame { parameter: 0.75, beams: vec![vec![[0.0, 0.1], [0.4, 0.1]], vec![[0.4, 0.1]]] }],
-        undeformed: both(0.01),
         last: both(0.0),
-        frequencies: vec![0.0, 12.5],
-        modes: vec![both(0.05), both(-0.03), both(0.1)],
         ..Trajectory::default()
-    }
+    };
+    Vibrations { equilibrium, modes: [(0.0, 0.05), (12.5, -0.03), (77.0, 0.1)].map(mode).into() }
 }
 
 /// One critical load.
-pub(super) fn buckling() -> Trajectory {
+pub(super) fn buckling() -> CriticalLoads {
     let column = |bow: f64| vec![beam("column", 0.5, &[[0.0, 0.0], [bow, 0.25], [0.0, 0.5]])];
-    Trajectory {
-        analysis: AnalysisKind::Buckling,
-        complete: true,
-        degrees_of_freedom: 5,
-        undeformed: column(0.0),
+    let unloaded = Trajectory {
+        run: Run {
+            analysis: AnalysisKind::Buckling,
+            complete: true,
+            degrees_of_freedom: 5,
+            undeformed: column(0.0),
+            ..Run::default()
+        },
         last: column(0.0),
-        load_factors: vec![2.467_401_1],
-        modes: vec![column(0.06)],
         ..Trajectory::default()
-    }
+    };
+    let mode = BucklingMode { load_factor: 2.467_401_1, shape: change(&column(0.0), &column(0.06)) };
+    CriticalLoads { unloaded, modes: vec![mode] }
 }
 
 /// A beam without length, seen once.
 pub(super) fn speck() -> Trajectory {
     let shape = Shape { curvature: vec![0.3], ..beam("arm", 0.0, &[[2.0, 3.0]]) };
     Trajectory {
-        analysis: AnalysisKind::Static,
-        complete: true,
+        run: Run {
+            analysis: AnalysisKind::Static,
+            complete: true,
+            undeformed: vec![shape.clone()],
+            ..Run::default()
+        },
         parameter: vec![1.0],
         energy: vec![Energy::default()],
-        undeformed: vec![shape.clone()],
         last: vec![shape],
         ..Trajectory::default()
     }

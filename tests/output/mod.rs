@@ -13,7 +13,7 @@ mod replaced;
 mod tables;
 
 use ancf::output::{OutputOptions, write};
-use ancf::trajectory::Trajectory;
+use ancf::results::Results;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -21,19 +21,19 @@ use std::path::Path;
 /// Texts by the names of their files.
 type Files = BTreeMap<String, String>;
 
-/// What a trajectory leaves.
-fn written(trajectory: &Trajectory) -> Files {
-    with_options(trajectory, OutputOptions::default())
+/// What results leave.
+fn written(results: &(impl Clone + Into<Results>)) -> Files {
+    with_options(results, OutputOptions::default())
 }
 
 /// What it leaves with all that can be asked for.
-fn written_in_full(trajectory: &Trajectory) -> Files {
-    with_options(trajectory, OutputOptions { states: true, vtu: true })
+fn written_in_full(results: &(impl Clone + Into<Results>)) -> Files {
+    with_options(results, OutputOptions { states: true, vtu: true })
 }
 
-fn with_options(trajectory: &Trajectory, options: OutputOptions) -> Files {
+fn with_options(results: &(impl Clone + Into<Results>), options: OutputOptions) -> Files {
     let folder = tempfile::tempdir().expect("a folder");
-    write(folder.path(), &mut trajectory.clone(), &options).expect("files");
+    write(folder.path(), &mut results.clone().into(), &options).expect("files");
     let mut files = Files::new();
     collect(folder.path(), "", &mut files);
     files

@@ -1,13 +1,15 @@
 //! The data of the moving picture: places as whole cells of a grid.
 
-use super::made_up::{beam, level, rise};
+use super::made_up::{beam, change, level, rise};
 use super::written;
-use ancf::trajectory::{AnalysisKind, Frame, Trajectory};
+use ancf::results::{
+    AnalysisKind, BucklingMode, CriticalLoads, Frame, Results, Run, Trajectory, Vibration, Vibrations,
+};
 use serde_json::{Value, json};
 
 /// The data in the page; nothing where nothing moves.
-fn movie(trajectory: &Trajectory) -> Option<Value> {
-    let files = written(trajectory);
+fn movie(results: &(impl Clone + Into<Results>)) -> Option<Value> {
+    let files = written(results);
     let page = &files["report.html"];
     let data = page.split_once("id=\"motion\">").and_then(|(_, rest)| rest.split_once("</script>"));
     assert_eq!(data.is_some(), page.contains("id=\"player\""), "a player has something to play");
@@ -30,11 +32,14 @@ fn near(found: &Value, expected: f64) {
 /// A load path whose picture is 2 m wide and 1 m high: cells of 0.25 mm from its lower left corner.
 fn climb() -> Trajectory {
     Trajectory {
-        analysis: AnalysisKind::Static,
+        run: Run {
+            analysis: AnalysisKind::Static,
+            undeformed: vec![beam("arm", 2.0, &[[1.0, 2.0], [3.0, 2.0]])],
+            ..rise(2).run
+        },
         parameter: vec![0.5, 1.0],
         probes: Vec::new(),
         frames: vec![frame(0.5, &[[1.0, 2.0], [3.0, 2.5]]), frame(1.0, &[[1.0, 2.0], [2.5, 3.0]])],
-        undeformed: vec![beam("arm", 2.0, &[[1.0, 2.0], [3.0, 2.0]])],
         ..rise(2)
     }
 }
@@ -73,10 +78,11 @@ fn only_what_can_be_seen_decides_the_window() {
 fn ground_near_the_beams_is_in_the_picture() {
     let mut trajectory = climb();
     // 4 m by 1 m: a metre around them.
-    trajectory.undeformed = vec![beam("arm", 4.0, &[[0.0, 0.0], [4.0, 0.0]])];
+    trajectory.run.undeformed = vec![beam("arm", 4.0, &[[0.0, 0.0], [4.0, 0.0]])];
     trajectory.frames = vec![frame(1.0, &[[0.0, 0.0], [4.0, 1.0]])];
     trajectory.parameter = vec![0.5, 1.0];
-    trajectory.outlines = vec![vec![[8.0, -0.5], [5.0, 0.5], [-0.5, -0.75]], vec![[2.0, -1.0], [-0.5, 2.5]]];
+    trajectory.run.outlines =
+        vec![vec![[8.0, -0.5], [5.0, 0.5], [-0.5, -0.75]], vec![[2.0, -1.0], [-0.5, 2.5]]];
     let data = movie(&trajectory).expect("a movie");
     let cell = 5.5 / 8000.0;
     near(&data["cell"], cell);
@@ -88,51 +94,57 @@ fn ground_near_the_beams_is_in_the_picture() {
     };
     assert_eq!(data["size"], json!(line(&[[5.0, 1.0]])));
     // What is farther away is drawn as far as the picture reaches.
-    assert_eq!(data["ground"], json!([line(&trajectory.outlines[0]), line(&trajectory.outlines[1])]));
+    assert_eq!(data["ground"], json!([line(&trajectory.run.outlines[0]), line(&trajectory.run.outlines[1])]));
     assert_eq!(data["frames"], json!([[line(&[[0.0, 0.0], [4.0, 1.0]])]]));
 }
 
-/// Vibrations swing to both sides of the rest, of which the modes show one.
+/// Vibrations swing to both sides of the rest, of which the modes show one: as far as a tenth of
+/// the longest beam.
 #[test]
 fn vibrations_have_room_on_both_sides() {
     let bent = |height: f64| vec![beam("arm", 2.0, &[[0.0, 0.0], [2.0, height]])];
-    let modes = |analysis: AnalysisKind| Trajectory {
-        analysis,
-        complete: true,
-        undeformed: bent(44.0),
+    let states = |analysis| Trajectory {
+        run: Run { analysis, complete: true, undeformed: bent(44.0), ..Run::default() },
         last: bent(0.0),
-        frequencies: vec![3.5],
-        load_factors: vec![7.0, 8.0, 9.0],
-        modes: vec![bent(1.0), bent(0.5)],
         frames: vec![frame(0.0, &[[99.0, 99.0]])],
         ..Trajectory::default()
     };
-    let data = movie(&modes(AnalysisKind::Modal)).expect("a movie");
+    let shape = |height: f64| change(&bent(0.0), &bent(height));
+    let modes =
+        [(3.5, 7.0), (4.5, -1e-3)].map(|(frequency, height)| Vibration { frequency, shape: shape(height) });
+    let equilibrium = states(AnalysisKind::Modal);
+    let data = movie(&Vibrations { equilibrium, modes: modes.into() }).expect("a movie");
     assert_eq!(data["vibration"], json!(true));
     near(&data["cell"], 2.0 / 8000.0);
-    // 0.22 of the longer side above and below, a tenth of it on the left and on the right.
+    // 0.22 of the longer side above and below, a tenth of it on the left and on the right; from the
+    // lowest place of any mode to the highest, each 0.1 of the length of 2 m from the rest.
     near(&data["origin"][0], -0.2);
-    near(&data["origin"][1], -0.44);
-    assert_eq!(data["size"], json!([9600, 7520]));
-    assert_eq!(data["rest"], json!([[800, 1760, 8800, 1760]]));
-    assert_eq!(data["frames"], json!([[[800, 1760, 8800, 5760]], [[800, 1760, 8800, 3760]]]));
-    // The second frequency is not known.
-    assert_eq!(data["parameter"], json!([3.5, null]));
-    let data = movie(&modes(AnalysisKind::Buckling)).expect("a movie");
-    assert_eq!((&data["vibration"], &data["parameter"]), (&json!(true), &json!([7.0, 8.0])));
-    assert_eq!(data["size"], json!([9600, 7520]));
+    near(&data["origin"][1], -0.64);
+    assert_eq!(data["size"], json!([9600, 5120]));
+    assert_eq!(data["rest"], json!([[800, 2560, 8800, 2560]]));
+    assert_eq!(data["frames"], json!([[[800, 2560, 8800, 3360]], [[800, 2560, 8800, 1760]]]));
+    assert_eq!(data["parameter"], json!([3.5, 4.5]));
+    let modes = vec![BucklingMode { load_factor: 7.0, shape: shape(1.0) }];
+    let data = movie(&CriticalLoads { unloaded: states(AnalysisKind::Buckling), modes }).expect("a movie");
+    assert_eq!((&data["vibration"], &data["parameter"]), (&json!(true), &json!([7.0])));
+    assert_eq!(data["frames"], json!([[[800, 1760, 8800, 2560]]]));
 }
 
 #[test]
 fn the_parameter_has_its_name_and_unit() {
-    for (analysis, name, unit) in [
-        (AnalysisKind::Static, "load factor", ""),
-        (AnalysisKind::Dynamic, "time", "s"),
-        (AnalysisKind::Modal, "frequency of mode", "Hz"),
-        (AnalysisKind::Buckling, "load factor of mode", ""),
+    let of = |analysis| Trajectory { run: Run { analysis, ..rise(2).run }, ..rise(2) };
+    let shape = change(&[level(0.0)], &[level(0.3)]);
+    let vibration = Vibration { frequency: 1.0, shape: shape.clone() };
+    let mode = BucklingMode { load_factor: 1.0, shape };
+    let modal = Vibrations { equilibrium: of(AnalysisKind::Modal), modes: vec![vibration] };
+    let buckling = CriticalLoads { unloaded: of(AnalysisKind::Buckling), modes: vec![mode] };
+    for (results, name, unit) in [
+        (Results::from(of(AnalysisKind::Static)), "load factor", ""),
+        (of(AnalysisKind::Dynamic).into(), "time", "s"),
+        (modal.into(), "frequency of mode", "Hz"),
+        (buckling.into(), "load factor of mode", ""),
     ] {
-        let modes = vec![vec![level(0.3)]];
-        let data = movie(&Trajectory { analysis, modes, ..rise(2) }).expect("a movie");
+        let data = movie(&results).expect("a movie");
         assert_eq!((&data["name"], &data["unit"]), (&json!(name), &json!(unit)));
     }
 }
@@ -143,8 +155,8 @@ fn what_does_not_move_has_no_player() {
     let of = |points: &[[f64; 2]]| {
         let shape = beam("arm", 1.0, points);
         movie(&Trajectory {
+            run: Run { undeformed: vec![shape.clone()], ..rise(2).run },
             frames: vec![frame(0.0, points)],
-            undeformed: vec![shape.clone()],
             last: vec![shape],
             probes: Vec::new(),
             ..rise(2)
@@ -167,7 +179,7 @@ fn what_does_not_move_has_no_player() {
 fn very_many_states_are_thinned_evenly() {
     let points: Vec<[f64; 2]> = (0..=2500).map(|i| [f64::from(i), 0.0]).collect();
     let frames: Vec<Frame> = (0..200).map(|i| frame(f64::from(i), &points)).collect();
-    let many = Trajectory { frames, undeformed: vec![level(0.0)], ..rise(1) };
+    let many = Trajectory { run: Run { undeformed: vec![level(0.0)], ..rise(1).run }, frames, ..rise(1) };
     let data = movie(&many).expect("a movie");
     let parameter: Vec<f64> = data["parameter"].as_array().expect("times").iter().map(number).collect();
     let mut expected: Vec<f64> = (0..200).step_by(2).map(f64::from).collect();
@@ -194,13 +206,13 @@ fn modes_are_thinned_to_their_ends() {
     for (points, kept) in [(101, 101), (102, 52), (201, 101), (202, 102), (303, 102)] {
         let line: Vec<[f64; 2]> = (0..points).map(|i| [i as f64, 0.0]).collect();
         let shapes = vec![beam("arm", 1.0, &line)];
-        let data = movie(&Trajectory {
-            analysis: AnalysisKind::Modal,
-            undeformed: shapes.clone(),
+        let equilibrium = Trajectory {
+            run: Run { analysis: AnalysisKind::Modal, undeformed: shapes.clone(), ..Run::default() },
             last: shapes.clone(),
-            modes: vec![shapes],
             ..Trajectory::default()
-        });
+        };
+        let modes = vec![Vibration { frequency: 1.0, shape: change(&shapes, &shapes) }];
+        let data = movie(&Vibrations { equilibrium, modes });
         let data = data.expect("a movie");
         for line in [&data["rest"][0], &data["frames"][0][0]] {
             let line = line.as_array().expect("a line");

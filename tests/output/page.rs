@@ -1,8 +1,11 @@
 //! The page: its words and tables.
 
-use super::made_up::{buckling, path, rise, sample, speck, step, swing, vibrations};
+use super::made_up::{all, buckling, rise, sample, step, vibrations};
 use super::{snapshot, written};
-use ancf::trajectory::{AnalysisKind, ProbeSample, Seconds, Shape, Statistics, Trajectory};
+use ancf::results::{
+    AnalysisKind, BucklingMode, CriticalLoads, ProbeSample, Results, Run, Seconds, Shape, Statistics,
+    Trajectory, Vibration, Vibrations,
+};
 
 /// The page without what stands between the two, wherever they are.
 fn without(text: &str, from: &str, to: &str) -> String {
@@ -16,8 +19,8 @@ fn without(text: &str, from: &str, to: &str) -> String {
 }
 
 /// Words and tables of the page; pictures and the moving one are looked at elsewhere.
-fn words(trajectory: &Trajectory) -> String {
-    let page = written(trajectory)["report.html"].replace(env!("CARGO_PKG_VERSION"), "VERSION");
+fn words(results: &(impl Clone + Into<Results>)) -> String {
+    let page = written(results)["report.html"].replace(env!("CARGO_PKG_VERSION"), "VERSION");
     let page = without(&page, "<style>", "</style>");
     let page = without(&page, "<script", "</script>");
     let page = without(&page, "<figure><svg", "<figcaption>");
@@ -29,16 +32,9 @@ fn words(trajectory: &Trajectory) -> String {
 #[test]
 fn regress_pages() {
     let mut text = String::new();
-    for (name, trajectory) in [
-        ("path", path()),
-        ("swing", swing()),
-        ("vibrations", vibrations()),
-        ("buckling", buckling()),
-        ("speck", speck()),
-        ("rise", rise(3)),
-        ("nothing", Trajectory::default()),
-    ] {
-        text += &format!("== {name}\n{}", words(&trajectory));
+    let more = [("rise", rise(3).into()), ("nothing", Trajectory::default().into())];
+    for (name, results) in all().into_iter().chain(more) {
+        text += &format!("== {name}\n{}", words(&results));
     }
     snapshot("pages", &text);
 }
@@ -66,7 +62,7 @@ fn round_off_has_one_digit() {
     trajectory.parameter = vec![0.123_456_789];
     // Of a beam of this length 1e-12 of it is the limit, and the limit itself no round-off.
     let length = 0.345_678_9;
-    for shape in trajectory.undeformed.iter_mut() {
+    for shape in trajectory.run.undeformed.iter_mut() {
         shape.s = vec![0.0, 0.1, length];
     }
     let mut row = |x: f64, y: f64, curvature: f64, strain: f64, degrees: f64| {
@@ -148,7 +144,7 @@ fn captions_say_when_and_how_much() {
     let values: Vec<&str> = row.iter().map(|(_, value)| value.as_str()).collect();
     assert_eq!(values, ["last record", "0", "0", "0.25", "0.05", "0.3", "0.52"]);
     // The same of loads.
-    trajectory.analysis = AnalysisKind::Static;
+    trajectory.run.analysis = AnalysisKind::Static;
     trajectory.energy.iter_mut().for_each(|e| e.kinetic = 0.0);
     let page = words(&trajectory);
     for caption in [
@@ -164,18 +160,18 @@ fn captions_say_when_and_how_much() {
 /// Frequencies and critical loads with eight digits, and which vibration nothing resists.
 #[test]
 fn eigenvalues_are_listed_with_their_numbers() {
-    let mut trajectory = vibrations();
-    trajectory.frequencies = vec![0.0, 12.345_678_912];
-    let page = words(&trajectory);
+    let vibration = |frequency| Vibration { frequency, shape: Vec::new() };
+    let modes = [0.0, 12.345_678_912].map(vibration).into();
+    let page = words(&Vibrations { modes, ..vibrations() });
     assert_eq!(
         first_row(&page, "Natural frequencies"),
         pairs(&[("mode", "1"), ("frequency [Hz]", "0 (nothing resists)")])
     );
     assert!(page.contains("<tr><td>2</td><td>12.345679</td></tr></tbody>"), "{page}");
     assert!(page.contains("Dashed: the equilibrium."));
-    let mut trajectory = buckling();
-    trajectory.load_factors = vec![0.0, 12.345_678_912];
-    let page = words(&trajectory);
+    let mode = |load_factor| BucklingMode { load_factor, shape: Vec::new() };
+    let modes = [0.0, 12.345_678_912].map(mode).into();
+    let page = words(&CriticalLoads { modes, ..buckling() });
     assert_eq!(first_row(&page, "Critical loads"), pairs(&[("mode", "1"), ("load factor", "0")]));
     assert!(page.contains("<tr><td>2</td><td>12.345679</td></tr></tbody>"), "{page}");
     assert!(page.contains("Dashed: undeformed."));
@@ -185,7 +181,7 @@ fn eigenvalues_are_listed_with_their_numbers() {
 #[test]
 fn counts_and_times_are_told() {
     let mut trajectory = rise(1);
-    trajectory.statistics =
+    trajectory.run.statistics =
         Statistics { steps: 1, rejected_steps: 0, load_steps: 2, ..Statistics::default() };
     let told = |trajectory: &Trajectory| -> Vec<String> {
         let page = words(trajectory);
@@ -193,12 +189,12 @@ fn counts_and_times_are_told() {
         let rows = rest.split("<tr><th>").skip(1).filter_map(|row| row.split("</td></tr>").next());
         rows.map(|row| row.replace("</th><td>", ": ")).collect()
     };
-    trajectory.seconds = Seconds { build: 0.012_345, solve: 0.099_99, write: 7.0 };
+    trajectory.run.seconds = Seconds { build: 0.012_345, solve: 0.099_99, write: 7.0 };
     assert_eq!(
         told(&trajectory),
         ["steps: 1", "load steps: 2", "time to build: 12.3 ms", "time to solve: 100 ms"]
     );
-    trajectory.statistics = Statistics {
+    trajectory.run.statistics = Statistics {
         rejected_steps: 3,
         newton_iterations: 4,
         residual_evaluations: 5,
@@ -206,7 +202,7 @@ fn counts_and_times_are_told() {
         factorizations: 7,
         ..Statistics::default()
     };
-    trajectory.seconds = Seconds { build: 0.1, solve: 12.345, write: 7.0 };
+    trajectory.run.seconds = Seconds { build: 0.1, solve: 12.345, write: 7.0 };
     let expected = [
         "rejected steps: 3",
         "Newton iterations: 4",
@@ -230,7 +226,10 @@ fn the_head_says_what_it_is() {
     ] {
         for (title, shown) in [("", kind), (" \t", kind), ("Named", "Named")] {
             let title = title.to_owned();
-            let page = words(&Trajectory { analysis, title, degrees_of_freedom: 1, ..Trajectory::default() });
+            let page = words(&Trajectory {
+                run: Run { analysis, title, degrees_of_freedom: 1, ..Run::default() },
+                ..Trajectory::default()
+            });
             assert!(page.contains(&format!("<h1>{shown}</h1>")), "{page}");
             assert!(
                 page.contains(&format!("<p class=\"subtitle\">{kind} · 1 degree of freedom</p>")),
@@ -238,7 +237,7 @@ fn the_head_says_what_it_is() {
             );
         }
     }
-    let page = words(&Trajectory { degrees_of_freedom: 2, ..rise(1) });
+    let page = words(&Trajectory { run: Run { degrees_of_freedom: 2, ..rise(1).run }, ..rise(1) });
     assert!(page.contains("<p class=\"subtitle\">Motion · 2 degrees of freedom</p>"));
     assert!(!page.contains("class=\"warnings\"") && !page.contains("Incomplete"));
     // Pictures in their order, the shape first.

@@ -1,26 +1,20 @@
 //! Tables, files for ParaView, the summary.
 
-use super::made_up::{beam, buckling, level, path, rise, speck, swing, vibrations};
+use super::made_up::{all, beam, level, rise};
 use super::{Files, snapshot, written_in_full};
 use ancf::output::Summary;
-use ancf::trajectory::{AnalysisKind, Energy, Frame, ProbeSeries, Trajectory};
+use ancf::results::{AnalysisKind, Energy, Frame, ProbeSeries, Run, Trajectory};
 
 /// Whoever changes a table, a file for ParaView or the summary sees here what it changes.
 #[test]
 fn regress_tables() {
     let mut text = String::new();
-    for (name, trajectory) in [
-        ("path", path()),
-        ("swing", swing()),
-        ("vibrations", vibrations()),
-        ("buckling", buckling()),
-        ("speck", speck()),
-    ] {
-        let summary = Summary::of(&trajectory).to_json().expect("JSON");
+    for (name, results) in all() {
+        let summary = Summary::of(&results).to_json().expect("JSON");
         let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
         assert!(summary.contains(&version) && summary.ends_with("}\n"));
         text += &format!("== {name}\n{}", summary.replace(&version, "\"version\": …"));
-        for (file, content) in written_in_full(&trajectory) {
+        for (file, content) in written_in_full(&results) {
             text += &format!("== {name}/{file}\n");
             if [".csv", ".vtu", ".pvd"].iter().any(|ending| file.ends_with(*ending)) {
                 text += &content;
@@ -64,7 +58,7 @@ fn names_that_begin_as_formulas_are_marked_and_others_are_not() {
 #[test]
 fn negative_load_factors_are_numbers() {
     let mut trajectory = rise(2);
-    trajectory.analysis = AnalysisKind::Static;
+    trajectory.run.analysis = AnalysisKind::Static;
     (trajectory.parameter[1], trajectory.frames[1].parameter) = (-0.125, -0.125);
     let files = written_in_full(&trajectory);
     for name in ["probes.csv", "energy.csv", "states.csv"] {
@@ -105,7 +99,7 @@ fn stored_and_lost_energies_have_columns_where_there_are_some() {
         assert_eq!(rows[2].iter().map(|cell| number(cell)).collect::<Vec<_>>(), last);
         // The same of the last record, of which the summary speaks.
         trajectory.energy.truncate(2);
-        let last = Summary::of(&trajectory).to_json().expect("JSON");
+        let last = Summary::of(&trajectory.into()).to_json().expect("JSON");
         let last: serde_json::Value = serde_json::from_str(&last).expect("JSON");
         assert_eq!(
             (last["energy"].get("stored").is_some(), last["energy"].get("lost").is_some()),
@@ -119,7 +113,7 @@ fn stored_and_lost_energies_have_columns_where_there_are_some() {
 fn drift_is_the_largest_departure_of_the_total() {
     let energy = |kinetic: f64, bend: f64| Energy { kinetic, bend, ..Energy::default() };
     let drift = |energy: Vec<Energy>| {
-        Summary::of(&Trajectory { energy, ..Trajectory::default() }).energy.and_then(|e| e.drift)
+        Summary::of(&Trajectory { energy, ..Trajectory::default() }.into()).energy.and_then(|e| e.drift)
     };
     // Totals 0.5, 0.25, 0.625: up to 0.25 from the first, of a kinetic energy of 0.5.
     let found = drift(vec![energy(0.25, 0.25), energy(0.125, 0.125), energy(0.5, 0.125)]);
@@ -139,8 +133,8 @@ fn states_have_even_arc_lengths() {
         |beams: &[usize]| Frame { parameter: 2.0, beams: beams.iter().map(|&count| points(count)).collect() };
     // The second beam is not known: its name is none, and its length one.
     let trajectory = Trajectory {
+        run: Run { undeformed: vec![shape], ..Run::default() },
         frames: vec![frame(&[5, 3]), frame(&[1, 0]), frame(&[2])],
-        undeformed: vec![shape],
         ..Trajectory::default()
     };
     let rows = rows(&written_in_full(&trajectory), "states.csv");
@@ -184,7 +178,11 @@ fn displacements_are_from_the_same_place_of_the_rest() {
             vec![[7.0, 7.0], [8.0, 5.5], [9.0, 4.0]],
         ],
     };
-    let trajectory = Trajectory { frames: vec![frame], undeformed: vec![rest, leg], ..Trajectory::default() };
+    let trajectory = Trajectory {
+        run: Run { undeformed: vec![rest, leg], ..Run::default() },
+        frames: vec![frame],
+        ..Trajectory::default()
+    };
     let files = written_in_full(&trajectory);
     let text = &files["vtu/state_00000.vtu"];
     assert!(text.contains("<Piece NumberOfPoints=\"8\" NumberOfCells=\"2\">"));
@@ -205,7 +203,7 @@ fn displacements_are_from_the_same_place_of_the_rest() {
         }
     }
     // Of a beam whose rest is not known there are no displacements, and no other has another's.
-    let unknown = Trajectory { undeformed: vec![level(0.0)], ..trajectory };
+    let unknown = Trajectory { run: Run { undeformed: vec![level(0.0)], ..trajectory.run }, ..trajectory };
     assert!(!written_in_full(&unknown)["vtu/state_00000.vtu"].contains("displacement"));
 }
 

@@ -4,7 +4,7 @@ use super::arm::{LENGTH, ancf, beam, imbalance, moved, one, still, support};
 use ancf::effect::{Actuation, BeamDamping, Contact, Friction, Obstacle, Spring};
 use ancf::effect::{Force, Gravity};
 use ancf::model::*;
-use ancf::trajectory::Event;
+use ancf::results::Event;
 use std::sync::Arc;
 
 /// An actuated cantilever without loads takes the arc of its own curvature, and is free of stress.
@@ -44,7 +44,7 @@ fn a_beam_bounces_from_a_plane() {
         assert!((-0.12..-0.05).contains(&lowest), "lowest {lowest}");
         let off = imbalance(&trajectory);
         assert!(off < 1e-5, "balance off by {off}");
-        assert_eq!(trajectory.outlines, [[[LENGTH, -0.1], [-LENGTH, -0.1]]]);
+        assert_eq!(trajectory.run.outlines, [[[LENGTH, -0.1], [-LENGTH, -0.1]]]);
         // It falls 0.1 m, and is pushed back.
         let [
             Event::Contact { time: begin, contact, touches: true, impulse: None },
@@ -86,7 +86,7 @@ fn a_beam_bounces_from_a_plane() {
 #[test]
 fn what_does_not_fit_is_refused_with_its_place() {
     let refused = |model: &Model, words: &str| {
-        let error = model.solve(&Analysis::Static(Static::default()));
+        let error = model.solve(&Static::default());
         let message = error.expect_err("refused").to_string();
         assert!(message.contains(words), "{message}");
     };
@@ -131,9 +131,9 @@ fn an_actuator_and_a_load_put_in_the_elastic_energy() {
     };
     let fine = scene("{ steps = 400 }");
     let along: Vec<f64> =
-        fine.probes[0].samples.iter().map(|tip| 3.0 * (tip.x - 1.0) - 4.0 * tip.y).collect();
+        fine.states().probes[0].samples.iter().map(|tip| 3.0 * (tip.x - 1.0) - 4.0 * tip.y).collect();
     let simpson: f64 = along.windows(3).step_by(2).map(|u| (u[0] + 4.0 * u[1] + u[2]) / (3.0 * 400.0)).sum();
-    let last = fine.energy.last().expect("an equilibrium");
+    let last = fine.states().energy.last().expect("an equilibrium");
     let by_actuator = last.stretch + last.bend - (along.last().expect("a tip") - simpson);
     for (analysis, error) in [
         ("{}", 1e-6),
@@ -143,13 +143,13 @@ fn an_actuator_and_a_load_put_in_the_elastic_energy() {
         ("{ arc_length = { until_load = 1, max_step = 0.02, max_points = 2000 } }", 1e-3),
     ] {
         let found = scene(analysis);
-        let work = found.energy.last().expect("an equilibrium").work;
+        let work = found.states().energy.last().expect("an equilibrium").work;
         assert!((work - by_actuator).abs() < error * by_actuator.abs(), "{analysis}: {work} {by_actuator}");
-        assert!(found.warnings.is_empty(), "{analysis}: {:?}", found.warnings);
+        assert!(found.run().warnings.is_empty(), "{analysis}: {:?}", found.run().warnings);
     }
     // Few points of a path that bends are few for the integral, too.
     let coarse = scene("{ arc_length = { until_load = 1, max_step = 2, max_points = 2000 } }");
-    let work = coarse.energy.last().expect("an equilibrium").work;
-    let told = coarse.warnings.iter().any(|warning| warning.contains("put in"));
+    let work = coarse.states().energy.last().expect("an equilibrium").work;
+    let told = coarse.run().warnings.iter().any(|warning| warning.contains("put in"));
     assert!(told || (work - by_actuator).abs() < 0.02 * by_actuator.abs(), "{work} {by_actuator}");
 }

@@ -157,7 +157,7 @@ impl Problem {
                 .expect("a stable cantilever, or a motion")
         });
         let mut largest = 0.0_f64;
-        for (a, b) in a.probes.iter().zip(&b.probes) {
+        for (a, b) in a.states().probes.iter().zip(&b.states().probes) {
             let (a, b) = (a.samples.last().expect("a state"), b.samples.last().expect("a state"));
             largest = largest.max((a.x - b.x).hypot(a.y - b.y) / self.length);
         }

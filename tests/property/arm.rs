@@ -2,7 +2,7 @@
 
 use ancf::assembly::Part;
 use ancf::model::*;
-use ancf::trajectory::Trajectory;
+use ancf::results::Trajectory;
 use std::sync::Arc;
 
 pub const LENGTH: f64 = 1.2;
@@ -46,13 +46,12 @@ pub fn one(supports: Vec<Support>, parts: Vec<Arc<dyn Part>>) -> Model {
 }
 
 pub fn moved(model: &Model, duration: f64, integrator: Integrator) -> Trajectory {
-    let analysis =
-        Analysis::Dynamic(Dynamic { duration, output_every: duration / 20.0, integrator, events: vec![] });
+    let analysis = Dynamic { duration, output_every: duration / 20.0, integrator, events: vec![] };
     model.solve(&analysis).expect("a motion")
 }
 
 pub fn still(model: &Model) -> Trajectory {
-    model.solve(&Analysis::Static(Static::default())).expect("an equilibrium")
+    model.solve(&Static::default()).expect("an equilibrium")
 }
 
 pub fn gauss(step: f64) -> Integrator {

@@ -1,12 +1,12 @@
 //! Energies of actuated beams, warnings of a balance that does not hold, and of what an analysis
 //! leaves out.
 
+use ancf::results::Trajectory;
 use ancf::scene::parse;
-use ancf::trajectory::Trajectory;
 
 fn solved(text: &str) -> Trajectory {
     let scene = parse("balances.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}")).into_states()
 }
 
 fn arm(more: &str) -> String {
@@ -68,7 +68,7 @@ fn an_actuator_puts_in_what_the_motion_gains() {
                 assert!((energy.work - elastic + initial).abs() < 1e-9, "t = {time}: {energy:?}");
             }
         }
-        assert!(trajectory.warnings.is_empty(), "{:?}", trajectory.warnings);
+        assert!(trajectory.run.warnings.is_empty(), "{:?}", trajectory.run.warnings);
     }
 }
 
@@ -80,14 +80,14 @@ fn a_balance_that_is_off_is_a_warning() {
             "{CLAMP}[[effect.force]]\nbeam = 'arm'\nat = 'end'\nvalue = [0.0, 2.0]\n\
              [analysis.dynamic]\nduration = 0.5\noutput_every = 0.05\n{method}\n"
         );
-        solved(&arm(&text)).warnings
+        solved(&arm(&text)).run.warnings
     };
     let damped = motion("generalized_alpha = { step = 0.04, spectral_radius = 0.0 }");
     assert!(damped.iter().any(|warning| warning.contains("the motion has lost")), "{damped:?}");
     assert_eq!(motion("gauss.step = 0.001"), [""; 0]);
     // Nothing moves.
     let rest = format!("{CLAMP}[analysis.dynamic]\nduration = 0.5\noutput_every = 0.05\n");
-    assert_eq!(solved(&arm(&rest)).warnings, [""; 0]);
+    assert_eq!(solved(&arm(&rest)).run.warnings, [""; 0]);
 }
 
 /// Where a motion in a steady flow comes to rest, statics finds it.
@@ -105,7 +105,7 @@ fn statics_finds_where_a_motion_in_a_flow_settles() {
         let [a, b] = [&still, &moving].map(|t| *t.probes[0].samples.last().expect("a record"));
         assert!(a.y.abs() > 0.1, "it bends: {a:?}");
         assert!((a.x - b.x).hypot(a.y - b.y) < 2e-4, "{flow}: ({}, {}) and ({}, {})", a.x, a.y, b.x, b.y);
-        assert!(still.warnings.is_empty(), "{:?}", still.warnings);
+        assert!(still.run.warnings.is_empty(), "{:?}", still.run.warnings);
     }
 }
 
@@ -122,7 +122,7 @@ fn what_an_analysis_leaves_out_is_named() {
     );
     for analysis in ["static", "buckling", "modal"] {
         let count = if analysis == "static" { "" } else { "count = 1\n" };
-        let warnings = solved(&arm(&format!("{all}[analysis.{analysis}]\n{count}"))).warnings;
+        let warnings = solved(&arm(&format!("{all}[analysis.{analysis}]\n{count}"))).run.warnings;
         let first = warnings.iter().find(|warning| warning.contains("no part in")).expect("a warning");
         for name in ["`damping`", "`dashpot`", "`torsion_dashpot`", "`drag`", "`initial_velocity`"] {
             assert!(first.contains(name), "{analysis}: {first}");
@@ -131,5 +131,5 @@ fn what_an_analysis_leaves_out_is_named() {
         assert_eq!(loads, analysis == "modal", "{warnings:?}");
     }
     let motion = format!("{all}[analysis.dynamic]\nduration = 0.01\n");
-    assert!(solved(&arm(&motion)).warnings.is_empty());
+    assert!(solved(&arm(&motion)).run.warnings.is_empty());
 }

@@ -82,7 +82,7 @@ fn error(basis: &str, fix: &str, couples: &[Couple]) -> f64 {
     );
     let scene = ancf::scene::parse("arm.toml", &text).expect("a legal scene");
     let states = scene.model().solve(scene.analysis()).expect("an equilibrium");
-    let found = states.probes[0].samples.last().expect("a record");
+    let found = states.states().probes[0].samples.last().expect("a record");
     let [x, y] = tip(couples);
     (found.x - x).hypot(found.y - y)
 }

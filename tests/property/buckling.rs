@@ -2,15 +2,15 @@
 
 use std::f64::consts::PI;
 
+use ancf::results::Results;
 use ancf::scene::parse;
-use ancf::trajectory::Trajectory;
 use proptest::prelude::*;
 
 /// First solution of tan z = z, squared: the critical load of a column that is clamped at one end and
 /// pinned at the other, in EI/L².
 const CLAMPED_PINNED: f64 = 20.190_728_556_426_63;
 
-fn solve(text: &str) -> Trajectory {
+fn solve(text: &str) -> Results {
     let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
     scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error:?}\n{text}"))
 }
@@ -60,12 +60,12 @@ proptest! {
     ) {
         let axial_stiffness = 10f64.powf(log);
         let pulled = solve(&column(&cells, axial_stiffness, turn, -strain));
-        prop_assert!(pulled.load_factors.is_empty(), "{:?}", pulled.load_factors);
+        prop_assert!(pulled.eigenvalues().is_empty(), "{:?}", pulled.eigenvalues());
         let pressed = solve(&column(&cells, axial_stiffness, turn, strain));
         let expected = CLAMPED_PINNED / (axial_stiffness * strain);
         // Four elements, the fewest, err by 0.1 %.
-        prop_assert!((pressed.load_factors[0] / expected - 1.0).abs() < 2e-3, "{:?} {expected}", pressed.load_factors);
-        prop_assert!(pressed.warnings.is_empty(), "{:?}", pressed.warnings);
+        prop_assert!((pressed.eigenvalues()[0] / expected - 1.0).abs() < 2e-3, "{:?} {expected}", pressed.eigenvalues());
+        prop_assert!(pressed.run().warnings.is_empty(), "{:?}", pressed.run().warnings);
     }
 }
 
@@ -103,9 +103,14 @@ fn critical_loads_at_large_strains_are_told() {
                  basis.{basis}\n[[support]]\nbeam = \"a\"\nat = \"start\"\nfix = [\"x\", \"y\", \"angle\"]\n\
                  [[effect.force]]\nbeam = \"a\"\nat = \"end\"\nvalue = [-1, 0]\n[analysis.buckling]\ncount = 3\n"
             ));
-            let warned = found.warnings.iter().filter(|warning| warning.contains("strain the beam")).count();
-            assert_eq!(warned, usize::from(told.is_some()), "{stiffness}: {:?}", found.warnings);
-            assert!(told.is_none_or(|words| found.warnings[0].contains(words)), "{:?}", found.warnings);
+            let warned =
+                found.run().warnings.iter().filter(|warning| warning.contains("strain the beam")).count();
+            assert_eq!(warned, usize::from(told.is_some()), "{stiffness}: {:?}", found.run().warnings);
+            assert!(
+                told.is_none_or(|words| found.run().warnings[0].contains(words)),
+                "{:?}",
+                found.run().warnings
+            );
         }
     }
 }
@@ -142,6 +147,6 @@ fn springs_hold_the_motions_that_they_resist_and_no_others() {
         "foundation = [{ beam = 'b', stiffness = [0, 1] }]",
     ] {
         let found = structure(&format!("effect.{held}")).unwrap_or_else(|error| panic!("{held}: {error}"));
-        assert!(!found.load_factors.is_empty(), "{held}");
+        assert!(!found.eigenvalues().is_empty(), "{held}");
     }
 }

@@ -26,7 +26,7 @@ fn what_floats_stays_under_any_gravity() {
         );
         let scene = ancf::scene::parse("rod.toml", &text).expect("a legal scene");
         let motion = scene.model().solve(scene.analysis()).expect("a motion");
-        for sample in &motion.probes[0].samples {
+        for sample in &motion.states().probes[0].samples {
             let moved = (sample.x - 0.8).hypot(sample.y - 0.6);
             assert!(moved < 1e-12, "{law}: {moved:e} m at {sample:?}");
         }

@@ -5,16 +5,16 @@ use super::generators;
 use ancf::assembly::{Density, Needs};
 use ancf::effect::{Contact, Obstacle, Penalty};
 use ancf::model::{Beam, Centreline, Discretization, GaussPoints, Model, Section, StrainMeasure};
+use ancf::results::{Results, Trajectory};
 use ancf::run::RunError;
 use ancf::system::{System, View};
-use ancf::trajectory::Trajectory;
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use std::sync::Arc;
 
 fn solved(text: &str) -> Result<Trajectory, RunError> {
     let scene = ancf::scene::parse("contact.toml", text).expect("a legal scene");
-    scene.model().solve(scene.analysis())
+    scene.model().solve(scene.analysis()).map(Results::into_states)
 }
 
 fn obstacle() -> impl Strategy<Value = Obstacle> {
@@ -143,12 +143,12 @@ fn nothing_is_crossed_in_motion() {
         assert!(lowest > -0.5 * thickness, "{obstacle}, {basis}, {integrator}: down to y = {lowest}");
         let touched = trajectory.events.len();
         assert!(touched > 0, "{obstacle}, {basis}, {integrator}: nothing was touched");
-        let divided = trajectory.warnings.iter().any(|warning| warning.contains("divided"));
+        let divided = trajectory.run.warnings.iter().any(|warning| warning.contains("divided"));
         assert_eq!(
             divided,
             integrator.contains("step"),
             "{obstacle}, {basis}, {integrator}: {:?}",
-            trajectory.warnings
+            trajectory.run.warnings
         );
     }
 }
@@ -161,9 +161,14 @@ fn what_gives_way_is_told() {
     for integrator in ["gauss.tolerance = 1e-5", "radau.tolerance = 1e-4", "radau.step = 0.01"] {
         let trajectory =
             solved(&falling(pin, "ancf.elements = 12", 0.54, -10.0, integrator)).expect("a motion");
-        let told = |what: &str| trajectory.warnings.iter().any(|warning| warning.contains(what));
-        assert!(told("contact a.1 gave way"), "{integrator}: {:?}", trajectory.warnings);
-        assert_eq!(told("divided"), integrator.contains("step"), "{integrator}: {:?}", trajectory.warnings);
+        let told = |what: &str| trajectory.run.warnings.iter().any(|warning| warning.contains(what));
+        assert!(told("contact a.1 gave way"), "{integrator}: {:?}", trajectory.run.warnings);
+        assert_eq!(
+            told("divided"),
+            integrator.contains("step"),
+            "{integrator}: {:?}",
+            trajectory.run.warnings
+        );
         assert!(!trajectory.events.is_empty(), "{integrator}: the pin was not seen");
     }
 }
@@ -219,7 +224,7 @@ fn around_a_peg(turn: f64, friction: &str, integrator: &str) -> Vec<[f64; 2]> {
         at(0.3, -0.5),
     );
     let trajectory = solved(&scene).unwrap_or_else(|e| panic!("{friction} {integrator}: {e}"));
-    let back = |s: &ancf::trajectory::ProbeSample| [cosine * s.x + sine * s.y, cosine * s.y - sine * s.x];
+    let back = |s: &ancf::results::ProbeSample| [cosine * s.x + sine * s.y, cosine * s.y - sine * s.x];
     trajectory.probes[0].samples.iter().map(back).collect()
 }
 

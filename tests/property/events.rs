@@ -1,7 +1,7 @@
 //! Events of a motion: every time at which a probe's coordinate reaches a value, whatever the
 //! steps.
 
-use ancf::trajectory::{Event, Trajectory};
+use ancf::results::{Event, Trajectory};
 use proptest::prelude::*;
 
 const G: f64 = 9.81;
@@ -42,7 +42,7 @@ fn thrown(integrator: &str, axis: &str, sign: f64, scale: f64, events: &[(f64, &
         events = events.join(", "),
     );
     let scene = ancf::scene::parse("thrown.toml", &text).expect("a legal scene");
-    scene.model().solve(scene.analysis()).expect("a motion")
+    scene.model().solve(scene.analysis()).expect("a motion").into_states()
 }
 
 fn times(trajectory: &Trajectory) -> Vec<f64> {
@@ -128,7 +128,7 @@ fn every_turn_of_a_spinning_rod_is_seen() {
         );
         let scene = ancf::scene::parse("rod.toml", &text).expect("a legal scene");
         let trajectory = scene.model().solve(scene.analysis()).expect("a motion");
-        let found = times(&trajectory);
+        let found = times(trajectory.states());
         let apart = 0.99_f64.acos() / std::f64::consts::TAU;
         let turn = |k: i32| {
             let start = f64::from(k);

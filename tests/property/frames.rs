@@ -1,8 +1,8 @@
 //! Motion does not know the axes, the handedness of the plane, nor the units: every support, joint
 //! and effect, by every integrator.
 
+use ancf::results::Trajectory;
 use ancf::scene::parse;
-use ancf::trajectory::Trajectory;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 
@@ -275,7 +275,7 @@ fn moved(frame: &Frame, scene: &str, basis: &str, integrator: &str) -> Trajector
     let text = frame.write(&template);
     let scene = parse("frame.toml", &text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
     let found = scene.model().solve(scene.analysis());
-    found.unwrap_or_else(|error| panic!("{frame:?}: {error}\n{text}"))
+    found.unwrap_or_else(|error| panic!("{frame:?}: {error}\n{text}")).into_states()
 }
 
 /// Positions and velocities of all probes at all times, as they are seen from here.

@@ -8,11 +8,11 @@ use ancf::model::{
     Analysis, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Section, SideCondition,
     StrainMeasure,
 };
+use ancf::results::{Results, Trajectory};
 use ancf::run::{Options, RunError};
 use ancf::solve::dynamics::start::from_rest;
 use ancf::solve::dynamics::{Solution, Task, solve};
 use ancf::system::System;
-use ancf::trajectory::Trajectory;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ const GRAVITY: f64 = 9.81;
 
 fn solved(text: &str) -> Result<Trajectory, RunError> {
     let scene = ancf::scene::parse("friction.toml", text).expect("a legal scene");
-    scene.model().solve(scene.analysis())
+    scene.model().solve(scene.analysis()).map(Results::into_states)
 }
 
 proptest! {
@@ -246,7 +246,7 @@ fn a_rod_sticks_in_statics() {
         let start = Options { start: trajectory.saved.as_ref(), ..Options::default() };
         let rest = dynamic.model().solve_with(dynamic.analysis(), start);
         let rest = rest.unwrap_or_else(|e| panic!("{pull} N, {steps}: {e}"));
-        for sample in &rest.probes[0].samples {
+        for sample in &rest.states().probes[0].samples {
             let crept = (sample.x - 1.0 - moved).abs();
             assert!(crept < 1e-5, "{pull} N, {steps}: creeps by {crept:e} m");
         }

@@ -4,11 +4,11 @@
 use super::generators;
 use ancf::assembly::{Kind, Needs};
 use ancf::restart::SavedState;
+use ancf::results::Trajectory;
 use ancf::run::{Options, inspect};
 use ancf::scene::{Scene, parse};
 use ancf::solve::dynamics::motion::Motion;
 use ancf::system::System;
-use ancf::trajectory::Trajectory;
 use proptest::prelude::*;
 
 const ARM: &str = "[beam.arm]\nstart = [0.0, 0.0]\nend = [1.0, 0.0]\nbending_stiffness = 1.0\nmass_per_length = 1.0\nbasis = BASIS\n\
@@ -25,7 +25,7 @@ fn scene(basis: &str, fix: &str, rest: &str) -> Scene {
 }
 
 fn solve(scene: &Scene) -> Trajectory {
-    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}")).into_states()
 }
 
 fn refused(scene: &Scene) -> String {
@@ -103,6 +103,17 @@ fn what_names_no_axial_stiffness_gets_rows_and_no_stretch() {
             assert_eq!(inventory.multipliers, rows);
             assert_eq!(inventory.solver, "banded LU, constraints among the unknowns");
         }
+    }
+}
+
+/// The row that a wholly held gradient makes one too many is left out beside the last node, too.
+#[test]
+fn a_gradient_that_is_held_at_the_end_saves_a_row() {
+    for (basis, cells) in [(ANCF, 20), (RPIM, 9)] {
+        let text = ARM.replace("BASIS", basis).replace("FIX", CLAMP).replace("at = 'start'", "at = 'end'");
+        let scene = parse("arm.toml", &format!("{text}[analysis.static]\n")).expect("a scene");
+        let inventory = inspect(scene.model(), scene.analysis()).expect("an inventory");
+        assert_eq!(inventory.multipliers, 2 * cells, "{basis}");
     }
 }
 
@@ -218,7 +229,7 @@ fn a_motion_goes_on_as_if_it_had_not_stopped() {
             .model()
             .solve_with(half.analysis(), Options { start: Some(&saved), ..Options::default() })
             .expect("a motion");
-        assert_eq!(whole.probes[0].samples.last(), rest.probes[0].samples.last(), "{method}");
+        assert_eq!(whole.probes[0].samples.last(), rest.states().probes[0].samples.last(), "{method}");
     }
 }
 
@@ -281,7 +292,7 @@ fn a_chain_on_one_hook_finds_its_way_down() {
         assert!(tip.x.abs() < 1e-9 && (tip.y + 1.0).abs() < 1e-5, "({}, {})", tip.x, tip.y);
         let top = trajectory.last[0].axial_force[0];
         assert!((top - 9.81).abs() < 1e-3, "{top} N");
-        assert_eq!(trajectory.statistics.load_steps, 1);
+        assert_eq!(trajectory.run.statistics.load_steps, 1);
     }
     // With bending stiffness it is a pendulum, which statics refuses.
     let text = format!("{}[analysis.static]\n", ARM.replace("BASIS", ANCF).replace("FIX", HINGE));

@@ -3,7 +3,7 @@
 use super::arm::{LENGTH, ancf, beam, gauss, imbalance, methods, moved, one, still, support, tip};
 use ancf::effect::{Force, Gravity};
 use ancf::model::*;
-use ancf::trajectory::Trajectory;
+use ancf::results::Trajectory;
 use std::sync::Arc;
 
 /// One beam and two that are welded are the same but for the stretch at the weld, which is free to

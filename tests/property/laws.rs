@@ -1,8 +1,10 @@
 //! Loads and supports that follow laws of time: nothing moves before its cause, kinks cost no
 //! accuracy, and what happens between the points at which a method looks is not lost on it.
 
+use ancf::assembly::Needs;
+use ancf::results::Trajectory;
 use ancf::scene::parse;
-use ancf::trajectory::Trajectory;
+use ancf::system::System;
 
 /// A clamped beam along x, L = 1 m, EA = 1e4 N, EI = 1 N m², ρA = 1 kg/m, with what `acts` on it.
 fn moved(acts: &str, duration: f64, every: f64, integrator: &str) -> Trajectory {
@@ -19,7 +21,7 @@ fn moved(acts: &str, duration: f64, every: f64, integrator: &str) -> Trajectory 
     );
     let scene = parse("laws.toml", &text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
     let found = scene.model().solve(scene.analysis());
-    found.unwrap_or_else(|error| panic!("{integrator}: {error}\n{text}"))
+    found.unwrap_or_else(|error| panic!("{integrator}: {error}\n{text}")).into_states()
 }
 
 /// Positions of all probes from the record `first` on.
@@ -80,6 +82,23 @@ fn causes() -> Vec<(&'static str, String)> {
     ]
 }
 
+/// Loads that move follow time as those with a law do; what always acts does not.
+#[test]
+fn loads_that_move_follow_time() {
+    let follow = |acts: &str| {
+        let text = format!(
+            "[beam.a]\nstart = [0, 0]\nend = [1, 0]\naxial_stiffness = 1e4\nbending_stiffness = 1\nmass_per_length = 1\n\
+             basis.ancf.elements = 1\n{acts}[analysis.dynamic]\nduration = 1\n"
+        );
+        let scene = parse("laws.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let system = System::build(scene.model(), Needs { inertia: true, motion: true });
+        system.expect("a system").loads_follow_time()
+    };
+    let with_a_law = format!("{TIP}in_time.step.start = 0.1\n");
+    let moving = "[[effect.moving_force]]\nbeam = \"a\"\nvalue = [0, -6]\nspeed = 10\n";
+    assert_eq!(["", TIP, with_a_law.as_str(), moving].map(follow), [false, false, true, true]);
+}
+
 #[test]
 fn nothing_moves_before_its_cause_and_kinks_cost_no_accuracy() {
     for (name, acts) in causes() {
@@ -133,9 +152,9 @@ fn a_support_that_sets_off_and_stops_turns_a_rod_as_momentum_tells() {
         let scene = parse("support.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
         let found =
             scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{integrator}: {error}"));
-        assert_eq!(found.warnings, [""; 0], "{integrator}");
+        assert_eq!(found.run().warnings, [""; 0], "{integrator}");
         for ((time, sample), energy) in
-            found.parameter.iter().zip(&found.probes[0].samples).zip(&found.energy)
+            found.states().parameter.iter().zip(&found.states().probes[0].samples).zip(&found.states().energy)
         {
             let error = (sample.angle - angle(*time)).abs();
             assert!(error < 2e-4, "{integrator}, t = {time}: {error:.2e} rad off");
@@ -163,8 +182,8 @@ fn steps_of_given_length_bear_fine_meshes() {
         let scene = parse("fine.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
         let found = scene.model().solve(scene.analysis());
         let found = found.unwrap_or_else(|error| panic!("{elements} elements, {method}: {error}"));
-        let tip = found.probes[0].samples.last().expect("a record");
-        ([tip.x, tip.y], found.statistics.rejected_steps)
+        let tip = found.states().probes[0].samples.last().expect("a record");
+        ([tip.x, tip.y], found.run().statistics.rejected_steps)
     };
     for method in ["radau", "gauss"] {
         let (coarse, _) = at(12, method);

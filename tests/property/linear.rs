@@ -1,6 +1,7 @@
 //! Factorisations against each other: banded LDLᵀ, banded LU, faer's sparse LU, faer's dense LU.
 
 use ancf::linear::complex::ComplexFactor;
+use ancf::linear::symmetric::SymmetricBand;
 use ancf::linear::{Factor, Matrix, band::BandLu, bordered::Bordered, symmetric::Ldl};
 use faer::linalg::solvers::Solve;
 use proptest::prelude::*;
@@ -197,4 +198,17 @@ proptest! {
         }
         agree(&back, &b[..n], 1e-11)?;
     }
+}
+
+/// What elimination leaves of a pivot is measured by the entry of K + c M that it came from: of 2⁴⁰
+/// = c m there is 2⁻¹², a last digit.
+#[test]
+fn pivots_of_a_shifted_matrix_are_measured_by_the_sum() {
+    let (k, mut m) = (SymmetricBand::zeros(1, 1), SymmetricBand::zeros(1, 1));
+    let c = 2_f64.powi(20);
+    (0..4).for_each(|i| m.set(i, i, c));
+    m.set(0, 1, c);
+    m.set(1, 1, c * (1.0 + f64::EPSILON));
+    let singular = Ldl::again(None, &k, Some((c, &m))).expect_err("no pivot in row 1");
+    assert_eq!(singular.row, 1);
 }

@@ -5,14 +5,14 @@ use ancf::assembly::{InternalVariables, Needs};
 use ancf::effect::{Force, Moment};
 use ancf::linear::Matrix;
 use ancf::model::{
-    About, Analysis, Beam, Centreline, Discretization, Displacement, Fixed, FixedRotation, GaussPoints,
-    Kernel, Model, Nodes, Place, Probe, Section, SideCondition, Static, StrainMeasure, Support,
+    About, Beam, Centreline, Discretization, Displacement, Fixed, FixedRotation, GaussPoints, Kernel, Modal,
+    Model, Nodes, Place, Probe, Section, SideCondition, Static, StrainMeasure, Support,
 };
+use ancf::results::Vibrations;
 use ancf::run::RunError;
 use ancf::solve::eigen::{EigenError, Pairs, Pencil, dense, lanczos};
 use ancf::solve::{modal, statics};
 use ancf::system::{System, View};
-use ancf::trajectory::Trajectory;
 use miette::Diagnostic;
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -63,12 +63,12 @@ fn pulled(mut model: Model, force: [f64; 2]) -> Model {
     model
 }
 
-fn solve(model: &Model, count: usize, about: About) -> Result<Trajectory, RunError> {
-    model.solve(&Analysis::Modal { count, about })
+fn solve(model: &Model, count: usize, about: About) -> Result<Vibrations, RunError> {
+    model.solve(&Modal { count, about })
 }
 
 fn frequencies(model: &Model, count: usize, about: About) -> Vec<f64> {
-    solve(model, count, about).expect("a stable state").frequencies
+    solve(model, count, about).expect("a stable state").frequencies()
 }
 
 fn system(model: &Model) -> System {
@@ -289,8 +289,8 @@ fn a_bent_column_vibrates_about_its_stable_branch() {
     for nodes in [9, 41] {
         let column = pulled(model(vec![beam(ancf(nodes), 0.4)], vec![clamp()]), [-2.878, -1.471]);
         let found = solve(&column, 1, About::Equilibrium).expect("the bent state is stable");
-        assert!((found.frequencies[0] - 0.425).abs() < 1e-3, "{:?}", found.frequencies);
-        assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+        assert!((found.frequencies()[0] - 0.425).abs() < 1e-3, "{:?}", found.frequencies());
+        assert!(found.equilibrium.run.warnings.is_empty(), "{:?}", found.equilibrium.run.warnings);
     }
 }
 
@@ -327,12 +327,16 @@ fn moved_supports_and_records_of_the_equilibrium() {
     let found = solve(&string, 1, About::Equilibrium).expect("a stable state");
     let (k, c) = (PI / LENGTH, 1.0 + strain);
     let exact = ((2.0 * k.powi(4) / (c * c) + 1e5 * strain * k * k / c) / 0.7).sqrt() / (2.0 * PI);
-    assert!(close(&found.frequencies, &[exact], 1e-7), "{:?} against {exact}", found.frequencies);
-    assert_eq!(found.parameter, [1.0]);
-    assert!((found.probes[0].samples[0].x - 0.2 - LENGTH * c).abs() < 1e-12);
-    assert!((found.energy[0].stretch - 0.5 * 1e5 * strain * strain * LENGTH).abs() < 1e-9);
-    assert!(found.probes[0].samples.len() == 1 && found.energy.len() == 1 && found.modes.len() == 1);
-    assert!(solve(&string, 1, About::Reference).expect("stable").parameter.is_empty());
+    assert!(close(&found.frequencies(), &[exact], 1e-7), "{:?} against {exact}", found.frequencies());
+    assert_eq!(found.equilibrium.parameter, [1.0]);
+    assert!((found.equilibrium.probes[0].samples[0].x - 0.2 - LENGTH * c).abs() < 1e-12);
+    assert!((found.equilibrium.energy[0].stretch - 0.5 * 1e5 * strain * strain * LENGTH).abs() < 1e-9);
+    assert!(
+        found.equilibrium.probes[0].samples.len() == 1
+            && found.equilibrium.energy.len() == 1
+            && found.modes.len() == 1
+    );
+    assert!(solve(&string, 1, About::Reference).expect("stable").equilibrium.parameter.is_empty());
 }
 
 /// What an equilibrium is needed for is told by the name of what asked for it, and its energies are
@@ -350,11 +354,15 @@ fn vibrations_about_an_equilibrium_speak_of_themselves() {
         scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error:?}"))
     };
     let damped = about("effect.spring = [{ beam = 'arm', at = 'end', damping = 1 }]");
-    assert!(damped.warnings[0].contains("takes no part in a modal analysis"), "{:?}", damped.warnings);
+    assert!(
+        damped.run().warnings[0].contains("takes no part in a modal analysis"),
+        "{:?}",
+        damped.run().warnings
+    );
     let tied = about(
         "effect.actuation = [{ beam = 'arm', curvature = 2 }]\neffect.spring = [{ beam = 'arm', at = 'end', stiffness = 20 }]",
     );
-    let energy = tied.energy.last().expect("an equilibrium");
+    let energy = tied.states().energy.last().expect("an equilibrium");
     let stored = energy.stretch + energy.bend + energy.stored;
     assert!(stored > 0.1 && (energy.work - stored).abs() < 1e-6 * stored, "{} {stored}", energy.work);
 }

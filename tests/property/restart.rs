@@ -2,9 +2,9 @@
 //! at rest where it should be, or refused.
 
 use ancf::restart::SavedState;
+use ancf::results::{Event, Results, Trajectory};
 use ancf::run::{Options, RunError};
 use ancf::scene::{Scene, parse};
-use ancf::trajectory::{Event, Trajectory};
 
 fn scene(text: &str) -> Scene {
     parse("scene.toml", text).unwrap_or_else(|error| panic!("{error:?}\n{text}"))
@@ -12,7 +12,7 @@ fn scene(text: &str) -> Scene {
 
 fn solve(text: &str) -> Trajectory {
     let scene = scene(text);
-    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}")).into_states()
 }
 
 /// What a file holds of a state.
@@ -24,7 +24,10 @@ fn filed(saved: &SavedState) -> SavedState {
 
 fn go_on(text: &str, from: &Trajectory) -> Result<Trajectory, RunError> {
     let (scene, saved) = (scene(text), filed(from.saved.as_ref().expect("a state")));
-    scene.model().solve_with(scene.analysis(), Options { start: Some(&saved), ..Options::default() })
+    scene
+        .model()
+        .solve_with(scene.analysis(), Options { start: Some(&saved), ..Options::default() })
+        .map(Results::into_states)
 }
 
 /// Everything that has a memory: loads without potential, damping, contact, a support that turns, a
@@ -94,7 +97,7 @@ fn a_motion_in_parts_is_the_whole_motion() {
             let first = solve(&motion(system, 0.213, integrator, ""));
             let second = go_on(&motion(system, 0.287, integrator, ""), &first).expect("a motion");
             agree(&whole, &second, 0.213, &format!("motion {number}, {integrator}"));
-            let told = second.settings.iter().find(|(name, _)| name == "continued").expect("is told");
+            let told = second.run.settings.iter().find(|(name, _)| name == "continued").expect("is told");
             assert!(
                 told.1.contains("for 0.287 s from t = 0.213 s to 0.5 s, as if it had not stopped"),
                 "{told:?}"

@@ -1,8 +1,8 @@
 //! Section forces and reactions balance what acts on the beam, whatever its stiffness, its
 //! discretisation and its motion.
 
+use ancf::results::{Shape, Trajectory};
 use ancf::scene::parse;
-use ancf::trajectory::{Shape, Trajectory};
 
 const BASES: [&str; 2] = ["ancf.elements = 16", "rpim.nodes = 10"];
 const METHODS: [&str; 4] = [
@@ -14,7 +14,7 @@ const METHODS: [&str; 4] = [
 
 fn solved(text: &str) -> Trajectory {
     let scene = parse("forces.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}")).into_states()
 }
 
 /// A beam of length `l` from `start` in the direction `angle`, with stiffnesses.

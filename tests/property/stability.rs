@@ -4,10 +4,10 @@
 use ancf::assembly::Needs;
 use ancf::linear::bordered::BorderRow;
 use ancf::linear::{Factor, Matrix};
+use ancf::results::{Results, Trajectory};
 use ancf::run::RunError;
 use ancf::scene::{Scene, parse};
 use ancf::system::System;
-use ancf::trajectory::Trajectory;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Mat, Par, Side};
 use proptest::prelude::*;
@@ -19,11 +19,18 @@ fn scene(text: &str) -> Scene {
 
 fn attempt(text: &str) -> Result<Trajectory, RunError> {
     let scene = scene(text);
-    scene.model().solve(scene.analysis())
+    scene.model().solve(scene.analysis()).map(Results::into_states)
 }
 
 fn solve(text: &str) -> Trajectory {
     attempt(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Natural frequencies, or critical load factors.
+fn eigenvalues(text: &str) -> Vec<f64> {
+    let scene = scene(text);
+    let results = scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    results.eigenvalues()
 }
 
 fn tip(trajectory: &Trajectory) -> [f64; 2] {
@@ -180,14 +187,14 @@ proptest! {
         let squares = k.self_adjoint_eigenvalues(Side::Lower).expect("eigenvalues");
         let largest = squares[squares.len() - 1];
         let all = squares.len().min(24);
-        let found = solve(&with(all)).frequencies;
+        let found = eigenvalues(&with(all));
         prop_assert_eq!(found.len(), all);
         for (f, square) in found.iter().zip(&squares) {
             let omega = TAU * f;
             prop_assert!((omega * omega - square).abs() < 1e-7 * square.abs() + 1e-13 * largest, "{omega}² and {square} of {squares:?}");
         }
         for count in (1..all).step_by(2) {
-            let fewer = solve(&with(count)).frequencies;
+            let fewer = eigenvalues(&with(count));
             prop_assert_eq!(fewer.len(), count);
             for (a, b) in fewer.iter().zip(&found) {
                 prop_assert!((a - b).abs() <= 1e-7 * b && (*a == 0.0) == (*b == 0.0), "{count} of {all}: {fewer:?} and {found:?}");
@@ -218,8 +225,8 @@ fn columns_of_every_kind_leave_the_unstable_branch_or_say_where_it_begins() {
             }
             let perfect =
                 solve(&format!("{column}{}[analysis.static]\n", force("a", [-2.5 * PI * PI / 4.0, 0.0])));
-            let [warning] = &perfect.warnings[..] else {
-                panic!("{basis} {section}: {:?}", perfect.warnings)
+            let [warning] = &perfect.run.warnings[..] else {
+                panic!("{basis} {section}: {:?}", perfect.run.warnings)
             };
             assert!(warning.contains("loses definiteness at load factor 0.400"), "{warning}");
         }
@@ -229,7 +236,7 @@ fn columns_of_every_kind_leave_the_unstable_branch_or_say_where_it_begins() {
             "effect.gravity.acceleration = [0.0, {}]\n{heavy}[analysis.static]\n",
             -2.5 * 7.8373
         ));
-        assert!(heavy.warnings[0].contains("at load factor 0.400"), "{:?}", heavy.warnings);
+        assert!(heavy.run.warnings[0].contains("at load factor 0.400"), "{:?}", heavy.run.warnings);
     }
 }
 
@@ -247,7 +254,11 @@ fn a_hinged_leg_buckles_with_a_warning() {
             + &force("arm", [0.0, -2.0 * PI * PI])
             + "[analysis.static]\n";
         let found = solve(&text);
-        assert!(found.warnings[0].contains("loses definiteness at load factor 0.50"), "{:?}", found.warnings);
+        assert!(
+            found.run.warnings[0].contains("loses definiteness at load factor 0.50"),
+            "{:?}",
+            found.run.warnings
+        );
     }
 }
 
@@ -268,22 +279,24 @@ proptest! {
         let (s, c) = turn.sin_cos();
         let turned = |[x, y]: [f64; 2]| [c * x - s * y, s * x + c * y];
         let buckling = |load| {
-            solve(&(beam("a", [[0.0, 0.0], [c, s]], &section, basis)
+            let text = beam("a", [[0.0, 0.0], [c, s]], &section, basis)
                 + &support("a", "'start'", CLAMP)
                 + &force("a", turned(load))
-                + "[analysis.buckling]\ncount = 2\n"))
+                + "[analysis.buckling]\ncount = 2\n";
+            let scene = scene(&text);
+            scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
         };
         let found = buckling([-1.0, across]);
-        prop_assert!((found.load_factors[0] / (PI * PI / 4.0) - 1.0).abs() < 5e-4, "{:?}", found.load_factors);
-        prop_assert!((found.load_factors[1] / (PI * PI * 2.25) - 1.0).abs() < 2e-3, "{:?}", found.load_factors);
+        prop_assert!((found.eigenvalues()[0] / (PI * PI / 4.0) - 1.0).abs() < 5e-4, "{:?}", found.eigenvalues());
+        prop_assert!((found.eigenvalues()[1] / (PI * PI * 2.25) - 1.0).abs() < 2e-3, "{:?}", found.eigenvalues());
         let of_the_second = |warning: &String| warning.contains("from number 2 on");
-        prop_assert!(found.warnings.iter().all(of_the_second), "{:?}", found.warnings);
+        prop_assert!(found.run().warnings.iter().all(of_the_second), "{:?}", found.run().warnings);
         let bent = buckling([-1.0, 0.5]);
-        prop_assert!(bent.warnings[0].contains("arc_length"), "{:?}", bent.warnings);
+        prop_assert!(bent.run().warnings[0].contains("arc_length"), "{:?}", bent.run().warnings);
         // A force across compresses nothing.
         let bent = buckling([0.0, 1.0]);
-        prop_assert!(bent.load_factors.iter().all(|load| *load > 20.0), "{:?}", bent.load_factors);
-        prop_assert!(bent.load_factors.is_empty() || bent.warnings[0].contains("arc_length"), "{:?}", bent.warnings);
+        prop_assert!(bent.eigenvalues().iter().all(|load| *load > 20.0), "{:?}", bent.eigenvalues());
+        prop_assert!(bent.eigenvalues().is_empty() || bent.run().warnings[0].contains("arc_length"), "{:?}", bent.run().warnings);
     }
 
     /// One stiff rod on a hinge swings by 3g/2L, two by the frequencies of the double pendulum,
@@ -312,9 +325,9 @@ proptest! {
         let [x, y] = tip(&solve(&format!("{rod}[analysis.static]\n")));
         prop_assert!(x.abs() < 1e-6 * length && (y / length + 1.0).abs() < 1e-3, "{x} {y}");
         let about = "[analysis.modal]\nabout = 'equilibrium'\ncount = ";
-        let one = solve(&format!("{rod}{about}1\n")).frequencies;
+        let one = eigenvalues(&format!("{rod}{about}1\n"));
         prop_assert!((one[0] / (expected[0] * unit) - 1.0).abs() < 2e-3, "{one:?}, {}", expected[0] * unit);
-        let both = solve(&format!("{two}{about}2\n")).frequencies;
+        let both = eigenvalues(&format!("{two}{about}2\n"));
         for (found, expected) in both.iter().zip(&expected[1..]) {
             prop_assert!((found / (expected * unit) - 1.0).abs() < 5e-3, "{both:?}, {expected} {unit}");
         }
@@ -407,8 +420,8 @@ fn a_toggle_leaves_its_line_on_the_side_of_its_weight() {
                 (across / expected - 1.0).abs() < 0.02,
                 "{basis} turned by {turn}: {across}, not {expected}"
             );
-            assert!(found.warnings.is_empty(), "{:?}", found.warnings);
-            let warnings = toggle("3.364e8", turn, basis, side).warnings;
+            assert!(found.run.warnings.is_empty(), "{:?}", found.run.warnings);
+            let warnings = toggle("3.364e8", turn, basis, side).run.warnings;
             assert!(
                 warnings.iter().any(|warning| warning.contains("buckle before it moves")),
                 "{warnings:?}"
@@ -491,7 +504,7 @@ fn a_hinged_rod_goes_with_its_support() {
                     // Its own weight makes it longer by half of its strain at the hinge, 9.2e-5.
                     let off = (at_x - x - 0.78 * gx).hypot(at_y - y - 0.78 * gy);
                     assert!(off < 5e-5, "{kind} {nodes} nodes, moved by ({x}, {y}) in {steps}: off by {off}");
-                    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+                    assert!(found.run.warnings.is_empty(), "{:?}", found.run.warnings);
                     runs += 1;
                 }
             }
@@ -595,10 +608,10 @@ fn a_path_that_does_not_reach_its_target_is_incomplete() {
             "{message}"
         );
         let partial = error.take_partial().expect("five states");
-        assert!(!partial.complete && partial.parameter.len() == 5);
+        assert!(!partial.run().complete && partial.states().parameter.len() == 5);
     }
     for until in ["max_points = 4", "until_load = 1.0", "until_load = 0.01\nmax_points = 4"] {
-        assert!(path(until).expect("reached").complete);
+        assert!(path(until).expect("reached").run.complete);
     }
 }
 
@@ -617,7 +630,7 @@ fn rotary_inertia_of_a_point_makes_no_mode_of_its_own() {
     };
     for basis in ["{ ancf = { elements = 8 } }", "{ ancf = { elements = 96 } }", "{ rpim = { nodes = 25 } }"]
     {
-        let found = solve(&arm(basis)).frequencies;
+        let found = eigenvalues(&arm(basis));
         for (found, exact) in found.iter().zip([6.1437, 19.8814, 97.189, 242.15]) {
             assert!((found / exact - 1.0).abs() < 1e-3, "{basis}: {found} and {exact}");
         }
@@ -704,9 +717,12 @@ fn an_arbitrary_side_is_told() {
         );
         let scene = ancf::scene::parse("rod.toml", &text).unwrap_or_else(|error| panic!("{error:?}"));
         let found = scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error:?}"));
-        let told =
-            found.warnings.iter().any(|warning| warning.contains("which of them was found is arbitrary"));
-        (told, *found.probes[0].samples.last().expect("an equilibrium"))
+        let told = found
+            .run()
+            .warnings
+            .iter()
+            .any(|warning| warning.contains("which of them was found is arbitrary"));
+        (told, *found.states().probes[0].samples.last().expect("an equilibrium"))
     };
     let (told, tip) = rod(0.0, "['x']", -0.01, [-1.0, 0.0]);
     assert!(told && (tip.y.abs() - (1.0_f64 - 0.99 * 0.99).sqrt()).abs() < 1e-4, "{told} {tip:?}");

@@ -75,10 +75,10 @@ fn a_string_without_load_stays() {
         for supports in [2, 1, 0] {
             model.supports.truncate(supports);
             let trajectory = still(&model);
-            assert_eq!(trajectory.statistics.newton_iterations, 0);
+            assert_eq!(trajectory.run.statistics.newton_iterations, 0);
             assert_eq!(
                 (&trajectory.last[0].x, &trajectory.last[0].y),
-                (&trajectory.undeformed[0].x, &trajectory.undeformed[0].y)
+                (&trajectory.run.undeformed[0].x, &trajectory.run.undeformed[0].y)
             );
         }
         // A support that has a way to go is not at rest.
@@ -109,16 +109,19 @@ fn a_folded_string_is_named() {
         model.parts = vec![Arc::new(Gravity::new([0.0, -9.81]))];
         model.probes = tip(0, 0.5);
         let settings = Static { steps, ..Static::default() };
-        model.solve(&Analysis::Static(settings)).expect("an equilibrium")
+        model.solve(&settings).expect("an equilibrium")
     };
     for steps in [None, Some(40)] {
         let trajectory = cable(steps);
         let middle = trajectory.probes[0].samples.last().expect("a record");
         // What is free of folds is symmetric.
         let symmetric = (middle.x - 0.3).abs() < 1e-6;
-        let named =
-            trajectory.warnings.iter().any(|w| w.contains("string `cable` turns by more than a right angle"));
-        assert_eq!(named, !symmetric, "{steps:?} steps: x = {}, {:?}", middle.x, trajectory.warnings);
+        let named = trajectory
+            .run
+            .warnings
+            .iter()
+            .any(|w| w.contains("string `cable` turns by more than a right angle"));
+        assert_eq!(named, !symmetric, "{steps:?} steps: x = {}, {:?}", middle.x, trajectory.run.warnings);
         assert!(symmetric || steps.is_none(), "x = {}", middle.x);
     }
 }
@@ -136,7 +139,7 @@ fn strings_that_hold_themselves_are_told() {
             ends[0], ends[1]
         );
         let scene = ancf::scene::parse("string.toml", &text).expect("a legal scene");
-        scene.model().solve(scene.analysis()).expect("an equilibrium").warnings
+        scene.model().solve(scene.analysis()).expect("an equilibrium").into_states().run.warnings
     };
     let both = r#"["x", "y"]"#;
     let nodes = "nodes = [0.0, 0.1, 0.3, 0.4, 0.5, 0.6, 0.8]";
@@ -161,7 +164,7 @@ fn couples_on_strings_are_told() {
              effect.gravity.acceleration = [0, -1]\n{effects}\nanalysis.static = {{}}\n"
         );
         let scene = ancf::scene::parse("string.toml", &text).unwrap_or_else(|error| panic!("{error:?}"));
-        scene.model().solve(scene.analysis()).expect("an equilibrium").warnings
+        scene.model().solve(scene.analysis()).expect("an equilibrium").into_states().run.warnings
     };
     let joint = |kind: &str| {
         format!(

@@ -128,11 +128,11 @@ fn a_bifurcation_is_reported_with_its_load() {
     let [event] = solution.events[..] else { panic!("one loss of definiteness, not {:?}", solution.events) };
     assert_eq!((event.before, event.after), (0, 1));
     assert!((event.load - 0.5).abs() < 1e-4, "at load factor {}", event.load);
-    let trajectory = column.solve(&Analysis::Static(Static::default())).expect("solvable");
+    let trajectory = column.solve(&Static::default()).expect("solvable");
     assert!(
-        trajectory.warnings[0].contains("loses definiteness at load factor 0.5000"),
+        trajectory.run.warnings[0].contains("loses definiteness at load factor 0.5000"),
         "{:?}",
-        trajectory.warnings
+        trajectory.run.warnings
     );
 }
 
@@ -200,7 +200,7 @@ fn supports_at_one_node_add_up() {
         let mut model = model(discretization, 0.3, [supports, vec![far]].concat());
         model.parts[0] = Arc::new(Force::new(Place { beam: 0, s: 0.5 * LENGTH }, [0.2, 0.3]));
         let analysis = Analysis::Static(Static::default());
-        model.solve(&analysis).map(|t| t.probes[1].samples.clone())
+        model.solve(&analysis).map(|t| t.states().probes[1].samples.clone())
     };
     let together = tip(vec![support(true, true)]).expect("a pinned beam");
     let apart = tip(vec![support(true, false), support(false, true)]).expect("the same");
@@ -215,7 +215,7 @@ fn the_prediction_moves_with_the_supports() {
     let moved = Support { displacement: Displacement { x: 2e-5, y: -3e-5, angle: 1e-5 }, ..clamp() };
     let mut model = model(Discretization::Ancf { nodes: Nodes::Uniform(9) }, 0.4, vec![moved]);
     model.parts.clear();
-    let trajectory = model.solve(&Analysis::Static(Static::default())).expect("an equilibrium");
+    let trajectory = model.solve(&Static::default()).expect("an equilibrium");
     let first = trajectory.history[0].increments[0];
     assert!(first < 1e-8, "the first correction is {first} of a beam length");
 }

@@ -198,11 +198,11 @@ fn angles_count_the_turns_of_one_step() {
         };
         let analysis = Analysis::Static(Static::default());
         let trajectory = model.solve(&analysis).expect("a wound-up beam");
-        let angle = trajectory.probes[0].samples.last().expect("a state").angle;
+        let angle = trajectory.states().probes[0].samples.last().expect("a state").angle;
         assert!(
             (angle - 1.5 * TAU).abs() < 1e-3,
             "clamped at {clamped}: {angle} in {} steps",
-            trajectory.parameter.len()
+            trajectory.states().parameter.len()
         );
     }
 }
@@ -221,7 +221,7 @@ fn a_path_ends_at_its_load_between_long_steps() {
     for until in [0.5, 0.77, 0.93] {
         let arc = ArcLength { until_load: Some(until), max_points: 1000, max_step: None, until_probe: None };
         let settings = Static { arc_length: Some(arc), ..Static::default() };
-        let trajectory = model.solve(&Analysis::Static(settings)).expect("a path");
+        let trajectory = model.solve(&settings).expect("a path");
         assert_eq!(trajectory.parameter.last(), Some(&until), "{:?}", trajectory.parameter);
         let angle = trajectory.probes[0].samples.last().expect("a state").angle;
         assert!((angle - 3.0 * TAU * until).abs() < 1e-3, "{angle} at {until}");

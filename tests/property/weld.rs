@@ -1,10 +1,10 @@
 //! A weld ties positions and directions, and nothing else.
 
-use ancf::trajectory::Trajectory;
+use ancf::results::Trajectory;
 
 fn solved(text: &str) -> Trajectory {
     let scene = ancf::scene::parse("weld.toml", text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
-    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error:?}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error:?}\n{text}")).into_states()
 }
 
 fn end(trajectory: &Trajectory, probe: usize) -> [f64; 2] {

@@ -1,12 +1,14 @@
 //! Torsion springs count all turns: statics, motion, restarts and vibrations of what is wound up,
 //! against closed forms.
 
-use ancf::trajectory::Trajectory;
+use ancf::assembly::{AcceptedState, InternalVariables, Needs};
+use ancf::results::Trajectory;
+use ancf::system::System;
 use std::f64::consts::TAU;
 
 fn solved(text: &str) -> Trajectory {
     let scene = ancf::scene::parse("winding.toml", text).expect("a legal scene");
-    scene.model().solve(scene.analysis()).unwrap_or_else(|e| panic!("{e}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|e| panic!("{e}")).into_states()
 }
 
 /// A clamped beam is coiled up by a couple at its end against a spring at 0.9 m: θ(0.9) = 0.9 M/(EI + 0.9 k).
@@ -88,7 +90,33 @@ fn a_wound_spring_vibrates_as_a_slack_one() {
             "{rod}effect.moment = [{{ beam = 'rod', at = 'start', value = {moment} }}]\n\
              analysis.modal = {{ count = 2, about = 'equilibrium' }}"
         );
-        let found = solved(&scene).frequencies[0];
+        let scene = ancf::scene::parse("scene.toml", &scene).unwrap_or_else(|e| panic!("{e}"));
+        let found = scene.model().solve(scene.analysis()).unwrap_or_else(|e| panic!("{e}")).eigenvalues()[0];
         assert!((found - exact).abs() < 1e-4 * exact, "{moment} N m: {found} Hz, not {exact} Hz");
+    }
+}
+
+/// How far springs turn from one state to the next is told by the one that turns most, to either
+/// side, its turns counted.
+#[test]
+fn the_turn_of_a_step_is_that_of_the_spring_that_turns_most() {
+    let two = ROD.replace("stiffness = 2 }", "stiffness = 2 }, { beam = 'rod', at = 'end', stiffness = 3 }");
+    let text = format!("{two}analysis.dynamic.duration = 1");
+    let scene = ancf::scene::parse("winding.toml", &text).expect("a legal scene");
+    let system = System::build(scene.model(), Needs { inertia: true, motion: true }).expect("a system");
+    let last = system.coordinates() - 4;
+    for (before, [start, end], turn) in [
+        ([0.3, -0.2], [1.0_f64, 0.1_f64], 0.7),
+        ([0.3, -0.2], [0.2, -1.9], 1.7),
+        ([7.0, -0.2], [0.5, -0.2], 7.0 - 0.5 - TAU),
+    ] {
+        let mut q = system.reference().to_vec();
+        for (node, direction) in [(0, start), (last, end)] {
+            (q[node + 2], q[node + 3]) = (direction.cos(), direction.sin());
+        }
+        let variables = InternalVariables { angles: before.to_vec(), ..InternalVariables::default() };
+        let held = AcceptedState { q: system.reference().to_vec(), variables };
+        let found = system.winding_turn(&held, &q);
+        assert!((found - turn).abs() < 1e-12, "from {before:?} to {start}, {end}: {found}, not {turn}");
     }
 }

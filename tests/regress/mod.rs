@@ -1,9 +1,9 @@
 //! What a change of the solver would shift without breaking a tolerance: what is built for each
 //! case's scenes, and how much work they take. Accept a wanted change with `cargo insta review`.
 
+use ancf::results::Results;
 use ancf::run::inspect;
 use ancf::scene::Scene;
-use ancf::trajectory::Trajectory;
 use ancf_check::Suite;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -54,23 +54,23 @@ fn regress_statistics_and_results() {
     let (mut counts, mut results) = (String::new(), String::new());
     for (name, path) in scenes() {
         let scene = Scene::load(&path, &[]).expect("a case's scene is legal");
-        let trajectory = scene.model().solve(scene.analysis());
-        let trajectory = trajectory.expect("a case's scene can be solved");
-        let s = trajectory.statistics;
+        let solved = scene.model().solve(scene.analysis());
+        let solved = solved.expect("a case's scene can be solved");
+        let s = solved.run().statistics;
         writeln!(
             counts,
             "{name}: {} unknowns, {} steps, {} rejected, {} Newton iterations, {} residuals, {} tangents, {} factorisations, {} warnings",
-            trajectory.degrees_of_freedom,
+            solved.run().degrees_of_freedom,
             s.steps,
             s.rejected_steps,
             s.newton_iterations,
             s.residual_evaluations,
             s.tangent_evaluations,
             s.factorizations,
-            trajectory.warnings.len(),
+            solved.run().warnings.len(),
         )
         .expect("text takes text");
-        results.push_str(&found(&name, &trajectory));
+        results.push_str(&found(&name, &solved));
     }
     snapshot("statistics", &counts);
     let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots/results.snap");
@@ -103,7 +103,7 @@ fn regress_work_for_a_tolerance() {
             let set = ["beam.arm.basis={ancf={elements=12}}".to_owned(), analysis];
             let scene = Scene::load(&pendulum, &set).expect("a legal scene");
             let trajectory = scene.model().solve(scene.analysis()).expect("a motion");
-            let s = trajectory.statistics;
+            let s = trajectory.run().statistics;
             writeln!(
                 text,
                 "{method}: {} steps, {} rejected, {} iterations",
@@ -116,7 +116,8 @@ fn regress_work_for_a_tolerance() {
 }
 
 /// Last positions of the probes, energies, frequencies, critical loads.
-fn found(name: &str, trajectory: &Trajectory) -> String {
+fn found(name: &str, results: &Results) -> String {
+    let trajectory = results.states();
     let mut lines = vec![name.to_owned()];
     let mut line = |what: &str, numbers: &[f64]| {
         let numbers: Vec<String> = numbers.iter().map(|v| format!("{v:.9e}")).collect();
@@ -130,10 +131,9 @@ fn found(name: &str, trajectory: &Trajectory) -> String {
     if let Some(e) = trajectory.energy.last() {
         line("energy", &[e.stretch, e.bend, e.kinetic, e.potential]);
     }
-    for (what, numbers) in [("frequencies", &trajectory.frequencies), ("loads", &trajectory.load_factors)] {
-        if !numbers.is_empty() {
-            line(what, numbers);
-        }
+    let eigenvalues = results.eigenvalues();
+    if !eigenvalues.is_empty() {
+        line(if matches!(results, Results::Vibrations(_)) { "frequencies" } else { "loads" }, &eigenvalues);
     }
     lines.join("\n") + "\n\n"
 }

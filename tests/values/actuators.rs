@@ -1,12 +1,12 @@
 //! What actuators put in along a path of equilibria, and how well it is known.
 
 use super::near;
+use ancf::results::Trajectory;
 use ancf::scene::parse;
-use ancf::trajectory::Trajectory;
 
 fn solved(text: &str) -> Trajectory {
     let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}")).into_states()
 }
 
 /// A beam of EI = 1 N m² that would take a curvature by itself, its end tied to where it was.
@@ -22,7 +22,7 @@ fn tied(stiffness: f64, curvature: f64, analysis: &str) -> Trajectory {
 
 /// What is told of the work of actuators.
 fn told(found: &Trajectory) -> Option<&String> {
-    found.warnings.iter().find(|warning| warning.contains("actuation has put in"))
+    found.run.warnings.iter().find(|warning| warning.contains("actuation has put in"))
 }
 
 /// Between walls nothing moves: ½ EA ε₀² L and ½ EI κ₀² L at each load factor, ε₀ and κ₀ the sums
@@ -39,7 +39,7 @@ fn actuators_between_walls_store_all_their_work() {
                  {{ beam = 'bar', curvature = -0.1 }}]
                  analysis.static{analysis}\n"
             ));
-            assert_eq!(found.warnings, Vec::<String>::new());
+            assert_eq!(found.run.warnings, Vec::<String>::new());
             assert_eq!(found.parameter.last(), Some(&1.0));
             for (load, energy) in found.parameter.iter().zip(&found.energy) {
                 near(energy.stretch, 0.9 * load * load, 1e-12, "stretch");

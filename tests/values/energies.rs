@@ -2,6 +2,9 @@
 //! down.
 
 use super::{ROD, SECOND, Written, near};
+use ancf::assembly::Needs;
+use ancf::model::{Beam, Discretization, Model, Section};
+use ancf::system::System;
 
 /// A bar that doubles no small strain: N is the force whatever the measure, and |r'| what follows
 /// from it.
@@ -239,4 +242,18 @@ fn a_lift_puts_in_what_the_rod_has() {
         near(found.column(file, name)[1], value, tolerance, name);
     }
     near(found.said("/energy/work"), 0.0, 1e-3, "the rod rests again");
+}
+
+/// A section that a program gives a mass keeps its stiffnesses, and moves with its mass: 2 m of 3
+/// kg/m at 5 m/s have 75 J.
+#[test]
+fn a_section_weighs_what_it_is_told_to() {
+    let section = Section::new(7.0, 11.0).weighing(3.0);
+    assert_eq!((section.axial_stiffness, section.bending_stiffness), (Some(7.0), Some(11.0)));
+    let beam = Beam::line("rod", [0.0, 0.0], [2.0, 0.0], section, Discretization::ancf(2));
+    let model = Model { beams: vec![beam], ..Model::default() };
+    let system = System::build(&model, Needs { inertia: true, motion: false }).expect("a beam");
+    let velocity = [3.0, 4.0, 0.0, 0.0].repeat(system.coordinates() / 4);
+    let kinetic = system.energy(0.0, system.reference(), Some(&velocity)).kinetic;
+    near(kinetic, 75.0, 1e-10, "the kinetic energy");
 }

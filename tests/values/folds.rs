@@ -1,17 +1,17 @@
 //! Folds: where a string or a beam turns by more than a right angle within a cell, by the angles of
 //! the last shape.
 
+use ancf::results::{Shape, Trajectory};
 use ancf::scene::parse;
-use ancf::trajectory::{Shape, Trajectory};
 
 fn solved(text: &str) -> Trajectory {
     let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}")).into_states()
 }
 
 /// What is told of folds.
 fn told(found: &Trajectory) -> Vec<&String> {
-    found.warnings.iter().filter(|warning| warning.contains("right angle")).collect()
+    found.run.warnings.iter().filter(|warning| warning.contains("right angle")).collect()
 }
 
 /// A string of three even cells that begins as an arc, its end brought nearer by `way`.
@@ -102,7 +102,7 @@ fn of_two_strings_the_folded_one_is_told() {
         effect.gravity.acceleration = [0, -9.81]
         analysis.static.steps = 20\n",
     );
-    let [warning] = &told(&found)[..] else { panic!("{:?}", found.warnings) };
+    let [warning] = &told(&found)[..] else { panic!("{:?}", found.run.warnings) };
     assert!(warning.starts_with("string `slack` turns"), "{warning}");
 }
 
@@ -118,8 +118,9 @@ fn couples_on_strings_are_told_with_their_places() {
         effect.moment = [{ beam = 'arm', at = 0.5, value = 0.1 }, { beam = 'rope', at = 0.25, value = 0.1 }]
         analysis.dynamic = { duration = 1e-3, output_every = 1e-3 }\n",
     );
-    let told: Vec<&String> = found.warnings.iter().filter(|warning| warning.contains("no couple")).collect();
-    assert_eq!(told.len(), 3, "{:?}", found.warnings);
+    let told: Vec<&String> =
+        found.run.warnings.iter().filter(|warning| warning.contains("no couple")).collect();
+    assert_eq!(told.len(), 3, "{:?}", found.run.warnings);
     for (warning, [what, place]) in told.iter().zip([
         ["support 2 holds its direction", "0.000000"],
         ["joint 1 welds it", "1.000000"],

@@ -2,12 +2,12 @@
 //! warnings against Simpson's rule over the rows of the last shape.
 
 use super::near;
+use ancf::results::{Shape, Trajectory};
 use ancf::scene::parse;
-use ancf::trajectory::{Shape, Trajectory};
 
 fn solved(text: &str) -> Trajectory {
     let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}")).into_states()
 }
 
 /// An `arm` with EI = 1 N m² that is clamped at its start, behind a `post` on which nothing acts.
@@ -61,7 +61,7 @@ fn locked(shape: &Shape, cells: usize, axial_stiffness: f64) -> f64 {
 
 /// The percentage in the only warning of a run, and the warning.
 fn told(found: &Trajectory) -> (f64, &str) {
-    let [warning] = &found.warnings[..] else { panic!("{:?}", found.warnings) };
+    let [warning] = &found.run.warnings[..] else { panic!("{:?}", found.run.warnings) };
     assert!(warning.starts_with("beam `arm` locks: stretch that bending alone causes"), "{warning}");
     let part = warning.split("takes ").nth(1).and_then(|rest| rest.split(" %").next());
     (part.and_then(|part| part.parse().ok()).unwrap_or_else(|| panic!("a percentage: {warning}")), warning)
@@ -142,8 +142,8 @@ fn what_does_not_lock_is_not_told() {
         let basis = format!("ancf = {{ elements = 1, gauss_points = {{ bend = 8, {points} }} }}");
         let found = solved(&text("1e3", &basis, bent));
         match part {
-            None => assert_eq!(found.warnings, Vec::<String>::new(), "{points}"),
-            Some(part) => assert!(told(&found).1.contains(part), "{points}: {:?}", found.warnings),
+            None => assert_eq!(found.run.warnings, Vec::<String>::new(), "{points}"),
+            Some(part) => assert!(told(&found).1.contains(part), "{points}: {:?}", found.run.warnings),
         }
     }
     for (stiffness, basis, tip) in [
@@ -152,7 +152,7 @@ fn what_does_not_lock_is_not_told() {
         ("1e3", format!("ancf = {{ elements = 16, {POINTS} }}"), [-0.4, 0.3]),
     ] {
         let found = solved(&text(stiffness, &basis, tip));
-        assert_eq!(found.warnings, Vec::<String>::new(), "{basis}");
+        assert_eq!(found.run.warnings, Vec::<String>::new(), "{basis}");
     }
     // Of the energy of the pull and the bending less than a thousandth, of the bending a hundredth.
     let pulled = "start = [0, 0], end = [0.6, 0.8], axial_stiffness = 1e5, strain = 'green'";
@@ -162,7 +162,7 @@ fn what_does_not_lock_is_not_told() {
     let energy = found.energy.last().expect("a record");
     let locked = locked(&found.last[1], 1, 1e5);
     assert!(locked > 0.008 * energy.bend && locked < 2e-4 * (energy.bend + energy.stretch), "{energy:?}");
-    assert_eq!(found.warnings, Vec::<String>::new());
+    assert_eq!(found.run.warnings, Vec::<String>::new());
 }
 
 /// Two strings, of which one holds itself: its own energy is told, and the one that its section
@@ -191,7 +191,7 @@ fn strings_that_hold_themselves_are_told_with_their_energies() {
         let squares: f64 =
             pieces.map(|(s, n)| (s[1] - s[0]) * (n[0].powi(2) + n[0] * n[1] + n[1].powi(2)) / 3.0).sum();
         let balanced = 0.5 * squares / stiffness;
-        let [warning] = &found.warnings[..] else { panic!("{:?}", found.warnings) };
+        let [warning] = &found.run.warnings[..] else { panic!("{:?}", found.run.warnings) };
         assert!(
             warning.starts_with(&format!("string `a` holds itself: its stretch takes {stretch:.1e} J,")),
             "{warning}"
@@ -203,5 +203,5 @@ fn strings_that_hold_themselves_are_told_with_their_energies() {
     }
     let found = strings(2.5e8, -100.0);
     assert!(found.energy.last().expect("a record").potential < -1.0);
-    assert_eq!(found.warnings, Vec::<String>::new());
+    assert_eq!(found.run.warnings, Vec::<String>::new());
 }

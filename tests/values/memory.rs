@@ -52,7 +52,7 @@ fn free_memory_is_what_the_kernel_says() {
     let limits = read("/proc/self/limits");
     let unlimited =
         limits.lines().any(|line| line.starts_with("Max address space") && line.contains("unlimited"));
-    let error = endless().solve(&Analysis::Static(Static::default())).expect_err("no machine has this");
+    let error = endless().solve(&Static::default()).expect_err("no machine has this");
     let RunError::Memory { free, .. } = error else { panic!("{error}") };
     let expected = machine.min(bound);
     // Other programs take and give back meanwhile.

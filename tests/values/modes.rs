@@ -1,44 +1,92 @@
-//! Vibrations and critical loads: the state about which they are, how their shapes are drawn, and
+//! Vibrations and critical loads: the state about which they are, how their shapes are scaled, and
 //! how far the linear solution before buckling is trusted.
 
 use super::near;
+use ancf::results::{AnalysisKind, Results, Vibrations};
 use ancf::scene::parse;
-use ancf::trajectory::{AnalysisKind, Shape, Trajectory};
+use std::f64::consts::PI;
 
-fn solved(text: &str) -> Trajectory {
+fn solved(text: &str) -> Results {
     let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// Largest distance between the rows of two states.
-fn apart(mode: &[Shape], rest: &[Shape]) -> f64 {
-    let of = |(mode, rest): (&Shape, &Shape)| -> f64 {
-        assert_eq!((mode.s.len(), &mode.beam), (201, &rest.beam));
-        (0..201).map(|i| (mode.x[i] - rest.x[i]).hypot(mode.y[i] - rest.y[i])).fold(0.0, f64::max)
-    };
-    mode.iter().zip(rest).map(of).fold(0.0, f64::max)
+fn vibrations(text: &str) -> Vibrations {
+    match solved(text) {
+        Results::Vibrations(vibrations) => vibrations,
+        other => panic!("{other:?}"),
+    }
 }
 
-/// A beam of 2 m that bends and one of 1 m that stretches more easily: whichever moves, at its most
-/// by a tenth of the longest beam.
+/// A pinned beam of 2 m vibrates as A sin(πs/L) with ρA A² L/2 = 1 kg m², one of 1 m that stretches
+/// more easily, clamped at one end, as A sin(πs/2L) along itself. Would catch another scale, a turn
+/// or a change of strain or curvature that is another's, and a mode of the other beam.
 #[test]
-fn modes_are_drawn_with_a_tenth_of_the_longest_beam() {
-    let found = solved(
+fn modes_are_numbers_of_unit_mass() {
+    let found = vibrations(
         "beam.a = { start = [1, 0], end = [3, 0], axial_stiffness = 1e6, bending_stiffness = 3, mass_per_length = 0.5, basis.ancf.elements = 24 }
-        beam.b = { start = [1, 5], end = [1.6, 5.8], axial_stiffness = 1, bending_stiffness = 1e4, mass_per_length = 0.5, basis.ancf.elements = 4 }
+        beam.b = { start = [1, 5], end = [1.6, 5.8], axial_stiffness = 1, bending_stiffness = 1e4, mass_per_length = 0.5, basis.ancf.elements = 16 }
         support = [{ beam = 'a', at = 'start', fix = ['x', 'y'] }, { beam = 'a', at = 'end', fix = ['y'] }, \
         { beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }]
-        analysis.modal.count = 3\n",
+        analysis.modal.count = 2\n",
     );
-    assert_eq!(found.modes.len(), 3);
-    for (mode, moves) in found.modes.iter().zip([1, 0, 1]) {
-        near(apart(mode, &found.undeformed), 0.2, 1e-3, "the largest displacement");
-        near(
-            apart(&mode[1 - moves..2 - moves], &found.undeformed[1 - moves..2 - moves]),
-            0.0,
-            1e-9,
-            "at rest",
-        );
+    let [along, across] = &found.modes[..] else { panic!("{:?}", found.frequencies()) };
+    let (rest, stretched) = (&along.shape[0], &along.shape[1]);
+    assert_eq!((rest.beam.as_str(), stretched.beam.as_str()), ("a", "b"));
+    let sign = stretched.x[200].signum();
+    for (i, s) in stretched.s.iter().enumerate() {
+        let (sine, cosine) = (0.5 * PI * s).sin_cos();
+        near(sign * stretched.x[i], 0.6 * 2.0 * sine, 1e-3, "x");
+        near(sign * stretched.y[i], 0.8 * 2.0 * sine, 1e-3, "y");
+        near(sign * stretched.strain[i], PI * cosine, 2e-2, "strain");
+        near(stretched.angle[i].hypot(stretched.curvature[i]), 0.0, 1e-6, "no turn");
+        near(rest.x[i].hypot(rest.y[i]), 0.0, 1e-9, "the other beam is at rest");
+    }
+    let (bent, rest) = (&across.shape[0], &across.shape[1]);
+    let sign = bent.y[100].signum();
+    for (i, s) in bent.s.iter().enumerate() {
+        let ((sine, cosine), wave) = ((0.5 * PI * s).sin_cos(), 0.5 * PI);
+        near(sign * bent.y[i], 2_f64.sqrt() * sine, 1e-4, "y");
+        near(sign * bent.angle[i], 2_f64.sqrt() * wave * cosine, 1e-3, "angle");
+        near(sign * bent.curvature[i], -2_f64.sqrt() * wave * wave * sine, 1e-2, "curvature");
+        near(bent.x[i].hypot(bent.strain[i]), 0.0, 1e-6, "no stretch");
+        near(rest.x[i].hypot(rest.y[i]), 0.0, 1e-9, "the other beam is at rest");
+    }
+    let last = bent.nodes[12];
+    near(sign * last[1], 2_f64.sqrt(), 1e-4, "the middle node");
+}
+
+/// Of a pinned arc the rows of a mode are those that the state's own fields change by where the
+/// mode is added to it in a small part.
+#[test]
+fn modes_of_curved_beams_change_angle_strain_and_curvature() {
+    let arch = |load: f64| {
+        format!(
+            "beam.a = {{ arc = {{ center = [0, 0], radius = 2, from = '120 deg', to = '60 deg' }}, axial_stiffness = 1e3, bending_stiffness = 3, \
+             mass_per_length = 0.5, strain = 'green', basis.ancf.elements = 8 }}
+             support = [{{ beam = 'a', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'a', at = 'end', fix = ['x', 'y'] }}]
+             effect.force = [{{ beam = 'a', at = 0.9, value = [0.3, {load:?}] }}]
+             analysis.modal = {{ count = 2, about = 'equilibrium' }}\n"
+        )
+    };
+    let found = vibrations(&arch(-1.0));
+    let state = &found.equilibrium.last[0];
+    for mode in &found.modes {
+        let mode = &mode.shape[0];
+        assert_eq!(mode.s, state.s);
+        // Central differences over neighbouring places, of the tangent's turn and length.
+        let even = |i: &usize| {
+            let (before, after) = (state.s[*i] - state.s[i - 1], state.s[i + 1] - state.s[*i]);
+            before > 0.0 && (after - before).abs() < 1e-9
+        };
+        for i in (1..mode.s.len() - 1).filter(even) {
+            let step = state.s[i + 1] - state.s[i - 1];
+            let slope = |values: &[f64]| (values[i + 1] - values[i - 1]) / step;
+            let (rx, ry) = (slope(&state.x), slope(&state.y));
+            let (ux, uy) = (slope(&mode.x), slope(&mode.y));
+            near(mode.angle[i], (rx * uy - ry * ux) / (rx * rx + ry * ry), 2e-2, "angle");
+            near(mode.strain[i], rx * ux + ry * uy, 2e-2, "strain");
+        }
     }
 }
 
@@ -51,37 +99,68 @@ fn vibrations_are_about_the_state_that_was_asked_for() {
         probe = [{ name = 'end', beam = 'a', at = 'end' }]\n";
     let load = "effect.force = [{ beam = 'a', at = 'end', value = [-1, 0.5] }]\n";
     let about = |about: &str, load: &str| {
-        let found = solved(&format!("{arm}{load}analysis.modal = {{ count = 2, about = '{about}' }}\n"));
+        let found = vibrations(&format!("{arm}{load}analysis.modal = {{ count = 2, about = '{about}' }}\n"));
+        let run = &found.equilibrium.run;
         let told =
-            found.settings.iter().find(|(name, _)| name == "vibrations about").expect("a line").1.clone();
-        assert_eq!((found.analysis, found.frequencies.len(), found.modes.len()), (AnalysisKind::Modal, 2, 2));
-        assert!(found.complete && found.statistics.factorizations > 0);
+            run.settings.iter().find(|(name, _)| name == "vibrations about").expect("a line").1.clone();
+        assert_eq!((run.analysis, found.modes.len()), (AnalysisKind::Modal, 2));
+        assert!(run.complete && run.statistics.factorizations > 0);
         (found, told)
     };
     let (free, told) = about("reference", "");
-    assert_eq!((told.as_str(), free.warnings.len(), free.parameter.len()), ("the stress-free state", 0, 0));
-    assert_eq!(free.last[0].axial_force, vec![0.0; 201]);
+    assert_eq!(
+        (told.as_str(), free.equilibrium.run.warnings.len(), free.equilibrium.parameter.len()),
+        ("the stress-free state", 0, 0)
+    );
+    assert_eq!(free.equilibrium.last[0].axial_force, vec![0.0; 201]);
     let (unloaded, told) = about("reference", load);
     assert_eq!(told, "the stress-free state");
-    assert_eq!(unloaded.frequencies, free.frequencies);
-    let [warning] = &unloaded.warnings[..] else { panic!("{:?}", unloaded.warnings) };
+    assert_eq!(unloaded.frequencies(), free.frequencies());
+    let [warning] = &unloaded.equilibrium.run.warnings[..] else {
+        panic!("{:?}", unloaded.equilibrium.run.warnings)
+    };
     assert!(
         warning.starts_with("loads take no part in vibrations about the stress-free state:"),
         "{warning}"
     );
     let (loaded, told) = about("equilibrium", load);
-    assert_eq!((told.as_str(), loaded.warnings.len()), ("the equilibrium under all loads", 0));
-    assert!(loaded.statistics.factorizations > unloaded.statistics.factorizations);
-    assert_eq!((&loaded.parameter[..], loaded.probes[0].samples.len()), (&[1.0][..], 1));
-    assert_eq!((loaded.energy.len(), loaded.frames.len()), (1, 1));
-    let still = solved(&format!("{arm}{load}analysis.static = {{}}\n"));
+    assert_eq!(
+        (told.as_str(), loaded.equilibrium.run.warnings.len()),
+        ("the equilibrium under all loads", 0)
+    );
+    assert!(
+        loaded.equilibrium.run.statistics.factorizations > unloaded.equilibrium.run.statistics.factorizations
+    );
+    assert_eq!(
+        (&loaded.equilibrium.parameter[..], loaded.equilibrium.probes[0].samples.len()),
+        (&[1.0][..], 1)
+    );
+    assert_eq!((loaded.equilibrium.energy.len(), loaded.equilibrium.frames.len()), (1, 1));
+    let still = solved(&format!("{arm}{load}analysis.static = {{}}\n")).into_states();
     let (here, there) =
-        (loaded.probes[0].samples[0], still.probes[0].samples.last().expect("an equilibrium"));
+        (loaded.equilibrium.probes[0].samples[0], still.probes[0].samples.last().expect("an equilibrium"));
     near(here.x, there.x, 1e-9, "x");
     near(here.y, there.y, 1e-9, "y");
-    // The modes are added to the loaded state, and pressed beams vibrate more slowly.
-    assert!(here.y > 0.3 && loaded.frequencies[0] < 0.9 * free.frequencies[0], "{:?}", loaded.frequencies);
-    near(apart(&loaded.modes[0], &loaded.last), 0.2, 2e-3, "the largest displacement");
+    // Pressed beams vibrate more slowly.
+    let [slower, faster] = [&loaded, &free].map(|found| found.frequencies()[0]);
+    assert!(here.y > 0.3 && slower < 0.9 * faster, "{slower} {faster}");
+}
+
+/// The largest displacement of a buckling mode is 1 m: of a clamped column half a cosine.
+#[test]
+fn buckling_modes_reach_one_metre() {
+    let found = solved(
+        "beam.arm = { start = [0, 0], end = [0, 3], axial_stiffness = 1e6, bending_stiffness = 1, basis.ancf.elements = 16 }
+         support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]
+         effect.force = [{ beam = 'arm', at = 'end', value = [0, -1] }]
+         analysis.buckling.count = 1\n",
+    );
+    let Results::CriticalLoads(found) = found else { panic!("{found:?}") };
+    let mode = &found.modes[0].shape[0];
+    let sign = mode.x[200].signum();
+    for (s, x) in mode.s.iter().zip(&mode.x) {
+        near(sign * x, 1.0 - (PI * s / 6.0).cos(), 1e-3, "half a cosine");
+    }
 }
 
 /// Before a column buckles its loads turn it by λ F L²/2EI and strain it by λ P/EA: critical loads
@@ -105,10 +184,10 @@ fn critical_loads_that_linear_theory_does_not_reach_are_told() {
     ] {
         let found = column(axial_stiffness, across);
         let Some(number) = number else {
-            assert_eq!(found.warnings, Vec::<String>::new());
+            assert_eq!(found.run().warnings, Vec::<String>::new());
             continue;
         };
-        let load = found.load_factors[number - 1];
+        let load = found.eigenvalues()[number - 1];
         let which =
             if number == 1 { "" } else { "critical loads from number 2 on are beyond the linear solution: " };
         let what = if across == 0.0 {
@@ -117,7 +196,7 @@ fn critical_loads_that_linear_theory_does_not_reach_are_told() {
             format!("the loads turn the beam by {:.2} rad before", 0.5 * across * load)
         };
         let expected = format!("{which}{what} it buckles at load factor {load:.6}, by the linear solution");
-        let [warning] = &found.warnings[..] else { panic!("{:?}", found.warnings) };
+        let [warning] = &found.run().warnings[..] else { panic!("{:?}", found.run().warnings) };
         assert!(warning.starts_with(&expected), "{expected}: {warning}");
     }
 }

@@ -3,9 +3,9 @@
 
 use super::near;
 use ancf::restart::SavedState;
+use ancf::results::{Results, Trajectory};
 use ancf::run::{Control, Options, Progress, RunError};
 use ancf::scene::{Scene, parse};
-use ancf::trajectory::Trajectory;
 use std::time::Instant;
 
 fn scene(text: &str) -> Scene {
@@ -14,7 +14,7 @@ fn scene(text: &str) -> Scene {
 
 /// A run with all that its observer is told; it is stopped by the first progress of which `ends` is
 /// true.
-fn watched(text: &str, ends: impl Fn(&Progress) -> bool) -> (Trajectory, Vec<Progress>) {
+fn watched(text: &str, ends: impl Fn(&Progress) -> bool) -> (Results, Vec<Progress>) {
     let scene = scene(text);
     let mut seen: Vec<Progress> = Vec::new();
     let mut observer = |progress: &Progress| {
@@ -51,7 +51,7 @@ fn an_observer_is_told_of_every_step() {
     let modal = format!("{ARM}analysis.modal = {{ count = 1, about = 'equilibrium' }}\n");
     let (vibrating, loaded) = watched(&modal, |_| false);
     assert_eq!(
-        (vibrating.frequencies.len(), loaded.last().map(|progress| progress.parameter)),
+        (vibrating.eigenvalues().len(), loaded.last().map(|progress| progress.parameter)),
         (1, Some(1.0))
     );
     let path = format!("{ARM}analysis.static.arc_length = {{ until_load = 0.5 }}\n");
@@ -59,11 +59,11 @@ fn an_observer_is_told_of_every_step() {
     for (run, seen, target) in
         [(&found, &seen, 1.0), (&motion, &moved, 0.5), (&vibrating, &loaded, 1.0), (&followed, &on_path, 1.0)]
     {
-        assert!(run.complete && seen.iter().all(|progress| progress.target == target), "{seen:?}");
+        assert!(run.run().complete && seen.iter().all(|progress| progress.target == target), "{seen:?}");
         assert!(at(seen).is_sorted());
         let counts: Vec<usize> = seen.iter().map(|progress| progress.newton_iterations).collect();
         assert!(counts.is_sorted() && counts[0] > 0, "{counts:?}");
-        assert_eq!(counts.last(), Some(&run.statistics.newton_iterations));
+        assert_eq!(counts.last(), Some(&run.run().statistics.newton_iterations));
     }
 }
 
@@ -82,10 +82,10 @@ fn a_run_ends_where_its_observer_stops_it() {
         (&path, 0.5, false),
     ] {
         let (found, seen) = watched(text, |progress| progress.parameter >= end - 1e-9);
-        assert_eq!(found.complete, complete, "stopped at {end}:\n{text}");
-        near(*found.parameter.last().expect("a record"), end, 1e-12, text);
+        assert_eq!(found.run().complete, complete, "stopped at {end}:\n{text}");
+        near(*found.states().parameter.last().expect("a record"), end, 1e-12, text);
         near(seen.last().expect("progress").parameter, end, 1e-12, text);
-        assert_eq!(found.saved.is_some(), complete && text == &steps || text == &motion, "{text}");
+        assert_eq!(found.states().saved.is_some(), complete && text == &steps || text == &motion, "{text}");
     }
     // Of vibrations about an equilibrium that was not reached there are none.
     let modal = format!(
@@ -94,9 +94,9 @@ fn a_run_ends_where_its_observer_stops_it() {
     );
     let (found, seen) = watched(&modal, |_| true);
     assert!(seen.len() == 1 && seen[0].parameter < 1.0, "{seen:?}");
-    assert!(!found.complete && found.frequencies.is_empty() && found.modes.is_empty());
+    assert!(!found.run().complete && found.eigenvalues().is_empty());
     let (found, _) = watched(&modal, |progress| progress.parameter >= 1.0);
-    assert!(found.complete && found.frequencies.len() == 2);
+    assert!(found.run().complete && found.eigenvalues().len() == 2);
 }
 
 /// The parts of a run's time are no longer than the run.
@@ -107,7 +107,7 @@ fn the_times_of_a_run_add_up_to_no_more_than_it_took() {
         let start = Instant::now();
         let found = scene.model().solve(scene.analysis()).expect("a solution");
         let all = start.elapsed().as_secs_f64();
-        let seconds = found.seconds;
+        let seconds = found.run().seconds;
         assert!(seconds.solve > 0.0 && seconds.build > 0.0 && seconds.write >= 0.0, "{seconds:?}");
         let sum = seconds.build + seconds.solve + seconds.write;
         assert!(sum <= all, "{seconds:?} within {all} s");
@@ -118,11 +118,14 @@ fn the_times_of_a_run_add_up_to_no_more_than_it_took() {
 
 fn go_on(text: &str, from: &SavedState) -> Result<Trajectory, RunError> {
     let scene = scene(text);
-    scene.model().solve_with(scene.analysis(), Options { start: Some(from), ..Options::default() })
+    scene
+        .model()
+        .solve_with(scene.analysis(), Options { start: Some(from), ..Options::default() })
+        .map(Results::into_states)
 }
 
 fn told(found: &Trajectory) -> &str {
-    &found.settings.iter().find(|(name, _)| name == "continued").expect("what was continued").1
+    &found.run.settings.iter().find(|(name, _)| name == "continued").expect("what was continued").1
 }
 
 /// A motion that goes on ends when it does as a whole, in decimals, and says from where it came.
@@ -133,7 +136,7 @@ fn a_motion_that_goes_on_is_told_from_where_and_to_when() {
     };
     let (gauss, radau) = ("gauss = { stages = 1, step = 0.05 }", "radau = { stages = 2, step = 0.05 }");
     let (first, _) = watched(&dynamic("0.1", gauss), |_| false);
-    let first = first.saved.expect("a state");
+    let first = first.into_states().saved.expect("a state");
     // 0.1 + 0.2 is 0.30000000000000004.
     let second = go_on(&dynamic("0.2", gauss), &first).expect("a motion");
     near(*second.parameter.last().expect("a record"), 0.3, 1e-15, "the end");
@@ -144,7 +147,7 @@ fn a_motion_that_goes_on_is_told_from_where_and_to_when() {
         "for 0.2 s from t = 0.1 s to 0.3 s, from its positions and velocities alone, for the model or the integrator is another"
     );
     let (still, _) = watched(&format!("{ARM}analysis.static = {{}}\n"), |_| false);
-    let still = still.saved.expect("an equilibrium");
+    let still = still.into_states().saved.expect("an equilibrium");
     let moved = go_on(&dynamic("0.3333333333333333", gauss), &still).expect("a motion");
     assert_eq!(moved.parameter.last(), Some(&0.3333333333333333));
     assert_eq!(
@@ -152,7 +155,7 @@ fn a_motion_that_goes_on_is_told_from_where_and_to_when() {
         "for 0.3333333333333333 s from t = 0 s to 0.3333333333333333 s, from a static equilibrium"
     );
     let alone = watched(&dynamic("0.1", gauss), |_| false).0;
-    assert!(alone.settings.iter().all(|(name, _)| name != "continued"));
+    assert!(alone.run().settings.iter().all(|(name, _)| name != "continued"));
     for (analysis, name) in [
         ("analysis.static = {}\n", "static"),
         ("analysis.buckling.count = 1\n", "buckling"),
@@ -168,7 +171,7 @@ fn a_motion_that_goes_on_is_told_from_where_and_to_when() {
 #[test]
 fn half_of_a_load_leaves_no_equilibrium_to_go_on_from() {
     let steps = format!("{ARM}analysis.static.steps = 4\n");
-    assert!(watched(&steps, |progress| progress.parameter >= 0.5).0.saved.is_none());
+    assert!(watched(&steps, |progress| progress.parameter >= 0.5).0.states().saved.is_none());
     let (whole, _) = watched(&steps, |_| false);
-    assert_eq!(whole.saved.expect("an equilibrium").time(), 0.0);
+    assert_eq!(whole.into_states().saved.expect("an equilibrium").time(), 0.0);
 }

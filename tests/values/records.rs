@@ -2,13 +2,13 @@
 //! and forces of effects, shapes that are free of stress.
 
 use super::near;
+use ancf::results::Trajectory;
 use ancf::scene::parse;
-use ancf::trajectory::Trajectory;
 use std::f64::consts::PI;
 
 fn solved(text: &str) -> Trajectory {
     let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}")).into_states()
 }
 
 const BAR: &str = "beam.bar = { start = [0, 0], end = [2, 0], axial_stiffness = 10, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 1 }
@@ -73,7 +73,7 @@ const FRAME: &str = "beam.a = { start = [0, 0], end = [2, 0], axial_stiffness = 
 #[test]
 fn outlines_are_those_of_the_obstacles() {
     let found = solved(&format!("{FRAME}analysis.static = {{}}\n"));
-    let [circle, plane, corners] = &found.outlines[..] else { panic!("{:?}", found.outlines) };
+    let [circle, plane, corners] = &found.run.outlines[..] else { panic!("{:?}", found.run.outlines) };
     assert_eq!(circle.len(), 73);
     for (i, [x, y]) in circle.iter().enumerate() {
         let angle = i as f64 * PI / 36.0;
@@ -97,10 +97,10 @@ fn outlines_are_those_of_the_obstacles() {
 fn what_was_solved_is_told() {
     let motion = "analysis.dynamic = { duration = 0.01, output_every = 0.01, generalized_alpha = { step = 0.005, spectral_radius = 0.6 } }\n";
     let found = solved(&format!("{FRAME}{motion}"));
-    assert_eq!(found.title, "All that is said");
+    assert_eq!(found.run.title, "All that is said");
     let told = |name: &str| {
-        let line = found.settings.iter().find(|(of, _)| of == name);
-        line.unwrap_or_else(|| panic!("{name} in {:?}", found.settings)).1.as_str()
+        let line = found.run.settings.iter().find(|(of, _)| of == name);
+        line.unwrap_or_else(|| panic!("{name} in {:?}", found.run.settings)).1.as_str()
     };
     for (name, value) in [
         ("beam a", "2 m, ANCF cable elements, 4 uniform nodes"),
@@ -123,7 +123,7 @@ fn what_was_solved_is_told() {
     let names: Vec<&str> = found.reactions.iter().map(|series| series.name.as_str()).collect();
     assert_eq!(names, ["support1", "joint1"]);
     assert_eq!((found.parameter.len(), found.reactions[1].samples.len()), (2, 2));
-    assert!(found.statistics.steps == 2 && found.frames.len() == 2);
+    assert!(found.run.statistics.steps == 2 && found.frames.len() == 2);
 }
 
 /// Where an effect has no energy its samples have none, and inertia no force.
@@ -169,7 +169,7 @@ fn strains_of_a_curved_beam_are_zero_without_load() {
                  probe = [{{ name = 'third', beam = 'bow', at = '50 cm' }}, {{ name = 'end', beam = 'bow', at = 'end' }}]
                  analysis.static.steps = 2\n"
             ));
-            let free = &found.undeformed[1];
+            let free = &found.run.undeformed[1];
             assert_eq!(free.strain.len(), 201);
             // The positions alone are stretched by some hundredths within the cells.
             assert!(free.strain.iter().all(|strain| *strain == 0.0), "{basis}, {measure}");

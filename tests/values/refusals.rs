@@ -1,10 +1,10 @@
 //! Why there is no result: the words and numbers of every refusal of a run, and what is left of it.
 
 use super::near;
-use ancf::model::{Analysis, ArcLength, ProbeTarget, Static};
+use ancf::model::{ArcLength, ProbeTarget, Static};
+use ancf::results::Trajectory;
 use ancf::run::RunError;
 use ancf::scene::parse;
-use ancf::trajectory::Trajectory;
 use miette::Diagnostic;
 
 /// A trajectory of so many records.
@@ -100,7 +100,7 @@ fn refusals_have_their_status_and_what_is_left() {
     ] {
         let had = error.partial().is_some();
         assert_eq!(had, !matches!(error, RunError::Memory { .. }), "{error}");
-        assert_eq!(error.take_partial().map(|partial| partial.parameter.len()), left, "{error}");
+        assert_eq!(error.take_partial().map(|partial| partial.states().parameter.len()), left, "{error}");
     }
 }
 
@@ -126,8 +126,8 @@ fn a_load_beyond_the_limit_is_refused_at_the_limit() {
         near(load, exact, 1e-6, steps);
         assert!(step < 1e-8 && beam == "bar", "{step} of {beam}");
         let partial = error.take_partial().expect("a path to the limit");
-        assert!(!partial.complete);
-        assert_eq!(partial.parameter.last(), Some(&load), "where it ends early is a record");
+        assert!(!partial.run().complete);
+        assert_eq!(partial.states().parameter.last(), Some(&load), "where it ends early is a record");
     }
 }
 
@@ -168,7 +168,7 @@ fn each_failure_of_statics_has_its_own_advice() {
         assert!(error.to_string().contains(cause), "{error}");
         assert!(error.to_string().ends_with(" m of beam `arm`"), "{error}");
         assert!(advice(&error).starts_with(help), "{error}\n{}", advice(&error));
-        assert!(!error.partial().expect("the start at least").complete);
+        assert!(!error.partial().expect("the start at least").run.complete);
     }
 }
 
@@ -194,7 +194,7 @@ fn each_failure_of_a_motion_has_its_own_advice() {
         assert!(error.to_string().contains(cause), "{integrator}: {error}");
         assert!(error.to_string().ends_with(" m of beam `arm`"), "{error}");
         assert!(advice(&error).starts_with(help), "{error}\n{}", advice(&error));
-        assert!(!error.partial().expect("the start at least").complete);
+        assert!(!error.partial().expect("the start at least").run.complete);
     }
 }
 
@@ -217,7 +217,7 @@ fn a_path_that_is_too_short_tells_what_it_was_to_reach() {
         let message = error.to_string();
         let partial = error.partial().expect("four states");
         let last = *partial.parameter.last().expect("a state");
-        assert!(!partial.complete && partial.parameter.len() == 4);
+        assert!(!partial.run.complete && partial.parameter.len() == 4);
         assert_eq!(
             message,
             format!("the path ends after `max_points = 3` at load factor {last:.6}, before {target}")
@@ -232,7 +232,7 @@ fn a_probe_that_is_not_there_is_named_with_those_that_are() {
     let target = ProbeTarget { probe: "nose".into(), axis: 0, value: 0.1 };
     let arc = ArcLength { until_load: None, max_points: 3, max_step: None, until_probe: Some(target) };
     let settings = Static { arc_length: Some(arc), ..Static::default() };
-    let error = scene.model().solve(&Analysis::Static(settings)).expect_err("no such probe");
+    let error = scene.model().solve(&settings).expect_err("no such probe");
     assert_eq!(error.to_string(), "there is no probe `nose`; the probes are: tip, middle");
     assert_eq!(error.exit_status(), 2);
 }

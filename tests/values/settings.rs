@@ -274,7 +274,7 @@ fn nodes_of_a_shape_are_on_it() {
     )
     .expect("a legal scene");
     let solved = scene.model().solve(scene.analysis()).expect("an equilibrium");
-    let shape = &solved.last[0];
+    let shape = &solved.states().last[0];
     let every = (shape.s.len() - 1) / 4;
     assert_eq!(shape.nodes.len(), 5);
     for (k, node) in shape.nodes.iter().enumerate() {

@@ -2,8 +2,8 @@
 //! where the direction is held, and where they may begin and end.
 
 use super::near;
+use ancf::results::ProbeSample;
 use ancf::scene::parse;
-use ancf::trajectory::ProbeSample;
 
 /// A beam of 2 m whose middle and quarters are nodes, with its first velocities there.
 fn starts(supports: &str, velocity: &str) -> Result<Vec<ProbeSample>, String> {
@@ -17,7 +17,7 @@ fn starts(supports: &str, velocity: &str) -> Result<Vec<ProbeSample>, String> {
     );
     let scene = parse("scene.toml", &text).map_err(|error| error.to_string())?;
     let found = scene.model().solve(scene.analysis()).map_err(|error| error.to_string())?;
-    Ok(found.probes.iter().map(|probe| probe.samples[0]).collect())
+    Ok(found.states().probes.iter().map(|probe| probe.samples[0]).collect())
 }
 
 fn held(at: &str, fix: &str) -> String {

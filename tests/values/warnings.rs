@@ -2,14 +2,14 @@
 //! obstacles that gave way, stability lost and regained, and what an analysis leaves out.
 
 use super::near;
+use ancf::results::{Energy, Event, Trajectory};
 use ancf::run::Options;
 use ancf::scene::parse;
-use ancf::trajectory::{Energy, Event, Trajectory};
 use std::f64::consts::PI;
 
 fn solved(text: &str) -> Trajectory {
     let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}")).into_states()
 }
 
 /// The number that stands between two texts.
@@ -58,7 +58,7 @@ fn energy_that_goes_astray_is_told_with_its_share() {
             first - least,
             (first - least) / first
         );
-        assert!(found.warnings[0].starts_with(&expected), "{expected}: {:?}", found.warnings);
+        assert!(found.run.warnings[0].starts_with(&expected), "{expected}: {:?}", found.run.warnings);
     }
     let found = swinging(1.0, 1.0, "", "gauss = { stages = 1, step = 0.1 }");
     let (first, [least, most]) = (found.energy[0].total(), extremes(&found.energy));
@@ -70,13 +70,13 @@ fn energy_that_goes_astray_is_told_with_its_share() {
         most - first,
         (most - first) / largest
     );
-    assert!(found.warnings[0].starts_with(&expected), "{expected}: {:?}", found.warnings);
-    assert_eq!(swinging(1.0, 1.0, "", EXACT).warnings, Vec::<String>::new());
+    assert!(found.run.warnings[0].starts_with(&expected), "{expected}: {:?}", found.run.warnings);
+    assert_eq!(swinging(1.0, 1.0, "", EXACT).run.warnings, Vec::<String>::new());
     // A loss of less than a hundredth is none.
     let found = swinging(1.0, 1e-2, "", "radau = { stages = 2, step = 0.05 }");
     let (first, [least, _]) = (found.energy[0].total(), extremes(&found.energy));
     assert!(first - least > 1e-4 * first && first - least < 0.01 * first, "{least} of {first}");
-    assert_eq!(found.warnings, Vec::<String>::new());
+    assert_eq!(found.run.warnings, Vec::<String>::new());
 }
 
 /// A rod that hangs has fallen by five joules, which no swing of some millijoules changes: shares
@@ -94,14 +94,14 @@ fn a_deep_potential_hides_no_loss() {
     let scene = parse("scene.toml", &text).expect("a legal scene");
     let options = Options { start: hanging.saved.as_ref(), ..Options::default() };
     let found = scene.model().solve_with(scene.analysis(), options).expect("a motion");
-    let (first, [least, _]) = (&found.energy[0], extremes(&found.energy));
+    let (first, [least, _]) = (&found.states().energy[0], extremes(&found.states().energy));
     near(first.potential, -5.0, 1e-3, "of 1 kg whose middle is 0.5 m below");
     near(first.kinetic, 0.5 * 0.01 / 3.0, 1e-6, "of the rotation");
     let lost = first.total() - least;
     assert!(lost > 0.1 * first.kinetic, "{lost} J of {} J", first.kinetic);
     let expected =
         format!("the motion has lost {lost:.2e} J, {:.2} of its largest energy", lost / first.kinetic);
-    assert!(found.warnings[0].starts_with(&expected), "{expected}: {:?}", found.warnings);
+    assert!(found.run().warnings[0].starts_with(&expected), "{expected}: {:?}", found.run().warnings);
 }
 
 /// Energies below 1e-20 EA L are those of round-off, about which nothing is said: 1e-12 J of a beam
@@ -113,7 +113,7 @@ fn energies_of_round_off_are_not_told() {
     for (energy, told) in [(1e-12, false), (1e-8, true)] {
         let found = start(f64::sqrt(0.1 * energy));
         near(found.energy[0].kinetic / energy, 1.0, 1e-6, "the energy at the start");
-        assert_eq!(!found.warnings.is_empty(), told, "{energy} J: {:?}", found.warnings);
+        assert_eq!(!found.run.warnings.is_empty(), told, "{energy} J: {:?}", found.run.warnings);
     }
 }
 
@@ -126,15 +126,19 @@ fn divided_steps_are_counted_and_measured() {
         ("gauss = { stages = 1, step = 0.1 }", "10 times,"),
     ] {
         let found = swinging(1.0, 1.0, "", integrator);
-        let divided = found.statistics.rejected_steps;
+        let divided = found.run.statistics.rejected_steps;
         assert!(times.starts_with(&format!("{divided} ")), "{integrator}: {divided} divided steps");
         // Half of what was asked for was short enough.
         let expected = format!("the step was divided {times} down to 5.0e-2 s, because");
-        let told = found.warnings.iter().find(|warning| warning.contains("divided")).expect("a warning");
+        let told = found.run.warnings.iter().find(|warning| warning.contains("divided")).expect("a warning");
         assert!(told.starts_with(&expected), "{told}");
     }
     let found = swinging(1.0, 1.0, "", "gauss = { stages = 1, tolerance = 1e-4 }");
-    assert!(found.warnings.iter().all(|warning| !warning.contains("divided")), "{:?}", found.warnings);
+    assert!(
+        found.run.warnings.iter().all(|warning| !warning.contains("divided")),
+        "{:?}",
+        found.run.warnings
+    );
 }
 
 /// A rod that falls onto a pin too soft to stop it: the pin is the second contact, and gives way
@@ -151,7 +155,7 @@ fn what_gives_way_is_told_with_its_time() {
              {{ beam = 'a', circle = {{ center = [0, -0.001], radius = 0.001 }}, stiffness = 1e7 }}]
              analysis.dynamic = {{ duration = 0.06, output_every = 0.02, {integrator} }}\n"
         ));
-        let told = found.warnings.iter().find(|warning| warning.contains("gave way")).expect("a warning");
+        let told = found.run.warnings.iter().find(|warning| warning.contains("gave way")).expect("a warning");
         assert!(told.starts_with("contact a.2 gave way at t = "), "{told}");
         // 0.301 m at 10 m/s and by its weight.
         let time = (f64::sqrt(100.0 + 2.0 * 9.81 * 0.301) - 10.0) / 9.81;
@@ -177,8 +181,8 @@ fn stability_lost_is_told_with_its_load_and_directions() {
         effect.force = [{ beam = 'column', at = 'end', value = [-54, -72] }]
         analysis.static = {}\n",
     );
-    assert_eq!(found.warnings.len(), 3, "{:?}", found.warnings);
-    for (n, warning) in found.warnings.iter().enumerate() {
+    assert_eq!(found.run.warnings.len(), 3, "{:?}", found.run.warnings);
+    for (n, warning) in found.run.warnings.iter().enumerate() {
         let critical = (PI * (n as f64 + 0.5)).powi(2) / 90.0;
         let load = between(warning, "the tangent loses definiteness at load factor ", ":");
         near(load / critical, 1.0, 1e-3, warning);
@@ -205,7 +209,7 @@ fn limit_points_are_told_nearer_than_any_point_of_the_path() {
         analysis.static.arc_length = { until_probe = { probe = 'end', y = -0.29 }, max_step = 0.02 }\n",
     );
     let exact = 1e4 * (1.0 - 1.09_f64.powf(-1.0 / 3.0)).powf(1.5) / 100.0;
-    let [lost, regained] = &found.warnings[..] else { panic!("{:?}", found.warnings) };
+    let [lost, regained] = &found.run.warnings[..] else { panic!("{:?}", found.run.warnings) };
     let loads = || found.parameter.iter().copied();
     let (up, down) = (loads().fold(f64::NEG_INFINITY, f64::max), loads().fold(f64::INFINITY, f64::min));
     let load = between(lost, "the tangent loses definiteness at load factor ", ":");
@@ -231,7 +235,7 @@ fn a_pressed_mechanism_is_told_with_its_unstable_directions() {
              effect.actuation = [{{ beam = 'a', strain = {strain} }}, {{ beam = 'b', strain = {strain} }}]
              analysis.static.steps = {steps}\n"
         ))
-        .warnings
+        .run.warnings
     };
     let euler = PI * PI * 0.5893 / 0.25;
     for (strain, steps) in [("3e-7", 1), ("3e-7", 2), ("1e-6", 1)] {
@@ -266,34 +270,36 @@ fn what_an_analysis_leaves_out_is_told_in_one_line() {
     ] {
         let rest = "which knows no velocities: [analysis.dynamic] computes the motion with all of it";
         let one = format!("`dashpot` of beam `arm` takes no part in {name}, {rest}");
-        assert_eq!(solved(&format!("{arm}{analysis}")).warnings, [one]);
+        assert_eq!(solved(&format!("{arm}{analysis}")).run.warnings, [one]);
         let two = format!("`dashpot` of beam `arm`, `initial_velocity` take no part in {name}, {rest}");
-        assert_eq!(solved(&format!("{arm}{velocity}{analysis}")).warnings, [two]);
+        assert_eq!(solved(&format!("{arm}{velocity}{analysis}")).run.warnings, [two]);
     }
     let motion = "analysis.dynamic = { duration = 0.01, output_every = 0.01 }\n";
-    assert_eq!(solved(&format!("{arm}{velocity}{motion}")).warnings, Vec::<String>::new());
+    assert_eq!(solved(&format!("{arm}{velocity}{motion}")).run.warnings, Vec::<String>::new());
 }
 
 /// Loads bend a column before it buckles: by the linear solution its end turns by λ F L²/2EI.
 #[test]
 fn bending_before_buckling_is_told_with_its_angle() {
     for (across, angle) in [(0.5, Some("0.62")), (0.1, Some("0.12")), (0.02, None)] {
-        let found = solved(&format!(
+        let text = format!(
             "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1, basis.ancf.elements = 8 }}
              support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
              effect.force = [{{ beam = 'arm', at = 'end', value = [-1, {across}] }}]
              analysis.buckling.count = 1\n"
-        ));
-        let load = found.load_factors[0];
+        );
+        let scene = parse("scene.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+        let found = scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}"));
+        let (load, warnings) = (found.eigenvalues()[0], &found.run().warnings);
         near(load, 0.25 * PI * PI, 1e-3, "the critical load");
         match angle {
-            None => assert_eq!(found.warnings, Vec::<String>::new()),
+            None => assert!(warnings.is_empty(), "{warnings:?}"),
             Some(angle) => {
                 assert_eq!(angle, format!("{:.2}", 0.5 * load * across));
                 let expected = format!(
                     "the loads turn the beam by {angle} rad before it buckles at load factor {load:.6}, by"
                 );
-                assert!(found.warnings[0].starts_with(&expected), "{expected}: {:?}", found.warnings);
+                assert!(warnings[0].starts_with(&expected), "{expected}: {:?}", warnings);
             }
         }
     }

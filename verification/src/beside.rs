@@ -41,10 +41,15 @@ fn beside(case: &Case, member: &Member) -> Result<String, Failure> {
     // First, as it says at once what has no counterpart.
     let theirs = peers::ask(Peer::Exudyn, &scene)?;
     let ours = scene.model().solve(scene.analysis())?;
-    let frequencies = ours.frequencies.iter().zip(&theirs.frequencies).enumerate().map(|(k, (a, b))| {
-        format!("  frequency {}   ours {a:.12e} Hz   Exudyn {b:.12e} Hz   apart {:.1e}", k + 1, (a - b).abs())
-    });
-    let probes = ours.probes.iter().zip(&theirs.probes).filter_map(|(a, b)| {
+    let frequencies =
+        ours.eigenvalues().into_iter().zip(&theirs.frequencies).enumerate().map(|(k, (a, b))| {
+            format!(
+                "  frequency {}   ours {a:.12e} Hz   Exudyn {b:.12e} Hz   apart {:.1e}",
+                k + 1,
+                (a - b).abs()
+            )
+        });
+    let probes = ours.states().probes.iter().zip(&theirs.probes).filter_map(|(a, b)| {
         let (a, name, x, y) = (a.samples.last()?, &b.name, b.x.last()?, b.y.last()?);
         let apart = (a.x - x).hypot(a.y - y);
         let (ax, ay) = (a.x, a.y);

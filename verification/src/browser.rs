@@ -181,10 +181,10 @@ fn proven(suite: &Suite, folder: &Path) -> Result<bool, Failure> {
 fn solved(name: &str, kind: Kind, scene: &Path, set: &[String], folder: &Path) -> Result<Page, Failure> {
     let folder = folder.join(name);
     let scene = Scene::load(scene, set).map_err(|e| e.to_string())?;
-    let mut trajectory =
+    let mut results =
         scene.model().solve(scene.analysis()).map_err(|error| format!("{}: {error}", scene.name()))?;
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    output::write(&folder, &mut trajectory, &OutputOptions::default())?;
+    output::write(&folder, &mut results, &OutputOptions::default())?;
     Ok(Page { name: name.to_owned(), kind, file: folder.join("report.html") })
 }
 

@@ -113,14 +113,14 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
 /// The error, or the quantity itself, as a check takes it.
 fn compute(suite: &Suite, number: &Number) -> Result<f64, Failure> {
     let scene = Scene::load(&suite.root.join(&number.scene), &number.set).map_err(|e| e.to_string())?;
-    let trajectory = scene.model().solve(scene.analysis())?;
+    let results = scene.model().solve(scene.analysis())?;
     let mut tables = IndexMap::new();
     if let Some(name) = &number.check.oracle {
         let (case, oracle) = name.split_once('/').ok_or("an oracle here is `<case>/<oracle>`")?;
         tables.insert(name.clone(), suite.table(case, oracle)?);
     }
     let member = members(&Family::default())?.remove(0);
-    let result = quantity::Result::Solved(Box::new(trajectory));
+    let result = quantity::Result::Solved(Box::new(results));
     let run = Run { member, label: String::new(), result, took: Duration::ZERO };
     Ok(compare::member(&tables, 0, &number.check, 0, &run)?.error)
 }

@@ -23,8 +23,8 @@ pub use results::{Norm, Point, Results, Spread};
 
 use std::time::Duration;
 
+use ancf::results::Results as Found;
 use ancf::scene::Scene;
-use ancf::trajectory::Trajectory;
 use ancf_check::compare::member as compare;
 use ancf_check::execute::Run;
 use ancf_check::family::{Member, members};
@@ -52,7 +52,7 @@ struct Task<'a> {
     settings: IndexMap<String, String>,
     seconds: Vec<f64>,
     build: Vec<f64>,
-    outcome: Option<Result<Trajectory, String>>,
+    outcome: Option<Result<Found, String>>,
 }
 
 /// When, where and with which programs something is measured.
@@ -188,7 +188,7 @@ impl Task<'_> {
         self.outcome = Some(outcome);
     }
 
-    fn run(&mut self, repeat: usize) -> Result<Trajectory, String> {
+    fn run(&mut self, repeat: usize) -> Result<Found, String> {
         static EXUDYN: Script = Script::new("exudyn_work");
         static SCIKIT_FEM: Script = Script::new("scikit_fem_work");
         match self.method.code {
@@ -196,10 +196,10 @@ impl Task<'_> {
                 let mut last = Err("it was not run".to_owned());
                 for _ in 0..repeat {
                     let run = self.scene.model().solve(self.scene.analysis());
-                    let trajectory = run.map_err(|e| e.to_string())?;
-                    self.seconds.push(trajectory.seconds.solve);
-                    self.build.push(trajectory.seconds.build);
-                    last = Ok(trajectory);
+                    let results = run.map_err(|e| e.to_string())?;
+                    self.seconds.push(results.run().seconds.solve);
+                    self.build.push(results.run().seconds.build);
+                    last = Ok(results);
                 }
                 last
             }
@@ -208,11 +208,11 @@ impl Task<'_> {
         }
     }
 
-    fn ask(&mut self, script: &Script, repeat: usize) -> Result<Trajectory, String> {
+    fn ask(&mut self, script: &Script, repeat: usize) -> Result<Found, String> {
         let timed = peer::solve(script, &self.scene, &self.settings, repeat).map_err(|e| e.to_string())?;
         self.seconds.extend(timed.seconds);
         self.build.extend(timed.build);
-        Ok(timed.trajectory)
+        Ok(timed.results)
     }
 
     /// What the setting is worth.
@@ -221,12 +221,12 @@ impl Task<'_> {
         norms: &IndexMap<String, Check>,
         tables: &IndexMap<String, Table>,
     ) -> Result<Point, String> {
-        let trajectory = self.outcome.unwrap_or_else(|| Err("it was not run".into()))?;
-        let (statistics, unknowns) = (trajectory.statistics, trajectory.degrees_of_freedom);
+        let results = self.outcome.unwrap_or_else(|| Err("it was not run".into()))?;
+        let (statistics, unknowns) = (results.run().statistics, results.run().degrees_of_freedom);
         let run = Run {
             label: self.member.label(),
             member: self.member,
-            result: quantity::Result::Solved(Box::new(trajectory)),
+            result: quantity::Result::Solved(Box::new(results)),
             took: Duration::ZERO,
         };
         let error = norms

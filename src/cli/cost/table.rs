@@ -109,7 +109,7 @@ pub fn table(report: &Report<'_>, directory: &Path) -> String {
 mod tests {
     use super::*;
     use ancf::cost::{Deviation, Measured};
-    use ancf::trajectory::Statistics;
+    use ancf::results::Statistics;
 
     fn rung(
         discretization: &str,

@@ -110,8 +110,8 @@ fn run(case: &Case, member: &Member) -> std::result::Result<quantity::Result, St
         };
         return Ok(quantity::Result::Interpolated(Box::new(interpolate(beam)?)));
     }
-    let trajectory = scene.model().solve(scene.analysis()).map_err(|error| chain(&error))?;
-    Ok(quantity::Result::Solved(Box::new(trajectory)))
+    let results = scene.model().solve(scene.analysis()).map_err(|error| chain(&error))?;
+    Ok(quantity::Result::Solved(Box::new(results)))
 }
 
 /// An error with its causes.

@@ -14,8 +14,8 @@
 //! | `interpolated.distance` | largest distance of 201 even places of the interpolated curve from the exact one \[m\] | – |
 //! | `interpolated.x` (`s`, `y`, `curvature`, `strain`) | the interpolated curve | s \[m\] |
 
+use ancf::results::{Energy, ProbeSample, Results, Shape, Trajectory};
 use ancf::system::Reaction;
-use ancf::trajectory::{Energy, ProbeSample, Shape, Trajectory};
 
 use crate::case::Pick;
 use crate::interpolation::Interpolation;
@@ -24,7 +24,7 @@ use crate::interpolation::Interpolation;
 #[derive(Clone, Debug)]
 pub enum Result {
     /// Of a computation.
-    Solved(Box<Trajectory>),
+    Solved(Box<Results>),
     /// Of an interpolation of exact nodal values.
     Interpolated(Box<Interpolation>),
 }
@@ -101,13 +101,14 @@ fn first_maximum(abscissa: &[f64], values: &[f64]) -> std::result::Result<f64, S
 pub fn values(path: &str, result: &Result) -> std::result::Result<Values, String> {
     let words: Vec<&str> = path.split('.').collect();
     match result {
-        Result::Solved(trajectory) => solved(&words, trajectory),
+        Result::Solved(results) => solved(&words, results),
         Result::Interpolated(interpolation) => interpolated(&words, interpolation),
     }
     .map_err(|message| format!("`{path}`: {message}"))
 }
 
-fn solved(words: &[&str], t: &Trajectory) -> std::result::Result<Values, String> {
+fn solved(words: &[&str], results: &Results) -> std::result::Result<Values, String> {
+    let t = results.states();
     let series = |values: Vec<f64>| Values::Series { abscissa: t.parameter.clone(), values };
     match words {
         ["probe", name, field] => {
@@ -146,8 +147,14 @@ fn solved(words: &[&str], t: &Trajectory) -> std::result::Result<Values, String>
             })?;
             shape(found, field)
         }
-        ["frequency", k] => nth(&t.frequencies, k),
-        ["load-factor", k] => nth(&t.load_factors, k),
+        ["frequency", k] => match results {
+            Results::Vibrations(vibrations) => nth(&vibrations.frequencies(), k),
+            _ => Err("frequencies are those of a modal analysis".to_owned()),
+        },
+        ["load-factor", k] => match results {
+            Results::CriticalLoads(loads) => nth(&loads.load_factors(), k),
+            _ => Err("load factors are those of a buckling analysis".to_owned()),
+        },
         ["statistics", name] => statistic(t, name),
         _ => Err("no such quantity".to_owned()),
     }
@@ -218,7 +225,7 @@ fn shape(shape: &Shape, field: &str) -> std::result::Result<Values, String> {
 }
 
 fn statistic(t: &Trajectory, name: &str) -> std::result::Result<Values, String> {
-    let s = &t.statistics;
+    let s = &t.run.statistics;
     let count = match name {
         "steps" => s.steps,
         "rejected_steps" => s.rejected_steps,
@@ -227,7 +234,7 @@ fn statistic(t: &Trajectory, name: &str) -> std::result::Result<Values, String> 
         "residual_evaluations" => s.residual_evaluations,
         "tangent_evaluations" => s.tangent_evaluations,
         "factorizations" => s.factorizations,
-        "degrees_of_freedom" => t.degrees_of_freedom,
+        "degrees_of_freedom" => t.run.degrees_of_freedom,
         "most_iterations" => {
             t.history.iter().filter(|s| s.accepted).map(|s| s.increments.len()).max().unwrap_or(0)
         }

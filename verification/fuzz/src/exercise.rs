@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-use ancf::model::{Analysis, Model};
+use ancf::model::{Analysis, Buckling, Modal, Model};
 use ancf::output::{self, OutputOptions};
 use ancf::restart::SavedState;
+use ancf::results::Results;
 use ancf::run::{self, Control};
 use ancf::scene;
-use ancf::trajectory::Trajectory;
 
 /// Most nodes of a scene that is built.
 const BUILT: usize = 20_000;
@@ -61,7 +61,7 @@ fn nodes(model: &Model) -> usize {
 
 fn is_small(analysis: &Analysis) -> bool {
     match analysis {
-        Analysis::Buckling { count } | Analysis::Modal { count, .. } => *count <= MODES,
+        Analysis::Buckling(Buckling { count }) | Analysis::Modal(Modal { count, .. }) => *count <= MODES,
         Analysis::Dynamic(dynamic) => dynamic.duration / dynamic.output_every <= RECORDS,
         _ => true,
     }
@@ -92,10 +92,10 @@ pub fn meet(input: &Input, write: bool) -> Result<Reached, String> {
         None => None,
     };
     let observer = &mut few_steps();
-    let options = run::Options { start: saved.as_ref(), observer: Some(observer), checkpoints: None };
+    let options = run::Options { start: saved.as_ref(), observer: Some(observer), ..run::Options::default() };
     let outcome = scene.model().solve_with(scene.analysis(), options);
-    let mut trajectory = match outcome {
-        Ok(trajectory) => trajectory,
+    let mut results = match outcome {
+        Ok(results) => results,
         Err(mut error) => {
             if error.to_string().contains("NaN") {
                 return Err(format!("a message with a number that is none: {error}"));
@@ -106,11 +106,11 @@ pub fn meet(input: &Input, write: bool) -> Result<Reached, String> {
             }
         }
     };
-    finite(&trajectory)?;
+    finite(&results)?;
     if write {
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let all = OutputOptions { states: true, vtu: true };
-        output::write(folder.path(), &mut trajectory, &all).map_err(|error| format!("output: {error}"))?;
+        output::write(folder.path(), &mut results, &all).map_err(|error| format!("output: {error}"))?;
     }
     Ok(Reached::Run)
 }
@@ -124,13 +124,14 @@ fn load(text: &str) -> Result<Option<SavedState>, String> {
     Ok(serde_json::from_str(text).ok().or(read.ok()))
 }
 
-fn finite(t: &Trajectory) -> Result<(), String> {
+fn finite(results: &Results) -> Result<(), String> {
+    let t = results.states();
     let samples = t.probes.iter().flat_map(|probe| &probe.samples);
     let seen = samples.flat_map(|s| [s.x, s.y, s.angle, s.curvature, s.strain]);
     let energies = t.energy.iter().flat_map(|e| [e.stretch, e.bend, e.kinetic, e.potential, e.work]);
-    let eigen = t.frequencies.iter().chain(&t.load_factors).chain(&t.parameter).copied();
+    let eigen = results.eigenvalues().into_iter().chain(t.parameter.iter().copied());
     match seen.chain(energies).chain(eigen).find(|v| !v.is_finite()) {
-        Some(v) => Err(format!("results with {v} in a {:?} analysis", t.analysis)),
+        Some(v) => Err(format!("results with {v} in a {:?} analysis", t.run.analysis)),
         None => Ok(()),
     }
 }
@@ -144,6 +145,6 @@ pub fn saved(scene: &str) -> Option<(String, serde_json::Value)> {
     }
     let observer = &mut few_steps();
     let options = run::Options { observer: Some(observer), ..run::Options::default() };
-    let trajectory = parsed.model().solve_with(parsed.analysis(), options).ok()?;
-    Some((scene.to_owned(), serde_json::to_value(trajectory.saved?).ok()?))
+    let results = parsed.model().solve_with(parsed.analysis(), options).ok()?;
+    Some((scene.to_owned(), serde_json::to_value(results.into_states().saved?).ok()?))
 }

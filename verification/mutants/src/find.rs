@@ -10,7 +10,7 @@
 //!
 //! Not looked at: tests, constants, `const fn`, patterns, types and lengths, for no switch can
 //! stand there; macros other than those that format text and make vectors; `Debug`, which nobody
-//! relies upon.
+//! relies upon; how much room a collection is given beforehand, which nothing that it holds shows.
 
 use std::ops::Range;
 
@@ -296,7 +296,20 @@ impl<'ast> Visit<'ast> for Finder<'_> {
             let change = format!("replace {} with {other}", of.method);
             self.expression(of.span(), of.method.span(), &change, format!("{before}{other}{after}"));
         }
-        visit::visit_expr_method_call(self, of);
+        self.visit_expr(&of.receiver);
+        if !gives_room(&of.method) {
+            of.args.iter().for_each(|argument| self.visit_expr(argument));
+        }
+    }
+
+    fn visit_expr_call(&mut self, of: &'ast syn::ExprCall) {
+        let name = match &*of.func {
+            Expr::Path(path) => path.path.segments.last().map(|segment| &segment.ident),
+            _ => None,
+        };
+        if !name.is_some_and(gives_room) {
+            visit::visit_expr_call(self, of);
+        }
     }
 
     fn visit_expr_path(&mut self, of: &'ast syn::ExprPath) {
@@ -398,6 +411,11 @@ fn others(operator: &BinOp) -> &'static [&'static str] {
     }
 }
 
+/// Whether a function only gives a collection room for what is to come.
+fn gives_room(name: &syn::Ident) -> bool {
+    ["with_capacity", "reserve", "reserve_exact"].iter().any(|other| name == other)
+}
+
 /// The method put in for another.
 fn exchanged(method: &str) -> Option<&'static str> {
     const PAIRS: [[&str; 2]; 11] = [
@@ -479,6 +497,7 @@ mod tests {
         };
         assert_eq!(inside("let a: [f64; 3] = [x; 3];"), Vec::<String>::new());
         assert_eq!(inside("g::<3>(x);"), Vec::<String>::new());
+        assert_eq!(inside("let a = Vec::with_capacity(2 * n); a.reserve(n + 1);"), Vec::<String>::new());
         assert_eq!(inside("if let Some(1) = x { g() }"), Vec::<String>::new());
         // No parentheses around `let`, but around what stands beside it.
         assert_eq!(inside("if a == b && let Some(c) = d { g() }"), ["replace == with != in f"]);

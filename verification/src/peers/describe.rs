@@ -9,7 +9,7 @@ use ancf::basis::Basis;
 use ancf::centreline::Curve;
 use ancf::effect::{self, BeamDamping, Gravity};
 use ancf::model::{
-    About, Analysis, Beam, Centreline, Discretization, FixedRotation, Integrator, Law, Model, Place,
+    About, Analysis, Beam, Centreline, Discretization, FixedRotation, Integrator, Law, Modal, Model, Place,
     StepControl, StrainMeasure,
 };
 use serde::Serialize;
@@ -272,9 +272,9 @@ fn question(analysis: &Analysis) -> Result<Question, String> {
             }
             Ok(Question::Dynamic { steps, step, every, spectral_radius })
         }
-        Analysis::Modal { count, about: About::Reference } => Ok(Question::Modal { count: *count }),
-        Analysis::Modal { .. } => Err(none("vibrations about an equilibrium")),
-        Analysis::Buckling { .. } => Err(none("a buckling analysis")),
+        Analysis::Modal(Modal { count, about: About::Reference }) => Ok(Question::Modal { count: *count }),
+        Analysis::Modal(_) => Err(none("vibrations about an equilibrium")),
+        Analysis::Buckling(_) => Err(none("a buckling analysis")),
         other => Err(none(&format!("{other:?}"))),
     }
 }

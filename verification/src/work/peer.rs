@@ -4,9 +4,11 @@
 use std::f64::consts::TAU;
 
 use ancf::model::Model;
+use ancf::results::{
+    ProbeSample, ProbeSeries, Results, Run, Shape, Statistics, Trajectory, Vibration, Vibrations,
+};
 use ancf::scene::Scene;
 use ancf::system::View;
-use ancf::trajectory::{ProbeSample, ProbeSeries, Shape, Statistics, Trajectory};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -49,7 +51,7 @@ pub struct Timed {
     /// Of what goes before it; empty where it is not known.
     pub build: Vec<f64>,
     /// What was found.
-    pub trajectory: Trajectory,
+    pub results: Results,
 }
 
 /// Solves a scene `repeat` times.
@@ -65,18 +67,26 @@ pub fn solve(
 ) -> Result<Timed, Failure> {
     let description = describe(scene.model(), scene.analysis())?;
     let answer: Answer = script.ask(&Question { description, settings, repeat })?;
-    let trajectory = trajectory(scene.model(), &answer)?;
-    Ok(Timed { seconds: answer.seconds, build: answer.build, trajectory })
+    let results = results(scene.model(), &answer)?;
+    Ok(Timed { seconds: answer.seconds, build: answer.build, results })
 }
 
 /// What was found, as ours would leave it: records of the probes, the last shapes, frequencies.
-fn trajectory(model: &Model, answer: &Answer) -> Result<Trajectory, Failure> {
+fn results(model: &Model, answer: &Answer) -> Result<Results, Failure> {
     let samples = |track: &Track| {
         let places = track.x.iter().zip(&track.y);
         places.map(|(&x, &y)| ProbeSample { x, y, ..ProbeSample::default() }).collect()
     };
-    Ok(Trajectory {
-        complete: true,
+    let statistics = Statistics {
+        steps: answer.steps,
+        rejected_steps: answer.rejected_steps,
+        newton_iterations: answer.newton_iterations,
+        tangent_evaluations: answer.jacobians,
+        factorizations: answer.jacobians,
+        ..Statistics::default()
+    };
+    let states = Trajectory {
+        run: Run { complete: true, statistics, ..Run::default() },
         parameter: answer.parameter.clone(),
         probes: answer
             .probes
@@ -104,15 +114,12 @@ fn trajectory(model: &Model, answer: &Answer) -> Result<Trajectory, Failure> {
                 Ok(shape)
             })
             .collect::<Result<_, Failure>>()?,
-        frequencies: answer.frequencies.clone(),
-        statistics: Statistics {
-            steps: answer.steps,
-            rejected_steps: answer.rejected_steps,
-            newton_iterations: answer.newton_iterations,
-            tangent_evaluations: answer.jacobians,
-            factorizations: answer.jacobians,
-            ..Statistics::default()
-        },
         ..Trajectory::default()
-    })
+    };
+    if answer.frequencies.is_empty() {
+        return Ok(Results::Trajectory(states));
+    }
+    let vibration = |&frequency: &f64| Vibration { frequency, shape: Vec::new() };
+    let modes = answer.frequencies.iter().map(vibration).collect();
+    Ok(Results::Vibrations(Vibrations { equilibrium: states, modes }))
 }

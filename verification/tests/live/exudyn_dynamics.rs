@@ -58,11 +58,11 @@ fn generalized_alpha(step: f64, radius: f64) -> String {
 fn together(modulus: f64, radius: f64) {
     for step in STEPS {
         let (ours, theirs) = both(Peer::Exudyn, &pendulum(modulus, 8, &generalized_alpha(step, radius)));
-        assert_eq!(ours.statistics.rejected_steps, 0);
+        assert_eq!(ours.run().statistics.rejected_steps, 0);
         let apart = tips(&ours, &theirs).iter().map(|(_, a, b)| distance(*a, *b)).fold(0.0, f64::max);
         println!("E = {modulus:e}, radius {radius}, step {step}: {apart:.1e} m apart");
         assert!(apart < 1e-8 * 1.8, "step {step}: {apart} m apart");
-        for (a, b) in ours.energy.iter().zip(&theirs.energy) {
+        for (a, b) in ours.states().energy.iter().zip(&theirs.energy) {
             let pairs =
                 [(a.stretch, b.stretch), (a.bend, b.bend), (a.kinetic, b.kinetic), (a.potential, b.weight)];
             assert!(pairs.iter().all(|(a, b)| (a - b).abs() < 1e-6), "step {step}: {a:?} {b:?}");
@@ -180,13 +180,13 @@ output_every = 0.1
 generalized_alpha = { step = 1e-3, spectral_radius = 0.9 }
 "#;
     let (ours, theirs) = both(Peer::Exudyn, text);
-    for (a, b) in ours.probes.iter().zip(&theirs.probes) {
+    for (a, b) in ours.states().probes.iter().zip(&theirs.probes) {
         let places = a.samples.iter().zip(b.x.iter().zip(&b.y));
         let apart = places.map(|(p, (x, y))| (p.x - x).hypot(p.y - y)).fold(0.0, f64::max);
         println!("{}: {apart:.1e} m apart", a.name);
         assert!(apart < 1e-8, "{}: {apart} m apart", a.name);
     }
-    for (a, b) in ours.energy.iter().zip(&theirs.energy) {
+    for (a, b) in ours.states().energy.iter().zip(&theirs.energy) {
         let parts = [(a.stretch, b.stretch), (a.bend, b.bend), (a.kinetic, b.kinetic)];
         assert!(parts.iter().all(|(a, b)| (a - b).abs() < 1e-6), "{a:?} {b:?}");
     }

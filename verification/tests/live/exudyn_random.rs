@@ -68,8 +68,8 @@ fn exudyn_and_both_discretisations_agree_on_random_scenes() {
         ));
         let rpim = scene(&format!("{{ rpim = {{ nodes = {} }} }}", nodes(size, 20, strength)));
         let (mine, theirs) = both(Peer::Exudyn, &ancf);
-        let tip = |t: &ancf::trajectory::Trajectory| {
-            t.probes[0].samples.last().map(|p| [p.x, p.y]).expect("an equilibrium")
+        let tip = |t: &ancf::results::Results| {
+            t.states().probes[0].samples.last().map(|p| [p.x, p.y]).expect("an equilibrium")
         };
         let other =
             [theirs.probes[0].x.last(), theirs.probes[0].y.last()].map(|v| *v.expect("an equilibrium"));

@@ -39,12 +39,12 @@ at = "end"
 /// Tips and energies agree to 1e-8 of the length and of the energy.
 fn agree(name: &str, text: &str) {
     let (ours, theirs) = both(Peer::Exudyn, text);
-    let (tip, other) = (ours.probes[0].samples.last().unwrap(), &theirs.probes[0]);
+    let (tip, other) = (ours.states().probes[0].samples.last().unwrap(), &theirs.probes[0]);
     let (a, b) = ([tip.x, tip.y], [*other.x.last().unwrap(), *other.y.last().unwrap()]);
-    let (mine, its) = (ours.energy.last().unwrap(), theirs.energy.last().unwrap());
+    let (mine, its) = (ours.states().energy.last().unwrap(), theirs.energy.last().unwrap());
     println!("{name}: tip {a:?}, apart {:.1e}; energy apart {:.1e}", distance(a, b), mine.bend - its.bend);
     assert!(distance(a, b) < 1e-8, "{name}: ours {a:?}, Exudyn {b:?}");
-    for (a, [x, y, ..]) in ours.last[0].nodes.iter().zip(&theirs.nodes[0]) {
+    for (a, [x, y, ..]) in ours.states().last[0].nodes.iter().zip(&theirs.nodes[0]) {
         assert!(distance(*a, [*x, *y]) < 1e-8, "{name}: a node, ours {a:?}, Exudyn [{x}, {y}]");
     }
     let energy = mine.bend + mine.stretch;

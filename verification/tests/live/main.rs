@@ -13,23 +13,24 @@ mod scikit_fem;
 mod vtu;
 mod work;
 
-use ancf::trajectory::Trajectory;
+use ancf::results::Results;
 use ancf_check::case::Peer;
 use ancf_verification::peers::{Answer, ask};
 
 /// A scene by both: ours and the peer.
-fn both(peer: Peer, text: &str) -> (Trajectory, Answer) {
+fn both(peer: Peer, text: &str) -> (Results, Answer) {
     let scene = ancf::scene::parse("live.toml", text).unwrap_or_else(|e| panic!("{e}"));
     (ours(text), ask(peer, &scene).unwrap_or_else(|e| panic!("{e}")))
 }
 
-fn ours(text: &str) -> Trajectory {
+fn ours(text: &str) -> Results {
     let scene = ancf::scene::parse("live.toml", text).unwrap_or_else(|e| panic!("{e}"));
     scene.model().solve(scene.analysis()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Where our only probe and theirs are, record by record: (parameter, ours, theirs).
-fn tips(ours: &Trajectory, theirs: &Answer) -> Vec<(f64, [f64; 2], [f64; 2])> {
+fn tips(ours: &Results, theirs: &Answer) -> Vec<(f64, [f64; 2], [f64; 2])> {
+    let ours = ours.states();
     let (a, b) = (&ours.probes[0].samples, &theirs.probes[0]);
     assert_eq!(ours.parameter.len(), theirs.parameter.len(), "{:?}", theirs.parameter);
     let places = a.iter().zip(b.x.iter().zip(&b.y));

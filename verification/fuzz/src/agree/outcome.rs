@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
 
 use ancf::restart::SavedState;
+use ancf::results::{ProbeSample, Results, Shape};
 use ancf::run::{self, Control};
 use ancf::scene;
-use ancf::trajectory::{ProbeSample, Shape, Trajectory};
 use toml::Table;
 
 use super::frame::Frame;
@@ -127,25 +127,26 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
         gave_up = steps > STEPS || progress.newton_iterations * nodes > WORK;
         if gave_up { Control::Stop } else { Control::Continue }
     };
-    let options = run::Options { start: saved, observer: Some(observer), checkpoints: None };
+    let options = run::Options { start: saved, observer: Some(observer), ..run::Options::default() };
     let outcome = scene.model().solve_with(scene.analysis(), options);
     if gave_up {
         return Outcome::TooLong;
     }
     match outcome {
-        Ok(trajectory) => Outcome::Solved(Box::new(see(&trajectory, frame))),
+        Ok(results) => Outcome::Solved(Box::new(see(&results, frame))),
         Err(error) if error.exit_status() == 2 => Outcome::Refused(first_line(&error.to_string())),
         Err(error) => Outcome::Failed(first_line(&error.to_string())),
     }
 }
 
-fn see(t: &Trajectory, frame: &Frame) -> Seen {
-    let time = match t.analysis {
-        ancf::trajectory::AnalysisKind::Dynamic => frame.unit([0, 0, 1]),
+fn see(results: &Results, frame: &Frame) -> Seen {
+    let t = results.states();
+    let time = match t.run.analysis {
+        ancf::results::AnalysisKind::Dynamic => frame.unit([0, 0, 1]),
         _ => 1.0,
     };
     let energy = frame.unit([2, 1, -2]);
-    let parts = |e: &ancf::trajectory::Energy| {
+    let parts = |e: &ancf::results::Energy| {
         [e.stretch, e.bend, e.stored, e.kinetic, e.potential, e.work, e.lost].map(|part| part / energy)
     };
     let force = frame.unit([1, 1, -2]);
@@ -163,18 +164,18 @@ fn see(t: &Trajectory, frame: &Frame) -> Seen {
         sum.1 += f[0].hypot(f[1]);
     }
     let rate = frame.unit([0, 0, -1]);
-    let frequencies = t.frequencies.iter().map(|f| f / rate);
+    let unit = if t.run.analysis == ancf::results::AnalysisKind::Modal { rate } else { 1.0 };
     Seen {
-        warnings: t.warnings.clone(),
+        warnings: t.run.warnings.clone(),
         parameter: t.parameter.iter().map(|p| p / time).collect(),
         probes: t.probes.iter().map(|probe| samples(&probe.samples, frame)).collect(),
         energy: t.energy.iter().map(parts).collect(),
         beams: t.last.iter().map(|shape| line(shape, frame)).collect(),
         reactions: reactions.collect(),
         effects: sum,
-        eigenvalues: frequencies.chain(t.load_factors.iter().copied()).collect(),
+        eigenvalues: results.eigenvalues().iter().map(|value| value / unit).collect(),
         events: t.events.iter().map(|event| event.time() / time).collect(),
-        counts: [t.statistics.steps, t.statistics.rejected_steps, t.statistics.newton_iterations],
+        counts: [t.run.statistics.steps, t.run.statistics.rejected_steps, t.run.statistics.newton_iterations],
         saved: t.saved.clone(),
     }
 }

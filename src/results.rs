@@ -1,0 +1,156 @@
+//! What an analysis leaves: a [`Trajectory`] of statics and of motions, [`Vibrations`] or
+//! [`CriticalLoads`]. Output and verification read nothing else.
+
+mod modes;
+mod shape;
+mod trajectory;
+
+pub use modes::{BucklingMode, CriticalLoads, ModeShape, Vibration, Vibrations};
+pub use shape::{Frame, Shape};
+pub use trajectory::{EffectSeries, Event, ProbeSample, ProbeSeries, ReactionSeries, Trajectory};
+
+pub use crate::solve::{ContactImpulse, Statistics, StepRecord};
+pub use crate::system::Energy;
+
+use serde::Serialize;
+
+/// Centrelines that are enough for a moving picture.
+pub const PICTURES: usize = 400;
+
+/// The results of any analysis.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+#[non_exhaustive]
+pub enum Results {
+    /// Of statics and dynamics.
+    Trajectory(Trajectory),
+    /// Of a modal analysis.
+    Vibrations(Vibrations),
+    /// Of a buckling analysis.
+    CriticalLoads(CriticalLoads),
+}
+
+impl Results {
+    /// What is to be said of the run as a whole.
+    pub fn run(&self) -> &Run {
+        &self.states().run
+    }
+
+    /// The states that were computed: all records of statics and dynamics; the equilibrium about
+    /// which vibrations are small, without records where that is the stress-free state; without
+    /// records the state of which the critical loads are.
+    pub fn states(&self) -> &Trajectory {
+        match self {
+            Self::Trajectory(trajectory) => trajectory,
+            Self::Vibrations(vibrations) => &vibrations.equilibrium,
+            Self::CriticalLoads(loads) => &loads.unloaded,
+        }
+    }
+
+    /// As [`Self::states`].
+    pub fn states_mut(&mut self) -> &mut Trajectory {
+        match self {
+            Self::Trajectory(trajectory) => trajectory,
+            Self::Vibrations(vibrations) => &mut vibrations.equilibrium,
+            Self::CriticalLoads(loads) => &mut loads.unloaded,
+        }
+    }
+
+    /// As [`Self::states`].
+    pub fn into_states(self) -> Trajectory {
+        match self {
+            Self::Trajectory(trajectory) => trajectory,
+            Self::Vibrations(vibrations) => vibrations.equilibrium,
+            Self::CriticalLoads(loads) => loads.unloaded,
+        }
+    }
+
+    /// Natural frequencies \[Hz\] or critical load factors, ascending; none of a trajectory.
+    pub fn eigenvalues(&self) -> Vec<f64> {
+        match self {
+            Self::Trajectory(_) => Vec::new(),
+            Self::Vibrations(vibrations) => vibrations.frequencies(),
+            Self::CriticalLoads(loads) => loads.load_factors(),
+        }
+    }
+
+    /// The shapes that belong to [`Self::eigenvalues`], each of all beams.
+    pub fn mode_shapes(&self) -> Vec<&[ModeShape]> {
+        match self {
+            Self::Trajectory(_) => Vec::new(),
+            Self::Vibrations(vibrations) => vibrations.modes.iter().map(|mode| &mode.shape[..]).collect(),
+            Self::CriticalLoads(loads) => loads.modes.iter().map(|mode| &mode.shape[..]).collect(),
+        }
+    }
+}
+
+impl From<Trajectory> for Results {
+    fn from(trajectory: Trajectory) -> Self {
+        Self::Trajectory(trajectory)
+    }
+}
+
+impl From<Vibrations> for Results {
+    fn from(vibrations: Vibrations) -> Self {
+        Self::Vibrations(vibrations)
+    }
+}
+
+impl From<CriticalLoads> for Results {
+    fn from(loads: CriticalLoads) -> Self {
+        Self::CriticalLoads(loads)
+    }
+}
+
+/// What every analysis says of itself.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Run {
+    /// The scene's title.
+    pub title: String,
+    /// Kind of analysis.
+    pub analysis: AnalysisKind,
+    /// Whether it reaches as far as was asked for: not where the run was stopped, or found no way
+    /// on.
+    pub complete: bool,
+    /// Unknowns after supports are eliminated, plus multipliers.
+    pub degrees_of_freedom: usize,
+    /// Lines for the reader: what was simulated and how (name, value).
+    pub settings: Vec<(String, String)>,
+    /// The stress-free shape of each beam.
+    pub undeformed: Vec<Shape>,
+    /// Lines of the ground that belong in a picture: borders of obstacles.
+    pub outlines: Vec<Vec<[f64; 2]>>,
+    /// What the user should know: instabilities met, with the load factor.
+    pub warnings: Vec<String>,
+    /// Counts.
+    pub statistics: Statistics,
+    /// Where the time went.
+    pub seconds: Seconds,
+}
+
+/// The kind of an analysis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum AnalysisKind {
+    /// Equilibria; the parameter of the records is the load factor.
+    #[default]
+    Static,
+    /// Motion; the parameter of the records is the time \[s\].
+    Dynamic,
+    /// Small vibrations; the parameter of the record is the load factor of the equilibrium.
+    Modal,
+    /// Critical loads; without records.
+    Buckling,
+}
+
+/// Wall time \[s\].
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Seconds {
+    /// Shape functions, tables, patterns.
+    pub build: f64,
+    /// The solution itself.
+    pub solve: f64,
+    /// Looking at the states (probes, shapes, frames), and files so far as written when the summary
+    /// is.
+    pub write: f64,
+}

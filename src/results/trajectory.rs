@@ -1,0 +1,124 @@
+//! States at the recorded load factors or times, seen through probes, energies and shapes.
+
+use super::{ContactImpulse, Energy, Frame, Run, Shape, StepRecord};
+use crate::restart::SavedState;
+use crate::system::Reaction;
+use serde::Serialize;
+
+/// The path of a static analysis, or a motion.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Trajectory {
+    /// What is to be said of the run as a whole.
+    pub run: Run,
+    /// Load factors (statics; also the one equilibrium about which vibrations are small) or times
+    /// \[s\] (dynamics) of the records, in order.
+    pub parameter: Vec<f64>,
+    /// Per probe, one sample per entry of `parameter`.
+    pub probes: Vec<ProbeSeries>,
+    /// One entry per entry of `parameter`.
+    pub energy: Vec<Energy>,
+    /// Forces of supports and joints, where they were asked for.
+    pub reactions: Vec<ReactionSeries>,
+    /// Energies and forces of effects, where they were asked for.
+    pub effects: Vec<EffectSeries>,
+    /// Centrelines at the records, or evenly at as many of them as [`crate::Options::frames`] lets
+    /// be kept.
+    pub frames: Vec<Frame>,
+    /// The last state of each beam, with section forces.
+    pub last: Vec<Shape>,
+    /// One entry per attempted step.
+    pub history: Vec<StepRecord>,
+    /// Events of a motion, in order.
+    pub events: Vec<Event>,
+    /// From which a motion can go on: the end of a motion, or the equilibrium under the full loads.
+    #[serde(skip)]
+    pub saved: Option<SavedState>,
+}
+
+/// What one probe saw.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ProbeSeries {
+    /// The probe's name.
+    pub name: String,
+    /// One sample per record.
+    pub samples: Vec<ProbeSample>,
+}
+
+/// The state of one point of a beam.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ProbeSample {
+    /// Position \[m\].
+    pub x: f64,
+    /// Position \[m\].
+    pub y: f64,
+    /// Direction of r' \[rad\], continuous along a run (not folded into ±π).
+    pub angle: f64,
+    /// Curvature κ \[1/m\].
+    pub curvature: f64,
+    /// Axial strain ε by the beam's measure, zero in the stress-free state.
+    pub strain: f64,
+    /// Velocity \[m/s\]; dynamics only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vx: Option<f64>,
+    /// Velocity \[m/s\]; dynamics only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vy: Option<f64>,
+}
+
+/// Forces of a support or joint on its beam; of a joint on its second point.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ReactionSeries {
+    /// `support1`, `support2`, … and `joint1`, … in the order of the scene.
+    pub name: String,
+    /// One sample per record.
+    pub samples: Vec<Reaction>,
+}
+
+/// Energy of an effect and the resultant of its forces on the beam.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct EffectSeries {
+    /// Kind and beam, such as `contact.arm`.
+    pub name: String,
+    /// Whether it has an energy.
+    pub has_energy: bool,
+    /// Per record energy \[J\] and force along x and y \[N\].
+    pub samples: Vec<[f64; 3]>,
+}
+
+/// Something that happened in a motion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Event {
+    /// A probe's coordinate crossed a value.
+    Crossing {
+        /// When \[s\].
+        time: f64,
+        /// Name of the probe.
+        probe: String,
+        /// `x` or `y`.
+        axis: String,
+        /// The value \[m\].
+        value: f64,
+    },
+    /// A beam touched an obstacle, or came free of it.
+    Contact {
+        /// When \[s\].
+        time: f64,
+        /// The beam and the number of its contact, such as `arm.1`.
+        contact: String,
+        /// Whether it touches from then on.
+        touches: bool,
+        /// What it did while it touched; where it ends.
+        #[serde(flatten)]
+        impulse: Option<ContactImpulse>,
+    },
+}
+
+impl Event {
+    /// When it happened \[s\].
+    pub fn time(&self) -> f64 {
+        match self {
+            Self::Crossing { time, .. } | Self::Contact { time, .. } => *time,
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Motions of a model.
+
+use super::sampler::Sampler;
+use super::{Options, RunError, Solve, Stopwatch, Watch, memory, needs, timed};
+use crate::model::{Analysis, Displacement, Dynamic, Model};
+use crate::restart::{self, SavedState};
+use crate::results::{Statistics, Trajectory};
+use crate::solve::dynamics::{self, Checkpoint, start};
+use crate::system::System;
+use std::borrow::Cow;
+
+impl Solve for Dynamic {
+    type Results = Trajectory;
+
+    fn solve(&self, model: &Model, options: Options<'_>) -> Result<Trajectory, RunError> {
+        let mut stopwatch = Stopwatch::start();
+        let analysis = Analysis::Dynamic(self.clone());
+        let model = if options.start.is_some() { left_where_it_is(model) } else { Cow::Borrowed(model) };
+        let model = &*model;
+        memory::check(model, &analysis)?;
+        let mut system = System::build(model, needs(&analysis))?;
+        let Beginning { start, end, motion, told } = beginning(model, self, &mut system, options.start)?;
+        let sampler = Sampler::new(model, &system, options.frames)?;
+        stopwatch.built();
+        self.integrator.suits(model)?;
+        let watches = sampler.watches(self)?;
+        let directions = sampler.directions();
+        let keep = options.checkpoints;
+        let take = |checkpoint| {
+            if let Some(keep) = keep {
+                (keep.take)(&SavedState::new(model, &system, motion.clone(), checkpoint));
+            }
+        };
+        let task = dynamics::Task {
+            duration: end,
+            output_every: self.output_every,
+            integrator: self.integrator,
+            start,
+            watches: &watches,
+            reactions: model.outputs.reactions,
+            directions: &directions,
+            keep: keep.map(|keep| dynamics::Checkpointing { every: keep.every, take: &take }),
+        };
+        let mut watch = Watch::new(options.observer);
+        let report =
+            &mut |time: f64, step: f64, statistics: &Statistics| watch.goes_on(time, end, step, statistics);
+        let mut solution = dynamics::solve(&system, &task, report);
+        stopwatch.solved();
+        let saved = solution.checkpoint.take();
+        let saved = saved.map(|checkpoint| SavedState::new(model, &system, motion.clone(), checkpoint));
+        let mut outcome = match solution.stuck.clone() {
+            None => Ok(sampler.dynamics(self, solution)),
+            Some(stuck) => Err(sampler.lost(self, &stuck, solution)),
+        };
+        let left = match &mut outcome {
+            Ok(trajectory) => Some(trajectory),
+            Err(error) => error.partial(),
+        };
+        if let Some(trajectory) = left {
+            trajectory.saved = saved;
+            trajectory.run.settings.extend(told.map(|told| ("continued".into(), told)));
+        }
+        timed(outcome, |trajectory| trajectory, &watch, stopwatch)
+    }
+}
+
+/// Where a motion begins, and when it ends.
+struct Beginning {
+    start: Checkpoint,
+    /// \[s\]
+    end: f64,
+    /// The motion's fingerprint.
+    motion: String,
+    /// What the reader should know of it.
+    told: Option<String>,
+}
+
+/// Where a motion begins. Of a motion that is taken up, supports that follow no law hold the beams
+/// where the state has them.
+fn beginning(
+    model: &Model,
+    settings: &Dynamic,
+    system: &mut System,
+    saved: Option<&SavedState>,
+) -> Result<Beginning, RunError> {
+    let motion = restart::fingerprint(model, settings.integrator);
+    let Some(saved) = saved else {
+        let start = start::from_rest(system, &model.initial_velocities)?;
+        let end = settings.duration;
+        start::check_jumps(system, 0.0, end)?;
+        return Ok(Beginning { start, end, motion, told: None });
+    };
+    let (start, same) = saved.take_up(model, system, &motion)?;
+    system.hold_as_in(&start.state.q);
+    let (begin, end) = (saved.time(), later(saved.time(), settings.duration));
+    start::check_jumps(system, begin, end)?;
+    let start = match same {
+        true => start,
+        // Velocities of the scene start a motion; one that is under way has its own.
+        false if saved.is_equilibrium() => start::from_state(system, start.state, &model.initial_velocities)?,
+        false => start::from_state(system, start.state, &[])?,
+    };
+    let how = match same {
+        true => "as if it had not stopped",
+        false if saved.is_equilibrium() => "from a static equilibrium",
+        false => "from its positions and velocities alone, for the model or the integrator is another",
+    };
+    let told = format!("for {} s from t = {begin} s to {end} s, {how}", settings.duration);
+    Ok(Beginning { start, end, motion, told: Some(told) })
+}
+
+/// The sum of two times as decimals have it, so that a motion in parts ends when it does as a
+/// whole.
+fn later(time: f64, duration: f64) -> f64 {
+    let sum = time + duration;
+    if time == 0.0 { sum } else { format!("{sum:.14e}").parse().unwrap_or(sum) }
+}
+
+/// The model with supports that hold still unless they follow a law.
+fn left_where_it_is(model: &Model) -> Cow<'_, Model> {
+    let mut model = model.clone();
+    for support in model.supports.iter_mut().filter(|support| support.law.is_none()) {
+        support.displacement = Displacement::default();
+    }
+    Cow::Owned(model)
+}

@@ -1,0 +1,41 @@
+//! Equilibria of a model.
+
+use super::sampler::Sampler;
+use super::{Options, RunError, Solve, Stopwatch, Watch, memory, needs, timed};
+use crate::model::{Analysis, Model, Static};
+use crate::results::{Statistics, Trajectory};
+use crate::solve::statics::{self, Target};
+use crate::system::System;
+
+impl Solve for Static {
+    type Results = Trajectory;
+
+    fn solve(&self, model: &Model, options: Options<'_>) -> Result<Trajectory, RunError> {
+        options.refuses_a_start("static")?;
+        let analysis = Analysis::Static(self.clone());
+        let mut stopwatch = Stopwatch::start();
+        memory::check(model, &analysis)?;
+        let system = System::build(model, needs(&analysis))?;
+        let sampler = Sampler::new(model, &system, options.frames)?;
+        let target = match &self.arc_length {
+            None => None,
+            Some(arc) => Some(Target { arc, probe: sampler.end_of_path(arc)? }),
+        };
+        stopwatch.built();
+        let mut watch = Watch { open: self.arc_length.is_some(), ..Watch::new(options.observer) };
+        let report =
+            &mut |load: f64, step: f64, statistics: &Statistics| watch.goes_on(load, 1.0, step, statistics);
+        let solution = statics::solve(&system, self, target.as_ref(), report);
+        stopwatch.solved();
+        let outcome = match (&solution.stuck, &self.arc_length) {
+            (Some(stuck), _) => Err(sampler.stuck(stuck, &solution)),
+            (None, Some(arc)) if solution.out_of_points => Err(sampler.out_of_points(arc, &solution)),
+            (None, _) => {
+                let mut trajectory = sampler.statics(&solution);
+                trajectory.saved = sampler.equilibrium(&solution, &trajectory);
+                Ok(trajectory)
+            }
+        };
+        timed(outcome, |trajectory| trajectory, &watch, stopwatch)
+    }
+}
