@@ -12,6 +12,8 @@
 //! by Newton's method, so that |r₀'(s)| = 1 for every kind of centreline. Spline ends: de Boor, *A
 //! Practical Guide to Splines*, ch. IV.
 
+use crate::numeric::{End, GAUSS_10, rates};
+
 /// The stress-free centreline r₀(s), parametrised by arc length s ∈ [0, L].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -198,15 +200,6 @@ struct Panel {
     length: f64,
 }
 
-/// Abscissae and weights of the ten-point Gauss–Legendre rule on [−1, 1], positive half.
-const GAUSS: [(f64, f64); 5] = [
-    (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
-    (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
-    (0.679_409_568_299_024_4, 0.219_086_362_515_982_04),
-    (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
-    (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
-];
-
 /// The spline's speed in u is near one; where it falls below this, the points double back.
 const SLOWEST: f64 = 0.02;
 
@@ -230,11 +223,8 @@ impl Piece {
 
     /// ∫ |P'| dv by ten Gauss points.
     fn arc_length(&self, from: f64, to: f64) -> f64 {
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        half * GAUSS
-            .iter()
-            .map(|(x, w)| w * (self.speed(middle - half * x) + self.speed(middle + half * x)))
-            .sum::<f64>()
+        let speed = |(x, weight): &(f64, f64)| weight * self.speed((1.0 - x) * from + x * to);
+        (to - from) * GAUSS_10.iter().map(speed).sum::<f64>()
     }
 
     /// Appends the panels that cover [from, to].
@@ -270,7 +260,7 @@ impl Spline {
                 Err(other) => return Err(other),
             }
         }
-        let tangents = tangents(&h, &slope);
+        let tangents = rates(&h, &slope, [End::Smooth; 2]);
         let pieces: Vec<Piece> = (0..h.len())
             .map(|i| {
                 let (h, d0, d1, m) = (h[i], tangents[i], tangents[i + 1], slope[i]);
@@ -333,53 +323,6 @@ impl Spline {
         }
         piece.derivatives(v)
     }
-}
-
-/// First derivatives at the knots of the not-a-knot cubic spline with spacings `h` and divided
-/// differences `slope`; a parabola through three points.
-fn tangents(h: &[f64], slope: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let n = h.len() + 1;
-    let combine = |a: f64, p: [f64; 2], b: f64, q: [f64; 2]| [a * p[0] + b * q[0], a * p[1] + b * q[1]];
-    if n == 2 {
-        return vec![slope[0]; 2];
-    }
-    if n == 3 {
-        let total = h[0] + h[1];
-        let middle = combine(h[1] / total, slope[0], h[0] / total, slope[1]);
-        return vec![combine(2.0, slope[0], -1.0, middle), middle, combine(2.0, slope[1], -1.0, middle)];
-    }
-    // Rows lower d[i-1] + diagonal d[i] + upper d[i+1] = right; the end rows say that the third
-    // derivative does not jump at the second and last-but-one knot. Every pivot is positive,
-    // whatever the spacings.
-    let mut diagonal = vec![0.0; n];
-    let mut upper = vec![0.0; n];
-    let mut lower = vec![0.0; n];
-    let mut right = vec![[0.0; 2]; n];
-    let (a, b) = (h[0], h[1]);
-    diagonal[0] = b;
-    upper[0] = a + b;
-    right[0] = combine((a + 2.0 * (a + b)) * b / (a + b), slope[0], a * a / (a + b), slope[1]);
-    for i in 1..n - 1 {
-        lower[i] = h[i];
-        diagonal[i] = 2.0 * (h[i - 1] + h[i]);
-        upper[i] = h[i - 1];
-        right[i] = combine(3.0 * h[i], slope[i - 1], 3.0 * h[i - 1], slope[i]);
-    }
-    let (a, b) = (h[n - 2], h[n - 3]);
-    diagonal[n - 1] = b;
-    lower[n - 1] = a + b;
-    right[n - 1] = combine(a * a / (a + b), slope[n - 3], (2.0 * (a + b) + a) * b / (a + b), slope[n - 2]);
-    for i in 1..n {
-        let factor = lower[i] / diagonal[i - 1];
-        diagonal[i] -= factor * upper[i - 1];
-        right[i] = combine(1.0, right[i], -factor, right[i - 1]);
-    }
-    let mut d = vec![[0.0; 2]; n];
-    d[n - 1] = right[n - 1].map(|r| r / diagonal[n - 1]);
-    for i in (0..n - 1).rev() {
-        d[i] = combine(1.0 / diagonal[i], right[i], -upper[i] / diagonal[i], d[i + 1]);
-    }
-    d
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Laws of time: by what factor a load acts, how a support moves.
 
+use crate::numeric::{End, GAUSS_6, rates};
 use std::f64::consts::PI;
 
 /// A number as a function of time.
@@ -52,8 +53,8 @@ pub enum Law {
 pub struct Table {
     times: Vec<f64>,
     values: Vec<f64>,
-    /// Second derivatives of the natural cubic spline at the points; none: straight between them.
-    curvatures: Option<Vec<f64>>,
+    /// First derivatives of a cubic spline at the points; none: straight between them.
+    rates: Option<Vec<[f64; 1]>>,
 }
 
 impl Table {
@@ -64,16 +65,22 @@ impl Table {
         if times.len() < 2 || times.len() != values.len() || !rising {
             return None;
         }
-        let curvatures = smooth.then(|| spline(&times, &values, [false; 2]));
-        Some(Self { times, values, curvatures })
+        let table = Self { times, values, rates: None };
+        Some(if smooth { table.smoothed([End::Straight; 2]) } else { table })
     }
 
     /// By the cubic spline that is flat at its ends where `flat` says so, and not curved there
     /// otherwise.
     pub fn with_flat_ends(times: Vec<f64>, values: Vec<f64>, flat: [bool; 2]) -> Option<Self> {
-        let table = Self::new(times, values, false)?;
-        let curvatures = Some(spline(&table.times, &table.values, flat));
-        Some(Self { curvatures, ..table })
+        let ends = flat.map(|flat| if flat { End::Flat } else { End::Straight });
+        Some(Self::new(times, values, false)?.smoothed(ends))
+    }
+
+    fn smoothed(self, ends: [End; 2]) -> Self {
+        let h: Vec<f64> = self.times.windows(2).map(|t| t[1] - t[0]).collect();
+        let slope: Vec<[f64; 1]> =
+            self.values.windows(2).zip(&h).map(|(values, h)| [(values[1] - values[0]) / h]).collect();
+        Self { rates: Some(rates(&h, &slope, ends)), ..self }
     }
 
     fn at(&self, t: f64) -> [f64; 3] {
@@ -93,12 +100,13 @@ impl Table {
         let h = self.times[i + 1] - self.times[i];
         let (x, rise) = ((t - self.times[i]) / h, self.values[i + 1] - self.values[i]);
         let (value, rate) = (self.values[i] + x * rise, rise / h);
-        let Some(curvatures) = &self.curvatures else { return [value, rate, 0.0] };
-        let (a, b, y) = (curvatures[i], curvatures[i + 1], 1.0 - x);
+        let Some(rates) = &self.rates else { return [value, rate, 0.0] };
+        // How much steeper than the chord the curve leaves, and arrives.
+        let (a, b, y) = (rates[i][0] - rate, rates[i + 1][0] - rate, 1.0 - x);
         [
-            value + h * h / 6.0 * ((y * y * y - y) * a + (x * x * x - x) * b),
-            rate + h / 6.0 * ((1.0 - 3.0 * y * y) * a + (3.0 * x * x - 1.0) * b),
-            y * a + x * b,
+            value + h * x * y * (a * y - b * x),
+            rate + a * y * (1.0 - 3.0 * x) + b * x * (1.0 - 3.0 * y),
+            (a * (6.0 * x - 4.0) + b * (6.0 * x - 2.0)) / h,
         ]
     }
 }
@@ -106,46 +114,12 @@ impl Table {
 /// Angle by which a harmonic turns in a step \[rad\] up to which Gauss' rule integrates it to
 /// round-off.
 const SLOW: f64 = 1.5;
-/// Gauss' rule with six points on (−1, 1): exact for what pieces of laws are, up to the eleventh
-/// degree.
-const GAUSS: [(f64, f64); 3] = [
-    (0.238_619_186_083_196_9, 0.467_913_934_572_691_05),
-    (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
-    (0.932_469_514_203_152, 0.171_324_492_379_170_35),
-];
-
-/// ∫₀¹ f dx and ∫₀¹ (1 − x) f dx.
+/// ∫₀¹ f dx and ∫₀¹ (1 − x) f dx; exact for what pieces of laws are, up to the tenth degree.
 fn quadrature(time: impl Fn(f64) -> f64, f: impl Fn(f64) -> f64) -> [f64; 2] {
-    let points = GAUSS.iter().flat_map(|(x, w)| [(0.5 - 0.5 * x, 0.5 * w), (0.5 + 0.5 * x, 0.5 * w)]);
-    points.fold([0.0; 2], |[mean, moment], (x, w)| {
-        let term = w * f(time(x));
+    GAUSS_6.iter().fold([0.0; 2], |[mean, moment], (x, weight)| {
+        let term = weight * f(time(*x));
         [mean + term, moment + (1.0 - x) * term]
     })
-}
-
-/// Second derivatives of the cubic spline that is flat or not curved at its ends, by elimination in
-/// its tridiagonal system.
-fn spline(t: &[f64], v: &[f64], [flat_start, flat_end]: [bool; 2]) -> Vec<f64> {
-    let n = t.len();
-    let (mut above, mut right) = (vec![0.0; n], vec![0.0; n]);
-    if flat_start {
-        (above[0], right[0]) = (0.5, 3.0 * (v[1] - v[0]) / (t[1] - t[0]).powi(2));
-    }
-    for i in 1..n - 1 {
-        let (before, after) = (t[i] - t[i - 1], t[i + 1] - t[i]);
-        let defect = (v[i + 1] - v[i]) / after - (v[i] - v[i - 1]) / before;
-        let pivot = 2.0 * (before + after) - before * above[i - 1];
-        above[i] = after / pivot;
-        right[i] = (6.0 * defect - before * right[i - 1]) / pivot;
-    }
-    if flat_end {
-        let fall = 6.0 * (v[n - 2] - v[n - 1]) / (t[n - 1] - t[n - 2]).powi(2);
-        right[n - 1] = (fall - right[n - 2]) / (2.0 - above[n - 2]);
-    }
-    for i in (0..n - 1).rev() {
-        right[i] -= above[i] * right[i + 1];
-    }
-    right
 }
 
 impl Law {

@@ -42,15 +42,16 @@
 //! |---|---|---|
 //! | `lanes` | four numbers side by side, multiply–add | – |
 //! | `linear` | block-banded LDLᵀ, real and complex; banded LU, also with constraint rows; bordered sparse LU; inertia | `lanes` |
-//! | [`centreline`] | stress-free curves | – |
+//! | `numeric` | Gauss' rules with few points, cubic splines | – |
+//! | [`centreline`] | stress-free curves | `numeric` |
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | – |
-//! | [`law`] | laws of time | – |
+//! | [`law`] | laws of time | `numeric` |
 //! | [`beam`] | a beam with its section and discretisation, and places along it | [`centreline`], [`basis`] |
 //! | [`assembly`] | densities, their sums over tables, and how a part of a model becomes terms of the equations | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`beam`] |
-//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part of a model that it is | `lanes`, `linear`, [`basis`], [`law`], [`beam`], [`assembly`] |
+//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part of a model that it is | `lanes`, `linear`, `numeric`, [`basis`], [`law`], [`beam`], [`assembly`] |
 //! | [`model`] | the continuous problem: beams, supports, joints, parts, probes, analyses | [`centreline`], [`basis`], [`law`], [`beam`], [`assembly`] |
 //! | [`system`] | coordinates, supports, joints, sums over effects, inventory | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`] |
-//! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `linear`, [`assembly`], [`model`], [`system`] |
+//! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `linear`, [`assembly`], `numeric`, [`model`], [`system`] |
 //! | [`restart`] | a saved state, from which a motion goes on | [`model`], [`system`], `solve` |
 //! | [`results`] | what an analysis leaves | [`system`], `solve`, [`restart`] |
 //! | [`run`](mod@run) | one model, one analysis | `linear`, [`basis`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
@@ -188,6 +189,7 @@ pub mod law;
 #[doc(hidden)]
 pub mod linear;
 pub mod model;
+mod numeric;
 pub mod output;
 pub mod restart;
 pub mod results;

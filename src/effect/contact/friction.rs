@@ -27,6 +27,7 @@ use crate::assembly::{
     add_tiles, multiply_rows,
 };
 use crate::linear::Matrix;
+use crate::numeric::GAUSS_2;
 use nalgebra::{Matrix2, Vector2};
 use std::sync::Arc;
 
@@ -38,8 +39,6 @@ const AT_LIMIT: f64 = 1e-9;
 /// remembered moves with the edges of a contact only in the parts where these are, in which little
 /// is borne.
 const PARTS: f64 = 4.0;
-/// The rule of Gauss with two points on (0, 1).
-const RULE: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
 
 /// Dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,7 +97,7 @@ impl FrictionIntegral {
             let first = pieces.partition_point(|piece| piece.cell < cell);
             let known = &pieces[first..first + pieces[first..].partition_point(|piece| piece.cell == cell)];
             self.for_pieces(&curve, |piece| {
-                for spot in contact.spots_of(&RULE, cell, &curve, piece) {
+                for spot in contact.spots_of(&GAUSS_2, cell, &curve, piece) {
                     let slip = known.iter().find_map(|piece| slip_at(piece, spot.place));
                     let touching = self.map(spot.weight, spot.values, [&before, &curve], slip);
                     visit(cell, piece, &touching);
@@ -162,7 +161,7 @@ impl FrictionEffect for FrictionIntegral {
     }
 
     fn size(&self) -> (usize, usize) {
-        (self.contact.cells.count() * PARTS as usize * RULE.len(), 0)
+        (self.contact.cells.count() * PARTS as usize * GAUSS_2.len(), 0)
     }
 
     fn add_force(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
@@ -216,7 +215,7 @@ impl FrictionEffect for FrictionIntegral {
         for piece in pieces.filter(|piece| piece.cell < contact.cells.count()) {
             let curve = contact.cells.curve(piece.cell, q);
             let mut sum = ControlForces::default();
-            let spots = contact.spots_of(&RULE, piece.cell, &curve, [piece.from, piece.to]);
+            let spots = contact.spots_of(&GAUSS_2, piece.cell, &curve, [piece.from, piece.to]);
             for (spot, slip) in spots.zip(&piece.slip) {
                 let (_, along, _) = contact.penalty.obstacle.travel(contact.penalty.gap, &spot.r, &spot.r);
                 let force = along * (self.friction.stiffness * slip * spot.weight);
@@ -232,14 +231,14 @@ impl FrictionEffect for FrictionIntegral {
         let mut values = Vec::new();
         for piece in pieces.filter(|piece| piece.cell < contact.cells.count()) {
             let curve = contact.cells.curve(piece.cell, q);
-            let spots = contact.spots_of(&RULE, piece.cell, &curve, [piece.from, piece.to]);
+            let spots = contact.spots_of(&GAUSS_2, piece.cell, &curve, [piece.from, piece.to]);
             for (spot, slip) in spots.zip(&piece.slip) {
                 let (_, along, _) = contact.penalty.obstacle.travel(contact.penalty.gap, &spot.r, &spot.r);
                 let s = contact.cells.arc_length(piece.cell, spot.place);
                 values.push((s, spot.weight, Action::at(spot.r, along * (-self.friction.stiffness * slip))));
             }
         }
-        sum.add_spread(RULE.len(), values);
+        sum.add_spread(GAUSS_2.len(), values);
     }
 
     fn sliding(&self, held: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool> {
@@ -291,7 +290,7 @@ fn slip_at(piece: &ContactPiece, place: f64) -> Option<f64> {
     if !(piece.from..=piece.to).contains(&place) {
         return None;
     }
-    let [(first, _), (second, _)] = RULE;
+    let [(first, _), (second, _)] = GAUSS_2;
     let [start, end] = *piece.slip.first_chunk()?;
     let share = ((place - piece.from) / (piece.to - piece.from) - first) / (second - first);
     // No point slips more than its neighbours.

@@ -15,6 +15,7 @@ use super::State;
 use super::contact::{Change, ContactState};
 use super::integrate::{Driver, SMALLEST_PART};
 use crate::model::StepControl;
+use crate::numeric::GAUSS_3;
 use crate::solve::ContactImpulse;
 use crate::solve::newton::Failure;
 
@@ -24,9 +25,6 @@ const PARTS: u32 = 4;
 const NEAR: f64 = 1e-6;
 /// Part of a step after which it is asked whether a contact slides.
 const BEGUN: f64 = 1e-2;
-/// The rule of Gauss with three points on (0, 1).
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 impl Driver<'_, '_> {
     /// Refuses a step to `new` whose way leads through an obstacle, and one of fixed length that
@@ -145,7 +143,7 @@ impl Driver<'_, '_> {
                     None => (self.state.time, new.time),
                 };
                 scratch.resize(new.q.len(), 0.0);
-                for (at, weight) in GAUSS {
+                for (at, weight) in GAUSS_3 {
                     let state = self.state.between(new, begin + at * (end - begin), None);
                     let force = self.system.contact_force(contact, &state.q, &mut scratch);
                     let weight = weight * (end - begin);

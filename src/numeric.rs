@@ -1,0 +1,7 @@
+//! Small numerical tools that know nothing of beams: Gauss' rules with few points, cubic splines.
+
+mod gauss;
+mod spline;
+
+pub use gauss::{GAUSS_2, GAUSS_3, GAUSS_6, GAUSS_10};
+pub use spline::{End, rates};
