@@ -53,7 +53,7 @@ mod winding;
 
 pub use action::{Action, Actions, Side};
 pub use assemble::Assembly;
-pub use contact::{ContactEffect, FrictionEffect, Way};
+pub use contact::{ContactEffect, CubicStates, FrictionEffect};
 pub use density::{Density, Gradient, Hessian};
 pub use discretized::DiscretizedBeam;
 pub use dissipation::{Damping, Dissipation, Rayleigh};

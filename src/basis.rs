@@ -38,7 +38,7 @@ pub use table::{BasisTable, Cell};
 
 use cells::{Supports, distinct_cells};
 use interpolation::{Interpolation, Quality, Wanted};
-use rpim::{Precisions, Shape};
+use rpim::{Interpolant, Precisions};
 
 /// Distance at which a point is taken to be a node, in units of the round-off of the beam's length.
 const NODE_SNAP: f64 = 16.0 * f64::EPSILON;
@@ -68,7 +68,7 @@ enum Shapes {
     Rpim {
         interpolation: Interpolation,
         /// Per geometry.
-        shapes: Vec<Shape>,
+        shapes: Vec<Interpolant>,
     },
 }
 
@@ -155,7 +155,7 @@ impl Basis {
             let cell = cell as usize;
             let here = supports.of(cell);
             let place = rpim::place(&nodes, here.clone(), cell);
-            let shape = Shape::solve(&interpolation, place, &mut precisions)
+            let shape = Interpolant::solve(&interpolation, place, &mut precisions)
                 .map_err(|quality| ill_conditioned(cell, here.start, place.nodes, kernel, quality))?;
             shapes.push(shape);
         }

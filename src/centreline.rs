@@ -42,10 +42,10 @@ pub enum Centreline {
 
 /// A centreline ready for evaluation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve(Shape);
+pub struct Curve(Geometry);
 
 #[derive(Clone, Debug, PartialEq)]
-enum Shape {
+enum Geometry {
     Line { start: [f64; 2], direction: [f64; 2], length: f64 },
     Arc { center: [f64; 2], radius: f64, from: f64, turn: f64, length: f64 },
     Spline(Spline),
@@ -92,11 +92,11 @@ impl Curve {
                 if !(center.iter().all(|c| c.is_finite()) && from.is_finite() && turn.is_finite()) {
                     return Err(CurveError::NotFinite);
                 }
-                Shape::Arc { center: *center, radius: *radius, from: *from, turn, length }
+                Geometry::Arc { center: *center, radius: *radius, from: *from, turn, length }
             }
             Centreline::Points(points) => match points.as_slice() {
                 [start, end] => line(*start, *end)?,
-                points => Shape::Spline(Spline::through(points)?),
+                points => Geometry::Spline(Spline::through(points)?),
             },
         };
         Ok(Self(shape))
@@ -105,8 +105,8 @@ impl Curve {
     /// Length L \[m\].
     pub fn length(&self) -> f64 {
         match &self.0 {
-            Shape::Line { length, .. } | Shape::Arc { length, .. } => *length,
-            Shape::Spline(spline) => spline.length(),
+            Geometry::Line { length, .. } | Geometry::Arc { length, .. } => *length,
+            Geometry::Spline(spline) => spline.length(),
         }
     }
 
@@ -114,25 +114,25 @@ impl Curve {
     /// spline.
     pub fn position(&self, s: f64) -> [f64; 2] {
         match &self.0 {
-            Shape::Line { start, direction, .. } => add(*start, *direction, s),
-            Shape::Arc { center, radius, from, turn, length } => {
+            Geometry::Line { start, direction, .. } => add(*start, *direction, s),
+            Geometry::Arc { center, radius, from, turn, length } => {
                 let (sin, cos) = (from + turn * (s / length)).sin_cos();
                 add(*center, [cos, sin], *radius)
             }
-            Shape::Spline(spline) => spline.at(s)[0],
+            Geometry::Spline(spline) => spline.at(s)[0],
         }
     }
 
     /// Unit tangent r₀'(s).
     pub fn tangent(&self, s: f64) -> [f64; 2] {
         match &self.0 {
-            Shape::Line { direction, .. } => *direction,
-            Shape::Arc { from, turn, length, .. } => {
+            Geometry::Line { direction, .. } => *direction,
+            Geometry::Arc { from, turn, length, .. } => {
                 let (sin, cos) = (from + turn * (s / length)).sin_cos();
                 let way = turn.signum();
                 [-way * sin, way * cos]
             }
-            Shape::Spline(spline) => {
+            Geometry::Spline(spline) => {
                 let [_, d, _] = spline.at(s);
                 let speed = d[0].hypot(d[1]);
                 [d[0] / speed, d[1] / speed]
@@ -143,9 +143,9 @@ impl Curve {
     /// Curvature κ₀(s) \[1/m\], positive where the curve turns counter-clockwise.
     pub fn curvature(&self, s: f64) -> f64 {
         match &self.0 {
-            Shape::Line { .. } => 0.0,
-            Shape::Arc { radius, turn, .. } => turn.signum() / radius,
-            Shape::Spline(spline) => {
+            Geometry::Line { .. } => 0.0,
+            Geometry::Arc { radius, turn, .. } => turn.signum() / radius,
+            Geometry::Spline(spline) => {
                 let [_, d, dd] = spline.at(s);
                 (d[0] * dd[1] - d[1] * dd[0]) / d[0].hypot(d[1]).powi(3)
             }
@@ -167,10 +167,10 @@ fn positive_length(length: f64) -> Result<f64, CurveError> {
     }
 }
 
-fn line(start: [f64; 2], end: [f64; 2]) -> Result<Shape, CurveError> {
+fn line(start: [f64; 2], end: [f64; 2]) -> Result<Geometry, CurveError> {
     let difference = [end[0] - start[0], end[1] - start[1]];
     let length = positive_length(difference[0].hypot(difference[1]))?;
-    Ok(Shape::Line { start, direction: difference.map(|d| d / length), length })
+    Ok(Geometry::Line { start, direction: difference.map(|d| d / length), length })
 }
 
 /// Piecewise cubic with continuous second derivative.
@@ -378,7 +378,9 @@ mod tests {
     #[test]
     fn arc_length_is_exact_to_round_off() {
         let points = (0..9).map(|k| [f64::from(k), (f64::from(k) * 0.9).sin()]).collect();
-        let Curve(Shape::Spline(spline)) = Curve::new(&Centreline::Points(points)).unwrap() else { panic!() };
+        let Curve(Geometry::Spline(spline)) = Curve::new(&Centreline::Points(points)).unwrap() else {
+            panic!()
+        };
         let fine: f64 = spline
             .pieces
             .iter()

@@ -49,7 +49,7 @@ use crate::centreline::Curve;
 use crate::model::{Analysis, Beam, Model, Place, Probe};
 use crate::run;
 use crate::scene::Scene;
-use bench::{Desk, Measuring};
+use bench::{Measuring, Runner};
 use ladder::{Climbed, Task};
 
 /// What is asked for.
@@ -74,7 +74,7 @@ const LEAST: f64 = 1e-3;
 
 /// How far a study is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress<'a> {
+pub struct StudyProgress<'a> {
     /// What is being done.
     pub doing: &'a str,
     /// Time taken so far \[s\].
@@ -84,7 +84,7 @@ pub struct Progress<'a> {
 }
 
 /// Called after every step of every run, by two threads while the reference is made.
-pub type Watcher<'w> = &'w (dyn Fn(&Progress<'_>) -> Control + Sync);
+pub type Watcher<'w> = &'w (dyn Fn(&StudyProgress<'_>) -> Control + Sync);
 
 /// What was found out about a scene.
 #[derive(Clone, Debug)]
@@ -177,11 +177,11 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
     }
     run::inspect(scene.model(), analysis)?;
     let model = &watched(scene.model());
-    let desk = Desk { model, analysis, start: Instant::now(), budget, watcher };
-    let reference = reference::make(&desk, target, FOR_REFERENCE * budget)?;
+    let runner = Runner { model, analysis, start: Instant::now(), budget, watcher };
+    let reference = reference::make(&runner, target, FOR_REFERENCE * budget)?;
     let uncertainty = reference.uncertainty.error;
     let least = least(target, &reference);
-    let mut bench = Measuring { desk, reference: &reference, begun: 0 };
+    let mut bench = Measuring { runner, reference: &reference, begun: 0 };
     let task = Task { model, analysis, target, least, deadline: budget };
     let Climbed { rungs, left_out, interrupted } = ladder::climb(&task, &mut bench);
     let points = rung::points(&rungs, least);
@@ -197,7 +197,7 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
         }
     };
     let front = rung::front(&points);
-    let seconds = desk.now();
+    let seconds = runner.now();
     Ok(Study { options, reference, rungs, front, best, left_out, complete: !interrupted, seconds })
 }
 
@@ -398,7 +398,7 @@ mod tests {
         let scene = arm("analysis.modal.count = 2");
         for (target, meets) in [(1.1652e-3, false), (1.17e-3, true)] {
             let told = Mutex::new(Vec::<String>::new());
-            let watcher = |now: &Progress<'_>| {
+            let watcher = |now: &StudyProgress<'_>| {
                 assert_eq!(now.budget, 60.0);
                 let mut told = told.lock().unwrap();
                 if told.last().is_none_or(|last| *last != now.doing) {
@@ -433,7 +433,7 @@ mod tests {
     fn a_reference_that_takes_too_long_is_given_up() {
         let scene = arm("effect.force = [{ beam = 'arm', at = 'end', value = [0, 1] }]\n\
                          analysis.static = { steps = 4 }");
-        let watcher = |_: &Progress<'_>| {
+        let watcher = |_: &StudyProgress<'_>| {
             std::thread::sleep(Duration::from_millis(30));
             Control::Continue
         };
@@ -456,7 +456,7 @@ mod tests {
     #[test]
     fn what_was_measured_before_an_interruption_is_kept() {
         let asked = AtomicUsize::new(0);
-        let watcher = |progress: &Progress<'_>| {
+        let watcher = |progress: &StudyProgress<'_>| {
             let measuring = progress.doing.starts_with(bench::MEASURING);
             if measuring && asked.fetch_add(1, Ordering::Relaxed) > 500 {
                 Control::Stop

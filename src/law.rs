@@ -37,7 +37,7 @@ pub enum Law {
     /// Σ c_k t^k, t in seconds.
     Polynomial(Vec<f64>),
     /// Through given points, constant before the first and after the last.
-    Table(Table),
+    Table(Tabulated),
     /// The angle of a hub that is brought to the speed Ω within T (Simo & Vu-Quoc, *J. Appl. Mech.*
     /// 53, 1986, 855–863): Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) until T, then Ω (t − T/2).
     SpinUp {
@@ -50,14 +50,14 @@ pub enum Law {
 
 /// Points of a law.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
+pub struct Tabulated {
     times: Vec<f64>,
     values: Vec<f64>,
     /// First derivatives of a cubic spline at the points; none: straight between them.
     rates: Option<Vec<[f64; 1]>>,
 }
 
-impl Table {
+impl Tabulated {
     /// Through `values` at increasing `times` \[s\], straight or by the natural cubic spline
     /// between them; none where there are fewer than two points or the times do not increase.
     pub fn new(times: Vec<f64>, values: Vec<f64>, smooth: bool) -> Option<Self> {
@@ -234,7 +234,7 @@ mod tests {
 
     fn laws() -> Vec<Law> {
         let table = |smooth| {
-            Law::Table(Table::new(vec![0.1, 0.5, 0.7, 2.0], vec![0.0, 1.0, -1.0, 0.5], smooth).unwrap())
+            Law::Table(Tabulated::new(vec![0.1, 0.5, 0.7, 2.0], vec![0.0, 1.0, -1.0, 0.5], smooth).unwrap())
         };
         vec![
             Law::Ramp { start: 0.3, duration: 1.2 },
@@ -324,7 +324,7 @@ mod tests {
     fn a_spline_is_as_smooth_as_it_says_and_meets_its_points() {
         let times = [0.0, 1.0, 1.5, 4.0];
         let values = [2.0, -1.0, 0.5, 0.25];
-        let law = Law::Table(Table::new(times.to_vec(), values.to_vec(), true).unwrap());
+        let law = Law::Table(Tabulated::new(times.to_vec(), values.to_vec(), true).unwrap());
         for (t, v) in times.iter().zip(values) {
             assert!((law.at(*t)[0] - v).abs() < 1e-14);
         }
@@ -338,13 +338,13 @@ mod tests {
     #[test]
     fn a_spline_is_flat_where_it_is_to_be() {
         // With both ends flat and two points it is 3x² − 2x³.
-        let table = Table::with_flat_ends(vec![0.0, 2.0], vec![1.0, 3.0], [true; 2]).unwrap();
+        let table = Tabulated::with_flat_ends(vec![0.0, 2.0], vec![1.0, 3.0], [true; 2]).unwrap();
         for x in [0.0, 0.3, 0.5, 1.0] {
             assert!((table.between(2.0 * x)[0] - 1.0 - 2.0 * x * x * (3.0 - 2.0 * x)).abs() < 1e-14);
         }
         for flat in [[true, false], [false, true], [true, true]] {
             let (s, v) = (vec![0.0, 1.0, 1.5, 4.0], vec![2.0, -1.0, 0.5, 0.25]);
-            let table = Table::with_flat_ends(s.clone(), v.clone(), flat).unwrap();
+            let table = Tabulated::with_flat_ends(s.clone(), v.clone(), flat).unwrap();
             let ends = [table.between(0.0), table.between(4.0)];
             for (end, flat) in ends.iter().zip(flat) {
                 assert!(end[if flat { 1 } else { 2 }].abs() < 1e-12, "{end:?}");
@@ -359,7 +359,7 @@ mod tests {
 
     #[test]
     fn a_table_needs_rising_times() {
-        assert_eq!(Table::new(vec![0.0, 0.0], vec![1.0, 2.0], false), None);
-        assert_eq!(Table::new(vec![0.0], vec![1.0], false), None);
+        assert_eq!(Tabulated::new(vec![0.0, 0.0], vec![1.0, 2.0], false), None);
+        assert_eq!(Tabulated::new(vec![0.0], vec![1.0], false), None);
     }
 }

@@ -17,7 +17,7 @@ pub use velocity::{InitialVelocity, Profile};
 pub use crate::basis::{Discretization, Kernel, Nodes, SideCondition};
 pub use crate::beam::{Beam, GaussPoints, Place, Section, StrainMeasure};
 pub use crate::centreline::Centreline;
-pub use crate::law::{Law, Table};
+pub use crate::law::{Law, Tabulated};
 
 use crate::assembly::Part;
 use std::sync::Arc;

@@ -31,7 +31,7 @@ mod motion;
 pub mod plot;
 #[cfg(feature = "report")]
 mod report;
-mod stage;
+mod staged_files;
 mod summary;
 mod tables;
 mod vtu;
@@ -46,7 +46,7 @@ pub use summary::{EnergySummary, Summary};
 
 use crate::restart::SavedState;
 use crate::results::{PICTURES, Results};
-pub(crate) use stage::Stage;
+pub(crate) use staged_files::StagedFiles;
 pub(crate) use tables::{cell, exact};
 
 /// Which of the larger files to write.
@@ -115,7 +115,7 @@ pub fn write(
     let figures = figures::figures(results)?;
     #[cfg(feature = "report")]
     let page = report::page(results, &Summary::of(results), &figures)?;
-    let mut stage = Stage::new(directory)?;
+    let mut stage = StagedFiles::new(directory)?;
     if !t.parameter.is_empty() {
         stage.add("probes.csv", |out| tables::probes(t, out))?;
         stage.add("energy.csv", |out| tables::energy(t, out))?;
@@ -182,7 +182,7 @@ pub fn write(
 /// # Errors
 /// [`OutputError`] where it cannot be written; an older one is then left as it was.
 pub fn save(directory: &Path, state: &SavedState) -> Result<(), OutputError> {
-    let mut stage = Stage::new(directory)?;
+    let mut stage = StagedFiles::new(directory)?;
     stage.add("state.json", |out| Ok(serde_json::to_writer(out, state)?))?;
     stage.commit()
 }

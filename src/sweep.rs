@@ -46,19 +46,19 @@ pub use journal::Outcome;
 pub use manifest::MANIFEST;
 pub use shard::Shard;
 
-use crate::output::{Stage, Summary};
+use crate::output::{StagedFiles, Summary};
 use crate::run::{self, Control};
 use crate::scene::Scene;
 use journal::{Finished, Journal, Record};
 use manifest::Manifest;
-use table::{Columns, Table};
+use table::{Columns, SweepTable};
 
 /// Name of the table in the directory of the sweep.
 pub const TABLE: &str = "sweep.csv";
 
 /// How far a part of a sweep is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
+pub struct SweepProgress {
     /// Runs finished, now or before.
     pub finished: usize,
     /// Runs of this part.
@@ -68,7 +68,7 @@ pub struct Progress {
 }
 
 /// Called at the start and after every run, by one thread at a time.
-pub type Observer<'o> = &'o mut (dyn FnMut(&Progress) -> Control + Send);
+pub type Observer<'o> = &'o mut (dyn FnMut(&SweepProgress) -> Control + Send);
 
 /// A sweep all of whose scenes are legal.
 #[derive(Debug)]
@@ -120,11 +120,11 @@ impl Sweep {
         let finished = Finished::read(directory, self.grid.runs())?;
         let (before, left): (Vec<usize>, Vec<usize>) =
             shard.runs(self.grid.runs()).partition(|run| finished.has(*run));
-        let progress = Progress { finished: before.len(), runs: before.len() + left.len(), unsolved: 0 };
+        let progress = SweepProgress { finished: before.len(), runs: before.len() + left.len(), unsolved: 0 };
         drop((finished, before));
         let stopped = observer(&progress) == Control::Stop;
-        let desk = Mutex::new(Desk { journal, progress, observer, stopped });
-        let lock = || desk.lock().unwrap_or_else(PoisonError::into_inner);
+        let collector = Mutex::new(Collector { journal, progress, observer, stopped });
+        let lock = || collector.lock().unwrap_or_else(PoisonError::into_inner);
         // A queue: runs differ in length, and who is free takes the next one.
         self.pool.install(|| {
             left.into_iter().par_bridge().try_for_each(|run| {
@@ -135,7 +135,7 @@ impl Sweep {
                 lock().enter(&record)
             })
         })?;
-        let Progress { finished, runs, .. } = lock().progress;
+        let SweepProgress { finished, runs, .. } = lock().progress;
         if finished < runs {
             return Err(SweepError::Interrupted { directory: directory.to_owned(), finished, runs });
         }
@@ -168,15 +168,15 @@ fn numbers_alone() -> run::Options<'static> {
 }
 
 /// Where the threads bring their finished runs.
-struct Desk<'o> {
+struct Collector<'o> {
     journal: Journal,
-    progress: Progress,
+    progress: SweepProgress,
     observer: Observer<'o>,
     /// No further run is to begin.
     stopped: bool,
 }
 
-impl Desk<'_> {
+impl Collector<'_> {
     fn enter(&mut self, record: &Record) -> Result<(), SweepError> {
         if let Err(error) = self.journal.append(record) {
             self.stopped = true;
@@ -230,9 +230,9 @@ pub fn merge(directory: &Path) -> Result<Merged, SweepError> {
         }
     }
     let table = directory.join(TABLE);
-    let mut stage = Stage::new(directory)?;
+    let mut stage = StagedFiles::new(directory)?;
     stage.add(TABLE, |out| {
-        let mut rows = Table::new(out, &grid, &columns)?;
+        let mut rows = SweepTable::new(out, &grid, &columns)?;
         for record in finished.records() {
             rows.row(&record.map_err(std::io::Error::other)?)?;
         }
@@ -289,7 +289,7 @@ mod tests {
     /// What the observer is told, who ends the sweep after so many calls.
     fn told(folder: &Path, shard: Shard, calls: usize) -> (Vec<[usize; 3]>, Result<(), SweepError>) {
         let mut told = Vec::new();
-        let done = sweep(folder).run(folder, shard, &mut |now: &Progress| {
+        let done = sweep(folder).run(folder, shard, &mut |now: &SweepProgress| {
             told.push([now.finished, now.runs, now.unsolved]);
             if told.len() == calls { Control::Stop } else { Control::Continue }
         });

@@ -4,7 +4,7 @@ use super::{AcceptedState, Actions, ContactPiece, Effect, InternalVariables, Wor
 use crate::linear::Matrix;
 
 /// Control states of a cubic: θ = 0, two between, θ = 1.
-pub type Way<'q> = [&'q [f64]; 4];
+pub type CubicStates<'q> = [&'q [f64]; 4];
 
 /// A contact of one beam with one obstacle.
 pub trait ContactEffect: Effect {
@@ -12,15 +12,15 @@ pub trait ContactEffect: Effect {
     fn intervals(&self, q: &[f64]) -> usize;
 
     /// The first part of the way at which the beam touches by more than round-off, if it does.
-    fn first_touch(&self, way: Way<'_>) -> Option<f64>;
+    fn first_touch(&self, way: CubicStates<'_>) -> Option<f64>;
 
     /// The first part of the way at which the beam is deeper than before by so much of the
     /// obstacle's thickness that the force on the way is not seen; and, unless it `may_cross`, at
     /// which it might leave the obstacle on the other side.
-    fn conflict(&self, way: Way<'_>, may_cross: bool) -> Option<f64>;
+    fn conflict(&self, way: CubicStates<'_>, may_cross: bool) -> Option<f64>;
 
     /// Whether the beam might leave the obstacle on the other side.
-    fn crosses(&self, way: Way<'_>) -> bool;
+    fn crosses(&self, way: CubicStates<'_>) -> bool;
 
     /// Whether anything touches in the state `q`.
     fn touches(&self, q: &[f64]) -> bool {

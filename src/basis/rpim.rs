@@ -40,7 +40,7 @@ enum Factors {
 
 /// The solved shape functions of a cell.
 #[derive(Clone, Debug)]
-pub struct Shape {
+pub struct Interpolant {
     factors: Factors,
     /// How well they are known.
     pub quality: Quality,
@@ -67,7 +67,7 @@ impl Precisions {
     }
 }
 
-impl Shape {
+impl Interpolant {
     /// Solves a cell at the precision that it needs; on failure, the quality of the last attempt.
     pub fn solve(
         interpolation: &Interpolation,
@@ -164,7 +164,7 @@ mod tests {
     /// Rows of orders 0 to 2 at a few points of a cell, from at least `bits` bits.
     fn rows(interpolation: &Interpolation, place: Place<'_>, bits: f64) -> (Quality, Vec<f64>) {
         let mut precisions = Precisions { hint: bits, ..Precisions::default() };
-        let shape = Shape::solve(interpolation, place, &mut precisions).unwrap();
+        let shape = Interpolant::solve(interpolation, place, &mut precisions).unwrap();
         let width = 2 * place.nodes.len();
         let mut rows = Vec::new();
         for xi in [0.11, 0.5, 0.93] {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use ancf::cost::{self, Control, Options, Progress};
+use ancf::cost::{self, Control, Options, StudyProgress};
 use clap::Args;
 
 use super::destination::Destination;
@@ -62,7 +62,7 @@ pub fn cost(arguments: &CostArguments) -> Result<(), Failure> {
         None => Destination::prepare(&default_directory(&arguments.scene))?,
     };
     let line = CostLine::new(arguments.quiet);
-    let watcher = |progress: &Progress<'_>| {
+    let watcher = |progress: &StudyProgress<'_>| {
         line.show(progress);
         if interrupted.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
     };

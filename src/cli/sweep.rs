@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 use ancf::run::Control;
-use ancf::sweep::{self, Axis, Progress, Shard, Sweep};
+use ancf::sweep::{self, Axis, Shard, Sweep, SweepProgress};
 use clap::Args;
 
 use super::destination::Destination;
@@ -75,7 +75,7 @@ pub fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
     };
     let (directory, shard) = (destination.path().to_owned(), arguments.shard);
     let line = SweepLine::new(arguments.quiet);
-    let observer = &mut |progress: &Progress| {
+    let observer = &mut |progress: &SweepProgress| {
         line.show(progress);
         if interrupted.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
     };

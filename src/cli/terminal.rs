@@ -156,7 +156,7 @@ impl SweepLine {
     }
 
     /// Brings the line up to date. The first call says what was there before.
-    pub fn show(&self, now: &sweep::Progress) {
+    pub fn show(&self, now: &sweep::SweepProgress) {
         let Self(bar) = self;
         if bar.length() == Some(0) {
             bar.set_length(now.runs as u64);
@@ -186,7 +186,7 @@ impl CostLine {
     }
 
     /// Brings the line up to date. The bar is the budget, of which a study may leave some.
-    pub fn show(&self, now: &cost::Progress<'_>) {
+    pub fn show(&self, now: &cost::StudyProgress<'_>) {
         let Self(bar) = self;
         if !bar.is_hidden() {
             bar.set_position((now.spent / now.budget * PARTS as f64) as u64);
@@ -456,10 +456,10 @@ mod tests {
     fn the_line_of_a_sweep_counts_runs() {
         let line = SweepLine::new(true);
         let screen = Screen::of(&line.0);
-        line.show(&sweep::Progress { finished: 2, runs: 8, unsolved: 0 });
+        line.show(&sweep::SweepProgress { finished: 2, runs: 8, unsolved: 0 });
         assert_eq!((line.0.length(), line.0.position()), (Some(8), 2));
         assert_eq!(line.0.message(), "2 of 8 runs");
-        line.show(&sweep::Progress { finished: 5, runs: 8, unsolved: 1 });
+        line.show(&sweep::SweepProgress { finished: 5, runs: 8, unsolved: 1 });
         assert_eq!((line.0.length(), line.0.position()), (Some(8), 5));
         assert_eq!(line.0.message(), "5 of 8 runs, 1 not solved");
         line.0.force_draw();
@@ -471,7 +471,7 @@ mod tests {
     /// A quarter of the budget.
     #[test]
     fn the_line_of_a_study_is_its_budget() {
-        let now = cost::Progress { doing: "setting 3", spent: 3.09375, budget: 12.375 };
+        let now = cost::StudyProgress { doing: "setting 3", spent: 3.09375, budget: 12.375 };
         let line = CostLine::new(true);
         line.show(&now);
         assert_eq!((line.0.message().as_str(), line.0.position()), ("", 0), "there is no terminal");

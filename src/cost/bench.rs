@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{Control, Deviation, Measured, Progress, Reference, Setting, Watcher};
+use super::{Control, Deviation, Measured, Reference, Setting, StudyProgress, Watcher};
 use crate::model::{Analysis, Model};
 use crate::results::Results;
 use crate::run;
@@ -36,7 +36,7 @@ pub(super) trait Bench {
 
 /// The problem, with the clock that everything goes by.
 #[derive(Clone, Copy)]
-pub(super) struct Desk<'a> {
+pub(super) struct Runner<'a> {
     pub model: &'a Model,
     pub analysis: &'a Analysis,
     pub start: Instant,
@@ -44,14 +44,14 @@ pub(super) struct Desk<'a> {
     pub watcher: Watcher<'a>,
 }
 
-impl Desk<'_> {
+impl Runner<'_> {
     pub fn now(&self) -> f64 {
         self.start.elapsed().as_secs_f64()
     }
 
     /// Says what is being done.
     pub fn tell(&self, doing: &str) -> Control {
-        (self.watcher)(&Progress { doing, spent: self.now(), budget: self.budget })
+        (self.watcher)(&StudyProgress { doing, spent: self.now(), budget: self.budget })
     }
 
     /// Runs a setting once, called `doing`, until `deadline` \[s\] at most.
@@ -83,7 +83,7 @@ impl Desk<'_> {
 
 /// Measures against a reference.
 pub(super) struct Measuring<'a> {
-    pub desk: Desk<'a>,
+    pub runner: Runner<'a>,
     pub reference: &'a Reference,
     /// Settings begun so far.
     pub begun: usize,
@@ -91,21 +91,21 @@ pub(super) struct Measuring<'a> {
 
 impl Bench for Measuring<'_> {
     fn now(&self) -> f64 {
-        self.desk.now()
+        self.runner.now()
     }
 
     fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Unmeasured> {
         self.begun += 1;
-        let (desk, mut seconds) = (&self.desk, Vec::with_capacity(MOST_RUNS));
+        let (runner, mut seconds) = (&self.runner, Vec::with_capacity(MOST_RUNS));
         let doing = format!("{MEASURING} {}", self.begun);
         loop {
-            let results = desk.run(setting, &doing, deadline)?;
+            let results = runner.run(setting, &doing, deadline)?;
             let run = results.run();
             seconds.push(run.seconds.build + run.seconds.solve);
             if seconds.len() < MOST_RUNS && seconds.iter().sum::<f64>() < LONG_ENOUGH {
                 continue;
             }
-            let (model, analysis, reference) = (desk.model, desk.analysis, &self.reference.results);
+            let (model, analysis, reference) = (runner.model, runner.analysis, &self.reference.results);
             let deviation =
                 Deviation::between(model, analysis, &results, reference).map_err(Unmeasured::Failed)?;
             return Ok(Measured {
@@ -162,8 +162,8 @@ mod tests {
         Setting { beams: Family::Scene.beams(scene.model(), 1), solver: Solver::Scene }
     }
 
-    fn desk<'a>(scene: &'a Scene, watcher: Watcher<'a>) -> Desk<'a> {
-        Desk {
+    fn runner<'a>(scene: &'a Scene, watcher: Watcher<'a>) -> Runner<'a> {
+        Runner {
             model: scene.model(),
             analysis: scene.analysis(),
             start: Instant::now(),
@@ -184,13 +184,13 @@ mod tests {
         // Stopped by the call of this number, counted from 1.
         let run = |last: usize, deadline: f64| {
             let calls = AtomicUsize::new(0);
-            let watcher = |now: &Progress<'_>| {
+            let watcher = |now: &StudyProgress<'_>| {
                 assert_eq!((now.doing, now.budget), ("this", 60.0));
                 assert!((0.0..60.0).contains(&now.spent), "{}", now.spent);
                 let call = calls.fetch_add(1, Ordering::Relaxed) + 1;
                 if call == last { Control::Stop } else { Control::Continue }
             };
-            let found = desk(&scene, &watcher).run(&setting, "this", deadline);
+            let found = runner(&scene, &watcher).run(&setting, "this", deadline);
             (found.map(|trajectory| trajectory.run().complete), calls.load(Ordering::Relaxed))
         };
         let (found, calls) = run(0, f64::INFINITY);
@@ -208,8 +208,8 @@ mod tests {
         let scene = scene("", "dynamic = { duration = 1e-3, output_every = 1e-3 }");
         let integrator = Integrator::Gauss { stages: 3, step: STEP_CONTROL };
         let setting = Setting { solver: Solver::Integrator(integrator), ..as_it_is(&scene) };
-        let watcher = |_: &Progress<'_>| Control::Continue;
-        match desk(&scene, &watcher).run(&setting, "this", f64::INFINITY) {
+        let watcher = |_: &StudyProgress<'_>| Control::Continue;
+        match runner(&scene, &watcher).run(&setting, "this", f64::INFINITY) {
             Err(Unmeasured::Failed(why)) => assert!(why.contains("of an inextensible beam"), "{why}"),
             other => panic!("{other:?}"),
         }
@@ -218,11 +218,11 @@ mod tests {
     #[test]
     fn the_clock_runs_from_the_start() {
         let scene = steps();
-        let watcher = |_: &Progress<'_>| Control::Continue;
+        let watcher = |_: &StudyProgress<'_>| Control::Continue;
         let start = Instant::now().checked_sub(Duration::from_secs(2)).expect("two seconds ago");
-        let desk = Desk { start, ..desk(&scene, &watcher) };
-        assert!((2.0..1000.0).contains(&desk.now()), "{}", desk.now());
-        let bench = Measuring { desk, reference: &reference(Trajectory::default().into()), begun: 0 };
+        let runner = Runner { start, ..runner(&scene, &watcher) };
+        assert!((2.0..1000.0).contains(&runner.now()), "{}", runner.now());
+        let bench = Measuring { runner, reference: &reference(Trajectory::default().into()), begun: 0 };
         assert!((2.0..1000.0).contains(&bench.now()), "{}", bench.now());
     }
 
@@ -233,13 +233,13 @@ mod tests {
         let setting = as_it_is(&scene);
         let reference = reference(scene.model().solve(scene.analysis()).unwrap());
         let measure = |pause: Duration| {
-            let watcher = |now: &Progress<'_>| {
+            let watcher = |now: &StudyProgress<'_>| {
                 assert_eq!(now.doing, "setting 1");
                 sleep(pause);
                 Control::Continue
             };
             let start = Instant::now();
-            let mut bench = Measuring { desk: desk(&scene, &watcher), reference: &reference, begun: 0 };
+            let mut bench = Measuring { runner: runner(&scene, &watcher), reference: &reference, begun: 0 };
             let measured = bench.measure(&setting, f64::INFINITY).unwrap();
             assert_eq!((measured.degrees_of_freedom, measured.deviation.error), (5, 0.0));
             assert!(measured.statistics.load_steps >= 4 && measured.warnings.is_empty(), "{measured:?}");
@@ -258,8 +258,8 @@ mod tests {
     fn a_run_that_compares_with_nothing_is_not_measured() {
         let scene = steps();
         let reference = reference(Trajectory { parameter: vec![0.3], ..Trajectory::default() }.into());
-        let watcher = |_: &Progress<'_>| Control::Continue;
-        let mut bench = Measuring { desk: desk(&scene, &watcher), reference: &reference, begun: 0 };
+        let watcher = |_: &StudyProgress<'_>| Control::Continue;
+        let mut bench = Measuring { runner: runner(&scene, &watcher), reference: &reference, begun: 0 };
         let found = bench.measure(&as_it_is(&scene), f64::INFINITY);
         let expected = "no record at the times or loads of the reference".to_owned();
         assert_eq!(found, Err(Unmeasured::Failed(expected)));

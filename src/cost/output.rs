@@ -19,7 +19,7 @@ use super::rung::front;
 use super::{Deviation, Family, LeftOut, Measured, Rung, Solver, Study, least};
 use crate::model::Integrator;
 use crate::output::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, Series, human};
-use crate::output::{OutputError, Stage, exact};
+use crate::output::{OutputError, StagedFiles, exact};
 
 /// What `cost.json` holds.
 #[derive(Clone, Debug, Serialize)]
@@ -131,7 +131,7 @@ pub fn write(directory: &Path, study: &Study) -> Result<(), OutputError> {
         (by_work.as_str(), format!("The {error} against work.")),
     ];
     let html = html(study, &report, &figures)?;
-    let mut stage = Stage::new(directory)?;
+    let mut stage = StagedFiles::new(directory)?;
     stage.add(csv, |out| table(&report, out))?;
     stage.add(time, |out| out.write_all(by_time.as_bytes()))?;
     stage.add(work, |out| out.write_all(by_work.as_bytes()))?;

@@ -1,7 +1,7 @@
 //! What errors are measured against: two runs that share neither the discretisation nor, in motion,
 //! the integrator, made finer until they agree.
 
-use super::bench::{Desk, Unmeasured};
+use super::bench::{Runner, Unmeasured};
 use super::{CostError, Deviation, Family, Setting, Solver};
 use crate::model::RPIM_GAUSS_POINTS;
 use crate::model::{Analysis, Integrator, StepControl};
@@ -36,11 +36,11 @@ pub struct Reference {
 }
 
 /// The settings of a pair.
-fn pair(desk: &Desk<'_>, level: u32, target: f64) -> [(Family, usize, Setting); 2] {
+fn pair(runner: &Runner<'_>, level: u32, target: f64) -> [(Family, usize, Setting); 2] {
     let meshfree = Family::usual(RPIM_GAUSS_POINTS.bend);
     let cells = CELLS << level;
     let step = StepControl::Tolerance(0.05 * target * 0.25_f64.powi(level as i32));
-    let solvers = match desk.analysis {
+    let solvers = match runner.analysis {
         Analysis::Dynamic(_) => [
             Solver::Integrator(Integrator::Gauss { stages: 3, step }),
             Solver::Integrator(Integrator::Radau { stages: 3, step }),
@@ -49,7 +49,9 @@ fn pair(desk: &Desk<'_>, level: u32, target: f64) -> [(Family, usize, Setting); 
     };
     let [first, second] = solvers;
     [(meshfree, cells, first), (Family::REDUCED, ELEMENTS_PER_CELL * cells, second)].map(
-        |(family, cells, solver)| (family, cells, Setting { beams: family.beams(desk.model, cells), solver }),
+        |(family, cells, solver)| {
+            (family, cells, Setting { beams: family.beams(runner.model, cells), solver })
+        },
     )
 }
 
@@ -74,14 +76,14 @@ fn is_final(error: f64, before: Option<f64>, target: f64, clock: &Clock) -> bool
 }
 
 /// Refines until two runs agree well below `target`, or the time `deadline` \[s\] is near.
-pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Reference, CostError> {
+pub(super) fn make(runner: &Runner<'_>, target: f64, deadline: f64) -> Result<Reference, CostError> {
     // Gone before the ladder, whose runs are alone.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
-    let start = desk.now();
+    let start = runner.now();
     let mut best: Option<Reference> = None;
     let mut reason = String::new();
     for level in 0..PAIRS {
-        let settings = pair(desk, level, target);
+        let settings = pair(runner, level, target);
         let names = settings.each_ref().map(|(family, cells, setting)| match setting.solver {
             Solver::Scene => format!("{family}, {cells} cells"),
             solver => format!("{family}, {cells} cells, {solver}"),
@@ -91,22 +93,22 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
             None => format!("reference with {} cells", settings[0].1),
             Some(error) => format!("reference with {} cells (agreement so far {error:.1e})", settings[0].1),
         };
-        let began = desk.now();
-        let run = |i: usize| desk.run(&settings[i].2, &doing, deadline);
+        let began = runner.now();
+        let run = |i: usize| runner.run(&settings[i].2, &doing, deadline);
         let found = match pool.join(|| run(0), || run(1)) {
             (Err(Unmeasured::Interrupted), _) | (_, Err(Unmeasured::Interrupted)) => {
                 return Err(CostError::Interrupted);
             }
             (Ok(a), Ok(b)) => {
                 let warnings = [&a.run().warnings[..], &b.run().warnings].concat();
-                let deviation = Deviation::between(desk.model, desk.analysis, &b, &a);
+                let deviation = Deviation::between(runner.model, runner.analysis, &b, &a);
                 deviation.map(|deviation| (a, deviation, warnings)).map_err(Unmeasured::Failed)
             }
             (Err(miss), _) | (_, Err(miss)) => Err(miss),
         };
         match found {
             Ok((results, mut uncertainty, warnings)) => {
-                if matches!(desk.analysis, Analysis::Dynamic(_)) {
+                if matches!(runner.analysis, Analysis::Dynamic(_)) {
                     // A drift is measured against nothing.
                     uncertainty.energy = None;
                 }
@@ -123,12 +125,12 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
                 break;
             }
         }
-        let now = desk.now();
+        let now = runner.now();
         let clock = Clock {
             spent: now - start,
             next: GROWTH * (now - began),
             left: deadline - now,
-            budget: desk.budget,
+            budget: runner.budget,
         };
         let error = best.as_ref().map_or(f64::INFINITY, |best| best.uncertainty.error);
         if is_final(error, agreement, target, &clock) {
@@ -136,7 +138,7 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
         }
     }
     match best {
-        Some(best) => Ok(Reference { seconds: desk.now() - start, ..best }),
+        Some(best) => Ok(Reference { seconds: runner.now() - start, ..best }),
         None => Err(CostError::NoReference { reason }),
     }
 }
@@ -144,7 +146,7 @@ pub(super) fn make(desk: &Desk<'_>, target: f64, deadline: f64) -> Result<Refere
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cost::{Control, Progress};
+    use crate::cost::{Control, StudyProgress};
     use crate::scene::{Scene, parse};
     use std::sync::Mutex;
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -161,8 +163,8 @@ mod tests {
              analysis.dynamic = { duration = 1, output_every = 0.1 }",
         )
         .unwrap();
-        let watcher = |_: &Progress<'_>| Control::Continue;
-        let desk = Desk {
+        let watcher = |_: &StudyProgress<'_>| Control::Continue;
+        let runner = Runner {
             model: scene.model(),
             analysis: scene.analysis(),
             start: Instant::now(),
@@ -170,7 +172,7 @@ mod tests {
             watcher: &watcher,
         };
         for (level, cells, tolerance) in [(0, 16, 5e-6), (1, 32, 1.25e-6), (3, 128, 7.8125e-8)] {
-            let [(meshfree, first, gauss), (elements, second, radau)] = pair(&desk, level, 1e-4);
+            let [(meshfree, first, gauss), (elements, second, radau)] = pair(&runner, level, 1e-4);
             assert_eq!((first, second), (cells, 4 * cells));
             assert!(matches!(meshfree, Family::Rpim { .. }) && matches!(elements, Family::Ancf(_)));
             let nodes = |setting: &Setting| setting.beams[0].0.nodes().count();
@@ -232,14 +234,14 @@ mod tests {
     /// way.
     fn made(target: f64, deadline: f64) -> (Reference, Vec<String>) {
         let (scene, told) = (vibrations(), Mutex::new(Vec::<String>::new()));
-        let watcher = |now: &Progress<'_>| {
+        let watcher = |now: &StudyProgress<'_>| {
             let mut told = told.lock().unwrap();
             if told.last().is_none_or(|last| *last != now.doing) {
                 told.push(now.doing.to_owned());
             }
             Control::Continue
         };
-        let desk = Desk {
+        let runner = Runner {
             model: scene.model(),
             analysis: scene.analysis(),
             start: Instant::now().checked_sub(Duration::from_secs(100)).expect("100 s ago"),
@@ -247,7 +249,7 @@ mod tests {
             watcher: &watcher,
         };
         let start = Instant::now();
-        let reference = make(&desk, target, deadline).unwrap();
+        let reference = make(&runner, target, deadline).unwrap();
         assert!((0.0..=start.elapsed().as_secs_f64()).contains(&reference.seconds), "{}", reference.seconds);
         (reference, told.into_inner().unwrap())
     }
@@ -278,7 +280,7 @@ mod tests {
     #[test]
     fn the_runs_of_a_pair_go_side_by_side() {
         let (scene, begun) = (vibrations(), AtomicUsize::new(0));
-        let watcher = |_: &Progress<'_>| {
+        let watcher = |_: &StudyProgress<'_>| {
             begun.fetch_add(1, Ordering::SeqCst);
             let start = Instant::now();
             while begun.load(Ordering::SeqCst) < 2 {
@@ -289,14 +291,14 @@ mod tests {
             }
             Control::Continue
         };
-        let desk = Desk {
+        let runner = Runner {
             model: scene.model(),
             analysis: scene.analysis(),
             start: Instant::now(),
             budget: 1000.0,
             watcher: &watcher,
         };
-        let reference = make(&desk, 1e-2, 1000.0);
+        let reference = make(&runner, 1e-2, 1000.0);
         assert!(reference.is_ok(), "{reference:?}");
     }
 }

@@ -89,12 +89,12 @@ pub struct Dynamic {
     /// How time advances.
     pub integrator: Integrator,
     /// What to watch for.
-    pub events: Vec<Event>,
+    pub events: Vec<EventCondition>,
 }
 
 /// A probe's coordinate reaches a value from one side, also where it turns back there.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Event {
+pub struct EventCondition {
     /// Which, and which value.
     pub target: ProbeTarget,
     /// Which way.

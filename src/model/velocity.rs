@@ -1,6 +1,6 @@
 //! How beams move at the start of a motion.
 
-use super::Table;
+use super::Tabulated;
 
 /// The velocity of a beam at the start: ṙ = v + ω × (r − c) + w(s). Several of one beam add up.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,7 +27,7 @@ pub enum Profile {
     /// Σ c_k s^k, s in metres, c_k in m/s/mᵏ.
     Polynomial(Vec<f64>),
     /// Through given points.
-    Table(Table),
+    Table(Tabulated),
 }
 
 impl Profile {

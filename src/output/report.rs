@@ -18,7 +18,7 @@ struct Page<'a> {
     style: &'static str,
     player: &'static str,
     warnings: &'a [String],
-    results: Vec<Table>,
+    results: Vec<NumberTable>,
     settings: &'a [(String, String)],
     counts: Vec<(&'static str, String)>,
     /// JSON, free of `<`; empty where nothing moves.
@@ -28,7 +28,7 @@ struct Page<'a> {
 }
 
 /// A table of numbers.
-struct Table {
+struct NumberTable {
     caption: String,
     header: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -80,7 +80,7 @@ fn last(t: &Trajectory) -> String {
     }
 }
 
-fn probes(t: &Trajectory, summary: &Summary) -> Option<Table> {
+fn probes(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
     if summary.probes.is_empty() {
         return None;
     }
@@ -102,14 +102,14 @@ fn probes(t: &Trajectory, summary: &Summary) -> Option<Table> {
         }
         row
     };
-    Some(Table {
+    Some(NumberTable {
         caption: format!("Probes{}", last(t)),
         header,
         rows: summary.probes.iter().map(row).collect(),
     })
 }
 
-fn energy(t: &Trajectory, summary: &Summary) -> Option<Table> {
+fn energy(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
     let e = summary.energy?;
     let parts = [
         ("stretch", e.stretch),
@@ -135,10 +135,10 @@ fn energy(t: &Trajectory, summary: &Summary) -> Option<Table> {
         header.push("drift [–]".into());
         row.push(human(drift, 3));
     }
-    Some(Table { caption: format!("Energies{}", last(t)), header, rows: vec![row] })
+    Some(NumberTable { caption: format!("Energies{}", last(t)), header, rows: vec![row] })
 }
 
-fn eigenvalues(results: &Results) -> Option<Table> {
+fn eigenvalues(results: &Results) -> Option<NumberTable> {
     let (caption, name, none) = match results {
         Results::Vibrations(_) => ("Natural frequencies", "frequency [Hz]", "0 (nothing resists)"),
         Results::CriticalLoads(_) => ("Critical loads", "load factor", "0"),
@@ -147,7 +147,7 @@ fn eigenvalues(results: &Results) -> Option<Table> {
     let number = |v: f64| if v == 0.0 { none.into() } else { human(v, 8) };
     let values = results.eigenvalues();
     let rows = values.iter().enumerate().map(|(i, &v)| vec![format!("{}", i + 1), number(v)]).collect();
-    Some(Table { caption: caption.into(), header: vec!["mode".into(), name.into()], rows })
+    Some(NumberTable { caption: caption.into(), header: vec!["mode".into(), name.into()], rows })
 }
 
 fn counts(t: &Trajectory, summary: &Summary) -> Vec<(&'static str, String)> {

@@ -28,9 +28,9 @@ pub(crate) fn cell(text: &str) -> Cow<'_, str> {
     if signed || text.starts_with(['=', '@', '\t', '\r']) { format!("'{text}").into() } else { text.into() }
 }
 
-struct Table<'a>(csv::Writer<&'a mut dyn Write>);
+struct CsvTable<'a>(csv::Writer<&'a mut dyn Write>);
 
-impl<'a> Table<'a> {
+impl<'a> CsvTable<'a> {
     fn new(out: &'a mut dyn Write, header: &[String]) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(out);
         writer.write_record(header.iter().map(|name| cell(name).into_owned()))?;
@@ -74,7 +74,7 @@ pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
         }
         values
     };
-    let mut table = Table::new(out, &header)?;
+    let mut table = CsvTable::new(out, &header)?;
     for (i, &parameter) in t.parameter.iter().enumerate() {
         let samples = t.probes.iter().filter_map(|p| p.samples.get(i));
         table.row(&[], std::iter::once(parameter).chain(samples.flat_map(values)))?;
@@ -92,7 +92,7 @@ pub(super) fn energy(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     header.extend(
         [(stored, "stored"), (lost, "lost")].into_iter().filter_map(|(there, name)| there.then_some(name)),
     );
-    let mut table = Table::new(out, &words(&header))?;
+    let mut table = CsvTable::new(out, &words(&header))?;
     for (&parameter, e) in t.parameter.iter().zip(&t.energy) {
         let values = [parameter, e.stretch, e.bend, e.kinetic, e.potential, e.work, e.total()];
         let more =
@@ -108,7 +108,7 @@ pub(super) fn reactions(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let mut header = words(&[parameter_name(t.run.analysis)]);
     let quantities = ["fx", "fy", "moment"];
     header.extend(t.reactions.iter().flat_map(|r| quantities.map(|q| format!("{}.{q}", r.name))));
-    let mut table = Table::new(out, &header)?;
+    let mut table = CsvTable::new(out, &header)?;
     for (i, &parameter) in t.parameter.iter().enumerate() {
         let samples = t.reactions.iter().filter_map(|r| r.samples.get(i));
         table.row(&[], std::iter::once(parameter).chain(samples.flat_map(|r| [r.fx, r.fy, r.moment])))?;
@@ -124,7 +124,7 @@ pub(super) fn effects(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
         let quantities = ["energy", "fx", "fy"].into_iter().skip(usize::from(!effect.has_energy));
         header.extend(quantities.map(|q| format!("{}.{q}", effect.name)));
     }
-    let mut table = Table::new(out, &header)?;
+    let mut table = CsvTable::new(out, &header)?;
     for (i, &parameter) in t.parameter.iter().enumerate() {
         let values = t.effects.iter().filter_map(|effect| {
             Some(effect.samples.get(i)?.iter().copied().skip(usize::from(!effect.has_energy)))
@@ -135,7 +135,7 @@ pub(super) fn effects(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// One row for each arc length, the first of the columns; the same words before all.
-fn rows(table: &mut Table<'_>, words: &[&str], columns: &[&Vec<f64>]) -> io::Result<()> {
+fn rows(table: &mut CsvTable<'_>, words: &[&str], columns: &[&Vec<f64>]) -> io::Result<()> {
     let count = columns.first().map_or(0, |s| s.len());
     (0..count).try_for_each(|i| {
         table.row(words, columns.iter().map(|column| column.get(i).copied().unwrap_or(f64::NAN)))
@@ -157,7 +157,7 @@ pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
         "shear_force",
         "bending_moment",
     ];
-    let mut table = Table::new(out, &words(&header))?;
+    let mut table = CsvTable::new(out, &words(&header))?;
     for shape in &t.last {
         let state = [&shape.s, &shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
         let forces = [&shape.axial_force, &shape.shear_force, &shape.bending_moment];
@@ -170,7 +170,7 @@ pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
 /// `mode, beam, s, ux, uy, rotation, strain, curvature`.
 pub(super) fn modes(modes: &[&[ModeShape]], out: &mut dyn Write) -> io::Result<()> {
     let header = ["mode", "beam", "s", "ux", "uy", "rotation", "strain", "curvature"];
-    let mut table = Table::new(out, &words(&header))?;
+    let mut table = CsvTable::new(out, &words(&header))?;
     for (i, mode) in modes.iter().enumerate() {
         for beam in *mode {
             let columns = [&beam.s, &beam.x, &beam.y, &beam.angle, &beam.strain, &beam.curvature];
@@ -182,7 +182,7 @@ pub(super) fn modes(modes: &[&[ModeShape]], out: &mut dyn Write) -> io::Result<(
 
 /// `frequencies.csv` or `load_factors.csv`: the mode's number and its eigenvalue.
 pub(super) fn eigenvalues(name: &str, values: &[f64], out: &mut dyn Write) -> io::Result<()> {
-    let mut table = Table::new(out, &words(&["mode", name]))?;
+    let mut table = CsvTable::new(out, &words(&["mode", name]))?;
     for (i, &value) in values.iter().enumerate() {
         table.row(&[&(i + 1).to_string()], [value])?;
     }
@@ -192,7 +192,7 @@ pub(super) fn eigenvalues(name: &str, values: &[f64], out: &mut dyn Write) -> io
 /// `states.csv`: every beam at every recorded frame; the parameter, `beam, s, x, y`.
 pub(super) fn states(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let header = [parameter_name(t.run.analysis), "beam", "s", "x", "y"];
-    let mut table = Table::new(out, &words(&header))?;
+    let mut table = CsvTable::new(out, &words(&header))?;
     for frame in &t.frames {
         let parameter = exact(frame.parameter);
         for (beam, points) in frame.beams.iter().enumerate() {

@@ -37,11 +37,11 @@ const IRRELEVANT: f64 = 1e-3;
 /// The beams of a model that may lock, and what was seen of them.
 #[derive(Clone)]
 pub(super) struct Locking {
-    beams: Vec<Watched>,
+    beams: Vec<LockingBeam>,
 }
 
 #[derive(Clone)]
-struct Watched {
+struct LockingBeam {
     name: String,
     points: GaussPoints,
     cable: bool,
@@ -75,7 +75,7 @@ impl Locking {
                 part.basis.table(rule, orders).map_err(|e| BuildError::basis(&part.name, e))
             };
             let tables = [table(points.stretch_rule(), &[1])?, table(points.bend_rule(), &[1, 2])?];
-            let mut watched = Watched {
+            let mut watched = LockingBeam {
                 name: beam.name.clone(),
                 points,
                 cable: matches!(beam.discretization, crate::model::Discretization::Ancf { .. }),
@@ -123,11 +123,11 @@ impl Locking {
 
     /// What there is to say.
     pub fn warnings(&self) -> impl Iterator<Item = String> + '_ {
-        self.beams.iter().filter_map(Watched::warning)
+        self.beams.iter().filter_map(LockingBeam::warning)
     }
 }
 
-impl Watched {
+impl LockingBeam {
     /// A field at all points, of the rows of each.
     fn at_points(&self, table: &BasisTable, q: &[f64], of: impl Fn(&[[f64; 2]]) -> f64) -> Vec<f64> {
         let mut values = Vec::with_capacity(table.points());
@@ -225,7 +225,7 @@ mod tests {
     #[test]
     fn what_round_off_strains_does_not_hold_itself() {
         let told = |stretch: f64| {
-            let string = Watched {
+            let string = LockingBeam {
                 name: "a".into(),
                 points: GaussPoints { stretch: 5, bend: 3, lobatto: false },
                 cable: true,

@@ -16,7 +16,7 @@ use crate::solve::Work;
 use crate::solve::dynamics;
 use crate::solve::newton::Failure;
 use crate::solve::path::NoStep;
-use crate::solve::statics::{Pressed, Solution};
+use crate::solve::statics::{Solution, UnstableMechanism};
 use crate::system::{Change, Reaction, System, View, unfold};
 use nalgebra::Vector2;
 use std::f64::consts::FRAC_PI_2;
@@ -49,14 +49,14 @@ pub(super) struct Sampler<'a> {
     model: &'a Model,
     pub(super) system: &'a System,
     shapes: Vec<View>,
-    probes: Vec<Watched>,
+    probes: Vec<ProbePoint>,
     locking: Locking,
     /// How many frames are kept.
     frames: usize,
 }
 
 /// A probe with the rows that see its point.
-struct Watched {
+struct ProbePoint {
     name: String,
     beam: usize,
     view: View,
@@ -164,7 +164,7 @@ impl<'a> Sampler<'a> {
                 } else {
                     view.fields(system.reference()).strain(measure)
                 };
-                Ok(Watched { name: probe.name.clone(), beam, view, measure, reference_strain })
+                Ok(ProbePoint { name: probe.name.clone(), beam, view, measure, reference_strain })
             })
             .collect::<Result<_, BuildError>>()?;
         let locking = Locking::new(model, system)?;
@@ -187,11 +187,11 @@ impl<'a> Sampler<'a> {
     }
 
     /// The events of a motion, each with the view of its probe.
-    pub(super) fn watches(&self, settings: &Dynamic) -> Result<Vec<dynamics::Watch>, RunError> {
-        let watch = |event: &crate::model::Event| {
+    pub(super) fn watches(&self, settings: &Dynamic) -> Result<Vec<dynamics::EventWatch>, RunError> {
+        let watch = |event: &crate::model::EventCondition| {
             let view = self.view_of(&event.target)?;
             let (axis, value) = (event.target.axis, event.target.value);
-            Ok(dynamics::Watch { view, axis, value, crossing: event.crossing, stop: event.stop })
+            Ok(dynamics::EventWatch { view, axis, value, crossing: event.crossing, stop: event.stop })
         };
         settings.events.iter().map(watch).collect()
     }
@@ -421,7 +421,7 @@ impl<'a> Sampler<'a> {
         if self.model.outputs.effects {
             self.record_effects(trajectory, parameter, q, (velocity, variables));
         }
-        for (probe, (Watched { beam, view, measure, reference_strain, .. }, series)) in
+        for (probe, (ProbePoint { beam, view, measure, reference_strain, .. }, series)) in
             self.probes.iter().zip(&mut trajectory.probes).enumerate()
         {
             let fields = view.fields(q);
@@ -482,7 +482,7 @@ impl<'a> Sampler<'a> {
         trajectory.run.warnings.extend(locking.warnings());
         trajectory.history = solution.history.clone();
         trajectory.run.statistics = solution.statistics;
-        if let Some(Pressed { load, unstable, free }) = solution.pressed {
+        if let Some(UnstableMechanism { load, unstable, free }) = solution.pressed {
             trajectory.run.warnings.push(format!(
                 "the load up to factor {load:.6} presses the structure so that it is unstable in {unstable} directions where it stands, and \
                  supports and joints leave it {free} to move in: its beams buckle before it moves, and on which side it comes to rest may be \

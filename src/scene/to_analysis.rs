@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::model::{
-    About, Analysis, ArcLength, Buckling, Crossing, Dynamic, Event, Integrator, Modal, Model, ProbeTarget,
-    SPECTRAL_RADIUS, STEP_CONTROL, Static, StepControl, Undamped,
+    About, Analysis, ArcLength, Buckling, Crossing, Dynamic, EventCondition, Integrator, Modal, Model,
+    ProbeTarget, SPECTRAL_RADIUS, STEP_CONTROL, Static, StepControl, Undamped,
 };
 
 use super::diagnose::choices;
@@ -161,13 +161,17 @@ fn probe_target(
     Ok(ProbeTarget { probe: name.clone(), axis, value })
 }
 
-fn event(table: &EventTable, model: &Model) -> Result<Event, Fault> {
+fn event(table: &EventTable, model: &Model) -> Result<EventCondition, Fault> {
     let crossing = match table.crossing {
         CrossingName::Any => Crossing::Any,
         CrossingName::Rising => Crossing::Rising,
         CrossingName::Falling => Crossing::Falling,
     };
-    Ok(Event { target: probe_target(&table.probe, table.x, table.y, model)?, crossing, stop: table.stop })
+    Ok(EventCondition {
+        target: probe_target(&table.probe, table.x, table.y, model)?,
+        crossing,
+        stop: table.stop,
+    })
 }
 
 fn dynamic(located: &Located<DynamicTable>, model: &Model, size: Size) -> Result<Dynamic, Fault> {

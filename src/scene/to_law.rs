@@ -1,6 +1,6 @@
 //! Tables of laws → [`Law`].
 
-use crate::model::{Law, Table};
+use crate::model::{Law, Tabulated};
 
 use super::error::Fault;
 use super::file::{LawTable, RampTable};
@@ -37,7 +37,7 @@ pub(super) fn law(located: &Located<LawTable>) -> Result<Law, Fault> {
         let times: Vec<f64> = points.times.iter().map(|t| t.si).collect();
         let values: Vec<f64> = points.values.iter().map(|v| v.si).collect();
         let (m, n) = (times.len(), values.len());
-        let table = Table::new(times, values, points.smooth).ok_or_else(|| {
+        let table = Tabulated::new(times, values, points.smooth).ok_or_else(|| {
             Fault::new(
                 located.span(),
                 format!("a law needs two points or more at increasing times; found {m} times and {n} values"),

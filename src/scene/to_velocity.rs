@@ -1,6 +1,6 @@
 //! Tables `[[initial_velocity]]` → [`InitialVelocity`].
 
-use crate::model::{FixedRotation, InitialVelocity, Model, Profile, Table};
+use crate::model::{FixedRotation, InitialVelocity, Model, Profile, Tabulated};
 
 use super::error::Fault;
 use super::file::{InitialVelocityTable, SceneTable, VelocityPointsTable};
@@ -86,7 +86,7 @@ fn through(
         Some(velocities) => {
             let values = si(velocities);
             let (m, n) = (s.len(), values.len());
-            match Table::with_flat_ends(s.clone(), values, flat) {
+            match Tabulated::with_flat_ends(s.clone(), values, flat) {
                 Some(table) => Ok(Profile::Table(table)),
                 None => Err(fault(format!(
                     "a velocity needs two points or more at increasing arc lengths, and one `{name}` for each; found {m} arc lengths \

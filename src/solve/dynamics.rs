@@ -46,7 +46,7 @@ use crate::system::Reaction;
 use serde::{Deserialize, Serialize};
 
 pub use contact::Change;
-pub use integrate::{Checkpointing, Task, Watch, solve};
+pub use integrate::{Checkpointing, EventWatch, Task, solve};
 
 /// A state of motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -38,10 +38,10 @@ pub struct Solution {
     /// Attempted steps.
     pub history: Vec<StepRecord>,
     /// Instabilities met.
-    pub events: Vec<Event>,
+    pub events: Vec<StabilityChange>,
     /// Where a mechanism that loads press, at its start, is unstable in more directions than it can
     /// move in freely.
-    pub pressed: Option<Pressed>,
+    pub pressed: Option<UnstableMechanism>,
     /// Where a mechanism first stood on a crest of its energy, from which it comes to rest in one
     /// equilibrium or in another.
     pub crest: Option<f64>,
@@ -71,7 +71,7 @@ impl Solution {
 
 /// The tangent lost or regained definiteness.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Event {
+pub struct StabilityChange {
     /// Load factor at which it happened.
     pub load: f64,
     /// Unstable directions before.
@@ -83,7 +83,7 @@ pub struct Event {
 /// A mechanism whose beams buckle where they are before it moves: to which equilibrium it then comes
 /// to rest is left to the smallest of causes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pressed {
+pub struct UnstableMechanism {
     /// Load factor at which it was relaxed.
     pub load: f64,
     /// Unstable directions.
@@ -102,22 +102,22 @@ pub struct Target<'a> {
 
 impl Target<'_> {
     /// What may end the path.
-    fn misses(&self) -> Vec<Miss<'_>> {
-        let load = self.arc.until_load.map(Miss::Load);
-        let probe = self.probe.as_ref().map(|(view, axis, value)| Miss::Probe(view, *axis, *value));
+    fn end_conditions(&self) -> Vec<EndCondition<'_>> {
+        let load = self.arc.until_load.map(EndCondition::Load);
+        let probe = self.probe.as_ref().map(|(view, axis, value)| EndCondition::Probe(view, *axis, *value));
         load.into_iter().chain(probe).collect()
     }
 }
 
 /// What ends a path where it vanishes.
-enum Miss<'a> {
+enum EndCondition<'a> {
     /// The load factor, against this one.
     Load(f64),
     /// Of a probe a component of the position \[m\], against this value.
     Probe(&'a View, usize, f64),
 }
 
-impl Miss<'_> {
+impl EndCondition<'_> {
     fn of(&self, point: &Point) -> f64 {
         match self {
             Self::Load(until) => point.load - until,
@@ -236,7 +236,7 @@ fn relaxed(
         let load = part as f64 / parts as f64;
         if let (None, Some(free)) = (solution.pressed, equilibrium.system().rigid_motions()) {
             let unstable = unstable(equilibrium, load, &x);
-            solution.pressed = (unstable > free).then_some(Pressed { load, unstable, free });
+            solution.pressed = (unstable > free).then_some(UnstableMechanism { load, unstable, free });
         }
         let start = x.clone();
         let mut record = Iterations::default();
@@ -257,7 +257,7 @@ fn relaxed(
             }
             let after = unstable(equilibrium, load, &x);
             if outcome.is_ok() && after > before {
-                solution.events.push(Event { load, before, after });
+                solution.events.push(StabilityChange { load, before, after });
                 before = after;
             }
         }
@@ -304,7 +304,7 @@ fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
 }
 
 /// Records a change of stability in the last step and locates it by bisection.
-fn notice(path: &mut Path<'_, '_>, events: &mut Vec<Event>) {
+fn notice(path: &mut Path<'_, '_>, events: &mut Vec<StabilityChange>) {
     let Some([a, b]) = path.last_two() else { return };
     let (Some(before), Some(after)) = (a.unstable, b.unstable) else { return };
     if before == after {
@@ -319,7 +319,7 @@ fn notice(path: &mut Path<'_, '_>, events: &mut Vec<Event>) {
             None => break,
         }
     }
-    events.push(Event { load: 0.5 * (bracket.0 + bracket.1), before, after });
+    events.push(StabilityChange { load: 0.5 * (bracket.0 + bracket.1), before, after });
 }
 
 fn along_arc(
@@ -348,7 +348,7 @@ fn along_arc(
                 let point = point.clone();
                 // Of two targets within a step the one that comes first.
                 let (mut last, mut reached) = (Ok(point), false);
-                for miss in target.misses() {
+                for miss in target.end_conditions() {
                     if let Ok(point) = &last
                         && miss.is_reached(&previous, point)
                     {
@@ -370,7 +370,7 @@ fn along_arc(
                     } else {
                         path.extreme_load()
                     };
-                    solution.events.push(Event { load, before, after });
+                    solution.events.push(StabilityChange { load, before, after });
                 }
                 work.add_states(system, (previous.load, &previous.x), (point.load, &point.x));
                 solution.record(path.equilibrium, point.load, &point.x, work);

@@ -47,13 +47,13 @@ impl Columns {
 }
 
 /// The table, written row by row.
-pub(super) struct Table<'a> {
+pub(super) struct SweepTable<'a> {
     writer: csv::Writer<&'a mut dyn Write>,
     columns: HashMap<&'a str, usize>,
     grid: &'a Grid,
 }
 
-impl<'a> Table<'a> {
+impl<'a> SweepTable<'a> {
     /// Writes the header.
     pub fn new(out: &'a mut dyn Write, grid: &'a Grid, columns: &'a Columns) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(out);
@@ -131,7 +131,7 @@ mod tests {
         let records = [record(1, solved), failed, record(3, r#"{"a":[7,8]}"#)];
         let grid = Grid::new(vec![Axis::parse("x.y=1,=2,3 N").unwrap()]).unwrap();
         let (columns, mut out) = (columns(&records), Vec::<u8>::new());
-        let mut table = Table::new(&mut out, &grid, &columns).unwrap();
+        let mut table = SweepTable::new(&mut out, &grid, &columns).unwrap();
         records.iter().for_each(|record| table.row(record).unwrap());
         table.finish().unwrap();
         let expected = "\
@@ -160,7 +160,7 @@ run,x.y,outcome,message,b.x,a.1,a.2,seconds
 
         let grid = Grid::new(vec![Axis::parse("a=1").unwrap()]).unwrap();
         let (columns, mut full) = (Columns::default(), Full);
-        let table = Table::new(&mut full, &grid, &columns).unwrap();
+        let table = SweepTable::new(&mut full, &grid, &columns).unwrap();
         assert_eq!(table.finish().unwrap_err().to_string(), "the disk is full");
     }
 }

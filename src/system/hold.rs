@@ -4,7 +4,7 @@
 use super::constraints::{Constraint, Row};
 use super::prescribed::Prescribed;
 use super::reaction::Source;
-use super::supports::{HeldPair, Hold, Supports};
+use super::supports::{RestrainedPair, Restraint, Supports};
 use super::{BuildError, Needs, System, View};
 use crate::model::{Displacement, FixedRotation, Support};
 
@@ -43,7 +43,7 @@ pub(super) fn hold(
     supports: &[Support],
     needs: Needs,
 ) -> Result<(Supports, Vec<Constraint>, Vec<Source>), BuildError> {
-    let mut held: Vec<HeldPair> = Vec::new();
+    let mut held: Vec<RestrainedPair> = Vec::new();
     let (mut constraints, mut sources) = (Vec::new(), Vec::new());
     for support in supports {
         let (part, s) = system.part("a support", support.at)?;
@@ -69,13 +69,13 @@ pub(super) fn hold(
         if let Some(node) = part.basis.node_at(s) {
             sources.push(Source::node(part.first_node + node, support));
             let pair = 2 * (part.first_node + node);
-            let mut add = |pair: usize, hold: Hold| match held.iter_mut().find(|h| h.pair == pair) {
+            let mut add = |pair: usize, hold: Restraint| match held.iter_mut().find(|h| h.pair == pair) {
                 None => {
-                    held.push(HeldPair { pair, hold });
+                    held.push(RestrainedPair { pair, hold });
                     Ok(())
                 }
-                Some(HeldPair { hold: Hold::Position(there), .. }) => match hold {
-                    Hold::Position(new) if (0..2).all(|a| there[a].is_none() || new[a].is_none()) => {
+                Some(RestrainedPair { hold: Restraint::Position(there), .. }) => match hold {
+                    Restraint::Position(new) if (0..2).all(|a| there[a].is_none() || new[a].is_none()) => {
                         *there = std::array::from_fn(|a| there[a].take().or_else(|| new[a].clone()));
                         Ok(())
                     }
@@ -84,16 +84,16 @@ pub(super) fn hold(
                 Some(_) => Err("rotation"),
             };
             let position = if components.iter().any(Option::is_some) {
-                add(pair, Hold::Position(components.clone()))
+                add(pair, Restraint::Position(components.clone()))
             } else {
                 Ok(())
             };
             position
                 .and_then(|()| match support.fix.rotation {
                     FixedRotation::Free => Ok(()),
-                    FixedRotation::Angle => add(pair + 1, Hold::Direction(angle)),
+                    FixedRotation::Angle => add(pair + 1, Restraint::Direction(angle)),
                     FixedRotation::Gradient => {
-                        add(pair + 1, Hold::Gradient { reference: gradient, rotation })
+                        add(pair + 1, Restraint::Gradient { reference: gradient, rotation })
                     }
                 })
                 .map_err(|what| BuildError::HeldTwice { what, beam: part.name.clone(), s: support.at.s })?;

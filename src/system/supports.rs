@@ -16,7 +16,7 @@ use crate::linear::Matrix;
 
 /// What is held of a pair of coordinates.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Hold {
+pub enum Restraint {
     /// One or both components of a position.
     Position([Option<Prescribed>; 2]),
     /// Both components of a gradient, turned by an angle.
@@ -32,33 +32,35 @@ pub enum Hold {
 
 /// A pair of coordinates, 2·pair and 2·pair + 1, of which something is held.
 #[derive(Clone, Debug, PartialEq)]
-pub struct HeldPair {
+pub struct RestrainedPair {
     /// Number of the pair.
     pub pair: usize,
     /// What is held.
-    pub hold: Hold,
+    pub hold: Restraint,
 }
 
-impl HeldPair {
+impl RestrainedPair {
     fn prescribed(&self) -> impl Iterator<Item = &Prescribed> {
         let all: [Option<&Prescribed>; 2] = match &self.hold {
-            Hold::Position(components) => components.each_ref().map(Option::as_ref),
-            Hold::Gradient { rotation: course, .. } | Hold::Direction(course) => [Some(course), None],
+            Restraint::Position(components) => components.each_ref().map(Option::as_ref),
+            Restraint::Gradient { rotation: course, .. } | Restraint::Direction(course) => {
+                [Some(course), None]
+            }
         };
         all.into_iter().flatten()
     }
 
     /// Whether its frame turns with time.
     fn turns(&self) -> bool {
-        matches!(&self.hold, Hold::Direction(angle) if angle.moves_in_time())
+        matches!(&self.hold, Restraint::Direction(angle) if angle.moves_in_time())
     }
 
     /// Cosine and sine of the frame's angle, and which components are fixed in that frame.
     fn frame(&self, load: f64) -> ([f64; 2], [bool; 2]) {
         match &self.hold {
-            Hold::Position(components) => ([1.0, 0.0], components.each_ref().map(Option::is_some)),
-            Hold::Gradient { .. } => ([1.0, 0.0], [true, true]),
-            Hold::Direction(angle) => {
+            Restraint::Position(components) => ([1.0, 0.0], components.each_ref().map(Option::is_some)),
+            Restraint::Gradient { .. } => ([1.0, 0.0], [true, true]),
+            Restraint::Direction(angle) => {
                 let (sine, cosine) = angle.at(load).sin_cos();
                 ([cosine, sine], [false, true])
             }
@@ -68,15 +70,15 @@ impl HeldPair {
     /// ∂/∂λ of the fixed components, in the frame.
     fn rate(&self, load: f64, q: &[f64]) -> [f64; 2] {
         match &self.hold {
-            Hold::Position(components) => {
+            Restraint::Position(components) => {
                 components.each_ref().map(|c| c.as_ref().map_or(0.0, |course| course.change))
             }
-            Hold::Gradient { reference: [x, y], rotation } => {
+            Restraint::Gradient { reference: [x, y], rotation } => {
                 let (sine, cosine) = rotation.at(load).sin_cos();
                 let (x, y) = (cosine * x - sine * y, sine * x + cosine * y);
                 [-y * rotation.change, x * rotation.change]
             }
-            Hold::Direction(angle) => [0.0, q[2 * self.pair].hypot(q[2 * self.pair + 1]) * angle.change],
+            Restraint::Direction(angle) => [0.0, q[2 * self.pair].hypot(q[2 * self.pair + 1]) * angle.change],
         }
     }
 }
@@ -84,7 +86,7 @@ impl HeldPair {
 /// All supports at nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Supports {
-    held: Vec<HeldPair>,
+    held: Vec<RestrainedPair>,
 }
 
 /// Values of a pair of coordinates, their velocities and accelerations.
@@ -105,7 +107,7 @@ fn clear<T: Real>(pair: &mut [T], which: [bool; 2]) {
 
 impl Supports {
     /// The given pairs are held.
-    pub fn new(held: Vec<HeldPair>) -> Self {
+    pub fn new(held: Vec<RestrainedPair>) -> Self {
         Self { held }
     }
 
@@ -120,7 +122,7 @@ impl Supports {
 
     /// Nodes of which one component of a pair is held and the other free, in the support's frame.
     pub fn half_held(&self) -> impl Iterator<Item = usize> + '_ {
-        let half = |held: &&HeldPair| {
+        let half = |held: &&RestrainedPair| {
             let (_, [first, second]) = held.frame(0.0);
             first != second
         };
@@ -129,7 +131,7 @@ impl Supports {
 
     /// Nodes whose position is held, or a component of it.
     pub fn positions(&self) -> impl Iterator<Item = usize> + '_ {
-        self.held.iter().filter(|held| matches!(held.hold, Hold::Position(_))).map(|held| held.pair / 2)
+        self.held.iter().filter(|held| matches!(held.hold, Restraint::Position(_))).map(|held| held.pair / 2)
     }
 
     /// Number of coordinates that are eliminated.
@@ -151,10 +153,10 @@ impl Supports {
         load: f64,
         q: &'a [f64],
     ) -> impl Iterator<Item = (usize, f64)> + 'a {
-        self.held.iter().flat_map(move |HeldPair { pair, hold }| {
+        self.held.iter().flat_map(move |RestrainedPair { pair, hold }| {
             let components = match hold {
-                Hold::Position(components) => components.each_ref(),
-                Hold::Gradient { .. } | Hold::Direction(_) => [&None; 2],
+                Restraint::Position(components) => components.each_ref(),
+                Restraint::Gradient { .. } | Restraint::Direction(_) => [&None; 2],
             };
             [0, 1].into_iter().filter_map(move |axis| {
                 components[axis].as_ref().map(|value| (axis, value.at(load) - q[2 * pair + axis]))
@@ -164,10 +166,10 @@ impl Supports {
 
     /// What follows no law holds what it holds in the state `q` of a system of this `length`.
     pub fn hold_as_in(&mut self, q: &[f64], length: f64) {
-        for HeldPair { pair, hold } in &mut self.held {
+        for RestrainedPair { pair, hold } in &mut self.held {
             let field = [q[2 * *pair], q[2 * *pair + 1]];
             match hold {
-                Hold::Position(components) => {
+                Restraint::Position(components) => {
                     let components = components.iter_mut().zip(field);
                     components.for_each(|(course, value)| {
                         if let Some(course) = course {
@@ -175,15 +177,15 @@ impl Supports {
                         }
                     });
                 }
-                Hold::Gradient { reference, rotation } => rotation.hold_angle(*reference, field),
-                Hold::Direction(angle) => angle.hold_angle([1.0, 0.0], field),
+                Restraint::Gradient { reference, rotation } => rotation.hold_angle(*reference, field),
+                Restraint::Direction(angle) => angle.hold_angle([1.0, 0.0], field),
             }
         }
     }
 
     /// Whether anything moves by prescription.
     pub fn moves(&self) -> bool {
-        self.held.iter().flat_map(HeldPair::prescribed).any(Prescribed::moves)
+        self.held.iter().flat_map(RestrainedPair::prescribed).any(Prescribed::moves)
     }
 
     /// Turns a vector of forces or increments into the frames of the supports and clears what is
@@ -252,13 +254,15 @@ impl Supports {
 
     /// Whether anything moves by a law of time.
     pub fn moves_in_time(&self) -> bool {
-        self.held.iter().flat_map(HeldPair::prescribed).any(Prescribed::moves_in_time)
+        self.held.iter().flat_map(RestrainedPair::prescribed).any(Prescribed::moves_in_time)
     }
 
     /// What moves by a law of time, each with the unit by which it is measured: `per_length` for
     /// positions, 1 for angles.
     pub fn moving(&self, per_length: f64) -> impl Iterator<Item = (&Prescribed, f64)> {
-        let of = move |held: &HeldPair| if matches!(held.hold, Hold::Position(_)) { per_length } else { 1.0 };
+        let of = move |held: &RestrainedPair| {
+            if matches!(held.hold, Restraint::Position(_)) { per_length } else { 1.0 }
+        };
         let prescribed =
             self.held.iter().flat_map(move |held| held.prescribed().map(move |course| (course, of(held))));
         prescribed.filter(|(course, _)| course.moves_in_time())
@@ -266,7 +270,7 @@ impl Supports {
 
     /// Whether a held direction turns by a law of time.
     pub fn turn_in_time(&self) -> bool {
-        self.held.iter().any(HeldPair::turns)
+        self.held.iter().any(RestrainedPair::turns)
     }
 
     /// Whether coordinate `i` belongs to a pair of which something is held, and nothing moves.
@@ -278,7 +282,7 @@ impl Supports {
     pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
         self.held
             .iter()
-            .flat_map(HeldPair::prescribed)
+            .flat_map(RestrainedPair::prescribed)
             .filter_map(|course| course.law.as_ref())
             .flat_map(|law| law.kinks())
     }
@@ -399,22 +403,22 @@ impl Supports {
     }
 }
 
-impl HeldPair {
+impl RestrainedPair {
     fn impose(&self, load: f64, pair: &mut [f64]) {
         match &self.hold {
-            Hold::Position(components) => {
+            Restraint::Position(components) => {
                 for (value, component) in pair.iter_mut().zip(components) {
                     if let Some(course) = component {
                         *value = course.at(load);
                     }
                 }
             }
-            Hold::Gradient { reference: [x, y], rotation } => {
+            Restraint::Gradient { reference: [x, y], rotation } => {
                 let (sine, cosine) = rotation.at(load).sin_cos();
                 pair[0] = cosine * x - sine * y;
                 pair[1] = sine * x + cosine * y;
             }
-            Hold::Direction(angle) => {
+            Restraint::Direction(angle) => {
                 let length = pair[0].hypot(pair[1]);
                 let (sine, cosine) = angle.at(load).sin_cos();
                 pair[0] = length * cosine;
@@ -425,14 +429,14 @@ impl HeldPair {
 
     fn carried(&self, time: f64, [mut q, mut v, mut a]: PairMotion) -> PairMotion {
         match &self.hold {
-            Hold::Position(components) => {
+            Restraint::Position(components) => {
                 for (i, component) in components.iter().enumerate() {
                     if let Some(course) = component {
                         [q[i], v[i], a[i]] = course.prescribed(time);
                     }
                 }
             }
-            Hold::Gradient { reference: [x, y], rotation } => {
+            Restraint::Gradient { reference: [x, y], rotation } => {
                 let [angle, rate, second] = rotation.prescribed(time);
                 let (sine, cosine) = angle.sin_cos();
                 let r = [cosine * x - sine * y, sine * x + cosine * y];
@@ -440,7 +444,7 @@ impl HeldPair {
                 v = [-r[1] * rate, r[0] * rate];
                 a = [-r[1] * second - r[0] * rate * rate, r[0] * second - r[1] * rate * rate];
             }
-            Hold::Direction(angle) if self.turns() => {
+            Restraint::Direction(angle) if self.turns() => {
                 let [angle, rate, second] = angle.prescribed(time);
                 let (sine, cosine) = angle.sin_cos();
                 let turned = |along: f64, across: f64| {
@@ -451,7 +455,7 @@ impl HeldPair {
                 v = turned(dy, y * rate);
                 a = turned(ddy - y * rate * rate, 2.0 * dy * rate + y * second);
             }
-            Hold::Direction(_) => {}
+            Restraint::Direction(_) => {}
         }
         [q, v, a]
     }

@@ -4,9 +4,9 @@
 use crate::property::generators::clamp;
 use ancf::effect::{DistributedForce, Force, Gravity, Moment};
 use ancf::model::{
-    About, Analysis, ArcLength, Beam, Buckling, Centreline, Crossing, Discretization, Dynamic, Event, Fixed,
-    GaussPoints, InitialVelocity, Integrator, Kernel, Modal, Model, Nodes, Place, Probe, ProbeTarget,
-    Section, SideCondition, Static, StepControl, StrainMeasure, Support,
+    About, Analysis, ArcLength, Beam, Buckling, Centreline, Crossing, Discretization, Dynamic,
+    EventCondition, Fixed, GaussPoints, InitialVelocity, Integrator, Kernel, Modal, Model, Nodes, Place,
+    Probe, ProbeTarget, Section, SideCondition, Static, StepControl, StrainMeasure, Support,
 };
 use ancf::results::{AnalysisKind, Results};
 use std::sync::Arc;
@@ -206,7 +206,7 @@ fn motion(units: Units, integrator: Integrator) -> Analysis {
         duration: 1.0 * units.time,
         output_every: 0.25 * units.time,
         integrator,
-        events: vec![Event { target, crossing: Crossing::Any, stop: false }],
+        events: vec![EventCondition { target, crossing: Crossing::Any, stop: false }],
     })
 }
 

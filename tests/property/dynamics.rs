@@ -7,10 +7,10 @@ use ancf::effect::{Force, Gravity, Moment};
 use ancf::model::{
     Beam, Centreline, Crossing, Discretization, Fixed, FixedRotation, GaussPoints, InitialVelocity,
     Integrator, Kernel, Model, Nodes, Place, Profile, Section, SideCondition, StepControl, StrainMeasure,
-    Support, Table,
+    Support, Tabulated,
 };
 use ancf::solve::dynamics::start::from_rest;
-use ancf::solve::dynamics::{Checkpoint, Solution, State, Task, Watch, solve};
+use ancf::solve::dynamics::{Checkpoint, EventWatch, Solution, State, Task, solve};
 use ancf::system::{System, View};
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -427,7 +427,7 @@ fn impulses_of_contacts_balance_the_momentum() {
 #[test]
 fn a_linear_velocity_field_is_a_rotation() {
     let rotation = 3.0;
-    let straight = Table::with_flat_ends(
+    let straight = Tabulated::with_flat_ends(
         vec![0.0, 0.5, LENGTH],
         vec![0.0, 0.5 * rotation, LENGTH * rotation],
         [false; 2],
@@ -592,7 +592,7 @@ fn records_stand_at_the_times_asked_for() {
 fn events_are_located_to_the_accuracy_of_the_motion() {
     for discretization in either() {
         let system = system(discretization, vec![]);
-        let watch = |crossing, stop| Watch {
+        let watch = |crossing, stop| EventWatch {
             view: View::point(&system.beams()[0].basis, 0, LENGTH).expect("on the beam"),
             axis: 1,
             value: -1.0,

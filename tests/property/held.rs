@@ -4,7 +4,7 @@
 use ancf::linear::Matrix;
 use ancf::model::Law;
 use ancf::system::prescribed::Prescribed;
-use ancf::system::supports::{HeldPair, Hold, Supports};
+use ancf::system::supports::{RestrainedPair, Restraint, Supports};
 
 /// Three nodes.
 const COORDINATES: usize = 12;
@@ -18,19 +18,19 @@ fn law() -> Option<Law> {
     Some(Law::Polynomial(vec![0.1, 0.5, -0.3]))
 }
 
-fn pair(pair: usize, hold: Hold) -> HeldPair {
-    HeldPair { pair, hold }
+fn pair(pair: usize, hold: Restraint) -> RestrainedPair {
+    RestrainedPair { pair, hold }
 }
 
 /// Supports that follow a law where there is `law`, and the load factor otherwise: a position held
 /// along x, a direction, a position held along y that stays, a direction that stays, a gradient.
 fn supports(law: impl Fn() -> Option<Law>) -> Supports {
     Supports::new(vec![
-        pair(0, Hold::Position([Some(by(0.2, 0.5, law())), None])),
-        pair(1, Hold::Direction(by(0.3, 0.8, law()))),
-        pair(2, Hold::Position([None, Some(by(-1.0, 0.0, None))])),
-        pair(3, Hold::Direction(by(1.1, 0.0, None))),
-        pair(5, Hold::Gradient { reference: [0.6, 0.8], rotation: by(0.1, 0.7, law()) }),
+        pair(0, Restraint::Position([Some(by(0.2, 0.5, law())), None])),
+        pair(1, Restraint::Direction(by(0.3, 0.8, law()))),
+        pair(2, Restraint::Position([None, Some(by(-1.0, 0.0, None))])),
+        pair(3, Restraint::Direction(by(1.1, 0.0, None))),
+        pair(5, Restraint::Gradient { reference: [0.6, 0.8], rotation: by(0.1, 0.7, law()) }),
     ])
 }
 
@@ -85,14 +85,14 @@ fn supports_say_what_they_hold() {
     let courses: Vec<(f64, f64)> = moving.moving(2.5).map(|(course, unit)| (course.start, unit)).collect();
     assert_eq!(courses, [(0.2, 2.5), (0.3, 1.0), (0.1, 1.0)]);
     assert_eq!(still.moving(2.5).count(), 0);
-    let nothing = Supports::new(vec![pair(3, Hold::Direction(by(1.1, 0.0, law())))]);
+    let nothing = Supports::new(vec![pair(3, Restraint::Direction(by(1.1, 0.0, law())))]);
     assert!(!nothing.moves() && !nothing.moves_in_time() && !nothing.turn_in_time());
     // What moves tells of jumps, and any law of kinks.
     let step = || Some(Law::Step { start: 0.7 });
     let jumping = supports(step);
     assert_eq!(jumping.jumps().collect::<Vec<_>>(), [(0, 0.7, 0.5), (2, 0.7, 0.8), (10, 0.7, 0.7)]);
     assert_eq!(jumping.kinks().collect::<Vec<_>>(), [0.7, 0.7, 0.7]);
-    let pairs = vec![pair(1, Hold::Position([Some(by(0.0, 0.0, step())), Some(by(0.0, -2.0, step()))]))];
+    let pairs = vec![pair(1, Restraint::Position([Some(by(0.0, 0.0, step())), Some(by(0.0, -2.0, step()))]))];
     assert_eq!(Supports::new(pairs).jumps().collect::<Vec<_>>(), [(2, 0.7, -2.0)]);
     assert_eq!(moving.jumps().count() + moving.kinks().count(), 0);
 }

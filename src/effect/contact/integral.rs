@@ -22,7 +22,7 @@ const SHORTEST: f64 = 1e-12;
 
 /// A point at which a contact is summed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spot {
+pub(super) struct ContactPoint {
     /// Where it is on its cell, from 0 to 1.
     pub place: f64,
     /// Its weight \[m\].
@@ -83,7 +83,7 @@ impl ContactIntegral {
     }
 
     /// Calls `visit` with the points of a cell at which the contact is summed.
-    pub(super) fn for_spots(&self, cell: usize, curve: &Curve, mut visit: impl FnMut(&Spot)) {
+    pub(super) fn for_spots(&self, cell: usize, curve: &Curve, mut visit: impl FnMut(&ContactPoint)) {
         self.for_pieces(curve, |from, to| {
             let parts = self.parts(curve, from, to);
             let place = |part: usize| from + (to - from) * part as f64 / parts as f64;
@@ -120,13 +120,13 @@ impl ContactIntegral {
         cell: usize,
         curve: &Curve,
         piece: [f64; 2],
-    ) -> impl Iterator<Item = Spot> {
+    ) -> impl Iterator<Item = ContactPoint> {
         let [from, to] = piece;
         let length = (to - from) * self.cells.length(cell);
         rule.iter().map(move |(place, weight)| {
             let (mut values, place) = ([0.0; MOST], from + (to - from) * place);
             curve::bernstein(self.cells.degree(), place, &mut values);
-            Spot { place, weight: length * weight, values, r: curve.at(&values) }
+            ContactPoint { place, weight: length * weight, values, r: curve.at(&values) }
         })
     }
 

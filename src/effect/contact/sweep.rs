@@ -9,7 +9,7 @@
 
 use super::ContactIntegral;
 use super::curve::Curve;
-use crate::assembly::{ContactEffect, Way};
+use crate::assembly::{ContactEffect, CubicStates};
 
 /// Most patches that are looked at; what is not clear by then counts as met.
 const PATCHES: usize = 20_000;
@@ -61,7 +61,7 @@ impl Patch {
 impl ContactIntegral {
     /// The first θ at which a point of the beam is deeper than `level` \[m\] on its way, if there
     /// is one. Depths are found to `fine` \[m\].
-    pub fn first_deeper(&self, way: Way<'_>, level: f64, fine: f64) -> Option<f64> {
+    pub fn first_deeper(&self, way: CubicStates<'_>, level: f64, fine: f64) -> Option<f64> {
         let mut first = f64::INFINITY;
         let (mut patches, mut left) = (0, Vec::new());
         for cell in 0..self.cells.count() {
@@ -109,13 +109,13 @@ impl ContactEffect for ContactIntegral {
         count
     }
 
-    fn first_touch(&self, way: Way<'_>) -> Option<f64> {
+    fn first_touch(&self, way: CubicStates<'_>) -> Option<f64> {
         let shortest =
             (0..self.cells.count()).map(|cell| self.cells.length(cell)).fold(f64::INFINITY, f64::min);
         self.first_deeper(way, GRAZE * shortest, GRAZE * shortest)
     }
 
-    fn conflict(&self, way: Way<'_>, may_cross: bool) -> Option<f64> {
+    fn conflict(&self, way: CubicStates<'_>, may_cross: bool) -> Option<f64> {
         let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
         if deepest.is_infinite() {
             return None;
@@ -127,7 +127,7 @@ impl ContactEffect for ContactIntegral {
         self.first_deeper(way, level, FINE * deepest)
     }
 
-    fn crosses(&self, way: Way<'_>) -> bool {
+    fn crosses(&self, way: CubicStates<'_>) -> bool {
         let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
         deepest.is_finite() && self.first_deeper(way, MIDDLE * deepest, FINE * deepest).is_some()
     }

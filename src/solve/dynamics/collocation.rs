@@ -84,7 +84,7 @@
 
 use super::State;
 use super::method::Method;
-use super::motion::{Acceleration, Motion, Rates, Stage};
+use super::motion::{Acceleration, Motion, Rates, StageState};
 use super::stages::{self, Mixture, Stages};
 use super::tableau::{Block, Tableau};
 use super::turns::Turns;
@@ -137,7 +137,7 @@ const SAME_STEP: f64 = 1e-6;
 
 /// The tangent K that the factors hold.
 #[derive(Clone, Debug, Default)]
-struct Kept {
+struct FactoredTangent {
     /// Where it was taken.
     at: State,
     /// And with which multipliers.
@@ -178,7 +178,7 @@ pub struct Collocation<'a> {
     trial_step: f64,
     /// Where the last attempt ends: loads and supports are seen no later.
     end: f64,
-    kept: Option<Kept>,
+    kept: Option<FactoredTangent>,
     /// Whether a polynomial predicts the stages better than a mean.
     smooth: bool,
     acceleration: Vec<f64>,
@@ -302,13 +302,13 @@ impl<'a> Collocation<'a> {
             };
             self.factors.push(factor);
         }
-        self.kept = Some(Kept { at: at.clone(), multipliers, step: h, rate: 1.0 });
+        self.kept = Some(FactoredTangent { at: at.clone(), multipliers, step: h, rate: 1.0 });
         Ok(())
     }
 
     /// Turns the tangent with each node to where it is in each stage.
     fn turn(&mut self) {
-        if let Some(Kept { at, .. }) = &self.kept {
+        if let Some(FactoredTangent { at, .. }) = &self.kept {
             self.stages.measure_turns(&at.q);
         }
     }
@@ -371,7 +371,7 @@ impl<'a> Collocation<'a> {
         record: &mut Iterations,
     ) -> Result<(), Failure> {
         let last_rate = self.kept.as_ref().map_or(1.0, |kept| kept.rate);
-        let fits = |kept: &Kept| kept.rate <= KEEP && (kept.step - h).abs() <= SAME_STEP * h;
+        let fits = |kept: &FactoredTangent| kept.rate <= KEEP && (kept.step - h).abs() <= SAME_STEP * h;
         let mut tangent = TangentAge::Before;
         if !(keep && self.kept.as_ref().is_some_and(fits)) {
             // At the converged state, whose axial force is right: that of a predicted one is not,
@@ -492,7 +492,7 @@ impl<'a> Collocation<'a> {
     /// (ζ²/h² M + K)⁻¹ e in the state `state`, from the supports' frames into fixed axes; returns
     /// |ζ|².
     fn filter(&mut self, state: &State, e: &mut [f64]) -> f64 {
-        if let Some(Kept { at, .. }) = &self.kept {
+        if let Some(FactoredTangent { at, .. }) = &self.kept {
             self.turns.measure(&at.q, &state.q);
         }
         self.solve_turned(Complex::new(1.0, 0.0), e);
@@ -553,7 +553,7 @@ impl<'a> Collocation<'a> {
         self.motion.residual(&x, rates, &mut position);
         position[n..].fill(0.0);
         let velocity = self.motion.rate_of_forces(&stage, to);
-        if let Some(Kept { at, .. }) = &self.kept {
+        if let Some(FactoredTangent { at, .. }) = &self.kept {
             self.turns.measure(&at.q, &to.q);
         }
         let mut error = 0.0;
@@ -721,7 +721,7 @@ impl Method for Collocation<'_> {
         Some([self.motion.carried_acceleration(from, start), self.motion.carried_acceleration(to, end)])
     }
 
-    fn stages(&self, from: &State, _: &State) -> Vec<Stage> {
+    fn stages(&self, from: &State, _: &State) -> Vec<StageState> {
         let (h, n) = (self.trial_step, from.q.len());
         let from = self.motion.unknowns_of(from);
         let velocity = Mixture::new(&self.tableau.inverse, h.recip());
@@ -734,7 +734,7 @@ impl Method for Collocation<'_> {
             let state = State { time: from.time + node * h, q, v, ..State::default() };
             let mut rates: Vec<f64> = displacement.iter().map(|y| of(&acceleration, y)).collect();
             rates.extend(stages::lane(multipliers, i));
-            Stage { state, rates }
+            StageState { state, rates }
         };
         self.tableau.nodes.iter().enumerate().map(stage).collect()
     }
@@ -756,7 +756,7 @@ impl Method for Collocation<'_> {
 
     fn memory(&self) -> Vec<Vec<f64>> {
         let n = self.motion.coordinates();
-        let Kept { at, multipliers, step, rate } = self.kept.clone().unwrap_or_default();
+        let FactoredTangent { at, multipliers, step, rate } = self.kept.clone().unwrap_or_default();
         let numbers = vec![self.last_step, at.time, step, rate, f64::from(self.smooth)];
         let mut memory = vec![numbers, at.q, at.v, multipliers];
         let s = self.tableau.stages();

@@ -3,7 +3,7 @@
 
 use super::State;
 use super::integrate::Driver;
-use super::motion::{Balance, Motion, Stage};
+use super::motion::{Balance, Motion, StageState};
 use crate::system::Reaction;
 
 /// Lagrange's polynomials on `times`, at the time `at`.
@@ -32,7 +32,7 @@ impl<'a> Driver<'_, 'a> {
         }
         if self.support_powers.is_empty() {
             let stages = self.method.stages(&self.state, new);
-            let power = |stage: Stage| {
+            let power = |stage: StageState| {
                 (stage.state.time, self.observer().map_or(f64::NAN, |m| m.support_power(stage)))
             };
             self.support_powers = stages.into_iter().map(power).collect();
@@ -56,7 +56,7 @@ impl<'a> Driver<'_, 'a> {
             return (time - self.state.time) * self.system.lost_power(&q, &v, &mut scratch);
         }
         if self.damping_powers.is_empty() {
-            for Stage { mut state, .. } in self.method.stages(&self.state, new) {
+            for StageState { mut state, .. } in self.method.stages(&self.state, new) {
                 if let Some(motion) = self.observer() {
                     motion.carry(&mut state);
                 }

@@ -29,7 +29,7 @@
 
 use super::State;
 use super::method::Method;
-use super::motion::{Acceleration, Motion, Rates, Stage};
+use super::motion::{Acceleration, Motion, Rates, StageState};
 use super::turns::Turns;
 use crate::assembly::Earlier;
 use crate::linear::{Factor, Singular};
@@ -125,13 +125,13 @@ pub struct GeneralizedAlpha<'a> {
     rule: Rule,
     increment: Vec<f64>,
     factor: Option<Factor>,
-    kept: Option<Kept>,
+    kept: Option<FactoredTangent>,
     turns: Turns,
 }
 
 /// The tangent that the factorisation holds.
 #[derive(Clone, Debug)]
-struct Kept {
+struct FactoredTangent {
     /// Where it was taken.
     at: State,
     /// And with which multipliers.
@@ -173,7 +173,7 @@ impl<'a> GeneralizedAlpha<'a> {
     /// Takes the tangent at `at`.
     fn keep(&mut self, at: &State, multipliers: Vec<f64>, rate: f64) {
         self.motion.tangent_at(at, &multipliers);
-        self.kept = Some(Kept { at: at.clone(), multipliers, c: 0.0, rate });
+        self.kept = Some(FactoredTangent { at: at.clone(), multipliers, c: 0.0, rate });
     }
 
     /// Factorises K + dD + cM, unless that is what is there but for the round-off of the step's
@@ -467,8 +467,8 @@ impl Method for GeneralizedAlpha<'_> {
         None
     }
 
-    fn stages(&self, from: &State, to: &State) -> Vec<Stage> {
-        let stage = |state: &State, accelerations: &Accelerations| Stage {
+    fn stages(&self, from: &State, to: &State) -> Vec<StageState> {
+        let stage = |state: &State, accelerations: &Accelerations| StageState {
             state: self.motion.unknowns_of(state).into_owned(),
             rates: accelerations.rates(),
         };

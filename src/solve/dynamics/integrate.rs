@@ -58,7 +58,7 @@ pub struct Task<'t> {
     /// Whether forces of supports and joints are wanted.
     pub reactions: bool,
     /// What to watch for.
-    pub watches: &'t [Watch],
+    pub watches: &'t [EventWatch],
     /// Where to watch directions, whose turns are counted from step to step.
     pub directions: &'t [View],
     /// Where to leave checkpoints on the way.
@@ -75,7 +75,7 @@ pub struct Checkpointing<'k> {
 }
 
 /// A coordinate of a point of a beam that may cross a value.
-pub struct Watch {
+pub struct EventWatch {
     /// The point.
     pub view: View,
     /// 0 for x, 1 for y.

@@ -1,7 +1,7 @@
 //! What a method of time integration is, for the driver that takes its steps.
 
 use super::State;
-use super::motion::Stage;
+use super::motion::StageState;
 use crate::linear::Singular;
 use crate::solve::Statistics;
 use crate::solve::newton::{Failure, Iterations};
@@ -66,7 +66,7 @@ pub trait Method {
     fn end_accelerations(&mut self, from: &State, to: &State) -> Option<[Vec<f64>; 2]>;
 
     /// The stages of the last attempt, which led from `from` to `to`, in the order of their times.
-    fn stages(&self, from: &State, to: &State) -> Vec<Stage>;
+    fn stages(&self, from: &State, to: &State) -> Vec<StageState>;
 
     /// Accelerations of the unknowns and scaled multipliers at the end of the last accepted step.
     fn end_rates(&self) -> Vec<f64>;

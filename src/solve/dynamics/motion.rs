@@ -35,7 +35,7 @@
 mod laws;
 mod reactions;
 
-pub use reactions::{Balance, Stage};
+pub use reactions::{Balance, StageState};
 
 use super::State;
 use super::turns::Turns;

@@ -23,7 +23,7 @@ use crate::system::{Balanced, Reaction};
 
 /// A state of a motion's unknowns in which its equations hold.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Stage {
+pub struct StageState {
     /// Unknowns and their velocities.
     pub state: State,
     /// Accelerations of the unknowns, followed by the scaled multipliers.
@@ -86,12 +86,12 @@ impl Motion<'_> {
     }
 
     /// The unknowns of a state with the accelerations that its forces give.
-    fn stage_of(&mut self, state: &State) -> Result<Stage, Singular> {
+    fn stage_of(&mut self, state: &State) -> Result<StageState, Singular> {
         let state = self.unknowns_of(state).into_owned();
         let mut rates = vec![0.0; self.coordinates()];
         self.acceleration(&state, &mut rates)?;
         rates.extend_from_slice(&self.multipliers);
-        Ok(Stage { state, rates })
+        Ok(StageState { state, rates })
     }
 
     /// The state `state`, to which a step of length `h` has led with the accelerations and
@@ -102,7 +102,7 @@ impl Motion<'_> {
     pub fn settle(&mut self, state: &State, rates: Vec<f64>, h: f64) -> Result<Balance, Singular> {
         let n = self.coordinates();
         let state = self.unknowns_of(state).into_owned();
-        let mut stage = Stage { state, rates };
+        let mut stage = StageState { state, rates };
         let (d, c) = (FAST / h, (FAST / h).powi(2));
         for pass in 0..PASSES {
             self.tangent_at(&stage.state, &stage.rates[n..]);
@@ -119,7 +119,7 @@ impl Motion<'_> {
             x.extend_from_slice(&stage.rates[n..]);
             self.residual(&x, Rates { time: stage.state.time, v: &stage.state.v, a }, &mut change);
             self.constraint_defects(&stage, c.recip(), &mut change[n..]);
-            let Stage { state, rates } = &mut stage;
+            let StageState { state, rates } = &mut stage;
             factor.solve(&mut change);
             self.from_frames(&mut change);
             for (i, change) in change[..n].iter().enumerate() {
@@ -134,7 +134,7 @@ impl Motion<'_> {
 
     /// −f̈ = −(K a + D²f\[v, v\]) of the elastic forces in the supports' frames, and zeros for the
     /// multipliers.
-    fn rate_of_rates(&self, Stage { state, rates }: &Stage) -> Vec<f64> {
+    fn rate_of_rates(&self, StageState { state, rates }: &StageState) -> Vec<f64> {
         let (n, time) = (self.coordinates(), state.time);
         let [q, v, a] = self.in_fixed_axes(state, &rates[..n]);
         let mut sum = vec![0.0; self.unknowns()];
@@ -158,7 +158,7 @@ impl Motion<'_> {
     }
 
     /// Writes `factor` times −(B a + Ḃ v), scaled.
-    fn constraint_defects(&self, Stage { state, rates }: &Stage, factor: f64, defects: &mut [f64]) {
+    fn constraint_defects(&self, StageState { state, rates }: &StageState, factor: f64, defects: &mut [f64]) {
         let [q, v, a] = self.in_fixed_axes(state, &rates[..self.coordinates()]);
         self.system.constraint_rates(state.time, &q, &a, defects);
         self.system.add_constraint_curvatures(&q, &v, defects);
@@ -172,7 +172,7 @@ impl Motion<'_> {
     }
 
     /// All forces in a state in which the equations hold.
-    pub fn balance_of(&self, stage: Stage) -> Balance {
+    pub fn balance_of(&self, stage: StageState) -> Balance {
         let (mut balance, force) = self.forces_of(stage);
         balance.held = force;
         let (time, q) = (balance.state.time, &balance.state.q);
@@ -182,8 +182,8 @@ impl Motion<'_> {
     }
 
     /// A state in fixed axes, and M q̈ + f there.
-    fn forces_of(&self, stage: Stage) -> (Balance, Vec<f64>) {
-        let Stage { state, mut rates } = stage;
+    fn forces_of(&self, stage: StageState) -> (Balance, Vec<f64>) {
+        let StageState { state, mut rates } = stage;
         let State { time, work, lost, .. } = state;
         let angles = state.angles.clone();
         let multipliers = rates.split_off(self.coordinates());
@@ -204,7 +204,7 @@ impl Motion<'_> {
     /// It is R·v with their velocities v, and with those of all else as well, for M q̈ + f vanishes
     /// there. It does so only as far as the stages were solved. The beam follows its supports, so
     /// that the stiff forces, in which that shows, do no work on the latter velocities.
-    pub fn support_power(&self, stage: Stage) -> f64 {
+    pub fn support_power(&self, stage: StageState) -> f64 {
         let (balance, force) = self.forces_of(stage);
         force.iter().zip(&balance.state.v).map(|(force, v)| force * v).sum()
     }

@@ -10,8 +10,8 @@ use super::error::OutputError;
 
 /// Files written under temporary names beside their final ones, waiting to be renamed.
 ///
-/// Dropped before [`Stage::commit`], it removes the files and those directories that it made.
-pub(crate) struct Stage {
+/// Dropped before [`StagedFiles::commit`], it removes the files and those directories that it made.
+pub(crate) struct StagedFiles {
     directory: PathBuf,
     /// Directories that did not exist before, outermost first.
     made: Vec<PathBuf>,
@@ -23,7 +23,7 @@ pub(crate) struct Stage {
     committed: bool,
 }
 
-impl Stage {
+impl StagedFiles {
     /// Makes `directory` where it is missing.
     pub(crate) fn new(directory: &Path) -> Result<Self, OutputError> {
         let mut stage = Self {
@@ -97,7 +97,7 @@ impl Stage {
     }
 }
 
-impl Drop for Stage {
+impl Drop for StagedFiles {
     fn drop(&mut self) {
         self.waiting.clear();
         if !self.committed {
@@ -127,7 +127,7 @@ mod tests {
         let own = tempfile::tempdir().expect("a directory");
         let before = own.path().join("before");
         fs::create_dir(&before).expect("made");
-        let mut stage = Stage::new(&before.join("new/results")).expect("made");
+        let mut stage = StagedFiles::new(&before.join("new/results")).expect("made");
         stage.add("one.csv", |out| out.write_all(b"1\n")).expect("written");
         stage.add("deep/two.csv", |out| out.write_all(b"2\n")).expect("written");
         let full = stage.add("three.csv", |_| Err(io::Error::other("the disk is full")));
@@ -137,7 +137,7 @@ mod tests {
         drop(stage);
         assert_eq!(names(&before), Vec::<String>::new());
         // What others have put there in the meantime stays.
-        let stage = Stage::new(&before.join("new")).expect("made");
+        let stage = StagedFiles::new(&before.join("new")).expect("made");
         fs::write(before.join("new/notes.txt"), "").expect("written");
         drop(stage);
         assert_eq!(names(&before.join("new")), ["notes.txt"]);
@@ -147,7 +147,7 @@ mod tests {
     fn files_appear_when_all_are_there_and_are_for_whom_the_user_likes() {
         let own = tempfile::tempdir().expect("a directory");
         let results = own.path().join("results");
-        let mut stage = Stage::new(&results).expect("made");
+        let mut stage = StagedFiles::new(&results).expect("made");
         stage.add("deep/two.csv", |out| out.write_all(b"2\n")).expect("written");
         assert!(stage.holds("deep/two.csv") && !stage.holds("two.csv"));
         assert!(!results.join("deep/two.csv").exists());
