@@ -37,6 +37,7 @@ impl Part for BeamBend {
 #[derive(Clone, Debug)]
 pub struct Bend {
     bending_stiffness: f64,
+    /// κ₀ per quadrature point; empty for a straight beam.
     reference: Vec<f64>,
 }
 
@@ -56,7 +57,7 @@ impl Bend {
 
     #[inline(always)]
     fn reference(&self, point: usize) -> f64 {
-        self.reference.get(point).copied().unwrap_or(0.0)
+        if self.reference.is_empty() { 0.0 } else { self.reference[point] }
     }
 
     /// `factor` times M ∂κ/∂r' and M ∂κ/∂r''.

@@ -120,7 +120,7 @@ impl Density<1> for DeadForce {
     const HAS_TANGENT: bool = false;
 
     fn energy(&self, point: usize, z: &Gradient<1>) -> f64 {
-        -self.force.dot(&(z[0] - self.reference.get(point).copied().unwrap_or_default()))
+        -self.force.dot(&(z[0] - self.reference[point]))
     }
 
     #[inline(always)]
@@ -166,7 +166,7 @@ impl FollowerForce {
 
     #[inline(always)]
     fn turned(&self, point: usize) -> Matrix2<f64> {
-        let c = self.components.get(point).copied().unwrap_or_default();
+        let c = self.components[point];
         Matrix2::new(c.x, -c.y, c.y, c.x)
     }
 }

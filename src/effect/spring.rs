@@ -106,7 +106,7 @@ impl GroundSpring {
     }
 
     fn displacement(&self, point: usize, z: &Gradient<1>) -> Vector2<f64> {
-        z[0] - self.reference.get(point).copied().unwrap_or_default()
+        z[0] - self.reference[point]
     }
 }
 

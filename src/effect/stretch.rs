@@ -118,7 +118,7 @@ impl<S: Strain> Stretch<S> {
 
     #[inline(always)]
     fn reference(&self, point: usize) -> f64 {
-        self.reference.get(point).copied().unwrap_or(0.0)
+        if self.reference.is_empty() { 0.0 } else { self.reference[point] }
     }
 
     /// `factor` times N ∂ε/∂r'.

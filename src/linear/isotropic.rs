@@ -45,6 +45,10 @@ impl IsotropicBand {
         let mut matrix = SymmetricBand::zeros(self.nodes, self.blocks);
         for (k, block) in self.data.iter().enumerate() {
             let (row, column) = (4 * (k / self.blocks), 4 * (k / self.blocks + k % self.blocks));
+            if column >= matrix.size() {
+                // Rows of the last nodes are as long as all others.
+                continue;
+            }
             for (place, value) in block.iter().enumerate() {
                 for d in 0..2 {
                     matrix.set(row + 2 * (place / 2) + d, column + 2 * (place % 2) + d, *value);

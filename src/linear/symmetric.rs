@@ -93,9 +93,13 @@ impl SymmetricBand {
     }
 
     /// Sets the entries (i, j) and (j, i), which must lie in the band.
+    ///
+    /// # Panics
+    /// Where they do not.
     pub fn set(&mut self, i: usize, j: usize, value: f64) {
-        if let Some(k) = self.index(i, j) {
-            self.data[k] = value;
+        match self.index(i, j) {
+            Some(k) => self.data[k] = value,
+            None => panic!("({i}, {j}) is outside the band"),
         }
     }
 

@@ -30,6 +30,7 @@ mod crossing;
 mod forces;
 pub mod generalized_alpha;
 pub mod integrate;
+pub mod memory;
 pub mod method;
 pub mod motion;
 mod record;
@@ -47,6 +48,7 @@ use serde::{Deserialize, Serialize};
 
 pub use contact::Change;
 pub use integrate::{Checkpointing, EventWatch, Task, solve};
+pub use memory::Memory;
 
 /// A state of motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -163,7 +165,7 @@ pub struct Checkpoint {
     /// The method and its settings, whose memory this is.
     pub method: String,
     /// The method's memory.
-    pub memory: Vec<Vec<f64>>,
+    pub memory: Memory,
     /// The next step \[s\].
     pub step: f64,
     /// Error of the last step against what it was allowed.

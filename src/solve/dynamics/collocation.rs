@@ -83,6 +83,7 @@
 //! the step, for a load that is looked at always in the same phase would push on and on.
 
 use super::State;
+use super::memory::{CollocationMemory, Memory, TangentMemory};
 use super::method::Method;
 use super::motion::{Acceleration, Motion, Rates, StageState};
 use super::stages::{self, Mixture, Stages};
@@ -136,7 +137,7 @@ const LONGEST: f64 = 4.0;
 const SAME_STEP: f64 = 1e-6;
 
 /// The tangent K that the factors hold.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct FactoredTangent {
     /// Where it was taken.
     at: State,
@@ -754,37 +755,43 @@ impl Method for Collocation<'_> {
         &mut self.motion.statistics
     }
 
-    fn memory(&self) -> Vec<Vec<f64>> {
-        let n = self.motion.coordinates();
-        let FactoredTangent { at, multipliers, step, rate } = self.kept.clone().unwrap_or_default();
-        let numbers = vec![self.last_step, at.time, step, rate, f64::from(self.smooth)];
-        let mut memory = vec![numbers, at.q, at.v, multipliers];
-        let s = self.tableau.stages();
-        memory.extend((0..s).map(|i| stages::lane(&self.accelerations, i)));
-        memory.extend((0..s).map(|i| stages::lane(&self.stages.displacement[n..], i)));
-        memory
+    fn memory(&self) -> Memory {
+        let (n, s) = (self.motion.coordinates(), self.tableau.stages());
+        let kept = self.kept.clone();
+        let (tangent, tangent_step) =
+            kept.map_or((None, 0.0), |FactoredTangent { at, multipliers, step, rate }| {
+                (Some(TangentMemory { time: at.time, q: at.q, v: at.v, multipliers, rate }), step)
+            });
+        Memory::Collocation(CollocationMemory {
+            last_step: self.last_step,
+            smooth: self.smooth,
+            accelerations: (0..s).map(|i| stages::lane(&self.accelerations, i)).collect(),
+            multipliers: (0..s).map(|i| stages::lane(&self.stages.displacement[n..], i)).collect(),
+            tangent,
+            tangent_step,
+        })
     }
 
-    fn restore(&mut self, memory: Vec<Vec<f64>>) -> bool {
-        let n = self.motion.coordinates();
-        let s = self.tableau.stages();
+    fn restore(&mut self, memory: Memory) -> bool {
+        let Memory::Collocation(memory) = memory else { return false };
+        let (n, s) = (self.motion.coordinates(), self.tableau.stages());
         let multipliers = self.motion.unknowns() - n;
-        // Before the first step there is no tangent.
-        let (at, with) = if memory.get(1).is_some_and(Vec::is_empty) { (0, 0) } else { (n, multipliers) };
-        let expected: Vec<usize> =
-            [5, at, at, with].into_iter().chain(vec![n; s]).chain(vec![multipliers; s]).collect();
-        if memory.iter().map(Vec::len).ne(expected) {
+        let fits =
+            |stages: &[Vec<f64>], length| stages.len() == s && stages.iter().all(|v| v.len() == length);
+        if !fits(&memory.accelerations, n) || !fits(&memory.multipliers, multipliers) {
             return false;
         }
-        stages::gather(&memory[4..4 + s], &mut self.accelerations);
-        stages::gather(&memory[4 + s..4 + 2 * s], &mut self.stages.displacement[n..]);
-        let [last_step, time, step, rate] = [memory[0][0], memory[0][1], memory[0][2], memory[0][3]];
-        (self.last_step, self.smooth) = (last_step, memory[0][4] > 0.5);
-        if at == 0 {
-            return true;
+        stages::gather(&memory.accelerations, &mut self.accelerations);
+        stages::gather(&memory.multipliers, &mut self.stages.displacement[n..]);
+        (self.last_step, self.smooth) = (memory.last_step, memory.smooth);
+        // Before the first step there is no tangent.
+        let Some(TangentMemory { time, q, v, multipliers: with, rate }) = memory.tangent else { return true };
+        if [q.len(), v.len(), with.len()] != [n, n, multipliers] {
+            return false;
         }
-        let at = State { time, q: memory[1].clone(), v: memory[2].clone(), ..State::default() };
-        let taken = step > 0.0 && self.linearize(&at, memory[3].clone(), step).is_ok();
+        let at = State { time, q, v, ..State::default() };
+        let step = memory.tangent_step;
+        let taken = step > 0.0 && self.linearize(&at, with, step).is_ok();
         if let Some(kept) = &mut self.kept {
             kept.rate = rate;
         }

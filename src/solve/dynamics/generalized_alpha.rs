@@ -28,6 +28,7 @@
 //! iteration does not converge, Newton's method with a tangent at every iterate solves the step.
 
 use super::State;
+use super::memory::{GeneralizedAlphaMemory, Memory, TangentMemory};
 use super::method::Method;
 use super::motion::{Acceleration, Motion, Rates, StageState};
 use super::turns::Turns;
@@ -487,49 +488,39 @@ impl Method for GeneralizedAlpha<'_> {
         &mut self.motion.statistics
     }
 
-    fn memory(&self) -> Vec<Vec<f64>> {
+    fn memory(&self) -> Memory {
         let Accelerations { physical, algorithmic, multipliers } = self.last.clone();
-        let (before, step) = self.before.clone().unwrap_or_default();
-        let (at, with, c, rate) =
-            self.kept.clone().map_or_else(Default::default, |k| (k.at, k.multipliers, k.c, k.rate));
-        vec![
+        let (tangent, c) =
+            self.kept.clone().map_or((None, 0.0), |FactoredTangent { at, multipliers, c, rate }| {
+                (Some(TangentMemory { time: at.time, q: at.q, v: at.v, multipliers, rate }), c)
+            });
+        Memory::GeneralizedAlpha(GeneralizedAlphaMemory {
             physical,
             algorithmic,
             multipliers,
-            before,
-            at.q,
-            at.v,
-            with,
-            vec![step, c, rate, at.time, self.rule.d],
-        ]
+            before: self.before.clone(),
+            tangent,
+            factorized: [c, self.rule.d],
+        })
     }
 
-    fn restore(&mut self, memory: Vec<Vec<f64>>) -> bool {
-        let n = self.motion.coordinates();
-        let Ok([physical, algorithmic, multipliers, before, q, v, with, numbers]) =
-            <[Vec<f64>; 8]>::try_from(memory)
-        else {
-            return false;
-        };
-        let fits = |v: &[f64]| v.is_empty() || v.len() == n;
-        let required = [physical.len(), algorithmic.len(), multipliers.len(), numbers.len()];
-        if required != [n, n, self.motion.unknowns() - n, 5]
-            || !fits(&before)
-            || !fits(&q)
-            || q.len() != v.len()
-            || (!q.is_empty() && with.len() != multipliers.len())
+    fn restore(&mut self, memory: Memory) -> bool {
+        let Memory::GeneralizedAlpha(memory) = memory else { return false };
+        let GeneralizedAlphaMemory { physical, algorithmic, multipliers, before, tangent, factorized } =
+            memory;
+        let (n, m) = (self.motion.coordinates(), self.motion.unknowns() - self.motion.coordinates());
+        if [physical.len(), algorithmic.len(), multipliers.len()] != [n, n, m]
+            || before.as_ref().is_some_and(|(before, _)| before.len() != n)
+            || tangent.as_ref().is_some_and(|t| [t.q.len(), t.v.len(), t.multipliers.len()] != [n, n, m])
         {
             return false;
         }
-        let [step, c, rate, time, d] = [numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]];
+        let [c, d] = factorized;
         self.last = Accelerations { physical, algorithmic, multipliers };
-        self.before = (!before.is_empty()).then_some((before, step));
+        self.before = before;
         self.rule.d = d;
-        let at = State { time, q, v, ..State::default() };
-        if at.q.is_empty() {
-            return true;
-        }
-        self.keep(&at, with, rate);
+        let Some(TangentMemory { time, q, v, multipliers, rate }) = tangent else { return true };
+        self.keep(&State { time, q, v, ..State::default() }, multipliers, rate);
         c == 0.0 || self.factorize(c, d).is_ok()
     }
 }

@@ -1,6 +1,7 @@
 //! What a method of time integration is, for the driver that takes its steps.
 
 use super::State;
+use super::memory::Memory;
 use super::motion::StageState;
 use crate::linear::Singular;
 use crate::solve::Statistics;
@@ -78,8 +79,8 @@ pub trait Method {
     fn statistics(&mut self) -> &mut Statistics;
 
     /// What is carried from step to step, for a restart that continues bit for bit.
-    fn memory(&self) -> Vec<Vec<f64>>;
+    fn memory(&self) -> Memory;
 
     /// Restores what [`Self::memory`] gave; false where it does not fit.
-    fn restore(&mut self, memory: Vec<Vec<f64>>) -> bool;
+    fn restore(&mut self, memory: Memory) -> bool;
 }
