@@ -1,9 +1,8 @@
 //! Shape functions: from a [`Discretization`] to tables of numbers.
 //!
 //! Both discretisations have the same nodal coefficients, the position r_i and the gradient r'_i,
-//! and both end as a
-//! [`BasisTable`]: at a point of the beam a short row of numbers for each wanted derivative. Whoever holds a table
-//! cannot tell which discretisation it came from.
+//! and both end as a [`BasisTable`]: at a point of the beam a short row of numbers for each wanted
+//! derivative. Whoever holds a table cannot tell which discretisation it came from.
 //!
 //! ```
 //! use ancf::basis::{Basis, Discretization, Nodes, Quadrature};

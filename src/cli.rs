@@ -52,7 +52,7 @@ enum Command {
     /// Run a scene many times over a grid or list of values, in parallel and resumable, into one
     /// table
     Sweep(sweep::SweepArguments),
-    /// Measure what accuracy costs in time, on a ladder of discretisations, meshes and integrators
+    /// Measure what accuracy costs in time, over discretisations, meshes and integrators
     Cost(cost::CostArguments),
     /// Print the JSON schema of scene files
     Schema,

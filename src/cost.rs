@@ -1,8 +1,8 @@
-//! What accuracy costs in time: a scene on a ladder of settings, against a reference made for it.
+//! What accuracy costs in time: a scene with settings of all kinds, against a reference made for it.
 //!
 //! ```text
 //! scene ─► reference: two discretisations, refined until they agree ─┐
-//!      └─► ladder: discretisations × meshes, then solvers ───────────┴─► errors, times, work ─► front, cheapest setting
+//!      └─► search: discretisations × meshes, then solvers ───────────┴─► errors, times, work ─► front, cheapest setting
 //! ```
 //!
 //! # What is measured
@@ -20,28 +20,28 @@
 //! that uncertainty* does: the exact solution, if it lies between the two, is then no further away
 //! than asked for. Errors below the uncertainty are known to be no more than that.
 //!
-//! The runs of the reference go in parallel; those of the ladder are alone.
+//! The runs of the reference go in parallel; those of the search are alone.
 
 mod bench;
 mod deviation;
 mod error;
-mod ladder;
 #[cfg(feature = "report")]
 mod output;
 mod reference;
-mod rung;
+mod search;
 mod setting;
+mod trial;
 
 use std::time::{Duration, Instant};
 
 pub use deviation::Deviation;
 pub use error::CostError;
-pub use ladder::LeftOut;
 #[cfg(feature = "report")]
-pub use output::{Report, ReportedRung, write};
+pub use output::{Report, ReportedTrial, write};
 pub use reference::Reference;
-pub use rung::{Measured, Rung};
+pub use search::LeftOut;
 pub use setting::{Family, Setting, Solver};
+pub use trial::{Measured, Trial};
 
 pub use crate::run::Control;
 
@@ -50,7 +50,7 @@ use crate::model::{Analysis, Beam, Model, Place, Probe};
 use crate::run;
 use crate::scene::Scene;
 use bench::{Measuring, Runner};
-use ladder::{Climbed, Task};
+use search::{Found, Task};
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,10 +94,10 @@ pub struct Study {
     /// What errors are measured against.
     pub reference: Reference,
     /// All settings measured, in the order in which they were.
-    pub rungs: Vec<Rung>,
-    /// Indices of the rungs that no other one beats in time and error, by ascending time.
+    pub trials: Vec<Trial>,
+    /// Indices of the trials that no other one beats in time and error, by ascending time.
     pub front: Vec<usize>,
-    /// The cheapest rung that meets the target.
+    /// The cheapest trial that meets the target.
     pub best: Option<Best>,
     /// What was not tried, and why.
     pub left_out: Vec<LeftOut>,
@@ -110,8 +110,8 @@ pub struct Study {
 /// The cheapest setting that meets the target.
 #[derive(Clone, Debug)]
 pub struct Best {
-    /// Index of its rung.
-    pub rung: usize,
+    /// Index of its trial.
+    pub trial: usize,
     /// Tables of a scene file that ask for it, to stand in place of those of the same names.
     pub lines: String,
     /// The scene with these lines in it.
@@ -146,7 +146,7 @@ impl Study {
             warnings.push(format!("no setting that was tried meets the target {target:e} without a warning"));
         }
         warnings.extend(self.reference.warnings.iter().map(|warning| format!("the reference: {warning}")));
-        for Rung { family, cells, setting, measured } in &self.rungs {
+        for Trial { family, cells, setting, measured } in &self.trials {
             let name = format!("{family}, {cells} cells, {}", setting.solver);
             warnings.extend(measured.warnings.iter().map(|warning| format!("{name}: {warning}")));
         }
@@ -183,22 +183,22 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
     let least = least(target, &reference);
     let mut bench = Measuring { runner, reference: &reference, begun: 0 };
     let task = Task { model, analysis, target, least, deadline: budget };
-    let Climbed { rungs, left_out, interrupted } = ladder::climb(&task, &mut bench);
-    let points = rung::points(&rungs, least);
-    let sound = rung::points(&rungs, 0.0).into_iter().zip(&rungs).map(|([seconds, error], rung)| {
-        [seconds, if rung.measured.warnings.is_empty() { error } else { f64::INFINITY }]
+    let Found { trials, left_out, interrupted } = search::search(&task, &mut bench);
+    let points = trial::points(&trials, least);
+    let sound = trial::points(&trials, 0.0).into_iter().zip(&trials).map(|([seconds, error], trial)| {
+        [seconds, if trial.measured.warnings.is_empty() { error } else { f64::INFINITY }]
     });
-    let best = match rung::cheapest(&sound.collect::<Vec<_>>(), target - uncertainty) {
+    let best = match trial::cheapest(&sound.collect::<Vec<_>>(), target - uncertainty) {
         None => None,
-        Some(rung) => {
-            let lines = rungs[rung].setting.toml(model);
+        Some(trial) => {
+            let lines = trials[trial].setting.toml(model);
             let scene = scene.merged(&lines).map_err(CostError::Lines)?;
-            Some(Best { rung, lines, scene })
+            Some(Best { trial, lines, scene })
         }
     };
-    let front = rung::front(&points);
+    let front = trial::front(&points);
     let seconds = runner.now();
-    Ok(Study { options, reference, rungs, front, best, left_out, complete: !interrupted, seconds })
+    Ok(Study { options, reference, trials, front, best, left_out, complete: !interrupted, seconds })
 }
 
 fn least(target: f64, reference: &Reference) -> f64 {
@@ -278,7 +278,7 @@ mod tests {
             (rpim(3, 5.0), 4, scene, 8.0, 1.0 / 64.0),
             (rpim(2, 6.0), 4, scene, 3.0, 1.0 / 2048.0),
         ];
-        let rung = |(family, cells, solver, seconds, error): (Family, usize, Solver, f64, f64)| Rung {
+        let trial = |(family, cells, solver, seconds, error): (Family, usize, Solver, f64, f64)| Trial {
             family,
             cells,
             setting: Setting { beams: vec![], solver },
@@ -310,9 +310,9 @@ mod tests {
                 pair: ["one".to_owned(), "other".to_owned()],
                 seconds: 1.25,
             },
-            rungs: settings.map(rung).into(),
+            trials: settings.map(trial).into(),
             front: vec![1, 3],
-            best: Some(Best { rung: 1, lines, scene: self::scene() }),
+            best: Some(Best { trial: 1, lines, scene: self::scene() }),
             left_out: vec![],
             complete: true,
             seconds: 17.5,
@@ -412,18 +412,18 @@ mod tests {
                 ["reference with 16 cells", "setting 1", "setting 2", "setting 3"]
             );
             let measured: Vec<(Family, usize)> =
-                study.rungs.iter().map(|rung| (rung.family, rung.cells)).collect();
+                study.trials.iter().map(|trial| (trial.family, trial.cells)).collect();
             assert_eq!(measured, [(Family::Scene, 4), (Family::FULL, 4)]);
-            for rung in &study.rungs {
-                let error = rung.measured.deviation.error;
+            for trial in &study.trials {
+                let error = trial.measured.deviation.error;
                 assert!((error / 1.1652e-3 - 1.0).abs() < 1e-5, "{error}");
             }
             assert!(!study.complete);
             assert_eq!(study.best.is_some(), meets, "{target}: {:?}", study.warnings());
             if let Some(best) = &study.best {
                 assert_eq!(best.scene.model().beams[0].discretization, scene.model().beams[0].discretization);
-                let fastest = &study.rungs[best.rung].measured.seconds;
-                assert!(study.rungs.iter().all(|rung| rung.measured.seconds >= *fastest));
+                let fastest = &study.trials[best.trial].measured.seconds;
+                assert!(study.trials.iter().all(|trial| trial.measured.seconds >= *fastest));
             }
         }
     }
@@ -465,7 +465,7 @@ mod tests {
             }
         };
         let study = study(&scene(), Options { target: 1e-3, ..Options::default() }, &watcher).unwrap();
-        assert!(!study.complete && !study.rungs.is_empty());
+        assert!(!study.complete && !study.trials.is_empty());
         assert!(study.warnings()[0].contains("interrupted"), "{:?}", study.warnings());
         let at_once = super::study(&scene(), Options::default(), &|_| Control::Stop);
         assert!(matches!(at_once, Err(CostError::Interrupted)), "{at_once:?}");

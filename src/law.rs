@@ -195,7 +195,8 @@ impl Law {
                 [(c0 - c1) / turn, (c0 - (s1 - s0) / turn) / turn]
             }
             Self::Polynomial(coefficients) => {
-                // Σ d_k τ^k with τ = t − t₀ has the moments Σ d_k h^k/(k + 1) and Σ d_k h^k/((k + 1) (k + 2)).
+                // Σ d_k τ^k with τ = t − t₀ has the moments Σ d_k h^k/(k + 1) and Σ d_k h^k/((k +
+                // 1) (k + 2)).
                 let mut shifted = coefficients.clone();
                 for first in 0..shifted.len() {
                     for k in (first..shifted.len() - 1).rev() {

@@ -58,7 +58,7 @@
 //! | [`output`] | files, plots, the report page | [`restart`], [`results`] |
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`effect`], [`model`] |
 //! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`] |
-//! | [`cost`] | what accuracy costs in time: a ladder of settings against a reference | [`centreline`], [`model`], [`results`], [`scene`], [`run`](mod@run), [`output`] |
+//! | [`cost`] | what accuracy costs in time: settings of all kinds against a reference | [`centreline`], [`model`], [`results`], [`scene`], [`run`](mod@run), [`output`] |
 //!
 //! `lanes`, `linear` and `solve` are for the crate itself: what a user needs of them stands in
 //! other modules, and they may change with any version. A module imports what stands above it, and
@@ -119,8 +119,8 @@
 //! # An effect of one's own
 //! Everything that acts is a [`Part`](assembly::Part) of the model: a beam's own resistance and
 //! inertia, a load, a spring, a contact. It consists of densities of a few local fields, and says
-//! where they are summed. In this crate it is one file in `src/effect` and one line in the scene's list
-//! (`src/scene/to_parts.rs`); from outside it is this:
+//! where they are summed. In this crate it is one file in `src/effect` and one line in the scene's
+//! list (`src/scene/to_parts.rs`); from outside it is this:
 //! ```
 //! use ancf::Place;
 //! use ancf::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};

@@ -44,6 +44,9 @@ pub enum Matrix {
     General(Band),
 }
 
+/// What a method says that solves with a tangent before there is one, which is a fault of its own.
+pub(crate) const NOT_FACTORISED: &str = "a tangent is factorised before it is solved with";
+
 /// A matrix could not be factorised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the matrix is singular: no pivot in row {row}")]
@@ -123,7 +126,9 @@ impl Matrix {
     /// T K Tᵀ with a T that mixes the unknowns `2 pair` and `2 pair + 1`.
     pub fn change_pair(&mut self, pair: usize, [t, u]: [[f64; 2]; 2]) {
         let (x, y) = (2 * pair, 2 * pair + 1);
-        for j in self.columns(x) {
+        // The band of either row ends within a node that the other row does not reach: with zeros.
+        let (of_x, of_y) = (self.columns(x), self.columns(y));
+        for j in of_x.start.max(of_y.start)..of_x.end.min(of_y.end) {
             if j == x || j == y {
                 continue;
             }

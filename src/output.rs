@@ -1,4 +1,5 @@
-//! Files for people and for programs: what an analysis leaves in [`Results`], as tables, plots and one page.
+//! Files for people and for programs: what an analysis leaves in [`Results`], as tables, plots and
+//! one page.
 //!
 //! | file | holds |
 //! |---|---|
@@ -162,7 +163,7 @@ pub fn write(
     stage.add("summary.json", |out| out.write_all(summary.to_json()?.as_bytes()))?;
     // Only beside a summary are these names surely those of an older run.
     let replaces = directory.join("summary.json").is_file();
-    let older: Vec<&str> = NAMES.into_iter().filter(|name| replaces && !stage.holds(name)).collect();
+    let older: Vec<&str> = NAMES.into_iter().filter(|name| replaces && !stage.contains(name)).collect();
     stage.commit()?;
     for name in older {
         // Missing, most often. A file that cannot be removed does not make the new ones wrong.

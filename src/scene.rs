@@ -14,11 +14,11 @@
 mod diagnose;
 mod error;
 mod file;
-mod held;
 mod merge;
 mod overrides;
 mod place;
 mod quantity;
+mod rigid_motion;
 mod schema;
 mod to_analysis;
 mod to_basis;

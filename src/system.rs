@@ -19,8 +19,8 @@ pub mod constraints;
 mod contacts;
 mod cut;
 mod energy;
+mod fix;
 mod history;
-mod hold;
 pub mod inextensible;
 mod inventory;
 pub mod joint;
@@ -42,7 +42,7 @@ pub use measure::Measured;
 pub use reaction::Reaction;
 pub use view::{Change, Fields, View, unfold};
 
-use crate::assembly::{Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Terms};
+use crate::assembly::{Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Terms, nodes};
 use crate::basis::Basis;
 use crate::centreline::Curve;
 use crate::effect;
@@ -163,7 +163,7 @@ impl System {
         for load in system.terms.loads.iter().filter(|load| load.is_summed()) {
             load.effect.add_force(1.0, &system.reference, &mut system.constant_load);
         }
-        (system.supports, system.constraints, system.sources) = hold::hold(&system, &model.supports, needs)?;
+        (system.supports, system.constraints, system.sources) = fix::fix(&system, &model.supports, needs)?;
         for joint in &model.joints {
             let first = system.constraints.len();
             let rows = joint::rows(&system, *joint)?;
@@ -227,8 +227,8 @@ impl System {
         Ok(view.fields(&self.reference))
     }
 
-    /// How many rigid motions supports and joints leave to the beams, none where a spring may resist
-    /// them.
+    /// How many rigid motions supports and joints leave to the beams, none where a spring may
+    /// resist them.
     fn count_rigid_motions(&self, model: &Model) -> Result<usize, BuildError> {
         let of_beams = |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Contact);
         if !self.terms.internal.iter().all(|effect| of_beams(effect.kind())) {
@@ -342,17 +342,16 @@ impl System {
 
     /// Size of a vector of forces, those on gradients per beam length \[N\].
     pub fn norm(&self, force: &[f64]) -> f64 {
-        let nodes = force.chunks_exact(4);
-        let squares =
-            nodes.map(|f| f[0] * f[0] + f[1] * f[1] + (f[2] * f[2] + f[3] * f[3]) / self.length.powi(2));
+        let square = |[x, y]: [f64; 2]| x * x + y * y;
+        let squares = nodes(force).map(|f| square(f.position) + square(f.gradient) / self.length.powi(2));
         squares.sum::<f64>().sqrt()
     }
 
     /// Per coordinate, whether a support at a node holds it, in that support's frame.
-    pub fn held(&self) -> Vec<bool> {
-        let mut held = vec![false; self.coordinates()];
-        self.supports.eliminated().for_each(|i| held[i] = true);
-        held
+    pub fn fixed(&self) -> Vec<bool> {
+        let mut fixed = vec![false; self.coordinates()];
+        self.supports.eliminated().for_each(|i| fixed[i] = true);
+        fixed
     }
 
     /// The supports and joints that are constraint rows, and the lengths that inextensible beams

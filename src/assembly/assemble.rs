@@ -187,8 +187,8 @@ impl<'a> Assembly<'a> {
         self.terms.friction.push(friction(self.terms.friction.len()));
     }
 
-    /// The turns of a torsion spring with the energy ½ k θ²: `direction` is the density θ, from −π to
-    /// π, of the fields of the stress-free state at the point.
+    /// The turns of a torsion spring with the energy ½ k θ²: `direction` is the density θ, from −π
+    /// to π, of the fields of the stress-free state at the point.
     ///
     /// # Errors
     /// As [`Self::elastic`].

@@ -37,12 +37,12 @@ pub trait FrictionEffect: Send + Sync {
     fn size(&self) -> (usize, usize);
 
     /// `f += ` the forces ∂U/∂q in the state `q`, where `held` was the last.
-    fn add_force(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]);
+    fn add_force(&self, accepted: &AcceptedState, q: &[f64], f: &mut [f64]);
 
     /// The same, and `k += ` its derivative.
     fn add_force_and_tangent(
         &self,
-        held: &AcceptedState,
+        accepted: &AcceptedState,
         q: &[f64],
         f: &mut [f64],
         k: &mut Matrix,
@@ -51,15 +51,15 @@ pub trait FrictionEffect: Send + Sync {
 
     /// The pieces that touch in the state `q` with their elastic slips, and the energy of these
     /// \[J\].
-    fn slips(&self, held: &AcceptedState, q: &[f64]) -> (Vec<ContactPiece>, f64);
+    fn slips(&self, accepted: &AcceptedState, q: &[f64]) -> (Vec<ContactPiece>, f64);
 
     /// `f += ` the forces of slips that are known in the state `q`.
-    fn add_held_force(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]);
+    fn add_force_of(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]);
 
     /// What these do to their beam in the state `q`.
-    fn add_held_actions(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions);
+    fn add_actions_of(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions);
 
     /// Whether points slide that can bear more than half of what all can, and then whether against
     /// friction; `v` are the velocities.
-    fn sliding(&self, held: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool>;
+    fn sliding(&self, accepted: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool>;
 }

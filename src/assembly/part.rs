@@ -31,8 +31,8 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
         None
     }
 
-    /// What it may resist by elasticity against the ground, for which motions that nothing resists are
-    /// refused.
+    /// What it may resist by elasticity against the ground, for which motions that nothing resists
+    /// are refused.
     fn resists(&self) -> Vec<Resistance> {
         Vec::new()
     }

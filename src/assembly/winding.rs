@@ -22,8 +22,8 @@ pub struct Winding {
 }
 
 impl Winding {
-    /// Of the spring with k = `stiffness` \[N m/rad\] on the density `direction` of the angle, number
-    /// `number` of all.
+    /// Of the spring with k = `stiffness` \[N m/rad\] on the density `direction` of the angle,
+    /// number `number` of all.
     pub fn new(direction: Box<dyn Effect>, stiffness: f64, number: usize) -> Self {
         Self { direction, stiffness, number }
     }
@@ -34,8 +34,8 @@ impl Winding {
     }
 
     /// θ in the state `q` \[rad\].
-    pub fn angle(&self, held: &AcceptedState, q: &[f64]) -> f64 {
-        let known = held.variables.angles.get(self.number).copied().unwrap_or(0.0);
+    pub fn angle(&self, accepted: &AcceptedState, q: &[f64]) -> f64 {
+        let known = accepted.variables.angles.get(self.number).copied().unwrap_or(0.0);
         let angle = self.direction.energy(q);
         angle + TAU * ((known - angle) / TAU).round()
     }
@@ -52,8 +52,8 @@ impl Winding {
     }
 
     /// `f += ` ∂W/∂q.
-    pub fn add_force(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
-        self.add_force_at(self.angle(held, q), q, f);
+    pub fn add_force(&self, accepted: &AcceptedState, q: &[f64], f: &mut [f64]) {
+        self.add_force_at(self.angle(accepted, q), q, f);
     }
 
     /// The same, where θ is `angle`.
@@ -67,13 +67,13 @@ impl Winding {
     /// The same, and `k += ` ∂²W/∂q∂q.
     pub fn add_force_and_tangent(
         &self,
-        held: &AcceptedState,
+        accepted: &AcceptedState,
         q: &[f64],
         f: &mut [f64],
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        let beyond = Self::beyond(self.angle(held, q));
+        let beyond = Self::beyond(self.angle(accepted, q));
         if beyond != 0.0 {
             self.direction.add_force_and_tangent(self.stiffness * beyond, q, None, f, k, workspace);
         }
@@ -101,9 +101,9 @@ impl Winding {
     }
 
     /// By how much the spring has turned since the last accepted state \[rad\].
-    pub fn turn(&self, held: &AcceptedState, q: &[f64]) -> f64 {
-        let angle = self.angle(held, q);
-        angle - held.variables.angles.get(self.number).copied().unwrap_or(0.0)
+    pub fn turn(&self, accepted: &AcceptedState, q: &[f64]) -> f64 {
+        let angle = self.angle(accepted, q);
+        angle - accepted.variables.angles.get(self.number).copied().unwrap_or(0.0)
     }
 }
 

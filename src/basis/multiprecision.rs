@@ -150,7 +150,8 @@ impl Arithmetic for Multiprecision {
         y.add(&BigFloat::from_f64(0.0, p), self.bits, ROUNDING)
     }
 
-    /// From the logarithm in double precision by steps of order four: with e = x e^−y − 1, ln x = y + ln(1 + e).
+    /// From the logarithm in double precision by steps of order four: ln x = y + ln(1 + e) with
+    /// e = x e^−y − 1.
     fn ln(&self, x: &BigFloat) -> BigFloat {
         let p = self.bits;
         let (Some(exponent), false) = (self.exponent(x), x.is_negative()) else {

@@ -105,7 +105,8 @@ impl Interpolant {
                     precisions.hint = bits as f64 + short.max(-0.9 * bits as f64);
                     return Ok(Self { factors, quality });
                 }
-                // An estimate far below one is of the right order, and says how many bits are missing.
+                // An estimate far below one is of the right order, and says how many bits are
+                // missing.
                 if quality.error < 1e-3 && short > 0.0 {
                     wanted = bits + short as usize + 8;
                 }

@@ -15,8 +15,8 @@ use std::path::Path;
 use askama::Template;
 use serde::Serialize;
 
-use super::rung::front;
-use super::{Deviation, Family, LeftOut, Measured, Rung, Solver, Study, least};
+use super::trial::front;
+use super::{Deviation, Family, LeftOut, Measured, Solver, Study, Trial, least};
 use crate::model::Integrator;
 use crate::output::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, Series, human};
 use crate::output::{OutputError, StagedFiles, exact};
@@ -41,8 +41,8 @@ pub struct Report<'a> {
     /// By how much they differ.
     pub uncertainty: Deviation,
     /// All settings measured.
-    pub rungs: Vec<ReportedRung>,
-    /// Index of the cheapest rung that meets the target.
+    pub trials: Vec<ReportedTrial>,
+    /// Index of the cheapest trial that meets the target.
     pub best: Option<usize>,
     /// Tables of a scene that ask for it.
     pub lines: Option<&'a str>,
@@ -52,9 +52,9 @@ pub struct Report<'a> {
     pub warnings: Vec<String>,
 }
 
-/// A rung in words and numbers.
+/// A trial in words and numbers.
 #[derive(Clone, Debug, Serialize)]
-pub struct ReportedRung {
+pub struct ReportedTrial {
     /// The discretisation.
     pub discretization: String,
     /// Cells of the beam with the most.
@@ -78,15 +78,15 @@ impl Study {
     pub fn report(&self) -> Report<'_> {
         let uncertainty = self.reference.uncertainty;
         let target = self.options.target;
-        let rung = |(index, rung): (usize, &Rung)| ReportedRung {
-            discretization: rung.family.to_string(),
-            cells: rung.cells,
-            solver: rung.setting.solver.to_string(),
-            measured: rung.measured.clone(),
-            below_uncertainty: rung.measured.deviation.error < uncertainty.error,
+        let trial = |(index, trial): (usize, &Trial)| ReportedTrial {
+            discretization: trial.family.to_string(),
+            cells: trial.cells,
+            solver: trial.setting.solver.to_string(),
+            measured: trial.measured.clone(),
+            below_uncertainty: trial.measured.deviation.error < uncertainty.error,
             front: self.front.contains(&index),
-            meets_target: rung.measured.warnings.is_empty()
-                && rung.measured.deviation.error <= target - uncertainty.error,
+            meets_target: trial.measured.warnings.is_empty()
+                && trial.measured.deviation.error <= target - uncertainty.error,
         };
         Report {
             title: &self.reference.results.run().title,
@@ -97,8 +97,8 @@ impl Study {
             budget: self.options.budget.as_secs_f64(),
             reference: &self.reference.pair,
             uncertainty,
-            rungs: self.rungs.iter().enumerate().map(rung).collect(),
-            best: self.best.as_ref().map(|best| best.rung),
+            trials: self.trials.iter().enumerate().map(trial).collect(),
+            best: self.best.as_ref().map(|best| best.trial),
             lines: self.best.as_ref().map(|best| best.lines.as_str()),
             left_out: &self.left_out,
             warnings: self.warnings(),
@@ -172,16 +172,16 @@ fn table(report: &Report<'_>, out: &mut dyn io::Write) -> io::Result<()> {
         "front",
         "meets_target",
     ])?;
-    for rung in &report.rungs {
-        let Measured { degrees_of_freedom, seconds, runs, statistics, deviation, .. } = rung.measured;
+    for trial in &report.trials {
+        let Measured { degrees_of_freedom, seconds, runs, statistics, deviation, .. } = trial.measured;
         let optional = |value: Option<f64>| value.map(exact).unwrap_or_default();
         rows.write_record([
-            rung.discretization.clone(),
-            rung.cells.to_string(),
-            rung.solver.clone(),
+            trial.discretization.clone(),
+            trial.cells.to_string(),
+            trial.solver.clone(),
             degrees_of_freedom.to_string(),
             exact(deviation.error),
-            rung.below_uncertainty.to_string(),
+            trial.below_uncertainty.to_string(),
             optional(deviation.curvature),
             optional(deviation.energy),
             exact(seconds),
@@ -191,8 +191,8 @@ fn table(report: &Report<'_>, out: &mut dyn io::Write) -> io::Result<()> {
             statistics.residual_evaluations.to_string(),
             statistics.newton_iterations.to_string(),
             (statistics.steps.max(statistics.load_steps)).to_string(),
-            rung.front.to_string(),
-            rung.meets_target.to_string(),
+            trial.front.to_string(),
+            trial.meets_target.to_string(),
         ])?;
     }
     rows.flush()
@@ -200,10 +200,10 @@ fn table(report: &Report<'_>, out: &mut dyn io::Write) -> io::Result<()> {
 
 /// Error against some cost, both logarithmic.
 fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
-    let point = |rung: &Rung| [cost(&rung.measured), rung.measured.deviation.error];
+    let point = |trial: &Trial| [cost(&trial.measured), trial.measured.deviation.error];
     let name = Deviation::name(study.reference.results.run().analysis);
     let mut chart = Chart::new("", Axis::log(axis), Axis::log(name)).sized(900, 560);
-    let costs = || study.rungs.iter().map(|rung| cost(&rung.measured)).filter(|c| *c > 0.0);
+    let costs = || study.trials.iter().map(|trial| cost(&trial.measured)).filter(|c| *c > 0.0);
     let ends = [costs().fold(f64::INFINITY, f64::min), costs().fold(0.0, f64::max)];
     for (label, level, colour) in [
         ("target", study.options.target, PALETTE[6]),
@@ -211,29 +211,29 @@ fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
     ] {
         chart = chart.with(Series::dashed(label, ends.map(|x| [x, level]).into(), colour));
     }
-    let all: Vec<[f64; 2]> = study.rungs.iter().map(point).collect();
+    let all: Vec<[f64; 2]> = study.trials.iter().map(point).collect();
     let distinct_errors: Vec<[f64; 2]> = all
         .iter()
         .map(|[cost, error]| [*cost, error.max(least(study.options.target, &study.reference))])
         .collect();
     let front = front(&distinct_errors).into_iter().map(|i| all[i]).collect();
     chart = chart.with(Series::line("front", front, GREY).size(7.0).opacity(0.35));
-    let families = distinct(study.rungs.iter().map(|rung| rung.family));
+    let families = distinct(study.trials.iter().map(|trial| trial.family));
     for kind in distinct(families.iter().map(|family| family.kind())) {
         let mut label = kind.as_str();
         for family in families.iter().copied().filter(|family| family.kind() == kind) {
             let Some(colour) = colour(family) else { continue };
             // The first solver of a family is that with which its meshes were compared.
-            let own = || study.rungs.iter().filter(move |r| r.family == family);
-            let Some(first) = own().next().map(|rung| rung.setting.solver) else { continue };
+            let own = || study.trials.iter().filter(move |r| r.family == family);
+            let Some(first) = own().next().map(|trial| trial.setting.solver) else { continue };
             let (mut line, mut circles, mut crosses) = (vec![], vec![], vec![]);
-            for rung in own() {
+            for trial in own() {
                 let alpha =
-                    matches!(rung.setting.solver, Solver::Integrator(Integrator::GeneralizedAlpha { .. }));
-                match rung.setting.solver {
-                    solver if solver == first => line.push(point(rung)),
-                    _ if alpha => crosses.push(point(rung)),
-                    _ => circles.push(point(rung)),
+                    matches!(trial.setting.solver, Solver::Integrator(Integrator::GeneralizedAlpha { .. }));
+                match trial.setting.solver {
+                    solver if solver == first => line.push(point(trial)),
+                    _ if alpha => crosses.push(point(trial)),
+                    _ => circles.push(point(trial)),
                 }
             }
             chart = chart
@@ -244,13 +244,13 @@ fn chart(study: &Study, axis: &str, cost: fn(&Measured) -> f64) -> Chart {
             label = "";
         }
     }
-    let of = |rungs: Vec<&Rung>| rungs.into_iter().map(point).collect::<Vec<_>>();
-    let scene = of(study.rungs.iter().filter(|r| r.family == Family::Scene).collect());
+    let of = |trials: Vec<&Trial>| trials.into_iter().map(point).collect::<Vec<_>>();
+    let scene = of(study.trials.iter().filter(|r| r.family == Family::Scene).collect());
     if !scene.is_empty() {
         chart = chart.with(Series::points("the scene as it is", scene, PALETTE[6]).size(4.5));
     }
     if let Some(best) = &study.best {
-        let best = of(vec![&study.rungs[best.rung]]);
+        let best = of(vec![&study.trials[best.trial]]);
         chart = chart
             .with(Series::new("cheapest that meets the target", best, Mark::Circles, PALETTE[1]).size(6.5));
     }
@@ -299,17 +299,17 @@ struct Page<'a> {
 
 fn html(study: &Study, report: &Report<'_>, figures: &[(&str, String)]) -> Result<String, OutputError> {
     let uncertainty = report.uncertainty;
-    let mut order: Vec<&ReportedRung> = report.rungs.iter().collect();
+    let mut order: Vec<&ReportedTrial> = report.trials.iter().collect();
     order.sort_by(|a, b| a.measured.seconds.total_cmp(&b.measured.seconds));
     let optional = |value: Option<f64>| value.map_or("–".into(), |v| human(v, 2));
-    let row = |rung: &ReportedRung| {
-        let Measured { degrees_of_freedom, seconds, statistics, deviation, .. } = rung.measured;
+    let row = |trial: &ReportedTrial| {
+        let Measured { degrees_of_freedom, seconds, statistics, deviation, .. } = trial.measured;
         let cells = [
-            rung.discretization.clone(),
-            rung.cells.to_string(),
-            rung.solver.clone(),
+            trial.discretization.clone(),
+            trial.cells.to_string(),
+            trial.solver.clone(),
             degrees_of_freedom.to_string(),
-            if rung.below_uncertainty {
+            if trial.below_uncertainty {
                 format!("< {}", human(uncertainty.error, 2))
             } else {
                 human(deviation.error, 2)
@@ -319,7 +319,7 @@ fn html(study: &Study, report: &Report<'_>, figures: &[(&str, String)]) -> Resul
             human(1e3 * seconds, 3),
             format!("{}, {}", statistics.tangent_evaluations, statistics.factorizations),
         ];
-        (rung.front, cells)
+        (trial.front, cells)
     };
     let [first, second] = report.reference;
     let page = Page {
@@ -366,17 +366,17 @@ mod tests {
     fn a_report_says_what_each_setting_is_worth() {
         let study = made_up();
         let report = study.report();
-        let which = |is: fn(&ReportedRung) -> bool| -> Vec<usize> {
-            report.rungs.iter().enumerate().filter(|(_, rung)| is(rung)).map(|(index, _)| index).collect()
+        let which = |is: fn(&ReportedTrial) -> bool| -> Vec<usize> {
+            report.trials.iter().enumerate().filter(|(_, trial)| is(trial)).map(|(index, _)| index).collect()
         };
-        assert_eq!(which(|rung| rung.below_uncertainty), [4]);
-        assert_eq!(which(|rung| rung.meets_target), [1, 3, 9]);
-        assert_eq!(which(|rung| rung.front), [1, 3]);
+        assert_eq!(which(|trial| trial.below_uncertainty), [4]);
+        assert_eq!(which(|trial| trial.meets_target), [1, 3, 9]);
+        assert_eq!(which(|trial| trial.front), [1, 3]);
         assert_eq!((report.title, report.error), ("Made up", "position error [beam lengths]"));
         assert_eq!((report.target, report.budget, report.complete), (TARGET, 20.0, true));
-        assert_eq!((report.best, report.rungs.len(), report.warnings.len()), (Some(1), 10, 2));
+        assert_eq!((report.best, report.trials.len(), report.warnings.len()), (Some(1), 10, 2));
         assert_eq!(report.lines, Some("[beam.cantilever.basis.ancf]\nelements = 4\n"));
-        assert_eq!(report.rungs[6].solver, "generalised-α (ρ∞ = 0.9), step 0.5 s");
+        assert_eq!(report.trials[6].solver, "generalised-α (ρ∞ = 0.9), step 0.5 s");
     }
 
     /// Lines are meshes with the first solver of a discretisation, circles and crosses others; of
@@ -435,7 +435,7 @@ mod tests {
         let work = chart(&study, "work", Measured::sized_work);
         assert_eq!(work.series[0].points, [[32.0, TARGET], [64.0, TARGET]]);
         let bare =
-            chart(&Study { best: None, rungs: study.rungs[1..].to_vec(), ..made_up() }, "work", |_| 2.0);
+            chart(&Study { best: None, trials: study.trials[1..].to_vec(), ..made_up() }, "work", |_| 2.0);
         assert_eq!(bare.series.len(), 3 + 6 * 4);
     }
 
@@ -447,10 +447,10 @@ mod tests {
         study.seconds = 17.456;
         study.reference.seconds = 1.2345;
         study.reference.uncertainty = Deviation { error: 1.2345e-5, curvature: Some(2.345e-3), energy: None };
-        let scene = &mut study.rungs[0].measured;
+        let scene = &mut study.trials[0].measured;
         scene.seconds = 12.3456e-3;
         scene.deviation = Deviation { error: 3.456e-2, curvature: Some(5.678e-2), energy: None };
-        study.rungs[1].measured.deviation.error = 1e-6;
+        study.trials[1].measured.deviation.error = 1e-6;
         let page = |study: &Study| html(study, &study.report(), &[]).unwrap();
         let text = page(&study);
         for part in [

@@ -77,7 +77,7 @@ fn is_final(error: f64, before: Option<f64>, target: f64, clock: &Clock) -> bool
 
 /// Refines until two runs agree well below `target`, or the time `deadline` \[s\] is near.
 pub(super) fn make(runner: &Runner<'_>, target: f64, deadline: f64) -> Result<Reference, CostError> {
-    // Gone before the ladder, whose runs are alone.
+    // Gone before the search, whose runs are alone.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
     let start = runner.now();
     let mut best: Option<Reference> = None;

@@ -49,7 +49,7 @@ impl Family {
         Self::Rpim { neighbours: RPIM_NEIGHBOURS, shape, points }
     }
 
-    /// Those of the ladder.
+    /// Those of the search.
     pub fn all() -> Vec<Self> {
         let points = RPIM_GAUSS_POINTS.bend;
         let widths = [2, 1, 3].into_iter();
@@ -167,7 +167,7 @@ impl fmt::Display for Solver {
     }
 }
 
-/// Everything that the ladder varies.
+/// Everything that the search varies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
     /// Per beam.
@@ -445,7 +445,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ladder_has_these_families() {
+    fn the_search_has_these_families() {
         let names: Vec<String> = Family::all().iter().map(Family::to_string).collect();
         let expected = [
             "ANCF, 5/3 points",

@@ -102,10 +102,14 @@ impl<T: Number> Band<T> {
         self.index(i, j).map_or_else(T::default, |k| self.data[k])
     }
 
-    /// Sets an entry within the band; entries outside stay zero.
+    /// Sets an entry, which must lie in the band.
+    ///
+    /// # Panics
+    /// Where it does not.
     pub fn set(&mut self, i: usize, j: usize, value: T) {
-        if let Some(k) = self.index(i, j) {
-            self.data[k] = value;
+        match self.index(i, j) {
+            Some(k) => self.data[k] = value,
+            None => panic!("({i}, {j}) is outside the band"),
         }
     }
 

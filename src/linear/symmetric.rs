@@ -6,10 +6,12 @@
 //! register, and works node by node: its blocks are reduced by its own four pivots, and each block
 //! of a later node then takes them in one pass, 4 multiply–adds per number loaded and stored.
 //!
-//! Cost per node: 4·4·(b + 1) + 16·(b)(b + 1)/2 · 4 multiply–adds, 112 for the cable element (b = 1) and 1 056 for
-//! six-node supports (b = 5); a pivoted LU of the same band takes 3.5 to 4 times as many. Another 40 b give the blocks W of [`Ldl`], which are
-//! worth it: a substitution from pivot to pivot waits eight times a node for the result before. With blocks a step of the trapezoidal rule (30 cable
-//! elements) takes a fifth less time, one of Radau's method (20 nodes, six-node supports) a twelfth.
+//! Per node it takes 4·4·(b + 1) + 16·b·(b + 1)/2 · 4 multiplications, 112 for the cable element
+//! (b = 1) and 1 056 for six-node supports (b = 5); a pivoted LU of the same band takes 3.5 to 4
+//! times as many. Another 40 b give the blocks W of [`Ldl`], which are worth it: a substitution from
+//! pivot to pivot waits eight times a node for the result before. With blocks a step of the
+//! trapezoidal rule (30 cable elements) takes a fifth less time, one of Radau's method (20 nodes,
+//! six-node supports) a twelfth.
 
 use super::Singular;
 use super::band::Band;

@@ -33,24 +33,24 @@ impl Freedom {
             let (at, fix) = (support.at, support.fix);
             let axes = [(fix.x, [1.0, 0.0]), (fix.y, [0.0, 1.0])];
             for (_, axis) in axes.into_iter().filter(|(fixed, _)| *fixed) {
-                freedom.hold_displacement(&[(at.beam, position(at), axis)]);
+                freedom.fix_displacement(&[(at.beam, position(at), axis)]);
             }
             if fix.rotation != FixedRotation::Free {
-                freedom.hold_direction(at.beam);
+                freedom.fix_direction(at.beam);
             }
         }
         for joint in &model.joints {
             match *joint {
                 Joint::Slider { at, along: [x, y] } => {
-                    freedom.hold_displacement(&[(at.beam, position(at), [-y, x])]);
+                    freedom.fix_displacement(&[(at.beam, position(at), [-y, x])]);
                 }
                 Joint::Hinge { first, second } | Joint::Weld { first, second } => {
                     let (a, b) = (position(first), position(second));
                     for [x, y] in [[1.0, 0.0], [0.0, 1.0]] {
-                        freedom.hold_displacement(&[(first.beam, a, [-x, -y]), (second.beam, b, [x, y])]);
+                        freedom.fix_displacement(&[(first.beam, a, [-x, -y]), (second.beam, b, [x, y])]);
                     }
                     if matches!(joint, Joint::Weld { .. }) {
-                        freedom.hold_turns(&[(first.beam, -1.0), (second.beam, 1.0)]);
+                        freedom.fix_turns(&[(first.beam, -1.0), (second.beam, 1.0)]);
                     }
                 }
             }
@@ -58,23 +58,23 @@ impl Freedom {
         freedom
     }
 
-    /// Holds what the model's parts may resist by elasticity. Contacts count where springs may press
-    /// beams to them.
+    /// Holds what the model's parts may resist by elasticity. Contacts count where springs may
+    /// press beams to them.
     pub fn resist(&mut self, model: &Model, position: impl Fn(Place) -> [f64; 2]) {
         let all: Vec<_> = model.parts.iter().flat_map(|part| part.resists()).collect();
         let springs = all.iter().any(|resistance| !matches!(resistance, Resistance::Contact(_)));
         for resistance in all {
             match resistance {
                 Resistance::Displacement(at, axis) => {
-                    self.hold_displacement(&[(at.beam, position(at), axis)]);
+                    self.fix_displacement(&[(at.beam, position(at), axis)]);
                 }
-                Resistance::Direction(at) => self.hold_direction(at.beam),
+                Resistance::Direction(at) => self.fix_direction(at.beam),
                 Resistance::Contact(beam) if springs => {
                     let start = position(Place { beam, s: 0.0 });
                     for axis in [[1.0, 0.0], [0.0, 1.0]] {
-                        self.hold_displacement(&[(beam, start, axis)]);
+                        self.fix_displacement(&[(beam, start, axis)]);
                     }
-                    self.hold_direction(beam);
+                    self.fix_direction(beam);
                 }
                 Resistance::Contact(_) => {}
             }
@@ -82,12 +82,12 @@ impl Freedom {
     }
 
     /// Holds the direction of a beam.
-    pub fn hold_direction(&mut self, beam: usize) {
-        self.hold_turns(&[(beam, 1.0)]);
+    pub fn fix_direction(&mut self, beam: usize) {
+        self.fix_turns(&[(beam, 1.0)]);
     }
 
     /// Σ n·u = 0 over points.
-    fn hold_displacement(&mut self, terms: &[(usize, [f64; 2], [f64; 2])]) {
+    fn fix_displacement(&mut self, terms: &[(usize, [f64; 2], [f64; 2])]) {
         let mut row = vec![0.0; 3 * self.origins.len()];
         for &(beam, [x, y], n) in terms {
             let [ox, oy] = self.origins[beam];
@@ -100,7 +100,7 @@ impl Freedom {
     }
 
     /// Σ ω = 0.
-    fn hold_turns(&mut self, terms: &[(usize, f64)]) {
+    fn fix_turns(&mut self, terms: &[(usize, f64)]) {
         let mut row = vec![0.0; 3 * self.origins.len()];
         terms.iter().for_each(|(beam, sign)| row[3 * beam + 2] += sign);
         self.add(row);

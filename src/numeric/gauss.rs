@@ -1,6 +1,7 @@
 //! Gauss–Legendre rules on (0, 1): places in ascending order, and weights that sum to one.
 //!
-//! Rounded from sixty digits. [`crate::basis::Quadrature`] computes rules with any number of points.
+//! Rounded from sixty digits. [`crate::basis::Quadrature`] computes rules with any number of
+//! points.
 
 /// Exact up to the degree 3.
 pub const GAUSS_2: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];

@@ -23,8 +23,8 @@ pub fn rates<const D: usize>(h: &[f64], slope: &[[f64; D]], ends: [End; 2]) -> V
         let middle = combine(h[1] / total, slope[0], h[0] / total, slope[1]);
         return vec![combine(2.0, slope[0], -1.0, middle), middle, combine(2.0, slope[1], -1.0, middle)];
     }
-    // Rows lower d[i − 1] + diagonal d[i] + upper d[i + 1] = right. The first and the last are those
-    // of an end: diagonal, that of the neighbour, and the right side.
+    // Rows lower d[i − 1] + diagonal d[i] + upper d[i + 1] = right. The first and the last are
+    // those of an end: diagonal, that of the neighbour, and the right side.
     let row = |end: End, [near, far]: [usize; 2]| match end {
         End::Flat => (1.0, 0.0, [0.0; D]),
         End::Smooth if n > 2 => {

@@ -80,7 +80,7 @@ impl StagedFiles {
     }
 
     /// Whether a file of this name is staged.
-    pub(super) fn holds(&self, name: &str) -> bool {
+    pub(super) fn contains(&self, name: &str) -> bool {
         self.names.iter().any(|n| n == name)
     }
 
@@ -121,7 +121,8 @@ mod tests {
         names
     }
 
-    /// Would catch directories that a failure leaves behind, and one that was there before and goes.
+    /// Would catch directories that a failure leaves behind, and one that was there before and
+    /// goes.
     #[test]
     fn what_fails_removes_the_directories_that_it_made_and_no_other() {
         let own = tempfile::tempdir().expect("a directory");
@@ -149,7 +150,7 @@ mod tests {
         let results = own.path().join("results");
         let mut stage = StagedFiles::new(&results).expect("made");
         stage.add("deep/two.csv", |out| out.write_all(b"2\n")).expect("written");
-        assert!(stage.holds("deep/two.csv") && !stage.holds("two.csv"));
+        assert!(stage.contains("deep/two.csv") && !stage.contains("two.csv"));
         assert!(!results.join("deep/two.csv").exists());
         stage.commit().expect("renamed");
         assert_eq!(names(&results), ["deep"]);

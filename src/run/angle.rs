@@ -1,6 +1,6 @@
 //! Angles that count turns: a tip that has gone round once stands at 2π, not at 0.
 
-use crate::assembly::DiscretizedBeam;
+use crate::assembly::{DiscretizedBeam, Node, nodes};
 use crate::system::unfold;
 
 /// By how much the node of a beam nearest to `s` has turned between two states. One load step may
@@ -8,13 +8,13 @@ use crate::system::unfold;
 /// that is clamped, and the others follow from cell to cell.
 pub(super) fn turn(part: &DiscretizedBeam, s: f64, before: &[f64], now: &[f64]) -> f64 {
     let first = 4 * part.first_node;
-    let nodes = |q: &'_ [f64]| {
-        let angles = q[first..first + 4 * part.basis.nodes().len()].chunks_exact(4).map(|n| n[3].atan2(n[2]));
-        angles.collect::<Vec<_>>()
+    let angles = |q: &'_ [f64]| {
+        let nodes = nodes(&q[first..first + 4 * part.basis.nodes().len()]);
+        nodes.map(|Node { gradient: [x, y], .. }| y.atan2(x)).collect::<Vec<_>>()
     };
-    let folded: Vec<f64> = nodes(before)
+    let folded: Vec<f64> = angles(before)
         .into_iter()
-        .zip(nodes(now))
+        .zip(angles(now))
         .map(|(before, now)| unfold(now - before, Some(0.0)))
         .collect();
     let sizes = folded.iter().map(|turn| turn.abs()).enumerate();

@@ -26,8 +26,8 @@ use nalgebra::Vector2;
 const TOLERATED: f64 = 0.005;
 /// States that bend less, per energy of the one that bends most, are not looked at.
 const STRAIGHT: f64 = 0.1;
-/// Energy of a string's stretch, per energy of the forces that its cuts balance, beyond which most of
-/// it holds itself.
+/// Energy of a string's stretch, per energy of the forces that its cuts balance, beyond which most
+/// of it holds itself.
 const JAMMED: f64 = 10.0;
 /// Strain whose energy is never that of a string that holds itself: round-off makes it.
 const LEAST_STRAIN: f64 = 1e-9;
@@ -99,8 +99,8 @@ impl Locking {
         }
     }
 
-    /// Of strings that hold themselves in the last state, whose section forces are in `shapes`, with
-    /// an energy that counts against the work `scale` of the loads \[J\].
+    /// Of strings that hold themselves in the last state, whose section forces are in `shapes`,
+    /// with an energy that counts against the work `scale` of the loads \[J\].
     pub fn jammed(&self, shapes: &[Shape], scale: f64) -> impl Iterator<Item = String> {
         let strings = self.beams.iter().filter(|beam| beam.stiffness[1] == 0.0);
         strings.filter_map(move |beam| {

@@ -2,7 +2,7 @@
 
 use super::sampler::Sampler;
 use super::{Options, RunError, Solve, Stopwatch, Watch, memory, needs, timed};
-use crate::assembly::InternalVariables;
+use crate::assembly::{InternalVariables, nodes};
 use crate::model::{About, Analysis, Buckling, Modal, Model, Static};
 use crate::results::{
     AnalysisKind, BucklingMode, CriticalLoads, ModeShape, Shape, Statistics, Trajectory, Vibration,
@@ -134,7 +134,7 @@ impl Sampler<'_> {
         unloaded.run.warnings.extend(beyond_the_linear(modes));
         let reference = self.system.reference();
         let mode = |(load_factor, mode): (&f64, &Vec<f64>)| {
-            let largest = mode.chunks_exact(4).fold(0.0_f64, |m, d| m.max(d[0].hypot(d[1])));
+            let largest = nodes(mode).map(|node| node.shift()).fold(0.0, f64::max);
             let scaled: Vec<f64> = mode.iter().map(|change| change / largest).collect();
             let mode = if largest > 0.0 { &scaled } else { mode };
             BucklingMode {

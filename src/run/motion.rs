@@ -91,7 +91,7 @@ fn beginning(
         return Ok(Beginning { start, end, motion, told: None });
     };
     let (start, same) = saved.take_up(model, system, &motion)?;
-    system.hold_as_in(&start.state.q);
+    system.freeze(&start.state.q);
     let (begin, end) = (saved.time(), later(saved.time(), settings.duration));
     start::check_jumps(system, begin, end)?;
     let start = match same {

@@ -4,7 +4,7 @@ use super::RunError;
 use super::angle;
 use super::locking::Locking;
 use super::strings;
-use crate::assembly::{Actions, BuildError, InternalVariables, Side};
+use crate::assembly::{Actions, BuildError, InternalVariables, Side, nodes};
 use crate::linear::Singular;
 use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
@@ -307,8 +307,8 @@ impl<'a> Sampler<'a> {
             shape.curvature.push(fields.curvature());
         }
         let first = 4 * part.first_node;
-        let nodes = q[first..first + 4 * part.basis.nodes().len()].chunks_exact(4);
-        shape.nodes = nodes.map(|n| [n[0], n[1]]).collect();
+        let nodes = nodes(&q[first..first + 4 * part.basis.nodes().len()]);
+        shape.nodes = nodes.map(|node| node.position).collect();
         // A curved beam is free of stress with the strain that its interpolated shape has.
         if !part.straight {
             let reference = view.all(self.system.reference());
@@ -335,8 +335,8 @@ impl<'a> Sampler<'a> {
             shape.curvature.push(curvature);
         }
         let first = 4 * part.first_node;
-        let nodes = mode[first..first + 4 * part.basis.nodes().len()].chunks_exact(4);
-        shape.nodes = nodes.map(|n| [n[0], n[1]]).collect();
+        let nodes = nodes(&mode[first..first + 4 * part.basis.nodes().len()]);
+        shape.nodes = nodes.map(|node| node.position).collect();
         shape
     }
 
@@ -625,7 +625,7 @@ impl<'a> Sampler<'a> {
         let mut loads = vec![0.0; self.system.coordinates()];
         self.system.add_load_rate(1.0, self.system.reference(), &mut loads);
         let length = self.system.length();
-        let total: f64 = loads.chunks_exact(4).map(|f| f[0].hypot(f[1]).max(f[2].hypot(f[3]) / length)).sum();
+        let total: f64 = nodes(&loads).map(|f| f.shift().max(f.slope() / length)).sum();
         matches!(failure, Failure::TooSlow { last, .. } if *last < STALLED)
             || total > 0.0 && self.system.round_off() > DROWNED * total
     }

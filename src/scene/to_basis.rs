@@ -61,7 +61,8 @@ pub(super) fn discretization(
                 .help("give one kind: `[beam.NAME.basis.ancf]` with `elements = 10`, or `[beam.NAME.basis.rpim]` with `nodes = 11`"));
         }
     };
-    // Two components share a table; per dof the band is stored with its fill-in: 3 · half-bandwidth + 1.
+    // Two components share a table; of each unknown the band is stored with its fill-in, three
+    // half bandwidths and the diagonal.
     let tables = (nodes - 1.0) * (gauss.stretch + gauss.bend) as f64 * 3.0 * width * 8.0;
     let tangent = 4.0 * nodes * (3.0 * (2.0 * width - 1.0) + 1.0) * 8.0;
     let size = Size { nodes, memory: (tables + tangent) / 1024f64.powi(3) };

@@ -10,11 +10,11 @@ use crate::model::{
 
 use super::error::Fault;
 use super::file::{BeamTable, FixName, MoveTable, SceneTable, StrainName, SupportTable};
-use super::held::Resisting;
 use super::place::{Built, place};
+use super::rigid_motion::Resisting;
 use super::to_basis::{self, Size};
 use super::value::Located;
-use super::{held, to_analysis, to_law, to_parts, to_velocity};
+use super::{rigid_motion, to_analysis, to_law, to_parts, to_velocity};
 
 /// Converts and checks everything.
 pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
@@ -42,7 +42,7 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
     for table in &file.support {
         model.supports.push(support(table, &built)?);
     }
-    held::check_duplicates(file, &model, &built)?;
+    rigid_motion::check_duplicates(file, &model, &built)?;
     to_parts::parts(file, &built, &mut model)?;
     to_velocity::initial_velocities(file, &built, &mut model)?;
     probes(file, &built, &mut model)?;
@@ -57,7 +57,7 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
         Analysis::Dynamic(_) => None,
     };
     if let Some(resisting) = resisting {
-        held::check_rigid_motions(&model, &built, resisting)?;
+        rigid_motion::check_rigid_motions(&model, &built, resisting)?;
     }
     Ok((model, analysis))
 }

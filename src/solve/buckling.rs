@@ -13,7 +13,7 @@
 
 use super::eigen::{EigenError, Pencil, largest_reciprocals, round_off};
 use super::equilibrium::Equilibrium;
-use crate::assembly::{Earlier, Workspace};
+use crate::assembly::{Earlier, Workspace, nodes};
 use crate::system::System;
 
 /// Critical loads, lowest first.
@@ -72,10 +72,10 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     geometric.add(-1.0, &stiffness);
     geometric.scale(-1.0 / FAR_AHEAD);
     system.supports().eliminate(0.0, &mut geometric);
-    system.supports().clear_held(0.0, &mut geometric);
+    system.supports().clear_fixed(0.0, &mut geometric);
     system.supports().eliminate(0.0, &mut stiffness);
-    let (border, held) = (system.border(0.0, system.reference()), system.held());
-    let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, held: &held };
+    let (border, fixed) = (system.border(0.0, system.reference()), system.fixed());
+    let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, fixed: &fixed };
     let mut pairs = largest_reciprocals(&pencil, count)?;
     // A load that compresses nothing leaves round-off.
     let mut load = vec![0.0; n];
@@ -95,10 +95,11 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     });
     let load_factors: Vec<f64> = pairs.reciprocals.iter().map(|r| 1.0 / r).collect();
     let (mut turn, mut strain) = (0.0_f64, 0.0_f64);
-    for (d, q) in rate[..n].chunks_exact(4).zip(reference.chunks_exact(4)) {
-        let squared = q[2] * q[2] + q[3] * q[3];
-        turn = turn.max((q[2] * d[3] - q[3] * d[2]).abs() / squared);
-        strain = strain.max((q[2] * d[2] + q[3] * d[3]).abs() / squared);
+    for (rate, node) in nodes(&rate[..n]).zip(nodes(reference)) {
+        let ([x, y], [dx, dy]) = (node.gradient, rate.gradient);
+        let squared = x * x + y * y;
+        turn = turn.max((x * dy - y * dx).abs() / squared);
+        strain = strain.max((x * dx + y * dy).abs() / squared);
     }
     Ok(Modes { turn, strain, load_factors, shapes: shapes.collect(), factorizations: 2 })
 }

@@ -18,10 +18,12 @@
 //! three stages and 4 ms, whose error is smaller. They were left out.
 //!
 //! # No energy–momentum scheme
-//! Schemes that keep the discrete energy exactly (discrete gradients; Simo & Tarnow 1992, Gonzalez 2000) are of second order, and their tangent is
-//! not symmetric. Gauss' methods keep linear and angular momentum to round-off and are symplectic, so that the energy errs by a bounded
-//! O(h^{2s}): 1e-7 of the kinetic energy where a step of the same length by an energy–momentum scheme errs by 1e-3 in the motion
-//! itself. Its exact energy would be the only digit that it has right; it was left out.
+//! Schemes that keep the discrete energy exactly (discrete gradients; Simo & Tarnow 1992, Gonzalez
+//! 2000) are of second order, and their tangent is not symmetric. Gauss' methods keep linear and
+//! angular momentum to round-off and are symplectic, so that the energy errs by a bounded
+//! O(h^{2s}): 1e-7 of the kinetic energy where a step of the same length by an energy–momentum
+//! scheme errs by 1e-3 in the motion itself. Its exact energy would be the only digit that it has
+//! right; it was left out.
 
 mod balance;
 pub mod collocation;

@@ -79,13 +79,13 @@ pub struct Pencil<'a> {
     /// Rows g with g φ = 0.
     pub border: &'a [BorderRow],
     /// Per coordinate, whether it is held.
-    pub held: &'a [bool],
+    pub fixed: &'a [bool],
 }
 
 impl Pencil<'_> {
     /// Number of independent motions.
     pub fn motions(&self) -> usize {
-        let free = self.held.iter().filter(|held| !**held).count();
+        let free = self.fixed.iter().filter(|fixed| !**fixed).count();
         free.saturating_sub(self.border.len())
     }
 }

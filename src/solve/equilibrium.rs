@@ -6,7 +6,7 @@ use super::retraction::Retraction;
 use crate::assembly::{AcceptedState, Earlier, InternalVariables, Workspace};
 use crate::lanes::Lanes;
 use crate::linear::bordered::BorderRow;
-use crate::linear::{Factor, Matrix, Singular};
+use crate::linear::{Factor, Matrix, NOT_FACTORISED, Singular};
 use crate::solve::Statistics;
 use crate::system::System;
 
@@ -23,9 +23,9 @@ pub struct Equilibrium<'a> {
     factor: Option<Factor>,
     border: Vec<BorderRow>,
     workspace: Workspace,
-    held_rate: Vec<f64>,
+    prescribed_rate: Vec<f64>,
     /// The last accepted state, for what depends on the way.
-    held: AcceptedState,
+    accepted: AcceptedState,
     /// Counts so far.
     pub statistics: Statistics,
 }
@@ -41,8 +41,8 @@ impl<'a> Equilibrium<'a> {
             factor: None,
             border: Vec::new(),
             workspace: Workspace::default(),
-            held_rate: vec![0.0; n],
-            held: AcceptedState { q: system.reference().to_vec(), ..AcceptedState::default() },
+            prescribed_rate: vec![0.0; n],
+            accepted: AcceptedState { q: system.reference().to_vec(), ..AcceptedState::default() },
             statistics: Statistics::default(),
         }
     }
@@ -53,10 +53,10 @@ impl<'a> Equilibrium<'a> {
     }
 
     /// Takes `x` for the last accepted state, from which internal variables are counted.
-    pub fn hold(&mut self, x: &[f64]) {
+    pub fn set_accepted(&mut self, x: &[f64]) {
         if self.system.has_history() {
             let variables = self.internal_variables(x);
-            self.held = AcceptedState { q: x[..self.system.coordinates()].to_vec(), variables };
+            self.accepted = AcceptedState { q: x[..self.system.coordinates()].to_vec(), variables };
         }
     }
 
@@ -64,21 +64,21 @@ impl<'a> Equilibrium<'a> {
     /// small changes.
     pub fn follow_windings(&mut self, x: &[f64]) {
         if self.system.has_windings() {
-            self.held.variables.angles = self.internal_variables(x).angles;
+            self.accepted.variables.angles = self.internal_variables(x).angles;
         }
     }
 
     /// What `solve` finds, whose way leaves no trace in the last accepted state.
     pub fn without_trace<T>(&mut self, solve: impl FnOnce(&mut Self) -> T) -> T {
-        let held = self.held.clone();
+        let held = self.accepted.clone();
         let found = solve(self);
-        self.held = held;
+        self.accepted = held;
         found
     }
 
     /// The internal variables of the state `x`.
     pub fn internal_variables(&self, x: &[f64]) -> InternalVariables {
-        self.system.internal_variables(&self.held, &x[..self.system.coordinates()])
+        self.system.internal_variables(&self.accepted, &x[..self.system.coordinates()])
     }
 
     /// Number of unknowns.
@@ -100,7 +100,7 @@ impl<'a> Equilibrium<'a> {
         let n = self.system.coordinates();
         self.statistics.residual_evaluations += 1;
         self.system.force(load, &x[..n], &mut negative[..n]);
-        self.system.add_history(&self.held, &x[..n], &mut negative[..n]);
+        self.system.add_history(&self.accepted, &x[..n], &mut negative[..n]);
         self.balanced(load, x, negative)
     }
 
@@ -133,7 +133,7 @@ impl<'a> Equilibrium<'a> {
         let q = &x[..n];
         let force = &mut negative[..n];
         system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
-        system.add_history_and_tangent(&self.held, q, force, &mut self.tangent, &mut self.workspace);
+        system.add_history_and_tangent(&self.accepted, q, force, &mut self.tangent, &mut self.workspace);
         let residual = self.balanced(load, x, negative);
         system.add_constraint_stiffness(q, &x[n..], &mut self.tangent);
         system.supports().turn_matrix(load, &mut self.tangent);
@@ -164,7 +164,7 @@ impl<'a> Equilibrium<'a> {
         self.statistics.factorizations += 1;
         let force = &mut negative[..n];
         system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
-        system.add_history_and_tangent(&self.held, q, force, &mut self.tangent, &mut self.workspace);
+        system.add_history_and_tangent(&self.accepted, q, force, &mut self.tangent, &mut self.workspace);
         self.balanced(load, x, negative);
         system.add_constraint_stiffness(q, &x[n..], &mut self.tangent);
         self.tangent.add_diagonal(sigma, diagonal);
@@ -187,12 +187,12 @@ impl<'a> Equilibrium<'a> {
             let unit = constraint.scale(system.stiffness(), system.length());
             rate[n + r] = -unit * constraint.rate(load, q);
         }
-        system.supports().rate(load, q, &mut self.held_rate);
+        system.supports().rate(load, q, &mut self.prescribed_rate);
         if system.supports().moves() {
             system.supports().to_frames(load, &mut rate[..n]);
-            self.tangent.multiply_add(-1.0, &self.held_rate, &mut rate[..n]);
+            self.tangent.multiply_add(-1.0, &self.prescribed_rate, &mut rate[..n]);
             system.supports().from_frames(load, &mut rate[..n]);
-            let mut global = self.held_rate.clone();
+            let mut global = self.prescribed_rate.clone();
             system.supports().from_frames(load, &mut global);
             for (r, constraint) in system.constraints().iter().enumerate() {
                 let unit = constraint.scale(system.stiffness(), system.length());
@@ -205,13 +205,14 @@ impl<'a> Equilibrium<'a> {
 
     /// Solves with the last tangent; `b` comes in the supports' frames and leaves in fixed axes.
     /// With `moving`, held coordinates receive their prescribed rates.
+    ///
+    /// # Panics
+    /// Where no tangent has been factorised.
     pub fn solve(&self, load: f64, b: &mut [f64], moving: bool) {
         let n = self.system.coordinates();
-        if let Some(factor) = &self.factor {
-            factor.solve(b);
-        }
+        self.factor.as_ref().expect(NOT_FACTORISED).solve(b);
         if moving {
-            for (b, rate) in b[..n].iter_mut().zip(&self.held_rate) {
+            for (b, rate) in b[..n].iter_mut().zip(&self.prescribed_rate) {
                 // Held components are zero in a solved right-hand side, free ones have no
                 // prescribed rate.
                 *b += rate;

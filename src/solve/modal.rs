@@ -12,7 +12,7 @@
 //! of a clamped beam, where the matrix alone leaves 5e-2. What cannot be told from zero is zero.
 
 use super::eigen::{EigenError, Pencil, dot, largest_reciprocals, round_off};
-use crate::assembly::{InternalVariables, Workspace};
+use crate::assembly::{InternalVariables, Workspace, nodes};
 use crate::linear::Matrix;
 use crate::system::System;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
@@ -62,12 +62,12 @@ pub fn solve(
         supports.turn_matrix(load, matrix);
         supports.eliminate(load, matrix);
     }
-    supports.clear_held(load, &mut mass);
+    supports.clear_fixed(load, &mut mass);
     let shift = SHIFT * system.lowest_vibration_scale() + STAND_OUT * noise(&stiffness, &mass);
     let mut shifted = stiffness.clone();
     shifted.add(shift, &mass);
-    let (border, held) = (system.border(load, q), system.held());
-    let pencil = Pencil { a: &shifted, b: &mass, border: &border, held: &held };
+    let (border, fixed) = (system.border(load, q), system.fixed());
+    let pencil = Pencil { a: &shifted, b: &mass, border: &border, fixed: &fixed };
     let pairs = largest_reciprocals(&pencil, count + GUARD)?;
     if pairs.vectors.is_empty() {
         return Err(EigenError::NotConverged { found: 0, wanted: count });
@@ -158,7 +158,7 @@ fn ritz(vectors: &[Vec<f64>], stiff: &[Vec<f64>], mass: &Matrix) -> Result<Vec<(
 
 /// Turns the largest displacement towards positive x or y.
 fn point_up(shape: &mut [f64]) {
-    let displacements = shape.chunks_exact(4).flat_map(|node| [node[0], node[1]]);
+    let displacements = nodes(shape).flat_map(|node| node.position);
     let largest = displacements.fold(0.0_f64, |a, b| if b.abs() > (1.0 + 1e-6) * a.abs() { b } else { a });
     if largest < 0.0 {
         shape.iter_mut().for_each(|value| *value = -*value);
@@ -167,7 +167,7 @@ fn point_up(shape: &mut [f64]) {
 
 /// Largest change of a gradient.
 fn slope(shape: &[f64]) -> f64 {
-    shape.chunks_exact(4).fold(0.0, |largest, node| node[2].hypot(node[3]).max(largest))
+    nodes(shape).map(|node| node.slope()).fold(0.0, f64::max)
 }
 
 /// ω² \[1/s²\] that round-off gives to a translation, which has none.

@@ -8,7 +8,7 @@
 //! tolerance. The first contraction also tells the caller how far the predictor was from the
 //! solution (Deuflhard, *Newton Methods for Nonlinear Problems*, 2004, ch. 5).
 
-use crate::assembly::Earlier;
+use crate::assembly::{Earlier, Node, nodes};
 use crate::linear::Singular;
 
 /// A nonlinear system of equations.
@@ -221,9 +221,9 @@ const CRUSHED: f64 = 0.05;
 /// # Errors
 /// [`Failure::Crushed`] with the first such node.
 pub fn not_crushed(q: &[f64]) -> Result<(), Failure> {
-    let square = |node: &[f64]| node[2] * node[2] + node[3] * node[3];
-    match q.chunks_exact(4).position(|node| square(node) < CRUSHED * CRUSHED) {
-        Some(node) => Err(Failure::Crushed { stretch: square(&q[4 * node..]).sqrt(), node }),
+    let square = |Node { gradient: [x, y], .. }: &Node| x * x + y * y;
+    match nodes(q).enumerate().find(|(_, node)| square(node) < CRUSHED * CRUSHED) {
+        Some((node, crushed)) => Err(Failure::Crushed { stretch: crushed.slope(), node }),
         None => Ok(()),
     }
 }
@@ -234,8 +234,8 @@ pub fn not_crushed(q: &[f64]) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::Crushed`] with the node.
 pub fn not_crushed_since(before: &[f64], q: &[f64]) -> Result<(), Failure> {
-    let mut pairs = before.chunks_exact(4).zip(q.chunks_exact(4));
-    match pairs.position(|(a, b)| a[2] * b[2] + a[3] * b[3] < 0.0) {
+    let along = |(a, b): (Node, Node)| a.gradient[0] * b.gradient[0] + a.gradient[1] * b.gradient[1];
+    match nodes(before).zip(nodes(q)).position(|pair| along(pair) < 0.0) {
         Some(node) => Err(Failure::Crushed { stretch: 0.0, node }),
         None => not_crushed(q),
     }

@@ -35,7 +35,7 @@
 
 use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
 use super::newton::{self, Failure, Iterations, Settings};
-use crate::assembly::Earlier;
+use crate::assembly::{Earlier, Node, nodes};
 use crate::lanes::{cross, dot};
 use crate::solve::StepRecord;
 use std::f64::consts::TAU;
@@ -202,7 +202,7 @@ impl<'e, 'a> Path<'e, 'a> {
     /// [`NoStep`] where no step converges.
     pub fn advance(&mut self, end: f64) -> Result<&Point, NoStep> {
         let last = &self.points[self.points.len() - 1];
-        self.equilibrium.hold(&last.x);
+        self.equilibrium.set_accepted(&last.x);
         if last.rate.is_empty() {
             self.set_out()?;
         }
@@ -307,8 +307,8 @@ impl<'e, 'a> Path<'e, 'a> {
     /// Whether nodes turn the other way than was predicted, as on the mirrored branch of a column.
     fn turns_back(&self, point: &Point, predicted: &[f64]) -> bool {
         let n = self.equilibrium.system().coordinates();
-        let nodes = |x: &'_ [f64]| x[..n].chunks_exact(4).map(|x| [x[2], x[3]]).collect::<Vec<_>>();
-        let [here, there, wanted] = [&self.last().x, &point.x, predicted].map(nodes);
+        let gradients = |x: &'_ [f64]| nodes(&x[..n]).map(|node| node.gradient).collect::<Vec<_>>();
+        let [here, there, wanted] = [&self.last().x, &point.x, predicted].map(gradients);
         let angle = |from: [f64; 2], to: [f64; 2]| cross(from, to).atan2(dot(from, to));
         let turns = here.iter().zip(there).zip(wanted);
         let along: f64 = turns.map(|((from, to), wanted)| angle(*from, to) * angle(*from, wanted)).sum();
@@ -427,15 +427,13 @@ impl<'e, 'a> Path<'e, 'a> {
     /// Largest turn of a node in a step of length `h` along the tangent \[rad\].
     fn predicted_turn(&self, h: f64) -> f64 {
         let n = self.equilibrium.system().coordinates();
-        let turn = |d: &[f64]| (h * d[2]).hypot(h * d[3]);
-        self.last().rate[..n].chunks_exact(4).map(turn).fold(0.0, f64::max)
+        nodes(&self.last().rate[..n]).map(|rate| h.abs() * rate.slope()).fold(0.0, f64::max)
     }
 
     /// Largest change of a nodal gradient between two states.
     fn turn(&self, a: &[f64], b: &[f64]) -> f64 {
         let n = self.equilibrium.system().coordinates();
-        let pairs = a[..n].chunks_exact(4).zip(b[..n].chunks_exact(4));
-        pairs.fold(0.0, |turn: f64, (a, b)| turn.max((a[2] - b[2]).hypot(a[3] - b[3])))
+        turns(&a[..n], &b[..n]).fold(0.0, f64::max)
     }
 
     /// Largest angle between a gradient of `to` and where the trapezoidal rule leads from `from` by
@@ -446,12 +444,12 @@ impl<'e, 'a> Path<'e, 'a> {
         if from.rate.len() < n || to.rate.len() < n {
             return 0.0;
         }
-        let nodes = |point: &'_ Point| {
-            let pairs = point.x[..n].chunks_exact(4).zip(point.rate[..n].chunks_exact(4));
-            pairs.map(|(x, rate)| ([x[2], x[3]], [rate[2], rate[3]])).collect::<Vec<_>>()
+        let turning_nodes = |point: &'_ Point| {
+            let pairs = nodes(&point.x[..n]).zip(nodes(&point.rate[..n]));
+            pairs.map(|(x, rate)| (x.gradient, rate.gradient)).collect::<Vec<_>>()
         };
         let turning = |(g, rate): ([f64; 2], [f64; 2])| cross(g, rate) / dot(g, g);
-        let pairs = nodes(from).into_iter().zip(nodes(to));
+        let pairs = turning_nodes(from).into_iter().zip(turning_nodes(to));
         pairs.fold(0.0, |largest: f64, (a, b)| {
             let turned = cross(a.0, b.0).atan2(dot(a.0, b.0));
             let missed = turned - half * (turning(a) + turning(b));
@@ -476,7 +474,10 @@ impl<'e, 'a> Path<'e, 'a> {
                 let mut equations = AtLoad::new(self.equilibrium, target);
                 let start = Earlier { q: &before.x, increment: &increment };
                 let result = newton::solve(&mut equations, &mut point.x, start, &self.settings, &mut record);
-                point.rate = equations.rate();
+                // A tangent that could not be factorised gives none.
+                if result.is_ok() {
+                    point.rate = equations.rate();
+                }
                 result
             }
             Parameter::ArcLength => {
@@ -492,13 +493,15 @@ impl<'e, 'a> Path<'e, 'a> {
                 let mut equations = AcrossPath::new(self.equilibrium, normal);
                 let start = Earlier { q: &start, increment: &increment };
                 let result = newton::solve(&mut equations, &mut x, start, &self.settings, &mut record);
-                let rate = equations.rate();
+                let rate = result.is_ok().then(|| equations.rate());
                 point.load = x.pop().unwrap_or(before.load);
                 point.x = x;
                 let mut change: Vec<f64> = point.x.iter().zip(&before.x).map(|(a, b)| a - b).collect();
                 change.push(point.load - before.load);
                 point.parameter = before.parameter + self.dot(&change, &change).sqrt();
-                point.rate = self.along(rate, Some(&change));
+                if let Some(rate) = rate {
+                    point.rate = self.along(rate, Some(&change));
+                }
                 result
             }
         };
@@ -564,10 +567,7 @@ impl<'e, 'a> Path<'e, 'a> {
     /// Beam and arc length of the node that changed most.
     fn worst(&self, a: &[f64], b: &[f64]) -> (usize, f64) {
         let n = self.equilibrium.system().coordinates();
-        let node = a[..n]
-            .chunks_exact(4)
-            .zip(b[..n].chunks_exact(4))
-            .map(|(a, b)| (a[2] - b[2]).hypot(a[3] - b[3]))
+        let node = turns(&a[..n], &b[..n])
             .enumerate()
             .fold((0, 0.0), |worst, (i, d)| if d > worst.1 || d.is_nan() { (i, d) } else { worst })
             .0;
@@ -654,6 +654,12 @@ impl<'e, 'a> Path<'e, 'a> {
         let unstable = self.equilibrium.unstable_directions();
         Some(Point { parameter: load, load, x, unstable, negative: None, rate: Vec::new() })
     }
+}
+
+/// By how much the gradient of each node differs between two states.
+fn turns<'x>(a: &'x [f64], b: &'x [f64]) -> impl Iterator<Item = f64> + 'x {
+    let apart = |(a, b): (Node, Node)| (a.gradient[0] - b.gradient[0]).hypot(a.gradient[1] - b.gradient[1]);
+    nodes(a).zip(nodes(b)).map(apart)
 }
 
 #[cfg(test)]

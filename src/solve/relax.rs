@@ -37,8 +37,8 @@ const SETTLED: f64 = 1e-3;
 /// Most iterations.
 const ITERATIONS: usize = 2000;
 
-/// Relaxes `x` to an equilibrium at load factor `load`: a minimum of the energy, or a crest on which
-/// it begins. K + σ D is kept definite, so that every increment leads downhill.
+/// Relaxes `x` to an equilibrium at load factor `load`: a minimum of the energy, or a crest on
+/// which it begins. K + σ D is kept definite, so that every increment leads downhill.
 ///
 /// # Errors
 /// [`Failure`] where it does not come to rest.

@@ -80,8 +80,8 @@ pub struct StabilityChange {
     pub after: usize,
 }
 
-/// A mechanism whose beams buckle where they are before it moves: to which equilibrium it then comes
-/// to rest is left to the smallest of causes.
+/// A mechanism whose beams buckle where they are before it moves: to which equilibrium it then
+/// comes to rest is left to the smallest of causes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnstableMechanism {
     /// Load factor at which it was relaxed.
@@ -274,7 +274,7 @@ fn relaxed(
         equilibrium.statistics.load_steps += 1;
         work.add_states(equilibrium.system(), (load - step, &start), (load, &x));
         solution.record(equilibrium, load, &x, work);
-        equilibrium.hold(&x);
+        equilibrium.set_accepted(&x);
         if !observe(load, step, &equilibrium.statistics) {
             break;
         }
@@ -289,7 +289,8 @@ fn unstable(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> usize {
     linearized.ok().and_then(|_| equilibrium.unstable_directions()).unwrap_or(0)
 }
 
-/// Moves every free coordinate a little and unevenly, the same in every run, to one side or the other.
+/// Moves every free coordinate a little and unevenly, the same in every run, to one side or the
+/// other.
 fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
     let system = equilibrium.system();
     let mut push: Vec<f64> = (1..=system.coordinates())

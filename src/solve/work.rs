@@ -7,8 +7,8 @@
 use super::path::Path;
 use crate::system::System;
 
-/// Change of Simpson's rule by a halving that ends the halvings, against the work that there would be
-/// if nothing gave way.
+/// Change of Simpson's rule by a halving that ends the halvings, against the work that there would
+/// be if nothing gave way.
 const CHANGE: f64 = 1e-7;
 /// Most halvings.
 const HALVINGS: usize = 8;

@@ -103,9 +103,9 @@ impl Constraint {
         let fields = points.iter().map(field).collect();
         let weights = points.iter().map(|(.., weight)| *weight).collect();
         let mut row = Self { fields, places: Vec::new(), row: Row::Length { weights, value: 0.0 } };
-        let held = row.value(0.0, reference);
+        let sum = row.value(0.0, reference);
         if let Row::Length { value, .. } = &mut row.row {
-            *value = held;
+            *value = sum;
         }
         row
     }
@@ -144,9 +144,9 @@ impl Constraint {
     }
 
     /// Sets what the sum of a joint is.
-    pub fn hold(&mut self, held: f64) {
+    pub fn set_sum(&mut self, sum: f64) {
         if let Row::Joint { value, .. } = &mut self.row {
-            *value += held;
+            *value += sum;
         }
     }
 
@@ -184,12 +184,12 @@ impl Constraint {
     }
 
     /// What follows no law holds what it holds in the state `q`.
-    pub fn hold_as_in(&mut self, q: &[f64], length: f64) {
+    pub fn freeze(&mut self, q: &[f64], length: f64) {
         let Some(field) = self.fields.first().map(|field| field.at(q)) else { return };
         match &mut self.row {
-            Row::Position { axis, value } => value.hold(field[*axis], length),
-            Row::Gradient { reference, rotation, .. } => rotation.hold_angle(*reference, field),
-            Row::Direction(angle) => angle.hold_angle([1.0, 0.0], field),
+            Row::Position { axis, value } => value.freeze(field[*axis], length),
+            Row::Gradient { reference, rotation, .. } => rotation.freeze_angle(*reference, field),
+            Row::Direction(angle) => angle.freeze_angle([1.0, 0.0], field),
             Row::Joint { .. } | Row::Length { .. } | Row::Angle(_) => {}
         }
     }

@@ -63,7 +63,7 @@ impl System {
 
     /// Per contact with friction whether the larger part of it slides, and whether against
     /// friction.
-    pub fn sliding(&self, held: &AcceptedState, q: &[f64], v: &[f64]) -> Vec<Option<bool>> {
-        self.terms.friction.iter().map(|friction| friction.sliding(held, q, v)).collect()
+    pub fn sliding(&self, accepted: &AcceptedState, q: &[f64], v: &[f64]) -> Vec<Option<bool>> {
+        self.terms.friction.iter().map(|friction| friction.sliding(accepted, q, v)).collect()
     }
 }

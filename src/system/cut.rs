@@ -28,7 +28,7 @@ pub struct Balanced<'b> {
     /// Velocities and accelerations, in a motion.
     pub motion: Option<[&'b [f64]; 2]>,
     /// Forces of supports on the held coordinates, in fixed axes; zero on all others.
-    pub held: &'b [f64],
+    pub support_forces: &'b [f64],
     /// Scaled multipliers.
     pub multipliers: &'b [f64],
     /// The internal variables.
@@ -38,7 +38,7 @@ pub struct Balanced<'b> {
 impl System {
     /// What acts on each beam.
     pub fn actions(&self, state: Balanced<'_>) -> Vec<Actions> {
-        let Balanced { parameter, q, motion, held, multipliers, variables } = state;
+        let Balanced { parameter, q, motion, support_forces, multipliers, variables } = state;
         let mut actions = vec![Actions::default(); self.beams.len()];
         for effect in &self.terms.internal {
             effect.add_actions(1.0, q, q, &mut actions[effect.beam()]);
@@ -63,14 +63,15 @@ impl System {
             }
         }
         for friction in &self.terms.friction {
-            friction.add_held_actions(variables, q, &mut actions[friction.beam()]);
+            friction.add_actions_of(variables, q, &mut actions[friction.beam()]);
         }
         for winding in &self.terms.windings {
             winding.add_actions(variables, q, &mut actions[winding.beam()]);
         }
         for (part, actions) in self.beams.iter().zip(&mut actions) {
             let range = 4 * part.first_node..4 * (part.first_node + part.basis.nodes().len());
-            let nodes = q[range.clone()].as_chunks::<4>().0.iter().zip(held[range].as_chunks::<4>().0);
+            let nodes =
+                q[range.clone()].as_chunks::<4>().0.iter().zip(support_forces[range].as_chunks::<4>().0);
             for (s, ([x, y, dx, dy], [fx, fy, gx, gy])) in part.basis.nodes().iter().zip(nodes) {
                 let mut action = Action::at(Vector2::new(*x, *y), Vector2::new(*fx, *fy));
                 action += Action::couple(dx * gy - dy * gx);
@@ -90,7 +91,14 @@ impl System {
     /// The same in equilibrium, `x` being coordinates and scaled multipliers.
     pub fn static_actions(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<Actions> {
         let (q, multipliers) = x.split_at(self.coordinates());
-        let held = self.static_held_forces(load, x, variables);
-        self.actions(Balanced { parameter: load, q, motion: None, held: &held, multipliers, variables })
+        let support_forces = self.static_support_forces(load, x, variables);
+        self.actions(Balanced {
+            parameter: load,
+            q,
+            motion: None,
+            support_forces: &support_forces,
+            multipliers,
+            variables,
+        })
     }
 }

@@ -17,20 +17,20 @@ impl System {
     }
 
     /// `f += ` these forces in the state `q`, where `held` was the last accepted one.
-    pub fn add_history(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
-        self.add_friction(held, q, f);
-        self.terms.windings.iter().for_each(|winding| winding.add_force(held, q, f));
+    pub fn add_history(&self, accepted: &AcceptedState, q: &[f64], f: &mut [f64]) {
+        self.add_friction(accepted, q, f);
+        self.terms.windings.iter().for_each(|winding| winding.add_force(accepted, q, f));
     }
 
     /// `f += ` those of them that take energy.
-    pub fn add_friction(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
-        self.terms.friction.iter().for_each(|friction| friction.add_force(held, q, f));
+    pub fn add_friction(&self, accepted: &AcceptedState, q: &[f64], f: &mut [f64]) {
+        self.terms.friction.iter().for_each(|friction| friction.add_force(accepted, q, f));
     }
 
     /// `f += ` all of them, and `k += ` their derivative.
     pub fn add_history_and_tangent(
         &self,
-        held: &AcceptedState,
+        accepted: &AcceptedState,
         q: &[f64],
         f: &mut [f64],
         k: &mut Matrix,
@@ -39,23 +39,23 @@ impl System {
         self.terms
             .friction
             .iter()
-            .for_each(|friction| friction.add_force_and_tangent(held, q, f, k, workspace));
+            .for_each(|friction| friction.add_force_and_tangent(accepted, q, f, k, workspace));
         self.terms
             .windings
             .iter()
-            .for_each(|winding| winding.add_force_and_tangent(held, q, f, k, workspace));
+            .for_each(|winding| winding.add_force_and_tangent(accepted, q, f, k, workspace));
     }
 
     /// The internal variables in the state `q`, where `held` was the last accepted one.
-    pub fn internal_variables(&self, held: &AcceptedState, q: &[f64]) -> InternalVariables {
+    pub fn internal_variables(&self, accepted: &AcceptedState, q: &[f64]) -> InternalVariables {
         let mut variables = InternalVariables::default();
         for friction in &self.terms.friction {
-            let (pieces, energy) = friction.slips(held, q);
+            let (pieces, energy) = friction.slips(accepted, q);
             variables.friction += energy;
             variables.contacts.push(pieces);
         }
         for winding in &self.terms.windings {
-            let angle = winding.angle(held, q);
+            let angle = winding.angle(accepted, q);
             variables.winding += winding.energy(angle);
             variables.angles.push(angle);
         }
@@ -63,14 +63,14 @@ impl System {
     }
 
     /// Energy of windings in the state `q`, where `held` was the last accepted one \[J\].
-    pub fn winding_energy(&self, held: &AcceptedState, q: &[f64]) -> f64 {
-        self.terms.windings.iter().map(|winding| winding.energy(winding.angle(held, q))).sum()
+    pub fn winding_energy(&self, accepted: &AcceptedState, q: &[f64]) -> f64 {
+        self.terms.windings.iter().map(|winding| winding.energy(winding.angle(accepted, q))).sum()
     }
 
     /// The largest turn of a torsion spring since the last accepted state `held` \[rad\]; beyond π
     /// the spring would seem to have turned the other way.
-    pub fn winding_turn(&self, held: &AcceptedState, q: &[f64]) -> f64 {
-        self.terms.windings.iter().fold(0.0, |turn: f64, winding| turn.max(winding.turn(held, q).abs()))
+    pub fn winding_turn(&self, accepted: &AcceptedState, q: &[f64]) -> f64 {
+        self.terms.windings.iter().fold(0.0, |turn: f64, winding| turn.max(winding.turn(accepted, q).abs()))
     }
 
     /// `k += ` the tangent of windings in the state `q` that has these internal variables.
@@ -95,7 +95,7 @@ impl System {
 
     /// `f += ` the forces in the state `q` that has these internal variables.
     pub fn add_known_history(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]) {
-        self.terms.friction.iter().for_each(|friction| friction.add_held_force(variables, q, f));
+        self.terms.friction.iter().for_each(|friction| friction.add_force_of(variables, q, f));
         for (winding, angle) in self.terms.windings.iter().zip(&variables.angles) {
             winding.add_force_at(*angle, q, f);
         }

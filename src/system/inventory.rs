@@ -23,7 +23,7 @@ pub struct Inventory {
     /// Coordinates, held ones included.
     pub coordinates: usize,
     /// Coordinates eliminated by supports at nodes.
-    pub held: usize,
+    pub fixed: usize,
     /// Multipliers of supports between nodes, joints and inextensible beams.
     pub multipliers: usize,
     /// Whether the tangent is symmetric.
@@ -142,7 +142,7 @@ impl System {
             beams,
             degrees_of_freedom: self.degrees_of_freedom(),
             coordinates: self.coordinates(),
-            held: self.supports.count(),
+            fixed: self.supports.count(),
             multipliers: self.multipliers(),
             symmetric,
             half_bandwidth: 4 * self.blocks - 1,
@@ -213,7 +213,7 @@ impl fmt::Display for Inventory {
         writeln!(
             f,
             "unknowns: {} ({} coordinates, {} held, {} multipliers)",
-            self.degrees_of_freedom, self.coordinates, self.held, self.multipliers
+            self.degrees_of_freedom, self.coordinates, self.fixed, self.multipliers
         )?;
         for (what, bytes) in [("mass", self.mass_bytes), ("damping", self.damping_bytes)] {
             if bytes > 0 {

@@ -83,7 +83,7 @@ fn row(system: &System, order: usize, terms: &[(Place, [f64; 2])]) -> Result<Con
     }
     let normals = parts.iter().map(|(.., normal)| *normal).collect();
     let mut row = Constraint::joint(parts.iter().map(|(table, offset, _)| (table, *offset)), order, normals);
-    row.hold(row.value(0.0, system.reference()));
+    row.set_sum(row.value(0.0, system.reference()));
     Ok(row)
 }
 
@@ -97,7 +97,7 @@ fn table(system: &System, order: usize, place: Place) -> Result<(BasisTable, usi
 /// The gradients that a motion has in polar coordinates: those of welded nodes of which supports
 /// hold nothing.
 pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, BuildError> {
-    let held: Vec<usize> = system.supports.eliminated().map(|i| i / 2).collect();
+    let fixed: Vec<usize> = system.supports.eliminated().map(|i| i / 2).collect();
     let mut pairs = Vec::new();
     for joint in joints {
         let Joint::Weld { first, second } = *joint else { continue };
@@ -106,6 +106,6 @@ pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, BuildErr
             pairs.extend(part.basis.node_at(s).map(|node| 2 * (part.first_node + node) + 1));
         }
     }
-    pairs.retain(|pair| !held.contains(pair));
+    pairs.retain(|pair| !fixed.contains(pair));
     Ok(Polar::new(pairs))
 }

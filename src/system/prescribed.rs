@@ -25,19 +25,19 @@ impl Prescribed {
     }
 
     /// Stays at `value`, unless it follows a law or is there but for round-off against `unit`.
-    pub fn hold(&mut self, value: f64, unit: f64) {
+    pub fn freeze(&mut self, value: f64, unit: f64) {
         if self.law.is_none() && (self.start - value).abs() > ROUND_OFF * unit {
             self.start = value;
         }
     }
 
     /// The same of an angle by which `reference` is turned to `field`.
-    pub fn hold_angle(&mut self, reference: [f64; 2], field: [f64; 2]) {
+    pub fn freeze_angle(&mut self, reference: [f64; 2], field: [f64; 2]) {
         let (sine, cosine) = self.start.sin_cos();
         let [x, y] =
             [cosine * reference[0] - sine * reference[1], sine * reference[0] + cosine * reference[1]];
         let further = (x * field[1] - y * field[0]).atan2(x * field[0] + y * field[1]);
-        self.hold(self.start + further, 1.0);
+        self.freeze(self.start + further, 1.0);
     }
 
     /// Value and first two derivatives by the parameter.

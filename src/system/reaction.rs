@@ -44,12 +44,18 @@ fn moment(gradient: [f64; 2], force: [f64; 2]) -> f64 {
 
 impl System {
     /// Forces on the beams of all supports and then of all joints (on their second points), in the
-    /// model's order. `held` are the forces on held coordinates in fixed axes, `multipliers` the
+    /// model's order. `support_forces` are the forces on held coordinates in fixed axes, `multipliers` the
     /// scaled μ.
-    pub fn reactions(&self, parameter: f64, q: &[f64], held: &[f64], multipliers: &[f64]) -> Vec<Reaction> {
+    pub fn reactions(
+        &self,
+        parameter: f64,
+        q: &[f64],
+        support_forces: &[f64],
+        multipliers: &[f64],
+    ) -> Vec<Reaction> {
         let of = |source: &Source| match source {
             Source::Node { node, position, rotation } => {
-                let (q, f) = (&q[4 * node..4 * node + 4], &held[4 * node..4 * node + 4]);
+                let (q, f) = (&q[4 * node..4 * node + 4], &support_forces[4 * node..4 * node + 4]);
                 let component = |axis: usize| if position[axis] { f[axis] } else { 0.0 };
                 let moment = if *rotation { moment([q[2], q[3]], [f[2], f[3]]) } else { 0.0 };
                 Reaction { fx: component(0), fy: component(1), moment }
@@ -79,17 +85,22 @@ impl System {
     /// variables.
     pub fn static_reactions(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<Reaction> {
         let (q, multipliers) = x.split_at(self.coordinates());
-        self.reactions(load, q, &self.static_held_forces(load, x, variables), multipliers)
+        self.reactions(load, q, &self.static_support_forces(load, x, variables), multipliers)
     }
 
     /// Forces of supports on the held coordinates in equilibrium, in fixed axes.
-    pub(super) fn static_held_forces(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<f64> {
+    pub(super) fn static_support_forces(
+        &self,
+        load: f64,
+        x: &[f64],
+        variables: &InternalVariables,
+    ) -> Vec<f64> {
         let (q, multipliers) = x.split_at(self.coordinates());
         let mut force = vec![0.0; q.len()];
         self.force(load, q, &mut force);
         self.add_known_history(variables, q, &mut force);
         self.add_constraint_forces(load, q, multipliers, &mut force);
-        self.supports.keep_held(load, &mut force);
+        self.supports.keep_fixed(load, &mut force);
         force
     }
 
@@ -126,7 +137,7 @@ impl System {
             out.push((name(force.kind(), force.beam()), None, resultant(&mut f)));
         }
         for friction in &self.terms.friction {
-            friction.add_held_force(variables, q, &mut f);
+            friction.add_force_of(variables, q, &mut f);
             out.push((name(crate::assembly::Kind::Friction, friction.beam()), None, resultant(&mut f)));
         }
         for (winding, angle) in self.terms.windings.iter().zip(&variables.angles) {

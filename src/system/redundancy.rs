@@ -2,12 +2,12 @@
 //!
 //! The multipliers of rows that depend on each other have no values, and no factorisation a pivot
 //! for them. Whether rows do is seen in the stress-free state from the Gram matrix G = B Bᵀ of the
-//! rows, each of length 1, without what supports at nodes hold: its smallest eigenvalue is the square
-//! of the combination of rows, of size 1, that comes nearest to nothing. Inverse iteration finds it
-//! with the combination. (Elimination row by row does not: the rows of a chain of cells that is held
-//! at both ends come exponentially near to each other before the last of them tells whether they
-//! depend.) A loop of beams that bend may be closed more often than it needs to be, and keeps its
-//! multipliers; one of straight beams that keep their length may not.
+//! rows, each of length 1, without what supports at nodes hold: its smallest eigenvalue is the
+//! square of the combination of rows, of size 1, that comes nearest to nothing. Inverse iteration
+//! finds it with the combination. (Elimination row by row does not: the rows of a chain of cells
+//! that is held at both ends come exponentially near to each other before the last of them tells
+//! whether they depend.) A loop of beams that bend may be closed more often than it needs to be,
+//! and keeps its multipliers; one of straight beams that keep their length may not.
 
 use super::reaction::Source;
 use super::{BuildError, System};

@@ -21,7 +21,7 @@ impl System {
 
     fn border_of(&self, polar: &Polar, load: f64, q: &[f64]) -> Vec<BorderRow> {
         let mut dense = vec![0.0; self.coordinates()];
-        let held = self.held();
+        let fixed = self.fixed();
         let mut rows = Vec::with_capacity(self.constraints.len());
         for constraint in &self.constraints {
             let scale = constraint.scale(self.stiffness, self.length);
@@ -35,7 +35,7 @@ impl System {
             touched.dedup();
             self.supports.to_frames(load, &mut dense);
             polar.forces(q, &mut dense);
-            let keep = |i: &usize| !held[*i] && (constraint.is_nonlinear() || dense[*i] != 0.0);
+            let keep = |i: &usize| !fixed[*i] && (constraint.is_nonlinear() || dense[*i] != 0.0);
             rows.push(touched.iter().filter(|i| keep(i)).map(|&i| (i, dense[i])).collect());
             touched.iter().for_each(|&i| dense[i] = 0.0);
         }
@@ -103,14 +103,14 @@ impl System {
 
     /// Refuses more constraint rows on the same coordinates than there are free ones.
     pub(super) fn check_room(&self) -> Result<(), BuildError> {
-        let held = self.held();
+        let fixed = self.fixed();
         let mut rows_of: BTreeMap<(usize, usize), usize> = BTreeMap::new();
         for span in self.constraints.iter().filter_map(Constraint::span) {
             *rows_of.entry((span.start, span.end)).or_default() += 1;
         }
         for ((start, end), rows) in rows_of {
             let span = start..end;
-            let free = held[span.clone()].iter().filter(|held| !**held).count();
+            let free = fixed[span.clone()].iter().filter(|fixed| !**fixed).count();
             if rows > free {
                 let (beam, s) = self.place_of(span.start);
                 return Err(BuildError::OverSupported { beam: self.beams[beam].name.clone(), s, rows, free });

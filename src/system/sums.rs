@@ -3,7 +3,7 @@
 use super::Energy;
 use super::System;
 use crate::assembly::Amplitude;
-use crate::assembly::{ActingLoad, Earlier, Effect, Kind, Workspace};
+use crate::assembly::{ActingLoad, Earlier, Effect, Kind, Workspace, nodes};
 use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 
@@ -264,5 +264,5 @@ impl System {
 /// The resultant of forces on a beam \[N\], from their negative on the coordinates: position
 /// functions sum to 1, and gradient functions have no part in it.
 pub(super) fn resultant(f: &[f64]) -> [f64; 2] {
-    f.chunks_exact(4).fold([0.0; 2], |sum, f| [sum[0] - f[0], sum[1] - f[1]])
+    nodes(f).fold([0.0; 2], |sum, f| [sum[0] - f.position[0], sum[1] - f.position[1]])
 }

@@ -36,12 +36,12 @@ pub struct RestrainedPair {
     /// Number of the pair.
     pub pair: usize,
     /// What is held.
-    pub hold: Restraint,
+    pub restraint: Restraint,
 }
 
 impl RestrainedPair {
     fn prescribed(&self) -> impl Iterator<Item = &Prescribed> {
-        let all: [Option<&Prescribed>; 2] = match &self.hold {
+        let all: [Option<&Prescribed>; 2] = match &self.restraint {
             Restraint::Position(components) => components.each_ref().map(Option::as_ref),
             Restraint::Gradient { rotation: course, .. } | Restraint::Direction(course) => {
                 [Some(course), None]
@@ -52,12 +52,12 @@ impl RestrainedPair {
 
     /// Whether its frame turns with time.
     fn turns(&self) -> bool {
-        matches!(&self.hold, Restraint::Direction(angle) if angle.moves_in_time())
+        matches!(&self.restraint, Restraint::Direction(angle) if angle.moves_in_time())
     }
 
     /// Cosine and sine of the frame's angle, and which components are fixed in that frame.
     fn frame(&self, load: f64) -> ([f64; 2], [bool; 2]) {
-        match &self.hold {
+        match &self.restraint {
             Restraint::Position(components) => ([1.0, 0.0], components.each_ref().map(Option::is_some)),
             Restraint::Gradient { .. } => ([1.0, 0.0], [true, true]),
             Restraint::Direction(angle) => {
@@ -69,7 +69,7 @@ impl RestrainedPair {
 
     /// ∂/∂λ of the fixed components, in the frame.
     fn rate(&self, load: f64, q: &[f64]) -> [f64; 2] {
-        match &self.hold {
+        match &self.restraint {
             Restraint::Position(components) => {
                 components.each_ref().map(|c| c.as_ref().map_or(0.0, |course| course.change))
             }
@@ -86,7 +86,7 @@ impl RestrainedPair {
 /// All supports at nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Supports {
-    held: Vec<RestrainedPair>,
+    pairs: Vec<RestrainedPair>,
 }
 
 /// Values of a pair of coordinates, their velocities and accelerations.
@@ -107,31 +107,34 @@ fn clear<T: Real>(pair: &mut [T], which: [bool; 2]) {
 
 impl Supports {
     /// The given pairs are held.
-    pub fn new(held: Vec<RestrainedPair>) -> Self {
-        Self { held }
+    pub fn new(pairs: Vec<RestrainedPair>) -> Self {
+        Self { pairs }
     }
 
     /// The coordinates that are eliminated, in the supports' frames.
     pub fn eliminated(&self) -> impl Iterator<Item = usize> + '_ {
         // Which components are fixed in a frame does not depend on where the frame stands.
-        self.held.iter().flat_map(|held| {
-            let (_, fixed) = held.frame(0.0);
-            (0..2).filter(move |component| fixed[*component]).map(|component| 2 * held.pair + component)
+        self.pairs.iter().flat_map(|restrained| {
+            let (_, fixed) = restrained.frame(0.0);
+            (0..2).filter(move |component| fixed[*component]).map(|component| 2 * restrained.pair + component)
         })
     }
 
     /// Nodes of which one component of a pair is held and the other free, in the support's frame.
-    pub fn half_held(&self) -> impl Iterator<Item = usize> + '_ {
-        let half = |held: &&RestrainedPair| {
-            let (_, [first, second]) = held.frame(0.0);
+    pub fn half_fixed(&self) -> impl Iterator<Item = usize> + '_ {
+        let half = |restrained: &&RestrainedPair| {
+            let (_, [first, second]) = restrained.frame(0.0);
             first != second
         };
-        self.held.iter().filter(half).map(|held| held.pair / 2)
+        self.pairs.iter().filter(half).map(|restrained| restrained.pair / 2)
     }
 
     /// Nodes whose position is held, or a component of it.
     pub fn positions(&self) -> impl Iterator<Item = usize> + '_ {
-        self.held.iter().filter(|held| matches!(held.hold, Restraint::Position(_))).map(|held| held.pair / 2)
+        self.pairs
+            .iter()
+            .filter(|restrained| matches!(restrained.restraint, Restraint::Position(_)))
+            .map(|restrained| restrained.pair / 2)
     }
 
     /// Number of coordinates that are eliminated.
@@ -141,8 +144,8 @@ impl Supports {
 
     /// Sets the held coordinates of `q` to their values at load factor `load`.
     pub fn impose(&self, load: f64, q: &mut [f64]) {
-        for held in &self.held {
-            held.impose(load, &mut q[2 * held.pair..2 * held.pair + 2]);
+        for restrained in &self.pairs {
+            restrained.impose(load, &mut q[2 * restrained.pair..2 * restrained.pair + 2]);
         }
     }
 
@@ -153,8 +156,8 @@ impl Supports {
         load: f64,
         q: &'a [f64],
     ) -> impl Iterator<Item = (usize, f64)> + 'a {
-        self.held.iter().flat_map(move |RestrainedPair { pair, hold }| {
-            let components = match hold {
+        self.pairs.iter().flat_map(move |RestrainedPair { pair, restraint }| {
+            let components = match restraint {
                 Restraint::Position(components) => components.each_ref(),
                 Restraint::Gradient { .. } | Restraint::Direction(_) => [&None; 2],
             };
@@ -165,35 +168,35 @@ impl Supports {
     }
 
     /// What follows no law holds what it holds in the state `q` of a system of this `length`.
-    pub fn hold_as_in(&mut self, q: &[f64], length: f64) {
-        for RestrainedPair { pair, hold } in &mut self.held {
+    pub fn freeze(&mut self, q: &[f64], length: f64) {
+        for RestrainedPair { pair, restraint } in &mut self.pairs {
             let field = [q[2 * *pair], q[2 * *pair + 1]];
-            match hold {
+            match restraint {
                 Restraint::Position(components) => {
                     let components = components.iter_mut().zip(field);
                     components.for_each(|(course, value)| {
                         if let Some(course) = course {
-                            course.hold(value, length);
+                            course.freeze(value, length);
                         }
                     });
                 }
-                Restraint::Gradient { reference, rotation } => rotation.hold_angle(*reference, field),
-                Restraint::Direction(angle) => angle.hold_angle([1.0, 0.0], field),
+                Restraint::Gradient { reference, rotation } => rotation.freeze_angle(*reference, field),
+                Restraint::Direction(angle) => angle.freeze_angle([1.0, 0.0], field),
             }
         }
     }
 
     /// Whether anything moves by prescription.
     pub fn moves(&self) -> bool {
-        self.held.iter().flat_map(RestrainedPair::prescribed).any(Prescribed::moves)
+        self.pairs.iter().flat_map(RestrainedPair::prescribed).any(Prescribed::moves)
     }
 
     /// Turns a vector of forces or increments into the frames of the supports and clears what is
     /// held.
     pub fn to_frames<T: Real>(&self, load: f64, v: &mut [T]) {
-        for held in &self.held {
-            let (frame, fixed) = held.frame(load);
-            let pair = &mut v[2 * held.pair..2 * held.pair + 2];
+        for restrained in &self.pairs {
+            let (frame, fixed) = restrained.frame(load);
+            let pair = &mut v[2 * restrained.pair..2 * restrained.pair + 2];
             rotate(frame, pair);
             clear(pair, fixed);
         }
@@ -202,37 +205,37 @@ impl Supports {
     /// Turns increments back from the frames of the supports, except where these turn with time:
     /// there the unknowns of a motion are components in the frame.
     pub fn from_frames<T: Real>(&self, load: f64, v: &mut [T]) {
-        for held in self.held.iter().filter(|held| !held.turns()) {
-            let ([cosine, sine], _) = held.frame(load);
-            rotate([cosine, -sine], &mut v[2 * held.pair..2 * held.pair + 2]);
+        for restrained in self.pairs.iter().filter(|restrained| !restrained.turns()) {
+            let ([cosine, sine], _) = restrained.frame(load);
+            rotate([cosine, -sine], &mut v[2 * restrained.pair..2 * restrained.pair + 2]);
         }
     }
 
     /// Writes ∂q/∂λ of the held coordinates, in their frames, and zero elsewhere.
     pub fn rate(&self, load: f64, q: &[f64], rate: &mut [f64]) {
         rate.fill(0.0);
-        for held in &self.held {
-            rate[2 * held.pair..2 * held.pair + 2].copy_from_slice(&held.rate(load, q));
+        for restrained in &self.pairs {
+            rate[2 * restrained.pair..2 * restrained.pair + 2].copy_from_slice(&restrained.rate(load, q));
         }
     }
 
     /// Turns a tangent into the frames of the supports.
     pub fn turn_matrix(&self, load: f64, k: &mut Matrix) {
-        for held in &self.held {
-            if let ([cosine, sine], _) = held.frame(load)
+        for restrained in &self.pairs {
+            if let ([cosine, sine], _) = restrained.frame(load)
                 && sine != 0.0
             {
-                k.rotate_pair(held.pair, cosine, sine);
+                k.rotate_pair(restrained.pair, cosine, sine);
             }
         }
     }
 
     /// Clears the diagonal of held coordinates in a matrix from which they are eliminated.
-    pub fn clear_held(&self, load: f64, k: &mut Matrix) {
-        for held in &self.held {
-            let (_, fixed) = held.frame(load);
+    pub fn clear_fixed(&self, load: f64, k: &mut Matrix) {
+        for restrained in &self.pairs {
+            let (_, fixed) = restrained.frame(load);
             for component in (0..2).filter(|c| fixed[*c]) {
-                k.eliminate(2 * held.pair + component, 0.0);
+                k.eliminate(2 * restrained.pair + component, 0.0);
             }
         }
     }
@@ -240,11 +243,11 @@ impl Supports {
     /// Eliminates the held coordinates from a tangent that is already in their frames. The diagonal
     /// is left in place of the row, so that the matrix keeps its units.
     pub fn eliminate(&self, load: f64, k: &mut Matrix) {
-        for held in &self.held {
-            let (_, fixed) = held.frame(load);
+        for restrained in &self.pairs {
+            let (_, fixed) = restrained.frame(load);
             for (component, fixed) in fixed.into_iter().enumerate() {
                 if fixed {
-                    let i = 2 * held.pair + component;
+                    let i = 2 * restrained.pair + component;
                     let diagonal = k.get(i, i).abs();
                     k.eliminate(i, if diagonal > 0.0 && diagonal.is_finite() { diagonal } else { 1.0 });
                 }
@@ -254,33 +257,37 @@ impl Supports {
 
     /// Whether anything moves by a law of time.
     pub fn moves_in_time(&self) -> bool {
-        self.held.iter().flat_map(RestrainedPair::prescribed).any(Prescribed::moves_in_time)
+        self.pairs.iter().flat_map(RestrainedPair::prescribed).any(Prescribed::moves_in_time)
     }
 
     /// What moves by a law of time, each with the unit by which it is measured: `per_length` for
     /// positions, 1 for angles.
     pub fn moving(&self, per_length: f64) -> impl Iterator<Item = (&Prescribed, f64)> {
-        let of = move |held: &RestrainedPair| {
-            if matches!(held.hold, Restraint::Position(_)) { per_length } else { 1.0 }
+        let of = move |restrained: &RestrainedPair| {
+            if matches!(restrained.restraint, Restraint::Position(_)) { per_length } else { 1.0 }
         };
-        let prescribed =
-            self.held.iter().flat_map(move |held| held.prescribed().map(move |course| (course, of(held))));
+        let prescribed = self
+            .pairs
+            .iter()
+            .flat_map(move |restrained| restrained.prescribed().map(move |course| (course, of(restrained))));
         prescribed.filter(|(course, _)| course.moves_in_time())
     }
 
     /// Whether a held direction turns by a law of time.
     pub fn turn_in_time(&self) -> bool {
-        self.held.iter().any(RestrainedPair::turns)
+        self.pairs.iter().any(RestrainedPair::turns)
     }
 
     /// Whether coordinate `i` belongs to a pair of which something is held, and nothing moves.
-    pub fn holds_still(&self, i: usize) -> bool {
-        self.held.iter().any(|held| held.pair == i / 2 && !held.prescribed().any(Prescribed::moves_in_time))
+    pub fn is_stationary(&self, i: usize) -> bool {
+        self.pairs.iter().any(|restrained| {
+            restrained.pair == i / 2 && !restrained.prescribed().any(Prescribed::moves_in_time)
+        })
     }
 
     /// Times at which a law of motion is not smooth.
     pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
-        self.held
+        self.pairs
             .iter()
             .flat_map(RestrainedPair::prescribed)
             .filter_map(|course| course.law.as_ref())
@@ -289,22 +296,22 @@ impl Supports {
 
     /// What jumps by a law: a coordinate, when, and by how much (m, or rad).
     pub fn jumps(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
-        self.held.iter().flat_map(|held| {
+        self.pairs.iter().flat_map(|restrained| {
             let jump = |course: &Prescribed| {
                 let (time, height) = course.law.as_ref()?.jump()?;
-                course.moves().then_some((2 * held.pair, time, height * course.change))
+                course.moves().then_some((2 * restrained.pair, time, height * course.change))
             };
-            held.prescribed().filter_map(jump)
+            restrained.prescribed().filter_map(jump)
         })
     }
 
     /// Turns changes of a motion's unknowns into the frames of the supports and clears what is
     /// held.
     pub fn unknowns_to_frames(&self, v: &mut [f64]) {
-        for held in &self.held {
-            let (frame, fixed) = held.frame(0.0);
-            let pair = &mut v[2 * held.pair..2 * held.pair + 2];
-            if !held.turns() {
+        for restrained in &self.pairs {
+            let (frame, fixed) = restrained.frame(0.0);
+            let pair = &mut v[2 * restrained.pair..2 * restrained.pair + 2];
+            if !restrained.turns() {
                 rotate(frame, pair);
             }
             clear(pair, fixed);
@@ -317,10 +324,10 @@ impl Supports {
     /// component in every sum. A solution never touches it, so that whatever is continued from step
     /// to step must be freed from it: a polynomial of stages multiplies it with every step.
     pub fn release<T: Real>(&self, v: &mut [T]) {
-        for held in &self.held {
-            let ([cosine, sine], fixed) = held.frame(0.0);
-            let pair = &mut v[2 * held.pair..2 * held.pair + 2];
-            if held.turns() {
+        for restrained in &self.pairs {
+            let ([cosine, sine], fixed) = restrained.frame(0.0);
+            let pair = &mut v[2 * restrained.pair..2 * restrained.pair + 2];
+            if restrained.turns() {
                 clear(pair, fixed);
             } else {
                 rotate([cosine, sine], pair);
@@ -332,37 +339,37 @@ impl Supports {
 
     /// Turns a vector back from all frames.
     pub fn to_fixed_axes(&self, time: f64, v: &mut [f64]) {
-        for held in &self.held {
-            let ([cosine, sine], _) = held.frame(time);
-            rotate([cosine, -sine], &mut v[2 * held.pair..2 * held.pair + 2]);
+        for restrained in &self.pairs {
+            let ([cosine, sine], _) = restrained.frame(time);
+            rotate([cosine, -sine], &mut v[2 * restrained.pair..2 * restrained.pair + 2]);
         }
     }
 
     /// Sets a motion's unknowns where they are held.
     pub fn impose_unknowns(&self, time: f64, x: &mut [f64]) {
-        for held in &self.held {
-            let pair = &mut x[2 * held.pair..2 * held.pair + 2];
-            if held.turns() { pair[1] = 0.0 } else { held.impose(time, pair) }
+        for restrained in &self.pairs {
+            let pair = &mut x[2 * restrained.pair..2 * restrained.pair + 2];
+            if restrained.turns() { pair[1] = 0.0 } else { restrained.impose(time, pair) }
         }
     }
 
     /// Writes the velocities that supports prescribe in the state `q`, zero for all that is free.
     pub fn prescribed_velocity(&self, time: f64, q: &[f64], velocity: &mut [f64]) {
         velocity.fill(0.0);
-        for held in &self.held {
-            let at = 2 * held.pair;
-            let length = if held.turns() { q[at].hypot(q[at + 1]) } else { 0.0 };
-            let [_, v, _] = held.carried(time, [[length, 0.0], [0.0; 2], [0.0; 2]]);
+        for restrained in &self.pairs {
+            let at = 2 * restrained.pair;
+            let length = if restrained.turns() { q[at].hypot(q[at + 1]) } else { 0.0 };
+            let [_, v, _] = restrained.carried(time, [[length, 0.0], [0.0; 2], [0.0; 2]]);
             velocity[at..at + 2].copy_from_slice(&v);
         }
     }
 
     /// Clears all forces but those on held components, in fixed axes.
-    pub fn keep_held(&self, time: f64, force: &mut [f64]) {
+    pub fn keep_fixed(&self, time: f64, force: &mut [f64]) {
         let mut kept = vec![0.0; force.len()];
-        for held in &self.held {
-            let ([cosine, sine], fixed) = held.frame(time);
-            let range = 2 * held.pair..2 * held.pair + 2;
+        for restrained in &self.pairs {
+            let ([cosine, sine], fixed) = restrained.frame(time);
+            let range = 2 * restrained.pair..2 * restrained.pair + 2;
             let mut pair = [force[range.start], force[range.start + 1]];
             rotate([cosine, sine], &mut pair);
             clear(&mut pair, fixed.map(|fixed| !fixed));
@@ -379,10 +386,10 @@ impl Supports {
     /// r' = y e,   ṙ' = ẏ e + y θ̇ n,   r̈' = (ÿ − y θ̇²) e + (2 ẏ θ̇ + y θ̈) n,   e = (cos θ, sin θ), n = (−sin θ, cos θ).
     /// ```
     pub fn carry(&self, time: f64, [q, v, a]: [&mut [f64]; 3]) {
-        for held in &self.held {
-            let range = 2 * held.pair..2 * held.pair + 2;
+        for restrained in &self.pairs {
+            let range = 2 * restrained.pair..2 * restrained.pair + 2;
             let pair = |x: &[f64]| [x[range.start], x[range.start + 1]];
-            let moved = held.carried(time, [pair(q), pair(v), pair(a)]);
+            let moved = restrained.carried(time, [pair(q), pair(v), pair(a)]);
             for (x, moved) in [&mut *q, &mut *v, &mut *a].into_iter().zip(moved) {
                 x[range.clone()].copy_from_slice(&moved);
             }
@@ -392,10 +399,10 @@ impl Supports {
     /// The unknowns of a motion from positions and velocities in fixed axes: the inverse of
     /// [`Self::carry`].
     pub fn uncarry(&self, time: f64, q: &mut [f64], v: &mut [f64]) {
-        for held in self.held.iter().filter(|held| held.turns()) {
-            let (frame, _) = held.frame(time);
+        for restrained in self.pairs.iter().filter(|restrained| restrained.turns()) {
+            let (frame, _) = restrained.frame(time);
             for x in [&mut *q, &mut *v] {
-                let pair = &mut x[2 * held.pair..2 * held.pair + 2];
+                let pair = &mut x[2 * restrained.pair..2 * restrained.pair + 2];
                 rotate(frame, pair);
                 pair[1] = 0.0;
             }
@@ -405,7 +412,7 @@ impl Supports {
 
 impl RestrainedPair {
     fn impose(&self, load: f64, pair: &mut [f64]) {
-        match &self.hold {
+        match &self.restraint {
             Restraint::Position(components) => {
                 for (value, component) in pair.iter_mut().zip(components) {
                     if let Some(course) = component {
@@ -428,7 +435,7 @@ impl RestrainedPair {
     }
 
     fn carried(&self, time: f64, [mut q, mut v, mut a]: PairMotion) -> PairMotion {
-        match &self.hold {
+        match &self.restraint {
             Restraint::Position(components) => {
                 for (i, component) in components.iter().enumerate() {
                     if let Some(course) = component {

@@ -4,7 +4,7 @@
 use super::commands::{ROLL_UP, ancf, entries, folder, status, stderr};
 use super::output::elements;
 use ancf::cost::{
-    Best, Deviation, Family, LeftOut, Measured, Options, Reference, Rung, Setting, Solver, Study,
+    Best, Deviation, Family, LeftOut, Measured, Options, Reference, Setting, Solver, Study, Trial,
 };
 use ancf::model::{Integrator, StepControl};
 use ancf::results::{AnalysisKind, Run, Statistics, Trajectory};
@@ -73,7 +73,7 @@ fn frequencies_have_a_price_too() {
     assert_eq!((status(&output), stderr(&output).as_str()), (0, ""));
     let printed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(printed["error"], "relative error of frequencies");
-    let best = &printed["rungs"][printed["best"].as_u64().unwrap() as usize];
+    let best = &printed["trials"][printed["best"].as_u64().unwrap() as usize];
     assert!(best["deviation"]["error"].as_f64().unwrap() <= 1e-3);
     assert_eq!(status(&ancf(folder.path(), &["check", "modal/best.toml"])), 0);
 }
@@ -132,7 +132,7 @@ fn study() -> Study {
         Solver::Integrator(Integrator::Radau { stages: 3, step: StepControl::Tolerance(1e-4) }),
         Solver::Integrator(alpha(StepControl::Fixed(2e-3))),
     ];
-    let mut rungs = Vec::new();
+    let mut trials = Vec::new();
     let all = Family::all();
     let families = [0, 1, 2, 3, 7, 10].map(|i| all[i]);
     for (kind, family) in std::iter::once(Family::Scene).chain(families).enumerate() {
@@ -159,11 +159,11 @@ fn study() -> Study {
                     deviation,
                     warnings: if kind == 5 { vec!["it is warned of".to_owned()] } else { vec![] },
                 };
-                rungs.push(Rung { family, cells, setting: Setting { beams: vec![], solver }, measured });
+                trials.push(Trial { family, cells, setting: Setting { beams: vec![], solver }, measured });
             }
         }
     }
-    let best = Best { rung: 7, lines: "[beam.cantilever.basis.ancf]\nelements = 8\n".to_owned(), scene };
+    let best = Best { trial: 7, lines: "[beam.cantilever.basis.ancf]\nelements = 8\n".to_owned(), scene };
     Study {
         options: Options { target: 2e-3, budget: Duration::from_secs(20) },
         reference: Reference {
@@ -177,7 +177,7 @@ fn study() -> Study {
             pair: ["RPIM, 32 cells".to_owned(), "ANCF, 128 cells".to_owned()],
             seconds: 1.25,
         },
-        rungs,
+        trials,
         front: vec![0, 4, 7, 12],
         best: Some(best),
         left_out: ["one", "two", "three", "four"]
@@ -207,7 +207,7 @@ fn regress_pages_of_a_study() {
         insta::assert_snapshot!("pages_of_a_study", text);
     });
     // Every family that was measured is in the picture.
-    let families: Vec<String> = study.rungs.iter().skip(3).map(|rung| rung.family.to_string()).collect();
+    let families: Vec<String> = study.trials.iter().skip(3).map(|trial| trial.family.to_string()).collect();
     for kind in families.iter().map(|family| family.split(", shape").next().unwrap_or_default()) {
         assert!(read("cost.svg").contains(kind), "{kind}");
     }

@@ -112,10 +112,10 @@ fn what_does_not_fit_is_refused_with_its_place() {
     refused(&one(vec![support(0.0, FixedRotation::Angle)], vec![Arc::new(damping)]), "beam number 3");
 }
 
-/// What a load and an actuator put in together is the elastic energy. The load's part is λF·u less ∫
-/// F·u dλ along the path, of which many small steps give the integral; the actuator's is its own
-/// column, right to six digits however few steps the solver takes, along the load or the arc length's
-/// small ones.
+/// What a load and an actuator put in together is the elastic energy. The load's part is λF·u less
+/// ∫ F·u dλ along the path, of which many small steps give the integral; the actuator's is its own
+/// column, right to six digits however few steps the solver takes, along the load or the arc
+/// length's small ones.
 #[test]
 fn an_actuator_and_a_load_put_in_the_elastic_energy() {
     let scene = |analysis: &str| {

@@ -6,8 +6,8 @@ use ancf::results::Results;
 use ancf::scene::parse;
 use proptest::prelude::*;
 
-/// First solution of tan z = z, squared: the critical load of a column that is clamped at one end and
-/// pinned at the other, in EI/L².
+/// First solution of tan z = z, squared: the critical load of a column that is clamped at one end
+/// and pinned at the other, in EI/L².
 const CLAMPED_PINNED: f64 = 20.190_728_556_426_63;
 
 fn solve(text: &str) -> Results {
@@ -15,9 +15,9 @@ fn solve(text: &str) -> Results {
     scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error:?}\n{text}"))
 }
 
-/// A column of unit length and bending stiffness in the direction `turn`, of as many beams as `cells`
-/// has numbers of elements, one welded to the next; it is clamped at its start, pinned at its end, and
-/// would shrink by `strain`.
+/// A column of unit length and bending stiffness in the direction `turn`, of as many beams as
+/// `cells` has numbers of elements, one welded to the next; it is clamped at its start, pinned at
+/// its end, and would shrink by `strain`.
 fn column(cells: &[usize], axial_stiffness: f64, turn: f64, strain: f64) -> String {
     let (sine, cosine) = turn.sin_cos();
     let at = |k: usize| {
@@ -90,8 +90,9 @@ fn strings_have_no_critical_load() {
     assert!(parse("scene.toml", &text(0.4, bedded)).is_ok());
 }
 
-/// Green's strain lets a bar give way at loads of the order of EA, without end and different on every
-/// mesh: what lies so far beyond small strains is told, from its number on. A slender column is not.
+/// Green's strain lets a bar give way at loads of the order of EA, without end and different on
+/// every mesh: what lies so far beyond small strains is told, from its number on. A slender column
+/// is not.
 #[test]
 fn critical_loads_at_large_strains_are_told() {
     for (stiffness, told) in

@@ -19,7 +19,7 @@ fn law() -> Option<Law> {
 }
 
 fn pair(pair: usize, hold: Restraint) -> RestrainedPair {
-    RestrainedPair { pair, hold }
+    RestrainedPair { pair, restraint: hold }
 }
 
 /// Supports that follow a law where there is `law`, and the load factor otherwise: a position held
@@ -71,16 +71,16 @@ fn supports_say_what_they_hold() {
     for held in [&moving, &still] {
         assert_eq!(held.eliminated().collect::<Vec<_>>(), [0, 3, 5, 7, 10, 11]);
         assert_eq!(held.count(), 6);
-        assert_eq!(held.half_held().collect::<Vec<_>>(), [0, 0, 1, 1]);
+        assert_eq!(held.half_fixed().collect::<Vec<_>>(), [0, 0, 1, 1]);
         assert_eq!(held.positions().collect::<Vec<_>>(), [0, 1]);
         assert!(held.moves());
     }
     assert!(
         moving.moves_in_time() && moving.turn_in_time() && !still.moves_in_time() && !still.turn_in_time()
     );
-    let holding: Vec<usize> = (0..COORDINATES).filter(|i| moving.holds_still(*i)).collect();
+    let holding: Vec<usize> = (0..COORDINATES).filter(|i| moving.is_stationary(*i)).collect();
     assert_eq!(holding, [4, 5, 6, 7]);
-    let holding: Vec<usize> = (0..COORDINATES).filter(|i| still.holds_still(*i)).collect();
+    let holding: Vec<usize> = (0..COORDINATES).filter(|i| still.is_stationary(*i)).collect();
     assert_eq!(holding, [0, 1, 2, 3, 4, 5, 6, 7, 10, 11]);
     let courses: Vec<(f64, f64)> = moving.moving(2.5).map(|(course, unit)| (course.start, unit)).collect();
     assert_eq!(courses, [(0.2, 2.5), (0.3, 1.0), (0.1, 1.0)]);
@@ -158,7 +158,7 @@ fn vectors_are_turned_into_frames_and_back() {
     let mut fixed = v.clone();
     supports.to_fixed_axes(load, &mut fixed);
     let mut kept = v.clone();
-    supports.keep_held(load, &mut kept);
+    supports.keep_fixed(load, &mut kept);
     for (pair, angle, held) in frames(angle) {
         let here = [v[2 * pair], v[2 * pair + 1]];
         close(&fixed[2 * pair..2 * pair + 2], &turned(here, angle), 1e-14, "in fixed axes");
@@ -308,7 +308,7 @@ fn matrices_are_turned_and_reduced() {
         let held = [0, 3, 5, 7, 10, 11];
         let (mut reduced, mut cleared) = (k.clone(), k.clone());
         supports.eliminate(load, &mut reduced);
-        supports.clear_held(load, &mut cleared);
+        supports.clear_fixed(load, &mut cleared);
         for i in 0..COORDINATES {
             for j in 0..COORDINATES {
                 let apart = held.contains(&i) || held.contains(&j);

@@ -6,7 +6,8 @@ use ancf::linear::{Factor, Matrix, band::BandLu, bordered::Bordered, symmetric::
 use faer::linalg::solvers::Solve;
 use proptest::prelude::*;
 
-/// A symmetric band filled from a list of numbers, with a diagonal that makes it definite (`shift` > 0) or not.
+/// A symmetric band filled from a list of numbers, with a diagonal that makes it definite (`shift`
+/// > 0) or not.
 fn symmetric(nodes: usize, blocks: usize, numbers: &[f64], shift: f64) -> Matrix {
     let mut matrix = Matrix::zeros(nodes, blocks, true);
     let mut next = numbers.iter().cycle();

@@ -90,7 +90,7 @@ fn matrices(system: &System) -> (Matrix, Matrix) {
         system.supports().turn_matrix(0.0, matrix);
         system.supports().eliminate(0.0, matrix);
     }
-    system.supports().clear_held(0.0, &mut m);
+    system.supports().clear_fixed(0.0, &mut m);
     (k, m)
 }
 
@@ -143,8 +143,8 @@ proptest! {
             }
         }
         let system = system(&model(beams, supports));
-        let ((k, m), border, held) = (matrices(&system), system.border(0.0, system.reference()), system.held());
-        let pencil = Pencil { a: &k, b: &m, border: &border, held: &held };
+        let ((k, m), border, held) = (matrices(&system), system.border(0.0, system.reference()), system.fixed());
+        let pencil = Pencil { a: &k, b: &m, border: &border, fixed: &held };
         let found: [Pairs; 2] =
             [dense::largest_reciprocals(&pencil, 8), lanczos::largest_reciprocals(&pencil, 8)]
                 .map(|pairs| pairs.expect("a stable state"));

@@ -43,7 +43,7 @@ fn single(s: f64, order: usize, row: Row) -> Constraint {
 fn joint(order: usize, normals: Vec<[f64; 2]>, value: f64) -> Constraint {
     let tables = [table(0.2, order), table(1.7, order)];
     let mut joint = Constraint::joint(tables.iter().take(normals.len()).map(|t| (t, OFFSET)), order, normals);
-    joint.hold(value);
+    joint.set_sum(value);
     joint
 }
 
@@ -277,13 +277,13 @@ fn rows_hold_what_they_are_told_to() {
         let here = field(&table(0.8, 0), &q)[axis];
         let (of, change) = row.position_change(0.5, &q).expect("a position");
         assert!(of == axis && (change - (0.3 + 0.35 - here)).abs() < 1e-14, "{change}");
-        row.hold_as_in(&q, 2.0);
+        row.freeze(&q, 2.0);
         assert!(row.value(0.0, &q).abs() < 1e-14, "{}", row.value(0.0, &q));
     }
     for row in [Row::Direction(prescribed(0.4, 0.0)), Row::Direction(prescribed(-3.0, 0.0))] {
         let mut row = single(1.9, 1, row);
         assert!(row.position_change(0.5, &q).is_none() && row.value(0.0, &q).abs() > 1e-3);
-        row.hold_as_in(&q, 2.0);
+        row.freeze(&q, 2.0);
         assert!(row.value(0.0, &q).abs() < 1e-13, "{}", row.value(0.0, &q));
     }
     // The gradient is turned to its direction; its length stays.
@@ -291,13 +291,13 @@ fn rows_hold_what_they_are_told_to() {
     for axis in 0..2 {
         let rotation = prescribed(0.2, 0.0);
         let mut row = single(1.1, 1, Row::Gradient { axis, reference: [0.8, 0.6], rotation });
-        row.hold_as_in(&q, 2.0);
+        row.freeze(&q, 2.0);
         let expected = there[axis] - there[axis] / there[0].hypot(there[1]);
         assert!((row.value(0.0, &q) - expected).abs() < 1e-13, "{}", row.value(0.0, &q));
     }
     let mut open = joint(0, vec![[0.6, -0.8], [-0.3, 0.4]], 0.05);
     let before = open.value(0.0, &q);
-    open.hold(0.2);
+    open.set_sum(0.2);
     assert!((open.value(0.0, &q) - (before - 0.2)).abs() < 1e-14);
     assert!((open.closed().value(0.0, &q) - (before + 0.05)).abs() < 1e-14);
     // What follows a law goes by it, and what is there but for round-off stays as it is written.
@@ -305,13 +305,13 @@ fn rows_hold_what_they_are_told_to() {
     let mut row =
         single(0.8, 0, Row::Position { axis: 0, value: Prescribed { law, ..prescribed(0.3, 0.7) } });
     let here = field(&table(0.8, 0), &q)[0];
-    row.hold_as_in(&q, 2.0);
+    row.freeze(&q, 2.0);
     assert!((row.value(1.0, &q) - (here - 0.3)).abs() < 1e-14);
     assert!((row.value(3.0, &q) - (here - 1.0)).abs() < 1e-14);
     let mut near = prescribed(0.3, 0.0);
-    near.hold(0.3 + 1.9e-9, 2.0);
+    near.freeze(0.3 + 1.9e-9, 2.0);
     assert_eq!(near.start, 0.3);
-    near.hold(0.3 + 2.1e-9, 2.0);
+    near.freeze(0.3 + 2.1e-9, 2.0);
     assert_eq!(near.start, 0.3 + 2.1e-9);
 }
 

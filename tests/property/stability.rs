@@ -171,7 +171,7 @@ proptest! {
         let with = |count: usize| format!("{text}[analysis.modal]\ncount = {count}\n");
         let model = scene(&with(1));
         let system = System::build(model.model(), Needs { inertia: true, motion: false }).expect("a legal model");
-        let held = system.held();
+        let held = system.fixed();
         let free: Vec<usize> = (0..held.len()).filter(|i| !held[*i]).collect();
         let (mut k, mut m) = (system.internal_tangent(system.reference()), system.mass_matrix());
         for matrix in [&mut k, &mut m] {
@@ -381,8 +381,8 @@ fn mechanisms_that_nothing_holds_are_refused() {
     assert!((x - rods[0][0] - rods[1][0]).hypot(y - rods[0][1] - rods[1][1]) < 2e-3, "{x} {y}");
 }
 
-/// Two rods in the direction `turn`, hinged to each other and to the ground, that grow and so must leave
-/// their line, while a weight pulls to one side.
+/// Two rods in the direction `turn`, hinged to each other and to the ground, that grow and so must
+/// leave their line, while a weight pulls to one side.
 fn toggle(axial_stiffness: &str, turn: f64, basis: &str, side: f64) -> Trajectory {
     let (sine, cosine) = turn.sin_cos();
     let at = |s: f64| [s * cosine, s * sine];
@@ -404,9 +404,9 @@ fn toggle(axial_stiffness: &str, turn: f64, basis: &str, side: f64) -> Trajector
     )
 }
 
-/// The side is that to which a weight far smaller than their thrust pulls them, in every direction of
-/// the line, where the thrust, 15 N, is less than the 23 N at which a rod by itself would buckle; where
-/// it is more, a warning says that it may be the other.
+/// The side is that to which a weight far smaller than their thrust pulls them, in every direction
+/// of the line, where the thrust, 15 N, is less than the 23 N at which a rod by itself would
+/// buckle; where it is more, a warning says that it may be the other.
 #[test]
 fn a_toggle_leaves_its_line_on_the_side_of_its_weight() {
     for turn in [0.0, 0.4, 1.9, -1.2, 3.0] {
@@ -430,8 +430,8 @@ fn a_toggle_leaves_its_line_on_the_side_of_its_weight() {
     }
 }
 
-/// A path ends where it is told to, however long its last step would have been: at a load factor, or
-/// where a probe is, whichever comes first.
+/// A path ends where it is told to, however long its last step would have been: at a load factor,
+/// or where a probe is, whichever comes first.
 #[test]
 fn a_path_ends_where_its_target_is() {
     for (stiffness, cells) in [("1e4", 4), ("1.66e8", 9)] {
@@ -668,9 +668,9 @@ fn a_flywheel_keeps_energy_and_momentum() {
 }
 
 /// A column on an elastic hinge that is pushed by one per cent, and one that heat compresses to 2.4
-/// times its critical load in a slight flow, and one that its end presses, in a flow along it, past its
-/// second critical load within the first twentieth: however many load steps there are, they bend to
-/// the side to which they begin to, in one half-wave.
+/// times its critical load in a slight flow, and one that its end presses, in a flow along it, past
+/// its second critical load within the first twentieth: however many load steps there are, they
+/// bend to the side to which they begin to, in one half-wave.
 #[test]
 fn the_number_of_load_steps_does_not_choose_the_branch() {
     let pushed = "beam.a = { start = [0, 0], end = [1, 0], axial_stiffness = 259100, bending_stiffness = 1, basis.ancf.nodes = 6 }
@@ -702,9 +702,9 @@ fn the_number_of_load_steps_does_not_choose_the_branch() {
     }
 }
 
-/// A rod on a hinge whose other end is brought nearer gives way to one side or the other: with nothing
-/// across it the side is arbitrary, and told; a little weight across decides it. One that stands on
-/// its head falls to where it hangs, on either side.
+/// A rod on a hinge whose other end is brought nearer gives way to one side or the other: with
+/// nothing across it the side is arbitrary, and told; a little weight across decides it. One that
+/// stands on its head falls to where it hangs, on either side.
 #[test]
 fn an_arbitrary_side_is_told() {
     let rod = |turn: f64, fix: &str, shift: f64, [x, y]: [f64; 2]| {

@@ -152,8 +152,8 @@ fn strings_that_hold_themselves_are_told() {
     }
 }
 
-/// A string passes no couple on: where it is held in a direction, welded, or given a moment, the shape
-/// depends on the mesh, and is told.
+/// A string passes no couple on: where it is held in a direction, welded, or given a moment, the
+/// shape depends on the mesh, and is told.
 #[test]
 fn couples_on_strings_are_told() {
     let warnings = |fix: &str, effects: &str| {

@@ -11,7 +11,8 @@ fn solved(text: &str) -> Trajectory {
     scene.model().solve(scene.analysis()).unwrap_or_else(|e| panic!("{e}")).into_states()
 }
 
-/// A clamped beam is coiled up by a couple at its end against a spring at 0.9 m: θ(0.9) = 0.9 M/(EI + 0.9 k).
+/// A clamped beam is coiled up by a couple at its end against a spring at 0.9 m, which turns by
+/// 0.9 M/(EI + 0.9 k).
 #[test]
 fn a_coil_is_held_back_by_all_its_turns() {
     let (ei, k) = (2.0, 1.0);

@@ -143,7 +143,7 @@ analysis.static = {}
         }
         assert!(runs[i] >= 1.0 && seconds[i] > 0.0 && seconds[i] < 15.0);
         assert_eq!(rows("below_uncertainty")[i], (errors[i] < uncertainty).to_string(), "{kind}");
-        let warned = json["rungs"][i]["warnings"].as_array().is_some_and(|w| !w.is_empty());
+        let warned = json["trials"][i]["warnings"].as_array().is_some_and(|w| !w.is_empty());
         let meets = !warned && errors[i] + uncertainty <= 1e-6;
         assert_eq!(rows("meets_target")[i], meets.to_string(), "{kind}: {} and {uncertainty}", errors[i]);
         let beaten = (0..errors.len()).any(|j| seconds[j] < seconds[i] && errors[j] < errors[i]);

@@ -4,6 +4,7 @@
 mod beside;
 mod browser;
 mod cost;
+mod figures;
 mod freeze;
 mod instructions;
 mod numbers;
@@ -78,6 +79,12 @@ enum Command {
     },
     /// Compute the numbers that the documents quote; exit status 1 if one of them is false
     Numbers,
+    /// Draw the pictures of the documents
+    Figures {
+        /// Write nothing; exit status 1 if one of them is not what the solver gives today
+        #[arg(long)]
+        check: bool,
+    },
     /// Measure what a time step costs per element, and the memory it takes, from 100 to 100,000
     /// elements
     Scaling,
@@ -101,6 +108,7 @@ fn main() -> ExitCode {
         Command::WorkPrecision { quick, out, problems } => cost::print(&suite, &problems, quick, &out),
         Command::Browser { report, prove } => browser::print(&suite, report.as_deref(), prove),
         Command::Numbers => numbers::print(&suite),
+        Command::Figures { check } => figures::print(&suite, check),
         Command::Scaling => scaling::print(&suite),
         Command::Instructions { against, program } => {
             instructions::print(&suite, &program, against.as_deref())

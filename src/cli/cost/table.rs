@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use ancf::cost::{LeftOut, Report, ReportedRung};
+use ancf::cost::{LeftOut, Report, ReportedTrial};
 use ancf::output::plot::human;
 
 /// A setting is close to the front where nothing with its error takes less than this part of its
@@ -16,38 +16,38 @@ const NAMED: usize = 3;
 /// The settings on the front and close to it, and the lines for the cheapest one that meets the
 /// target.
 pub fn table(report: &Report<'_>, directory: &Path) -> String {
-    let error = |rung: &ReportedRung| rung.measured.deviation.error;
-    let close = |rung: &ReportedRung| {
-        let faster = |other: &ReportedRung| {
-            other.measured.seconds < CLOSE * rung.measured.seconds && error(other) <= error(rung)
+    let error = |trial: &ReportedTrial| trial.measured.deviation.error;
+    let close = |trial: &ReportedTrial| {
+        let faster = |other: &ReportedTrial| {
+            other.measured.seconds < CLOSE * trial.measured.seconds && error(other) <= error(trial)
         };
-        !report.rungs.iter().any(faster)
+        !report.trials.iter().any(faster)
     };
-    let mut shown: Vec<(usize, &ReportedRung)> = report.rungs.iter().enumerate().collect();
-    shown.retain(|(index, rung)| *index == 0 || rung.front || close(rung));
+    let mut shown: Vec<(usize, &ReportedTrial)> = report.trials.iter().enumerate().collect();
+    shown.retain(|(index, trial)| *index == 0 || trial.front || close(trial));
     shown.sort_by(|(_, a), (_, b)| a.measured.seconds.total_cmp(&b.measured.seconds));
     let optional = |value: Option<f64>| value.map_or("–".into(), |v| format!("{v:.1e}"));
     let header =
         ["", "discretisation", "cells", "solver", "time [ms]", "work", "error", "curvature", "energy"];
     let mut rows = vec![header.map(str::to_owned)];
-    for (index, rung) in shown {
-        let measured = &rung.measured;
-        let mark = match (rung.front, report.best == Some(index)) {
+    for (index, trial) in shown {
+        let measured = &trial.measured;
+        let mark = match (trial.front, report.best == Some(index)) {
             (_, true) => "►",
             (true, false) => "•",
             (false, false) => "",
         };
         rows.push([
             mark.to_owned(),
-            rung.discretization.clone(),
-            rung.cells.to_string(),
-            rung.solver.clone(),
+            trial.discretization.clone(),
+            trial.cells.to_string(),
+            trial.solver.clone(),
             human(1e3 * measured.seconds, 3),
             measured.work().to_string(),
-            if rung.below_uncertainty {
+            if trial.below_uncertainty {
                 "below the reference's uncertainty".to_owned()
             } else {
-                format!("{:.1e}", error(rung))
+                format!("{:.1e}", error(trial))
             },
             optional(measured.deviation.curvature),
             optional(measured.deviation.energy),
@@ -78,7 +78,7 @@ pub fn table(report: &Report<'_>, directory: &Path) -> String {
         report.uncertainty.error,
         optional(report.uncertainty.curvature),
         optional(report.uncertainty.energy),
-        report.rungs.len(),
+        report.trials.len(),
         directory.join("cost.html").display(),
     );
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
@@ -111,16 +111,16 @@ mod tests {
     use ancf::cost::{Deviation, Measured};
     use ancf::results::Statistics;
 
-    fn rung(
+    fn trial(
         discretization: &str,
         seconds: f64,
         deviation: Deviation,
         [front, below_uncertainty]: [bool; 2],
-    ) -> ReportedRung {
+    ) -> ReportedTrial {
         let statistics = Statistics { tangent_evaluations: 3, factorizations: 4, ..Statistics::default() };
         let measured = Measured { seconds, deviation, statistics, ..Measured::default() };
         let (discretization, solver) = (discretization.to_owned(), "as the scene is".to_owned());
-        ReportedRung {
+        ReportedTrial {
             discretization,
             cells: 8,
             solver,
@@ -148,13 +148,13 @@ mod tests {
             budget: 60.0,
             reference: &["one".to_owned(), "other".to_owned()],
             uncertainty: Deviation { error: 1e-7, curvature: Some(2e-4), energy: None },
-            rungs: vec![
-                rung("the scene", 5e-3, error(1e-3), [false, false]),
-                rung("dear", 1.3e-3, full, [false, false]),
-                rung("best", 1e-3, full, [true, false]),
-                rung("as good", 1.2344e-3, full, [false, false]),
-                rung("just so", 1.25e-3, full, [false, false]),
-                rung("exact", 4.5e-2, error(1e-8), [true, true]),
+            trials: vec![
+                trial("the scene", 5e-3, error(1e-3), [false, false]),
+                trial("dear", 1.3e-3, full, [false, false]),
+                trial("best", 1e-3, full, [true, false]),
+                trial("as good", 1.2344e-3, full, [false, false]),
+                trial("just so", 1.25e-3, full, [false, false]),
+                trial("exact", 4.5e-2, error(1e-8), [true, true]),
             ],
             best: Some(2),
             lines: Some("elements = 8\n"),

@@ -85,15 +85,15 @@ impl FrictionIntegral {
     /// points in the order of the rule.
     fn for_touching(
         &self,
-        held: &AcceptedState,
+        accepted: &AcceptedState,
         q: &[f64],
         mut visit: impl FnMut(usize, [f64; 2], &Touching),
     ) {
         let contact = &*self.contact;
         let empty = Vec::new();
-        let pieces = held.variables.contacts.get(self.number).unwrap_or(&empty);
+        let pieces = accepted.variables.contacts.get(self.number).unwrap_or(&empty);
         for (cell, curve) in contact.near(q) {
-            let before = contact.cells.curve(cell, &held.q);
+            let before = contact.cells.curve(cell, &accepted.q);
             let first = pieces.partition_point(|piece| piece.cell < cell);
             let known = &pieces[first..first + pieces[first..].partition_point(|piece| piece.cell == cell)];
             self.for_pieces(&curve, |piece| {
@@ -164,9 +164,9 @@ impl FrictionEffect for FrictionIntegral {
         (self.contact.cells.count() * PARTS as usize * GAUSS_2.len(), 0)
     }
 
-    fn add_force(&self, held: &AcceptedState, q: &[f64], f: &mut [f64]) {
+    fn add_force(&self, accepted: &AcceptedState, q: &[f64], f: &mut [f64]) {
         let mut sum = ControlForces::default();
-        self.for_touching(held, q, |cell, _, point| {
+        self.for_touching(accepted, q, |cell, _, point| {
             let force = point.along * (self.friction.stiffness * point.slip * point.weight);
             sum.add(&self.contact, cell, force, &point.values, f);
         });
@@ -175,28 +175,28 @@ impl FrictionEffect for FrictionIntegral {
 
     fn add_force_and_tangent(
         &self,
-        held: &AcceptedState,
+        accepted: &AcceptedState,
         q: &[f64],
         f: &mut [f64],
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        self.add_force(held, q, f);
+        self.add_force(accepted, q, f);
         let cells = &self.contact.cells;
         let width = cells.width();
         let products = &mut workspace.products;
         products.resize(4 * width, 0.0);
         let mut row = vec![0.0; width];
-        self.for_touching(held, q, |cell, _, point| {
+        self.for_touching(accepted, q, |cell, _, point| {
             cells.row(cell, &point.values, &mut row);
             multiply_rows::<1>(point.weight, &[[point.stiffness]], &row, width, &mut products[..4 * width]);
             add_tiles::<1>(&row, &products[..4 * width], width, cells.coordinates(cell).start / 4, k);
         });
     }
 
-    fn slips(&self, held: &AcceptedState, q: &[f64]) -> (Vec<ContactPiece>, f64) {
+    fn slips(&self, accepted: &AcceptedState, q: &[f64]) -> (Vec<ContactPiece>, f64) {
         let (mut pieces, mut energy) = (Vec::<ContactPiece>::new(), 0.0);
-        self.for_touching(held, q, |cell, [from, to], point| {
+        self.for_touching(accepted, q, |cell, [from, to], point| {
             energy += 0.5 * point.weight * self.friction.stiffness * point.slip * point.slip;
             match pieces.last_mut() {
                 Some(piece) if (piece.cell, piece.from, piece.to) == (cell, from, to) => {
@@ -208,7 +208,7 @@ impl FrictionEffect for FrictionIntegral {
         (pieces, energy)
     }
 
-    fn add_held_force(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]) {
+    fn add_force_of(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]) {
         let contact = &*self.contact;
         // A saved state may be that of another scene.
         let pieces = variables.contacts.get(self.number).into_iter().flatten();
@@ -225,7 +225,7 @@ impl FrictionEffect for FrictionIntegral {
         }
     }
 
-    fn add_held_actions(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions) {
+    fn add_actions_of(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions) {
         let contact = &*self.contact;
         let pieces = variables.contacts.get(self.number).into_iter().flatten();
         let mut values = Vec::new();
@@ -241,9 +241,9 @@ impl FrictionEffect for FrictionIntegral {
         sum.add_spread(GAUSS_2.len(), values);
     }
 
-    fn sliding(&self, held: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool> {
+    fn sliding(&self, accepted: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool> {
         let (mut power, mut balance) = (0.0, 0.0);
-        self.for_touching(held, q, |cell, _, point| {
+        self.for_touching(accepted, q, |cell, _, point| {
             if point.slides {
                 let speed = point.along.dot(&self.contact.cells.curve(cell, v).at(&point.values));
                 power += point.slip * point.weight * speed;

@@ -3,6 +3,7 @@
 
 use super::State;
 use super::integrate::Driver;
+use crate::assembly::nodes;
 use crate::solve::newton::Failure;
 
 /// Turn of a node beyond which a step of fixed length is asked what it does to the energy \[rad\].
@@ -15,9 +16,11 @@ const LARGEST_GAIN: f64 = 1e-3;
 impl Driver<'_, '_> {
     /// Refuses a coarse step to `new` that gains energy.
     pub(super) fn without_gain(&mut self, new: &State) -> Result<(), Failure> {
-        let nodes = new.q.chunks_exact(4).zip(self.state.q.chunks_exact(4));
-        let square = nodes.fold(0.0_f64, |m, (a, b)| m.max((a[2] - b[2]).powi(2) + (a[3] - b[3]).powi(2)));
-        if square.sqrt() <= COARSE_TURN {
+        let turns = nodes(&new.q).zip(nodes(&self.state.q)).map(|(new, old)| {
+            let ([x, y], [x0, y0]) = (new.gradient, old.gradient);
+            (x - x0).powi(2) + (y - y0).powi(2)
+        });
+        if turns.fold(0.0, f64::max).sqrt() <= COARSE_TURN {
             return Ok(());
         }
         let energy = |state: &State| self.system.energy(state.time, &state.q, Some(&state.v));
@@ -26,7 +29,7 @@ impl Driver<'_, '_> {
         // Springs of friction give back what they hold at most.
         let put_in =
             work - self.state.work - self.taken_by_damping(new, new.time) + self.state.variables.friction;
-        let wound = self.system.winding_energy(&self.held, &new.q) - self.state.variables.winding;
+        let wound = self.system.winding_energy(&self.accepted, &new.q) - self.state.variables.winding;
         let gain = (after.total() + wound - before.total() - put_in) / before.kinetic.max(after.kinetic);
         match gain {
             _ if gain <= LARGEST_GAIN => Ok(()),
@@ -47,7 +50,7 @@ impl Driver<'_, '_> {
     /// is not lost.
     pub(super) fn settle(&self, state: &mut State) {
         if self.system.has_history() {
-            state.variables = self.system.internal_variables(&self.held, &state.q);
+            state.variables = self.system.internal_variables(&self.accepted, &state.q);
             state.lost -= state.variables.friction - self.state.variables.friction;
         }
     }
@@ -55,7 +58,7 @@ impl Driver<'_, '_> {
     /// Refuses a step in which a torsion spring turns so far that it could have turned the other
     /// way.
     pub(super) fn not_overwound(&self, new: &State) -> Result<(), Failure> {
-        let turn = self.system.winding_turn(&self.held, &new.q);
+        let turn = self.system.winding_turn(&self.accepted, &new.q);
         if turn > LARGEST_WINDING { Err(Failure::Overwound { turn }) } else { Ok(()) }
     }
 
@@ -117,7 +120,7 @@ impl Driver<'_, '_> {
             return (loads, 0.0);
         }
         scratch.fill(0.0);
-        self.system.add_friction(&self.held, &state.q, &mut scratch);
+        self.system.add_friction(&self.accepted, &state.q, &mut scratch);
         (loads, scratch.iter().zip(&state.v).map(|(f, v)| f * v).sum())
     }
 }

@@ -91,7 +91,7 @@ use super::tableau::{Block, Tableau};
 use super::turns::Turns;
 use crate::lanes::Lanes;
 use crate::linear::complex::ComplexFactor;
-use crate::linear::{Factor, Singular};
+use crate::linear::{Factor, NOT_FACTORISED, Singular};
 use crate::solve::Statistics;
 use crate::solve::equilibrium::larger;
 use crate::solve::newton::{Failure, Iterations};
@@ -129,15 +129,14 @@ const SLOW: f64 = 0.4;
 /// Rate of convergence beyond which the next step takes a new tangent.
 const KEEP: f64 = 0.05;
 /// A step that could grow by less than this keeps its length.
-const HOLD: f64 = 1.2;
+const LEAST_GROWTH: f64 = 1.2;
 /// Steps by which the polynomial of the last one is continued, at most: after a short one before a
 /// kink of a load it would lead anywhere.
 const LONGEST: f64 = 4.0;
 /// Relative change of the step's length that is none.
 const SAME_STEP: f64 = 1e-6;
 
-/// The tangent K that the factors hold.
-#[derive(Clone, Debug)]
+/// A tangent K with the factors of the transformed systems.
 struct FactoredTangent {
     /// Where it was taken.
     at: State,
@@ -145,6 +144,8 @@ struct FactoredTangent {
     multipliers: Vec<f64>,
     /// The step h of ζ²/h² M + K.
     step: f64,
+    /// Of ζ²/h² M + K, for each of the tableau's blocks.
+    factors: Vec<BlockFactor>,
     /// How much an iteration of the last step shrank the increments.
     rate: f64,
 }
@@ -170,7 +171,6 @@ enum BlockFactor {
 pub struct Collocation<'a> {
     motion: Motion<'a>,
     tableau: Tableau,
-    factors: Vec<BlockFactor>,
     /// Q̈_i of the last accepted step, and its length.
     accelerations: Vec<Lanes>,
     last_step: f64,
@@ -195,7 +195,6 @@ impl<'a> Collocation<'a> {
     pub fn new(motion: Motion<'a>, tableau: Tableau) -> Self {
         let (n, unknowns, s) = (motion.coordinates(), motion.unknowns(), tableau.stages());
         Self {
-            factors: Vec::new(),
             accelerations: vec![Lanes::ZERO; n],
             last_step: 0.0,
             astray: false,
@@ -285,9 +284,9 @@ impl<'a> Collocation<'a> {
 
     /// Factorises the transformed systems with the tangent at `at` for steps of length `h`.
     fn linearize(&mut self, at: &State, multipliers: Vec<f64>, h: f64) -> Result<(), Singular> {
-        self.kept = None;
+        let mut earlier = self.kept.take().map(|kept| kept.factors).unwrap_or_default().into_iter();
         self.motion.tangent_at(at, &multipliers);
-        let mut earlier = std::mem::take(&mut self.factors).into_iter();
+        let mut factors = Vec::with_capacity(self.tableau.blocks.len());
         for block in &self.tableau.blocks {
             let factor = match (block, earlier.next()) {
                 (Block::Real { gamma, .. }, earlier) => {
@@ -301,17 +300,16 @@ impl<'a> Collocation<'a> {
                     BlockFactor::Complex(self.motion.factorize_complex(zeta / h, earlier)?)
                 }
             };
-            self.factors.push(factor);
+            factors.push(factor);
         }
-        self.kept = Some(FactoredTangent { at: at.clone(), multipliers, step: h, rate: 1.0 });
+        self.kept = Some(FactoredTangent { at: at.clone(), multipliers, step: h, factors, rate: 1.0 });
         Ok(())
     }
 
     /// Turns the tangent with each node to where it is in each stage.
     fn turn(&mut self) {
-        if let Some(FactoredTangent { at, .. }) = &self.kept {
-            self.stages.measure_turns(&at.q);
-        }
+        let FactoredTangent { at, .. } = self.kept.as_ref().expect(NOT_FACTORISED);
+        self.stages.measure_turns(&at.q);
     }
 
     /// When a stage of the attempt is.
@@ -342,7 +340,8 @@ impl<'a> Collocation<'a> {
         let residual = self.motion.residuals(times, s, &mut self.stages);
         self.stages
             .take_apart(&Mixture::new(&self.tableau.inverse_transformation, -1.0), &mut self.transformed);
-        for (block, factor) in self.tableau.blocks.iter().zip(&self.factors) {
+        let FactoredTangent { factors, .. } = self.kept.as_ref().expect(NOT_FACTORISED);
+        for (block, factor) in self.tableau.blocks.iter().zip(factors) {
             match (block, factor) {
                 (Block::Real { row, .. }, BlockFactor::Real(factor)) => {
                     factor.solve(&mut self.transformed[*row])
@@ -351,7 +350,10 @@ impl<'a> Collocation<'a> {
                     let (re, im) = self.transformed.split_at_mut(row + 1);
                     factor.solve(&mut re[*row], &mut im[0]);
                 }
-                _ => {}
+                (Block::Real { .. }, BlockFactor::Complex(_))
+                | (Block::Complex { .. }, BlockFactor::Real(_)) => {
+                    unreachable!("a block's factor is of the block's kind")
+                }
             }
         }
         self.stages.put_together(&Mixture::new(&self.tableau.transformation, 1.0), &self.transformed);
@@ -453,17 +455,17 @@ impl<'a> Collocation<'a> {
         (e, if self.tableau.stages() == 2 { 0.0 } else { square / (h * h) })
     }
 
-    /// ζ of the real part of the stage system, or of its only one.
+    /// The real block of the stage system, or its only one.
+    fn leading_block(&self) -> usize {
+        self.tableau.blocks.iter().position(|block| matches!(block, Block::Real { .. })).unwrap_or(0)
+    }
+
+    /// ζ of the leading block.
     fn eigenvalue(&self) -> Complex<f64> {
-        let real = self.tableau.blocks.iter().find_map(|block| match block {
-            Block::Real { gamma, .. } => Some(Complex::new(*gamma, 0.0)),
-            Block::Complex { .. } => None,
-        });
-        let first = self.tableau.blocks.first().map(|block| match block {
+        match &self.tableau.blocks[self.leading_block()] {
             Block::Real { gamma, .. } => Complex::new(*gamma, 0.0),
             Block::Complex { zeta, .. } => *zeta,
-        });
-        real.or(first).unwrap_or_default()
+        }
     }
 
     /// The real part of (ζ²/h² M + K)⁻¹ `factor` e, in the supports' frames, with the tangent where
@@ -471,21 +473,17 @@ impl<'a> Collocation<'a> {
     fn solve_turned(&self, factor: Complex<f64>, e: &mut [f64]) {
         let n = self.motion.coordinates();
         self.turns.back(&mut e[..n]);
-        let real = self.factors.iter().find_map(|factor| match factor {
-            BlockFactor::Real(matrix) => Some(matrix),
-            BlockFactor::Complex(_) => None,
-        });
-        match (real, self.factors.first()) {
-            (Some(matrix), _) => {
+        let FactoredTangent { factors, .. } = self.kept.as_ref().expect(NOT_FACTORISED);
+        match &factors[self.leading_block()] {
+            BlockFactor::Real(matrix) => {
                 matrix.solve(e);
                 e.iter_mut().for_each(|e| *e *= factor.re);
             }
-            (None, Some(BlockFactor::Complex(matrix))) => {
+            BlockFactor::Complex(matrix) => {
                 let mut imaginary: Vec<f64> = e.iter().map(|e| factor.im * e).collect();
                 e.iter_mut().for_each(|e| *e *= factor.re);
                 matrix.solve(e, &mut imaginary);
             }
-            _ => {}
         }
         self.turns.forth(&mut e[..n]);
     }
@@ -493,9 +491,8 @@ impl<'a> Collocation<'a> {
     /// (ζ²/h² M + K)⁻¹ e in the state `state`, from the supports' frames into fixed axes; returns
     /// |ζ|².
     fn filter(&mut self, state: &State, e: &mut [f64]) -> f64 {
-        if let Some(FactoredTangent { at, .. }) = &self.kept {
-            self.turns.measure(&at.q, &state.q);
-        }
+        let FactoredTangent { at, .. } = self.kept.as_ref().expect(NOT_FACTORISED);
+        self.turns.measure(&at.q, &state.q);
         self.solve_turned(Complex::new(1.0, 0.0), e);
         self.motion.from_frames(e);
         self.eigenvalue().norm_sqr()
@@ -554,9 +551,8 @@ impl<'a> Collocation<'a> {
         self.motion.residual(&x, rates, &mut position);
         position[n..].fill(0.0);
         let velocity = self.motion.rate_of_forces(&stage, to);
-        if let Some(FactoredTangent { at, .. }) = &self.kept {
-            self.turns.measure(&at.q, &to.q);
-        }
+        let FactoredTangent { at, .. } = self.kept.as_ref().expect(NOT_FACTORISED);
+        self.turns.measure(&at.q, &to.q);
         let mut error = 0.0;
         for (mut change, unknowns, unit) in [(position, &mut to.q, 1.0), (velocity, &mut to.v, h)] {
             self.solve_turned(Complex::new(1.0, 0.0), &mut change);
@@ -618,14 +614,14 @@ impl Method for Collocation<'_> {
         self.tableau.order
     }
 
-    fn hold(&self) -> f64 {
-        HOLD
+    fn least_growth(&self) -> f64 {
+        LEAST_GROWTH
     }
 
     fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
         // Constant accelerations, until there is a step to continue.
         let mut acceleration = vec![0.0; state.q.len()];
-        self.motion.hold(state);
+        self.motion.set_accepted(state);
         let unknowns = self.motion.unknowns_of(state);
         self.motion.acceleration(&unknowns, &mut acceleration)?;
         self.accelerations.iter_mut().zip(&acceleration).for_each(|(all, a)| *all = Lanes::splat(*a));
@@ -643,7 +639,7 @@ impl Method for Collocation<'_> {
         to: &mut State,
         record: &mut Iterations,
     ) -> Result<f64, Failure> {
-        self.motion.hold(state);
+        self.motion.set_accepted(state);
         if self.motion.remembers() {
             // What a kept tangent is of depends on the state that was held then.
             self.kept = None;
@@ -757,11 +753,11 @@ impl Method for Collocation<'_> {
 
     fn memory(&self) -> Memory {
         let (n, s) = (self.motion.coordinates(), self.tableau.stages());
-        let kept = self.kept.clone();
-        let (tangent, tangent_step) =
-            kept.map_or((None, 0.0), |FactoredTangent { at, multipliers, step, rate }| {
-                (Some(TangentMemory { time: at.time, q: at.q, v: at.v, multipliers, rate }), step)
-            });
+        let (tangent, tangent_step) = self.kept.as_ref().map_or((None, 0.0), |kept| {
+            let FactoredTangent { at, multipliers, step, rate, .. } = kept;
+            let (State { time, q, v, .. }, multipliers) = (at.clone(), multipliers.clone());
+            (Some(TangentMemory { time, q, v, multipliers, rate: *rate }), *step)
+        });
         Memory::Collocation(CollocationMemory {
             last_step: self.last_step,
             smooth: self.smooth,

@@ -81,7 +81,7 @@ impl<'a> Driver<'_, 'a> {
             self.observer = Motion::new(self.system).ok();
         }
         let motion = self.observer.as_mut()?;
-        motion.hold(&self.state);
+        motion.set_accepted(&self.state);
         Some(motion)
     }
 

@@ -18,8 +18,10 @@
 //! and supports do between the ends of the step ([`crate::system::laws`]) is added to it, and made
 //! up for, through the same matrix.
 //!
-//! Where a contact begins, ends, or turns, a starts anew from the q̈ of the equations of motion: a carries the force that was before into the steps behind,
-//! by which a hinged beam on a stiff box erred by 364 times a tolerance of 1e-5, and q̈ of the formula rings, by which it still erred by 40.
+//! Where a contact begins, ends, or turns, a starts anew from the q̈ of the equations of motion: a
+//! carries the force that was before into the steps behind, by which a hinged beam on a stiff box
+//! erred by 364 times a tolerance of 1e-5, and q̈ of the formula rings, by which it still erred by
+//! 40.
 //!
 //! # A tangent for many steps
 //! The tangent is kept, turned with the nodes ([`super::turns`]), as long as the increments shrink
@@ -33,7 +35,7 @@ use super::method::Method;
 use super::motion::{Acceleration, Motion, Rates, StageState};
 use super::turns::Turns;
 use crate::assembly::Earlier;
-use crate::linear::{Factor, Singular};
+use crate::linear::{Factor, NOT_FACTORISED, Singular};
 use crate::solve::Statistics;
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
 
@@ -213,9 +215,7 @@ impl<'a> GeneralizedAlpha<'a> {
                 let rates = self.rule.at(&self.x, damped);
                 let residual =
                     self.motion.residual_turned_back(&self.x, rates, &self.turns, &mut self.increment);
-                if let Some(factor) = &self.factor {
-                    factor.solve(&mut self.increment);
-                }
+                self.factor.as_ref().expect(NOT_FACTORISED).solve(&mut self.increment);
                 let size = self.motion.update(&self.turns, &mut self.increment, &mut self.x);
                 self.motion.statistics.newton_iterations += 1;
                 record.residuals.push(residual);
@@ -285,9 +285,7 @@ impl<'a> GeneralizedAlpha<'a> {
     fn filtered(&self, e: &mut [f64]) -> f64 {
         let n = self.motion.coordinates();
         self.turns.back(&mut e[..n]);
-        if let Some(factor) = &self.factor {
-            factor.solve(e);
-        }
+        self.factor.as_ref().expect(NOT_FACTORISED).solve(e);
         self.turns.forth(&mut e[..n]);
         self.motion.distance(e)
     }
@@ -352,7 +350,7 @@ impl Method for GeneralizedAlpha<'_> {
     }
 
     fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
-        self.motion.hold(state);
+        self.motion.set_accepted(state);
         let unknowns = self.motion.unknowns_of(state);
         self.motion.acceleration(&unknowns, &mut self.last.physical)?;
         self.last.algorithmic.copy_from_slice(&self.last.physical);
@@ -369,7 +367,7 @@ impl Method for GeneralizedAlpha<'_> {
         to: &mut State,
         record: &mut Iterations,
     ) -> Result<f64, Failure> {
-        self.motion.hold(state);
+        self.motion.set_accepted(state);
         if self.motion.remembers() {
             // What a kept tangent is of depends on the state that was held then.
             self.kept = None;

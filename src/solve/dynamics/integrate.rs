@@ -36,7 +36,7 @@ use super::method::Method;
 use super::motion::Motion;
 use super::tableau::Tableau;
 use super::{Checkpoint, NoStep, Solution, State};
-use crate::assembly::AcceptedState;
+use crate::assembly::{AcceptedState, nodes};
 use crate::linear::Singular;
 use crate::model::{Crossing, Integrator, StepControl};
 use crate::solve::newton::{Failure, Iterations, not_crushed};
@@ -173,7 +173,7 @@ pub(super) struct Driver<'t, 'a> {
     /// Times at which loads or supports are not smooth, rising.
     pub(super) kinks: Vec<f64>,
     /// The last state, for what depends on the way.
-    pub(super) held: AcceptedState,
+    pub(super) accepted: AcceptedState,
     /// Per contact, how it is.
     pub(super) touching: Vec<ContactState>,
     /// Times and powers at the start and the end of the last step.
@@ -251,7 +251,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             whole: None,
             stride: 1,
             kinks,
-            held: AcceptedState::default(),
+            accepted: AcceptedState::default(),
             touching,
             powers: [(f64::NAN, (0.0, 0.0)); 2],
             support_powers: Vec::new(),
@@ -259,7 +259,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             last_step: step,
             observer: None,
         };
-        driver.hold();
+        driver.set_accepted();
         if driver.task.reactions {
             let balance = driver.balance_at_start(&first);
             driver.keep_reactions(balance);
@@ -289,7 +289,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                     if !stopped {
                         self.go_on(end);
                     }
-                    self.hold();
+                    self.set_accepted();
                     if let Some(Checkpointing { every, take }) = self.task.keep
                         && kept.elapsed() >= every
                     {
@@ -305,9 +305,10 @@ impl<'t, 'a> Driver<'t, 'a> {
     }
 
     /// Takes the state for the one from which internal variables are counted.
-    fn hold(&mut self) {
+    fn set_accepted(&mut self) {
         if self.system.has_history() {
-            self.held = AcceptedState { q: self.state.q.clone(), variables: self.state.variables.clone() };
+            self.accepted =
+                AcceptedState { q: self.state.q.clone(), variables: self.state.variables.clone() };
         }
     }
 
@@ -422,7 +423,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                     if self.rejected || iterations > MANY_ITERATIONS {
                         factor = factor.min(1.0);
                     }
-                    if (1.0..self.method.hold()).contains(&factor) {
+                    if (1.0..self.method.least_growth()).contains(&factor) {
                         factor = 1.0;
                     }
                     let next = h * factor.clamp(LIMITS.0, LIMITS.1);
@@ -593,9 +594,7 @@ fn first_step(
 
 /// The same by the derivative of positions of the given order alone.
 fn step_by(system: &System, method: &dyn Method, tolerance: f64, order: i32, derivative: &[f64]) -> f64 {
-    let largest = derivative
-        .chunks_exact(4)
-        .fold(0.0_f64, |m, v| m.max(v[0].hypot(v[1]) / system.length()).max(v[2].hypot(v[3])));
+    let largest = nodes(derivative).fold(0.0_f64, |m, v| m.max(v.shift() / system.length()).max(v.slope()));
     let part = 0.3 * tolerance.powf(1.0 / (method.order() + 1.0));
     (f64::from(order) * part / largest).powf(1.0 / f64::from(order))
 }

@@ -15,7 +15,7 @@ pub trait Method {
 
     /// A step that could grow by less than this factor keeps its length: what was factorised for it
     /// serves again.
-    fn hold(&self) -> f64 {
+    fn least_growth(&self) -> f64 {
         1.0
     }
 

@@ -39,7 +39,7 @@ pub use reactions::{Balance, StageState};
 
 use super::State;
 use super::turns::Turns;
-use crate::assembly::{AcceptedState, Earlier, Workspace};
+use crate::assembly::{AcceptedState, Earlier, Node, Workspace, nodes};
 use crate::lanes::{Lanes, Real};
 use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
@@ -101,7 +101,7 @@ pub struct Motion<'a> {
     force: Vec<f64>,
     scratch: Vec<f64>,
     /// The last accepted state, for friction.
-    pub(super) held: AcceptedState,
+    pub(super) accepted: AcceptedState,
     /// What forces of several states at once put down in between.
     pub(super) side_by_side: [Vec<f64>; 2],
     /// Of the last accelerations.
@@ -121,7 +121,7 @@ fn free_mass(system: &System, time: f64, q: &[f64], mass: &Inertia) -> [Matrix; 
     system.polar().matrix(q, &mut free);
     let mut eliminated = free.clone();
     system.supports().eliminate(time, &mut eliminated);
-    system.supports().clear_held(time, &mut free);
+    system.supports().clear_fixed(time, &mut free);
     [free, eliminated]
 }
 
@@ -151,7 +151,7 @@ impl<'a> Motion<'a> {
             workspace: Workspace::default(),
             force: vec![0.0; n],
             side_by_side: [0; 2].map(|_| vec![0.0; n]),
-            held: AcceptedState { q: system.reference().to_vec(), ..AcceptedState::default() },
+            accepted: AcceptedState { q: system.reference().to_vec(), ..AcceptedState::default() },
             scratch: vec![0.0; if system.is_damped() { n } else { 0 }],
             multipliers: vec![0.0; system.multipliers()],
             carried: [0; 3].map(|_| vec![0.0; carried]),
@@ -160,16 +160,16 @@ impl<'a> Motion<'a> {
     }
 
     /// Takes a state for the last accepted one, from which internal variables are counted.
-    pub fn hold(&mut self, state: &State) {
+    pub fn set_accepted(&mut self, state: &State) {
         if self.system.has_history() {
-            self.held = AcceptedState { q: state.q.clone(), variables: state.variables.clone() };
+            self.accepted = AcceptedState { q: state.q.clone(), variables: state.variables.clone() };
         }
     }
 
     /// Whether tangents depend on the way to the last accepted state: with friction, and with
     /// springs that are wound up.
     pub fn remembers(&self) -> bool {
-        self.system.has_friction() || self.held.variables.winding != 0.0
+        self.system.has_friction() || self.accepted.variables.winding != 0.0
     }
 
     /// The system that moves.
@@ -190,7 +190,7 @@ impl<'a> Motion<'a> {
     /// Nodes that a tangent does not turn with: a held component of a position must stay what it
     /// is, and polar gradients turn by themselves.
     pub fn still(&self) -> Vec<usize> {
-        self.system.supports().half_held().chain(self.system.polar().nodes()).collect()
+        self.system.supports().half_fixed().chain(self.system.polar().nodes()).collect()
     }
 
     /// Number of coordinates.
@@ -322,12 +322,12 @@ impl<'a> Motion<'a> {
         let n = self.coordinates();
         if !self.carries {
             self.system.force(rates.time, &x[..n], &mut r[..n]);
-            self.system.add_history(&self.held, &x[..n], &mut r[..n]);
+            self.system.add_history(&self.accepted, &x[..n], &mut r[..n]);
             return self.finish(x, rates, r);
         }
         self.with_carried(x, rates, |motion, x, rates| {
             motion.system.force(rates.time, &x[..n], &mut r[..n]);
-            motion.system.add_history(&motion.held, &x[..n], &mut r[..n]);
+            motion.system.add_history(&motion.accepted, &x[..n], &mut r[..n]);
             motion.finish(x, rates, r)
         })
     }
@@ -400,16 +400,16 @@ impl<'a> Motion<'a> {
     /// Force, tangent and damping matrix, in fixed axes and in the supports' frames.
     fn assemble(&mut self, x: &[f64], earlier: Option<Earlier<'_>>, rates: Rates<'_>, force: &mut [f64]) {
         let n = self.coordinates();
-        let Self { system, tangent, damping, workspace, scratch, held, .. } = self;
+        let Self { system, tangent, damping, workspace, scratch, accepted, .. } = self;
         let supports = system.supports();
         if let Some(damping) = damping {
             system.damping_matrix(&x[..n], rates.v, scratch, damping, workspace);
             supports.turn_matrix(rates.time, damping);
             system.polar().matrix(&x[..n], damping);
-            supports.clear_held(rates.time, damping);
+            supports.clear_fixed(rates.time, damping);
         }
         system.force_and_tangent(rates.time, &x[..n], earlier, force, tangent, workspace);
-        system.add_history_and_tangent(held, &x[..n], force, tangent, workspace);
+        system.add_history_and_tangent(accepted, &x[..n], force, tangent, workspace);
         system.add_constraint_stiffness(&x[..n], &x[n..], tangent);
         supports.turn_matrix(rates.time, tangent);
         system.polar().matrix(&x[..n], tangent);
@@ -600,7 +600,7 @@ impl<'a> Motion<'a> {
     /// Root mean square over the nodes of the change of their positions, in beam lengths.
     pub fn distance(&self, change: &[f64]) -> f64 {
         let n = self.coordinates();
-        let sum: f64 = change[..n].chunks_exact(4).map(|d| d[0] * d[0] + d[1] * d[1]).sum();
+        let sum: f64 = nodes(&change[..n]).map(|Node { position: [x, y], .. }| x * x + y * y).sum();
         (sum / (n / 4) as f64).sqrt() / self.system.length()
     }
 

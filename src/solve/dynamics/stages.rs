@@ -224,11 +224,11 @@ impl Motion<'_> {
             return largest;
         }
         self.statistics.residual_evaluations += count;
-        let Self { system, mass, side_by_side, held, .. } = self;
+        let Self { system, mass, side_by_side, accepted, .. } = self;
         let force = &mut stages.residual;
         system.forces(times, &stages.x, force, side_by_side);
         if system.has_history() {
-            lanes::one_by_one(&stages.x, force, side_by_side, |_, q, f| system.add_history(held, q, f));
+            lanes::one_by_one(&stages.x, force, side_by_side, |_, q, f| system.add_history(accepted, q, f));
         }
         if system.is_damped() {
             let velocities: [Vec<f64>; 4] = std::array::from_fn(|stage| lane(&stages.velocity, stage));

@@ -2,6 +2,7 @@
 //! left.
 
 use super::{Checkpoint, State};
+use crate::assembly::nodes;
 use crate::linear::Singular;
 use crate::model::InitialVelocity;
 use crate::solve::dynamics::motion::Motion;
@@ -133,9 +134,9 @@ pub fn from_state(
         let Some(part) = system.beams().get(velocity.beam) else { continue };
         let first = 4 * part.first_node;
         let range = first..first + 4 * part.basis.nodes().len();
-        let coordinates = state.q[range.clone()].chunks_exact(4).zip(state.v[range].chunks_exact_mut(4));
-        for (s, (q, v)) in part.basis.nodes().iter().zip(coordinates) {
-            let rates = velocity.at(*s, [q[0], q[1]], [q[2], q[3]]);
+        let coordinates = nodes(&state.q[range.clone()]).zip(state.v[range].chunks_exact_mut(4));
+        for (s, (node, v)) in part.basis.nodes().iter().zip(coordinates) {
+            let rates = velocity.at(*s, node.position, node.gradient);
             v.iter_mut().zip(rates).for_each(|(v, rate)| *v += rate);
         }
     }
@@ -144,7 +145,7 @@ pub fn from_state(
     let moves = system.supports().moves_in_time();
     let mut given = state.v.clone();
     for (i, (given, admissible)) in given.iter_mut().zip(&admissible).enumerate() {
-        if moves && !system.supports().holds_still(i) {
+        if moves && !system.supports().is_stationary(i) {
             *given = *admissible;
         }
     }

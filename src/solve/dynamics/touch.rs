@@ -94,7 +94,7 @@ impl Driver<'_, '_> {
         if !self.system.has_friction() {
             return None;
         }
-        let sliding = |state: &State| self.system.sliding(&self.held, &state.q, &state.v);
+        let sliding = |state: &State| self.system.sliding(&self.accepted, &state.q, &state.v);
         let begun =
             sliding(&self.state.between(new, self.state.time + BEGUN * (new.time - self.state.time), None));
         self.first_change(new, 1.0, |state| sliding(state) != begun)

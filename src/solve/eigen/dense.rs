@@ -19,7 +19,7 @@ const DEPENDENT: f64 = 1e-12;
 /// # Errors
 /// [`EigenError`] where A is singular or indefinite on the allowed motions.
 pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, EigenError> {
-    let free: Vec<usize> = (0..pencil.held.len()).filter(|&i| !pencil.held[i]).collect();
+    let free: Vec<usize> = (0..pencil.fixed.len()).filter(|&i| !pencil.fixed[i]).collect();
     // Positions and gradients have different units: every coordinate is measured by its own
     // stiffness.
     let scale: Vec<f64> = free
@@ -61,7 +61,7 @@ pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, E
     let largest = (0..m).fold(0.0_f64, |largest, i| largest.max(values[i].abs()));
     let mut pairs = Pairs::default();
     for i in (0..m).rev().filter(|&i| values[i] > NEGLIGIBLE * largest).take(count) {
-        let mut vector = vec![0.0; pencil.held.len()];
+        let mut vector = vec![0.0; pencil.fixed.len()];
         for (k, (&coordinate, scale)) in free.iter().zip(&scale).enumerate() {
             vector[coordinate] = scale * vectors[(k, i)];
         }
@@ -78,7 +78,7 @@ fn null_space(pencil: &Pencil<'_>, free: &[usize], scale: &[f64]) -> Result<Opti
     if m == 0 {
         return Ok(None);
     }
-    let mut place = vec![None; pencil.held.len()];
+    let mut place = vec![None; pencil.fixed.len()];
     for (k, &coordinate) in free.iter().enumerate() {
         place[coordinate] = Some(k);
     }
@@ -94,7 +94,7 @@ fn null_space(pencil: &Pencil<'_>, free: &[usize], scale: &[f64]) -> Result<Opti
     let qr = rows.qr();
     let upper = qr.thin_R();
     if let Some(row) = (0..m).find(|&r| r >= n || upper[(r, r)].abs() <= DEPENDENT * sizes[r]) {
-        return Err(Singular { row: pencil.held.len() + row }.into());
+        return Err(Singular { row: pencil.fixed.len() + row }.into());
     }
     Ok(Some(qr.compute_Q().get(.., m..).to_owned()))
 }

@@ -38,7 +38,7 @@ pub struct Balance {
     /// Accelerations.
     pub acceleration: Vec<f64>,
     /// Forces of supports on the held coordinates.
-    pub held: Vec<f64>,
+    pub support_forces: Vec<f64>,
     /// Scaled multipliers.
     pub multipliers: Vec<f64>,
 }
@@ -48,7 +48,14 @@ impl Balance {
     pub fn view(&self) -> Balanced<'_> {
         let State { time, q, v, variables, .. } = &self.state;
         let motion = Some([&v[..], &self.acceleration]);
-        Balanced { parameter: *time, q, motion, held: &self.held, multipliers: &self.multipliers, variables }
+        Balanced {
+            parameter: *time,
+            q,
+            motion,
+            support_forces: &self.support_forces,
+            multipliers: &self.multipliers,
+            variables,
+        }
     }
 }
 
@@ -81,8 +88,8 @@ impl Motion<'_> {
 
     /// The same in a balance.
     pub fn reactions_in(&self, balance: &Balance) -> Vec<Reaction> {
-        let Balance { state, held, multipliers, .. } = balance;
-        self.system.reactions(state.time, &state.q, held, multipliers)
+        let Balance { state, support_forces, multipliers, .. } = balance;
+        self.system.reactions(state.time, &state.q, support_forces, multipliers)
     }
 
     /// The unknowns of a state with the accelerations that its forces give.
@@ -174,10 +181,10 @@ impl Motion<'_> {
     /// All forces in a state in which the equations hold.
     pub fn balance_of(&self, stage: StageState) -> Balance {
         let (mut balance, force) = self.forces_of(stage);
-        balance.held = force;
+        balance.support_forces = force;
         let (time, q) = (balance.state.time, &balance.state.q);
-        self.system.add_constraint_forces(time, q, &balance.multipliers, &mut balance.held);
-        self.system.supports().keep_held(time, &mut balance.held);
+        self.system.add_constraint_forces(time, q, &balance.multipliers, &mut balance.support_forces);
+        self.system.supports().keep_fixed(time, &mut balance.support_forces);
         balance
     }
 
@@ -190,13 +197,13 @@ impl Motion<'_> {
         let [q, v, acceleration] = self.in_fixed_axes(&state, &rates);
         let mut force = vec![0.0; q.len()];
         self.system.force(time, &q, &mut force);
-        self.system.add_history(&self.held, &q, &mut force);
+        self.system.add_history(&self.accepted, &q, &mut force);
         self.system.add_damping(&q, &v, &mut force);
         self.mass.multiply_add(1.0, &acceleration, &mut force);
         self.system.add_turning_force(&q, &v, &acceleration, &mut force);
-        let variables = self.system.internal_variables(&self.held, &q);
+        let variables = self.system.internal_variables(&self.accepted, &q);
         let state = State { time, q, v, work, lost, variables, angles };
-        (Balance { state, acceleration, held: Vec::new(), multipliers }, force)
+        (Balance { state, acceleration, support_forces: Vec::new(), multipliers }, force)
     }
 
     /// Power \[W\] that moving supports put in, in a stage.

@@ -138,8 +138,9 @@ fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng)
     finding(way, says, other.to_owned())
 }
 
-/// How far a coarse mesh of strings that hang still is from its shape: a cell that would have to kink
-/// where a force acts, or fold up, has several equilibria, not further from each other than that.
+/// How far a coarse mesh of strings that hang still is from its shape: a cell that would have to
+/// kink where a force acts, or fold up, has several equilibria, not further from each other than
+/// that.
 fn error_of_strings(case: &Case) -> f64 {
     let Case { scene, frame, .. } = case;
     let statics = settings::get(scene, &["analysis", "static"]).is_some();
@@ -349,7 +350,8 @@ fn continued(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
         Outcome::TooLong => return Verdict::TooLong,
     };
     let gap = gap::between(base, &seen, Records::Last);
-    // The state goes on bit for bit; forces are computed of it, and are round-off where nothing acts.
+    // The state goes on bit for bit; forces are computed of it, and are round-off where nothing
+    // acts.
     let allowed = if gap.places > CONTINUED { CONTINUED } else { CONTINUED + OF_FORCES * round_off(scene) };
     let measured = Measured { value: gap.all, allowed, places: false, what: gap.what };
     decide(case, way, measured, &text(), rng)

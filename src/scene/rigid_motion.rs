@@ -63,13 +63,13 @@ pub(super) fn check_rigid_motions(model: &Model, built: &[Built], resisting: Res
     let mut held = Freedom::new(model, length, position);
     held.resist(model, position);
     for (beam, _) in model.beams.iter().enumerate().filter(|(_, b)| b.section.bending_stiffness.is_none()) {
-        held.hold_direction(beam);
+        held.fix_direction(beam);
     }
     let left = held.motions();
     if resisting == Resisting::Weight && !left.is_empty() {
         for (beam, taut) in taut(model, built).into_iter().enumerate() {
             if taut {
-                held.hold_direction(beam);
+                held.fix_direction(beam);
             }
         }
         if held.motions().is_empty() {

@@ -8,7 +8,7 @@ use crate::results::Statistics;
 
 /// A setting with what it cost and how far it was off.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rung {
+pub struct Trial {
     /// The kind of discretisation.
     pub family: Family,
     /// Cells of the beam that has most of them.
@@ -69,10 +69,10 @@ pub(super) fn cheapest(points: &[[f64; 2]], target: f64) -> Option<usize> {
     meets.min_by(|&a, &b| points[a][0].total_cmp(&points[b][0]))
 }
 
-/// (seconds, error) of every rung; an error below `least` counts as `least`, for nobody can tell
+/// (seconds, error) of every trial; an error below `least` counts as `least`, for nobody can tell
 /// them apart.
-pub(super) fn points(rungs: &[Rung], least: f64) -> Vec<[f64; 2]> {
-    rungs.iter().map(|rung| [rung.measured.seconds, rung.measured.deviation.error.max(least)]).collect()
+pub(super) fn points(trials: &[Trial], least: f64) -> Vec<[f64; 2]> {
+    trials.iter().map(|trial| [trial.measured.seconds, trial.measured.deviation.error.max(least)]).collect()
 }
 
 #[cfg(test)]
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn errors_that_nobody_can_tell_apart_are_equal() {
-        let rung = |seconds: f64, error: f64| Rung {
+        let trial = |seconds: f64, error: f64| Trial {
             family: Family::FULL,
             cells: 4,
             setting: Setting { beams: vec![], solver: Solver::Scene },
@@ -106,8 +106,8 @@ mod tests {
                 ..Measured::default()
             },
         };
-        let rungs = [rung(3.0, 1e-2), rung(1.0, 1e-7), rung(2.0, 1e-5)];
-        assert_eq!(points(&rungs, 1e-5), [[3.0, 1e-2], [1.0, 1e-5], [2.0, 1e-5]]);
+        let trials = [trial(3.0, 1e-2), trial(1.0, 1e-7), trial(2.0, 1e-5)];
+        assert_eq!(points(&trials, 1e-5), [[3.0, 1e-2], [1.0, 1e-5], [2.0, 1e-5]]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The settings that are tried, coarse ones first, and when a family of them is left.
 //!
-//! First all discretisations climb their meshes together, with one accurate solver. Then the best
+//! First all discretisations go through their meshes together, from coarse to fine, with one accurate solver. Then the best
 //! of them, from the cheapest to the most accurate, are tried with other solvers: tolerances in
 //! statics; integrators, tolerances and steps in motion. A setting whose predicted time exceeds
 //! what is left is not tried.
@@ -8,8 +8,8 @@
 use serde::Serialize;
 
 use super::bench::{Bench, Unmeasured};
-use super::rung::{Rung, front, points};
 use super::setting::{Family, Setting, Solver, cells};
+use super::trial::{Trial, front, points};
 use crate::model::SPECTRAL_RADIUS;
 use crate::model::{Analysis, Integrator, Model, StepControl};
 
@@ -20,7 +20,7 @@ const MESHES: [usize; 15] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256,
 const FAR: f64 = 4.0;
 /// … on so many meshes in succession; and it is given up after so many failures in succession.
 const PATIENCE: usize = 2;
-/// Of the time of the ladder, what is kept for other solvers where there are some.
+/// Of the time of the search, what is kept for other solvers where there are some.
 const KEPT_FOR_SOLVERS: f64 = 0.4;
 /// Most discretisations that are tried with other solvers.
 const PICKS: usize = 4;
@@ -36,22 +36,22 @@ pub struct LeftOut {
     pub why: String,
 }
 
-/// What comes of the climb.
+/// What the search found.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Climbed {
-    pub rungs: Vec<Rung>,
+pub(super) struct Found {
+    pub trials: Vec<Trial>,
     pub left_out: Vec<LeftOut>,
     /// Whether somebody stopped it.
     pub interrupted: bool,
 }
 
-impl Climbed {
+impl Found {
     fn leave(&mut self, what: String, why: impl Into<String>) {
         self.left_out.push(LeftOut { what, why: why.into() });
     }
 }
 
-/// What a ladder is to find out.
+/// What a search is to find out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Task<'a> {
     pub model: &'a Model,
@@ -65,12 +65,12 @@ pub(super) struct Task<'a> {
 }
 
 /// Tries settings on `bench` until all are tried or left out, or the time is over.
-pub(super) fn climb(task: &Task<'_>, bench: &mut impl Bench) -> Climbed {
-    let mut climbed = Climbed::default();
-    if meshes(task, bench, &mut climbed).and_then(|()| solvers(task, bench, &mut climbed)).is_none() {
-        climbed.interrupted = true;
+pub(super) fn search(task: &Task<'_>, bench: &mut impl Bench) -> Found {
+    let mut found = Found::default();
+    if meshes(task, bench, &mut found).and_then(|()| solvers(task, bench, &mut found)).is_none() {
+        found.interrupted = true;
     }
-    climbed
+    found
 }
 
 /// The solver with which discretisations are compared.
@@ -95,7 +95,7 @@ fn short(value: f64) -> f64 {
 }
 
 /// A family on its way up.
-struct Climber {
+struct FamilySearch {
     family: Family,
     /// Seconds and cells of the last two measured meshes, the later one last.
     times: Vec<[f64; 2]>,
@@ -103,7 +103,7 @@ struct Climber {
     failed: usize,
 }
 
-impl Climber {
+impl FamilySearch {
     /// Time that `cells` cells will take \[s\]; 0 where nothing is known.
     fn predict(&self, cells: usize) -> f64 {
         let exponent = match self.times.as_slice() {
@@ -117,15 +117,15 @@ impl Climber {
 /// Measures, and says whether to go on with what the outcome was. `None`: interrupted.
 fn attempt(
     bench: &mut impl Bench,
-    climbed: &mut Climbed,
+    found: &mut Found,
     (family, cells): (Family, usize),
     setting: Setting,
     deadline: f64,
 ) -> Option<Result<usize, Unmeasured>> {
     match bench.measure(&setting, deadline) {
         Ok(measured) => {
-            climbed.rungs.push(Rung { family, cells, setting, measured });
-            Some(Ok(climbed.rungs.len() - 1))
+            found.trials.push(Trial { family, cells, setting, measured });
+            Some(Ok(found.trials.len() - 1))
         }
         Err(Unmeasured::Interrupted) => None,
         Err(miss) => Some(Err(miss)),
@@ -133,59 +133,59 @@ fn attempt(
 }
 
 /// All discretisations on ever finer meshes.
-fn meshes(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Option<()> {
+fn meshes(task: &Task<'_>, bench: &mut impl Bench, found: &mut Found) -> Option<()> {
     let begun = bench.now();
     let kept = if matches!(task.analysis, Analysis::Dynamic(_)) { KEPT_FOR_SOLVERS } else { 0.0 };
     let deadline = task.deadline - kept * (task.deadline - begun);
     let as_it_is = Setting { beams: Family::Scene.beams(task.model, 1), solver: scene_solver(task.analysis) };
     let place = (Family::Scene, cells(task.model));
-    if let Err(miss) = attempt(bench, climbed, place, as_it_is, deadline)? {
-        climbed.leave(Family::Scene.to_string(), reason(miss));
+    if let Err(miss) = attempt(bench, found, place, as_it_is, deadline)? {
+        found.leave(Family::Scene.to_string(), reason(miss));
     }
     let solver = accurate(task);
-    let climber = |family| Climber { family, times: Vec::new(), dominated: 0, failed: 0 };
-    let mut climbers: Vec<Climber> = Family::all().into_iter().map(climber).collect();
+    let search = |family| FamilySearch { family, times: Vec::new(), dominated: 0, failed: 0 };
+    let mut searches: Vec<FamilySearch> = Family::all().into_iter().map(search).collect();
     for cells in MESHES {
-        let mut on = Vec::with_capacity(climbers.len());
-        for mut climber in climbers {
-            let from = format!("{}, {cells} cells and more", climber.family);
-            if bench.now() + RESERVE * climber.predict(cells) >= deadline {
-                climbed.leave(from, "no time is left in the budget");
+        let mut on = Vec::with_capacity(searches.len());
+        for mut search in searches {
+            let from = format!("{}, {cells} cells and more", search.family);
+            if bench.now() + RESERVE * search.predict(cells) >= deadline {
+                found.leave(from, "no time is left in the budget");
                 continue;
             }
-            let setting = Setting { beams: climber.family.beams(task.model, cells), solver };
-            match attempt(bench, climbed, (climber.family, cells), setting, deadline)? {
+            let setting = Setting { beams: search.family.beams(task.model, cells), solver };
+            match attempt(bench, found, (search.family, cells), setting, deadline)? {
                 Ok(index) => {
-                    climber.failed = 0;
-                    let rung = &climbed.rungs[index];
-                    climber.times.push([rung.measured.seconds, cells as f64]);
-                    if rung.measured.deviation.error <= task.least {
+                    search.failed = 0;
+                    let trial = &found.trials[index];
+                    search.times.push([trial.measured.seconds, cells as f64]);
+                    if trial.measured.deviation.error <= task.least {
                         continue;
                     }
-                    let dominated = dominated_by(&climbed.rungs, index, task.least);
-                    climber.dominated = if dominated.is_some() { climber.dominated + 1 } else { 0 };
-                    if let Some(better) = dominated.filter(|_| climber.dominated >= PATIENCE) {
-                        let better = &climbed.rungs[better];
+                    let dominated = dominated_by(&found.trials, index, task.least);
+                    search.dominated = if dominated.is_some() { search.dominated + 1 } else { 0 };
+                    if let Some(better) = dominated.filter(|_| search.dominated >= PATIENCE) {
+                        let better = &found.trials[better];
                         let why = format!(
                             "{}, {} cells err {FAR} times less in {FAR} times less time",
                             better.family, better.cells
                         );
-                        climbed.leave(format!("{}, more than {cells} cells", climber.family), why);
+                        found.leave(format!("{}, more than {cells} cells", search.family), why);
                         continue;
                     }
                 }
                 Err(miss) => {
-                    climber.failed += 1;
-                    if miss == Unmeasured::TooSlow || climber.failed >= PATIENCE {
-                        climbed.leave(from, reason(miss));
+                    search.failed += 1;
+                    if miss == Unmeasured::TooSlow || search.failed >= PATIENCE {
+                        found.leave(from, reason(miss));
                         continue;
                     }
-                    climbed.leave(format!("{}, {cells} cells", climber.family), reason(miss));
+                    found.leave(format!("{}, {cells} cells", search.family), reason(miss));
                 }
             }
-            on.push(climber);
+            on.push(search);
         }
-        climbers = on;
+        searches = on;
     }
     Some(())
 }
@@ -206,9 +206,9 @@ fn reason(miss: Unmeasured) -> String {
     }
 }
 
-/// A rung that is far better than the one at `index` in both time and error.
-fn dominated_by(rungs: &[Rung], index: usize, least: f64) -> Option<usize> {
-    let points = points(rungs, least);
+/// A trial that is far better than the one at `index` in both time and error.
+fn dominated_by(trials: &[Trial], index: usize, least: f64) -> Option<usize> {
+    let points = points(trials, least);
     let [seconds, error] = points[index];
     points.iter().position(|p| FAR * p[0] <= seconds && FAR * p[1] <= error)
 }
@@ -250,9 +250,9 @@ fn other_solvers(task: &Task<'_>, mean_step: f64) -> Vec<Vec<Solver>> {
 }
 
 /// The discretisations of the front with other solvers.
-fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Option<()> {
-    for pick in picks(&climbed.rungs, task) {
-        let Rung { family, cells, setting, measured } = climbed.rungs[pick].clone();
+fn solvers(task: &Task<'_>, bench: &mut impl Bench, found: &mut Found) -> Option<()> {
+    for pick in picks(&found.trials, task) {
+        let Trial { family, cells, setting, measured } = found.trials[pick].clone();
         let mean_step = match task.analysis {
             Analysis::Dynamic(settings) => settings.duration / measured.statistics.steps.max(1) as f64,
             _ => 0.0,
@@ -266,19 +266,19 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
                 // of the step.
                 let predicted = before.map_or(measured.seconds, |[seconds, _]| 4.0 * seconds);
                 if bench.now() + RESERVE * predicted >= task.deadline {
-                    climbed.leave(what, "no time is left in the budget");
+                    found.leave(what, "no time is left in the budget");
                     break;
                 }
                 let setting = Setting { beams: setting.beams.clone(), solver };
-                match attempt(bench, climbed, (family, cells), setting, task.deadline)? {
+                match attempt(bench, found, (family, cells), setting, task.deadline)? {
                     Ok(index) => {
-                        let found = climbed.rungs[index].measured.clone();
-                        let (seconds, error) = (found.seconds, found.deviation.error);
-                        if found.work() == measured.work() && same(error, measured.deviation.error) {
+                        let there = found.trials[index].measured.clone();
+                        let (seconds, error) = (there.seconds, there.deviation.error);
+                        if there.work() == measured.work() && same(error, measured.deviation.error) {
                             // Otherwise the noise of the clock would choose between two names of
                             // one thing.
-                            climbed.rungs.truncate(index);
-                            climbed.leave(what, "it comes to the same by the same work as without it");
+                            found.trials.truncate(index);
+                            found.leave(what, "it comes to the same by the same work as without it");
                             break;
                         }
                         // The mesh decides, no longer the solver: what follows only costs more.
@@ -290,7 +290,7 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, climbed: &mut Climbed) -> Op
                     }
                     Err(miss) => {
                         let too_slow = miss == Unmeasured::TooSlow;
-                        climbed.leave(what, reason(miss));
+                        found.leave(what, reason(miss));
                         if too_slow {
                             break;
                         }
@@ -307,12 +307,14 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-3 * a.max(b)
 }
 
-/// Rungs of the front whose discretisation is worth another solver: the cheapest that meets the
+/// Trials of the front whose discretisation is worth another solver: the cheapest that meets the
 /// target, and others evenly along the front, the best first.
-fn picks(rungs: &[Rung], task: &Task<'_>) -> Vec<usize> {
-    let front: Vec<usize> =
-        front(&points(rungs, task.least)).into_iter().filter(|&i| rungs[i].family != Family::Scene).collect();
-    let meets = front.iter().position(|&i| rungs[i].measured.deviation.error <= task.target);
+fn picks(trials: &[Trial], task: &Task<'_>) -> Vec<usize> {
+    let front: Vec<usize> = front(&points(trials, task.least))
+        .into_iter()
+        .filter(|&i| trials[i].family != Family::Scene)
+        .collect();
+    let meets = front.iter().position(|&i| trials[i].measured.deviation.error <= task.target);
     let middle = meets.unwrap_or(front.len().saturating_sub(1));
     // What is far cheaper, and far more accurate, is there to be seen; what decides lies around the
     // target.
@@ -325,11 +327,11 @@ fn picks(rungs: &[Rung], task: &Task<'_>) -> Vec<usize> {
     ];
     let mut picks: Vec<usize> = Vec::with_capacity(PICKS);
     for at in near {
-        if let Some(&rung) = front.get(at)
-            && !picks.contains(&rung)
+        if let Some(&trial) = front.get(at)
+            && !picks.contains(&trial)
             && picks.len() < PICKS
         {
-            picks.push(rung);
+            picks.push(trial);
         }
     }
     picks
@@ -390,9 +392,9 @@ mod tests {
         Fake { clock: 0.0, time: |_, cells| 0.01 * cells, error, interrupt_after: usize::MAX }
     }
 
-    fn climbed(bench: &mut Fake, analysis: &Analysis, deadline: f64) -> Climbed {
+    fn found(bench: &mut Fake, analysis: &Analysis, deadline: f64) -> Found {
         let task = Task { model: &model(), analysis, target: 1e-4, least: 1e-9, deadline };
-        climb(&task, bench)
+        search(&task, bench)
     }
 
     fn motion(duration: f64) -> Analysis {
@@ -417,9 +419,9 @@ mod tests {
         Measured { seconds, deviation: Deviation { error, ..Deviation::default() }, ..Measured::default() }
     }
 
-    fn rung(family: Family, seconds: f64, error: f64) -> Rung {
+    fn trial(family: Family, seconds: f64, error: f64) -> Trial {
         let setting = Setting { beams: family.beams(&model(), 8), solver: Solver::Scene };
-        Rung { family, cells: 8, setting, measured: measured(seconds, error) }
+        Trial { family, cells: 8, setting, measured: measured(seconds, error) }
     }
 
     /// A bench that answers as it is told, and notes what it was asked for until when.
@@ -453,20 +455,20 @@ mod tests {
     }
 
     /// Numbers of cells at which a family was measured.
-    fn cells_of(climbed: &Climbed, family: Family) -> Vec<usize> {
-        climbed.rungs.iter().filter(|rung| rung.family == family).map(|rung| rung.cells).collect()
+    fn cells_of(found: &Found, family: Family) -> Vec<usize> {
+        found.trials.iter().filter(|trial| trial.family == family).map(|trial| trial.cells).collect()
     }
 
-    fn left(climbed: &Climbed) -> Vec<String> {
-        climbed.left_out.iter().map(|left| format!("{}: {}", left.what, left.why)).collect()
+    fn left(found: &Found) -> Vec<String> {
+        found.left_out.iter().map(|left| format!("{}: {}", left.what, left.why)).collect()
     }
 
     /// A power of the number of cells through the last two meshes, from the first to the third.
     #[test]
     fn times_are_predicted_by_a_power_of_the_cells() {
         let predict = |times: &[[f64; 2]]| {
-            let climber = Climber { family: Family::FULL, times: times.into(), dominated: 0, failed: 0 };
-            climber.predict(16)
+            let search = FamilySearch { family: Family::FULL, times: times.into(), dominated: 0, failed: 0 };
+            search.predict(16)
         };
         for (times, expected) in [
             (&[][..], 0.0),
@@ -490,8 +492,8 @@ mod tests {
             bench.clock = 100.0;
             let task =
                 Task { model: &model(), analysis: &analysis, target: 1e-4, least: 1e-9, deadline: 110.0 };
-            let climbed = climb(&task, &mut bench);
-            assert!(climbed.interrupted && climbed.rungs.is_empty());
+            let found = search(&task, &mut bench);
+            assert!(found.interrupted && found.trials.is_empty());
             let deadlines: Vec<f64> = bench.asked.iter().map(|(_, deadline)| *deadline).collect();
             assert_eq!(deadlines, [expected]);
         }
@@ -511,12 +513,12 @@ mod tests {
             });
         let analysis = vibrations();
         let task = Task { model: &model(), analysis: &analysis, target: 1e-4, least: 1e-9, deadline: 1.0 };
-        let climbed = climb(&task, &mut bench);
-        assert_eq!(cells_of(&climbed, Family::Scene), [5]);
-        assert_eq!(cells_of(&climbed, Family::FULL), [4, 6, 12, 24]);
-        assert_eq!(cells_of(&climbed, Family::REDUCED), [4, 6, 8]);
+        let found = search(&task, &mut bench);
+        assert_eq!(cells_of(&found, Family::Scene), [5]);
+        assert_eq!(cells_of(&found, Family::FULL), [4, 6, 12, 24]);
+        assert_eq!(cells_of(&found, Family::REDUCED), [4, 6, 8]);
         let (meshfree, elements): (Vec<String>, Vec<String>) =
-            left(&climbed).into_iter().partition(|left| left.starts_with("RPIM"));
+            left(&found).into_iter().partition(|left| left.starts_with("RPIM"));
         assert_eq!(
             elements,
             [
@@ -549,9 +551,9 @@ mod tests {
         });
         let analysis = vibrations();
         let task = Task { model: &model(), analysis: &analysis, target: 1e-4, least: 1e-9, deadline: 1.0 };
-        let climbed = climb(&task, &mut bench);
-        assert_eq!(climbed.rungs.iter().map(|rung| rung.cells).collect::<Vec<_>>(), [4, 4]);
-        let left = left(&climbed);
+        let found = search(&task, &mut bench);
+        assert_eq!(found.trials.iter().map(|trial| trial.cells).collect::<Vec<_>>(), [4, 4]);
+        let left = left(&found);
         assert_eq!(left[0], "as the scene is: it failed: it is wrong");
         assert_eq!(
             left[1],
@@ -567,7 +569,7 @@ mod tests {
         let analysis = vibrations();
         let least = 1.0 / 65536.0;
         let task = Task { model: &model(), analysis: &analysis, target: 1e-3, least, deadline: 1.0 };
-        assert_eq!(cells_of(&climb(&task, &mut bench), Family::FULL), [4, 6, 8, 12, 16]);
+        assert_eq!(cells_of(&search(&task, &mut bench), Family::FULL), [4, 6, 8, 12, 16]);
     }
 
     /// One family takes a second a cell, the others are done after a mesh that takes no time: 12
@@ -575,38 +577,39 @@ mod tests {
     #[test]
     fn a_mesh_is_begun_where_it_can_be_ended() {
         let analysis = vibrations();
-        let climbed = |deadline: f64| {
+        let found = |deadline: f64| {
             let mut bench = Told::new(|setting: &Setting| {
                 let cells = cells_in(setting);
                 let full = !is_meshfree(setting) && !setting.beams[0].1.lobatto;
                 Ok(if full { measured(cells as f64, 3.9) } else { measured(0.0, 1.0) })
             });
             let task = Task { model: &model(), analysis: &analysis, target: 1e-4, least: 1.0, deadline };
-            climb(&task, &mut bench)
+            search(&task, &mut bench)
         };
         for (deadline, cells, next) in
             [(33.0, &[4, 6, 8][..], 12), (18.0 + RESERVE * 12.0, &[4, 6, 8], 12), (34.0, &[4, 6, 8, 12], 16)]
         {
-            let climbed = climbed(deadline);
-            assert_eq!(cells_of(&climbed, Family::FULL), cells);
+            let found = found(deadline);
+            assert_eq!(cells_of(&found, Family::FULL), cells);
             let expected = format!("ANCF, 5/3 points, {next} cells and more: no time is left in the budget");
-            assert_eq!(left(&climbed), [expected]);
+            assert_eq!(left(&found), [expected]);
         }
     }
 
     /// Four times the error and four times the time, both at once.
     #[test]
     fn what_is_far_better_dominates() {
-        let better = rung(Family::FULL, 2.0, 1.0 / 1024.0);
+        let better = trial(Family::FULL, 2.0, 1.0 / 1024.0);
         let dominated = |seconds: f64, error: f64| {
-            let rungs = [rung(Family::FULL, 9.0, 9.0), better.clone(), rung(Family::REDUCED, seconds, error)];
-            dominated_by(&rungs, 2, 1e-9)
+            let trials =
+                [trial(Family::FULL, 9.0, 9.0), better.clone(), trial(Family::REDUCED, seconds, error)];
+            dominated_by(&trials, 2, 1e-9)
         };
         assert_eq!(dominated(8.0, 1.0 / 256.0), Some(1));
         assert_eq!(dominated(7.9, 1.0), None);
         assert_eq!(dominated(100.0, 1.0 / 257.0), None);
         // Below the least nobody is better.
-        let exact = [rung(Family::FULL, 1.0, 1e-12), rung(Family::FULL, 9.0, 1e-9)];
+        let exact = [trial(Family::FULL, 1.0, 1e-12), trial(Family::FULL, 9.0, 1e-9)];
         assert_eq!(dominated_by(&exact, 1, 1e-9), None);
     }
 
@@ -663,12 +666,12 @@ mod tests {
         }
     }
 
-    /// A ladder of one rung with this cost and error, of a hundred steps in 3.2 s.
-    fn one_rung(seconds: f64, error: f64) -> Climbed {
-        let mut only = rung(Family::FULL, seconds, error);
+    /// A search of one trial with this cost and error, of a hundred steps in 3.2 s.
+    fn one_trial(seconds: f64, error: f64) -> Found {
+        let mut only = trial(Family::FULL, seconds, error);
         only.measured.statistics =
             Statistics { steps: 100, tangent_evaluations: 10, factorizations: 10, ..Statistics::default() };
-        Climbed { rungs: vec![only], ..Climbed::default() }
+        Found { trials: vec![only], ..Found::default() }
     }
 
     /// The lists end where the mesh decides, where nothing is left to gain, and where it is too
@@ -694,16 +697,16 @@ mod tests {
             let (_, answer) = answer.expect("a solver that is not in vain");
             answer.clone().map(|error: f64| measured(1.0, error))
         });
-        let mut climbed = one_rung(1.0, 1e-3);
-        assert_eq!(solvers(&task, &mut bench, &mut climbed), Some(()));
+        let mut found = one_trial(1.0, 1e-3);
+        assert_eq!(solvers(&task, &mut bench, &mut found), Some(()));
         assert_eq!(bench.solvers(), answers.each_ref().map(|(solver, _)| *solver));
         assert!(bench.asked.iter().all(|(setting, deadline)| {
-            setting.beams == climbed.rungs[0].setting.beams && *deadline == 1e9
+            setting.beams == found.trials[0].setting.beams && *deadline == 1e9
         }));
-        assert_eq!(climbed.rungs.len(), 7);
+        assert_eq!(found.trials.len(), 7);
         let alpha = "ANCF, 5/3 points, 8 cells, generalised-α (ρ∞ = 0.9)";
         assert_eq!(
-            left(&climbed),
+            left(&found),
             [
                 format!("{alpha}, step 0.032 s: it failed: no"),
                 format!("{alpha}, step 0.008 s: it took longer than the budget allows"),
@@ -718,12 +721,12 @@ mod tests {
             }
             _ => Ok(measured(1.0, 1e-7)),
         });
-        let mut climbed = one_rung(1.0, 1e-3);
-        climbed.rungs[0].measured.statistics.steps = 0;
-        assert_eq!(solvers(&task, &mut bench, &mut climbed), Some(()));
+        let mut found = one_trial(1.0, 1e-3);
+        found.trials[0].measured.statistics.steps = 0;
+        assert_eq!(solvers(&task, &mut bench, &mut found), Some(()));
         assert_eq!(steps, [3.2, 0.8, 0.2]);
         let mut bench = Told::new(|_: &Setting| Err(Unmeasured::Interrupted));
-        assert_eq!(solvers(&task, &mut bench, &mut one_rung(1.0, 1e-3)), None);
+        assert_eq!(solvers(&task, &mut bench, &mut one_trial(1.0, 1e-3)), None);
     }
 
     /// A solver may take as long as the one that is known; each further one four times as long as
@@ -745,11 +748,11 @@ mod tests {
                     _ => Err(Unmeasured::Interrupted),
                 }
             });
-            let mut climbed = one_rung(10.0, 1e-2);
-            let _ = solvers(&task, &mut bench, &mut climbed);
+            let mut found = one_trial(10.0, 1e-2);
+            let _ = solvers(&task, &mut bench, &mut found);
             let is_gauss = |solver: &&Solver| matches!(solver, Solver::Integrator(Integrator::Gauss { .. }));
             assert_eq!(bench.solvers().iter().filter(is_gauss).count(), expected);
-            let left = left(&climbed);
+            let left = left(&found);
             assert_eq!(left.first().is_some_and(|left| left.contains("Gauss")), expected < 3, "{left:?}");
             assert!(left.iter().all(|left| left.ends_with(": no time is left in the budget")), "{left:?}");
         }
@@ -757,7 +760,7 @@ mod tests {
 
     /// A solver that does the same is not kept: the same error by the same work.
     #[test]
-    fn two_names_of_one_thing_are_one_rung() {
+    fn two_names_of_one_thing_are_one_trial() {
         let (analysis, model) = (Analysis::Static(Static::default()), model());
         let task = Task { model: &model, analysis: &analysis, target: 1e-4, least: 1e-9, deadline: 1e9 };
         for (tangents, error, kept) in
@@ -769,13 +772,13 @@ mod tests {
                 found.statistics.factorizations = 10;
                 Ok(found)
             });
-            let mut climbed = one_rung(1.0, 1e-3);
-            assert_eq!(solvers(&task, &mut bench, &mut climbed), Some(()));
+            let mut found = one_trial(1.0, 1e-3);
+            assert_eq!(solvers(&task, &mut bench, &mut found), Some(()));
             assert_eq!(bench.solvers(), [Solver::Tolerance(1e-5)]);
-            assert_eq!(climbed.rungs.len(), if kept { 2 } else { 1 }, "{tangents} {error}");
+            assert_eq!(found.trials.len(), if kept { 2 } else { 1 }, "{tangents} {error}");
             let what = "ANCF, 5/3 points, 8 cells, tolerance 1e-5: \
                         it comes to the same by the same work as without it";
-            assert_eq!(left(&climbed), if kept { vec![] } else { vec![what.to_owned()] });
+            assert_eq!(left(&found), if kept { vec![] } else { vec![what.to_owned()] });
         }
     }
 
@@ -784,11 +787,11 @@ mod tests {
     fn discretisations_around_the_target_are_picked() {
         let analysis = vibrations();
         let picked = |count: i32, target: f64| {
-            let mut rungs = vec![rung(Family::Scene, 0.5, 1.0)];
-            rungs.extend((0..count).map(|i| rung(Family::FULL, 2.0_f64.powi(i), 0.5_f64.powi(i + 1))));
+            let mut trials = vec![trial(Family::Scene, 0.5, 1.0)];
+            trials.extend((0..count).map(|i| trial(Family::FULL, 2.0_f64.powi(i), 0.5_f64.powi(i + 1))));
             // One that is beaten.
-            rungs.push(rung(Family::REDUCED, 1000.0, 1.5));
-            picks(&rungs, &Task { model: &model(), analysis: &analysis, target, least: 1e-9, deadline: 1.0 })
+            trials.push(trial(Family::REDUCED, 1000.0, 1.5));
+            picks(&trials, &Task { model: &model(), analysis: &analysis, target, least: 1e-9, deadline: 1.0 })
         };
         // By their places on the front, from 1: the scene as it is comes before.
         assert_eq!(picked(8, 0.5_f64.powi(6)), [6, 5, 7, 3]);
@@ -804,50 +807,45 @@ mod tests {
         let motion = motion(1.0);
         for analysis in [&Analysis::Static(Static::default()), &motion] {
             let mut bench = fake();
-            let climbed = climbed(&mut bench, analysis, 10.0);
+            let found = found(&mut bench, analysis, 10.0);
             assert!(bench.clock <= 10.0, "{}", bench.clock);
-            assert!(climbed.rungs.len() > 20);
-            assert!(climbed.left_out.iter().any(|left| left.why.contains("budget")));
-            // A prediction kept the ladder from starting what it could not end.
-            assert!(
-                climbed.left_out.iter().all(|left| !left.why.contains("longer")),
-                "{:?}",
-                climbed.left_out
-            );
-            assert!(!climbed.interrupted);
+            assert!(found.trials.len() > 20);
+            assert!(found.left_out.iter().any(|left| left.why.contains("budget")));
+            // A prediction kept the search from starting what it could not end.
+            assert!(found.left_out.iter().all(|left| !left.why.contains("longer")), "{:?}", found.left_out);
+            assert!(!found.interrupted);
         }
     }
 
     #[test]
     fn meshes_grow_until_the_error_is_least() {
         let mut bench = Fake { time: |_, _| 1e-6, ..fake() };
-        let climbed =
-            climbed(&mut bench, &Analysis::Modal(Modal { count: 1, about: Default::default() }), 10.0);
+        let found = found(&mut bench, &Analysis::Modal(Modal { count: 1, about: Default::default() }), 10.0);
         let cells: Vec<usize> =
-            climbed.rungs.iter().filter(|r| r.family == Family::FULL).map(|r| r.cells).collect();
+            found.trials.iter().filter(|r| r.family == Family::FULL).map(|r| r.cells).collect();
         // 192⁻⁴ < 1e-9 < 128⁻⁴.
         assert_eq!(cells, MESHES[..12]);
-        assert_eq!(climbed.left_out, []);
+        assert_eq!(found.left_out, []);
     }
 
     #[test]
     fn what_is_dominated_by_far_is_left() {
         let time = |meshfree, cells: f64| if meshfree { 1e-3 * cells } else { 1e-1 * cells };
         let error = |meshfree, cells: f64| if meshfree { cells.powi(-4) } else { cells.powi(-1) };
-        let climbed = climbed(&mut Fake { time, error, ..fake() }, &Analysis::Static(Static::default()), 1e6);
+        let found = found(&mut Fake { time, error, ..fake() }, &Analysis::Static(Static::default()), 1e6);
         let most = |meshfree: bool| {
-            let same = climbed.rungs.iter().filter(|r| matches!(r.family, Family::Rpim { .. }) == meshfree);
+            let same = found.trials.iter().filter(|r| matches!(r.family, Family::Rpim { .. }) == meshfree);
             same.map(|r| r.cells).max().unwrap()
         };
         assert_eq!((most(false), most(true)), (8, 192));
-        assert!(climbed.left_out[0].why.contains("4 times less"), "{:?}", climbed.left_out[0]);
+        assert!(found.left_out[0].why.contains("4 times less"), "{:?}", found.left_out[0]);
     }
 
     #[test]
     fn an_interruption_keeps_what_was_measured() {
         let mut bench = Fake { interrupt_after: 7, ..fake() };
-        let climbed = climbed(&mut bench, &Analysis::Static(Static::default()), 1e6);
-        assert_eq!((climbed.rungs.len(), climbed.interrupted), (7, true));
+        let found = found(&mut bench, &Analysis::Static(Static::default()), 1e6);
+        assert_eq!((found.trials.len(), found.interrupted), (7, true));
     }
 
     #[test]
@@ -903,7 +901,7 @@ mod tests {
     }
 
     /// What is tried in which order, and what is left out for which reason: whoever changes the
-    /// ladder sees here what becomes of it.
+    /// search sees here what becomes of it.
     #[test]
     fn the_order_of_what_is_tried_is_as_reviewed() {
         let motion = motion(1.0);
@@ -911,19 +909,19 @@ mod tests {
         for (analysis, name) in [(&motion, "motion"), (&Analysis::Static(Static::default()), "statics")] {
             let mut bench = Steps { clock: 0.0 };
             let task = Task { model: &model(), analysis, target: 1e-5, least: 1e-9, deadline: 0.3 };
-            let climbed = climb(&task, &mut bench);
+            let found = search(&task, &mut bench);
             text += &format!("{name}\n");
-            for Rung { family, cells, setting, measured } in &climbed.rungs {
+            for Trial { family, cells, setting, measured } in &found.trials {
                 let error = measured.deviation.error;
                 text += &format!("{family}, {cells} cells, {}: {error:.2e}\n", setting.solver);
             }
             text += "left out:\n";
-            for LeftOut { what, why } in &climbed.left_out {
+            for LeftOut { what, why } in &found.left_out {
                 text += &format!("{what}: {why}\n");
             }
         }
         insta::with_settings!({ snapshot_path => "../../tests/snapshots", prepend_module_to_snapshot => false }, {
-            insta::assert_snapshot!("cost_ladder", text);
+            insta::assert_snapshot!("cost_search", text);
         });
     }
 }

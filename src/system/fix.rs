@@ -10,10 +10,10 @@ use crate::model::{Displacement, FixedRotation, Support};
 
 impl System {
     /// Supports that follow no law of time hold the beams where they are in the state `q`.
-    pub fn hold_as_in(&mut self, q: &[f64]) {
+    pub fn freeze(&mut self, q: &[f64]) {
         let length = self.length;
-        self.supports.hold_as_in(q, length);
-        self.constraints.iter_mut().for_each(|row| row.hold_as_in(q, length));
+        self.supports.freeze(q, length);
+        self.constraints.iter_mut().for_each(|row| row.freeze(q, length));
     }
 }
 
@@ -38,12 +38,12 @@ impl System {
 }
 
 /// Eliminated supports and constraint rows.
-pub(super) fn hold(
+pub(super) fn fix(
     system: &System,
     supports: &[Support],
     needs: Needs,
 ) -> Result<(Supports, Vec<Constraint>, Vec<Source>), BuildError> {
-    let mut held: Vec<RestrainedPair> = Vec::new();
+    let mut pairs: Vec<RestrainedPair> = Vec::new();
     let (mut constraints, mut sources) = (Vec::new(), Vec::new());
     for support in supports {
         let (part, s) = system.part("a support", support.at)?;
@@ -69,12 +69,13 @@ pub(super) fn hold(
         if let Some(node) = part.basis.node_at(s) {
             sources.push(Source::node(part.first_node + node, support));
             let pair = 2 * (part.first_node + node);
-            let mut add = |pair: usize, hold: Restraint| match held.iter_mut().find(|h| h.pair == pair) {
+            let mut add = |pair: usize, restraint: Restraint| match pairs.iter_mut().find(|h| h.pair == pair)
+            {
                 None => {
-                    held.push(RestrainedPair { pair, hold });
+                    pairs.push(RestrainedPair { pair, restraint });
                     Ok(())
                 }
-                Some(RestrainedPair { hold: Restraint::Position(there), .. }) => match hold {
+                Some(RestrainedPair { restraint: Restraint::Position(there), .. }) => match restraint {
                     Restraint::Position(new) if (0..2).all(|a| there[a].is_none() || new[a].is_none()) => {
                         *there = std::array::from_fn(|a| there[a].take().or_else(|| new[a].clone()));
                         Ok(())
@@ -118,5 +119,5 @@ pub(super) fn hold(
             sources.push(Source::Rows(first..constraints.len()));
         }
     }
-    Ok((Supports::new(held), constraints, sources))
+    Ok((Supports::new(pairs), constraints, sources))
 }
