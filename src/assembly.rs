@@ -1,4 +1,4 @@
-//! Densities at a point of the beam, and what sums them over its tables of shape functions.
+//! Densities at a point of a beam, and their sums over tables of shape functions.
 //!
 //! An effect is a function W of a few local fields z = (r⁽ᵒ¹⁾, r⁽ᵒ²⁾, …): the position r, the
 //! gradient r' and its derivative r'' at one arc length s. With the shape functions r⁽ᵒ⁾(s) = Σ_a
@@ -11,28 +11,29 @@
 //! tangent    K_ab = ∫ Σ_m Σ_n N_a⁽ᵒᵐ⁾ ∂²W/∂z_m∂z_n N_b⁽ᵒⁿ⁾ ds
 //! ```
 //!
-//! A [`Density`] gives W and its derivatives and knows no node, no step and no other effect; an
-//! [`Integral`] sums it over a table of shape functions. A load that has no energy (a follower
-//! force) is a density that gives its virtual work's coefficients as "∂W/∂z" and their derivatives
-//! as "∂²W/∂z∂z", which then is not symmetric.
+//! A [`Density`] gives W and its derivatives; it does not know nodes, steps or other effects. An
+//! [`Integral`] sums it over a table of shape functions. A load without an energy, such as a
+//! follower force, is a density whose "∂W/∂z" are the coefficients of its virtual work, and whose
+//! "∂²W/∂z∂z" are the derivatives of these, which need not be symmetric.
 //!
 //! # The tangent between two iterates
-//! The stress resultants that enter the tangent's second term (N for stretch, M for bend) are taken
-//! by linear extrapolation from the previous iterate, S = C (ε(z⁻) + ∂ε/∂z Δz), and not from the
-//! strain at the current one. This is Newton's method on the mixed problem in which S is an unknown
-//! of its own at every quadrature point, with S eliminated (Magisano, Leonetti, Garcea, *Int. J.
-//! Numer. Meth. Engng* 109, 2017, 1237–1262). The equilibria are the same and convergence stays
-//! quadratic; but a slender beam's large EA no longer turns the strain of a not yet converged
-//! rotation into an enormous axial force, so that steps can be many times longer. With z⁻ = z and
-//! Δz = 0 it is the ordinary tangent. Δz is that of the increment; the current iterate may have
-//! been moved along it with turns that are finite.
+//! In the second term of the tangent, the stress resultants (N for stretch, M for bend) are
+//! extrapolated linearly from the previous iterate, S = C (ε(z⁻) + ∂ε/∂z Δz), instead of being
+//! computed from the strain at the current one. This is Newton's method on the mixed problem in
+//! which S is an unknown of its own at every quadrature point, with S eliminated (Magisano,
+//! Leonetti, Garcea, *Int. J. Numer. Meth. Engng* 109, 2017, 1237–1262). The equilibria are the
+//! same and convergence stays quadratic, but in a slender beam the strain of a rotation that has
+//! not converged yet no longer causes, through the large EA, an enormous axial force; steps can
+//! therefore be many times longer. With z⁻ = z and Δz = 0 the tangent is the ordinary one. Δz is
+//! the increment as the linear system gave it; the current iterate may differ from z⁻ + Δz, since
+//! finite rotations may have been applied along the increment.
 //!
 //! # From parts to terms
-//! A [`Part`] is what takes part in the mechanics: a beam's own elasticity and inertia, loads,
-//! springs, dampers, contacts, …. It knows the model in words (arc lengths, stiffnesses) and, asked
-//! once when a system is built, hands densities to the [`Assembly`], which tabulates the shape
-//! functions where the density is to be summed. What comes of all parts are the [`Terms`] of the
-//! equations.
+//! A [`Part`] is anything that takes part in the mechanics: a beam's own elasticity and inertia,
+//! loads, springs, dampers, contacts, …. It describes itself by arc lengths and stiffnesses. When a
+//! system is built, each part is asked once to hand its densities to the [`Assembly`], which
+//! tabulates the shape functions where the densities are to be summed. All parts together yield the
+//! [`Terms`] of the equations.
 
 mod action;
 mod assemble;

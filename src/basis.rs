@@ -1,8 +1,9 @@
 //! Shape functions: from a [`Discretization`] to tables of numbers.
 //!
 //! Both discretisations have the same nodal coefficients, the position r_i and the gradient r'_i,
-//! and both end as a [`BasisTable`]: at a point of the beam a short row of numbers for each wanted
-//! derivative. Whoever holds a table cannot tell which discretisation it came from.
+//! and both are tabulated as a [`BasisTable`], which holds, at a point of the beam, a short row of
+//! numbers for each wanted derivative. Code that uses a table does not depend on the discretisation
+//! it came from.
 //!
 //! ```
 //! use ancf::basis::{Basis, Discretization, Nodes, Quadrature};
@@ -39,11 +40,11 @@ use cells::{Supports, distinct_cells};
 use interpolation::{Interpolation, Quality, Wanted};
 use rpim::{Interpolant, Precisions};
 
-/// Distance at which a point is taken to be a node, in units of the round-off of the beam's length.
+/// Distance at which a point is taken to coincide with a node, as a fraction of the beam's length.
 const NODE_SNAP: f64 = 16.0 * f64::EPSILON;
 
-/// Most nodes in a support: the work of a cell grows with the third power and the digits it needs
-/// with the first.
+/// Largest number of nodes in a support: the work for a cell grows with its third power, and the
+/// number of digits needed in proportion to it.
 const MOST_SUPPORT: usize = 64;
 
 /// The shape functions of one beam.
@@ -53,29 +54,30 @@ pub struct Basis {
     nodes: Vec<f64>,
     supports: Supports,
     width: usize,
-    /// Per cell: the number of its geometry.
+    /// Per cell: the number of its geometry, shared by cells whose supports are translations of
+    /// each other.
     shape_of: Vec<u32>,
     /// Per geometry: the first cell that has it.
     representative: Vec<u32>,
     shapes: Shapes,
 }
 
-/// What a discretisation needs to fill a row, besides the nodes.
+/// The data of a discretisation, besides the nodes, from which rows are computed.
 #[derive(Debug)]
 enum Shapes {
     Ancf,
     Rpim {
         interpolation: Interpolation,
-        /// Per geometry.
+        /// Per geometry: its solved shape functions.
         shapes: Vec<Interpolant>,
     },
 }
 
-/// How well the shape functions satisfy what defines them, over all cells.
+/// How well the shape functions satisfy the conditions that define them, over all cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Defects {
-    /// Largest |N_j(s_i) − δ_ij| and |N'_j(s_i) − δ'_ij|, each in units of the function's largest
-    /// value or slope.
+    /// Largest |N_j(s_i) − δ_ij| and |N'_j(s_i) − δ'_ij| at the ends of a cell, made dimensionless
+    /// with the cell's length.
     pub kronecker: f64,
     /// Largest defect in reproducing 1 and s and their derivatives, in units of the sum of absolute
     /// terms.
@@ -85,10 +87,10 @@ pub struct Defects {
     /// Decimal logarithm of the largest estimated condition number of a moment matrix; 0 where
     /// there is none.
     pub condition_log10: f64,
-    /// Bits of the most precise arithmetic that a cell needed: 53 where formulas are exact in
-    /// double precision.
+    /// Bits of the most precise arithmetic that a cell needed; 53, double precision, for ANCF,
+    /// whose formulas are explicit.
     pub bits: usize,
-    /// Cells of distinct geometry, each solved once.
+    /// Number of cells of distinct geometry; the shape functions of each are computed once.
     pub distinct_cells: usize,
 }
 
@@ -102,10 +104,12 @@ impl Basis {
         Self::broken(discretization, length, &[])
     }
 
-    /// The same for a beam whose curvature or its slope jumps at the arc lengths `breaks` \[m\]:
-    /// there is a node at each of them, and no shape function reaches over it. Counted nodes keep
-    /// their number: the nearest is shifted there, and those between breaks are spread as they
-    /// were. Given nodes stay and are joined by another.
+    /// The shape functions of a beam whose curvature, or its derivative, jumps at the arc lengths
+    /// `breaks` \[m\]. There is a node at each break, and every support ends there, because a
+    /// smooth function cannot follow the jump. Uniform and Chebyshev nodes keep their number: the
+    /// nearest node is shifted to the break, and the nodes between breaks keep their kind of
+    /// spacing. Given nodes stay where they are, and a node is added at each break that has none
+    /// very near.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -172,12 +176,12 @@ impl Basis {
         &self.nodes
     }
 
-    /// Arc lengths of the nodes between the ends over which no shape function reaches \[m\].
+    /// Arc lengths \[m\] of the nodes between the ends at which supports end.
     pub fn breaks(&self) -> impl Iterator<Item = f64> + '_ {
         self.supports.breaks().map(|node| self.nodes[node])
     }
 
-    /// Coefficients that each row multiplies.
+    /// Number of coefficients that each row multiplies.
     pub fn width(&self) -> usize {
         self.width
     }
@@ -187,7 +191,7 @@ impl Basis {
         2 * self.nodes.len()
     }
 
-    /// The node at `s` \[m\], to within round-off of the beam's length.
+    /// The node at `s` \[m\], to within the round-off of the beam's length.
     pub fn node_at(&self, s: f64) -> Option<usize> {
         let right = self.nodes.partition_point(|&node| node < s);
         [right.saturating_sub(1), right].into_iter().find(|&i| {
@@ -235,10 +239,10 @@ impl Basis {
         Ok(table)
     }
 
-    /// Rows of the wanted derivative orders (0 to 2) at single points, each with weight 1 and its
-    /// own cell, in the order given. At a node the rows of order 0 and 1 are exactly 0 and 1; the
-    /// row of order 2, which jumps there, is that of the cell to the right, at the beam's end to
-    /// the left.
+    /// Rows of the wanted derivative orders (0 to 2) at single points, in the given order; each
+    /// point has weight 1 and its own cell. At a node, rows of order 0 and 1 consist of exact zeros
+    /// and a one. The row of order 2 jumps there: it is taken from the cell to the right, or from
+    /// the last cell at the beam's end.
     ///
     /// # Errors
     /// A point that is not on the beam, or an order that does not exist.
@@ -280,7 +284,7 @@ impl Basis {
         Ok(table)
     }
 
-    /// How well the shape functions satisfy what defines them.
+    /// How well the shape functions satisfy the conditions that define them.
     pub fn defects(&self) -> Defects {
         match &self.shapes {
             Shapes::Ancf => {
@@ -328,7 +332,8 @@ impl Basis {
             }
             Shapes::Rpim { interpolation, shapes } => {
                 let Some(shape) = shapes.get(self.shape_of[cell] as usize) else { return };
-                // The geometry was solved at its representative; there it is evaluated too.
+                // Cells of one geometry share the factors of its representative, so rows are
+                // evaluated there, too.
                 let solved = self.representative[self.shape_of[cell] as usize] as usize;
                 let here = self.supports.of(solved);
                 let padding = 2 * self.supports.padding(cell);
@@ -339,8 +344,8 @@ impl Basis {
                 }
             }
         }
-        // At a node, values and slopes are coefficients; what round-off leaves beside them is
-        // removed.
+        // At a node, value and slope are themselves coefficients: the row is exactly a unit vector,
+        // and round-off in the other entries is removed.
         if xi == 0.0 || xi == 1.0 {
             let node = cell + usize::from(xi == 1.0);
             for (row, &order) in
@@ -353,7 +358,7 @@ impl Basis {
     }
 }
 
-/// The message for a cell that no precision could solve.
+/// The error for a cell whose shape functions no precision could find.
 fn ill_conditioned(
     cell: usize,
     first_node: usize,
@@ -393,7 +398,8 @@ fn check_orders(orders: &[usize]) -> Result<(), BasisError> {
 mod tests {
     use super::*;
 
-    /// No scene is known that all precisions fail: the message is made of what a cell would leave.
+    /// No scene is known in which every precision fails, so the test makes up the quality of such a
+    /// cell.
     #[test]
     fn what_no_precision_solves_is_described_with_its_place_and_spacings() {
         let quality = Quality { error: 0.3, log2_condition: 100.0, bits: 212, ..Quality::default() };

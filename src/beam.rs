@@ -1,10 +1,10 @@
-//! A beam: its stress-free shape, its section, how it is discretised, and the points along it.
+//! A beam: its stress-free shape, its section, its discretisation, and points along it.
 
 use crate::basis::{Discretization, Quadrature};
 use crate::centreline::Centreline;
 use std::fmt;
 
-/// A slender planar beam: a centreline with a section and a way to discretise it.
+/// A slender planar beam: a centreline with a section and a discretisation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beam {
     /// The name under which a scene refers to this beam.
@@ -21,8 +21,8 @@ pub struct Beam {
     pub gauss_points: GaussPoints,
 }
 
-/// What the section resists and weighs. `None`: the scene does not name it, so it is not simulated;
-/// what names no axial stiffness keeps its length.
+/// Stiffnesses and mass of a section. A quantity that is `None` is not named in the scene and not
+/// simulated; a beam without an axial stiffness keeps its length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Section {
     /// EA \[N\].
@@ -34,13 +34,14 @@ pub struct Section {
 }
 
 impl Section {
-    /// A beam that resists stretch by EA \[N\] and bending by EI \[N m²\].
+    /// A section without mass, with the axial stiffness EA \[N\] and the bending stiffness EI
+    /// \[N m²\].
     pub fn new(axial_stiffness: f64, bending_stiffness: f64) -> Self {
         let (axial_stiffness, bending_stiffness) = (Some(axial_stiffness), Some(bending_stiffness));
         Self { axial_stiffness, bending_stiffness, mass_per_length: None }
     }
 
-    /// The same with ρA \[kg/m\].
+    /// The same section with the mass per length ρA \[kg/m\].
     #[must_use]
     pub fn weighing(self, mass_per_length: f64) -> Self {
         Self { mass_per_length: Some(mass_per_length), ..self }
@@ -50,21 +51,22 @@ impl Section {
 /// The axial strain ε as a function of the gradient r'.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StrainMeasure {
-    /// ε = ½ (r'·r' − 1), the paper's.
+    /// ε = ½ (r'·r' − 1), as in the paper by Chen, Zhang and Li.
     Green,
     /// ε = |r'| − 1.
     #[default]
     Engineering,
 }
 
-/// Quadrature points in a cell, by energy.
+/// Number of quadrature points in a cell, per elastic energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GaussPoints {
     /// For ½ EA ε².
     pub stretch: usize,
     /// For ½ EI κ².
     pub bend: usize,
-    /// Whether those for ½ EA ε² are Lobatto's, which share the cell's ends, and not Gauss'.
+    /// Whether the points for ½ EA ε² follow Lobatto's rule, whose end points neighbouring cells
+    /// share, instead of Gauss' rule.
     pub lobatto: bool,
 }
 

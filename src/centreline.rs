@@ -1,16 +1,16 @@
-//! Geometry of stress-free centrelines: r₀(s), its unit tangent and its curvature by arc length s ∈
-//! [0, L] \[m\].
+//! Geometry of stress-free centrelines: r₀(s), its unit tangent and its curvature as functions of
+//! the arc length s ∈ [0, L] \[m\].
 //!
-//! Lines and arcs are exact. Through given points runs a cubic spline in the accumulated chord
-//! length u with not-a-knot ends (fourth-order accurate up to the ends), whose arc length
+//! Lines and arcs are exact. Given points are interpolated by a cubic spline in the accumulated
+//! chord length u with not-a-knot ends (fourth-order accurate up to the ends). Its arc length
 //!
 //! ```text
 //! s(u) = ∫₀ᵘ |P'(v)| dv
 //! ```
 //!
-//! is integrated by Gauss quadrature on panels halved until it is exact to round-off, and inverted
-//! by Newton's method, so that |r₀'(s)| = 1 for every kind of centreline. Spline ends: de Boor, *A
-//! Practical Guide to Splines*, ch. IV.
+//! is integrated by Gauss quadrature on panels, which are halved until it is exact to round-off,
+//! and inverted by Newton's method, so that |r₀'(s)| = 1 for every kind of centreline. Spline ends:
+//! de Boor, *A Practical Guide to Splines*, ch. IV.
 
 use crate::numeric::{End, GAUSS_10, rates};
 
@@ -25,7 +25,7 @@ pub enum Centreline {
         /// Second end \[m\].
         end: [f64; 2],
     },
-    /// Part of a circle; the polar angle runs from `from` to `to` \[rad\], either way round.
+    /// Part of a circle; the polar angle runs from `from` to `to` \[rad\], in either direction.
     Arc {
         /// Centre of the circle \[m\].
         center: [f64; 2],
@@ -51,29 +51,29 @@ enum Geometry {
     Spline(Spline),
 }
 
-/// Why a centreline is no curve.
+/// Reasons why a centreline is not a usable curve.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CurveError {
-    /// A coordinate, radius or angle is NaN or infinite, or so large that the length is.
+    /// A coordinate, radius or angle is NaN or infinite, or so large that the length is infinite.
     #[error("its coordinates or its length are not finite numbers")]
     NotFinite,
     /// Start and end coincide, or the radius or the angle of an arc is zero.
     #[error("its length is zero (or too small to be a number)")]
     NoLength,
-    /// A spline needs two points.
+    /// The curve has fewer than two points.
     #[error("a curve needs two points or more, found {0}")]
     TooFewPoints(usize),
     /// Neighbouring points coincide.
     #[error("points {first} and {second} (counted from 0) coincide", second = first + 1)]
     Coincident {
-        /// Index of the first of them.
+        /// Index of the first of the two points.
         first: usize,
     },
-    /// The points turn back on themselves, so that the smooth curve has a cusp.
+    /// The points turn back on themselves, so that the curve through them has a cusp.
     #[error("the curve through the points has a cusp between points {first} and {second} (counted from 0)", second = first + 1)]
     Cusp {
-        /// Index of the point before it.
+        /// Index of the point before the cusp.
         first: usize,
     },
 }
@@ -110,8 +110,8 @@ impl Curve {
         }
     }
 
-    /// Position r₀(s) \[m\]; s beyond the ends continues a line or arc, and stops at the ends of a
-    /// spline.
+    /// Position r₀(s) \[m\]. Beyond the ends, a line or an arc is continued, and a spline stays at
+    /// its end point.
     pub fn position(&self, s: f64) -> [f64; 2] {
         match &self.0 {
             Geometry::Line { start, direction, .. } => add(*start, *direction, s),
@@ -173,7 +173,7 @@ fn line(start: [f64; 2], end: [f64; 2]) -> Result<Geometry, CurveError> {
     Ok(Geometry::Line { start, direction: difference.map(|d| d / length), length })
 }
 
-/// Piecewise cubic with continuous second derivative.
+/// A piecewise cubic curve with a continuous second derivative.
 #[derive(Clone, Debug, PartialEq)]
 struct Spline {
     pieces: Vec<Piece>,
@@ -181,14 +181,14 @@ struct Spline {
     panels: Vec<Panel>,
 }
 
-/// P(v) = c₀ + c₁ v + c₂ v² + c₃ v³, v ∈ [0, h].
+/// One piece of a spline: P(v) = c₀ + c₁ v + c₂ v² + c₃ v³, v ∈ [0, h].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Piece {
     c: [[f64; 2]; 4],
     h: f64,
 }
 
-/// Part of a piece, small enough for one quadrature.
+/// A part of a piece, short enough for one quadrature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Panel {
     piece: usize,
@@ -200,7 +200,8 @@ struct Panel {
     length: f64,
 }
 
-/// The spline's speed in u is near one; where it falls below this, the points double back.
+/// Smallest speed |P'| accepted. The speed in u is near one; where it falls below this value, the
+/// points double back.
 const SLOWEST: f64 = 0.02;
 
 impl Piece {
@@ -283,8 +284,8 @@ impl Spline {
             let first = panels.len();
             piece.panels(index, 0.0, piece.h, 12, &mut panels);
             for panel in panels.iter_mut().skip(first) {
-                // The halving crowds panels where the speed has a kink, so their ends find every
-                // cusp.
+                // Panels are halved most where the speed has a kink, so that checking their ends
+                // finds every cusp.
                 let slowest = piece.speed(panel.from).min(piece.speed(panel.to));
                 if !panel.length.is_finite() || !slowest.is_finite() {
                     return Err(CurveError::NotFinite);
@@ -352,8 +353,7 @@ mod tests {
         }
     }
 
-    /// A cubic spline is exact on cubics, parametrised by arc length here: |dr/ds| = 1 by
-    /// differences.
+    /// The spline is parametrised by arc length: |dr/ds| = 1 by central differences.
     #[test]
     fn splines_run_at_unit_speed() {
         let points = vec![[0.0, 0.0], [0.3, 0.5], [1.0, 0.4], [1.2, -0.6], [2.0, -0.5], [2.1, 0.3]];
@@ -374,7 +374,7 @@ mod tests {
         }
     }
 
-    /// Arc length is additive to round-off however the interval is cut.
+    /// The arc length is additive to round-off, however the interval is divided.
     #[test]
     fn arc_length_is_exact_to_round_off() {
         let points = (0..9).map(|k| [f64::from(k), (f64::from(k) * 0.9).sin()]).collect();
@@ -395,8 +395,8 @@ mod tests {
         assert!((spline.length() - fine).abs() < 1e-14 * fine);
     }
 
-    /// Through n points of a circle: length of order 4, curvature of order 2 (both at least, ends
-    /// included).
+    /// For n points of a circle, the length converges with at least order 4 and the curvature with
+    /// at least order 2, ends included.
     #[test]
     fn circle_points_converge() {
         let error = |n: u32| {

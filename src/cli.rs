@@ -198,7 +198,7 @@ fn default_directory(scene: &Path) -> PathBuf {
     Path::new("out").join(scene.file_stem().unwrap_or(scene.as_os_str()))
 }
 
-/// Every scene is looked at, so that one call tells all that is wrong.
+/// Checks every scene, so that one call tells all that is wrong.
 fn check(arguments: &CheckArguments) -> Result<(), Vec<Failure>> {
     let mut failures = Vec::new();
     for path in &arguments.scenes {

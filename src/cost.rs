@@ -1,8 +1,9 @@
-//! What accuracy costs in time: a scene with settings of all kinds, against a reference made for it.
+//! What accuracy costs in time: a scene with settings of all kinds, against a reference made for
+//! it.
 //!
 //! ```text
-//! scene ─► reference: two discretisations, refined until they agree ─┐
-//!      └─► search: discretisations × meshes, then solvers ───────────┴─► errors, times, work ─► front, cheapest setting
+//! scene ─┬─► reference: two discretisations, refined until they agree ─┐
+//!        └─► search: discretisations × meshes, then solvers ───────────┴─► errors, work ─► front
 //! ```
 //!
 //! # What is measured
@@ -52,7 +53,7 @@ use crate::scene::Scene;
 use bench::{Measuring, Runner};
 use search::{Found, Task};
 
-/// What is asked for.
+/// The target and the budget of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Wanted error, see [`Deviation::error`].
@@ -67,12 +68,12 @@ impl Default for Options {
     }
 }
 
-/// Of the budget, what the reference may take.
+/// Part of the budget that the reference may take.
 const FOR_REFERENCE: f64 = 0.5;
 /// Errors below this part of the target are not told apart.
 const LEAST: f64 = 1e-3;
 
-/// How far a study is.
+/// How far a study has got.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StudyProgress<'a> {
     /// What is being done.
@@ -86,12 +87,12 @@ pub struct StudyProgress<'a> {
 /// Called after every step of every run, by two threads while the reference is made.
 pub type Watcher<'w> = &'w (dyn Fn(&StudyProgress<'_>) -> Control + Sync);
 
-/// What was found out about a scene.
+/// The results of a study.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// What was asked for.
+    /// The target and the budget.
     pub options: Options,
-    /// What errors are measured against.
+    /// The reference for all errors.
     pub reference: Reference,
     /// All settings measured, in the order in which they were.
     pub trials: Vec<Trial>,
@@ -99,7 +100,7 @@ pub struct Study {
     pub front: Vec<usize>,
     /// The cheapest trial that meets the target.
     pub best: Option<Best>,
-    /// What was not tried, and why.
+    /// Settings that were not tried, and why.
     pub left_out: Vec<LeftOut>,
     /// Whether it came to its end: not where it was interrupted.
     pub complete: bool,
@@ -124,7 +125,7 @@ impl Study {
         self.reference.uncertainty.error <= 0.1 * self.options.target * (1.0 + 1e-12)
     }
 
-    /// What the reader should know.
+    /// Warnings for the reader.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let (target, uncertainty) = (self.options.target, self.reference.uncertainty.error);
@@ -154,7 +155,7 @@ impl Study {
     }
 }
 
-/// Finds out what accuracy costs for `scene`.
+/// Measures what accuracy costs for `scene`.
 ///
 /// # Errors
 /// [`CostError`] where the options are not legal, the scene cannot be built, no reference could be
@@ -205,7 +206,7 @@ fn least(target: f64, reference: &Reference) -> f64 {
     reference.uncertainty.error.max(LEAST * target)
 }
 
-/// The model with something to look at: without probes, both ends and the middle of every beam.
+/// The model with probes: if it has none, at both ends and the middle of every beam.
 fn watched(model: &Model) -> Model {
     let mut model = model.clone();
     if model.probes.is_empty() {
@@ -356,7 +357,7 @@ mod tests {
         assert_eq!(nearly, with(&[uncertain, none]));
     }
 
-    /// What is legal comes as far as the watcher, who wants nothing of it.
+    /// Legal options come as far as the watcher, which stops the study at once.
     #[test]
     fn what_may_be_asked_for() {
         let asked = |scene: &Scene, target: f64, seconds: f64| {

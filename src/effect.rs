@@ -1,8 +1,8 @@
-//! Physics: one file per effect, with its densities at a point of the beam and the
-//! [`Part`] of a model that it is.
+//! Physics: one file per effect, with its densities at a point of the beam and the [`Part`] by
+//! which a model contains it.
 //!
-//! A part says where on the beams its densities are summed; how is the subject of
-//! [`assembly`](crate::assembly). An effect never sees a node, a step or another effect.
+//! A part says where on the beams its densities are summed; [`assembly`](crate::assembly) sums
+//! them. An effect does not know nodes, steps or other effects.
 
 mod actuation;
 mod bend;
@@ -38,7 +38,7 @@ pub use stretch::{BeamStretch, Engineering, Green, Strain, Stretch};
 
 use crate::assembly::Part;
 
-/// What takes part of a beam by its section alone.
+/// The parts that follow from the section of beam number `beam` alone.
 pub(crate) fn of_section(beam: usize) -> [Box<dyn Part>; 3] {
     [Box::new(BeamStretch { beam }), Box::new(BeamBend { beam }), Box::new(BeamInertia { beam })]
 }

@@ -1,8 +1,8 @@
-//! Four points side by side, in the lanes of a register.
+//! Four numbers side by side, in the lanes of a register.
 //!
-//! The densities that cost time are written once, for [`Real`] numbers, and serve single points and
-//! four at once alike. Left to itself the compiler keeps four points scalar, so that the lanes are
-//! named here, by `wide`'s registers (AVX where the target has it).
+//! The densities that take most time are written once, for [`Real`] numbers, and serve single
+//! points as well as four points at once. The compiler does not vectorise them by itself; the lanes
+//! are therefore explicit, by the registers of the crate `wide` (AVX where the target has it).
 
 mod fma;
 
@@ -12,20 +12,20 @@ use nalgebra::Matrix2;
 use std::ops::{Add, Mul, Neg, Sub};
 use wide::f64x4;
 
-/// Numbers in the four lanes of a register.
+/// Four numbers in the lanes of a register.
 pub type Lanes = f64x4;
 
-/// The components of a vector, or of four.
+/// The components of a vector in the plane, or of four vectors.
 pub type Pair<T> = [T; 2];
 
-/// A matrix of 2 × 2 numbers, row by row, or four of them.
+/// A matrix of 2 × 2 numbers, row by row, or four such matrices.
 pub type Square<T> = [Pair<T>; 2];
 
 /// A number, or four of them.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
-    /// The number `x`, in all lanes.
+    /// The number `x`, in all lanes if there are four.
     fn of(x: f64) -> Self;
     /// `self · b + c`.
     fn fma(self, b: Self, c: Self) -> Self;
@@ -79,22 +79,22 @@ impl Real for Lanes {
     }
 }
 
-/// Four quadrature points: a number, and how much larger each is than the one before.
+/// The indices of four quadrature points, at equal distances.
 #[derive(Clone, Copy, Debug)]
 pub struct Points {
-    /// Of the first lane.
+    /// Index of the first lane's point.
     pub first: usize,
-    /// From lane to lane.
+    /// Difference between the indices of successive lanes.
     pub stride: usize,
 }
 
 impl Points {
-    /// The number of each lane's point.
+    /// The index of each lane's point.
     pub fn numbers(self) -> [usize; 4] {
         std::array::from_fn(|lane| self.first + lane * self.stride)
     }
 
-    /// The numbers that `list` has for these points; zeros if it is empty.
+    /// The entries of `list` for these points; zeros if it is empty.
     #[inline(always)]
     pub fn of(self, list: &[f64]) -> Lanes {
         if list.is_empty() {
@@ -135,14 +135,15 @@ pub fn turned<T: Real>([[xx, xy], [yx, yy]]: Square<T>) -> Square<T> {
     [[xx, yx], [xy, yy]]
 }
 
-/// As a matrix of nalgebra's.
+/// The matrix as nalgebra's type.
 #[inline(always)]
 pub fn matrix([[xx, xy], [yx, yy]]: Square<f64>) -> Matrix2<f64> {
     Matrix2::new(xx, xy, yx, yy)
 }
 
-/// Adds to every lane of `f` what `add` makes of it and of that lane of `q`; `scratch` has two
-/// vectors of their length.
+/// Adds to every lane of `f` what `add` computes from that lane of `q`. `add` is called with the
+/// index of the lane, the lane of `q`, and a zeroed vector for the result; `scratch` holds two
+/// vectors of the same length.
 pub fn one_by_one(
     q: &[Lanes],
     f: &mut [Lanes],
@@ -162,8 +163,8 @@ pub fn one_by_one(
     }
 }
 
-/// The `W` coefficients of four cells, each a node further than the one before; `q` starts at the
-/// first cell's.
+/// The `W` coefficients of each of four cells, each one node after the cell before; `q` starts at
+/// the first cell's coefficients.
 #[inline(always)]
 pub fn gather<const W: usize>(q: &[f64]) -> [Pair<Lanes>; W] {
     let nodes = q.as_chunks::<4>().0;
@@ -176,7 +177,7 @@ pub fn gather<const W: usize>(q: &[f64]) -> [Pair<Lanes>; W] {
     here
 }
 
-/// Adds to the coefficients of four cells what [`gather`] would have taken from them.
+/// Adds `sums` to the coefficients of four cells: the transpose of [`gather`].
 #[inline(always)]
 pub fn scatter<const W: usize>(sums: &[Pair<Lanes>; W], f: &mut [f64]) {
     let nodes = f.as_chunks_mut::<4>().0;

@@ -1,4 +1,4 @@
-//! Laws of time: by what factor a load acts, how a support moves.
+//! Laws of time: the factor of a load, or the motion of a support, as a function of time.
 
 use crate::numeric::{End, GAUSS_6, rates};
 use std::f64::consts::PI;
@@ -7,24 +7,24 @@ use std::f64::consts::PI;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Law {
-    /// 0 until `start`, then growing evenly to 1 within `duration`.
+    /// 0 until `start`, then growing linearly to 1 within `duration`.
     Ramp {
-        /// When it begins \[s\].
+        /// Time at which the value begins to grow \[s\].
         start: f64,
-        /// How long it takes \[s\].
+        /// Time that it takes to reach 1 \[s\].
         duration: f64,
     },
-    /// The same with continuous acceleration: 10 x³ − 15 x⁴ + 6 x⁵, x the part of the duration that
-    /// is over.
+    /// A ramp with continuous acceleration: 10 x³ − 15 x⁴ + 6 x⁵, where x is the elapsed fraction
+    /// of the duration.
     SmoothRamp {
-        /// When it begins \[s\].
+        /// Time at which the value begins to grow \[s\].
         start: f64,
-        /// How long it takes \[s\].
+        /// Time that it takes to reach 1 \[s\].
         duration: f64,
     },
     /// 0 until `start`, then 1.
     Step {
-        /// When it acts \[s\].
+        /// Time of the step \[s\].
         start: f64,
     },
     /// sin(ω t + φ).
@@ -36,10 +36,10 @@ pub enum Law {
     },
     /// Σ c_k t^k, t in seconds.
     Polynomial(Vec<f64>),
-    /// Through given points, constant before the first and after the last.
+    /// Interpolates given points; constant before the first and after the last.
     Table(Tabulated),
-    /// The angle of a hub that is brought to the speed Ω within T (Simo & Vu-Quoc, *J. Appl. Mech.*
-    /// 53, 1986, 855–863): Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) until T, then Ω (t − T/2).
+    /// The angle of a hub that reaches the speed Ω within the time T (Simo & Vu-Quoc, *J. Appl.
+    /// Mech.* 53, 1986, 855–863): Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) until T, then Ω (t − T/2).
     SpinUp {
         /// Ω \[rad/s\].
         speed: f64,
@@ -48,18 +48,19 @@ pub enum Law {
     },
 }
 
-/// Points of a law.
+/// The points of a law, and how it is interpolated between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tabulated {
     times: Vec<f64>,
     values: Vec<f64>,
-    /// First derivatives of a cubic spline at the points; none: straight between them.
+    /// First derivatives of a cubic spline at the points; `None` for linear interpolation.
     rates: Option<Vec<[f64; 1]>>,
 }
 
 impl Tabulated {
-    /// Through `values` at increasing `times` \[s\], straight or by the natural cubic spline
-    /// between them; none where there are fewer than two points or the times do not increase.
+    /// Interpolates `values` at increasing `times` \[s\], linearly or by the natural cubic spline.
+    /// `None` where there are fewer than two points, the numbers of times and values differ, or the
+    /// times do not increase.
     pub fn new(times: Vec<f64>, values: Vec<f64>, smooth: bool) -> Option<Self> {
         let rising = times.windows(2).all(|t| t[1] > t[0]);
         if times.len() < 2 || times.len() != values.len() || !rising {
@@ -69,8 +70,8 @@ impl Tabulated {
         Some(if smooth { table.smoothed([End::Straight; 2]) } else { table })
     }
 
-    /// By the cubic spline that is flat at its ends where `flat` says so, and not curved there
-    /// otherwise.
+    /// Interpolates by the cubic spline whose first derivative is zero at the ends marked in
+    /// `flat`, and whose second derivative is zero at the others.
     pub fn with_flat_ends(times: Vec<f64>, values: Vec<f64>, flat: [bool; 2]) -> Option<Self> {
         let ends = flat.map(|flat| if flat { End::Flat } else { End::Straight });
         Some(Self::new(times, values, false)?.smoothed(ends))
@@ -94,14 +95,14 @@ impl Tabulated {
         self.between(t)
     }
 
-    /// The same with what is between the first two points, or the last two, continued beyond.
+    /// As `at`, except that the first and the last piece are continued beyond the points.
     pub(super) fn between(&self, t: f64) -> [f64; 3] {
         let i = self.times.partition_point(|&time| time <= t).clamp(1, self.times.len() - 1) - 1;
         let h = self.times[i + 1] - self.times[i];
         let (x, rise) = ((t - self.times[i]) / h, self.values[i + 1] - self.values[i]);
         let (value, rate) = (self.values[i] + x * rise, rise / h);
         let Some(rates) = &self.rates else { return [value, rate, 0.0] };
-        // How much steeper than the chord the curve leaves, and arrives.
+        // Difference between the spline's slope and that of the chord, at both ends of the piece.
         let (a, b, y) = (rates[i][0] - rate, rates[i + 1][0] - rate, 1.0 - x);
         [
             value + h * x * y * (a * y - b * x),
@@ -111,10 +112,10 @@ impl Tabulated {
     }
 }
 
-/// Angle by which a harmonic turns in a step \[rad\] up to which Gauss' rule integrates it to
+/// Largest phase angle \[rad\] of a harmonic within a step for which Gauss' rule integrates it to
 /// round-off.
 const SLOW: f64 = 1.5;
-/// ∫₀¹ f dx and ∫₀¹ (1 − x) f dx; exact for what pieces of laws are, up to the tenth degree.
+/// ∫₀¹ f dx and ∫₀¹ (1 − x) f dx; exact for polynomials up to degree 10.
 fn quadrature(time: impl Fn(f64) -> f64, f: impl Fn(f64) -> f64) -> [f64; 2] {
     GAUSS_6.iter().fold([0.0; 2], |[mean, moment], (x, weight)| {
         let term = weight * f(time(*x));
@@ -123,7 +124,7 @@ fn quadrature(time: impl Fn(f64) -> f64, f: impl Fn(f64) -> f64) -> [f64; 2] {
 }
 
 impl Law {
-    /// Value, rate \[1/s\] and second rate \[1/s²\] at time `t`; at a kink those of what follows.
+    /// Value, rate \[1/s\] and second rate \[1/s²\] at time `t`; at a kink, those just after it.
     pub fn at(&self, t: f64) -> [f64; 3] {
         match self {
             Self::Ramp { start, .. } | Self::SmoothRamp { start, .. } if t < *start => [0.0; 3],
@@ -164,7 +165,7 @@ impl Law {
         }
     }
 
-    /// The time at which the value itself jumps, and by how much.
+    /// The time at which the value itself jumps, and the height of the jump.
     pub fn jump(&self) -> Option<(f64, f64)> {
         match self {
             Self::Step { start } => Some((*start, 1.0)),
@@ -184,8 +185,9 @@ impl Law {
     /// ∫₀¹ f(t₀ + x h) dx,   ∫₀¹ (1 − x) f(t₀ + x h) dx,   t₀ the start, h the time between
     /// ```
     ///
-    /// However fast the law oscillates: a mass that it drives alone changes its velocity by h times
-    /// the first, and its position by h² times the second.
+    /// The sums are accurate however fast a harmonic oscillates. If the law is the acceleration of
+    /// a mass, the mass changes its velocity by h times the first, and its position by h² times the
+    /// second, in addition to the way that its initial velocity carries it.
     pub fn moments(&self, start: f64, end: f64) -> [f64; 2] {
         let h = end - start;
         match self {
@@ -195,8 +197,8 @@ impl Law {
                 [(c0 - c1) / turn, (c0 - (s1 - s0) / turn) / turn]
             }
             Self::Polynomial(coefficients) => {
-                // Σ d_k τ^k with τ = t − t₀ has the moments Σ d_k h^k/(k + 1) and Σ d_k h^k/((k +
-                // 1) (k + 2)).
+                // Σ d_k τ^k with τ = t − t₀ has the moments Σ d_k h^k/(k + 1) and
+                // Σ d_k h^k/((k + 1) (k + 2)).
                 let mut shifted = coefficients.clone();
                 for first in 0..shifted.len() {
                     for k in (first..shifted.len() - 1).rev() {
@@ -214,8 +216,8 @@ impl Law {
         }
     }
 
-    /// Times at which the value or a derivative up to the third jumps: steps of an integrator
-    /// should end there.
+    /// Times at which the value or a low derivative of it jumps: steps of an integrator should end
+    /// there.
     pub fn kinks(&self) -> Vec<f64> {
         match self {
             Self::Ramp { start, duration } | Self::SmoothRamp { start, duration } => {
@@ -338,7 +340,7 @@ mod tests {
 
     #[test]
     fn a_spline_is_flat_where_it_is_to_be() {
-        // With both ends flat and two points it is 3x² − 2x³.
+        // Between two points with both ends flat, the spline is 3x² − 2x³.
         let table = Tabulated::with_flat_ends(vec![0.0, 2.0], vec![1.0, 3.0], [true; 2]).unwrap();
         for x in [0.0, 0.3, 0.5, 1.0] {
             assert!((table.between(2.0 * x)[0] - 1.0 - 2.0 * x * x * (3.0 - 2.0 * x)).abs() < 1e-14);

@@ -3,11 +3,12 @@
 //! meshfree variant with Hermite radial point interpolation (**RPIM**; Chen, Zhang, Li, *J.
 //! Vibration Engineering* 31(2), 2018, 245–254), which needs far fewer nodes for the same accuracy.
 //!
-//! Physics is a density at a point of the beam; a discretisation is a table of shape functions; the
-//! system sums one over the other; every solver asks the system for the same few things.
+//! Physics is given by densities at a point of the beam, and a discretisation by a table of shape
+//! functions. The system sums the former over the latter, and every solver uses the system through
+//! the same few functions.
 //!
 //! ```text
-//! scene.toml ─parse─► Scene ─► Model ─build─► System ─solve─► Results ─► csv · json · vtu · svg · html
+//! scene.toml ─parse─► Scene ─► Model ─build─► System ─solve─► Results ─► csv·json·vtu·svg·html
 //!   text           checked,   continuous,   tables, effects,   states at
 //!                  spans      SI            constraints        chosen loads, times
 //! ```
@@ -32,10 +33,12 @@
 //! assert!(end.x.hypot(end.y) < 1e-4);
 //! # Ok::<(), ancf::RunError>(())
 //! ```
-//! A scene file says the same in words: [`Scene::load`], then
-//! `scene.model().solve(scene.analysis())`. [`Options`] bring a start, an observer and checkpoints.
+//! A scene file describes the same model as text: [`Scene::load`], then
+//! `scene.model().solve(scene.analysis())`. [`Options`] add a starting state, an observer and
+//! checkpoints.
 //!
-//! The [`handbook`] says how to choose, what happens when it gets hard, and what a scene can name.
+//! The [`handbook`] explains how to choose settings, what to do with difficult models, and all that
+//! a scene can contain.
 //!
 //! # Where things are
 //! | module | subject | imports |
@@ -47,27 +50,29 @@
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | – |
 //! | [`law`] | laws of time | `numeric` |
 //! | [`beam`] | a beam with its section and discretisation, and places along it | [`centreline`], [`basis`] |
-//! | [`assembly`] | densities, their sums over tables, and how a part of a model becomes terms of the equations | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`beam`] |
-//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part of a model that it is | `lanes`, `linear`, `numeric`, [`basis`], [`law`], [`beam`], [`assembly`] |
+//! | [`assembly`] | densities, their sums over tables, and the assembly of a model's parts into terms of the equations | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`beam`] |
+//! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part by which a model contains it | `lanes`, `linear`, `numeric`, [`basis`], [`law`], [`beam`], [`assembly`] |
 //! | [`model`] | the continuous problem: beams, supports, joints, parts, probes, analyses | [`centreline`], [`basis`], [`law`], [`beam`], [`assembly`] |
 //! | [`system`] | coordinates, supports, joints, sums over effects, inventory | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`] |
 //! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `linear`, [`assembly`], `numeric`, [`model`], [`system`] |
-//! | [`restart`] | a saved state, from which a motion goes on | [`model`], [`system`], `solve` |
-//! | [`results`] | what an analysis leaves | [`system`], `solve`, [`restart`] |
+//! | [`restart`] | a saved state from which a motion can be continued | [`model`], [`system`], `solve` |
+//! | [`results`] | the results of an analysis | [`system`], `solve`, [`restart`] |
 //! | [`run`](mod@run) | one model, one analysis | `linear`, [`basis`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
 //! | [`output`] | files, plots, the report page | [`restart`], [`results`] |
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`effect`], [`model`] |
 //! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`] |
-//! | [`cost`] | what accuracy costs in time: settings of all kinds against a reference | [`centreline`], [`model`], [`results`], [`scene`], [`run`](mod@run), [`output`] |
+//! | [`cost`] | computing time for a given accuracy: settings of all kinds compared with a reference | [`centreline`], [`model`], [`results`], [`scene`], [`run`](mod@run), [`output`] |
 //!
-//! `lanes`, `linear` and `solve` are for the crate itself: what a user needs of them stands in
-//! other modules, and they may change with any version. A module imports what stands above it, and
-//! nothing else but what its row says: a test reads this table and all sources.
+//! `lanes`, `linear` and `solve` are internal to the crate and may change with any version;
+//! everything a user needs from them is available through other modules. A module imports only
+//! modules above it in the table, and only those in its row; a test compares the table with all
+//! sources.
 //!
 //! # Without the program
-//! The features `cli` and `report`, both on unless they are declined, bring the program `ancf` and
-//! what draws its plots and pages. A program that solves and looks at numbers takes
-//! `ancf = { …, default-features = false }`: statics, motions, sweeps and tables need neither.
+//! The features `cli` and `report`, both enabled by default, provide the program `ancf` and its
+//! plots and pages. A program that only solves and reads numbers can use
+//! `ancf = { …, default-features = false }`; statics, motions, sweeps and tables need neither
+//! feature.
 //!
 //! # The beam
 //! | symbol | formula | unit |
@@ -81,24 +86,24 @@
 //! | T | ½∫ ρA ṙ·ṙ ds | J |
 //! | M on the section at s | δW = M δθ, θ = atan2(y', x') | N m |
 //! | q | nodal coordinates \[x, y, x', y'\] | m, – |
-//! | N, Q, M | what a section passes on, by the balance of one side of the cut ([`system::Balanced`]) | N, N, N m |
+//! | N, Q, M | axial force, shear force and bending moment, from the balance of one side of a cut ([`system::Balanced`]) | N, N, N m |
 //! | λ | load factor: loads and prescribed displacements grow with it from 0 to 1 | – |
 //!
-//! No shear; rotary inertia where it is named. ε₀ and κ₀ are those of the stress-free shape as the
-//! discretisation sees it, so that a curved beam starts without stress.
+//! There is no shear deformation, and rotary inertia only if it is named. ε₀ and κ₀ are those of
+//! the stress-free shape as the discretisation interpolates it, so that a curved beam starts
+//! without stress.
 //!
 //! # Invariants
 //! - `scene` never imports `system`.
-//! - An effect never sees a node number, a step size or another effect.
+//! - An effect does not know nodes, step sizes or other effects.
 //! - No solver matches on a discretisation or on an effect.
-//! - A discretisation is asked for shape functions only while a system is built or a state looked
-//!   at.
-//! - Only the command line prints. Only [`sweep`] and [`cost`] start threads, and compute each run
-//!   on one. The crate never links Python.
-//! - Where a model does not name an effect there is no object, no table, no matrix and no
-//!   instruction for it; [`system::System::inventory`] says what was built.
+//! - Shape functions are evaluated only while a system is built or a state is examined.
+//! - Only the command line prints. Only [`sweep`] and [`cost`] start threads, and they compute each
+//!   run on a single thread. The crate does not link Python.
+//! - For an effect that a model does not name, the system contains no object, table or matrix and
+//!   executes no instruction; [`system::System::inventory`] lists what was built.
 //!
-//! # What takes part, and how it is named in a scene
+//! # Parts and their names in a scene
 //! | scene | part | formula |
 //! |---|---|---|
 //! | `[[joint]]` `hinge`, `weld`, `slider` | [`system::joint`] | constraint rows between two points |
@@ -112,15 +117,15 @@
 //! | `[[effect.moving_force]]` | [`effect::MovingForce`] | −N(s₀ + v t) F |
 //! | `[[effect.contact]]` | [`effect::Contact`] | ½ ∫ k ⟨−g⟩² ds with circles, half-planes, boxes; friction ½ ∫ k_t e² ds, k_t \|e\| ≤ μ p |
 //!
-//! A beam without a bending stiffness is a string: nothing is computed of its curvature. One
-//! without an axial stiffness keeps its length ([`system::inextensible`]): ∫ N ½ (r'·r' − |r'₀|²)
-//! ds with the axial force N as an unknown.
+//! A beam without a bending stiffness is a string: its curvature is not computed. A beam without an
+//! axial stiffness keeps its length ([`system::inextensible`]): ∫ N ½ (r'·r' − |r'₀|²) ds with the
+//! axial force N as an unknown.
 //!
 //! # An effect of one's own
-//! Everything that acts is a [`Part`](assembly::Part) of the model: a beam's own resistance and
-//! inertia, a load, a spring, a contact. It consists of densities of a few local fields, and says
-//! where they are summed. In this crate it is one file in `src/effect` and one line in the scene's
-//! list (`src/scene/to_parts.rs`); from outside it is this:
+//! Everything that acts is a [`Part`](assembly::Part) of the model: a beam's own elasticity and
+//! inertia, a load, a spring, a contact. It consists of densities of a few local fields, and
+//! defines where they are summed. In this crate an effect is one file in `src/effect` and one line
+//! in the scene's list (`src/scene/to_parts.rs`); in another crate it looks like this:
 //! ```
 //! use ancf::Place;
 //! use ancf::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
@@ -171,7 +176,7 @@
 //! ```
 #![warn(missing_docs)]
 
-/// The blocks of README.md are tests, too.
+/// Runs the code blocks of README.md as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,9 +1,9 @@
 //! Linear algebra of the tangent: storage by pattern, factorisation, inertia.
 //!
 //! Every unknown belongs to a node, and a node has four: x, y, x', y'. A beam's tangent is
-//! therefore a band of 4 × 4 blocks, as many to the right of the diagonal as a support has further
-//! nodes (1 for the cable element, 5 for six-node radial point interpolation). Five factorisations
-//! serve, chosen by the pattern and never by the caller:
+//! therefore a band of 4 × 4 blocks, with as many blocks to the right of the diagonal as a support
+//! has further nodes (1 for the cable element, 5 for six-node radial point interpolation). The
+//! pattern decides among five factorisations; the caller only states whether a matrix is definite:
 //!
 //! | pattern | method | file |
 //! |---|---|---|
@@ -13,8 +13,9 @@
 //! | band bordered by constraint rows within it | LU of a band in another order | [`interleaved`] |
 //! | band bordered by others, such as those of joints | sparse LU by faer | [`bordered`] |
 //!
-//! What of the inertia the rows leave is in `inertia`. The complex matrices of collocation's stages
-//! are in [`complex`], the constant mass matrix in [`isotropic`].
+//! The module `inertia` finds the inertia on the motions that constraint rows leave. The complex
+//! matrices of collocation's stages are in [`complex`], the constant mass matrix is in
+//! [`isotropic`].
 
 pub mod band;
 pub mod bordered;
@@ -40,14 +41,15 @@ use symmetric::{Ldl, SymmetricBand};
 pub enum Matrix {
     /// Upper half of a symmetric matrix.
     Symmetric(SymmetricBand),
-    /// All of a matrix without symmetry.
+    /// All entries of an unsymmetric matrix.
     General(Band),
 }
 
-/// What a method says that solves with a tangent before there is one, which is a fault of its own.
+/// Panic message of methods that solve with a tangent before one is factorised, a fault of the
+/// program.
 pub(crate) const NOT_FACTORISED: &str = "a tangent is factorised before it is solved with";
 
-/// A matrix could not be factorised.
+/// The matrix could not be factorised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the matrix is singular: no pivot in row {row}")]
 pub struct Singular {
@@ -117,13 +119,14 @@ impl Matrix {
         }
     }
 
-    /// Turns the unknowns `2 pair` and `2 pair + 1` into a frame at the angle with the given cosine
-    /// and sine: rows and columns are replaced by their components along that frame's axes.
+    /// Transforms the unknowns `2 pair` and `2 pair + 1` to a frame rotated by the angle with the
+    /// given cosine and sine: rows and columns are replaced by their components along that frame's
+    /// axes.
     pub fn rotate_pair(&mut self, pair: usize, cosine: f64, sine: f64) {
         self.change_pair(pair, [[cosine, sine], [-sine, cosine]]);
     }
 
-    /// T K Tᵀ with a T that mixes the unknowns `2 pair` and `2 pair + 1`.
+    /// Replaces the matrix K by T K Tᵀ, where T mixes only the unknowns `2 pair` and `2 pair + 1`.
     pub fn change_pair(&mut self, pair: usize, [t, u]: [[f64; 2]; 2]) {
         let (x, y) = (2 * pair, 2 * pair + 1);
         // The band of either row ends within a node that the other row does not reach: with zeros.
@@ -163,14 +166,14 @@ impl Matrix {
         self.set(i, i, diagonal);
     }
 
-    /// Adds `factor` times a diagonal.
+    /// Adds `factor` times the diagonal matrix with the entries `diagonal`.
     pub fn add_diagonal(&mut self, factor: f64, diagonal: &[f64]) {
         for (i, value) in diagonal.iter().enumerate() {
             self.set(i, i, fma(factor, *value, self.get(i, i)));
         }
     }
 
-    /// Multiplies all entries.
+    /// Multiplies all entries by `factor`.
     pub fn scale(&mut self, factor: f64) {
         match self {
             Self::Symmetric(matrix) => matrix.scale(factor),
@@ -178,7 +181,8 @@ impl Matrix {
         }
     }
 
-    /// Adds to the entry in row `i`, column `j`, of a symmetric matrix once for both halves.
+    /// Adds `value` to the entry in row `i`, column `j`. A symmetric matrix takes only calls with
+    /// `i <= j` and ignores the others, since one entry stands for both halves.
     pub fn add_at(&mut self, i: usize, j: usize, value: f64) {
         if matches!(self, Self::General(_)) || i <= j {
             self.set(i, j, self.get(i, j) + value);
@@ -210,7 +214,7 @@ pub enum Factor {
     Lu(BandLu),
     /// LDLᵀ of a symmetric band bordered by few rows.
     Condensed(Box<Condensed>),
-    /// LU of a bordered band in another order.
+    /// LU of a bordered band whose constraint rows are numbered among the unknowns.
     Interleaved(Box<Interleaved>),
     /// Sparse LU of a bordered band.
     Bordered(Box<Bordered>),
@@ -221,7 +225,7 @@ impl Factor {
     /// LDLᵀ meets a vanishing pivot is factorised again with pivoting.
     ///
     /// # Errors
-    /// [`Singular`] where the matrix has no inverse to round-off.
+    /// [`Singular`] if the matrix is singular to round-off.
     pub fn new(matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
         if !border.is_empty() {
             return Self::bordered(None, matrix, border);
@@ -258,7 +262,8 @@ impl Factor {
         }
     }
 
-    /// The same as [`Self::new`], reusing what an earlier factorisation of the same pattern left.
+    /// As [`Self::new`], reusing the memory and the ordering of an earlier factorisation of the
+    /// same pattern.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -275,8 +280,8 @@ impl Factor {
     }
 
     /// Factorises `matrix` + c `mass`, bordered by constraint rows if there are any, reusing an
-    /// earlier factorisation of the same pattern. The sum is taken to be definite, as it is where c
-    /// is large enough for the motion to be followed.
+    /// earlier factorisation of the same pattern. The sum is assumed to be definite, as it is if c
+    /// is large enough, that is, if the step is short enough to resolve the motion.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -309,7 +314,7 @@ impl Factor {
         Self::again(earlier, &sum, border)
     }
 
-    /// Solves A x = b in place; `b` holds the multipliers' part last.
+    /// Solves A x = b in place; the multipliers' part of `b` comes last.
     pub fn solve(&self, b: &mut [f64]) {
         match self {
             Self::Ldl(ldl) => ldl.solve(b),
@@ -320,8 +325,8 @@ impl Factor {
         }
     }
 
-    /// Number of negative eigenvalues of a symmetric matrix (Sylvester's law of inertia); `None`
-    /// where the factorisation does not tell.
+    /// Number of negative eigenvalues of a symmetric matrix (Sylvester's law of inertia); `None` if
+    /// the factorisation does not determine it.
     pub fn negative_eigenvalues(&self) -> Option<usize> {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots()),
@@ -329,7 +334,7 @@ impl Factor {
         }
     }
 
-    /// Whether the determinant is negative; `None` where the factorisation does not tell.
+    /// Whether the determinant is negative; `None` if the factorisation does not determine it.
     pub fn determinant_is_negative(&self) -> Option<bool> {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots() % 2 == 1),
@@ -338,8 +343,8 @@ impl Factor {
         }
     }
 
-    /// Number of negative eigenvalues of the factorised `matrix` restricted to motions that the
-    /// rows of `border` allow; `None` where it has no symmetry or cannot be told.
+    /// Number of negative eigenvalues of the factorised `matrix`, restricted to motions that the
+    /// rows of `border` allow; `None` if it is unsymmetric or the number cannot be determined.
     pub fn negative_directions(&self, matrix: &Matrix, border: &[BorderRow]) -> Option<usize> {
         if border.is_empty() {
             return self.negative_eigenvalues();

@@ -1,6 +1,6 @@
 //! The continuous problem: beams, sections, supports, loads and probes, all in SI units.
 //!
-//! Nothing here knows of nodes, elements or steps. A scene file is one way to make a [`Model`];
+//! A model does not contain nodes, elements or steps. A scene file is one way to make a [`Model`];
 //! a program that uses the library can fill one directly.
 
 mod analysis;
@@ -25,39 +25,40 @@ use std::sync::Arc;
 /// A complete mechanical model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
-    /// One line that says what this is.
+    /// A title of one line.
     pub title: String,
     /// The beams; everything else refers to them by index.
     pub beams: Vec<Beam>,
-    /// What is held, and what is moved by prescription.
+    /// Supports: points at which quantities are fixed or follow a prescribed motion.
     pub supports: Vec<Support>,
-    /// How beams are joined.
+    /// Joints between beams, and between beams and the ground.
     pub joints: Vec<Joint>,
-    /// What takes part besides the beams' own elasticity and inertia: loads, damping, springs,
-    /// masses, contacts, ….
+    /// Everything that takes part besides the beams' own elasticity and inertia: loads, damping,
+    /// springs, masses, contacts, ….
     pub parts: Vec<Arc<dyn Part>>,
-    /// How the beams move at the start of a motion; at rest where nothing is said.
+    /// Velocities of the beams at the start of a motion; a beam without an entry is at rest.
     pub initial_velocities: Vec<InitialVelocity>,
-    /// Where to watch.
+    /// Points whose motion is recorded.
     pub probes: Vec<Probe>,
-    /// What else to compute at every record.
+    /// Further quantities to compute at every record.
     pub outputs: Outputs,
 }
 
 impl Model {
-    /// Adds what takes part in the mechanics.
+    /// Adds a part to the model.
     pub fn add(&mut self, part: impl Part) {
         self.parts.push(Arc::new(part));
     }
 
-    /// Whether a beam names no axial stiffness, and so keeps its length.
+    /// Whether any beam has no axial stiffness, and so keeps its length.
     pub fn is_inextensible(&self) -> bool {
         self.beams.iter().any(|beam| beam.section.axial_stiffness.is_none())
     }
 
-    /// Where along a beam there must be a node, over which no shape function reaches \[m\]: at
-    /// joints, and where something takes or gives a couple, for there the curvature jumps. A force
-    /// only bends its course; nine nodes that do not meet it err by 3e-6 of the length.
+    /// The arc lengths \[m\] along a beam at which there must be a node and supports of shape
+    /// functions must end: at joints, and where a support or a part transmits a couple, since the
+    /// curvature jumps there. A concentrated force makes only the slope of the curvature jump,
+    /// which matters little: nine nodes that do not meet it have an error of 3e-6 of the length.
     pub fn breaks(&self, beam: usize) -> Vec<f64> {
         let supports = self.supports.iter().filter(|support| support.fix.rotation != FixedRotation::Free);
         let supports = supports.map(|support| support.at);
@@ -68,7 +69,7 @@ impl Model {
     }
 }
 
-/// What is computed at every record beside probes and energies.
+/// Quantities that are computed at every record besides probes and energies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outputs {
     /// Forces of supports and joints.
@@ -77,33 +78,34 @@ pub struct Outputs {
     pub effects: bool,
 }
 
-/// Holds a point of a beam, or moves it by prescription.
+/// Fixes quantities at a point of a beam, or prescribes their motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Support {
-    /// Where.
+    /// The point.
     pub at: Place,
-    /// What is held.
+    /// The fixed quantities.
     pub fix: Fixed,
-    /// By how much the held quantities move until the load factor is 1: x \[m\], y \[m\], angle
-    /// \[rad\]; in a motion, what `law` is multiplied by.
+    /// Prescribed change of the fixed quantities: x \[m\], y \[m\], angle \[rad\]. In statics it is
+    /// multiplied by the load factor, in a motion by `law`.
     pub displacement: Displacement,
-    /// How the displacement follows time; needed in a motion, and only there.
+    /// Law of time of the displacement; needed in a motion if there is one, and not allowed
+    /// elsewhere.
     pub law: Option<Law>,
 }
 
 impl Support {
-    /// Holds a point and the direction there.
+    /// Fixes the position of a point and the direction there.
     pub fn clamp(at: Place) -> Self {
         Self { at, fix: Fixed { x: true, y: true, rotation: FixedRotation::Angle }, ..Self::default() }
     }
 
-    /// Holds a point.
+    /// Fixes the position of a point.
     pub fn pin(at: Place) -> Self {
         Self { at, fix: Fixed { x: true, y: true, rotation: FixedRotation::Free }, ..Self::default() }
     }
 }
 
-/// The quantities that a support holds.
+/// The quantities that a support fixes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fixed {
     /// Position along x.
@@ -114,15 +116,15 @@ pub struct Fixed {
     pub rotation: FixedRotation,
 }
 
-/// What a support holds of the gradient r'.
+/// How a support fixes the gradient r'.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FixedRotation {
-    /// Nothing.
+    /// Not at all.
     #[default]
     Free,
     /// Its direction; the stretch at this point stays free.
     Angle,
-    /// Both components (the clamp of the paper).
+    /// Both components, as at the clamp of the paper by Chen, Zhang and Li.
     Gradient,
 }
 
@@ -133,21 +135,21 @@ pub struct Displacement {
     pub x: f64,
     /// Along y \[m\].
     pub y: f64,
-    /// Rotation \[rad\]; more than a full turn is meant as such.
+    /// Rotation \[rad\]; full turns count.
     pub angle: f64,
 }
 
-/// A point that is watched.
+/// A point whose motion is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// Name of its columns in the output.
     pub name: String,
-    /// Where.
+    /// The point.
     pub at: Place,
 }
 
 impl Probe {
-    /// A probe of that name.
+    /// A probe named `name` at the point `at`.
     pub fn new(name: &str, at: Place) -> Self {
         Self { name: name.to_owned(), at }
     }

@@ -1,4 +1,4 @@
-//! Small numerical tools that know nothing of beams: Gauss' rules with few points, cubic splines.
+//! Small numerical tools that do not depend on beams: Gauss rules with few points, cubic splines.
 
 mod gauss;
 mod spline;

@@ -1,5 +1,4 @@
-//! Files for people and for programs: what an analysis leaves in [`Results`], as tables, plots and
-//! one page.
+//! Files for people and for programs: the [`Results`] of an analysis as tables, plots and one page.
 //!
 //! | file | holds |
 //! |---|---|
@@ -60,7 +59,8 @@ pub struct OutputOptions {
 }
 
 impl OutputOptions {
-    /// How many frames a run should keep: all where they are written, else what a page draws.
+    /// How many frames a run should keep: all if they are written, otherwise as many as a page
+    /// draws.
     pub fn frames(&self) -> usize {
         if self.states || self.vtu { usize::MAX } else { PICTURES }
     }
@@ -111,7 +111,7 @@ pub fn write(
     let start = Instant::now();
     check(results)?;
     let (t, modes) = (results.states(), results.mode_shapes());
-    // Drawn before anything is written: what cannot be drawn leaves nothing behind.
+    // Drawn before anything is written, so that a failure to draw leaves no files behind.
     #[cfg(feature = "report")]
     let figures = figures::figures(results)?;
     #[cfg(feature = "report")]
@@ -205,7 +205,7 @@ fn check(results: &Results) -> Result<(), OutputError> {
     }
     for shape in t.run.undeformed.iter().chain(&t.last) {
         let values = [&shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
-        // Section forces belong to states under load alone.
+        // Only states under load have section forces.
         let forces = [&shape.axial_force, &shape.shear_force, &shape.bending_moment];
         for values in values.into_iter().chain(forces.into_iter().filter(|forces| !forces.is_empty())) {
             fits(&|| format!("values along beam `{}`", shape.beam), shape.s.len(), values.len())?;

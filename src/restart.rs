@@ -1,10 +1,10 @@
 //! A state saved by one run, from which a motion may start.
 //!
 //! A motion of the same model by the same integrator goes on bit for bit as if it had not been
-//! interrupted: the file holds what the integrator carries from step to step, in decimal digits
-//! that give back the same numbers. Where the end of a run, or an event, cut a step short, that is
-//! kept as it was before this step, which is taken once more as a whole; what the run has reported
-//! already is not reported again.
+//! interrupted: the file holds the integrator's data that are carried from step to step, in decimal
+//! digits that give back the same numbers. Where the end of a run, or an event, cut a step short,
+//! these data are saved as they were before this step, which is then taken once more in full;
+//! results that the run has reported already are not reported again.
 //!
 //! Another scene may start from the state too, with other loads, supports or another integrator,
 //! and a motion may start at rest in the equilibrium that a static run found. Its beams must be the
@@ -29,7 +29,7 @@ pub struct SavedState {
     format: u32,
     /// SHA-256 of what follows, as compact JSON.
     sha256: String,
-    /// What is saved.
+    /// The data that are saved.
     saved: Saved,
 }
 
@@ -37,15 +37,15 @@ pub struct SavedState {
 #[serde(deny_unknown_fields)]
 struct Saved {
     beams: Vec<SavedBeam>,
-    /// SHA-256 of all that decides on the motion; empty where there was none.
+    /// SHA-256 of all that determines the motion; empty if there was no motion.
     motion: String,
     /// Beam and arc length of each angle of the states.
     directions: Vec<(usize, f64)>,
-    /// The state, and what the integrator carries.
+    /// The state, and the integrator's data.
     checkpoint: Checkpoint,
 }
 
-/// What must be the same where a state is taken up.
+/// The data of a beam that must be the same where a state is taken up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedBeam {
@@ -70,7 +70,7 @@ pub enum RestartError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Cause of the failure.
         cause: std::io::Error,
     },
     /// The file is not a saved state.
@@ -81,16 +81,16 @@ pub enum RestartError {
     Parse {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Cause of the failure.
         cause: serde_json::Error,
     },
-    /// The format is another.
+    /// The file has another format.
     #[error("the saved state has format {found}, and this version reads format {FORMAT}")]
     #[diagnostic(help(
         "run the scene that made it again with this version, to the same time: its directory then has a new `state.json`"
     ))]
     Format {
-        /// What was found.
+        /// The format found.
         found: u32,
     },
     /// The file is not as it was written.
@@ -102,7 +102,7 @@ pub enum RestartError {
         /// The file.
         path: PathBuf,
     },
-    /// The beams are others.
+    /// The scene has other beams.
     #[error("the saved state does not fit this scene: {what}")]
     #[diagnostic(help(
         "the beams must have the same names, centrelines, discretisations, nodes and sections in both scenes; supports, loads, joints and the integrator may differ"
@@ -144,7 +144,7 @@ fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// A checksum of all of a model that decides on how a motion goes on, and of the integrator.
+/// A checksum of the integrator and of all of a model that determines how a motion goes on.
 pub(crate) fn fingerprint(model: &Model, integrator: Integrator) -> String {
     let Model { beams, supports, joints, parts, .. } = model;
     sha256(format!("{beams:?} {supports:?} {joints:?} {parts:?} {integrator:?}").as_bytes())
@@ -152,7 +152,7 @@ pub(crate) fn fingerprint(model: &Model, integrator: Integrator) -> String {
 
 impl Saved {
     fn sha256(&self) -> String {
-        // A number that is none has no JSON, and no file.
+        // A state without a JSON form cannot be written to a file either.
         sha256(&serde_json::to_vec(self).unwrap_or_default())
     }
 }
@@ -197,8 +197,8 @@ impl SavedState {
         Ok(state)
     }
 
-    /// What is saved, if it belongs to the beams of `model`, and whether the motion of this
-    /// `fingerprint` goes on: any other starts from the state alone.
+    /// The saved checkpoint, if it belongs to the beams of `model`, and whether the motion of this
+    /// `fingerprint` goes on; any other motion starts from the state alone.
     ///
     /// # Errors
     /// [`RestartError::Mismatch`] naming the first difference.
@@ -236,7 +236,7 @@ impl SavedState {
             }
         }
         let mut checkpoint = self.saved.checkpoint.clone();
-        // Angles at the probes of this scene; one where none was before is counted from now on.
+        // Angles at the probes of this scene; a new probe counts its turns from now on.
         let there = &self.saved.directions;
         for state in [&mut checkpoint.state].into_iter().chain(&mut checkpoint.cut) {
             let known = |place| state.angles.get(there.iter().position(|there| *there == place)?).copied();
@@ -258,7 +258,7 @@ impl SavedState {
         let Checkpoint { method, memory, step, last_ratio, origin: (origin, _), .. } = &checkpoint;
         let positive = |v: f64| v.is_finite() && v > 0.0;
         let sound = positive(*step) && positive(*last_ratio) && origin.is_finite();
-        // Where no method is named none has left anything.
+        // Without the name of a method there is no memory of one.
         if !(method.is_empty() || sound && memory.is_finite()) {
             return mismatch("what its integrator carries from step to step is no sound number".into());
         }
@@ -305,7 +305,7 @@ mod tests {
         }
     }
 
-    /// Would catch a number of a saved state that nothing looks at: with each out of order in turn,
+    /// Would catch a number of a saved state that is not checked: with each out of order in turn,
     /// the state is refused.
     #[test]
     fn no_number_of_a_state_is_taken_unseen() {
@@ -348,8 +348,8 @@ mod tests {
             change(&mut state.saved.checkpoint);
             let refused = taken(&state, ARM, true).expect_err("an unsound memory");
             assert!(refused.contains("no sound number"), "{i}: {refused}");
-            // Another motion starts from the state alone, and so does one whose method has left
-            // nothing.
+            // Another motion starts from the state alone, and so does one without the memory of a
+            // method.
             let (other, same) = taken(&state, ARM, false).expect("the state is sound");
             assert_eq!(
                 (other.state, other.step, same),
@@ -387,7 +387,7 @@ mod tests {
             let refused = taken(&state, &text, false).expect_err(part);
             assert!(refused.contains(part), "{part} in {refused}");
         }
-        // Of an equilibrium the mass may be unknown.
+        // The mass may be unknown in an equilibrium.
         let mut massless = state;
         massless.saved.beams[0].mass = None;
         assert!(taken(&massless, ARM, false).is_ok());

@@ -1,4 +1,4 @@
-//! What an analysis leaves: a [`Trajectory`] of statics and of motions, [`Vibrations`] or
+//! The results of an analysis: a [`Trajectory`] of statics and of motions, [`Vibrations`] or
 //! [`CriticalLoads`]. Output and verification read nothing else.
 
 mod modes;
@@ -14,7 +14,7 @@ pub use crate::system::Energy;
 
 use serde::Serialize;
 
-/// Centrelines that are enough for a moving picture.
+/// Number of centrelines that is enough for an animation.
 pub const PICTURES: usize = 400;
 
 /// The results of any analysis.
@@ -31,14 +31,14 @@ pub enum Results {
 }
 
 impl Results {
-    /// What is to be said of the run as a whole.
+    /// Information on the run as a whole.
     pub fn run(&self) -> &Run {
         &self.states().run
     }
 
-    /// The states that were computed: all records of statics and dynamics; the equilibrium about
-    /// which vibrations are small, without records where that is the stress-free state; without
-    /// records the state of which the critical loads are.
+    /// The computed states. Statics and dynamics: all records. Modal analysis: the equilibrium
+    /// about which vibrations are small, without records if it is the stress-free state. Buckling:
+    /// the state to which the critical loads belong, without records.
     pub fn states(&self) -> &Trajectory {
         match self {
             Self::Trajectory(trajectory) => trajectory,
@@ -102,29 +102,28 @@ impl From<CriticalLoads> for Results {
     }
 }
 
-/// What every analysis says of itself.
+/// Information that every analysis gives on itself.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Run {
     /// The scene's title.
     pub title: String,
     /// Kind of analysis.
     pub analysis: AnalysisKind,
-    /// Whether it reaches as far as was asked for: not where the run was stopped, or found no way
-    /// on.
+    /// Whether it reached its end: not if the run was stopped or the computation failed.
     pub complete: bool,
     /// Unknowns after supports are eliminated, plus multipliers.
     pub degrees_of_freedom: usize,
-    /// Lines for the reader: what was simulated and how (name, value).
+    /// Lines for the reader: the simulated model and its settings (name, value).
     pub settings: Vec<(String, String)>,
     /// The stress-free shape of each beam.
     pub undeformed: Vec<Shape>,
     /// Lines of the ground that belong in a picture: borders of obstacles.
     pub outlines: Vec<Vec<[f64; 2]>>,
-    /// What the user should know: instabilities met, with the load factor.
+    /// Warnings for the user: instabilities met, with the load factor.
     pub warnings: Vec<String>,
-    /// Counts.
+    /// Counts of steps, iterations and factorisations.
     pub statistics: Statistics,
-    /// Where the time went.
+    /// Wall times of the parts of the run.
     pub seconds: Seconds,
 }
 
@@ -150,7 +149,6 @@ pub struct Seconds {
     pub build: f64,
     /// The solution itself.
     pub solve: f64,
-    /// Looking at the states (probes, shapes, frames), and files so far as written when the summary
-    /// is.
+    /// Evaluating the states (probes, shapes, frames), and writing the files up to the summary.
     pub write: f64,
 }

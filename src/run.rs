@@ -19,12 +19,12 @@ use crate::results::{PICTURES, Results, Seconds, Statistics, Trajectory};
 use crate::system::{Inventory, System};
 use std::time::{Duration, Instant};
 
-/// How far a computation is.
+/// How far a computation has got.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// Load factor or time \[s\] reached.
     pub parameter: f64,
-    /// Where it ends.
+    /// Load factor or time \[s\] at which it ends.
     pub target: f64,
     /// The next step.
     pub step: f64,
@@ -37,7 +37,7 @@ pub struct Progress {
 pub enum Control {
     /// Go on.
     Continue,
-    /// End with what has been computed.
+    /// End with the results so far.
     Stop,
 }
 
@@ -58,7 +58,7 @@ pub fn inspect(model: &Model, analysis: &Analysis) -> Result<Inventory, RunError
     Ok(System::build(model, needs(analysis))?.inventory())
 }
 
-/// The same, with the time that each effect and the linear algebra take.
+/// [`inspect`], with the time that each effect and the linear algebra take.
 ///
 /// # Errors
 /// As [`inspect`].
@@ -67,7 +67,7 @@ pub fn measure(model: &Model, analysis: &Analysis) -> Result<Inventory, RunError
     Ok(System::build(model, needs(analysis))?.measured_inventory())
 }
 
-/// Takes the states from which a motion could go on, every so often by the clock.
+/// Receives states from which a motion can be continued, at intervals of wall time.
 #[derive(Clone, Copy)]
 pub struct Checkpointing<'k> {
     /// Wall time between them.
@@ -76,17 +76,16 @@ pub struct Checkpointing<'k> {
     pub take: &'k dyn Fn(&SavedState),
 }
 
-/// What a run takes besides a model and an analysis.
+/// Options of a run besides the model and the analysis.
 pub struct Options<'o> {
-    /// A saved state from which a motion starts: it lasts for its duration from the time of that
-    /// state on. Supports that follow no law of time hold a beam where the state has it.
+    /// A saved state from which a motion starts; its duration counts from the time of that state.
+    /// Supports without a law of time fix a beam where it is in the state.
     pub start: Option<&'o SavedState>,
     /// Called after every step.
     pub observer: Option<Observer<'o>>,
     /// Leaves states on the way, from which a motion can go on.
     pub checkpoints: Option<Checkpointing<'o>>,
-    /// Of so many records, evenly, the centrelines are kept: [`PICTURES`] unless this says
-    /// otherwise.
+    /// Number of records, evenly spread, whose centrelines are kept: [`PICTURES`] by default.
     pub frames: usize,
 }
 
@@ -97,18 +96,18 @@ impl Default for Options<'_> {
 }
 
 impl Options<'_> {
-    /// Refuses a start where nothing moves.
+    /// Refuses a saved state for an analysis without motion.
     fn refuses_a_start(&self, analysis: &'static str) -> Result<(), RunError> {
         self.start.map_or(Ok(()), |_| Err(RestartError::Analysis { analysis }.into()))
     }
 }
 
-/// An analysis, with the type of what it finds.
+/// An analysis, with the type of its results.
 pub trait Solve {
-    /// What it finds.
+    /// The results of the analysis.
     type Results;
 
-    /// Analyses a model.
+    /// Solves a model by this analysis.
     ///
     /// # Errors
     /// As [`Model::solve_with`].
@@ -124,7 +123,7 @@ impl Model {
         self.solve_with(analysis, Options::default())
     }
 
-    /// The same with a start, an observer, or checkpoints.
+    /// [`Self::solve`] with a start, an observer, or checkpoints.
     ///
     /// # Errors
     /// As [`Self::solve`], and where the saved state does not fit.
@@ -133,7 +132,7 @@ impl Model {
     }
 }
 
-/// Whichever analysis a scene asks for.
+/// The analysis of a scene, of any kind.
 impl Solve for Analysis {
     type Results = Results;
 
@@ -150,8 +149,8 @@ impl Solve for Analysis {
 /// Asks the observer after every step.
 struct Watch<'o> {
     observer: Option<Observer<'o>>,
-    /// Whether nobody knows beforehand where the computation ends: then it is interrupted wherever
-    /// it is stopped.
+    /// Whether the end of the computation is not known beforehand: to stop it anywhere is then an
+    /// interruption.
     open: bool,
     /// Whether the observer has stopped a computation that was not at its end.
     stopped: bool,
@@ -197,15 +196,15 @@ impl Stopwatch {
         self.seconds.solve += self.lap();
     }
 
-    /// What came since then was looking at the states.
+    /// Ends the measurement; the time since the last part was spent on evaluating the states.
     fn finish(mut self) -> Seconds {
         self.seconds.write += self.lap();
         self.seconds
     }
 }
 
-/// Says of results, whole or partial, how long they took and whether they were stopped; `states`
-/// are those among whole results.
+/// Adds to results, whole or partial, how long they took and whether they were stopped. `states`
+/// gives the states of whole results.
 fn timed<R>(
     mut outcome: Result<R, RunError>,
     states: fn(&mut R) -> &mut Trajectory,

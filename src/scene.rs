@@ -4,7 +4,8 @@
 //! through
 //!
 //! ```text
-//! text ──syntax──► tables ──keys, types, units──► tables with spans ──cross-field rules──► Model + Analysis
+//! text ──syntax──► tables ──keys, types, units──► tables with spans
+//!                                                 └──cross-field rules──► Model + Analysis
 //! ```
 //!
 //! and every fault on the way names file, line and column, what was found, and what is legal.
@@ -46,8 +47,8 @@ pub use schema::schema;
 pub use to_analysis::{ARC_LENGTH_MAX_POINTS, DYNAMIC_RECORDS, MAX_RECORDS, MAX_STEPS};
 pub use to_basis::{MAX_GAUSS_POINTS, MAX_MEMORY, MAX_NEIGHBOURS, MAX_NODES};
 
-/// Longest scene file that is read \[bytes\]: more than 10⁷ node places, and a bound for what is no
-/// file at all.
+/// Longest scene file that is read \[bytes\]: it has room for more than 10⁷ places of nodes, and it
+/// is a bound for endless input.
 const LONGEST: u64 = 1 << 29;
 
 /// A checked scene.
@@ -109,7 +110,7 @@ impl Scene {
     /// This scene with further `overrides`, of the form that [`load`](Self::load) takes.
     ///
     /// # Errors
-    /// Where an override has no place in the scene, or what comes of it is not legal.
+    /// Where an override has no place in the scene, or the result is not legal.
     pub fn with(&self, overrides: &[String]) -> Result<Self, SceneError> {
         Self::read(&self.name, &self.text, overrides)
     }

@@ -63,7 +63,7 @@ pub struct SweepProgress {
     pub finished: usize,
     /// Runs of this part.
     pub runs: usize,
-    /// Those that have not been solved, of the ones that finished now.
+    /// Runs that this call has finished without solving them.
     pub unsolved: usize,
 }
 
@@ -102,7 +102,7 @@ impl Sweep {
         }
     }
 
-    /// The runs.
+    /// The grid of the runs.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
@@ -125,7 +125,7 @@ impl Sweep {
         let stopped = observer(&progress) == Control::Stop;
         let collector = Mutex::new(Collector { journal, progress, observer, stopped });
         let lock = || collector.lock().unwrap_or_else(PoisonError::into_inner);
-        // A queue: runs differ in length, and who is free takes the next one.
+        // A queue: runs differ in length, and a thread that is free takes the next one.
         self.pool.install(|| {
             left.into_iter().par_bridge().try_for_each(|run| {
                 if lock().stopped {
@@ -162,17 +162,17 @@ impl Sweep {
     }
 }
 
-/// A table needs no centrelines.
+/// Options without centrelines, which a table does not need.
 fn numbers_alone() -> run::Options<'static> {
     run::Options { frames: 0, ..run::Options::default() }
 }
 
-/// Where the threads bring their finished runs.
+/// Collects the finished runs of all threads.
 struct Collector<'o> {
     journal: Journal,
     progress: SweepProgress,
     observer: Observer<'o>,
-    /// No further run is to begin.
+    /// Whether no further run is to begin.
     stopped: bool,
 }
 
@@ -270,7 +270,7 @@ mod tests {
         assert_eq!(numbers(&[1, 2, 3, 5, 8, 9]), "1–3, 5, 8–9");
         let odd: Vec<usize> = (0..100).map(|i| 2 * i + 1).collect();
         assert!(numbers(&odd).ends_with("37, 39, …"), "{}", numbers(&odd));
-        // As many as are shown.
+        // Just as many as are shown.
         assert!(numbers(&odd[..20]).ends_with("37, 39"), "{}", numbers(&odd[..20]));
     }
 
@@ -286,7 +286,7 @@ mod tests {
         Sweep::new(&path, &[], vec![axis], 1).unwrap()
     }
 
-    /// What the observer is told, who ends the sweep after so many calls.
+    /// What the observer is told; it ends the sweep after so many calls.
     fn told(folder: &Path, shard: Shard, calls: usize) -> (Vec<[usize; 3]>, Result<(), SweepError>) {
         let mut told = Vec::new();
         let done = sweep(folder).run(folder, shard, &mut |now: &SweepProgress| {

@@ -1,18 +1,18 @@
-//! The semi-discrete system: coordinates, effects, supports and constraints of a model, ready for a
-//! solver.
+//! The semi-discrete system: the coordinates, effects, supports and constraints of a model, ready
+//! for a solver.
 //!
 //! # Coordinates
-//! Node after node, beam after beam, four each: `[x, y, x', y']`, positions in metres, gradients
-//! without unit. What a support holds stays in this vector and is eliminated in place
-//! ([`supports`]); supports between nodes and joints add one Lagrange multiplier a row
-//! ([`constraints`], [`joint`]), and so does the length of a beam without axial stiffness
+//! Beam after beam and node after node, four coordinates per node: `[x, y, x', y']`, positions in
+//! metres, gradients without unit. Fixed coordinates stay in this vector and are eliminated in
+//! place ([`supports`]). Supports between nodes and joints add one Lagrange multiplier per row
+//! ([`constraints`], [`joint`]), and so do the lengths of beams without axial stiffness
 //! ([`inextensible`]).
 //!
 //! # Equations of statics
 //! ```text
 //! f_int(q) + λ f_load(q) + Bᵀ μ = 0,   g(q, λ) = 0
 //! ```
-//! with the load factor λ ∈ [0, 1]. Loads count as densities of negative work, hence the plus sign.
+//! with the load factor λ ∈ [0, 1]. A load is a density of its negative work, hence the plus sign.
 
 mod actuation;
 pub mod constraints;
@@ -54,28 +54,30 @@ use polar::Polar;
 use reaction::Source;
 use supports::Supports;
 
-/// ω² of a hanging chain, in units of its weight on ρA L²; the lowest is 1.45.
+/// Estimate of ω² of a hanging chain, in units of its weight divided by ρA L²; it is deliberately
+/// below the exact 1.45.
 const CHAIN: f64 = 0.1;
 
-/// Equations of a model.
+/// The equations of a model.
 pub struct System {
     beams: Vec<DiscretizedBeam>,
     nodes: usize,
     blocks: usize,
     terms: Terms,
-    /// Of all loads without a law of their own.
+    /// Amplitude of all loads without a law of their own.
     amplitude: Amplitude,
-    /// The sum of those of them that are the same in every state.
+    /// The sum of those of these loads that are the same in every state.
     constant_load: Vec<f64>,
     supports: Supports,
-    /// Gradients that a motion has in polar coordinates.
+    /// Gradients that are described by polar coordinates in a motion.
     polar: Polar,
     constraints: Vec<Constraint>,
-    /// Beams that would be strained or curved by themselves.
+    /// The actuated beams.
     actuated: Vec<actuation::Actuated>,
-    /// Where supports and joints act.
+    /// Per support, and then per joint: where it acts.
     sources: Vec<Source>,
-    /// Where the last constraints keep the length of inextensible beams.
+    /// Per constraint row of an inextensible beam, which are the last rows: where its multiplier is
+    /// the axial force.
     lengths: Vec<inextensible::Row>,
     reference: Vec<f64>,
     length: f64,
@@ -83,16 +85,17 @@ pub struct System {
     round_off: f64,
     lowest_vibration: f64,
     has_strings: bool,
-    /// Motions of the beams that neither supports, joints nor springs resist; in statics.
+    /// Number of rigid motions that neither supports, joints nor springs resist; counted in statics
+    /// only.
     rigid_motions: usize,
 }
 
 impl System {
-    /// Builds the equations of `model`: shape functions, tables of the effects that it names,
-    /// supports.
+    /// Builds the equations of `model`: shape functions, tables of the effects that the model
+    /// contains, supports and constraints.
     ///
     /// # Errors
-    /// [`BuildError`] where the model contradicts itself or its shape functions cannot be built.
+    /// [`BuildError`] if the model contradicts itself or its shape functions cannot be built.
     pub fn build(model: &Model, needs: Needs) -> Result<Self, BuildError> {
         if model.beams.is_empty() {
             return Err(BuildError::NoBeam);
@@ -119,8 +122,8 @@ impl System {
             let section = &beam.section;
             let per_length = section.bending_stiffness.map_or(0.0, |ei| ei / curve.length().powi(2));
             stiffness = stiffness.max(section.axial_stiffness.unwrap_or(per_length));
-            // A position is stored to ε L; a cubic element resists that with EA/h, and with 12
-            // EI/h³ across.
+            // A position is stored with the round-off ε L. A cubic element turns this into a force
+            // with its stiffness EA/h, or 12 EI/h³ across.
             let spacing = basis.nodes().windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
             let axial = section.axial_stiffness.unwrap_or(0.0);
             let bending = 12.0 * section.bending_stiffness.unwrap_or(0.0) / spacing.powi(2);
@@ -175,7 +178,7 @@ impl System {
         system.lengths = lengths;
         system.constraints.extend(rows);
         if system.stiffness == 0.0 {
-            // Chains, which nothing but their loads gives a force.
+            // Chains have no stiffness; the scale of their forces is their load.
             let load = system.norm(&system.constant_load);
             system.stiffness = if load > 0.0 { load } else { 1.0 };
             let lightest = model.beams.iter().filter_map(|beam| beam.section.mass_per_length);
@@ -190,16 +193,16 @@ impl System {
         Ok(system)
     }
 
-    /// The arc length of a place on its beam; round-off beyond an end is cut off.
+    /// The arc length of a place on its beam; round-off beyond an end is removed.
     ///
     /// # Errors
-    /// [`BuildError`] naming `what`, if the place is off the beam.
+    /// [`BuildError`] naming `what`, if the place is not on the beam.
     pub fn arc_length(&self, what: &'static str, at: Place) -> Result<f64, BuildError> {
         self.part(what, at).map(|(_, s)| s)
     }
 
-    /// Beam and arc length \[m\] of the node to which an unknown belongs; of the first node for a
-    /// multiplier.
+    /// Index of the beam and arc length \[m\] of the node to which an unknown belongs; those of the
+    /// first node for a multiplier.
     pub fn place_of(&self, unknown: usize) -> (usize, f64) {
         let node = unknown / 4;
         let beams = self.beams.iter().enumerate().rev();
@@ -227,8 +230,8 @@ impl System {
         Ok(view.fields(&self.reference))
     }
 
-    /// How many rigid motions supports and joints leave to the beams, none where a spring may
-    /// resist them.
+    /// Number of rigid motions that supports and joints leave to the beams; 0 if there are springs,
+    /// which may resist them.
     fn count_rigid_motions(&self, model: &Model) -> Result<usize, BuildError> {
         let of_beams = |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Contact);
         if !self.terms.internal.iter().all(|effect| of_beams(effect.kind())) {
@@ -247,18 +250,17 @@ impl System {
         Ok(Freedom::new(model, self.length, position).motions().len())
     }
 
-    /// The beams' parts.
+    /// The discretised beams.
     pub fn beams(&self) -> &[DiscretizedBeam] {
         &self.beams
     }
 
-    /// Effects that the model names and that cannot take part in the analysis, with their beams'
-    /// names.
+    /// Effects of the model that the analysis leaves out, with the names of their beams.
     pub fn left_out(&self) -> impl Iterator<Item = (Kind, &str)> {
         self.terms.left_out.iter().map(|(kind, beam)| (*kind, self.beams[*beam].name.as_str()))
     }
 
-    /// Number of coordinates, held ones included.
+    /// Number of coordinates, including fixed ones.
     pub fn coordinates(&self) -> usize {
         4 * self.nodes
     }
@@ -268,7 +270,7 @@ impl System {
         self.constraints.len()
     }
 
-    /// Unknowns: coordinates that are not held, and multipliers.
+    /// Number of unknowns: coordinates that are not fixed, and multipliers.
     pub fn degrees_of_freedom(&self) -> usize {
         self.coordinates() - self.supports.count() + self.multipliers()
     }
@@ -283,48 +285,48 @@ impl System {
         self.length
     }
 
-    /// Largest EA \[N\], the scale of internal forces; of inextensible beams EI/L², of chains their
-    /// weight.
+    /// The scale of internal forces \[N\]: the largest EA, or EI/L² of inextensible beams, or the
+    /// load of chains.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
 
-    /// By how much the internal forces on a node change when a position changes by its round-off
-    /// \[N\]: ε max(EA, 12 EI/h²) L/h with the smallest spacing h of nodes.
+    /// The change of the internal forces on a node when a position changes by its round-off \[N\]:
+    /// ε max(EA, 12 EI/h²) L/h with the smallest node spacing h.
     pub fn round_off(&self) -> f64 {
         self.round_off
     }
 
-    /// The order of magnitude of the lowest vibration's ω² \[1/s²\]: EI/(ρA L⁴), or for a string a
-    /// small part of EA/(ρA L²), of a chain a part of its load on ρA L².
+    /// The order of magnitude of the lowest vibration's ω² \[1/s²\]: EI/(ρA L⁴); for a string a
+    /// small fraction of EA/(ρA L²); for a chain a fraction of its load divided by ρA L².
     pub fn lowest_vibration_scale(&self) -> f64 {
         self.lowest_vibration
     }
 
-    /// The supports that are eliminated.
+    /// The supports at nodes, whose coordinates are eliminated.
     pub fn supports(&self) -> &Supports {
         &self.supports
     }
 
-    /// The gradients that are polar in a motion.
+    /// The gradients that are described by polar coordinates in a motion.
     pub fn polar(&self) -> &Polar {
         &self.polar
     }
 
-    /// Whether the stress-free structure can move without resistance: strings, and beams that
-    /// supports and joints leave a rigid motion.
+    /// Whether the stress-free structure can move without resistance: it contains strings, or
+    /// supports and joints leave its beams a rigid motion.
     pub fn is_floppy(&self) -> bool {
         self.has_strings || self.rigid_motions > 0
     }
 
-    /// Rigid motions that supports and joints leave to beams that all bend, in statics; none where
-    /// there are strings.
+    /// Number of rigid motions that supports and joints leave in statics, if all beams have a
+    /// bending stiffness; `None` if there are strings.
     pub fn rigid_motions(&self) -> Option<usize> {
         (!self.has_strings).then_some(self.rigid_motions)
     }
 
-    /// Per coordinate EA/L² times the share w of the length that is the node's, for gradients times
-    /// w²/10: a mass matrix's diagonal \[N/m, N m\].
+    /// Weights of the coordinates, which resemble the diagonal of a mass matrix \[N/m, N m\]: EA/L²
+    /// times the length w that belongs to the node, and w²/10 times as much for gradients.
     pub fn weights(&self) -> Vec<f64> {
         let scale = self.stiffness / self.length.powi(2);
         let of_beam = |part: &DiscretizedBeam| {
@@ -340,22 +342,21 @@ impl System {
         self.beams.iter().flat_map(of_beam).collect()
     }
 
-    /// Size of a vector of forces, those on gradients per beam length \[N\].
+    /// Norm of a vector of forces \[N\]; forces on gradients are divided by the beam length.
     pub fn norm(&self, force: &[f64]) -> f64 {
         let square = |[x, y]: [f64; 2]| x * x + y * y;
         let squares = nodes(force).map(|f| square(f.position) + square(f.gradient) / self.length.powi(2));
         squares.sum::<f64>().sqrt()
     }
 
-    /// Per coordinate, whether a support at a node holds it, in that support's frame.
+    /// Per coordinate, whether a support at a node fixes it, in that support's frame.
     pub fn fixed(&self) -> Vec<bool> {
         let mut fixed = vec![false; self.coordinates()];
         self.supports.eliminated().for_each(|i| fixed[i] = true);
         fixed
     }
 
-    /// The supports and joints that are constraint rows, and the lengths that inextensible beams
-    /// keep.
+    /// The constraint rows: of supports between nodes, of joints, and of inextensible beams.
     pub fn constraints(&self) -> &[Constraint] {
         &self.constraints
     }
@@ -367,7 +368,7 @@ impl System {
             && self.terms.internal.iter().chain(loads).all(|effect| effect.is_symmetric())
     }
 
-    /// A zero tangent of the right pattern.
+    /// A zero tangent with the right pattern.
     pub fn matrix(&self) -> Matrix {
         Matrix::zeros(self.nodes, self.blocks, self.is_symmetric())
     }

@@ -1,16 +1,16 @@
-//! What acts on a beam, by arc length: forces and couples, concentrated and spread, and their sum
-//! up to a cut.
+//! The forces and couples that act on a beam, concentrated or distributed, by arc length, and their
+//! sum up to a cut.
 //!
-//! A density W(r, r', r'') acts on a rigid motion δr = δa + δθ J r of the piece of the beam where
-//! it is summed by
+//! Consider a rigid motion δr = δa + δθ J r of the piece of beam over which a density W(r, r', r'')
+//! is summed. By its virtual work, the density acts on that piece with
 //!
 //! ```text
 //! force   −∂W/∂r        moment about the origin   −(r × ∂W/∂r + r' × ∂W/∂r' + r'' × ∂W/∂r'')
 //! ```
 //!
-//! per length. Of what does not change when the beam is turned and moved both vanish in every
-//! point: elasticity, its actuation and damping take no part, without having to be named. What is
-//! left balances the section forces at the cut.
+//! per length. Both vanish at every point for a density that does not change when the beam is
+//! translated and rotated. Elasticity, its actuation and its damping therefore drop out without
+//! special treatment, and the remaining actions balance the section forces at the cut.
 
 use nalgebra::Vector2;
 use std::ops::{AddAssign, Mul};
@@ -25,18 +25,18 @@ pub struct Action {
 }
 
 impl Action {
-    /// A force at a place.
+    /// The action of a force at the position `place`.
     pub fn at(place: Vector2<f64>, force: Vector2<f64>) -> Self {
         Self { force, moment: place.perp(&force) }
     }
 
-    /// A couple.
+    /// The action of a couple.
     pub fn couple(moment: f64) -> Self {
         Self { moment, ..Self::default() }
     }
 
-    /// What the derivatives `gradient` of a density by the fields of the given `orders` do, which
-    /// are `fields` in the present state.
+    /// The action of a density whose derivatives by its fields are `gradient`; `orders` are the
+    /// derivative orders of the fields and `fields` their values in the present state.
     pub fn of_density<const M: usize>(
         orders: [usize; M],
         fields: &[Vector2<f64>; M],
@@ -67,23 +67,23 @@ impl Mul<f64> for Action {
     }
 }
 
-/// On which side of a point a cut is made.
+/// The side of a point on which a cut is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Just before it: what acts at the point is beyond the cut.
+    /// Just before the point: a force at the point acts beyond the cut.
     Left,
-    /// Just behind it.
+    /// Just after the point.
     Right,
 }
 
-/// What acts on one beam.
+/// All actions on one beam.
 #[derive(Clone, Debug, Default)]
 pub struct Actions {
     points: Vec<(f64, Action)>,
     spread: Vec<Spread>,
 }
 
-/// What one density does, from cell to cell in the order of their arc lengths.
+/// The distributed action of one density, cell after cell in the order of arc length.
 #[derive(Clone, Debug, Default)]
 struct Spread {
     cells: Vec<Cell>,
@@ -96,25 +96,25 @@ struct Spread {
 struct Cell {
     start: f64,
     end: f64,
-    /// Of all cells before.
+    /// Sum over all cells before this one.
     before: Action,
 }
 
-/// Distance of two places that are one, in beam lengths.
+/// Distance below which two places are the same, in beam lengths.
 const SAME: f64 = 1e-9;
 
 impl Actions {
-    /// A force or a couple at `s`.
+    /// Adds a force or a couple at the arc length `s`.
     pub fn add_point(&mut self, s: f64, action: Action) {
         self.points.push((s, action));
     }
 
-    /// Actions per length at the points of a quadrature rule, cell after cell: (s, weight, action),
-    /// `points` of them in a cell.
+    /// Adds actions per length at the points of a quadrature rule, cell after cell, as (s, weight,
+    /// action), with `points` of them in a cell.
     pub fn add_spread(&mut self, points: usize, values: Vec<(f64, f64, Action)>) {
         let mut before = Action::default();
         let cells = values.chunks(points.max(1)).map(|cell| {
-            // A rule that is exact for 1 and s tells where its cell begins and ends.
+            // A rule that is exact for 1 and s determines where its cell begins and ends.
             let length: f64 = cell.iter().map(|(_, weight, _)| weight).sum();
             let middle = cell.iter().map(|(s, weight, _)| s * weight).sum::<f64>() / length;
             let here = Cell { start: middle - 0.5 * length, end: middle + 0.5 * length, before };
@@ -125,7 +125,8 @@ impl Actions {
         self.spread.push(Spread { cells, points: points.max(1), values });
     }
 
-    /// Places between the ends 0 and `length` where something acts in a point, rising.
+    /// Arc lengths strictly between the ends 0 and `length` at which a concentrated action acts, in
+    /// rising order.
     pub fn jumps(&self, length: f64) -> Vec<f64> {
         let inner = SAME * length..(1.0 - SAME) * length;
         let acting = self.points.iter().filter(|(_, action)| *action != Action::default());
@@ -135,8 +136,8 @@ impl Actions {
         places
     }
 
-    /// The sum of all that acts between the beam's start and a cut on one side of `s`; `length` is
-    /// that of the beam.
+    /// The sum of all actions between the beam's start and a cut on the given side of `s`; `length`
+    /// is the length of the beam.
     pub fn until(&self, s: f64, side: Side, length: f64) -> Action {
         let mut sum = Action::default();
         let same = SAME * length;
@@ -161,8 +162,9 @@ impl Spread {
             values.iter().for_each(|(_, weight, action)| sum += *action * *weight);
             return sum;
         }
-        // The rule on the part of the cell before the cut, for the polynomial through the values at
-        // the cell's points.
+        // The action per length is interpolated by the polynomial through its values at the cell's
+        // points, and this polynomial is integrated by the same rule over the part of the cell
+        // before the cut.
         for (s, weight, _) in values {
             let at = start + part * (s - start);
             for (k, (here, _, action)) in values.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! How parts become the terms of the equations.
+//! The assembly of parts into the terms of the equations.
 
 use super::{
     ActingLoad, Amplitude, BuildError, ContactEffect, Density, DiscretizedBeam, Dissipation, Extent,
@@ -21,8 +21,9 @@ pub struct Assembly<'a> {
 }
 
 impl<'a> Assembly<'a> {
-    /// Of `beams`, which are `discretized` in that order, with masses \[kg\] at points of them;
-    /// `reference` are the coordinates of the stress-free state.
+    /// An assembly without terms yet. `discretized` lists the discretisations of `beams` in the
+    /// same order, `masses` the masses \[kg\] at points of the beams, and `reference` the
+    /// coordinates of the stress-free state.
     pub fn new(
         beams: &'a [Beam],
         discretized: &'a [DiscretizedBeam],
@@ -33,7 +34,7 @@ impl<'a> Assembly<'a> {
         Self { beams, discretized, reference, masses, needs, terms: Terms::default() }
     }
 
-    /// What the parts have added.
+    /// The terms that the parts have added.
     pub fn finish(self) -> Terms {
         self.terms
     }
@@ -48,12 +49,12 @@ impl<'a> Assembly<'a> {
         &self.masses
     }
 
-    /// What the analysis asks for.
+    /// The kinds of terms that the analysis needs.
     pub fn needs(&self) -> Needs {
         self.needs
     }
 
-    /// A beam, as `what` refers to it.
+    /// Beam number `beam`; `what` names the part that refers to it, for the error.
     ///
     /// # Errors
     /// [`BuildError::NoSuchBeam`].
@@ -62,20 +63,20 @@ impl<'a> Assembly<'a> {
         self.beams.get(beam).ok_or(none)
     }
 
-    /// A beam's shape functions and its place among the coordinates.
+    /// The shape functions of a beam and its position among the coordinates.
     pub fn discretized(&self, beam: usize) -> &'a DiscretizedBeam {
         &self.discretized[beam]
     }
 
-    /// A rule that integrates products of two shape functions: exact for the cable element's mass
+    /// A rule for integrals of products of two shape functions: exact for the cable element's mass
     /// matrix (degree 6).
     pub fn mass_rule(&self, beam: usize) -> Quadrature {
         let points = self.beams[beam].gauss_points;
         Quadrature::Gauss(points.stretch.max(points.bend).max(4))
     }
 
-    /// Something with an energy: springs, foundations, contacts, a beam's own elasticity. `density`
-    /// receives the fields of the stress-free state at the points.
+    /// Adds an effect with an energy: springs, foundations, contacts, a beam's own elasticity.
+    /// `density` receives the fields of the stress-free state at the points.
     ///
     /// # Errors
     /// [`BuildError`] where the extent is off the beam, naming the kind.
@@ -90,7 +91,8 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// A load: grows with the load factor in statics; acts in full, or by `law`, in a motion.
+    /// Adds a load. In statics it grows with the load factor; in a motion it acts in full, or by
+    /// `law`.
     ///
     /// # Errors
     /// As [`Self::elastic`], and where there is a law of time in an analysis without time.
@@ -111,8 +113,8 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// A kinetic energy, quadratic in the velocities, with a constant matrix; nothing in an
-    /// analysis without inertia.
+    /// Adds a kinetic energy, quadratic in the velocities, with a constant matrix; adds nothing in
+    /// an analysis without inertia.
     ///
     /// # Errors
     /// As [`Self::elastic`].
@@ -126,15 +128,15 @@ impl<'a> Assembly<'a> {
             let effect = self.integral(kind, extent, D::ORDERS, |_| density)?;
             self.terms.inertia.push(Box::new(effect));
         } else if !matches!(kind, Kind::Inertia | Kind::PointMass) {
-            // Of masses there is the weight.
+            // Masses are not reported as left out, because they still act by their weight.
             self.terms.left_out.push((kind, extent.beam()));
         }
         Ok(())
     }
 
-    /// A kinetic energy, quadratic in the velocities, with a matrix that follows the state:
+    /// Adds a kinetic energy, quadratic in the velocities, whose matrix depends on the state:
     /// `momentum` is its derivative by the rates of the fields, and `rate` the force of inertia of
-    /// fields that do not accelerate. Nothing in an analysis without inertia.
+    /// fields without acceleration. Adds nothing in an analysis without inertia.
     ///
     /// # Errors
     /// As [`Self::elastic`].
@@ -157,7 +159,8 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// A dissipation function; nothing in an analysis without motion, which says so.
+    /// Adds a dissipation function. In an analysis without motion it adds nothing and lists the
+    /// effect as left out.
     ///
     /// # Errors
     /// As [`Self::elastic`].
@@ -176,19 +179,20 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// A contact: an energy that is asked, besides, where it touches.
+    /// Adds a contact: an energy that can also be asked where it touches.
     pub fn contact(&mut self, contact: Arc<dyn ContactEffect>) {
         self.terms.internal.push(Box::new(Arc::clone(&contact)));
         self.terms.contacts.push(contact);
     }
 
-    /// The friction of a contact, which is told its number among those of the system.
+    /// Adds the friction of a contact; `friction` receives its index among all frictions of the
+    /// system.
     pub fn friction(&mut self, friction: impl FnOnce(usize) -> Box<dyn FrictionEffect>) {
         self.terms.friction.push(friction(self.terms.friction.len()));
     }
 
-    /// The turns of a torsion spring with the energy ½ k θ²: `direction` is the density θ, from −π
-    /// to π, of the fields of the stress-free state at the point.
+    /// Adds the energy of the full turns of a torsion spring ½ k θ². `direction` is made from the
+    /// fields of the stress-free state at the point, and is the density θ, from −π to π.
     ///
     /// # Errors
     /// As [`Self::elastic`].
@@ -204,7 +208,7 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// A force whose place moves.
+    /// Adds a force whose position moves along the beam.
     ///
     /// # Errors
     /// [`BuildError::NoTime`] in an analysis without time.
@@ -244,7 +248,7 @@ impl<'a> Assembly<'a> {
     }
 }
 
-/// The fields of the reference state at all points of a table: one `[z_0, z_1, …]` a point.
+/// The fields of the reference state at all points of a table: one array `[z_0, z_1, …]` per point.
 fn reference_fields<const M: usize>(table: &BasisTable, offset: usize, q: &[f64]) -> Vec<[Vector2<f64>; M]> {
     let width = table.width;
     let mut fields = Vec::with_capacity(table.s.len());

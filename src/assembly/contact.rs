@@ -1,9 +1,10 @@
-//! What a system asks of contacts and their friction, beside forces.
+//! The interfaces through which a system uses contacts and their friction, besides forces.
 
 use super::{AcceptedState, Actions, ContactPiece, Effect, InternalVariables, Workspace};
 use crate::linear::Matrix;
 
-/// Control states of a cubic: θ = 0, two between, θ = 1.
+/// A path from one state to another as a cubic of θ ∈ [0, 1]: its four control states, of which the
+/// first is the state at θ = 0 and the last that at θ = 1.
 pub type CubicStates<'q> = [&'q [f64]; 4];
 
 /// A contact of one beam with one obstacle.
@@ -11,15 +12,17 @@ pub trait ContactEffect: Effect {
     /// Number of separate intervals of the beam that touch in the state `q`.
     fn intervals(&self, q: &[f64]) -> usize;
 
-    /// The first part of the way at which the beam touches by more than round-off, if it does.
+    /// The first θ on the path `way` at which the beam touches by more than a negligible depth, if
+    /// it does.
     fn first_touch(&self, way: CubicStates<'_>) -> Option<f64>;
 
-    /// The first part of the way at which the beam is deeper than before by so much of the
-    /// obstacle's thickness that the force on the way is not seen; and, unless it `may_cross`, at
-    /// which it might leave the obstacle on the other side.
+    /// The first θ on the path `way` that conflicts with the obstacle, if there is one: where the
+    /// beam is deeper than at the start by so large a fraction of the obstacle's thickness that a
+    /// step would miss the contact force on the way; and, unless it `may_cross`, where it might
+    /// leave the obstacle on the other side.
     fn conflict(&self, way: CubicStates<'_>, may_cross: bool) -> Option<f64>;
 
-    /// Whether the beam might leave the obstacle on the other side.
+    /// Whether the beam might leave the obstacle on the other side on the path `way`.
     fn crosses(&self, way: CubicStates<'_>) -> bool;
 
     /// Whether anything touches in the state `q`.
@@ -28,18 +31,18 @@ pub trait ContactEffect: Effect {
     }
 }
 
-/// Dry friction of a contact. Its forces depend on the last accepted state too.
+/// Dry friction of a contact. Its forces depend on the state and on the last accepted state.
 pub trait FrictionEffect: Send + Sync {
     /// Index of the beam.
     fn beam(&self) -> usize;
 
-    /// Points, and bytes of its tables.
+    /// Number of points, and bytes of its tables.
     fn size(&self) -> (usize, usize);
 
-    /// `f += ` the forces ∂U/∂q in the state `q`, where `held` was the last.
+    /// `f += ` the forces in the state `q`, where `accepted` is the last accepted state.
     fn add_force(&self, accepted: &AcceptedState, q: &[f64], f: &mut [f64]);
 
-    /// The same, and `k += ` its derivative.
+    /// As [`Self::add_force`], and `k += ` the derivative of the forces.
     fn add_force_and_tangent(
         &self,
         accepted: &AcceptedState,
@@ -50,16 +53,17 @@ pub trait FrictionEffect: Send + Sync {
     );
 
     /// The pieces that touch in the state `q` with their elastic slips, and the energy of these
-    /// \[J\].
+    /// slips \[J\].
     fn slips(&self, accepted: &AcceptedState, q: &[f64]) -> (Vec<ContactPiece>, f64);
 
-    /// `f += ` the forces of slips that are known in the state `q`.
+    /// `f += ` the forces in the state `q` of the elastic slips known from `variables`.
     fn add_force_of(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]);
 
-    /// What these do to their beam in the state `q`.
+    /// Adds to `sum` the actions of these forces on their beam in the state `q`.
     fn add_actions_of(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions);
 
-    /// Whether points slide that can bear more than half of what all can, and then whether against
-    /// friction; `v` are the velocities.
+    /// `None` unless sliding points carry more than half of the largest friction that all touching
+    /// points can carry; otherwise whether the velocities `v` of the sliding points are directed
+    /// against their friction.
     fn sliding(&self, accepted: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool>;
 }

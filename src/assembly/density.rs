@@ -17,15 +17,14 @@ pub trait Density<const M: usize>: Send + Sync {
     /// Whether ∂²W/∂z∂z is symmetric, as it is for everything that has an energy.
     const SYMMETRIC: bool = true;
 
-    /// Whether ∂²W/∂z∂z is more than zero; where it is not, the force is constant and no tangent is
+    /// Whether ∂²W/∂z∂z can differ from zero; if not, the force is constant and no tangent is
     /// assembled.
     const HAS_TANGENT: bool = true;
 
-    /// Whether the force has the potential W; where it has not, its work is summed up along the
-    /// motion.
+    /// Whether the force has the potential W; if not, its work is accumulated along the motion.
     const CONSERVATIVE: bool = true;
 
-    /// W at quadrature point number `point` \[J/m\]; zero for what has no energy.
+    /// W at quadrature point number `point` \[J/m\]; zero for a density without an energy.
     fn energy(&self, point: usize, z: &Gradient<M>) -> f64;
 
     /// ∂W/∂z.
@@ -46,8 +45,8 @@ pub trait Density<const M: usize>: Send + Sync {
         })
     }
 
-    /// `factor` times what [`Self::gradient_and_hessian`] gives for the states z, before and
-    /// change, at four points.
+    /// `factor` times the result of [`Self::gradient_and_hessian`] at four points; `states` are the
+    /// fields z, those of the earlier iterate, and the change.
     #[inline(always)]
     fn gradients_and_hessians(
         &self,
@@ -69,8 +68,8 @@ pub trait Density<const M: usize>: Send + Sync {
         (gradient, from_fn(|m| from_fn(|n| from_fn(|d| from_fn(|e| entry(m, n, d, e))))))
     }
 
-    /// ∂W/∂z and ∂²W/∂z∂z, stress resultants in the latter extrapolated from the iterate `before`
-    /// by the `change` that was computed there.
+    /// ∂W/∂z and ∂²W/∂z∂z. Stress resultants in the latter are extrapolated from the iterate
+    /// `before` by the `change` that was computed there; see [`crate::assembly`].
     fn gradient_and_hessian(
         &self,
         point: usize,
@@ -80,7 +79,7 @@ pub trait Density<const M: usize>: Send + Sync {
     ) -> (Gradient<M>, Hessian<M>);
 }
 
-/// The local fields in one of four points.
+/// The local fields at one of four points.
 #[inline(always)]
 fn lane_of<const M: usize>(z: &[Pair<Lanes>; M], lane: usize) -> Gradient<M> {
     z.map(|pair| Vector2::from(pair.map(|lanes| lanes.to_array()[lane])))

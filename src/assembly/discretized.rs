@@ -1,32 +1,33 @@
-//! A beam among the coordinates of a system.
+//! A discretised beam and its position among the coordinates of a system.
 
 use super::BuildError;
 use crate::basis::Basis;
 
-/// Distance beyond an end or beside a node, per length, that counts as round-off.
+/// Distance from an end or a node, in beam lengths, that counts as round-off.
 const PLACE_ROUND_OFF: f64 = 1e-9;
 
-/// A beam as its shape functions see it, and its place among the coordinates.
+/// The shape functions of a beam, and its position among the coordinates of a system.
 #[derive(Debug)]
 pub struct DiscretizedBeam {
     /// The beam's name.
     pub name: String,
     /// Its shape functions.
     pub basis: Basis,
-    /// Its first node in the system.
+    /// Index of its first node in the system.
     pub first_node: usize,
-    /// Whether the stress-free state is straight to round-off, as the shape functions see it.
+    /// Whether the stress-free state, as interpolated by the shape functions, is straight to
+    /// round-off.
     pub straight: bool,
 }
 
 impl DiscretizedBeam {
-    /// First coefficient in the system: two a node.
+    /// Index of its first coefficient in the system; there are two coefficients per node.
     pub fn offset(&self) -> usize {
         2 * self.first_node
     }
 
-    /// The arc length `s`, where `what` stands; round-off beyond an end and beside a node is cut
-    /// off.
+    /// The arc length `s` with round-off removed: it is moved to an end or a node that is within
+    /// round-off of it. `what` names the item at `s`, for the error.
     ///
     /// # Errors
     /// [`BuildError::OffBeam`].

@@ -1,7 +1,7 @@
 //! Forces that depend on velocity, as derivatives of a dissipation function.
 //!
-//! What takes energy out of a motion (material damping, dashpots, drag, friction) has a dissipation
-//! function R(z, ż), Rayleigh's where it is quadratic in ż, whose derivatives give
+//! Effects that take energy out of a motion (material damping, dashpots, drag) have a dissipation
+//! function R(z, ż), called Rayleigh's if it is quadratic in ż, whose derivatives give
 //!
 //! ```text
 //! force     f_a  = ∫ Σ_m N_a⁽ᵒᵐ⁾ ∂R/∂ż_m ds
@@ -9,10 +9,10 @@
 //! power     P    = f · q̇ ≥ 0, lost
 //! ```
 //!
-//! with z the local fields of the position and ż those of the velocity, and the same tables as a
-//! [`Density`]. The change of f with z is left out of the iteration matrix K + d D + c M: it is
-//! smaller than D/h, h being the step, by the rotation within that step, and would cost the
-//! symmetry.
+//! where z are the local fields of the position and ż those of the velocity, with the same tables
+//! as a [`Density`]. The change of f with z is left out of the iteration matrix K + d D + c M: it
+//! is smaller than D/h, with h the step, by a factor of the rotation within that step, and would
+//! make the matrix unsymmetric.
 
 use super::{Actions, Density, Gradient, Hessian, Integral, Kind, Workspace};
 use crate::linear::Matrix;
@@ -38,7 +38,7 @@ pub trait Dissipation<const M: usize>: Send + Sync {
 ///
 /// Coordinates `q`, velocities `v` and forces `f` are those of the whole system.
 pub trait Damping: Send + Sync {
-    /// What it is.
+    /// The kind of effect.
     fn kind(&self) -> Kind;
 
     /// Index of the beam on which it acts.
@@ -50,14 +50,15 @@ pub trait Damping: Send + Sync {
     /// `d += ∂²R/∂q̇∂q̇`; `f` receives the force.
     fn add_matrix(&self, q: &[f64], v: &[f64], f: &mut [f64], d: &mut Matrix, workspace: &mut Workspace);
 
-    /// What it does to its beam in the state (q, v).
+    /// Adds to `sum` the actions on its beam in the state (q, v).
     fn add_actions(&self, q: &[f64], v: &[f64], sum: &mut Actions);
 
     /// Quadrature points, and bytes of its tables and data.
     fn size(&self) -> (usize, usize);
 }
 
-/// A dissipation function as a density of ż, whose "iterate before" is z.
+/// A dissipation function as a density: its fields are the rates ż, and z is passed in place of the
+/// earlier iterate.
 #[derive(Clone, Debug)]
 pub struct Rayleigh<D>(pub D);
 

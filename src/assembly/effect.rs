@@ -1,23 +1,24 @@
-//! What a system asks of each of the effects that it sums.
+//! The interface through which a system uses each of the effects that it sums.
 
 use super::{Actions, Kind, Workspace};
 use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 
-/// The iterate before the present one, from which stress resultants are extrapolated.
+/// The iterate before the current one, from which stress resultants are extrapolated.
 #[derive(Clone, Copy, Debug)]
 pub struct Earlier<'a> {
     /// Its coordinates.
     pub q: &'a [f64],
-    /// The increment computed there: linear, whatever the present iterate was made of it.
+    /// The increment that the linear system gave there; the current iterate may have been computed
+    /// from it with finite rotations.
     pub increment: &'a [f64],
 }
 
-/// A density summed over a beam: what a system is made of.
+/// A density summed over a beam; a system is a sum of such effects.
 ///
 /// Coordinates `q` and forces `f` are those of the whole system, `[x, y, x', y']` node after node.
 pub trait Effect: Send + Sync {
-    /// What it is.
+    /// The kind of effect.
     fn kind(&self) -> Kind;
 
     /// Index of the beam on which it acts.
@@ -26,20 +27,20 @@ pub trait Effect: Send + Sync {
     /// Whether its tangent is symmetric.
     fn is_symmetric(&self) -> bool;
 
-    /// Whether its force is the same in all states.
+    /// Whether its force is the same in every state.
     fn is_constant(&self) -> bool;
 
     /// Whether its force has a potential.
     fn is_conservative(&self) -> bool;
 
-    /// U \[J\].
+    /// The energy U \[J\].
     fn energy(&self, q: &[f64]) -> f64;
 
     /// `f += factor · ∂U/∂q`.
     fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]);
 
-    /// The same in the states of four lanes, each with its own factor; `scratch` has two vectors of
-    /// coordinates.
+    /// As [`Self::add_force`] for four states, one per lane, each with its own factor; `scratch`
+    /// holds two vectors of the length of `q`.
     fn add_forces(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
         let factors = factors.to_array();
         lanes::one_by_one(q, f, scratch, |lane, q, f| self.add_force(factors[lane], q, f));
@@ -57,20 +58,21 @@ pub trait Effect: Send + Sync {
         workspace: &mut Workspace,
     );
 
-    /// `f += factor · ∂²U/∂q∂q v`, from point to point without a matrix: what differs by little
-    /// between neighbouring nodes is differentiated before it is multiplied by a large stiffness,
-    /// so that fine meshes cost few digits.
+    /// `f += factor · ∂²U/∂q∂q v`, summed over points without forming a matrix. Fields that differ
+    /// little between neighbouring nodes are thus differentiated before they are multiplied by a
+    /// large stiffness, so that few digits are lost even on fine meshes.
     fn add_tangent_product(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]);
 
-    /// What it does to its beam in the state `q`, times `factor`; a kinetic energy with the
-    /// accelerations `a` of the coordinates, all else with `a` the same as `q`.
+    /// Adds to `sum` the actions on its beam in the state `q`, times `factor`. For a kinetic
+    /// energy, `a` are the accelerations of the coordinates; for all other effects `a` is the same
+    /// as `q`.
     fn add_actions(&self, factor: f64, q: &[f64], a: &[f64], sum: &mut Actions);
 
     /// Quadrature points, and bytes of its tables and data.
     fn size(&self) -> (usize, usize);
 }
 
-/// An effect that is asked for more elsewhere.
+/// An effect that is shared, because other code uses it through another interface.
 impl<E: Effect + ?Sized> Effect for std::sync::Arc<E> {
     fn kind(&self) -> Kind {
         (**self).kind()

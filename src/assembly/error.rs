@@ -1,4 +1,4 @@
-//! Why a model could not be turned into equations.
+//! Reasons why a model cannot be turned into equations.
 
 use crate::basis::BasisError;
 use crate::beam::Beam;
@@ -8,14 +8,14 @@ use crate::centreline::CurveError;
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// There is nothing to compute.
+    /// The model has no beam.
     #[error("the model has no beam")]
     #[diagnostic(help("add at least one beam with a geometry, a section and a basis"))]
     NoBeam,
     /// Something refers to a beam that does not exist.
     #[error("{what} refers to beam number {beam}, but the model has {count}")]
     NoSuchBeam {
-        /// What refers to it.
+        /// The item that refers to it.
         what: &'static str,
         /// The index given.
         beam: usize,
@@ -25,7 +25,7 @@ pub enum BuildError {
     /// A place is not on its beam.
     #[error("{what} stands at s = {s} m, but beam `{beam}` runs from 0 to {length} m")]
     OffBeam {
-        /// What stands there.
+        /// The item that stands there.
         what: &'static str,
         /// The beam's name.
         beam: String,
@@ -42,21 +42,21 @@ pub enum BuildError {
         beam: String,
         /// The quantity.
         quantity: &'static str,
-        /// What needs it.
+        /// The item that needs it.
         needed_by: &'static str,
     },
-    /// Two supports hold the same coordinate.
+    /// Two supports fix the same coordinate.
     #[error("two supports hold the {what} of beam `{beam}` at s = {s} m")]
     #[diagnostic(help("join them into one support"))]
     HeldTwice {
-        /// What is held.
+        /// The fixed quantity.
         what: &'static str,
         /// The beam's name.
         beam: String,
-        /// Where \[m\].
+        /// Arc length of the supports \[m\].
         s: f64,
     },
-    /// A support moves in a motion, and does not say how in time.
+    /// A support has a prescribed displacement in a motion, but no law of time.
     #[error(
         "the support of beam `{beam}` at s = {s} m moves by a stated amount, but does not say how in time"
     )]
@@ -66,17 +66,17 @@ pub enum BuildError {
     NoLaw {
         /// The beam's name.
         beam: String,
-        /// Where \[m\].
+        /// Arc length of the support \[m\].
         s: f64,
     },
-    /// Something follows time in an analysis that has none.
+    /// An item follows a law of time in an analysis without time.
     #[error("{what} follows a law of time, which this analysis does not have")]
     #[diagnostic(help("leave `in_time` out, or use [analysis.dynamic]"))]
     NoTime {
-        /// What follows it.
+        /// The item that follows a law.
         what: &'static str,
     },
-    /// Two points of a joint are not one.
+    /// The two points of a joint do not coincide.
     #[error(
         "a joint ties s = {first_s} m of beam `{first}` to s = {second_s} m of beam `{second}`, but these points are {gap:.3e} m apart"
     )]
@@ -84,25 +84,25 @@ pub enum BuildError {
     Apart {
         /// The first beam's name.
         first: String,
-        /// Where \[m\].
+        /// Arc length of the first point \[m\].
         first_s: f64,
         /// The second beam's name.
         second: String,
-        /// Where \[m\].
+        /// Arc length of the second point \[m\].
         second_s: f64,
         /// Their distance \[m\].
         gap: f64,
     },
-    /// A support between nodes moves with time.
+    /// A support that lies between nodes moves with time.
     #[error("the support of beam `{beam}` at s = {s} m moves with time and lies between two nodes")]
     #[diagnostic(help("put a node there: `nodes` of the beam's basis may be a list of arc lengths"))]
     MovesBetweenNodes {
         /// The beam's name.
         beam: String,
-        /// Where \[m\].
+        /// Arc length of the support \[m\].
         s: f64,
     },
-    /// Supports between nodes ask for more than the mesh can give.
+    /// Supports between nodes fix more quantities than the mesh has free coordinates there.
     #[error(
         "supports of beam `{beam}` between the nodes from s = {s} m on hold {rows} quantities, and the mesh has {free} free coordinates there"
     )]
@@ -112,28 +112,28 @@ pub enum BuildError {
     OverSupported {
         /// The beam's name.
         beam: String,
-        /// The first of these nodes \[m\].
+        /// Arc length of the first of the nodes around the supports \[m\].
         s: f64,
-        /// Rows.
+        /// Number of fixed quantities, each of which is a constraint row.
         rows: usize,
-        /// Coordinates that no support at a node holds.
+        /// Number of coordinates that no support at a node fixes.
         free: usize,
     },
-    /// A joint of a point with itself.
+    /// A joint ties a point to itself.
     #[error("{joint} ties a point to itself")]
     #[diagnostic(help("let a joint tie two points of different beams, or leave it out"))]
     ToItself {
-        /// The joint, with the places that it ties.
+        /// The joint with the places that it ties.
         joint: String,
     },
-    /// Joints, supports between nodes or lengths hold one motion more than once.
+    /// Joints, supports between nodes or inextensible beams fix one motion more than once.
     #[error("{parts} hold the same motion more than once")]
     #[diagnostic(help(
         "the forces between them have no values: leave one of them out, or let one hold less, such as a support that slides; \
          a beam with an `axial_stiffness` may be held at both ends"
     ))]
     Redundant {
-        /// What holds it, with places.
+        /// The parts that fix it, with their places.
         parts: String,
     },
     /// The shape functions could not be built.
@@ -141,7 +141,7 @@ pub enum BuildError {
     Basis {
         /// The beam's name.
         beam: String,
-        /// Why.
+        /// The reason.
         cause: Box<BasisError>,
     },
     /// The centreline is not a curve.
@@ -149,7 +149,7 @@ pub enum BuildError {
     Curve {
         /// The beam's name.
         beam: String,
-        /// Why.
+        /// The reason.
         cause: CurveError,
     },
 }

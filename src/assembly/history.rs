@@ -1,9 +1,10 @@
-//! What forces remember: those of dry friction and of springs that are wound up depend on the way
-//! to a state, not on the state alone.
+//! Forces with memory: those of dry friction and of torsion springs that turn repeatedly depend on
+//! the path to a state, not on the state alone.
 //!
-//! They are functions of the state and of the last accepted one ([`AcceptedState`]), in which their
-//! internal variables are known; an accepted state gets its own. So every force has one value in
-//! every state of a step, and a step that is taken again starts from the same variables.
+//! Such forces are functions of the current state and of the last accepted one ([`AcceptedState`]),
+//! whose internal variables are known; when a state is accepted, its own internal variables are
+//! stored. Every force thus has one value in every state of a step, and a repeated step starts from
+//! the same variables.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,16 +14,17 @@ use serde::{Deserialize, Serialize};
 pub struct InternalVariables {
     /// Energy of the tangential springs of friction \[J\].
     pub friction: f64,
-    /// Per contact with friction its pieces, in order.
+    /// Per contact with friction: the pieces that touch, in order.
     pub contacts: Vec<Vec<ContactPiece>>,
-    /// Energy of torsion springs beyond that of an angle from −π to π \[J\].
+    /// Energy of torsion springs beyond that of an angle between −π and π \[J\].
     pub winding: f64,
-    /// Per torsion spring its angle with all turns \[rad\]; none stands for stress-free springs.
+    /// Per torsion spring: its angle with all full turns \[rad\]; empty while all springs are
+    /// stress-free.
     pub angles: Vec<f64>,
 }
 
 impl InternalVariables {
-    /// Energy that no function of the coordinates counts \[J\].
+    /// Energy that cannot be computed from the coordinates alone \[J\].
     pub fn energy(&self) -> f64 {
         self.friction + self.winding
     }
@@ -37,14 +39,14 @@ pub struct AcceptedState {
     pub variables: InternalVariables,
 }
 
-/// A piece of a cell that touches, with the elastic slip at the points of its rule.
+/// A piece of a cell that touches an obstacle, with the elastic slips at the points of its rule.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactPiece {
     /// Number of the cell.
     pub cell: usize,
-    /// Where it begins on the cell, from 0 to 1.
+    /// Start of the piece on the cell, from 0 to 1.
     pub from: f64,
-    /// Where it ends.
+    /// End of the piece.
     pub to: f64,
     /// The slip at each point \[m\].
     pub slip: Vec<f64>,

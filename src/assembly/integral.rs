@@ -1,37 +1,27 @@
-//! The sum of a density over a table of shape functions: where the time of a Newton iteration goes.
+//! The sum of a density over a table of shape functions, in which much of the time of a Newton
+//! iteration is spent.
 //!
-//! The work is dispatched once per effect on the table's width, so that the loops below are
-//! compiled with the number of functions known (4 for the cable element; 8 and 12 for radial point
+//! The table's width is dispatched once per effect, so that the inner loops are compiled for a
+//! known number of shape functions (4 for the cable element; 8 and 12 for radial point
 //! interpolation): forces in `force.rs`, tangents in `tangent.rs`. Other widths are summed by the
 //! loops of this file.
 //!
-//! # What was measured
-//! Forces of cable elements are bound by the short dependent sums of the local fields and by the
-//! divisions of the curvature, so that four of them side by side in the lanes of a register take
-//! the time of one and a half: 210 instructions an element with 5/3 points by fours, 520 alone. A
-//! tangent (with 3/2 points) takes 1 000 by fours, 1 400 alone; its tiles' 528 multiply–adds would
-//! take 0.02 µs at the machine's peak.
+//! # Reasons for this structure
+//! The forces of a cable element consist of short dependent sums for the local fields and of the
+//! divisions of the curvature, which leave the processor waiting. Four elements are therefore
+//! computed side by side in the lanes of a register; together they take the time of one and a half.
+//! Tangents gain less, since the tiles of a single element fill the lanes already.
 //!
-//! A step of the trapezoidal rule (30 elements, 1 ms, a kept tangent that is renewed every fourth
-//! step) takes 57 000 instructions: 35 % are forces, 25 % new tangents and their factorisations, 14
-//! % substitutions, 9 % products with the mass matrix, the rest passes over vectors. A step of
-//! Radau's method (23 elements with Lobatto points, 2.5 iterations) takes 158 000: 28 % are the
-//! tangent and its two factorisations, 17 % forces, 15 % substitutions. In factorisations and
-//! substitutions it is not the count of instructions that decides but how long one waits for the
-//! other: two chains from both ends (the private module `linear::order`) execute more of them and
-//! take three fifths of the time.
+//! In factorisations and substitutions the number of instructions matters less than the waiting for
+//! earlier results: elimination in two chains from both ends (the private module `linear::order`)
+//! executes more instructions in three fifths of the time.
 //!
-//! With many elements memory decides. An iteration of the trapezoidal rule moves 384 bytes a node
-//! of the factors and 0.8 kB of vectors, a step 1 kB more: from a cache a step of 10 000 elements
-//! takes 1.5 times what one of 100 takes an element (0.125 µs), and from memory, which gives 13
-//! GB/s, one of 100 000 takes 2.6 times. Forces cost the same there as anywhere: they compute
-//! longer than their vectors take to come. All else waits for memory, so that passes over vectors
-//! are few: accelerations are never put down, the largest force is found where the inertia is
-//! added, the largest residual where it is turned, and an increment is turned, measured and added
-//! in one pass. Going over all of an iteration in sections of 32 to 2048 nodes that stay in a cache
-//! moves two thirds of the bytes and was slower (0.41 instead of 0.36 µs a step), for memory idles
-//! while forces are computed; fetching factors ahead by instruction and pages of 2 MB changed
-//! nothing.
+//! With many elements the memory bandwidth decides: a step of 100 000 elements takes 2.6 times as
+//! long per element as one of 100, although forces cost the same. Passes over vectors are therefore
+//! few: accelerations are not stored, the largest force is found while the inertia is added, the
+//! largest residual while the residual is turned into the supports' frames, and an increment is
+//! turned, measured and added in one pass. Processing an iteration in sections that stay in a cache
+//! was tried and was slower, because memory idles while forces are computed.
 
 mod force;
 mod tangent;
@@ -43,7 +33,7 @@ use crate::lanes::{self, Lanes, Pair};
 use crate::linear::Matrix;
 use nalgebra::Vector2;
 
-/// Memory that the assembly of a cell uses; kept by the caller so that nothing is allocated in the
+/// Memory for the assembly of a cell; the caller keeps it, so that nothing is allocated in the
 /// loops.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
@@ -52,7 +42,7 @@ pub struct Workspace {
     pub(super) pairs: Vec<Pair<Lanes>>,
 }
 
-/// A density, the shape functions at its quadrature points, and the place of its beam among the
+/// A density, the shape functions at its quadrature points, and the position of its beam among the
 /// coordinates.
 #[derive(Clone, Debug)]
 pub struct Integral<D, const M: usize> {
@@ -61,18 +51,18 @@ pub struct Integral<D, const M: usize> {
     /// First coefficient of the beam; coefficient c has the coordinates 2c and 2c + 1.
     offset: usize,
     pub(super) table: BasisTable,
-    /// First cells of four that are alike, each a node further than the one before, and all cells
-    /// that are in no such four.
+    /// The first cells of groups of four equal cells, each one node after the cell before, as
+    /// [`BasisTable::by_fours`] finds them; `singles` are all other cells.
     pub(super) fours: Vec<u32>,
     pub(super) singles: Vec<u32>,
     pub(super) density: D,
 }
 
-/// Points in a cell with which cells are summed four at a time.
+/// Numbers of points per cell for which cells are summed four at a time.
 const POINTS_BY_FOURS: std::ops::RangeInclusive<usize> = 2..=5;
 
-/// `f(const width, arguments…)`, the width a compile-time constant for the common tables and 0 for
-/// all others.
+/// Calls `method::<WIDTH>(arguments…)` with the table's width as a compile-time constant, or 0 for
+/// uncommon widths.
 macro_rules! with_width {
     ($self:ident . $method:ident ( $($argument:expr),* )) => {
         match $self.table.width {
@@ -107,7 +97,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         let width = self.width::<W>();
         let mut fields = [Vector2::zeros(); M];
         for (field, row) in fields.iter_mut().zip(rows.chunks_exact(width)) {
-            // Two functions at a time in the four lanes of a register.
+            // Two shape functions at a time fill the four lanes of a register.
             let mut sum = [0.0; 4];
             for (n, q) in row.chunks_exact(2).zip(q[..2 * width].chunks_exact(4)) {
                 let n = [n[0], n[0], n[1], n[1]];
@@ -164,13 +154,14 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         }
     }
 
-    /// The first coordinate of a cell.
+    /// Index of the first coordinate of a cell.
     #[inline(always)]
     pub(super) fn first(&self, cell: usize) -> usize {
         2 * (self.offset + self.table.cells[cell].first as usize)
     }
 
-    /// `f += ∫ Σ_m N⁽ᵒᵐ⁾ g_m(z, ż) ds` with the fields of `q` and `v`.
+    /// `f += ∫ Σ_m N⁽ᵒᵐ⁾ g_m(z, ż) ds`, where z are the fields of `q`, ż those of `v`, and g is
+    /// `force`.
     pub(super) fn force_of_pairs(
         &self,
         q: &[f64],
@@ -207,7 +198,8 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         }
     }
 
-    /// The actions of the forces Σ_m N⁽ᵒᵐ⁾ g_m(z, x) with the fields z of `q` and x of `other`.
+    /// Adds to `sum` the actions of the forces Σ_m N⁽ᵒᵐ⁾ g_m(z, x), where z are the fields of `q`,
+    /// x those of `other`, and g is `force`.
     pub(super) fn actions_of_pairs(
         &self,
         factor: f64,
@@ -327,7 +319,8 @@ pub(crate) fn multiply_rows<const M: usize>(
     }
 }
 
-/// Adds all tiles of a cell to the matrix; the cell's first node is `node` of the system.
+/// Adds all tiles of a cell to the matrix; `node` is the index of the cell's first node in the
+/// system.
 pub(crate) fn add_tiles<const M: usize>(
     rows: &[f64],
     products: &[f64],
@@ -368,7 +361,7 @@ pub(crate) fn add_tiles<const M: usize>(
     }
 }
 
-/// Rows of node `a`, columns of node `b`: Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md.
+/// The tile in the rows of node `a` and the columns of node `b`: Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md.
 fn tile<const M: usize>(rows: &[f64], products: &[f64], width: usize, a: usize, b: usize) -> [[f64; 4]; 4] {
     let columns = 2 * width;
     let mut tile = [[0.0; 4]; 4];

@@ -1,18 +1,18 @@
-//! What effects are, for energies and inventories.
+//! The kinds of effects, for energies and inventories.
 
-/// The enumeration, its list and its names from one list.
+/// Makes the enumeration, the list of its variants and their names from one list.
 macro_rules! kinds {
     ($($(#[$doc:meta])* $variant:ident = $name:literal,)*) => {
-        /// What an effect is, for energies and inventories.
+        /// The kind of an effect, for energies and inventories.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Kind {
             $($(#[$doc])* $variant,)*
-            /// An effect that another crate brings.
+            /// An effect defined by another crate.
             Other(&'static str),
         }
 
         impl Kind {
-            /// All kinds that exist here.
+            /// All kinds defined in this crate.
             pub const ALL: &[Self] = &[$(Self::$variant,)*];
 
             /// The name used in scenes and inventories.
@@ -29,7 +29,7 @@ macro_rules! kinds {
 kinds! {
     /// Axial strain energy.
     Stretch = "stretch",
-    /// An axis that keeps its length, by constraint.
+    /// Constraint by which a beam keeps its length.
     Inextensibility = "inextensibility",
     /// Bending strain energy.
     Bend = "bend",
@@ -59,9 +59,9 @@ kinds! {
     RotaryInertia = "rotary_inertia",
     /// Elastic foundation.
     Foundation = "foundation",
-    /// Strain that a beam would take by itself.
+    /// Strain imposed on a beam by actuation.
     PreStrain = "pre_strain",
-    /// Curvature that a beam would take by itself.
+    /// Curvature imposed on a beam by actuation.
     PreCurvature = "pre_curvature",
     /// Resistance of a fluid.
     Drag = "drag",

@@ -1,16 +1,16 @@
-//! Loads as a system sums them, with the factor by which they act.
+//! Loads and their amplitudes.
 
 use super::Effect;
 use crate::law::Law;
 
-/// By what factor a load acts.
+/// The factor by which a load acts.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Amplitude {
-    /// By the load factor.
+    /// The load factor itself.
     Proportional,
-    /// In full at all times.
+    /// One, at all times.
     Full,
-    /// By a law of time.
+    /// A law of time.
     Law(Law),
 }
 
@@ -29,17 +29,18 @@ impl Amplitude {
 pub struct ActingLoad {
     /// The load.
     pub effect: Box<dyn Effect>,
-    /// None: that of all loads without a law of their own.
+    /// `None` for a load without a law of its own: it takes the amplitude of the system.
     pub amplitude: Option<Amplitude>,
 }
 
 impl ActingLoad {
-    /// Whether it is part of the sum of loads that are the same in every state.
+    /// Whether the load belongs to the sum of loads that are the same in every state.
     pub fn is_summed(&self) -> bool {
         self.amplitude.is_none() && self.effect.is_constant()
     }
 
-    /// Whether its work is the difference of a potential: of a load that follows time it is not.
+    /// Whether its work is the difference of a potential. For a load that follows a law of time it
+    /// is not.
     pub fn has_potential(&self) -> bool {
         self.amplitude.is_none() && self.effect.is_conservative()
     }

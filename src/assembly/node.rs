@@ -1,28 +1,28 @@
-//! Nodes of a vector.
+//! The entries of a vector that belong to one node.
 
-/// What a vector of nodal coordinates \[x, y, x', y'\], of their changes, their rates or the forces
-/// on them, has at one node.
+/// The entries at one node of a vector of nodal coordinates \[x, y, x', y'\], of their changes or
+/// rates, or of the forces on them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node {
-    /// Of the position r.
+    /// The entries that belong to the position r.
     pub position: [f64; 2],
-    /// Of the gradient r'.
+    /// The entries that belong to the gradient r'.
     pub gradient: [f64; 2],
 }
 
 impl Node {
-    /// Length of what it has of the position.
+    /// Length of the entries for the position.
     pub fn shift(&self) -> f64 {
         self.position[0].hypot(self.position[1])
     }
 
-    /// Length of what it has of the gradient.
+    /// Length of the entries for the gradient.
     pub fn slope(&self) -> f64 {
         self.gradient[0].hypot(self.gradient[1])
     }
 }
 
-/// The nodes of a vector, whose multipliers, if it has any, are left out before.
+/// The nodes of a vector, which must not contain multipliers.
 pub fn nodes(vector: &[f64]) -> impl ExactSizeIterator<Item = Node> + Clone + '_ {
     let node = |&[x, y, dx, dy]: &[f64; 4]| Node { position: [x, y], gradient: [dx, dy] };
     vector.as_chunks().0.iter().map(node)

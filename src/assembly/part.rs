@@ -1,4 +1,4 @@
-//! What takes part in the mechanics, and where.
+//! The parts of a model and their extents.
 
 use super::{Assembly, BuildError};
 use crate::basis::Quadrature;
@@ -7,8 +7,9 @@ use crate::law::Law;
 use std::any::Any;
 use std::fmt;
 
-/// What takes part in the mechanics besides beams, supports and loads; as [`Any`], so that what
-/// reads a model can tell the kinds of parts that it knows.
+/// Anything that takes part in the mechanics besides supports and joints: elasticity, inertia,
+/// loads, springs, contacts. It is [`Any`], so that code that reads a model can recognise the kinds
+/// of parts that it knows.
 pub trait Part: Any + fmt::Debug + Send + Sync {
     /// Adds the part's densities to the equations under assembly.
     ///
@@ -16,28 +17,30 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
     /// [`BuildError`] where the part does not fit the model.
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError>;
 
-    /// Strain and curvature \[1/m\] that beam `beam` would take by itself, and their law of time.
+    /// The strain and the curvature \[1/m\] that an actuation imposes on beam `beam`, and their law
+    /// of time.
     fn actuation(&self, _beam: usize) -> Option<(f64, f64, Option<&Law>)> {
         None
     }
 
-    /// What it looks like on the ground, as a line for pictures; `size` is that of the beams \[m\].
+    /// The outline of an obstacle on the ground, as a line for pictures; `size` is the size of the
+    /// beams \[m\].
     fn outline(&self, _size: f64) -> Vec<[f64; 2]> {
         Vec::new()
     }
 
-    /// Where it takes or gives a couple.
+    /// The place at which the part transmits a couple, where the curvature of the beam may jump.
     fn couple(&self) -> Option<Place> {
         None
     }
 
-    /// What it may resist by elasticity against the ground, for which motions that nothing resists
-    /// are refused.
+    /// The motions that the part may resist by elasticity against the ground. They are used to
+    /// refuse models with a motion that nothing resists.
     fn resists(&self) -> Vec<Resistance> {
         Vec::new()
     }
 
-    /// A mass \[kg\] on which gravity acts.
+    /// A mass \[kg\] on which gravity acts, and its place.
     fn mass(&self) -> Option<(Place, f64)> {
         None
     }
@@ -46,22 +49,22 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
 /// A motion of a beam against the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Resistance {
-    /// Of a point, along an axis.
+    /// Displacement of a point along an axis.
     Displacement(Place, [f64; 2]),
-    /// Of the direction at a point.
+    /// Rotation of the direction at a point.
     Direction(Place),
-    /// Of a whole beam, where something presses it to the ground.
+    /// Any motion of a whole beam, if something presses it against an obstacle.
     Contact(usize),
 }
 
-/// Two parts are equal if they describe themselves alike.
+/// Two parts are equal if their `Debug` output is the same.
 impl PartialEq for dyn Part {
     fn eq(&self, other: &Self) -> bool {
         format!("{self:?}") == format!("{other:?}")
     }
 }
 
-/// Where a density is summed.
+/// The region over which a density is summed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extent {
     /// Over a whole beam, by a quadrature rule in every cell.

@@ -3,46 +3,46 @@
 use super::{ActingLoad, ContactEffect, Damping, Effect, FrictionEffect, Kind, MovingLoad, Winding};
 use std::sync::Arc;
 
-/// What an analysis asks of the system; nothing else is built.
+/// The kinds of terms that an analysis needs; no others are built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Needs {
-    /// Whether inertia takes part.
+    /// Whether inertia terms are needed.
     pub inertia: bool,
-    /// Whether loads and supports follow time, and damping takes part; otherwise loads and
+    /// Whether loads and supports follow time, and damping is included; otherwise loads and
     /// prescribed displacements follow the load factor.
     pub motion: bool,
 }
 
-/// An inertia whose matrix follows the state.
+/// An inertia whose mass matrix depends on the state.
 pub struct Turning {
-    /// Its momentum as a function of state and velocity; and so its force as a function of state
-    /// and acceleration, but for what velocities add.
+    /// Its momentum as a function of state and velocity. Evaluated with the acceleration instead of
+    /// the velocity, it is the force of inertia without the terms quadratic in velocities.
     pub momentum: Box<dyn Damping>,
-    /// What velocities add.
+    /// The terms of the force of inertia that are quadratic in velocities.
     pub rate: Box<dyn Damping>,
 }
 
-/// What the parts of a model have added to its equations.
+/// The terms that the parts of a model have added to its equations.
 #[derive(Default)]
 pub struct Terms {
-    /// What has an energy.
+    /// Effects with an energy.
     pub internal: Vec<Box<dyn Effect>>,
-    /// What acts.
+    /// Loads.
     pub loads: Vec<ActingLoad>,
-    /// Inertia with a constant matrix.
+    /// Inertia with a constant mass matrix.
     pub inertia: Vec<Box<dyn Effect>>,
-    /// Inertia with a matrix that follows the state.
+    /// Inertia whose mass matrix depends on the state.
     pub turning: Vec<Turning>,
     /// Dissipation functions.
     pub damping: Vec<Box<dyn Damping>>,
-    /// Loads whose place moves.
+    /// Loads whose position moves along a beam.
     pub moving_loads: Vec<Box<dyn MovingLoad>>,
-    /// The contacts, which are among the internal effects.
+    /// The contacts; each is also one of the `internal` effects.
     pub contacts: Vec<Arc<dyn ContactEffect>>,
     /// Friction in contacts.
     pub friction: Vec<Box<dyn FrictionEffect>>,
-    /// Turns of torsion springs.
+    /// Full turns of torsion springs.
     pub windings: Vec<Winding>,
-    /// What the analysis leaves out, and on which beam.
+    /// Effects that the analysis leaves out, each with the index of its beam.
     pub left_out: Vec<(Kind, usize)>,
 }

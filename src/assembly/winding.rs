@@ -1,20 +1,20 @@
-//! Turns of torsion springs.
+//! Full turns of torsion springs.
 //!
-//! A torsion spring has W = ½ k θ² with the angle θ = α + 2πn of all turns. Of a state one knows α,
-//! from −π to π; n is that by which θ is nearest to the angle θ_h of the last accepted state. The
-//! part ½ k α² is summed as all elastic energies are, and what a winding adds,
+//! A torsion spring has the energy W = ½ k θ² with the angle θ = α + 2πn that counts all turns. A
+//! state determines only α, from −π to π; n is chosen so that θ is nearest to the angle θ_h of the
+//! last accepted state. The part ½ k α² is summed like all elastic energies. The full turns add
 //!
 //! ```text
 //! W = 2πn k (α + πn),   ∂W/∂α = 2πn k,
 //! ```
 //!
-//! by [`Winding`]: nothing, until the spring has passed half a turn.
+//! which a [`Winding`] computes. It is zero until the spring has passed half a turn.
 
 use super::{AcceptedState, Actions, Effect, InternalVariables, Workspace};
 use crate::linear::Matrix;
 use std::f64::consts::TAU;
 
-/// What a torsion spring adds where it has passed half a turn.
+/// The terms that a torsion spring adds once it has passed half a turn.
 pub struct Winding {
     direction: Box<dyn Effect>,
     stiffness: f64,
@@ -22,8 +22,8 @@ pub struct Winding {
 }
 
 impl Winding {
-    /// Of the spring with k = `stiffness` \[N m/rad\] on the density `direction` of the angle,
-    /// number `number` of all.
+    /// The winding of the spring with k = `stiffness` \[N m/rad\], whose angle is the density
+    /// `direction`; `number` is its index among all windings.
     pub fn new(direction: Box<dyn Effect>, stiffness: f64, number: usize) -> Self {
         Self { direction, stiffness, number }
     }
@@ -33,19 +33,19 @@ impl Winding {
         self.direction.beam()
     }
 
-    /// θ in the state `q` \[rad\].
+    /// The angle θ with all turns in the state `q` \[rad\].
     pub fn angle(&self, accepted: &AcceptedState, q: &[f64]) -> f64 {
         let known = accepted.variables.angles.get(self.number).copied().unwrap_or(0.0);
         let angle = self.direction.energy(q);
         angle + TAU * ((known - angle) / TAU).round()
     }
 
-    /// 2πn, where θ is `angle`.
+    /// 2πn for the angle θ = `angle`.
     fn beyond(angle: f64) -> f64 {
         TAU * (angle / TAU).round()
     }
 
-    /// W, where θ is `angle` \[J\].
+    /// W \[J\] for the angle θ = `angle`.
     pub fn energy(&self, angle: f64) -> f64 {
         let beyond = Self::beyond(angle);
         self.stiffness * beyond * (angle - 0.5 * beyond)
@@ -56,7 +56,7 @@ impl Winding {
         self.add_force_at(self.angle(accepted, q), q, f);
     }
 
-    /// The same, where θ is `angle`.
+    /// As [`Self::add_force`], for a known angle θ = `angle`.
     pub fn add_force_at(&self, angle: f64, q: &[f64], f: &mut [f64]) {
         let beyond = Self::beyond(angle);
         if beyond != 0.0 {
@@ -64,7 +64,7 @@ impl Winding {
         }
     }
 
-    /// The same, and `k += ` ∂²W/∂q∂q.
+    /// As [`Self::add_force`], and `k += ` ∂²W/∂q∂q.
     pub fn add_force_and_tangent(
         &self,
         accepted: &AcceptedState,
@@ -79,7 +79,7 @@ impl Winding {
         }
     }
 
-    /// `k += ` ∂²W/∂q∂q, where θ is `angle`.
+    /// `k += ` ∂²W/∂q∂q for a known angle θ = `angle`.
     pub fn add_tangent_at(&self, angle: f64, q: &[f64], k: &mut Matrix) {
         let beyond = Self::beyond(angle);
         if beyond != 0.0 {
@@ -89,18 +89,18 @@ impl Winding {
         }
     }
 
-    /// `f += ` ∂²W/∂q∂q `v`, where θ is `angle`.
+    /// `f += ` ∂²W/∂q∂q `v` for a known angle θ = `angle`.
     pub fn add_tangent_product_at(&self, angle: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
         self.direction.add_tangent_product(self.stiffness * Self::beyond(angle), q, v, f);
     }
 
-    /// What it does to its beam, where θ is the angle among `variables`.
+    /// Adds to `sum` the actions on its beam, with the angle θ known from `variables`.
     pub fn add_actions(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions) {
         let angle = variables.angles.get(self.number).copied().unwrap_or(0.0);
         self.direction.add_actions(self.stiffness * Self::beyond(angle), q, q, sum);
     }
 
-    /// By how much the spring has turned since the last accepted state \[rad\].
+    /// The angle by which the spring has turned since the last accepted state \[rad\].
     pub fn turn(&self, accepted: &AcceptedState, q: &[f64]) -> f64 {
         let angle = self.angle(accepted, q);
         angle - accepted.variables.angles.get(self.number).copied().unwrap_or(0.0)

@@ -7,8 +7,8 @@
 //!
 //! Source: Gerstmayr and Shabana, *Nonlinear Dynamics* 45 (2006) 109–130, the thin cable element.
 
-/// The four functions' derivative of order `order` (0, 1 or 2) with respect to s, at ξ ∈ [0, 1] of
-/// a cell of length `l` in metres.
+/// Derivative of order `order` (0, 1 or 2) of the four functions with respect to s, at ξ ∈ [0, 1]
+/// of a cell of length `l` \[m\].
 pub fn row(l: f64, xi: f64, order: usize, out: &mut [f64; 4]) {
     let x = xi;
     *out = match order {

@@ -1,5 +1,5 @@
-//! What the construction of shape functions asks of a number, so that one code serves every
-//! precision.
+//! The operations on numbers that the construction of shape functions needs, so that one code
+//! serves every precision.
 
 use std::fmt::Debug;
 
@@ -16,9 +16,9 @@ pub trait Arithmetic {
     fn bits(&self) -> usize;
     /// log₂ of the largest relative error of one operation.
     fn log2_round_off(&self) -> f64;
-    /// Exact.
+    /// The number equal to `x`, without rounding.
     fn number(&self, x: f64) -> Self::Number;
-    /// The nearest double; infinite beyond its range.
+    /// The double nearest to `x`; infinite beyond the range of doubles.
     fn nearest(&self, x: &Self::Number) -> f64;
     /// e with 2^(e−1) ≤ |x| < 2^(e+1), or `None` for zero, infinities and NaN.
     fn exponent(&self, x: &Self::Number) -> Option<i64>;
@@ -26,7 +26,7 @@ pub trait Arithmetic {
     fn scaled_magnitude(&self, x: &Self::Number, shift: i64) -> f64;
     /// Whether |a| > |b|.
     fn exceeds(&self, a: &Self::Number, b: &Self::Number) -> bool;
-    /// Neither infinite nor NaN.
+    /// Whether `x` is neither infinite nor NaN.
     fn is_finite(&self, x: &Self::Number) -> bool;
     /// a + b.
     fn add(&self, a: &Self::Number, b: &Self::Number) -> Self::Number;

@@ -1,26 +1,27 @@
-//! Which nodes a cell uses, and which cells have the same shape functions.
+//! The support of each cell, and the cells that share their shape functions.
 
 use std::ops::Range;
 
-/// How many of the latest distinct cells a new one is compared with: enough for meshes that repeat
-/// a pattern.
+/// Number of the latest distinct cells with which a new one is compared: enough for meshes that
+/// repeat a pattern.
 const RECENT: usize = 16;
 
-/// Which nodes the shape functions of a cell are made of.
+/// The support of each cell: the nodes on which its shape functions depend.
 #[derive(Clone, Debug)]
 pub struct Supports {
     neighbours: usize,
     nodes: usize,
-    /// Nodes of the widest support.
+    /// Number of nodes in the widest support.
     widest: usize,
-    /// Nodes at which supports end, rising: those of a beam's ends, and between them those at which
-    /// its curvature jumps, for no smooth function follows it there.
+    /// Nodes at which supports end, in rising order: the two end nodes of the beam, and between
+    /// them those at which the curvature jumps, since no smooth function follows it there.
     ends: Vec<usize>,
 }
 
 impl Supports {
-    /// A cell's own two nodes and `neighbours` more on each side that exists; none beyond one of
-    /// `breaks`, which rise.
+    /// The support of a cell consists of its own two nodes and up to `neighbours` more on each
+    /// side; it does not extend beyond the beam's ends or the nodes `breaks`, which are in rising
+    /// order.
     pub fn new(neighbours: usize, nodes: usize, breaks: &[usize]) -> Self {
         let ends = std::iter::once(0).chain(breaks.iter().copied()).chain([nodes - 1]).collect();
         let supports = Self { neighbours, nodes, widest: 2, ends };
@@ -28,23 +29,24 @@ impl Supports {
         Self { widest, ..supports }
     }
 
-    /// Nodes of the widest support: so many, in one row, every cell's functions are tabulated for.
+    /// Number of nodes in the widest support. The functions of every cell are tabulated for this
+    /// many nodes, so that all rows have one length.
     pub fn widest(&self) -> usize {
         self.widest
     }
 
-    /// The first of the nodes for which a cell's functions are tabulated; as many as the widest
-    /// support has follow.
+    /// The first of the nodes for which a cell's functions are tabulated; their number is
+    /// [`Self::widest`].
     pub fn first(&self, cell: usize) -> usize {
         self.of(cell).start.min(self.nodes - self.widest)
     }
 
-    /// Nodes before a cell's support for which its functions are tabulated as zeros.
+    /// Number of tabulated nodes before the cell's support, for which the functions are zero.
     pub fn padding(&self, cell: usize) -> usize {
         self.of(cell).start - self.first(cell)
     }
 
-    /// The nodes between the first and the last at which supports end.
+    /// The nodes at which supports end, other than the beam's first and last.
     pub fn breaks(&self) -> impl Iterator<Item = usize> + '_ {
         self.ends[1..self.ends.len() - 1].iter().copied()
     }
@@ -58,13 +60,13 @@ impl Supports {
     }
 }
 
-/// Groups cells whose supports are translations of each other: per cell the number of its group,
-/// per group its first cell.
+/// Groups cells whose supports are translations of each other. Returns the number of its group per
+/// cell, and the first cell per group.
 ///
 /// Node positions are rounded to double precision, so the spacings of an even mesh differ in their
-/// last digits. Two supports are the same if they agree within that round-off and within 1e-9 of
-/// the smallest spacing, and their rows have the same zeros. The first of a group stands for it:
-/// nearest to s = 0, its spacings are rounded the least.
+/// last digits. Two supports count as equal if their spacings agree within that round-off and
+/// within 1e-9 of the smaller one, and if their rows are padded with the same zeros. The first cell
+/// represents its group: it is the nearest to s = 0, where spacings are rounded the least.
 pub fn distinct_cells(nodes: &[f64], supports: &Supports) -> (Vec<u32>, Vec<u32>) {
     let mut representative: Vec<u32> = Vec::new();
     let shape_of = (0..nodes.len() - 1)
@@ -110,7 +112,7 @@ mod tests {
             [0, 2, 3, 4, 7].map(|cell| (broken.first(cell), broken.padding(cell))),
             [(0, 0), (0, 0), (3, 0), (4, 0), (4, 1)]
         );
-        // Cells 0 and 4 have the same functions, but not with the same zeros.
+        // Cells 0 and 4 have the same functions, but their rows are not padded with the same zeros.
         let even: Vec<f64> = (0..8).map(f64::from).collect();
         let (shape_of, _) = distinct_cells(&even, &Supports::new(2, 8, &[4]));
         assert_ne!(shape_of[0], shape_of[4]);

@@ -1,4 +1,4 @@
-//! How a centreline is approximated: what a user chooses of either discretisation.
+//! The choices a user has in the approximation of a centreline.
 
 use std::fmt;
 
@@ -21,7 +21,7 @@ pub enum Discretization {
         polynomial_terms: usize,
         /// Sign of the slope terms in the side conditions.
         side_condition: SideCondition,
-        /// Nodes beyond the cell's own two, on each side.
+        /// Number of nodes of a support beyond the cell's own two, on each side.
         neighbours: usize,
     },
 }
@@ -47,7 +47,7 @@ pub enum Nodes {
     Given(Vec<f64>),
 }
 
-/// Radial function R(d) of a support, d in units of the average spacing d_c.
+/// Radial function R(d) of the distance d from a node, in units of the average node spacing d_c.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Kernel {
@@ -55,12 +55,12 @@ pub enum Kernel {
     Multiquadric {
         /// Exponent q, not a whole number.
         q: f64,
-        /// α_c.
+        /// Shape parameter α, in units of d_c.
         shape: f64,
     },
     /// exp(−α d²)
     Exponential {
-        /// α_c.
+        /// Shape parameter α.
         shape: f64,
     },
     /// d^η, or d^η ln d where η is an even whole number.
@@ -70,18 +70,18 @@ pub enum Kernel {
     },
     /// (1 − d/δ)₊⁸ (32 (d/δ)³ + 25 (d/δ)² + 8 d/δ + 1), Wendland's C⁶ function of compact support.
     Wendland {
-        /// Radius δ of the support.
+        /// Radius δ beyond which the function is zero, in units of d_c.
         radius: f64,
     },
 }
 
-/// The sign in Σ [p_j(s_i) a_i ± p_j'(s_i) b_i] = 0.
+/// The sign in the side conditions Σ_i [p_j(s_i) a_i ± p_j'(s_i) b_i] = 0 of an RPIM interpolation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SideCondition {
-    /// The paper's; the moment matrix is not symmetric.
+    /// The sign in the paper by Chen, Zhang and Li; the moment matrix is not symmetric.
     #[default]
     Plus,
-    /// The symmetric choice.
+    /// The sign with which the moment matrix is symmetric.
     Minus,
 }
 

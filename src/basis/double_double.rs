@@ -1,9 +1,9 @@
-//! Double-double arithmetic: a number is the unevaluated sum of two doubles, about 106 bits.
+//! Double-double arithmetic: a number is the unevaluated sum of two doubles, with about 106 bits.
 //!
-//! Sums and products by Knuth's and Dekker's error-free transformations in the accurate variants of
-//! Joldes, Muller and Popescu, *ACM TOMS* 44(2) (2017) 15, with a fused multiply-add for the error
-//! of a product. One operation is off by less than 2⁻¹⁰² relative; exponential and logarithm by
-//! less than 1e-30 (absolute for the logarithm near 1).
+//! Sums and products use Knuth's and Dekker's error-free transformations in the accurate variants
+//! of Joldes, Muller and Popescu, *ACM TOMS* 44(2) (2017) 15, with a fused multiply-add for the
+//! error of a product. The relative error of one operation is below 2⁻¹⁰²; that of the exponential
+//! and the logarithm is below 1e-30 (absolute for the logarithm near 1).
 
 use super::arithmetic::{Arithmetic, ldexp};
 
@@ -36,7 +36,7 @@ const INVERSE_FACTORIAL: [Double; 8] = [
     Double { hi: 1.0 / 3628800.0, lo: 2.3767714622250297e-23 },
 ];
 
-/// Halvings of the argument of the exponential before its series is summed.
+/// Number of times the argument of the exponential is halved before its series is summed.
 const HALVINGS: i64 = 9;
 
 #[inline(always)]
@@ -116,7 +116,7 @@ impl Double {
         let square = r.times(r);
         let mut less_one = series.times(r).times(square).plus(square.scaled(0.5)).plus(r);
         for _ in 0..HALVINGS {
-            // e²ʳ − 1 = 2(eʳ − 1) + (eʳ − 1)² keeps the digits that squaring eʳ itself would lose.
+            // e²ʳ − 1 = 2(eʳ − 1) + (eʳ − 1)² keeps digits that squaring eʳ itself would lose.
             less_one = less_one.times(less_one).plus(less_one.scaled(2.0));
         }
         let e = less_one.plus(ONE);
@@ -249,7 +249,8 @@ mod tests {
         assert_eq!(DoubleDouble.ln(&ONE).hi, 0.0);
     }
 
-    /// What an exponential overflows to has a second part that is finite, and is not zero either.
+    /// An overflowing exponential has a finite second part; it must count neither as finite nor as
+    /// zero.
     #[test]
     fn a_number_is_finite_where_both_its_parts_are() {
         let is_finite = |hi, lo| DoubleDouble.is_finite(&Double { hi, lo });

@@ -1,4 +1,4 @@
-//! What can be wrong with a discretisation.
+//! Errors of a discretisation.
 
 use thiserror::Error;
 
@@ -12,13 +12,13 @@ pub enum BasisError {
         /// Length found \[m\].
         length: f64,
     },
-    /// A beam needs two nodes.
+    /// The beam has fewer than two nodes.
     #[error("expected at least 2 nodes, found {found}; give the beam a node at each end")]
     TooFewNodes {
         /// Nodes found.
         found: usize,
     },
-    /// More nodes than the tables can number.
+    /// There are more nodes than memory and the numbering of the tables allow.
     #[error(
         "{nodes} nodes would need about {gigabytes:.0} GB for shape functions and unknowns; the limit is {limit} nodes, \
          use fewer"
@@ -50,7 +50,7 @@ pub enum BasisError {
         index: usize,
         /// Its arc length \[m\].
         found: f64,
-        /// Where it should be \[m\].
+        /// Its expected arc length \[m\].
         expected: f64,
     },
     /// Two neighbouring nodes are out of order.
@@ -79,7 +79,7 @@ pub enum BasisError {
         /// Smallest distance accepted here \[m\].
         least: f64,
     },
-    /// A parameter of the radial function makes no usable shape functions.
+    /// A parameter of the radial function permits no usable shape functions.
     #[error("{parameter} = {value} of the {kernel} kernel: {problem}")]
     KernelParameter {
         /// Name of the kernel.
@@ -88,11 +88,11 @@ pub enum BasisError {
         parameter: &'static str,
         /// Value found.
         value: f64,
-        /// What is wrong and what to try.
+        /// The problem, with a suggestion.
         problem: String,
     },
-    /// Without the constant term a translated beam would be strained; too many terms make the
-    /// moment matrix singular.
+    /// The number of polynomial terms is out of range: without the constant term a translated beam
+    /// would be strained, and too many terms make the moment matrix singular.
     #[error(
         "{found} polynomial terms: expected 1 to {limit}, since {}",
         if *found == 0 {
@@ -115,7 +115,7 @@ pub enum BasisError {
         /// Largest number accepted.
         limit: usize,
     },
-    /// The moment matrix of a cell is singular to every precision tried.
+    /// The moment matrix of a cell is too close to singular for every precision tried.
     #[error(
         "the shape functions of cell {cell} (nodes {first_node} to {last_node}, spacings from {min_spacing:e} to \
          {max_spacing:e} m, {kernel}) could not be found: with {bits} bits the estimated relative error is still \
@@ -140,7 +140,7 @@ pub enum BasisError {
         error: f64,
         /// Decimal logarithm of the estimated condition number.
         condition_log10: f64,
-        /// What to change.
+        /// A suggestion.
         advice: &'static str,
     },
     /// The shape functions are larger than double precision can hold.
@@ -151,7 +151,7 @@ pub enum BasisError {
         /// Index of the cell, from 0.
         cell: usize,
     },
-    /// A quadrature rule that does not exist here.
+    /// The family of quadrature rules has none with that many points.
     #[error("{rule} quadrature with {points} points: expected {least} to {most}")]
     Quadrature {
         /// Name of the family.
@@ -163,13 +163,13 @@ pub enum BasisError {
         /// Most supported.
         most: usize,
     },
-    /// A derivative that tables do not hold.
+    /// Tables do not hold derivatives of this order.
     #[error("derivative of order {order}: shape functions are tabulated for orders 0 to 2")]
     Order {
         /// Order asked for.
         order: usize,
     },
-    /// A point beside the beam.
+    /// A point does not lie on the beam.
     #[error("arc length {s} m is not on the beam, expected 0 to {length} m")]
     OffBeam {
         /// Arc length found \[m\].

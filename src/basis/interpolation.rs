@@ -1,19 +1,19 @@
-//! What an interpolation by radial functions is asked, and how well it answered.
+//! Input of an interpolation by radial functions, and the quality of its result.
 
 use super::{Kernel, SideCondition};
 
-/// What defines the interpolation on every support of a beam.
+/// The parameters of the interpolation, the same for every support of a beam.
 #[derive(Clone, Copy, Debug)]
 pub struct Interpolation {
     /// Radial function.
     pub kernel: Kernel,
-    /// m.
+    /// Number m of polynomial terms.
     pub terms: usize,
     /// Sign of the slope terms in the side conditions.
     pub side_condition: SideCondition,
     /// Length of the beam \[m\].
     pub length: f64,
-    /// Number of average spacings in it.
+    /// Number of cells of the beam: `length / spacings` is the average node spacing d_c.
     pub spacings: usize,
 }
 
@@ -22,29 +22,29 @@ pub struct Interpolation {
 pub struct Place<'a> {
     /// Arc lengths of the nodes of the support \[m\].
     pub nodes: &'a [f64],
-    /// Which of them is the cell's left end.
+    /// Index in `nodes` of the cell's left end.
     pub left: usize,
 }
 
-/// Rows asked for at one point.
+/// The rows wanted at one point.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted<'a> {
     /// ξ ∈ [0, 1] in the cell.
     pub xi: f64,
     /// Orders of the derivatives.
     pub orders: &'a [usize],
-    /// Numbers from one row to the next.
+    /// Distance in memory from the start of one row to the start of the next.
     pub stride: usize,
 }
 
-/// How well the rows of one cell are known.
+/// How accurate the rows of one cell are.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Quality {
-    /// Estimated largest relative error.
+    /// Estimated largest relative error of any row.
     pub error: f64,
-    /// log₂ of the estimated condition number of G.
+    /// log₂ of the estimated condition number of the moment matrix G.
     pub log2_condition: f64,
-    /// Largest defect at the ends of the cell.
+    /// Largest difference of the rows at the ends of the cell from exact unit rows, dimensionless.
     pub kronecker: f64,
     /// Largest relative defect in reproducing 1 and s.
     pub reproduction: f64,

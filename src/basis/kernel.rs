@@ -27,7 +27,7 @@ pub fn describe(kernel: &Kernel) -> String {
     }
 }
 
-/// Refuses parameters for which no moment matrix can be regular or the third derivative does not
+/// Refuses parameters for which every moment matrix is singular or the third derivative does not
 /// exist. `widest_cell` is the largest spacing of the nodes in units of the average one.
 pub fn check(kernel: &Kernel, widest_cell: f64) -> Result<(), BasisError> {
     let fault = |parameter, value, problem: String| {
@@ -80,7 +80,7 @@ pub fn check(kernel: &Kernel, widest_cell: f64) -> Result<(), BasisError> {
     }
 }
 
-/// A kernel with its parameters at a precision.
+/// A kernel with its parameters in the numbers of one precision.
 pub struct Radial<'a, A: Arithmetic> {
     arithmetic: &'a A,
     kernel: Kernel,
@@ -113,8 +113,8 @@ impl<'a, A: Arithmetic> Radial<'a, A> {
         }
     }
 
-    /// One power; with t = d² + α² and u = 1/t:
-    /// R' = 2qd Ru, R'' = 2q Ru (1 + 2(q−1)d²u), R''' = 4q(q−1)d Ru² (3 + 2(q−2)d²u).
+    /// Needs only one power: with t = d² + α² and u = 1/t, R = t^q, R' = 2qd Ru,
+    /// R'' = 2q Ru (1 + 2(q−1)d²u), R''' = 4q(q−1)d Ru² (3 + 2(q−2)d²u).
     fn multiquadric(&self, d: &A::Number, q: f64) -> [A::Number; 4] {
         let a = self.arithmetic;
         let n = |x| a.number(x);
@@ -147,8 +147,8 @@ impl<'a, A: Arithmetic> Radial<'a, A> {
         [r, r1, r2, r3]
     }
 
-    /// With l = ln|d| where η is an even whole number, and 1 with no derivative otherwise; all
-    /// vanish at d = 0.
+    /// R = |d|^η, times ln|d| where η is an even whole number. R and its derivatives vanish at
+    /// d = 0.
     fn thin_plate_spline(&self, d: &A::Number, eta: f64) -> [A::Number; 4] {
         let a = self.arithmetic;
         let n = |x| a.number(x);
@@ -160,9 +160,9 @@ impl<'a, A: Arithmetic> Radial<'a, A> {
         let logarithm = a.ln(&magnitude);
         let power = a.exp(&a.mul(&n(eta), &logarithm));
         let even = eta % 2.0 == 0.0;
-        // The k-th derivative of d^η (b l + c) is d^(η−k) (b_k l + c_k), where b ← b e, c ← c e + b
-        // with e the exponent before; without the logarithm b is what c is with it, so one
-        // recurrence serves both.
+        // With l = ln|d|, the k-th derivative of d^η (b l + c) is d^(η−k) (b_k l + c_k). Each
+        // derivative changes b to b e and c to c e + b, where e is the exponent before it. Without
+        // the logarithm b = 0, so one recurrence serves both cases.
         let (mut b, mut c) = if even { (n(1.0), n(0.0)) } else { (n(0.0), n(1.0)) };
         let mut scale = power;
         let mut exponent = n(eta);
@@ -225,7 +225,7 @@ mod tests {
         Kernel::Wendland { radius: 3.7 },
     ];
 
-    /// Central differences with 300 bits: the step 2⁻⁸⁰ leaves an error of about 1e-48.
+    /// Central differences with 320 bits: the step 2⁻⁸⁰ leaves an error of about 1e-48.
     #[test]
     fn each_derivative_is_that_of_the_one_before() {
         let a = Multiprecision::new(320).unwrap();

@@ -6,11 +6,11 @@ use super::arithmetic::Arithmetic;
 #[derive(Clone, Debug)]
 pub struct Lu<N> {
     size: usize,
-    /// L below the diagonal (its diagonal is one), U on and above with reciprocal pivots, column by
-    /// column: a substitution then updates independent numbers, where a sum along a row would wait
-    /// for each of its terms.
+    /// L below the diagonal (its diagonal is one), U above it, reciprocal pivots on it; stored
+    /// column by column, because a substitution then updates numbers that are independent of each
+    /// other, whereas each term of a sum along a row would have to wait for the term before.
     factors: Vec<N>,
-    /// Row of A that stands in each row of P A.
+    /// Per row of P A: the index of the same row in A.
     order: Vec<u32>,
 }
 

@@ -1,11 +1,11 @@
-//! The conditions that define the shape functions of one support, and how well their solution is
-//! known.
+//! The conditions that define the shape functions of one support, and an estimate of the error of
+//! their solution.
 //!
-//! How the error is known: to first order, perturbing φ and G by relative amounts u changes y by at
-//! most u |G⁻ᵀ| (|φ| + |Gᵀ| |y|), taken entry by entry (Bauer and Skeel; Higham, *Accuracy and
-//! Stability of Numerical Algorithms*, 2nd ed., SIAM 2002, §7.2). With the residual of each
-//! solution added, that bound covers the evaluation of the kernel as well as the factorisation. A
-//! check of the rows against the same factors would not: it passes for a wrong G.
+//! Relative perturbations of size u in φ and G change the solution y, to first order, by at most
+//! u |G⁻ᵀ| (|φ| + |Gᵀ| |y|), taken entry by entry (Bauer and Skeel; Higham, *Accuracy and Stability
+//! of Numerical Algorithms*, 2nd ed., SIAM 2002, §7.2). With the residual of each solution added,
+//! this bound covers the evaluation of the kernel as well as the factorisation. It would not be
+//! enough to check the rows against the same factors: they pass that check even if G is wrong.
 
 use super::SideCondition;
 
@@ -14,17 +14,17 @@ use super::interpolation::{Interpolation, Place, Quality, Wanted};
 use super::kernel::Radial;
 use super::lu::Lu;
 
-/// Where in a cell the error is estimated, ξ ∈ [0, 1].
+/// Points ξ ∈ [0, 1] of a cell at which the error is estimated.
 const SAMPLES: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
 
-/// Round-offs that meet in one entry of G or φ, and growth in the factorisation.
+/// Allowance for several round-offs in one entry of G or φ, and for growth in the factorisation.
 const SAFETY: f64 = 16.0;
 
-/// A function that is this much smaller in the cell than the largest of its kind is judged by the
-/// latter.
+/// The error of a shape function is taken relative to its largest value in the cell, but to at
+/// least this fraction of the largest among all functions of its kind (value or slope).
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// The conditions of one support, at one precision.
+/// The defining conditions of the shape functions of one support, at one precision.
 pub struct System<'a, A: Arithmetic> {
     arithmetic: &'a A,
     interpolation: &'a Interpolation,
@@ -50,17 +50,18 @@ impl<'a, A: Arithmetic> System<'a, A> {
         Self { arithmetic, interpolation, place, radial, x, middle, zero: n(0.0) }
     }
 
-    /// 2k + m.
+    /// Number of conditions, 2k + m.
     pub fn size(&self) -> usize {
         2 * self.x.len() + self.interpolation.terms
     }
 
-    /// d_c \[m\].
+    /// Average node spacing d_c \[m\].
     fn spacing(&self) -> f64 {
         self.interpolation.length / self.interpolation.spacings as f64
     }
 
-    /// Derivative of order `order` of 1, X, X², … at distance `x` from the cell's left end.
+    /// Derivative of order `order` of 1, X, X², … at the distance `x` from the cell's left end,
+    /// with X measured from the middle of the cell.
     fn polynomials(&self, x: &A::Number, order: usize) -> Vec<A::Number> {
         let a = self.arithmetic;
         let x = a.sub(x, &self.middle);
@@ -79,8 +80,8 @@ impl<'a, A: Arithmetic> System<'a, A> {
             .collect()
     }
 
-    /// Gᵀ, row by row: row j belongs to the function φ_j, column l to the condition l; values and
-    /// slopes alternate.
+    /// Gᵀ, row by row: row j belongs to the function φ_j and column l to the condition l. The first
+    /// 2k rows and columns alternate between values and slopes of the nodes.
     pub fn transposed_moments(&self) -> Vec<A::Number> {
         let a = self.arithmetic;
         let (k, n) = (self.x.len(), self.size());
@@ -88,7 +89,7 @@ impl<'a, A: Arithmetic> System<'a, A> {
         let minus = |x: &A::Number| a.sub(&self.zero, x);
         for i in 0..k {
             for l in i..k {
-                // Even derivatives are even in the distance, the first is odd.
+                // Even derivatives are even functions of the distance; the first is odd.
                 let [r, r1, r2, _] = self.radial.derivatives(&a.sub(&self.x[l], &self.x[i]));
                 let (fi, fl) = (2 * i, 2 * l);
                 g[fl * n + fi] = r.clone();
@@ -117,7 +118,8 @@ impl<'a, A: Arithmetic> System<'a, A> {
         g
     }
 
-    /// The radial functions of all nodes with their derivatives, and the place, at ξ.
+    /// The scaled coordinate of the point ξ, and there the radial function of each node with its
+    /// derivatives.
     fn radials(&self, xi: f64) -> (A::Number, Vec<[A::Number; 4]>) {
         let a = self.arithmetic;
         let x = a.mul(&a.number(xi), &self.x[self.place.left + 1]);
@@ -135,7 +137,7 @@ impl<'a, A: Arithmetic> System<'a, A> {
         phi
     }
 
-    /// Rounds the solution y of Gᵀ y = φ to a row in units of length.
+    /// Rounds the solution y of Gᵀ y = φ to a row of doubles, with s in metres instead of X.
     fn round(&self, y: &[A::Number], order: usize, row: &mut [f64]) {
         let spacing = self.spacing();
         let value = spacing.powi(-(order as i32));
@@ -155,8 +157,8 @@ impl<'a, A: Arithmetic> System<'a, A> {
         }
     }
 
-    /// Estimates errors and measures defects at a few points of the cell; `None` if anything is not
-    /// finite.
+    /// Estimates errors and measures defects at a few points of the cell; `None` if any number is
+    /// not finite.
     pub fn quality(&self, lu: &Lu<A::Number>, matrix: &[A::Number], moments: &[f64]) -> Option<Quality> {
         let a = self.arithmetic;
         let (n, width) = (self.size(), 2 * self.x.len());
@@ -206,7 +208,8 @@ impl<'a, A: Arithmetic> System<'a, A> {
         Some(quality)
     }
 
-    /// |φ| + |Gᵀ| |y| and what the residual φ − Gᵀ y adds to it, in units of the round-off.
+    /// |φ| + |Gᵀ| |y| + |φ − Gᵀ y| / u: the last term is the residual in units of u, the
+    /// round-off times the safety factor.
     fn perturbation(
         &self,
         matrix: &[A::Number],
@@ -251,9 +254,10 @@ impl<'a, A: Arithmetic> System<'a, A> {
         Some((inverse, shift))
     }
 
-    /// Defect of the rounded row in reproducing 1 and, given two terms, s − s_left. Each is
-    /// relative to the sum of absolute terms, or to the natural size in a cell of length h,
-    /// h^−order and h^(1−order), where at a node all terms vanish but for round-off.
+    /// Defect of the rounded row in reproducing 1 and, with at least two polynomial terms,
+    /// s − s_left. Each defect is relative to the sum of the absolute terms plus the natural size
+    /// in a cell of length h, h^−order or h^(1−order), since at a node all terms may vanish but for
+    /// round-off.
     fn reproduction(&self, row: &[f64], xi: f64, order: usize) -> f64 {
         let nodes = self.place.nodes;
         let left = nodes[self.place.left];
@@ -278,9 +282,9 @@ impl<'a, A: Arithmetic> System<'a, A> {
         if self.interpolation.terms > 1 { defect.max((s / s_size).abs()) } else { defect }
     }
 
-    /// Largest difference from the unit row at an end of the cell: of values as they are (order 0)
-    /// or in units of 1/h (order 1), of slopes in units of h or as they are, with h the cell's
-    /// length.
+    /// Largest difference of `row` from the unit row at an end of the cell, made dimensionless with
+    /// the cell's length h: derivatives of order 1 are multiplied by h, and entries for slopes
+    /// divided by h.
     fn kronecker(&self, row: &[f64], xi: f64, order: usize) -> f64 {
         let h = self.place.nodes[self.place.left + 1] - self.place.nodes[self.place.left];
         let node = self.place.left + usize::from(xi == 1.0);

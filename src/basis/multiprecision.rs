@@ -4,7 +4,8 @@ use astro_float_num::{BigFloat, Consts, Exponent, RoundingMode, Sign};
 
 use super::arithmetic::{Arithmetic, ldexp};
 
-/// Rounding to nearest would cost time and buy one bit, which the error estimate allows for.
+/// Rounding to nearest would take more time and gain one bit, for whose loss the error estimate
+/// allows.
 const ROUNDING: RoundingMode = RoundingMode::None;
 
 /// Arithmetic with a mantissa of a chosen number of bits.
@@ -14,18 +15,18 @@ pub struct Multiprecision {
     exponential: Exponential,
 }
 
-/// What the exponential needs, with guard bits.
+/// Constants of the exponential, with guard bits.
 #[derive(Debug)]
 struct Exponential {
     bits: usize,
     ln2: BigFloat,
-    /// 1/n!, as many as the series needs.
+    /// 1/n!, for as many terms as the series needs.
     inverse_factorials: Vec<BigFloat>,
-    /// Halvings of the argument before the series is summed.
+    /// Number of times the argument is halved before the series is summed.
     halvings: usize,
 }
 
-/// Bits that repeated squaring and the reduction of the argument may cost.
+/// Bits that repeated squaring and the reduction of the argument may lose.
 const GUARD_BITS: usize = 64;
 
 impl Multiprecision {
@@ -34,7 +35,8 @@ impl Multiprecision {
         let bits = bits.next_multiple_of(64);
         let p = bits + GUARD_BITS;
         let ln2 = Consts::new().ok()?.ln_2(p, ROUNDING);
-        // Halvings and terms in balance: each costs about one product.
+        // More halvings mean fewer terms; each costs about one product, so this choice balances
+        // them.
         let halvings = p.isqrt() / 2 + 2;
         let mut inverse_factorials = vec![BigFloat::from_f64(1.0, p)];
         let mut log2_term = 0.0;
@@ -73,8 +75,9 @@ impl Arithmetic for Multiprecision {
     }
 
     fn scaled_magnitude(&self, x: &BigFloat, shift: i64) -> f64 {
-        // The value is 0.m × 2^e; the words of m are stored least significant first. Of the top 64
-        // bits or more the conversion keeps 53, rounding to nearest.
+        // The value is 0.m × 2^e; the words of m are stored least significant first. The two
+        // leading words hold at least 64 bits, of which the conversion keeps 53, rounding to
+        // nearest.
         match x.as_raw_parts() {
             Some((words, _, _, exponent, _)) => {
                 let mut sum = 0.0;
@@ -91,8 +94,8 @@ impl Arithmetic for Multiprecision {
     }
 
     fn exceeds(&self, a: &BigFloat, b: &BigFloat) -> bool {
-        // Not `abs_cmp`, which compares signed values in astro-float 0.3.7. Mantissas are
-        // normalised and of one length.
+        // `abs_cmp` is not used, because it compares signed values in astro-float 0.3.7. Mantissas
+        // are normalised and have the same length.
         match (a.as_raw_parts(), b.as_raw_parts()) {
             (Some((a, _, _, ea, _)), Some((b, _, _, eb, _))) => {
                 match (a.iter().all(|w| *w == 0), b.iter().all(|w| *w == 0)) {
@@ -125,14 +128,14 @@ impl Arithmetic for Multiprecision {
         a.div(b, self.bits, ROUNDING)
     }
 
-    /// By the series of a halved argument and repeated squaring, three times faster here than the
-    /// library's own.
+    /// Sums the series of a halved argument and squares repeatedly; here this is three times faster
+    /// than the library's own exponential.
     fn exp(&self, x: &BigFloat) -> BigFloat {
         let Exponential { bits: p, ln2, inverse_factorials, halvings } = &self.exponential;
         let p = *p;
         let size = self.nearest(x);
         if !size.is_finite() || size.abs() > 1e8 {
-            // Far beyond any kernel's values: zero, or what makes the cell fail.
+            // Far beyond any value of a kernel: zero, or infinity, which makes the cell fail.
             return BigFloat::from_f64(if size < 0.0 { 0.0 } else { f64::INFINITY }, self.bits);
         }
         if size == 0.0 {
@@ -150,14 +153,15 @@ impl Arithmetic for Multiprecision {
         y.add(&BigFloat::from_f64(0.0, p), self.bits, ROUNDING)
     }
 
-    /// From the logarithm in double precision by steps of order four: ln x = y + ln(1 + e) with
-    /// e = x e^−y − 1.
+    /// Starts from the logarithm in double precision and iterates with order four:
+    /// ln x = y + ln(1 + e) with e = x e^−y − 1, whose series is cut after e³.
     fn ln(&self, x: &BigFloat) -> BigFloat {
         let p = self.bits;
         let (Some(exponent), false) = (self.exponent(x), x.is_negative()) else {
             return BigFloat::from_f64(self.nearest(x).ln(), p);
         };
-        // The mantissa's logarithm to double precision, so that no exponent is too large.
+        // Starts from the mantissa's logarithm in double precision, so that no exponent is too
+        // large for it.
         let mut y =
             self.number(self.scaled_magnitude(x, exponent).ln() + exponent as f64 * std::f64::consts::LN_2);
         let one = self.number(1.0);
@@ -183,7 +187,7 @@ fn shift_exponent(x: &mut BigFloat, by: i64) {
     }
 }
 
-/// Bits of a word, whose type depends on the machine.
+/// Bits of a word of a mantissa, whose type depends on the machine.
 fn word_bits<T>(_: T) -> i64 {
     8 * size_of::<T>() as i64
 }

@@ -1,20 +1,20 @@
-//! Where the nodes are.
+//! Positions of the nodes along a beam.
 
 use super::Nodes;
 
 use super::NODE_SNAP;
 use super::error::BasisError;
 
-/// Most nodes of one beam. Beyond, tables and unknowns take gigabytes and coefficient numbers
-/// outgrow their type.
+/// Largest number of nodes of one beam. With more, tables and unknowns would take gigabytes, and
+/// coefficient numbers would exceed the range of their type.
 pub const MOST_NODES: usize = 20_000_000;
 
-/// Rough memory of one node in tables, states and tangents, for the message that refuses too many
-/// \[bytes\].
+/// Rough memory that one node takes in tables, states and tangents \[bytes\], for the message that
+/// refuses too many nodes.
 const BYTES_PER_NODE: f64 = 2000.0;
 
-/// Relative distance of neighbouring nodes below which their difference carries fewer than three
-/// digits.
+/// Smallest distance of neighbouring nodes, relative to their arc length; below it, their
+/// difference has fewer than three correct digits.
 const LEAST_RELATIVE_SPACING: f64 = 1e3 * f64::EPSILON;
 
 /// Arc lengths of the nodes \[m\]: increasing, the first exactly 0, the last exactly `length`.
@@ -23,8 +23,7 @@ const LEAST_RELATIVE_SPACING: f64 = 1e3 * f64::EPSILON;
 /// An unusable length, too few or too many nodes, nodes that are not finite, out of order,
 /// indistinguishable, or that do not span the beam to within 1e-9 of its length.
 pub fn arc_lengths(nodes: &Nodes, length: f64) -> Result<Vec<f64>, BasisError> {
-    // A length whose square or reciprocal leaves the range of double precision cannot be computed
-    // with.
+    // The square and the reciprocal of the length must stay in the range of double precision.
     if !(1e-140..=1e140).contains(&length) {
         return Err(BasisError::Length { length });
     }
@@ -69,24 +68,26 @@ pub fn arc_lengths(nodes: &Nodes, length: f64) -> Result<Vec<f64>, BasisError> {
     Ok(s)
 }
 
-/// A place that is nearer to an end or to another one, per length of the beam, is the same.
+/// Breaks nearer to an end or to each other than this fraction of the beam's length are the same
+/// place.
 const SAME_PLACE: f64 = 1e-9;
 
-/// Lengths are told apart to such a part of a cell: round-off of a turned scene or of other units
-/// must not decide where nodes lie.
+/// Sizes of cells are rounded to one part in this number before they are compared, so that
+/// round-off, of a rotated scene or of other units, does not decide where nodes lie.
 const PARTS_OF_CELL: f64 = 1e9;
 
-/// A given node that is nearer to a break, in units of the spacing around it, is shifted there: a
-/// cell that short would serve nothing.
+/// A given node nearer to a break than this, in units of the spacing around it, is shifted to the
+/// break: a very short cell would be of no use.
 const NEAR: f64 = 0.1;
 
-/// The nodes `s` with one at each of `breaks` \[m\] that lies between the ends, and the numbers of
-/// those.
+/// The nodes `s` with a node at each of `breaks` \[m\] that lies between the ends, and the indices
+/// of those nodes.
 ///
-/// Counted nodes keep their number: the stretches between breaks get cells so that the longest is
-/// as short as it can be, in units of the cells that were there, and their nodes are spread as they
-/// were; only where there are more breaks than nodes are there more nodes in the end. Nodes that
-/// are `given` stay where they are, and are joined by others.
+/// Nodes that are not `given` keep their number. The cells are distributed over the stretches
+/// between breaks so that the longest cell, in units of the original cells, is as short as
+/// possible; inside a stretch the nodes keep their original pattern. Only where there are more
+/// breaks than inner nodes are nodes added. Nodes that are `given` stay where they are, and nodes
+/// are added at the breaks; only a given node that is very near to a break is shifted there.
 pub fn meet(mut s: Vec<f64>, given: bool, breaks: &[f64]) -> (Vec<f64>, Vec<usize>) {
     let length = s[s.len() - 1];
     let inside = |s: &f64| (SAME_PLACE * length..(1.0 - SAME_PLACE) * length).contains(s);
@@ -114,7 +115,7 @@ pub fn meet(mut s: Vec<f64>, given: bool, breaks: &[f64]) -> (Vec<f64>, Vec<usiz
     (s, numbers)
 }
 
-/// The numbers of the nodes that are to be at the breaks.
+/// The indices of the nodes that are moved to the breaks.
 fn apportion(s: &[f64], breaks: &[f64]) -> Vec<usize> {
     let index = |at: &f64| {
         let right = s.partition_point(|node| node < at);
@@ -125,7 +126,7 @@ fn apportion(s: &[f64], breaks: &[f64]) -> Vec<usize> {
     let lengths: Vec<f64> = ends.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut cells: Vec<usize> =
         lengths.iter().map(|length| ((length + 1.0 / PARTS_OF_CELL) as usize).max(1)).collect();
-    // Rounded, so that round-off does not decide between equals.
+    // Rounded, so that round-off does not decide between equal sizes.
     let size = |(j, cells): (usize, usize)| (lengths[j] / cells as f64 * PARTS_OF_CELL).round();
     while cells.iter().sum::<usize>() != last {
         let of = cells.iter().copied().enumerate();
@@ -145,8 +146,8 @@ fn apportion(s: &[f64], breaks: &[f64]) -> Vec<usize> {
     sums.take(breaks.len()).collect()
 }
 
-/// Puts a node to `at`: another one, or the nearest if that is very near, no end and no other
-/// break.
+/// Places a node at `at`: shifts the nearest one if it is very near and neither an end of the beam
+/// nor at another break; otherwise inserts one.
 fn join(s: &mut Vec<f64>, at: f64, breaks: &[f64]) {
     let right = s.partition_point(|node| *node < at);
     let spacing = s[right] - s[right - 1];
@@ -203,8 +204,8 @@ mod tests {
         ] {
             assert_eq!(meet(uniform(n), false, breaks).1, numbers, "{breaks:?}");
         }
-        // Of two equal stretches the same one gets the odd cell, whatever round-off makes of the
-        // break.
+        // Of two equal stretches the same one gets the additional cell, whatever the round-off of
+        // the break is.
         for error in [-1e-15, 0.0, 1e-15] {
             assert_eq!(meet(uniform(4), false, &[0.5 + error]).1, [1], "{error}");
         }

@@ -1,12 +1,13 @@
 //! Gauss–Legendre and Gauss–Lobatto rules on [0, 1].
 //!
-//! Abscissae are the roots of P_n, and of P'_{n−1} with both ends, found by Newton's method from
-//! asymptotic starting values; they are exact to the last digit or two of double precision, for any
-//! number of points.
+//! The abscissae are the roots of P_n (Gauss) or those of P'_{n−1} and both ends (Lobatto).
+//! Newton's method finds them from asymptotic starting values, to the last digit or two of double
+//! precision, for any number of points.
 
 use super::error::BasisError;
 
-/// Most points in a rule; an energy density that needs more wants more nodes instead.
+/// Most points in a rule; an energy density that seems to need more points needs more nodes
+/// instead.
 pub const MOST_POINTS: usize = 64;
 
 /// A quadrature rule, by family and number of points in a cell.
@@ -59,7 +60,8 @@ fn legendre(n: usize, x: f64) -> (f64, f64, f64) {
     (p, d, (2.0 * x * d - n * (n + 1.0) * p) / q)
 }
 
-/// Newton's method for the roots in the lower half, mirrored: symmetry to the last bit.
+/// Finds the roots in the lower half by Newton's method and mirrors them, so the rule is exactly
+/// symmetric.
 fn symmetric(
     n: usize,
     start: impl Fn(usize) -> f64,

@@ -1,18 +1,19 @@
 //! Hermite radial point interpolation: shape functions of one cell from the nodes of its support.
 //!
-//! In the scaled coordinate X = (s − s̄)/d_c, with d_c the average spacing of the whole beam's
-//! nodes,
+//! In the scaled coordinate X = (s − s̄)/d_c, with s̄ the middle of the cell and d_c the average
+//! spacing of the whole beam's nodes, the interpolation is
 //!
 //! u(X) = Σ_i [R(X−X_i) a_i + R'(X−X_i) b_i] + Σ_{j<m} c_j Xʲ
 //!
-//! interpolates values and slopes at the k nodes of the support, under Σ_i [X_iʲ a_i ± (Xʲ)'_i b_i]
-//! = 0. With G the matrix of these 2k + m conditions and φ(X) the functions above, the row of shape
-//! functions is the solution y of Gᵀ y = φ(X), and its derivatives that with φ differentiated.
+//! It interpolates values and slopes at the k nodes of the support, under the side conditions
+//! Σ_i [X_iʲ a_i ± (Xʲ)'_i b_i] = 0. With G the matrix of these 2k + m conditions and φ(X) the
+//! functions above, the row of shape functions is the solution y of Gᵀ y = φ(X); its derivatives
+//! solve the same equation with φ differentiated.
 //!
 //! G is close to singular wherever the interpolation is good: its condition number grows about like
-//! α^(4k−2), with α in units of the smallest spacing. So G is formed, factorised and solved in
-//! extended precision, doubled until the error of the rows is negligible in double precision, and
-//! only then rounded.
+//! α^(4k−2), with α in units of the smallest spacing. Therefore G is formed, factorised and solved
+//! in extended precision. The precision is raised until the error of the rows is negligible in
+//! double precision, and only then are the rows rounded.
 
 use std::ops::Range;
 
@@ -28,7 +29,7 @@ use astro_float_num::BigFloat;
 /// Largest estimated relative error of a row before its rounding to double precision.
 pub const TOLERANCE: f64 = 1e-13;
 
-/// Most bits tried before a cell is given up.
+/// Most bits tried before the shape functions of a cell are refused as unsolvable.
 pub const MOST_BITS: usize = 16_384;
 
 /// The factors of Gᵀ at the precision that the cell needs.
@@ -38,19 +39,19 @@ enum Factors {
     Multiprecision(Lu<BigFloat>),
 }
 
-/// The solved shape functions of a cell.
+/// The shape functions of a cell, ready to be evaluated.
 #[derive(Clone, Debug)]
 pub struct Interpolant {
     factors: Factors,
-    /// How well they are known.
+    /// How accurate they are.
     pub quality: Quality,
 }
 
-/// Arithmetics in use, so that each computes its constants once.
+/// The precisions used so far, kept so that the constants of each are computed only once.
 #[derive(Default)]
 pub struct Precisions {
     known: Vec<Multiprecision>,
-    /// Bits that the last cell would have needed.
+    /// Number of bits that would have sufficed for the last cell.
     hint: f64,
 }
 
@@ -68,15 +69,18 @@ impl Precisions {
 }
 
 impl Interpolant {
-    /// Solves a cell at the precision that it needs; on failure, the quality of the last attempt.
+    /// Solves a cell at the lowest precision tried that suffices.
+    ///
+    /// # Errors
+    /// The quality of the last attempt, if no precision suffices.
     pub fn solve(
         interpolation: &Interpolation,
         place: Place<'_>,
         precisions: &mut Precisions,
     ) -> Result<Self, Quality> {
         let mut last = Quality::default();
-        // Bits beyond those that an attempt needed are known, so a neighbour can start where this
-        // one ended.
+        // The number of bits that the last cell needed is known, and its neighbour needs about as
+        // many, so the attempts start there.
         let mut bits = if precisions.hint <= DoubleDouble.bits() as f64 {
             DoubleDouble.bits()
         } else {
@@ -105,8 +109,8 @@ impl Interpolant {
                     precisions.hint = bits as f64 + short.max(-0.9 * bits as f64);
                     return Ok(Self { factors, quality });
                 }
-                // An estimate far below one is of the right order, and says how many bits are
-                // missing.
+                // An error estimate far below one has the right order of magnitude, and tells how
+                // many bits are missing.
                 if quality.error < 1e-3 && short > 0.0 {
                     wanted = bits + short as usize + 8;
                 }
@@ -151,7 +155,7 @@ fn attempt<A: Arithmetic>(
     Some((lu, quality))
 }
 
-/// The support's part of a beam's nodes.
+/// The cell as a place in its support, which is the range `support` of the beam's nodes.
 pub fn place(nodes: &[f64], support: Range<usize>, cell: usize) -> Place<'_> {
     Place { left: cell - support.start, nodes: &nodes[support] }
 }
@@ -180,7 +184,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// What the estimate promises is measured against many more digits, entry by entry.
+        /// The estimated errors are compared with true ones, found with many more digits, entry by
+        /// entry.
         #[test]
         fn estimated_errors_bound_the_true_ones(
             spacings in prop::collection::vec((-0.5..0.5f64).prop_map(|log| 10f64.powf(log)), 1..7),

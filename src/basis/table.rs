@@ -1,12 +1,12 @@
-//! Shape functions tabulated at points of a beam: all that effects, loads, probes and supports see
-//! of a discretisation.
+//! Shape functions tabulated at points of a beam. Effects, loads, probes and supports know a
+//! discretisation only through such tables.
 
-/// One point or one cell of a beam, with the coefficients that its rows multiply.
+/// One point or one cell of a beam: which coefficients and which rows belong to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
-    /// Number of the first coefficient; the others follow without gaps.
+    /// Index of the first coefficient; the others follow without gaps.
     pub first: u32,
-    /// Number of the block of weights and rows, shared by cells of equal local geometry.
+    /// Index of the block of weights and rows, shared by cells of equal local geometry.
     pub block: u32,
 }
 
@@ -17,20 +17,20 @@ pub struct Cell {
 /// ends of a beam), the row is padded with zeros, and `first` is such that all coefficients exist.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BasisTable {
-    /// Coefficients that each row multiplies.
+    /// Number of coefficients that each row multiplies.
     pub width: usize,
     /// Orders of the derivatives held, in the order of the rows of a point.
     pub orders: Vec<usize>,
     /// Points in a cell.
     pub points_per_cell: usize,
-    /// Whether these are single points, and not the cells of a quadrature rule.
+    /// Whether the table holds single points instead of the cells of a quadrature rule.
     pub concentrated: bool,
     /// Cells, or points, in order.
     pub cells: Vec<Cell>,
     /// Per block, per point: the quadrature weight ds \[m\]; 1 for single points.
     pub weights: Vec<f64>,
-    /// Per block, per point, per order: a row of `width` numbers. Of order d, those of a value are
-    /// in m⁻ᵈ, those of a slope in m¹⁻ᵈ.
+    /// Per block, per point, per order: a row of `width` numbers. In a row of order d, the entries
+    /// for positions are in m⁻ᵈ, those for slopes in m¹⁻ᵈ.
     pub rows: Vec<f64>,
     /// Per cell, per point: the arc length s \[m\].
     pub s: Vec<f64>,
@@ -52,8 +52,9 @@ impl BasisTable {
         )
     }
 
-    /// The first cells of as many fours as there are that have the same block and start each a node
-    /// later than the one before, and the cells that are in no four.
+    /// Groups cells for computation four at a time. The first list holds the first cell of each
+    /// four consecutive cells that share one block and start each one node after the cell before;
+    /// the second list holds the remaining cells.
     pub fn by_fours(&self) -> (Vec<u32>, Vec<u32>) {
         let alike = |cells: &[Cell]| {
             cells.windows(2).all(|pair| pair[0].block == pair[1].block && pair[1].first == pair[0].first + 2)
@@ -72,7 +73,8 @@ impl BasisTable {
         (fours, singles)
     }
 
-    /// Numbers from one point's rows to the next point's: `width` times the number of orders.
+    /// Distance in memory from one point's rows to the next point's: `width` times the number of
+    /// orders.
     #[inline]
     pub fn row_stride(&self) -> usize {
         self.width * self.orders.len()

@@ -25,7 +25,7 @@ impl Destination {
             .map(Path::to_owned)
             .collect();
         let this = Self { path: path.to_owned(), made };
-        // The number keeps two runs into one directory from meeting here.
+        // The process number keeps two runs into one directory apart.
         let trial = path.join(format!(".ancf-{}", std::process::id()));
         fs::create_dir_all(path)
             .and_then(|()| OpenOptions::new().write(true).create_new(true).open(&trial))
@@ -42,7 +42,7 @@ impl Destination {
         &self.path
     }
 
-    /// The results are there.
+    /// Keeps the directories, because the results are there.
     pub fn keep(mut self) {
         self.made.clear();
     }
@@ -51,7 +51,7 @@ impl Destination {
 impl Drop for Destination {
     fn drop(&mut self) {
         for directory in &self.made {
-            // Only empty directories go; what somebody else put there stays.
+            // Only empty directories are removed; files of others stay.
             if fs::remove_dir(directory).is_err() {
                 break;
             }
@@ -74,7 +74,7 @@ mod tests {
         Destination::prepare(&results).expect("a directory").keep();
         assert!(results.is_dir());
         assert_eq!(fs::read_dir(&results).expect("a directory").count(), 0, "the trial is over");
-        // What was there before is not made, and so it stays.
+        // A directory that was there before counts as not made, and stays.
         drop(Destination::prepare(&results).expect("a directory"));
         assert!(results.is_dir());
     }

@@ -1,4 +1,4 @@
-//! Why a command did not do its work.
+//! Why a command failed.
 
 use std::fmt;
 use std::io;
@@ -11,7 +11,7 @@ use ancf::scene::SceneError;
 use ancf::sweep::SweepError;
 use miette::Diagnostic;
 
-/// Why a command did not do its work.
+/// Why a command failed.
 #[derive(Debug)]
 pub enum Failure {
     /// The scene is wrong.
@@ -20,16 +20,16 @@ pub enum Failure {
     Run {
         /// The scene file.
         scene: String,
-        /// Why.
+        /// Cause of the failure.
         error: Box<RunError>,
     },
     /// A sweep could not be done.
     Sweep(SweepError),
-    /// The cost of a scene could not be found out.
+    /// The cost of a scene could not be measured.
     Cost {
         /// The scene file.
         scene: String,
-        /// Why.
+        /// Cause of the failure.
         error: Box<CostError>,
     },
     /// It was interrupted.
@@ -41,9 +41,9 @@ pub enum Failure {
     },
     /// Nothing can be written where the results should go.
     Directory {
-        /// Where.
+        /// The directory.
         path: PathBuf,
-        /// Why.
+        /// Cause of the failure.
         error: io::Error,
     },
     /// The results could not be written.
@@ -58,7 +58,7 @@ impl Failure {
         Self::Run { scene: name.to_owned(), error: Box::new(error) }
     }
 
-    /// A failure to find out what the scene called `name` costs.
+    /// A failure to measure the cost of the scene called `name`.
     pub fn cost(name: &str, error: CostError) -> Self {
         Self::Cost { scene: name.to_owned(), error: Box::new(error) }
     }
@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(help.as_deref(), Some("give a directory that can be written with `-o DIR`"));
     }
 
-    /// The second line of the text, eight letters of it.
+    /// The place is in the second line of the text, eight letters long.
     #[test]
     fn the_place_in_a_scene_is_handed_on() {
         let failure = Failure::Scene(wrong());
@@ -217,7 +217,7 @@ mod tests {
         assert!(interrupted.labels().is_none() && interrupted.source_code().is_none());
     }
 
-    /// What another part of the library says of a sweep is said as that part says it.
+    /// Errors that come from a scene or a table are passed on as such.
     #[test]
     fn a_sweep_fails_as_its_scene_or_its_table_does() {
         assert!(matches!(Failure::from(SweepError::Scene(wrong())), Failure::Scene(_)));

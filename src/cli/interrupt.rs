@@ -1,15 +1,15 @@
-//! Ctrl-C, or another request to end such as a queue's before its time is over: once to end after
-//! the step, or the runs, in progress; twice to end the program.
+//! Ctrl-C, or another request to end, such as a batch queue's before its time is over. The first
+//! ends the computation after the step, or the runs, in progress; the second ends the program.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::terminal;
 
-/// What shells report of a program that SIGINT ended.
+/// Exit status that shells report for a program ended by SIGINT.
 const INTERRUPTED: i32 = 130;
 
-/// Whether the user wants to end, from now on; `then` says what happens at the first Ctrl-C.
+/// A flag that is set when the user wants to end; `then` says what happens at the first Ctrl-C.
 pub fn listen(then: &'static str) -> Arc<AtomicBool> {
     let wanted = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&wanted);

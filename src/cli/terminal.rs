@@ -1,4 +1,4 @@
-//! What people see on standard error: progress, a table of results, warnings, errors.
+//! Output on standard error: progress, a table of results, warnings, errors.
 
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -19,14 +19,14 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
 use super::failure::Failure;
 
-/// Lines on standard error, in which nothing commands the terminal. That nobody reads it is no
-/// reason to fail.
+/// Prints lines on standard error, without characters that control the terminal. A failure to write
+/// them is ignored, because the command itself has not failed.
 pub fn note(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", visible(text));
 }
 
-/// The text with control characters, other than ends of lines and tabs, as they are written in a
-/// scene: a title or a name could move the cursor, or worse.
+/// The text with control characters, other than ends of lines and tabs, escaped as in a scene: in a
+/// title or a name they could move the cursor, or worse.
 pub fn visible(text: &str) -> Cow<'_, str> {
     let commands = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
     if !text.contains(commands) {
@@ -49,7 +49,7 @@ pub fn report(failure: &Failure) {
     note(&format!("error: {}", plain(failure)));
 }
 
-/// A failure with the lines of the scene that it is about; nothing where these would command the
+/// A failure with the lines of the scene that it is about; none where these would control the
 /// terminal.
 fn drawn(failure: &Failure, colourless: bool) -> Option<String> {
     let rendered = |theme| {
@@ -57,7 +57,7 @@ fn drawn(failure: &Failure, colourless: bool) -> Option<String> {
         let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(2);
         handler.render_report(&mut text, failure).is_ok().then_some(text)
     };
-    // Colours are commands to the terminal, too; there must be no others.
+    // Colours are control characters, too; there must be no others.
     let text = rendered(GraphicalTheme::unicode_nocolor())?;
     if matches!(visible(&text), Cow::Owned(_)) {
         return None;
@@ -91,11 +91,11 @@ pub struct ProgressLine {
     bar: ProgressBar,
     unit: &'static str,
     name: &'static str,
-    /// When the line was last brought up to date: steps may take less time than their text.
+    /// When the line was last brought up to date: a step may take less time than printing it.
     shown: Cell<Instant>,
 }
 
-/// Time between two states of the line.
+/// Least time between two updates of the line.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Parts of the bar.
@@ -155,7 +155,7 @@ impl SweepLine {
         Self(bar(0, quiet))
     }
 
-    /// Brings the line up to date. The first call says what was there before.
+    /// Brings the line up to date. The first call tells how many runs were finished before.
     pub fn show(&self, now: &sweep::SweepProgress) {
         let Self(bar) = self;
         if bar.length() == Some(0) {
@@ -200,7 +200,7 @@ impl CostLine {
     }
 }
 
-/// Prints what the user should know.
+/// Prints the warnings of a run.
 pub fn warnings(run: &Run) {
     for warning in &run.warnings {
         note(&format!("warning: {warning}"));
@@ -356,7 +356,7 @@ mod tests {
     struct Screen(Arc<Mutex<String>>);
 
     impl Screen {
-        /// On which `bar` is drawn from now on.
+        /// A screen on which `bar` is drawn from now on.
         fn of(bar: &ProgressBar) -> Self {
             let screen = Self::default();
             bar.set_draw_target(ProgressDrawTarget::term_like(Box::new(screen.clone())));
@@ -408,8 +408,7 @@ mod tests {
         }
     }
 
-    /// The line is told when it was last brought up to date, so that nothing here waits for the
-    /// clock.
+    /// The test sets the time of the last update, so that nothing waits for the clock.
     #[test]
     fn the_line_of_a_run_says_where_it_is() {
         let integrator = Integrator::usual(STEP_CONTROL);
@@ -468,7 +467,7 @@ mod tests {
         assert!(line.0.is_finished());
     }
 
-    /// A quarter of the budget.
+    /// A quarter of the budget is spent.
     #[test]
     fn the_line_of_a_study_is_its_budget() {
         let now = cost::StudyProgress { doing: "setting 3", spent: 3.09375, budget: 12.375 };
@@ -526,7 +525,7 @@ mod tests {
         assert!(plain(&failure).starts_with("arm.toml:1:16: "), "{}", plain(&failure));
     }
 
-    /// With its place; with its causes; with its help.
+    /// The text has the place, the causes and the help.
     #[test]
     fn a_failure_in_plain_text_says_all_of_it() {
         let text = plain(&wrong(WRONG));
@@ -586,7 +585,8 @@ mod tests {
         assert!(text.contains("complete     no, the run ended"), "{text}");
     }
 
-    /// One of a thing is one; energies that few models have are left out where they are zero.
+    /// Counts of one are in the singular; energies that few models have are left out where they are
+    /// zero.
     #[test]
     fn the_table_is_no_longer_than_it_must_be() {
         let statistics =

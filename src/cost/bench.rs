@@ -1,4 +1,5 @@
-//! Runs one setting: with a limit, watched, and often enough for its time to mean something.
+//! Runs one setting: with a time limit, under observation, and often enough for its time to mean
+//! something.
 
 use std::time::Instant;
 
@@ -12,21 +13,21 @@ const LONG_ENOUGH: f64 = 0.05;
 /// … up to so many runs.
 const MOST_RUNS: usize = 5;
 
-/// What is told while a setting is measured, with its number.
+/// The word that is reported, with the number of the setting, while one is measured.
 pub(super) const MEASURING: &str = "setting";
 
 /// Why a setting was not measured.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Unmeasured {
-    /// The computation failed, or its result compares with nothing.
+    /// The computation failed, or its result cannot be compared.
     Failed(String),
     /// It took longer than it may.
     TooSlow,
-    /// Whoever watches wants it to end.
+    /// The watcher stopped it.
     Interrupted,
 }
 
-/// Where settings are measured and time passes.
+/// Measures settings, by its own clock.
 pub(super) trait Bench {
     /// Time since the start \[s\].
     fn now(&self) -> f64;
@@ -34,7 +35,7 @@ pub(super) trait Bench {
     fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Unmeasured>;
 }
 
-/// The problem, with the clock that everything goes by.
+/// The problem, with the clock and the watcher of the study.
 #[derive(Clone, Copy)]
 pub(super) struct Runner<'a> {
     pub model: &'a Model,
@@ -49,7 +50,7 @@ impl Runner<'_> {
         self.start.elapsed().as_secs_f64()
     }
 
-    /// Says what is being done.
+    /// Tells the watcher what is being done.
     pub fn tell(&self, doing: &str) -> Control {
         (self.watcher)(&StudyProgress { doing, spent: self.now(), budget: self.budget })
     }
@@ -57,7 +58,7 @@ impl Runner<'_> {
     /// Runs a setting once, called `doing`, until `deadline` \[s\] at most.
     pub fn run(&self, setting: &Setting, doing: &str, deadline: f64) -> Result<Results, Unmeasured> {
         let (model, analysis) = setting.apply(self.model, self.analysis);
-        // Some analyses are over before anybody is asked.
+        // Some analyses end before their observer is called.
         let mut miss = (self.tell(doing) == Control::Stop).then_some(Unmeasured::Interrupted);
         if let Some(miss) = miss {
             return Err(miss);
@@ -199,7 +200,7 @@ mod tests {
         assert_eq!(run(1, f64::INFINITY), (Err(Unmeasured::Interrupted), 1));
         assert_eq!(run(2, f64::INFINITY), (Err(Unmeasured::Interrupted), 2));
         assert_eq!(run(0, -1.0), (Err(Unmeasured::TooSlow), 2));
-        // What is over cannot be interrupted.
+        // A run that is over cannot be interrupted.
         assert_eq!(run(calls, f64::INFINITY), (Ok(true), calls));
     }
 

@@ -6,8 +6,8 @@ use crate::model::{Analysis, Model};
 use crate::output::drift;
 use crate::results::{AnalysisKind, Results, Shape, Trajectory};
 
-/// Records belong together when their times or load factors differ by less, relative to the last
-/// one.
+/// Records belong together when their times or load factors differ by less than this, relative to
+/// the last one.
 const SAME: f64 = 1e-9;
 
 /// Errors of a run.
@@ -26,7 +26,7 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// What [`Deviation::error`] is for this analysis, with its unit.
+    /// Name and unit of [`Deviation::error`] for this analysis.
     pub fn name(analysis: AnalysisKind) -> &'static str {
         match analysis {
             AnalysisKind::Static | AnalysisKind::Dynamic => "position error [beam lengths]",
@@ -76,8 +76,7 @@ impl Deviation {
     }
 }
 
-/// Pairs of records at the same time or load factor; both lists ascend. The last of the reference
-/// must be among them.
+/// Pairs of records at the same time or load factor; both lists ascend. At least one is required.
 fn common(run: &[f64], reference: &[f64]) -> Result<Vec<(usize, usize)>, String> {
     let last = *reference.last().ok_or("no record")?;
     let (mut pairs, mut i) = (Vec::new(), 0);
@@ -89,7 +88,7 @@ fn common(run: &[f64], reference: &[f64]) -> Result<Vec<(usize, usize)>, String>
             pairs.push((i, j));
         }
     }
-    // A motion that an event ends has its last record at a moment of its own.
+    // The last records need not belong together: an event may end a motion at any time.
     if pairs.is_empty() { Err("no record at the times or loads of the reference".into()) } else { Ok(pairs) }
 }
 
@@ -100,7 +99,7 @@ fn positions(model: &Model, run: &Trajectory, reference: &Trajectory, pairs: &[(
         for &(i, j) in pairs {
             if let (Some(a), Some(b), Some(length)) = (ours.samples.get(i), theirs.samples.get(j), length) {
                 let distance = (a.x - b.x).hypot(a.y - b.y) / length;
-                // A maximum that keeps what is not a number.
+                // A maximum that keeps a NaN.
                 largest = if distance > largest || distance.is_nan() { distance } else { largest };
             }
         }
@@ -238,13 +237,14 @@ mod tests {
         let lost = [[0.0, 0.0], [f64::NAN, 1.0], [1.0, 1.0]];
         let nowhere = error(&still(), &run(&steps, &lost, &end), &reference);
         assert_eq!(nowhere, Err("its error is not a number".to_owned()));
-        // Ends of a path are compared wherever they are.
+        // The ends of paths are compared wherever they are.
         let ours = run(&[0.0, 0.75], &[[9.0, 9.0], [1.0, 2.25]], &[[0.0, 0.0], [1.0, 1.0]]);
         assert_eq!(error(&path(), &ours, &reference), Ok(0.625));
         assert_eq!(error(&path(), &run(&[], &[], &[]), &reference), Err("no record".to_owned()));
     }
 
-    /// In statics 1.5 J for 2 J; in motion 0.5 J gained, of 2 J of motion at most.
+    /// In statics there are 1.5 J in place of 2 J; in motion 0.5 J are gained, and the kinetic
+    /// energy is at most 2 J.
     #[test]
     fn energies_err_by_analysis() {
         let with = |energy: Vec<Energy>| Trajectory { energy, ..run(&[1.0], &[[0.0; 2]], &[[0.0; 2]]) };
@@ -272,7 +272,7 @@ mod tests {
         assert_eq!(values(&[0.0, 2.2, 4.0], &[1e-13, 2.0, 4.0], "f").unwrap(), 0.10000000000000009);
         assert!(values(&[1.0], &[1.0, 2.0], "f").is_err());
         assert!(values(&[], &[], "f").is_err());
-        // The frequency of what nothing resists is round-off of the largest one, up to 1e-9 of it.
+        // The frequency of a free motion is round-off of the largest one, up to 1e-9 of it.
         assert_eq!(values(&[0.0, 1000.0], &[1e-8, 1000.0], "f").unwrap(), 1e-8 / 1000.0);
         assert_eq!(values(&[0.0, 0.25], &[1e-12, 0.25], "f").unwrap(), 4e-12);
         assert_eq!(values(&[0.0, 1.0], &[1e-9, 1.0], "f").unwrap(), 1e-9);
@@ -314,7 +314,7 @@ mod tests {
         assert_eq!(bent([0.0, 1.5e-9], 0.5), None);
         assert_eq!(bent([0.0, 1e-9], 1.0), None);
         assert_eq!(bent([0.03125, 0.0625], 2.0), Some(0.5));
-        // A longer beam counts wherever it stands.
+        // The longest beam decides, wherever it stands in the list.
         let straight = [shape(2.0, &[1e-9]), shape(0.1, &[1e-9])];
         assert_eq!(curvature(&straight, &straight), Some(0.0));
     }

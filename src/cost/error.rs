@@ -1,26 +1,26 @@
-//! Why nothing can be said about the cost of a scene.
+//! Why the cost of a scene cannot be measured.
 
 use crate::output::OutputError;
 use crate::run::RunError;
 use crate::scene::SceneError;
 
-/// Why nothing can be said about the cost of a scene.
+/// Why the cost of a scene cannot be measured.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum CostError {
-    /// The accuracy asked for is none.
+    /// The target is not a legal error.
     #[error("the target error {target:e} is not between 1e-12 and 1")]
     #[diagnostic(help(
         "it is the position error in beam lengths, or the relative error of frequencies or load factors; 1e-4 is a usual choice"
     ))]
     Target {
-        /// As given.
+        /// The target that was given.
         target: f64,
     },
-    /// The budget is no time.
+    /// The budget is not a legal time.
     #[error("the budget of {budget} s is not between 0.01 s and a week")]
     #[diagnostic(help("give a time with its unit, such as --budget 60s or --budget \"2 min\""))]
     Budget {
-        /// As given \[s\].
+        /// The budget that was given \[s\].
         budget: f64,
     },
     /// Runs of different settings would end at different points.
@@ -33,13 +33,13 @@ pub enum CostError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Run(#[from] RunError),
-    /// There is nothing to measure errors against.
+    /// There is no reference for the errors.
     #[error("no reference could be made: {reason}")]
     #[diagnostic(help(
         "give more time with --budget, or a larger --target; `ancf run` says more about a run that fails"
     ))]
     NoReference {
-        /// What kept from it.
+        /// What prevented it.
         reason: String,
     },
     /// Stopped before anything was measured.

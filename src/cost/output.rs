@@ -1,4 +1,4 @@
-//! What a study leaves: tables, plots, a page, and the scene with the cheapest setting.
+//! The files of a study: tables, plots, a page, and the scene with the cheapest setting.
 //!
 //! | file | holds |
 //! |---|---|
@@ -21,7 +21,7 @@ use crate::model::Integrator;
 use crate::output::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, Series, human};
 use crate::output::{OutputError, StagedFiles, exact};
 
-/// What `cost.json` holds.
+/// The contents of `cost.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report<'a> {
     /// The scene's title.
@@ -32,9 +32,9 @@ pub struct Report<'a> {
     pub complete: bool,
     /// Wanted error.
     pub target: f64,
-    /// What the error is, with its unit.
+    /// Name and unit of the error.
     pub error: &'static str,
-    /// Time that everything might take \[s\].
+    /// Time allowed for everything \[s\].
     pub budget: f64,
     /// The two runs that agree.
     pub reference: &'a [String; 2],
@@ -44,11 +44,11 @@ pub struct Report<'a> {
     pub trials: Vec<ReportedTrial>,
     /// Index of the cheapest trial that meets the target.
     pub best: Option<usize>,
-    /// Tables of a scene that ask for it.
+    /// Tables of a scene file that select it.
     pub lines: Option<&'a str>,
-    /// What was not tried, and why.
+    /// Settings that were not tried, and why.
     pub left_out: &'a [LeftOut],
-    /// What the reader should know.
+    /// Warnings for the reader.
     pub warnings: Vec<String>,
 }
 
@@ -64,12 +64,12 @@ pub struct ReportedTrial {
     /// Cost and error.
     #[serde(flatten)]
     pub measured: Measured,
-    /// Its error is below the uncertainty of the reference.
+    /// Whether its error is below the uncertainty of the reference.
     pub below_uncertainty: bool,
-    /// No other one beats it in time and error.
+    /// Whether no other trial beats it in time and error.
     pub front: bool,
-    /// Its error plus the uncertainty of the reference is within the target, and its run warned of
-    /// nothing.
+    /// Whether its error plus the uncertainty of the reference is within the target, and its run
+    /// warned of nothing.
     pub meets_target: bool,
 }
 
@@ -145,7 +145,7 @@ pub fn write(directory: &Path, study: &Study) -> Result<(), OutputError> {
     })?;
     stage.commit()?;
     if study.best.is_none() {
-        // That of an older study would be taken for this one's. Missing, most often.
+        // The file of an older study would be taken for this one's. Most often there is none.
         let _ = fs::remove_file(directory.join(best));
     }
     Ok(())
@@ -431,7 +431,7 @@ mod tests {
         assert_eq!(found.series, expected.concat());
         assert_eq!((found.width, found.height), (900, 560));
         assert_eq!((found.x, found.y), (Axis::log("time"), Axis::log("position error [beam lengths]")));
-        // What costs nothing is on no logarithmic axis: four cells have 16 unknowns, eight 32.
+        // Zero costs cannot be drawn on a logarithmic axis. Four cells have 16 unknowns, eight 32.
         let work = chart(&study, "work", Measured::sized_work);
         assert_eq!(work.series[0].points, [[32.0, TARGET], [64.0, TARGET]]);
         let bare =
@@ -439,7 +439,7 @@ mod tests {
         assert_eq!(bare.series.len(), 3 + 6 * 4);
     }
 
-    /// As many digits as are of use.
+    /// Numbers have as many digits as are of use.
     #[test]
     fn a_page_reads_as_reviewed() {
         let mut study = made_up();

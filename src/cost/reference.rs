@@ -16,18 +16,18 @@ const ELEMENTS_PER_CELL: usize = 4;
 const PAIRS: u32 = 7;
 /// A pair costs about so many times the one before.
 const GROWTH: f64 = 2.5;
-/// Agreement that is enough, and agreement beyond which nothing is gained, in targets.
+/// Agreement that is enough, and agreement beyond which nothing is gained, as parts of the target.
 const ENOUGH: f64 = 0.1;
 const AMPLE: f64 = 1e-3;
 
-/// What errors are measured against.
+/// The reference for all errors.
 #[derive(Clone, Debug)]
 pub struct Reference {
     /// The meshfree run of the pair that agrees best.
     pub results: Results,
     /// By how much the other run of the pair differs: the uncertainty of the reference.
     pub uncertainty: Deviation,
-    /// What either run warned of.
+    /// Warnings of either run.
     pub warnings: Vec<String>,
     /// The pair in words.
     pub pair: [String; 2],
@@ -55,11 +55,11 @@ fn pair(runner: &Runner<'_>, level: u32, target: f64) -> [(Family, usize, Settin
     )
 }
 
-/// Where the clock stands after a pair \[s\].
+/// Times after a pair of runs \[s\].
 struct Clock {
     /// Time taken so far.
     spent: f64,
-    /// What the next pair may take.
+    /// Time that the next pair may take.
     next: f64,
     /// Time left to refine.
     left: f64,
@@ -67,7 +67,8 @@ struct Clock {
     budget: f64,
 }
 
-/// Whether to refine no further where pairs agree to `error`, and to `before` without the last one.
+/// Whether to refine no further, where the best pair agrees to `error`, and to `before` without the
+/// last.
 fn is_final(error: f64, before: Option<f64>, target: f64, clock: &Clock) -> bool {
     let stalled = before.is_some_and(|before| error > 0.5 * before);
     // Beyond what is needed, refinement must be cheap and still gain something.
@@ -77,7 +78,7 @@ fn is_final(error: f64, before: Option<f64>, target: f64, clock: &Clock) -> bool
 
 /// Refines until two runs agree well below `target`, or the time `deadline` \[s\] is near.
 pub(super) fn make(runner: &Runner<'_>, target: f64, deadline: f64) -> Result<Reference, CostError> {
-    // Gone before the search, whose runs are alone.
+    // These threads end before the search, whose runs must be alone.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
     let start = runner.now();
     let mut best: Option<Reference> = None;
@@ -109,7 +110,7 @@ pub(super) fn make(runner: &Runner<'_>, target: f64, deadline: f64) -> Result<Re
         match found {
             Ok((results, mut uncertainty, warnings)) => {
                 if matches!(runner.analysis, Analysis::Dynamic(_)) {
-                    // A drift is measured against nothing.
+                    // The energy error of a motion is its drift, which has no reference.
                     uncertainty.energy = None;
                 }
                 if agreement.is_none_or(|error| uncertainty.error < error) {
@@ -200,7 +201,7 @@ mod tests {
         let (cheap, dear) = ([20.0, 30.0, 100.0], [20.0, 30.1, 100.0]);
         let halved = Some(200.0);
         for (error, before, clock, expected) in [
-            // Far from what is needed, at any price that is left.
+            // Far from what is needed: on at any price within the time that is left.
             (103.0, None, dear, false),
             (103.0, Some(103.0), dear, false),
             (103.0, None, [20.0, 100.0, 100.0], false),
@@ -268,7 +269,7 @@ mod tests {
         assert!((reference.results.eigenvalues()[0] * std::f64::consts::TAU - 3.516_015).abs() < 1e-4);
     }
 
-    /// Vibrations are over before anybody looks at the clock.
+    /// An analysis of vibrations ends before the clock is read.
     #[test]
     fn no_pair_is_begun_after_the_time() {
         let (reference, told) = made(8e-6, 50.0);

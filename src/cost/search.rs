@@ -1,9 +1,9 @@
-//! The settings that are tried, coarse ones first, and when a family of them is left.
+//! The settings that are tried, coarse ones first, and when a family of them is given up.
 //!
-//! First all discretisations go through their meshes together, from coarse to fine, with one accurate solver. Then the best
-//! of them, from the cheapest to the most accurate, are tried with other solvers: tolerances in
-//! statics; integrators, tolerances and steps in motion. A setting whose predicted time exceeds
-//! what is left is not tried.
+//! First all discretisations go through their meshes together, from coarse to fine, with one
+//! accurate solver. Then the best of them, from the cheapest to the most accurate, are tried with
+//! other solvers: tolerances in statics; integrators, tolerances and steps in motion. A setting
+//! whose predicted time exceeds the time that is left is not tried.
 
 use serde::Serialize;
 
@@ -15,28 +15,27 @@ use crate::model::{Analysis, Integrator, Model, StepControl};
 
 /// Cells of the meshes.
 const MESHES: [usize; 15] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
-/// A family is dominated by far where another setting has so many times less error in so many times
-/// less time …
+/// A family is given up if another setting has so many times less error in as much less time …
 const FAR: f64 = 4.0;
-/// … on so many meshes in succession; and it is given up after so many failures in succession.
+/// … on so many meshes in succession, or after so many failures in succession.
 const PATIENCE: usize = 2;
-/// Of the time of the search, what is kept for other solvers where there are some.
+/// Part of the search's time that is kept for other solvers in the analysis of a motion.
 const KEPT_FOR_SOLVERS: f64 = 0.4;
 /// Most discretisations that are tried with other solvers.
 const PICKS: usize = 4;
-/// What a run is expected to cost more than measured, for repetitions and noise.
+/// Factor by which a run may take longer than predicted, because of repetitions and noise.
 const RESERVE: f64 = 1.3;
 
-/// What was not tried, or not to the end.
+/// Settings that were not tried, or not to the end.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LeftOut {
-    /// Which settings.
+    /// The settings.
     pub what: String,
-    /// Why.
+    /// Reason for leaving them out.
     pub why: String,
 }
 
-/// What the search found.
+/// The results of a search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Found {
     pub trials: Vec<Trial>,
@@ -51,7 +50,7 @@ impl Found {
     }
 }
 
-/// What a search is to find out.
+/// The task of a search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Task<'a> {
     pub model: &'a Model,
@@ -84,7 +83,7 @@ fn accurate(task: &Task<'_>) -> Solver {
     }
 }
 
-/// A legal tolerance.
+/// The value as a legal tolerance of two digits.
 fn tolerance(value: f64) -> f64 {
     short(value).clamp(1e-13, 0.1)
 }
@@ -94,7 +93,7 @@ fn short(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
-/// A family on its way up.
+/// The search through the meshes of one family.
 struct FamilySearch {
     family: Family,
     /// Seconds and cells of the last two measured meshes, the later one last.
@@ -114,7 +113,7 @@ impl FamilySearch {
     }
 }
 
-/// Measures, and says whether to go on with what the outcome was. `None`: interrupted.
+/// Measures a setting. Returns the index of its trial, or why there is none; `None` if interrupted.
 fn attempt(
     bench: &mut impl Bench,
     found: &mut Found,
@@ -206,7 +205,7 @@ fn reason(miss: Unmeasured) -> String {
     }
 }
 
-/// A trial that is far better than the one at `index` in both time and error.
+/// The index of a trial that is far better than the one at `index` in both time and error.
 fn dominated_by(trials: &[Trial], index: usize, least: f64) -> Option<usize> {
     let points = points(trials, least);
     let [seconds, error] = points[index];
@@ -262,8 +261,8 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, found: &mut Found) -> Option
             let mut before: Option<[f64; 2]> = None;
             for solver in list {
                 let what = format!("{family}, {cells} cells, {solver}");
-                // Second-order methods pay most for a digit: ten times the accuracy, or a quarter
-                // of the step.
+                // The next solver is ten times as accurate, or has a quarter of the step. With a
+                // method of second order it takes up to four times as long.
                 let predicted = before.map_or(measured.seconds, |[seconds, _]| 4.0 * seconds);
                 if bench.now() + RESERVE * predicted >= task.deadline {
                     found.leave(what, "no time is left in the budget");
@@ -275,13 +274,14 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, found: &mut Found) -> Option
                         let there = found.trials[index].measured.clone();
                         let (seconds, error) = (there.seconds, there.deviation.error);
                         if there.work() == measured.work() && same(error, measured.deviation.error) {
-                            // Otherwise the noise of the clock would choose between two names of
-                            // one thing.
+                            // Otherwise the noise of the clock would choose between two names for
+                            // the same setting.
                             found.trials.truncate(index);
                             found.leave(what, "it comes to the same by the same work as without it");
                             break;
                         }
-                        // The mesh decides, no longer the solver: what follows only costs more.
+                        // The mesh decides on the error, no longer the solver: further solvers only
+                        // cost more.
                         let settled = before.is_some_and(|[_, last]| error > 0.9 * last);
                         if settled || error <= task.least {
                             break;
@@ -302,7 +302,7 @@ fn solvers(task: &Task<'_>, bench: &mut impl Bench, found: &mut Found) -> Option
     Some(())
 }
 
-/// Whether nobody would tell two errors apart.
+/// Whether two errors are equal for all practical purposes.
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-3 * a.max(b)
 }
@@ -316,8 +316,8 @@ fn picks(trials: &[Trial], task: &Task<'_>) -> Vec<usize> {
         .collect();
     let meets = front.iter().position(|&i| trials[i].measured.deviation.error <= task.target);
     let middle = meets.unwrap_or(front.len().saturating_sub(1));
-    // What is far cheaper, and far more accurate, is there to be seen; what decides lies around the
-    // target.
+    // The settings around the target matter most; a cheaper one and the most accurate one show the
+    // trend.
     let near = [
         middle,
         middle.saturating_sub(1),
@@ -424,7 +424,7 @@ mod tests {
         Trial { family, cells: 8, setting, measured: measured(seconds, error) }
     }
 
-    /// A bench that answers as it is told, and notes what it was asked for until when.
+    /// A bench with given answers, which records the settings and the deadlines it was asked for.
     struct Told<F> {
         clock: f64,
         answer: F,
@@ -482,7 +482,7 @@ mod tests {
         }
     }
 
-    /// Of the ten seconds that are left at 100 s, four are kept where there are other solvers.
+    /// Of the ten seconds that are left at 100 s, four are kept for other solvers in a motion.
     #[test]
     fn meshes_leave_time_for_other_solvers() {
         for (analysis, expected) in
@@ -536,7 +536,7 @@ mod tests {
         );
     }
 
-    /// And a scene that fails itself is no reason not to go on.
+    /// The search goes on, too, where the scene's own setting fails.
     #[test]
     fn a_family_that_is_too_slow_is_left_at_once() {
         let mut first = true;
@@ -608,7 +608,7 @@ mod tests {
         assert_eq!(dominated(8.0, 1.0 / 256.0), Some(1));
         assert_eq!(dominated(7.9, 1.0), None);
         assert_eq!(dominated(100.0, 1.0 / 257.0), None);
-        // Below the least nobody is better.
+        // Errors below `least` do not count as better.
         let exact = [trial(Family::FULL, 1.0, 1e-12), trial(Family::FULL, 9.0, 1e-9)];
         assert_eq!(dominated_by(&exact, 1, 1e-9), None);
     }
@@ -621,7 +621,7 @@ mod tests {
         }
     }
 
-    /// Of a mean step of 32 ms, for a target of 1e-4.
+    /// The mean step is 32 ms, the target 1e-4.
     #[test]
     fn motions_are_tried_by_these_solvers() {
         let (analysis, model) = (motion(3.2), model());
@@ -674,8 +674,8 @@ mod tests {
         Found { trials: vec![only], ..Found::default() }
     }
 
-    /// The lists end where the mesh decides, where nothing is left to gain, and where it is too
-    /// slow; a failure ends none.
+    /// A list ends where the mesh decides on the error, where nothing is left to gain, and where it
+    /// is too slow; a failure does not end it.
     #[test]
     fn a_list_of_solvers_ends_where_nothing_is_gained() {
         let (analysis, model) = (motion(3.2), model());
@@ -782,7 +782,7 @@ mod tests {
         }
     }
 
-    /// Of a front whose errors are halved by twice the time.
+    /// On the front each setting takes twice the time of the one before for half of its error.
     #[test]
     fn discretisations_around_the_target_are_picked() {
         let analysis = vibrations();
@@ -811,7 +811,7 @@ mod tests {
             assert!(bench.clock <= 10.0, "{}", bench.clock);
             assert!(found.trials.len() > 20);
             assert!(found.left_out.iter().any(|left| left.why.contains("budget")));
-            // A prediction kept the search from starting what it could not end.
+            // Predictions kept the search from starting runs that it could not end.
             assert!(found.left_out.iter().all(|left| !left.why.contains("longer")), "{:?}", found.left_out);
             assert!(!found.interrupted);
         }
@@ -900,8 +900,8 @@ mod tests {
         }
     }
 
-    /// What is tried in which order, and what is left out for which reason: whoever changes the
-    /// search sees here what becomes of it.
+    /// The order in which settings are tried, and the reasons for which others are left out: a
+    /// change of the search shows here.
     #[test]
     fn the_order_of_what_is_tried_is_as_reviewed() {
         let motion = motion(1.0);

@@ -1,4 +1,4 @@
-//! What is varied: discretisations, meshes, and how equations are advanced or solved.
+//! The settings that are varied: discretisations, meshes, and how equations are advanced or solved.
 
 use std::fmt;
 use std::fmt::Write as _;
@@ -16,12 +16,11 @@ use crate::model::{
 /// A kind of discretisation, of any fineness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Family {
-    /// As the scene says.
+    /// The scene's own.
     Scene,
     /// Cable elements.
     Ancf(GaussPoints),
-    /// Radial point interpolation with multiquadrics; what is not said takes the defaults of
-    /// scenes.
+    /// Radial point interpolation with multiquadrics; everything else takes the defaults of scenes.
     Rpim {
         /// Nodes beyond the cell's own two, on each side.
         neighbours: usize,
@@ -35,12 +34,11 @@ pub enum Family {
 impl Family {
     /// Cable elements with the points that integrate Green's strain exactly.
     pub const FULL: Self = Self::Ancf(GaussPoints { stretch: 5, bend: 3, lobatto: false });
-    /// Cable elements as scenes have them where they say no more: with fewer points, which let
-    /// membrane locking go.
+    /// Cable elements as scenes have them by default: with fewer points, which avoids membrane
+    /// locking.
     pub const REDUCED: Self = Self::Ancf(ANCF_GAUSS_POINTS);
 
-    /// Radial point interpolation as scenes have it where they say no more, but for the Gauss
-    /// points.
+    /// Radial point interpolation as scenes have it by default, but for the Gauss points.
     pub fn usual(points: usize) -> Self {
         let shape = match RPIM_KERNEL {
             Kernel::Multiquadric { shape, .. } => shape,
@@ -49,7 +47,7 @@ impl Family {
         Self::Rpim { neighbours: RPIM_NEIGHBOURS, shape, points }
     }
 
-    /// Those of the search.
+    /// The families of the search.
     pub fn all() -> Vec<Self> {
         let points = RPIM_GAUSS_POINTS.bend;
         let widths = [2, 1, 3].into_iter();
@@ -59,9 +57,9 @@ impl Family {
         [Self::FULL, Self::REDUCED].into_iter().chain(usual).chain(rpim).collect()
     }
 
-    /// The beams of `model` with as many cells that the one with the most has `cells`, the others
-    /// in proportion to what they have in the model. Nodes are spaced evenly, or graded as the
-    /// model's given ones.
+    /// The beams of `model` with new meshes: the beam with the most cells has `cells` of them, the
+    /// others in proportion to their numbers in the model. Nodes are spaced evenly, or graded as
+    /// the model's given ones.
     pub(super) fn beams(self, model: &Model, cells: usize) -> Vec<(Discretization, GaussPoints)> {
         let most = model.beams.iter().map(cells_of).max().unwrap_or(1);
         let beam = |beam: &Beam| {
@@ -69,7 +67,8 @@ impl Family {
             let nodes = graded(beam.discretization.nodes(), (share.round() as usize).max(1));
             match self {
                 Self::Scene => (beam.discretization.clone(), beam.gauss_points),
-                // What does not lock needs its points: a string folds where too few resist.
+                // Strings and inextensible beams do not lock: they keep all points, because a
+                // string folds where too few resist.
                 Self::Ancf(_)
                     if beam.section.bending_stiffness.is_none() || beam.section.axial_stiffness.is_none() =>
                 {
@@ -95,8 +94,8 @@ impl Family {
         model.beams.iter().map(beam).collect()
     }
 
-    /// The discretisation without what is varied within RPIM beyond the support: for the colours of
-    /// plots.
+    /// The discretisation without the parameters of RPIM other than the number of neighbours: for
+    /// the colours of plots.
     pub(super) fn kind(self) -> String {
         match self {
             Self::Rpim { neighbours, .. } => {
@@ -149,7 +148,7 @@ fn graded(nodes: &Nodes, cells: usize) -> Nodes {
 /// How equations are solved or advanced in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solver {
-    /// As the scene says.
+    /// The scene's own.
     Scene,
     /// Equilibria to this relative accuracy.
     Tolerance(f64),
@@ -170,7 +169,7 @@ impl fmt::Display for Solver {
 /// Everything that the search varies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
-    /// Per beam.
+    /// The discretisation and the Gauss points of each beam.
     pub beams: Vec<(Discretization, GaussPoints)>,
     /// How equations are solved.
     pub solver: Solver,
@@ -194,8 +193,8 @@ impl Setting {
         (model, analysis)
     }
 
-    /// The lines of a scene that ask for this setting: tables to stand in place of those of the
-    /// same names, the bases of all beams and the integrator.
+    /// The lines of a scene that select this setting, to stand in place of the tables of the same
+    /// names: the bases of all beams and the integrator.
     pub fn toml(&self, model: &Model) -> String {
         let mut tables = Vec::new();
         for (beam, (discretization, points)) in model.beams.iter().zip(&self.beams) {
@@ -343,7 +342,7 @@ mod tests {
         }
     }
 
-    /// What is the default is left out.
+    /// Defaults are left out.
     #[test]
     fn lines_say_no_more_than_they_must() {
         let given = || Nodes::Given(vec![0.0, 0.5, 2.0]);
@@ -489,7 +488,7 @@ mod tests {
             matches!(&analysis, Analysis::Dynamic(d) if d.integrator == gauss && d.duration == 1.0),
             "{analysis:?}"
         );
-        // What an analysis does not know leaves it as it is.
+        // An analysis that does not know the solver is left as it is.
         let (_, analysis) = with(Solver::Tolerance(2e-7), motion.analysis());
         assert_eq!(&analysis, motion.analysis());
     }

@@ -1,4 +1,4 @@
-//! What was measured, and which of it counts.
+//! Measured settings, and the best of them.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use super::deviation::Deviation;
 use super::setting::{Family, Setting};
 use crate::results::Statistics;
 
-/// A setting with what it cost and how far it was off.
+/// A setting with its cost and its error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
     /// The kind of discretisation.
@@ -15,7 +15,7 @@ pub struct Trial {
     pub cells: usize,
     /// Everything that was varied.
     pub setting: Setting,
-    /// What was measured.
+    /// Its cost and its errors.
     pub measured: Measured,
 }
 
@@ -32,7 +32,7 @@ pub struct Measured {
     pub statistics: Statistics,
     /// Its errors.
     pub deviation: Deviation,
-    /// What its runs warned of; such a setting is recommended to nobody.
+    /// Warnings of its runs; a setting with any is not recommended.
     pub warnings: Vec<String>,
 }
 
@@ -42,8 +42,8 @@ impl Measured {
         self.statistics.tangent_evaluations + self.statistics.factorizations
     }
 
-    /// The same times the unknowns, to which the cost of either is proportional: a cost that no
-    /// clock enters.
+    /// [`Self::work`] times the unknowns, to which the cost of either is proportional: a cost
+    /// without a clock.
     pub fn sized_work(&self) -> f64 {
         self.work() as f64 * self.degrees_of_freedom as f64
     }
@@ -69,8 +69,8 @@ pub(super) fn cheapest(points: &[[f64; 2]], target: f64) -> Option<usize> {
     meets.min_by(|&a, &b| points[a][0].total_cmp(&points[b][0]))
 }
 
-/// (seconds, error) of every trial; an error below `least` counts as `least`, for nobody can tell
-/// them apart.
+/// (seconds, error) of every trial. An error below `least` counts as `least`, because such errors
+/// cannot be distinguished.
 pub(super) fn points(trials: &[Trial], least: f64) -> Vec<[f64; 2]> {
     trials.iter().map(|trial| [trial.measured.seconds, trial.measured.deviation.error.max(least)]).collect()
 }

@@ -1,9 +1,10 @@
 //! Pre-strain and pre-curvature: a stress-free shape that grows with the load factor or follows a
 //! law of time.
 //!
-//! Heat, a tendon, pressure or a piezoelectric layer ask for a strain ε₀ and a curvature κ₀. Of the
-//! energy ½ EA (ε − ε₀)² only −EA ε₀ ε does work on the beam: a load with a potential, beside the
-//! elastic energy ½ EA ε², so that it can be switched on like any other load.
+//! Heat, a tendon, pressure or a piezoelectric layer impose a strain ε₀ and a curvature κ₀. In the
+//! energy ½ EA (ε − ε₀)², only the term −EA ε₀ ε couples the actuation to the motion. It is treated
+//! as a load with a potential, beside the elastic energy ½ EA ε², so that it can be switched on
+//! like any other load.
 
 use super::{Engineering, Green, Strain, bend};
 use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
@@ -12,16 +13,16 @@ use crate::lanes;
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
-/// The strain and curvature that a beam would take by itself.
+/// The strain and curvature that actuation imposes on a beam.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Actuation {
     /// Index of the beam.
     pub beam: usize,
-    /// ε₀.
+    /// ε₀, without unit.
     pub strain: Option<f64>,
     /// κ₀ \[1/m\].
     pub curvature: Option<f64>,
-    /// How they follow time.
+    /// In a motion, the law of time that both follow; without one they act in full from the start.
     pub law: Option<Law>,
 }
 
@@ -57,7 +58,7 @@ impl Part for Actuation {
     }
 }
 
-/// W = −N₀ ε with N₀ = EA ε₀ \[N\].
+/// The load of a pre-strain: W = −N₀ ε with N₀ = EA ε₀ \[N\].
 #[derive(Clone, Debug)]
 pub struct PreStrain<S> {
     force: f64,
@@ -65,7 +66,7 @@ pub struct PreStrain<S> {
 }
 
 impl<S: Strain> PreStrain<S> {
-    /// N₀ \[N\].
+    /// `force` is N₀ \[N\].
     pub fn new(force: f64) -> Self {
         Self { force, strain: std::marker::PhantomData }
     }
@@ -94,10 +95,10 @@ impl<S: Strain> Density<1> for PreStrain<S> {
     }
 }
 
-/// W = −M₀ κ with M₀ = EI κ₀ \[N m\].
+/// The load of a pre-curvature: W = −M₀ κ with M₀ = EI κ₀ \[N m\].
 #[derive(Clone, Debug)]
 pub struct PreCurvature {
-    /// M₀.
+    /// M₀ \[N m\].
     pub moment: f64,
 }
 

@@ -4,7 +4,7 @@ use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, 
 use crate::lanes::{self, Lanes, Pair, Points, Real, Square, cross, dot, outer};
 use nalgebra::{Matrix2, Vector2};
 
-/// The resistance of a beam to bending; none where its section names no bending stiffness.
+/// The resistance of a beam to bending; a section without bending stiffness has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeamBend {
     /// Index of the beam.
@@ -15,23 +15,23 @@ impl Part for BeamBend {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("bending", self.beam)?;
         let Some(stiffness) = beam.section.bending_stiffness else { return Ok(()) };
-        // Only a curved beam keeps its reference curvatures.
+        // Only a curved beam needs to store its reference curvatures.
         let straight = assembly.discretized(self.beam).straight;
         let extent = Extent::Beam(self.beam, beam.gauss_points.bend_rule());
         assembly.elastic(Kind::Bend, extent, |z| Bend::new(stiffness, if straight { &[] } else { &z }))
     }
 }
 
-/// W = ½ EI (κ − κ₀)² with the material curvature κ = (r' × r'')/|r'|², κ₀ that of the stress-free
-/// shape as the discretisation sees it (no table of it for a straight beam).
+/// W = ½ EI (κ − κ₀)² with the material curvature κ = (r' × r'')/|r'|², and κ₀ the curvature of the
+/// stress-free shape as the discretisation interpolates it (a straight beam stores no κ₀).
 ///
-/// With g = r'·r', n = r' × r'' and the quarter turn J v = (−v_y, v_x), so that a × b = −(J b)·a =
-/// (J a)·b:
+/// With g = r'·r', n = r' × r'' and the quarter turn J v = (−v_y, v_x), so that
+/// a × b = −(J b)·a = (J a)·b:
 ///
 /// ```text
 /// ∂κ/∂r'  = −J r''/g − 2 κ r'/g            ∂κ/∂r'' = J r'/g
 /// ∂²κ/∂r'∂r'   = −(∂κ/∂r' (2 r')ᵀ + 2 r' (∂κ/∂r')ᵀ + 2 κ 1)/g
-/// ∂²κ/∂r'∂r''  = (J − 2 r' (∂κ/∂r'')ᵀ)/g   with J as the matrix [0 1; −1 0]
+/// ∂²κ/∂r'∂r''  = (Jᵀ − 2 r' (∂κ/∂r'')ᵀ)/g
 /// ∂²κ/∂r''∂r'' = 0
 /// ```
 #[derive(Clone, Debug)]
@@ -48,8 +48,8 @@ pub fn curvature(first: &Vector2<f64>, second: &Vector2<f64>) -> f64 {
 }
 
 impl Bend {
-    /// EI \[N m²\], and (r', r'') of the stress-free shape at the quadrature points (none:
-    /// straight).
+    /// `bending_stiffness` is EI \[N m²\]; `reference` holds (r', r'') of the stress-free shape at
+    /// the quadrature points, or nothing for a straight beam.
     pub fn new(bending_stiffness: f64, reference: &[[Vector2<f64>; 2]]) -> Self {
         let reference = reference.iter().map(|[first, second]| curvature(first, second)).collect();
         Self { bending_stiffness, reference }
@@ -60,7 +60,7 @@ impl Bend {
         if self.reference.is_empty() { 0.0 } else { self.reference[point] }
     }
 
-    /// `factor` times M ∂κ/∂r' and M ∂κ/∂r''.
+    /// `factor` times M ∂κ/∂r' and M ∂κ/∂r'', with the bending moment M.
     #[inline(always)]
     fn force<T: Real>(&self, factor: f64, reference: T, [first, second]: [Pair<T>; 2]) -> [Pair<T>; 2] {
         let inverse = dot(first, first).inverse();
@@ -71,7 +71,7 @@ impl Bend {
         [by_first, [first[1] * opposite, first[0] * moment]]
     }
 
-    /// The same, and `factor` times its derivatives.
+    /// The force as [`Self::force`] gives it, and `factor` times its derivatives.
     #[inline(always)]
     fn force_and_tangent<T: Real>(
         &self,
@@ -94,7 +94,7 @@ impl Bend {
     }
 }
 
-/// (r', r'').
+/// The fields (r', r'') as pairs of numbers.
 #[inline(always)]
 fn pairs(z: &Gradient<2>) -> [Pair<f64>; 2] {
     z.map(Into::into)

@@ -1,15 +1,15 @@
 //! Contact of a beam with circles, half-planes and boxes of the ground, by penalty.
 //!
 //! With g(r) the distance of the centreline from the obstacle less half the beam's thickness, the
-//! contact has the energy W = ½ k ⟨−g⟩² per length, ⟨x⟩ = max(x, 0): the pressure k ⟨−g⟩ grows with
-//! the penetration, which is the pressure divided by the stated k. Energy that goes into the
-//! contact comes back.
+//! contact has the energy W = ½ k ⟨−g⟩² per length, where ⟨x⟩ = max(x, 0). The pressure per length
+//! is k ⟨−g⟩, so that a pressure p causes the penetration p/k. Energy stored in the contact is
+//! given back completely.
 //!
-//! What decides is the gap of the curve, not of points on it: each cell is a polynomial
-//! ([`curve`]), the places where it crosses the obstacle's border are that polynomial's roots, and
-//! W is integrated over the pieces between them ([`pressing`]). So a disc of any size is met
-//! wherever along a cell it is, and the force changes smoothly as the edge of a contact moves. What
-//! lies between two states is looked at by [`sweep`].
+//! The gap is that of the curve, not that of selected points on it. Each cell is a polynomial
+//! ([`curve`]), its crossings of the obstacle's border are roots of a polynomial, and W is
+//! integrated over the pieces between them ([`integral`]). An obstacle of any size is therefore
+//! found wherever along a cell it is, and the force changes smoothly as the edge of a contact
+//! moves. The path between two states is examined by [`sweep`].
 //!
 //! Friction sticks and slides ([`friction`]).
 
@@ -32,13 +32,13 @@ use std::sync::Arc;
 pub struct Contact {
     /// Index of the beam.
     pub beam: usize,
-    /// What it touches.
+    /// The obstacle that it may touch.
     pub obstacle: Obstacle,
-    /// k \[N/m²\]: pressure per length and penetration.
+    /// k \[N/m²\]: pressure per length, divided by the penetration.
     pub stiffness: f64,
     /// Distance of the beam's surface from its centreline \[m\].
     pub half_thickness: f64,
-    /// Friction.
+    /// Friction; `None` for a contact without friction.
     pub friction: Option<Friction>,
 }
 
@@ -66,14 +66,14 @@ impl Part for Contact {
     }
 }
 
-/// W = ½ k ⟨−g⟩².
+/// The density of a contact: W = ½ k ⟨−g⟩².
 #[derive(Clone, Copy, Debug)]
 pub struct Penalty {
-    /// What is touched.
+    /// The obstacle that may be touched.
     pub obstacle: Obstacle,
     /// k \[N/m²\].
     pub stiffness: f64,
-    /// Distance at which it is touched \[m\].
+    /// Distance from the obstacle at which the centreline begins to touch it \[m\].
     pub gap: f64,
 }
 
@@ -83,7 +83,7 @@ impl Penalty {
         self.obstacle.distance(r).0 - self.gap
     }
 
-    /// ⟨−g⟩, ∂g/∂r and ∂²g/∂r²; nothing without contact.
+    /// ⟨−g⟩, ∂g/∂r and ∂²g/∂r²; `None` without contact.
     fn penetration(&self, r: &Vector2<f64>) -> Option<(f64, Vector2<f64>, Matrix2<f64>)> {
         let (distance, normal, second) = self.obstacle.distance(r);
         (distance < self.gap).then_some((self.gap - distance, normal, second))

@@ -1,19 +1,18 @@
-//! Damping of a beam: in proportion to its mass, and of Kelvin–Voigt's kind on strain and
-//! curvature.
+//! Damping of a beam: proportional to its mass, or of Kelvin–Voigt type on strain and curvature.
 //!
-//! For small vibrations the force of mass damping is α M q̇, and with the same η for strain and
-//! curvature that of Kelvin–Voigt's is η K q̇: Rayleigh's damping, by which a mode of frequency ω
-//! has the damping ratio ζ = ½ (α/ω + η ω).
+//! For small vibrations the force of mass damping is α M q̇, and that of Kelvin–Voigt damping, with
+//! the same η for strain and curvature, is η K q̇. Together they are Rayleigh damping, by which a
+//! mode of frequency ω has the damping ratio ζ = ½ (α/ω + η ω).
 
 use super::{Engineering, Green, Strain, bend};
 use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
 use crate::beam::StrainMeasure;
 use nalgebra::{Matrix2, Vector2};
 
-/// R = ½ c ṙ·ṙ with c = α ρA \[N s/m²\].
+/// Damping proportional to mass: R = ½ c ṙ·ṙ with c = α ρA \[N s/m²\].
 #[derive(Clone, Debug)]
 pub struct MassDamping {
-    /// c.
+    /// c \[N s/m²\].
     pub coefficient: f64,
 }
 
@@ -31,7 +30,8 @@ impl Dissipation<1> for MassDamping {
     }
 }
 
-/// R = ½ η EA ε̇², ε̇ = ∂ε/∂r'·ṙ': the axial force is EA (ε + η ε̇).
+/// Kelvin–Voigt damping of strain: R = ½ η EA ε̇² with ε̇ = ∂ε/∂r'·ṙ'. The axial force is
+/// EA (ε + η ε̇).
 #[derive(Clone, Debug)]
 pub struct StretchDamping<S> {
     coefficient: f64,
@@ -39,7 +39,7 @@ pub struct StretchDamping<S> {
 }
 
 impl<S: Strain> StretchDamping<S> {
-    /// η EA \[N s\].
+    /// `coefficient` is η EA \[N s\].
     pub fn new(coefficient: f64) -> Self {
         Self { coefficient, strain: std::marker::PhantomData }
     }
@@ -66,7 +66,8 @@ impl<S: Strain> Dissipation<1> for StretchDamping<S> {
     }
 }
 
-/// R = ½ η EI κ̇², κ̇ = ∂κ/∂r'·ṙ' + ∂κ/∂r''·ṙ'': the bending moment is EI (κ + η κ̇).
+/// Kelvin–Voigt damping of curvature: R = ½ η EI κ̇² with κ̇ = ∂κ/∂r'·ṙ' + ∂κ/∂r''·ṙ''. The bending
+/// moment is EI (κ + η κ̇).
 #[derive(Clone, Debug)]
 pub struct BendDamping {
     /// η EI \[N m² s\].
@@ -103,7 +104,7 @@ impl Dissipation<2> for BendDamping {
 pub struct BeamDamping {
     /// Index of the beam.
     pub beam: usize,
-    /// α \[1/s\]: force per length −α ρA ṙ.
+    /// α \[1/s\] of the force per length −α ρA ṙ.
     pub mass_proportional: Option<f64>,
     /// η \[s\] of the axial force EA (ε + η ε̇).
     pub strain: Option<f64>,

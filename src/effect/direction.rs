@@ -3,7 +3,7 @@
 use crate::assembly::{Density, Gradient, Hessian};
 use nalgebra::{Matrix2, Vector2};
 
-/// ∂θ/∂r' = J r'/|r'|².
+/// ∂θ/∂r' = (−y', x')/|r'|².
 pub(super) fn gradient(r: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-r.y, r.x) / r.norm_squared()
 }
@@ -19,14 +19,14 @@ pub(super) fn hessian(r: &Vector2<f64>) -> Matrix2<f64> {
     Matrix2::new(2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y) / r.norm_squared().powi(2)
 }
 
-/// The angle from r'₀ to r' as an energy of unit moment.
+/// The angle from r'₀ to r' as a density: W = θ − θ₀, from −π to π.
 #[derive(Clone, Debug)]
 pub struct Direction {
     reference: Vector2<f64>,
 }
 
 impl Direction {
-    /// From r'₀.
+    /// `reference` is r'₀.
     pub fn new(reference: Vector2<f64>) -> Self {
         Self { reference }
     }

@@ -5,9 +5,9 @@ use crate::assembly::{Assembly, BuildError, Density, Dissipation, Extent, Gradie
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
-/// Drag per length by the velocity u of the section against the fluid, split along and across the
-/// beam: f = −Σ_d (c_d + C_d |u_d|) u_d, the first part viscous, the second Morison's with C = ½ ρ
-/// C_D D. Its dissipation function is R = Σ_d (½ c_d u_d² + ⅓ C_d |u_d|³).
+/// Drag per length on a section that moves with the velocity u relative to the fluid, split along
+/// and across the beam: f = −Σ_d (c_d + C_d |u_d|) u_d. The first term is viscous, the second is
+/// Morison's with C = ½ ρ C_D D. The dissipation function is R = Σ_d (½ c_d u_d² + ⅓ C_d |u_d|³).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drag {
     /// Index of the beam.
@@ -28,7 +28,7 @@ impl Part for Drag {
         if flows && !needs.motion {
             assembly.load(Kind::Drag, extent, None, |_| SteadyDrag(*self))?;
         }
-        // The flow is all that there is of it in equilibrium.
+        // In an equilibrium, drag consists of the steady flow alone.
         if flows && !needs.motion && !needs.inertia {
             return Ok(());
         }
@@ -36,11 +36,13 @@ impl Part for Drag {
     }
 }
 
-/// The drag of a steady flow on a beam at rest, a load that follows the beam's direction: of the
-/// fluid's velocity −u with u = u_t t + u_n n,
+/// The drag of a steady flow on a beam at rest. It is a load that depends on the beam's direction.
+/// With the velocity u = u_t t + u_n n of the beam relative to the fluid, opposite to that of the
+/// flow,
 ///
 /// ```text
-/// ∂W/∂r = Σ_d φ_d a_d,   φ_d = (c_d + C_d |u_d|) u_d,   a = (t, n),   ∂/∂r' of it = Σ_d (φ_d' (u·a_d') a_d + φ_d a_d') ⊗ n/|r'|,   t' = n, n' = −t.
+/// ∂W/∂r = Σ_d φ_d a_d,   φ_d = (c_d + C_d |u_d|) u_d,   a = (t, n)
+/// ∂²W/∂r∂r' = Σ_d (φ_d' (u·a_d') a_d + φ_d a_d') ⊗ n/|r'|,   t' = n,   n' = −t
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct SteadyDrag(pub Drag);
@@ -104,8 +106,8 @@ impl Dissipation<2> for Drag {
     }
 }
 
-/// Buoyancy of a beam in a heavy fluid: the dead force −m g per length, m the mass of the fluid
-/// that it displaces.
+/// Buoyancy of a beam in a heavy fluid: the dead force −m g per length, where m is the mass of the
+/// displaced fluid per length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Buoyancy {
     /// Index of the beam.
@@ -114,7 +116,7 @@ pub struct Buoyancy {
     pub displaced: f64,
     /// g \[m/s²\].
     pub acceleration: [f64; 2],
-    /// How g follows time.
+    /// In a motion, the law of time that g follows; without one it acts in full from the start.
     pub law: Option<Law>,
 }
 

@@ -6,16 +6,17 @@ use crate::beam::Place;
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
-/// A concentrated force \[N\]; a follower turns with the section.
+/// A concentrated force \[N\]. A follower force turns with the section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Force {
-    /// Where it acts.
+    /// The point at which it acts.
     pub at: Place,
-    /// Components in the fixed frame; of a follower, those while the beam is undeformed.
+    /// Components along the fixed axes; of a follower force, those in the undeformed state.
     pub value: [f64; 2],
-    /// Turns with the section.
+    /// Whether the force turns with the section.
     pub follower: bool,
-    /// By what factor it acts, in a motion only; in full from the start where there is none.
+    /// In a motion, the law of time that the load's factor follows; without one the load acts in
+    /// full from the start.
     pub law: Option<Law>,
 }
 
@@ -25,7 +26,7 @@ impl Force {
         Self { at, value, follower: false, law: None }
     }
 
-    /// One that turns with the section.
+    /// A force that turns with the section \[N\].
     pub fn following(at: Place, value: [f64; 2]) -> Self {
         Self { at, value, follower: true, law: None }
     }
@@ -44,9 +45,10 @@ pub struct DistributedForce {
     pub beam: usize,
     /// Components, as for [`Force`].
     pub value: [f64; 2],
-    /// Turns with the section.
+    /// Whether the force turns with the section.
     pub follower: bool,
-    /// By what factor it acts, in a motion only; in full from the start where there is none.
+    /// In a motion, the law of time that the load's factor follows; without one the load acts in
+    /// full from the start.
     pub law: Option<Law>,
 }
 
@@ -56,7 +58,7 @@ impl DistributedForce {
         Self { beam, value, follower: false, law: None }
     }
 
-    /// One that turns with the sections.
+    /// A force that turns with the sections \[N/m\].
     pub fn following(beam: usize, value: [f64; 2]) -> Self {
         Self { beam, value, follower: true, law: None }
     }
@@ -100,8 +102,8 @@ fn add_force(
     })
 }
 
-/// A force of fixed direction, F \[N\] or \[N/m\]: W = −F·(r − r₀). Weight is such a force with F =
-/// ρA g.
+/// A force F of fixed direction \[N\] or \[N/m\]: W = −F·(r − r₀). Weight is such a force, with
+/// F = ρA g.
 #[derive(Clone, Debug)]
 pub struct DeadForce {
     force: Vector2<f64>,
@@ -109,7 +111,7 @@ pub struct DeadForce {
 }
 
 impl DeadForce {
-    /// The force, and the positions r₀ from which its potential counts.
+    /// `force` is F; `reference` holds the positions r₀ at which its potential is zero.
     pub fn new(force: [f64; 2], reference: Vec<Vector2<f64>>) -> Self {
         Self { force: force.into(), reference }
     }
@@ -142,8 +144,8 @@ impl Density<1> for DeadForce {
 
 /// A force that turns with the section: F = R(θ − θ₀) F₀ with θ = atan2(y', x'). It has no energy.
 ///
-/// Along and across the tangent t = r'/|r'| it has constant components (f_t, f_n): F = f_t t + f_n
-/// J t, and ∂F/∂r' = (f_t 1 + f_n J)(1 − t tᵀ)/|r'|.
+/// Its components (f_t, f_n) along and across the tangent t = r'/|r'| are constant:
+/// F = f_t t + f_n J t, with the quarter turn J, and ∂F/∂r' = (f_t 1 + f_n J)(1 − t tᵀ)/|r'|.
 #[derive(Clone, Debug)]
 pub struct FollowerForce {
     /// (f_t, f_n) per point.
@@ -151,7 +153,8 @@ pub struct FollowerForce {
 }
 
 impl FollowerForce {
-    /// The force F₀ in the undeformed state, and the gradients r'₀ there at each point.
+    /// `force` is F₀ in the undeformed state, and `reference` holds the gradients r'₀ there, one
+    /// per point.
     pub fn new(force: [f64; 2], reference: &[Vector2<f64>]) -> Self {
         let force = Vector2::from(force);
         let components = reference

@@ -5,8 +5,8 @@ use crate::assembly::{Assembly, BuildError, Extent, Kind, Part, Resistance};
 use crate::beam::Place;
 use nalgebra::Vector2;
 
-/// Winkler's foundation, W = ½ (k_x u_x² + k_y u_y²) per length with the displacement u = r − r₀;
-/// k_y alone carries a beam along x.
+/// Winkler foundation, W = ½ (k_x u_x² + k_y u_y²) per length with the displacement u = r − r₀. For
+/// a beam along x, k_y is the usual foundation modulus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foundation {
     /// Index of the beam.

@@ -4,17 +4,18 @@ use super::force::add_dead_force;
 use crate::assembly::{Assembly, BuildError, Extent, Kind, Part};
 use crate::law::Law;
 
-/// Weight of every beam and point that has mass.
+/// Weight of every beam and every point mass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gravity {
-    /// \[m/s²\].
+    /// Acceleration of gravity \[m/s²\].
     pub acceleration: [f64; 2],
-    /// By what factor it acts, in a motion only; in full from the start where there is none.
+    /// In a motion, the law of time that the load's factor follows; without one the load acts in
+    /// full from the start.
     pub law: Option<Law>,
 }
 
 impl Gravity {
-    /// Of this acceleration \[m/s²\].
+    /// Gravity with this acceleration \[m/s²\].
     pub fn new(acceleration: [f64; 2]) -> Self {
         Self { acceleration, law: None }
     }

@@ -3,7 +3,7 @@
 use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
 use nalgebra::Matrix2;
 
-/// The inertia of a beam's mass, in an analysis with inertia.
+/// The inertia of a beam's mass; it adds nothing in an analysis without inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeamInertia {
     /// Index of the beam.
@@ -23,7 +23,7 @@ impl Part for BeamInertia {
     }
 }
 
-/// W = ½ ρA v·v, a density of the velocity field v = ṙ: its second derivative is the constant mass
+/// W = ½ ρA v·v, a density of the velocity field v = ṙ. Its second derivative is the constant mass
 /// matrix.
 #[derive(Clone, Debug)]
 pub struct Inertia {

@@ -1,15 +1,16 @@
 //! Masses on a beam, and the rotary inertia of points and sections.
 //!
-//! Rotary inertia belongs to the direction θ of the gradient alone, T = ½ J θ̇² with θ̇ = p·ṙ' and
-//! p = ∂θ/∂r' = J r'/|r'|² (J a quarter turn). With it the mass matrix J p pᵀ follows the
-//! direction, and the force of inertia is
+//! Rotary inertia belongs to the direction θ of the gradient alone: T = ½ J θ̇² with θ̇ = p·ṙ' and
+//! p = ∂θ/∂r' = (−y', x')/|r'|². Its mass matrix J p pᵀ therefore depends on the direction, and the
+//! force of inertia is
 //!
 //! ```text
 //! J θ̈ p,   θ̈ = p·r̈' + ṙ'·∂²θ/∂r'∂r'·ṙ'
 //! ```
 //!
-//! ½ J ṙ'·ṙ', whose matrix is constant, would give |r'| an inertia too: a point's makes the stretch
-//! of the cells beside it swing, slower on finer meshes, and that of sections holds up axial waves.
+//! The simpler ½ J ṙ'·ṙ' has a constant matrix, but would give an inertia to |r'|, too: at a point,
+//! the stretch of the neighbouring cells would oscillate, the slower the finer the mesh; along a
+//! beam, axial waves would be slowed down.
 
 use super::Inertia;
 use super::direction;
@@ -19,9 +20,9 @@ use crate::beam::Place;
 /// A mass at a point: T = ½ m ṙ·ṙ + ½ J θ̇².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointMass {
-    /// The point.
+    /// The point of the beam.
     pub at: Place,
-    /// m \[kg\]; gravity acts on it too.
+    /// m \[kg\]; gravity acts on it, too.
     pub mass: Option<f64>,
     /// J \[kg m²\].
     pub rotary_inertia: Option<f64>,
@@ -67,7 +68,7 @@ impl Part for SectionInertia {
     }
 }
 
-/// The kinetic energy ½ J θ̇² as a function of ṙ': its derivative is the momentum J θ̇ p, its
+/// The kinetic energy ½ J θ̇² as a function of ṙ'. Its derivative is the momentum J θ̇ p, and its
 /// second derivative the mass matrix J p pᵀ.
 #[derive(Clone, Debug)]
 pub struct RotaryInertia {
@@ -91,7 +92,7 @@ impl Dissipation<1> for RotaryInertia {
     }
 }
 
-/// The force of inertia of a gradient that does not accelerate, J (ṙ'·∂²θ/∂r'∂r'·ṙ') p.
+/// The force of inertia J (ṙ'·∂²θ/∂r'∂r'·ṙ') p of a gradient without acceleration.
 #[derive(Clone, Debug)]
 pub struct Gyration(pub RotaryInertia);
 

@@ -5,20 +5,21 @@ use crate::beam::Place;
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
-/// A concentrated moment \[N m\], counter-clockwise. In the plane a moment about z has no direction
-/// that could follow, so there is no follower moment.
+/// A concentrated moment \[N m\], counter-clockwise. In the plane a moment about z does not change
+/// its direction when the section turns, so there is no follower moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
-    /// Where it acts.
+    /// The point at which it acts.
     pub at: Place,
-    /// Counter-clockwise.
+    /// The moment \[N m\], counter-clockwise.
     pub value: f64,
-    /// By what factor it acts, in a motion only; in full from the start where there is none.
+    /// In a motion, the law of time that the load's factor follows; without one the load acts in
+    /// full from the start.
     pub law: Option<Law>,
 }
 
 impl Moment {
-    /// A moment \[N m\].
+    /// A moment \[N m\] without a law of time.
     pub fn new(at: Place, value: f64) -> Self {
         Self { at, value, law: None }
     }
@@ -37,12 +38,12 @@ impl Part for Moment {
 
 /// A moment M \[N m\], counter-clockwise: δW = −M δθ with θ = atan2(y', x').
 ///
-/// ∂θ/∂r' = J r'/|r'|², symmetric second derivative. Its work M θ is a potential only as long as θ
-/// is counted on through full turns, which no single state can tell; its work is therefore summed
-/// up along the motion.
+/// ∂θ/∂r' = (−y', x')/|r'|², and the second derivative is symmetric. The work M θ is a potential
+/// only if θ counts full turns, which a single state does not determine; the work is therefore
+/// accumulated along the motion.
 #[derive(Clone, Debug)]
 pub struct Couple {
-    /// Counter-clockwise \[N m\].
+    /// M \[N m\], counter-clockwise.
     pub moment: f64,
 }
 

@@ -1,26 +1,26 @@
 //! A force that travels along a beam with constant speed.
 //!
-//! The generalised force f_a = −N_a(s(t)) F needs the shape functions at a place that changes with
-//! time. They are tabulated at Lobatto points of every cell and interpolated between them by
+//! The generalised force f_a = −N_a(s(t)) F needs the shape functions at a position that changes
+//! with time. They are tabulated at Lobatto points of every cell and interpolated between these by
 //! Lagrange's polynomial of degree 7, which is exact for the cable element's cubics.
 
 use crate::assembly::{Action, Actions, Assembly, BuildError, Kind, MovingLoad, Part};
 use crate::basis::{Basis, BasisError, BasisTable, Quadrature};
 use nalgebra::Vector2;
 
-/// Points a cell.
+/// Number of Lobatto points per cell.
 const POINTS: usize = 8;
-/// Points of the rule by which a force is summed over the time that it takes for a cell.
+/// Number of points of the rule that integrates the force over the time it needs to cross a cell.
 const RULE: usize = 5;
 
-/// A dead force at s(t) = s₀ + v t, acting while that is on the beam.
+/// A dead force at s(t) = s₀ + v t, which acts while this position is on the beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingForce {
     /// Index of the beam.
     pub beam: usize,
     /// F \[N\].
     pub value: [f64; 2],
-    /// s₀ \[m\]; off the beam, where the force comes later.
+    /// s₀ \[m\], the position at time zero; it is off the beam if the force arrives later.
     pub start: f64,
     /// v \[m/s\].
     pub speed: f64,
@@ -35,14 +35,14 @@ impl Part for MovingForce {
     }
 }
 
-/// A moving force with the rows that it needs.
+/// A moving force with the tabulated shape functions that it needs.
 #[derive(Clone, Debug)]
 pub struct Travelling {
     force: MovingForce,
     table: BasisTable,
     offset: usize,
     length: f64,
-    /// Gauss' rule for a part of a step: abscissae and weights.
+    /// Gauss rule for a part of a step: abscissae and weights.
     rule: (Vec<f64>, Vec<f64>),
 }
 
@@ -56,14 +56,14 @@ impl Travelling {
         Ok(Self { force, table, offset, length: basis.length(), rule: Quadrature::Gauss(RULE).rule()? })
     }
 
-    /// Where it acts at `time`, if it is on the beam.
+    /// The arc length at which it acts at `time`, if it is on the beam.
     fn place(&self, time: f64) -> Option<f64> {
         let [comes, goes] = self.kinks();
         (comes..goes).contains(&time).then(|| self.force.speed.mul_add(time, self.force.start))
     }
 
-    /// Calls `each` with the coordinates of every coefficient that the place `s` depends on, and
-    /// its shape function there.
+    /// Calls `each` for every coefficient on which the position at the arc length `s` depends, with
+    /// the indices of its two coordinates and its shape function there.
     fn shape(&self, s: f64, mut each: impl FnMut(std::ops::Range<usize>, f64)) {
         let cells = self.table.s.as_chunks::<POINTS>().0;
         let cell = cells.partition_point(|places| places[0] <= s).max(1) - 1;

@@ -7,16 +7,16 @@ use crate::assembly::{
 use crate::beam::Place;
 use nalgebra::{Matrix2, Vector2};
 
-/// A spring and a dashpot side by side. With an anchor they act along the line from it to the
-/// point, W = ½ k (ℓ − ℓ₀)², R = ½ c ℓ̇²; without one they hold the point where it is in the
-/// stress-free shape in all directions, W = ½ k |r − r₀|², R = ½ c |ṙ|².
+/// A spring and a dashpot in parallel. With an anchor they act along the line from it to the point:
+/// W = ½ k (ℓ − ℓ₀)², R = ½ c ℓ̇². Without an anchor they resist, in all directions, displacements
+/// of the point from its position in the stress-free shape: W = ½ k |r − r₀|², R = ½ c |ṙ|².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
-    /// The point.
+    /// The point of the beam.
     pub at: Place,
     /// The other end, on the ground \[m\].
     pub anchor: Option<[f64; 2]>,
-    /// Length without force \[m\]; that of the stress-free shape where it is not given.
+    /// Length ℓ₀ without force \[m\]; if not given, the length in the stress-free shape.
     pub length: Option<f64>,
     /// k \[N/m\].
     pub stiffness: Option<f64>,
@@ -52,12 +52,12 @@ impl Part for Spring {
     }
 }
 
-/// A torsional spring and dashpot on the direction of r': W = ½ k (θ − θ₀)², R = ½ c θ̇².
+/// A torsional spring and dashpot on the direction θ of r': W = ½ k (θ − θ₀)², R = ½ c θ̇².
 ///
-/// θ counts all turns: those beyond half a turn by [`crate::assembly::Winding`].
+/// θ counts full turns; [`crate::assembly::Winding`] adds those beyond half a turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorsionSpring {
-    /// The point.
+    /// The point of the beam.
     pub at: Place,
     /// k \[N m/rad\].
     pub stiffness: Option<f64>,
@@ -92,7 +92,7 @@ impl Part for TorsionSpring {
     }
 }
 
-/// W = ½ Σ k_d (r_d − r₀_d)²: a spring or an elastic foundation.
+/// W = ½ Σ k_d (r_d − r₀_d)²: a spring to the ground, or an elastic foundation.
 #[derive(Clone, Debug)]
 pub struct GroundSpring {
     stiffness: Vector2<f64>,
@@ -100,7 +100,8 @@ pub struct GroundSpring {
 }
 
 impl GroundSpring {
-    /// k_x, k_y \[N/m\] or, per length, \[N/m²\], and r₀ at each point.
+    /// `stiffness` is (k_x, k_y) \[N/m\] or, per length, \[N/m²\]; `reference` holds r₀ at each
+    /// point.
     pub fn new(stiffness: [f64; 2], reference: Vec<Vector2<f64>>) -> Self {
         Self { stiffness: stiffness.into(), reference }
     }
@@ -133,7 +134,7 @@ impl Density<1> for GroundSpring {
     }
 }
 
-/// W = ½ k (|r − a| − ℓ₀)².
+/// A spring between a point and an anchor a: W = ½ k (|r − a| − ℓ₀)².
 #[derive(Clone, Debug)]
 pub struct Strut {
     stiffness: f64,
@@ -142,12 +143,12 @@ pub struct Strut {
 }
 
 impl Strut {
-    /// k \[N/m\], the anchor a and ℓ₀ \[m\].
+    /// `stiffness` is k \[N/m\], `anchor` is a \[m\], and `length` is ℓ₀ \[m\].
     pub fn new(stiffness: f64, anchor: [f64; 2], length: f64) -> Self {
         Self { stiffness, anchor: anchor.into(), length }
     }
 
-    /// d = r − a, its length, and ℓ₀/|d|, zero where both vanish.
+    /// d = r − a, its length, and ℓ₀/|d|, taken as zero if ℓ₀ = 0.
     fn ratio(&self, z: &Gradient<1>) -> (Vector2<f64>, f64, f64) {
         let d = z[0] - self.anchor;
         let length = d.norm();
@@ -180,7 +181,7 @@ impl Density<1> for Strut {
             return (self.gradient(point, z), [[Matrix2::identity() * self.stiffness]]);
         }
         let along = d * d.transpose() / (length * length);
-        // The force is extrapolated: ℓ⁻ + e⁻·Δr in place of ℓ.
+        // The force is extrapolated with the length ℓ⁻ + e⁻·Δr instead of ℓ.
         let (d_before, length_before, _) = self.ratio(before);
         let stretch = length_before - self.length + d_before.dot(&change[0]) / length_before;
         let across = stretch / length;
@@ -189,7 +190,7 @@ impl Density<1> for Strut {
     }
 }
 
-/// R = ½ c |ṙ|², or with an anchor a ½ c (e·ṙ)², e the direction of r − a.
+/// R = ½ c |ṙ|²; with an anchor a, R = ½ c (e·ṙ)², where e is the direction of r − a.
 #[derive(Clone, Debug)]
 pub struct Dashpot {
     /// c \[N s/m\].
@@ -218,7 +219,7 @@ impl Dissipation<1> for Dashpot {
     }
 }
 
-/// W = ½ k (θ − θ₀)², θ − θ₀ from −π to π.
+/// W = ½ k (θ − θ₀)², with θ − θ₀ from −π to π.
 #[derive(Clone, Debug)]
 pub struct Torsion {
     stiffness: f64,
@@ -226,7 +227,7 @@ pub struct Torsion {
 }
 
 impl Torsion {
-    /// k \[N m/rad\] and r'₀.
+    /// `stiffness` is k \[N m/rad\], and `reference` is r'₀.
     pub fn new(stiffness: f64, reference: [f64; 2]) -> Self {
         Self { stiffness, reference: reference.into() }
     }
@@ -261,7 +262,7 @@ impl Density<1> for Torsion {
     }
 }
 
-/// R = ½ c θ̇².
+/// A torsional dashpot: R = ½ c θ̇².
 #[derive(Clone, Debug)]
 pub struct TorsionDashpot {
     /// c \[N m s/rad\].

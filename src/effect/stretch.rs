@@ -5,7 +5,7 @@ use crate::beam::StrainMeasure;
 use crate::lanes::{self, Lanes, Pair, Points, Real, Square, dot, outer};
 use nalgebra::Vector2;
 
-/// The resistance of a beam to stretch; none where its section names no axial stiffness.
+/// The resistance of a beam to stretch; a section without axial stiffness has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeamStretch {
     /// Index of the beam.
@@ -16,7 +16,7 @@ impl Part for BeamStretch {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("stretch", self.beam)?;
         let Some(stiffness) = beam.section.axial_stiffness else { return Ok(()) };
-        // Only a curved beam keeps its reference strains.
+        // Only a curved beam needs to store its reference strains.
         let straight = assembly.discretized(self.beam).straight;
         let gradients = |z: Vec<[Vector2<f64>; 1]>| -> Vec<_> {
             if straight { Vec::new() } else { z.into_iter().map(|[r]| r).collect() }
@@ -34,7 +34,7 @@ impl Part for BeamStretch {
 
 /// An axial strain as a function of the gradient r'.
 pub trait Strain: Copy + Send + Sync {
-    /// The strain of a gradient, against a straight unit reference.
+    /// The strain of the gradient r' = `r`, relative to a reference with |r'| = 1.
     fn strain(r: &Vector2<f64>) -> f64;
 
     /// ε and ∂ε/∂r'.
@@ -49,8 +49,8 @@ pub trait Strain: Copy + Send + Sync {
 pub struct Green;
 
 impl Strain for Green {
-    // Factored as ½ (x'−1)(x'+1) + ½ y'², the subtraction would lose fewer digits for a beam along
-    // x only; the plain form treats all directions alike.
+    // Written as ½ (x'−1)(x'+1) + ½ y'², the subtraction would lose fewer digits, but only for a
+    // beam along x; the plain form treats all directions alike.
     #[inline(always)]
     fn strain(r: &Vector2<f64>) -> f64 {
         0.5 * (r.norm_squared() - 1.0)
@@ -92,14 +92,15 @@ impl Strain for Engineering {
         let inverse = length.inverse();
         let [x, y] = [r[0] * inverse, r[1] * inverse];
         let across = [-y, x];
-        // 1 − t tᵀ projects on the normal.
+        // 1 − t tᵀ projects onto the normal.
         (length - T::of(1.0), [x, y], outer(across.map(|n| n * inverse), across))
     }
 }
 
-/// W = ½ EA (ε(r') − ε₀)², ε₀ the strain of the stress-free shape as the discretisation sees it.
+/// W = ½ EA (ε(r') − ε₀)², where ε₀ is the strain of the stress-free shape as the discretisation
+/// interpolates it.
 ///
-/// For a beam that starts out straight ε₀ = 0 and no table of it exists.
+/// For a straight beam ε₀ = 0, and no table of it is stored.
 #[derive(Clone, Debug)]
 pub struct Stretch<S> {
     axial_stiffness: f64,
@@ -109,8 +110,8 @@ pub struct Stretch<S> {
 }
 
 impl<S: Strain> Stretch<S> {
-    /// EA \[N\], and the gradients r' of the stress-free shape at the quadrature points (none:
-    /// straight).
+    /// `axial_stiffness` is EA \[N\]; `reference` holds the gradients r' of the stress-free shape
+    /// at the quadrature points, or nothing for a straight beam.
     pub fn new(axial_stiffness: f64, reference: &[Vector2<f64>]) -> Self {
         let reference = reference.iter().map(S::strain).collect();
         Self { axial_stiffness, reference, strain: std::marker::PhantomData }
@@ -121,7 +122,7 @@ impl<S: Strain> Stretch<S> {
         if self.reference.is_empty() { 0.0 } else { self.reference[point] }
     }
 
-    /// `factor` times N ∂ε/∂r'.
+    /// `factor` times N ∂ε/∂r', with the axial force N.
     #[inline(always)]
     fn force<T: Real>(&self, factor: f64, reference: T, r: Pair<T>) -> Pair<T> {
         let (strain, [x, y]) = S::first(r);
@@ -129,7 +130,7 @@ impl<S: Strain> Stretch<S> {
         [x * force, y * force]
     }
 
-    /// The same, and `factor` times its derivative.
+    /// The force as [`Self::force`] gives it, and `factor` times its derivative.
     #[inline(always)]
     fn force_and_tangent<T: Real>(
         &self,

@@ -1,6 +1,6 @@
 //! Band matrix without symmetry, real or complex, and its LU factorisation with partial pivoting.
 //!
-//! Rows are contiguous, so that an elimination step is a handful of row updates of fixed length.
+//! Rows are contiguous, so that an elimination step consists of a few row updates of fixed length.
 //! Pivoting widens the upper band by the lower bandwidth, as in LAPACK's `gbtrf`.
 
 use super::Singular;
@@ -9,17 +9,17 @@ use faer::c64;
 use std::fmt;
 use std::ops::{Div, Mul, Sub};
 
-/// What a matrix is made of.
+/// The numbers of a matrix, real or complex.
 pub trait Number:
     Copy + fmt::Debug + Default + Mul<Output = Self> + Sub<Output = Self> + Div<Output = Self> + std::iter::Sum
 {
-    /// A real number.
+    /// The real number `value`.
     fn from_real(value: f64) -> Self;
 
     /// a b + c.
     fn fma(a: Self, b: Self, c: Self) -> Self;
 
-    /// By which pivots are compared: |a|, or of a complex number |Re a| + |Im a|.
+    /// The size by which pivots are compared: |a|, or |Re a| + |Im a| for a complex number.
     fn size(self) -> f64;
 }
 
@@ -73,7 +73,7 @@ impl<T: Number> Band<T> {
         self.n
     }
 
-    /// Diagonals on either side of the main one.
+    /// Number of diagonals on either side of the main one.
     pub fn half_bandwidth(&self) -> usize {
         self.half
     }
@@ -83,7 +83,7 @@ impl<T: Number> Band<T> {
         size_of_val(&self.data[..])
     }
 
-    /// Multiplies all entries.
+    /// Multiplies all entries by `factor`.
     pub fn scale(&mut self, factor: T) {
         self.data.iter_mut().for_each(|entry| *entry = *entry * factor);
     }
@@ -105,7 +105,7 @@ impl<T: Number> Band<T> {
     /// Sets an entry, which must lie in the band.
     ///
     /// # Panics
-    /// Where it does not.
+    /// If it does not.
     pub fn set(&mut self, i: usize, j: usize, value: T) {
         match self.index(i, j) {
             Some(k) => self.data[k] = value,
@@ -147,15 +147,15 @@ pub struct BandLu<T = f64> {
 }
 
 impl<T: Number> BandLu<T> {
-    /// Factorises.
+    /// Factorises `matrix`.
     ///
     /// # Errors
-    /// [`Singular`] where a column has no pivot that is finite and different from zero.
+    /// [`Singular`] if a column has no pivot that is finite and different from zero.
     pub fn new(matrix: &Band<T>) -> Result<Self, Singular> {
         let (n, half) = (matrix.n, matrix.half);
         let width = 2 * half + 1;
-        // Row i starts at column `max(0, i − half)` while it waits, at column k while column k is
-        // eliminated.
+        // The stored row i starts at column `max(0, i − half)` until its elimination begins, and at
+        // column k while column k is eliminated.
         let mut rows = vec![T::default(); n * width];
         for i in 0..n {
             let columns = matrix.columns(i);

@@ -1,9 +1,9 @@
-//! Factorisation of K + ζ M for a complex number ζ and real K and M: the matrices into which the
-//! stages of a collocation method fall apart.
+//! Factorisation of K + ζ M for a complex number ζ and real K and M. The stages of a collocation
+//! method are decoupled into systems with such matrices.
 //!
-//! K and M are symmetric, as a rule: then there is an L D Lᵀ ([`ComplexLdl`]). Unsymmetric matrices
-//! and those bordered by many rows are factorised with pivoting, as a band where the rows lie
-//! within it, else by faer's sparse LU.
+//! K and M are symmetric as a rule, and L D Lᵀ ([`ComplexLdl`]) serves. Unsymmetric matrices and
+//! those bordered by many rows are factorised with pivoting: as a band if the rows lie within it,
+//! else by faer's sparse LU.
 
 use super::bordered::{BorderRow, Bordered};
 pub use super::complex_ldl::ComplexLdl;
@@ -17,9 +17,9 @@ use faer::c64;
 pub enum ComplexFactor {
     /// L D Lᵀ of a symmetric band.
     Ldl(ComplexLdl),
-    /// The same, bordered by few rows.
+    /// L D Lᵀ of a symmetric band that is bordered by few rows.
     Condensed(Box<ComplexCondensed>),
-    /// LU of an unsymmetric band, its constraint rows among the unknowns.
+    /// LU of a band whose constraint rows are numbered among the unknowns.
     Interleaved(Box<Interleaved<c64>>),
     /// Sparse LU of a bordered band.
     Sparse(Box<Bordered<c64>>),
@@ -30,7 +30,7 @@ impl ComplexFactor {
     /// earlier factorisation of the same pattern.
     ///
     /// # Errors
-    /// [`Singular`] where the matrix has no inverse to round-off.
+    /// [`Singular`] if the matrix is singular to round-off.
     pub fn again(
         earlier: Option<Self>,
         k: &Matrix,
@@ -61,7 +61,7 @@ impl ComplexFactor {
         Ok(Self::Sparse(Box::new(Bordered::from_entries(k, entry, |i| entry(i, i).norm(), border, earlier)?)))
     }
 
-    /// Solves in place; `re` and `im` hold the multipliers' parts last.
+    /// Solves in place; the multipliers' parts of `re` and `im` come last.
     pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
         match self {
             Self::Ldl(ldl) => ldl.solve(re, im),
@@ -72,7 +72,7 @@ impl ComplexFactor {
     }
 }
 
-/// Solves with real and imaginary parts side by side.
+/// Calls `solve` with real and imaginary parts combined to complex numbers.
 fn pairwise(re: &mut [f64], im: &mut [f64], solve: impl FnOnce(&mut [c64])) {
     let mut b: Vec<c64> = re.iter().zip(&*im).map(|(re, im)| c64::new(*re, *im)).collect();
     solve(&mut b);

@@ -1,10 +1,11 @@
 //! L D Lᵀ of K + ζ M for a complex number ζ and real symmetric bands K and M.
 //!
-//! K + ζ M is complex *symmetric* (not Hermitian) and has L D Lᵀ. It exists without pivoting: with
-//! M positive definite and Im ζ ≠ 0, x*(K + ζM)x has an imaginary part different from zero for
-//! every x, hence no leading minor vanishes (George, Ikramov, Kucherov, *SIAM J. Matrix Anal.
-//! Appl.* 21, 2000, 377–387). Numbers are kept by fours, their real parts before their imaginary
-//! parts (`Four`), so that all inner loops are real multiply–adds over whole registers.
+//! K + ζ M is complex *symmetric* (not Hermitian) and has a factorisation L D Lᵀ. It exists without
+//! pivoting: if M is positive definite and Im ζ ≠ 0, the imaginary part of x*(K + ζM)x differs from
+//! zero for every x ≠ 0, so that no leading minor vanishes (George, Ikramov, Kucherov, *SIAM J.
+//! Matrix Anal. Appl.* 21, 2000, 377–387). Numbers are stored by fours, their real parts before
+//! their imaginary parts (`Four`), so that all inner loops are real multiply–adds of whole
+//! registers.
 
 use super::Singular;
 use super::order::Order;
@@ -12,10 +13,10 @@ use super::symmetric::SymmetricBand;
 use crate::lanes::Lanes;
 use faer::c64;
 
-/// Real and imaginary parts of four numbers: those of one node in a row.
+/// Real and imaginary parts of four numbers, which belong to one node in a row.
 type Four = [Lanes; 2];
 
-/// Rows of 4 × 4 numbers.
+/// A block of 4 × 4 complex numbers, row by row.
 type Block = [Four; 4];
 
 const ZERO: Four = [Lanes::ZERO; 2];
@@ -34,7 +35,7 @@ fn subtract(l: c64, [s_re, s_im]: Four, [re, im]: Four) -> Four {
     [l_im.mul_add(s_im, l_re.mul_neg_add(s_re, re)), l_im.mul_neg_add(s_re, l_re.mul_neg_add(s_im, im))]
 }
 
-/// `Σ_r rows_r · factors_r`, in two chains.
+/// `Σ_r rows_r · factors_r`, summed in two independent chains.
 #[inline(always)]
 fn product(rows: &Block, factors: [c64; 4]) -> Four {
     let one = add(factors[1], rows[1], add(factors[0], rows[0], ZERO));
@@ -54,15 +55,14 @@ fn transpose(block: Block) -> Block {
     std::array::from_fn(|r| [re[r], im[r]])
 }
 
-/// L D Lᵀ of a complex symmetric band, D of blocks of 4 × 4.
+/// L D Lᵀ of a complex symmetric band, where D consists of blocks of 4 × 4.
 ///
-/// Kept are D⁻¹, by Gauss and Jordan's elimination, whose pivots are those of L D Lᵀ by single
-/// numbers, and the blocks W = D⁻¹ U and Wᵀ right of the diagonal, so that a substitution consists
-/// of products with blocks. Only the product with W or Wᵀ needs the result of the node before; the
-/// others can be computed at any time.
+/// It stores D⁻¹, computed by Gauss–Jordan elimination, whose pivots are those of the scalar
+/// L D Lᵀ, and the blocks W = D⁻¹ U and Wᵀ right of the diagonal. A substitution then consists of
+/// products with blocks, of which only those with W or Wᵀ need the result of the node before.
 #[derive(Clone, Debug)]
 pub struct ComplexLdl {
-    /// Blocks of a node, the diagonal one included.
+    /// Number of blocks of a node, the diagonal one included.
     blocks: usize,
     /// D⁻¹ and W of each node.
     rows: Vec<Block>,
@@ -71,7 +71,7 @@ pub struct ComplexLdl {
 }
 
 impl ComplexLdl {
-    /// Memory for matrices of such a pattern.
+    /// Memory for matrices with the pattern of `pattern`.
     pub fn zeros(pattern: &SymmetricBand) -> Self {
         let (nodes, blocks) = (pattern.size() / 4, pattern.stride() / 4);
         Self {
@@ -104,7 +104,7 @@ impl ComplexLdl {
         }
     }
 
-    /// With the number of blocks a compile-time constant, or 0.
+    /// Eliminates, with the number of blocks as a compile-time constant, or 0 if it is uncommon.
     fn eliminate<const BLOCKS: usize>(&mut self) -> Result<(), Singular> {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
         let nodes = self.rows.len() / blocks;
@@ -151,7 +151,7 @@ impl ComplexLdl {
         }
     }
 
-    /// With the number of blocks a compile-time constant, or 0.
+    /// Substitutes, with the number of blocks as a compile-time constant, or 0 if it is uncommon.
     fn substitute<const BLOCKS: usize>(&self, re: &mut [f64], im: &mut [f64]) {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
         let (re, im) = (re.as_chunks_mut::<4>().0, im.as_chunks_mut::<4>().0);
@@ -165,7 +165,7 @@ impl ComplexLdl {
                 re[next] = (Lanes::new(re[next]) - change[0]).to_array();
                 im[next] = (Lanes::new(im[next]) - change[1]).to_array();
             }
-            // Symmetric: its rows are its columns.
+            // D⁻¹ is symmetric, so that its rows serve as its columns.
             [re[node], im[node]] = product(&panel[0], here).map(Lanes::to_array);
         }
         for (position, transposed) in self.transposed.chunks_exact((blocks - 1).max(1)).enumerate().rev() {
@@ -181,9 +181,9 @@ impl ComplexLdl {
     }
 }
 
-/// Inverts symmetric blocks of which the part below the diagonal need not be there, step by step,
-/// so that one waits while another goes on; or says which block has a pivot that vanishes or is not
-/// finite, and in which row.
+/// Inverts symmetric blocks, of which only the upper parts are read. The blocks advance together,
+/// step by step, so that one is computed while another waits for a result. The error is the index
+/// of a block with a pivot that vanishes or is not finite, and the row of that pivot.
 #[inline(always)]
 fn invert<const N: usize>(mut blocks: [&mut Block; N]) -> Result<(), (usize, usize)> {
     for block in &mut blocks {
@@ -210,7 +210,7 @@ fn exchange_all<const R: usize, const N: usize>(blocks: &mut [&mut Block; N]) ->
     Ok(())
 }
 
-/// One step of Gauss and Jordan's elimination: exchanges unknown and right-hand side number `R`.
+/// One step of Gauss–Jordan elimination: exchanges unknown and right-hand side number `R`.
 #[inline(always)]
 fn exchange<const R: usize>(block: &mut Block) -> Result<(), usize> {
     let with = |lanes: Lanes, value: f64| {
@@ -220,7 +220,7 @@ fn exchange<const R: usize>(block: &mut Block) -> Result<(), usize> {
     };
     let pivot = numbers(block[R])[R];
     let size = pivot.re * pivot.re + pivot.im * pivot.im;
-    // Written so that a NaN fails too.
+    // Written with a negation, so that a NaN fails, too.
     if !(size > 0.0 && size.is_finite()) {
         return Err(R);
     }

@@ -1,14 +1,14 @@
 //! A band bordered by few constraint rows, condensed onto their multipliers.
 //!
-//! Where K itself has an inverse, as K + c M of a motion has, the bordered system needs no matrix
-//! but the band and one as large as the number r of rows:
+//! If K itself has an inverse, as K + c M of a motion does, the bordered system needs only a
+//! factorisation of the band and one of a matrix S as large as the number r of rows:
 //!
 //! ```text
 //! S = B K⁻¹ Bᵀ,   S μ = B K⁻¹ f − g,   x = K⁻¹ f − K⁻¹Bᵀ μ
 //! ```
 //!
-//! r substitutions for K⁻¹Bᵀ when it is factorised, one when it is solved: a fifth of the time of a
-//! sparse LU for a chain of two beams.
+//! This takes r substitutions for K⁻¹Bᵀ at factorisation and one per solution, which is a fifth of
+//! the time of a sparse LU for a chain of two beams.
 
 use super::bordered::BorderRow;
 use super::complex_ldl::ComplexLdl;
@@ -18,12 +18,12 @@ use super::{Matrix, Singular};
 use faer::c64;
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 
-/// Rows beyond which a sparse LU serves better.
+/// Number of rows above which a sparse LU is faster.
 const MOST_ROWS: usize = 48;
-/// Rows beyond which the LU of a wider band does, where the rows are local.
+/// Number of local rows above which the LU of a wider band is faster ([`super::interleaved`]).
 const MOST_LOCAL_ROWS: usize = 12;
 
-/// Whether the rows are few enough.
+/// Whether the rows are few enough for this method to be the fastest.
 pub fn serves(matrix: &Matrix, border: &[BorderRow]) -> bool {
     border.len() <= if fits(matrix, border) { MOST_LOCAL_ROWS } else { MOST_ROWS }
 }
@@ -38,7 +38,7 @@ fn dense(row: &BorderRow, size: usize) -> Vec<f64> {
     dense
 }
 
-/// A bordered matrix with an LDLᵀ of its band.
+/// A bordered matrix, by the LDLᵀ of its band and the LU of S.
 #[derive(Clone, Debug)]
 pub struct Condensed {
     ldl: Ldl,
@@ -49,10 +49,10 @@ pub struct Condensed {
 }
 
 impl Condensed {
-    /// Of the factorised band of `size` unknowns.
+    /// Borders the factorised band `ldl` of `size` unknowns.
     ///
     /// # Errors
-    /// [`Singular`] where the rows depend on each other.
+    /// [`Singular`] if the rows are linearly dependent.
     pub fn new(ldl: Ldl, size: usize, border: &[BorderRow]) -> Result<Self, Singular> {
         let mut columns: Vec<Vec<f64>> = border.iter().map(|row| dense(row, size)).collect();
         columns.iter_mut().for_each(|column| ldl.solve(column));
@@ -61,12 +61,12 @@ impl Condensed {
         if condensed.schur.is_invertible() { Ok(condensed) } else { Err(Singular { row: size }) }
     }
 
-    /// The factorised band, for the next factorisation.
+    /// The factorised band, whose memory the next factorisation reuses.
     pub fn into_ldl(self) -> Ldl {
         self.ldl
     }
 
-    /// Solves in place: unknowns first, multipliers last.
+    /// Solves in place; `b` holds the unknowns first and the multipliers last.
     pub fn solve(&self, b: &mut [f64]) {
         let (x, g) = b.split_at_mut(b.len() - self.border.len());
         self.ldl.solve(x);
@@ -79,21 +79,21 @@ impl Condensed {
     }
 }
 
-/// The same for the complex matrices of collocation's stages.
+/// As [`Condensed`], for the complex matrices of collocation's stages.
 #[derive(Clone, Debug)]
 pub struct ComplexCondensed {
     ldl: ComplexLdl,
     border: Vec<BorderRow>,
-    /// K⁻¹ Bᵀ, real and imaginary parts.
+    /// K⁻¹ Bᵀ, column by column, as real and imaginary parts.
     columns: Vec<[Vec<f64>; 2]>,
     schur: LU<Complex<f64>, Dyn, Dyn>,
 }
 
 impl ComplexCondensed {
-    /// Of the factorised band of `size` unknowns.
+    /// Borders the factorised band `ldl` of `size` unknowns.
     ///
     /// # Errors
-    /// [`Singular`] where the rows depend on each other.
+    /// [`Singular`] if the rows are linearly dependent.
     pub fn new(ldl: ComplexLdl, size: usize, border: &[BorderRow]) -> Result<Self, Singular> {
         let solved = |row: &BorderRow| {
             let (mut re, mut im) = (dense(row, size), vec![0.0; size]);
@@ -110,12 +110,12 @@ impl ComplexCondensed {
         if condensed.schur.is_invertible() { Ok(condensed) } else { Err(Singular { row: size }) }
     }
 
-    /// The factorised band, for the next factorisation.
+    /// The factorised band, whose memory the next factorisation reuses.
     pub fn into_ldl(self) -> ComplexLdl {
         self.ldl
     }
 
-    /// Solves in place: unknowns first, multipliers last.
+    /// Solves in place; `re` and `im` hold the unknowns first and the multipliers last.
     pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
         let unknowns = re.len() - self.border.len();
         let ((xr, gr), (xi, gi)) = (re.split_at_mut(unknowns), im.split_at_mut(unknowns));

@@ -1,12 +1,13 @@
-//! Scales of unknowns and multipliers by which the entries of a bordered matrix become about one.
+//! Scales of unknowns and multipliers that bring the entries of a bordered matrix to about one.
 //!
-//! Positions, gradients and multipliers have units of their own, and partial pivoting compares
-//! their entries: with a beam of some millimetres those of the rows are 10⁹ times those of a mass
-//! matrix, which then loses as many digits. With powers of two nothing is rounded.
+//! Positions, gradients and multipliers have different units, but partial pivoting compares their
+//! entries: for a beam of some millimetres those of the constraint rows are 10⁹ times those of a
+//! mass matrix, which then loses nine digits. The scales are powers of two, so that scaling rounds
+//! nothing.
 
-/// Scales of `size` unknowns with the given diagonal of the matrix, and then of the rows. Positions
-/// have one scale and gradients another: what of a single unknown is left by round-off is no
-/// measure.
+/// Scales of `size` unknowns with the given diagonal of the matrix, followed by the scales of the
+/// rows of `border`. All positions have one scale and all gradients another, because the diagonal
+/// entry of a single unknown may be mere round-off.
 pub fn scales(size: usize, diagonal: impl Fn(usize) -> f64, border: &[Vec<(usize, f64)>]) -> Vec<f64> {
     let power = |value: f64, exponent: f64| {
         let scale = (exponent * value.log2()).round().exp2();

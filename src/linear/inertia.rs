@@ -1,19 +1,20 @@
-//! How many directions a tangent is negative in, among the motions that constraint rows allow.
+//! Number of directions in which a tangent is negative, among the motions that constraint rows
+//! allow.
 //!
 //! On the motions that m independent rows B allow, K has as many negative eigenvalues as the
 //! bordered matrix has beyond m (Sylvester's law of inertia; Gould, *Math. Programming* 32, 1985,
-//! 90–99). An LDLᵀ without pivoting tells them by the signs of its pivots,
+//! 90–99). These eigenvalues are counted by the signs of the pivots in an LDLᵀ without pivoting of
 //!
 //! ```text
 //! [ K + BᵀWB  Bᵀ ]
 //! [ B         0  ]
 //! ```
 //!
-//! where the positive diagonal W changes nothing on those motions, so that the number is exact
-//! whatever W is, and yet keeps pivots away from zero that only the rows hold: beams that hang on
-//! nothing but their joints, the axis of an inextensible beam. A multiplier is eliminated as soon
-//! as all unknowns of its row are; these are ordered for little fill by faer, which also does the
-//! elimination.
+//! The positive diagonal W changes nothing on those motions, so that the number is exact for any W.
+//! Its purpose is to keep pivots away from zero where only the rows give a stiffness: for beams
+//! that are held by nothing but their joints, and along the axis of an inextensible beam. A
+//! multiplier is eliminated as soon as all unknowns of its row are. The unknowns are ordered for
+//! little fill by faer, which also performs the elimination.
 
 use super::bordered::BorderRow;
 use super::symmetric::SMALLEST_PIVOT;
@@ -29,12 +30,12 @@ use faer::{Par, Side};
 
 type Entry = Triplet<usize, usize, f64>;
 
-/// Factors of W that are tried until two agree: without pivoting a small pivot may grow round-off
-/// to the size of what is eliminated after it.
+/// Factors of W that are tried until two of them yield the same number. One is not enough: without
+/// pivoting, a small pivot may amplify round-off to the size of entries eliminated after it.
 const TRIES: [f64; 5] = [1.0, 30.0, 0.03, 7.0, 0.2];
 
 /// Number of negative eigenvalues of the symmetric `k` on the motions that the rows of `border`
-/// allow; `None` without symmetry, where a pivot vanishes, or where no two eliminations agree.
+/// allow; `None` if `k` is unsymmetric, or if no two eliminations without a vanishing pivot agree.
 pub fn negative_directions(k: &Matrix, border: &[BorderRow]) -> Option<usize> {
     if matches!(k, Matrix::General(_)) {
         return None;
@@ -50,7 +51,7 @@ pub fn negative_directions(k: &Matrix, border: &[BorderRow]) -> Option<usize> {
     None
 }
 
-/// That number, with `factor` W.
+/// The same number from one elimination, with `factor` W; `None` if a pivot vanishes.
 fn count(k: &Matrix, border: &[BorderRow], factor: f64) -> Option<usize> {
     let n = k.size();
     let mut entries: Vec<Entry> = Vec::new();
@@ -83,8 +84,9 @@ fn count(k: &Matrix, border: &[BorderRow], factor: f64) -> Option<usize> {
     pivots.iter().filter(|pivot| **pivot < 0.0).count().checked_sub(border.len())
 }
 
-/// What makes a row as stiff as the softest of the unknowns that it holds. Those of a beam's axis
-/// may have no stiffness where those across it have.
+/// The weight in W that makes a row as stiff as the softest of the nodal pairs of unknowns in it.
+/// Pairs are compared, because an inextensible beam has no stiffness along its axis, only across
+/// it.
 fn weight(k: &Matrix, row: &BorderRow) -> f64 {
     let of_pair = |i: usize| k.get(i & !1, i & !1).abs().max(k.get(i | 1, i | 1).abs());
     let held = row.iter().filter(|(i, value)| *value != 0.0 && of_pair(*i) > 0.0);
@@ -92,7 +94,7 @@ fn weight(k: &Matrix, row: &BorderRow) -> f64 {
     if weight.is_finite() { weight } else { 0.0 }
 }
 
-/// Where each unknown and multiplier stands in the order of elimination.
+/// The position of each unknown and multiplier in the order of elimination.
 fn places(n: usize, entries: &[Entry], border: &[BorderRow]) -> Option<Vec<usize>> {
     let pattern = SparseColMat::try_new_from_triplets(n, n, entries).ok()?;
     let (mut order, mut position) = (vec![0; n], vec![0; n]);
@@ -108,8 +110,8 @@ fn places(n: usize, entries: &[Entry], border: &[BorderRow]) -> Option<Vec<usize
     Some(place)
 }
 
-/// The pivots of a symmetric matrix, eliminated row by row in its order, from its upper entries;
-/// those in the same place are summed.
+/// The pivots of a symmetric matrix, eliminated row by row in the given order. `upper` holds its
+/// upper entries; entries at the same place are summed.
 ///
 /// # Errors
 /// [`Singular`] with the row whose pivot is zero.
@@ -132,6 +134,6 @@ fn pivots(size: usize, upper: &[Entry]) -> Result<Vec<f64>, Singular> {
         .factorize_numeric_ldlt(&mut values, matrix, upper, plain, sequential, stack, Default::default())
         .map_err(|LdltError::ZeroPivot { index }| Singular { row: index - 1 })?;
     let SymbolicCholeskyRaw::Simplicial(columns) = symbolic.raw() else { return Err(none) };
-    // A column of L begins with its pivot.
+    // The first value of each column of L is its pivot.
     Ok(columns.col_ptr()[..size].iter().map(|first| values[*first]).collect())
 }

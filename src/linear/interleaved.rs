@@ -1,15 +1,16 @@
-//! A band bordered by constraint rows each of which lies within a few neighbouring supports.
+//! A band bordered by constraint rows, each of which is local: it spans only a few neighbouring
+//! nodes.
 //!
-//! Numbered behind the last unknown of its row, a multiplier stays within the band, which becomes
-//! wider by the rows that share its place:
+//! If a multiplier is numbered directly after the last unknown of its row, the matrix stays a band,
+//! which is only widened by the rows at the same place:
 //!
 //! ```text
 //! [ K  Bᵀ ]        x₀ x₁ μ₀ μ₁ x₂ μ₂ μ₃ …
 //! [ B  0  ]   →    one band, LU with partial pivoting
 //! ```
 //!
-//! The rows of an inextensible beam of cable elements, which span two of them, make 14 diagonals
-//! out of 7 on either side, and a cell costs the same however many there are.
+//! The rows of an inextensible beam of cable elements span two elements and widen the band from 7
+//! to 14 diagonals on either side; the cost per cell does not depend on the number of cells.
 
 use super::band::{Band, BandLu, Number};
 use super::bordered::BorderRow;
@@ -19,14 +20,14 @@ use super::{Matrix, Singular};
 /// LU of a bordered matrix that is a band in another order, real or complex.
 #[derive(Clone, Debug)]
 pub struct Interleaved<T = f64> {
-    /// Where each unknown and multiplier stands.
+    /// Position of each unknown and multiplier in the band.
     place: Vec<usize>,
-    /// By what each is scaled.
+    /// Scale of each unknown and multiplier.
     scales: Vec<f64>,
     lu: BandLu<T>,
 }
 
-/// Blocks of four unknowns that the longest row spans.
+/// Number of nodes that the longest row spans.
 pub fn reach(border: &[BorderRow]) -> usize {
     let span = |row: &BorderRow| match (row.first(), row.last()) {
         (Some((first, _)), Some((last, _))) => last / 4 - first / 4 + 1,
@@ -35,17 +36,17 @@ pub fn reach(border: &[BorderRow]) -> usize {
     border.iter().map(span).max().unwrap_or(0)
 }
 
-/// Whether the rows are local: such as span at most one node more than the functions of a cell.
+/// Whether all rows are local: each spans at most one node more than the shape functions of a cell.
 pub fn fits(matrix: &Matrix, border: &[BorderRow]) -> bool {
     reach(border) <= matrix.columns(0).len() / 4 + 1
 }
 
-/// Where unknowns and multipliers stand.
+/// Positions of unknowns and multipliers in the band.
 fn places(size: usize, border: &[BorderRow]) -> Vec<usize> {
     let last = |row: &BorderRow| row.last().map_or(0, |(last, _)| *last);
     let mut order: Vec<(usize, usize)> = (0..size).map(|i| (i, i)).collect();
     order.extend(border.iter().enumerate().map(|(r, row)| (last(row), size + r)));
-    // Stable: behind the unknown, rows of the same support in their order.
+    // A multiplier comes after the unknown; rows with the same last unknown keep their order.
     order.sort_by_key(|(at, index)| (*at, *index));
     let mut place = vec![0; order.len()];
     order.iter().enumerate().for_each(|(position, (_, index))| place[*index] = position);
@@ -54,10 +55,10 @@ fn places(size: usize, border: &[BorderRow]) -> Vec<usize> {
 
 impl<T: Number> Interleaved<T> {
     /// Factorises the matrix with the pattern of `pattern` and the entries `entry(row, column)`,
-    /// bordered by `border`, which must fit.
+    /// bordered by `border`, for which [`fits`] must hold.
     ///
     /// # Errors
-    /// [`Singular`] where the whole matrix is.
+    /// [`Singular`] if the bordered matrix is singular.
     pub fn new(
         pattern: &Matrix,
         entry: impl Fn(usize, usize) -> T,
@@ -94,7 +95,7 @@ impl<T: Number> Interleaved<T> {
         Ok(Self { place, scales, lu })
     }
 
-    /// Solves in place: unknowns first, multipliers last.
+    /// Solves in place; `b` holds the unknowns first and the multipliers last.
     pub fn solve(&self, b: &mut [T]) {
         let mut ordered = b.to_vec();
         let places = || self.place.iter().zip(&self.scales);
@@ -110,7 +111,7 @@ mod tests {
     use crate::linear::bordered::Bordered;
     use faer::c64;
 
-    /// Three nodes, an indefinite K, and rows that share supports.
+    /// Three nodes, an indefinite K, and rows that overlap.
     fn example() -> (Matrix, Vec<BorderRow>) {
         let mut k = Matrix::zeros(3, 2, true);
         for i in 0..12 {

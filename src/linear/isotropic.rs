@@ -1,18 +1,19 @@
-//! A symmetric band that treats x and y alike and apart: c ⊗ 1₂, as mass matrices are.
+//! A symmetric band that treats x and y equally and does not couple them: c ⊗ 1₂, like a mass
+//! matrix.
 //!
-//! Of the sixteen numbers of a block for a pair of nodes four are different, the products of the
-//! two nodes' shape functions of position and slope. A product of this matrix with a vector takes a
+//! Of the sixteen numbers of a block for a pair of nodes only four differ: the products of the two
+//! nodes' shape functions of position and slope. A product of this matrix with a vector takes a
 //! fifth of the instructions that [`super::symmetric`] needs, and a quarter of the memory traffic.
 
 use super::Matrix;
 use super::symmetric::SymmetricBand;
 use crate::lanes::{self, Lanes};
 
-/// c ⊗ 1₂, its upper half.
+/// The upper half of a band c ⊗ 1₂.
 #[derive(Clone, Debug)]
 pub struct IsotropicBand {
     nodes: usize,
-    /// Blocks in a row, the diagonal one included.
+    /// Number of blocks in a row, the diagonal one included.
     blocks: usize,
     /// Per node, per block from the diagonal on:
     /// \[position–position, position–slope, slope–position, slope–slope\].
@@ -20,7 +21,7 @@ pub struct IsotropicBand {
 }
 
 impl IsotropicBand {
-    /// The same as `matrix`, where that treats x and y alike and apart.
+    /// `matrix` in this form; `None` if it couples x and y or treats them differently.
     pub fn new(matrix: &SymmetricBand) -> Option<Self> {
         let (nodes, blocks) = (matrix.size() / 4, matrix.stride() / 4);
         let mut data = vec![[0.0; 4]; nodes * blocks];
@@ -46,7 +47,7 @@ impl IsotropicBand {
         for (k, block) in self.data.iter().enumerate() {
             let (row, column) = (4 * (k / self.blocks), 4 * (k / self.blocks + k % self.blocks));
             if column >= matrix.size() {
-                // Rows of the last nodes are as long as all others.
+                // The rows of the last nodes are stored with full length, too.
                 continue;
             }
             for (place, value) in block.iter().enumerate() {
@@ -64,7 +65,8 @@ impl IsotropicBand {
         self.multiply_add_seen(factor, |node| x[node], y, |_| ());
     }
 
-    /// The same with x given node by node; `see` is shown what is in y before, likewise.
+    /// The same product, with x given node by node. `see` is called for each node with the entries
+    /// of y before the addition.
     #[inline(always)]
     pub fn multiply_add_seen(
         &self,
@@ -98,7 +100,8 @@ impl IsotropicBand {
         }
     }
 
-    /// With what a row needs of x, and what the rows before have left to it, in registers.
+    /// Keeps in registers the part of x that a row needs, and the contributions of earlier rows to
+    /// later ones.
     #[inline(always)]
     fn add_rows<const BLOCKS: usize>(
         &self,
@@ -155,7 +158,7 @@ fn transpose([a, b, c, d]: [f64; 4]) -> [f64; 4] {
     [a, c, b, d]
 }
 
-/// A block times the coefficients of a node in four states, plus `sum`.
+/// `sum` plus a block times the coefficients of a node, in four states at once.
 #[inline(always)]
 fn add_block([a, b, c, d]: [Lanes; 4], x: &[Lanes; 4], sum: &[Lanes; 4]) -> [Lanes; 4] {
     [
@@ -166,13 +169,13 @@ fn add_block([a, b, c, d]: [Lanes; 4], x: &[Lanes; 4], sum: &[Lanes; 4]) -> [Lan
     ]
 }
 
-/// Twice the first and twice the second pair.
+/// The first two numbers twice, and the last two numbers twice.
 #[inline(always)]
 fn halves([x, y, along, across]: [f64; 4]) -> [Lanes; 2] {
     [Lanes::new([x, y, x, y]), Lanes::new([along, across, along, across])]
 }
 
-/// A block times the coefficients of a node, plus `sum`.
+/// `sum` plus a block times the coefficients of a node.
 #[inline(always)]
 fn product([a, b, c, d]: [f64; 4], [low, high]: [Lanes; 2], sum: Lanes) -> Lanes {
     Lanes::new([b, b, d, d]).mul_add(high, Lanes::new([a, a, c, c]).mul_add(low, sum))
@@ -181,20 +184,21 @@ fn product([a, b, c, d]: [f64; 4], [low, high]: [Lanes; 2], sum: Lanes) -> Lanes
 /// The constant mass matrix.
 #[derive(Clone, Debug)]
 pub enum Inertia {
-    /// One that treats x and y alike and apart: that of all effects here.
+    /// A matrix that treats x and y equally and does not couple them, as that of every effect in
+    /// this crate does.
     Isotropic(IsotropicBand),
     /// Any other.
     Any(Matrix),
 }
 
 impl Inertia {
-    /// Of `matrix`.
+    /// `matrix`, in the isotropic form if possible.
     pub fn new(matrix: Matrix) -> Self {
         let isotropic = if let Matrix::Symmetric(band) = &matrix { IsotropicBand::new(band) } else { None };
         isotropic.map_or(Self::Any(matrix), Self::Isotropic)
     }
 
-    /// The matrix.
+    /// The matrix in the general form.
     pub fn to_matrix(&self) -> Matrix {
         match self {
             Self::Isotropic(band) => Matrix::Symmetric(band.to_symmetric()),
@@ -210,7 +214,8 @@ impl Inertia {
         }
     }
 
-    /// `y += M x` with x given node by node; `see` is shown what is in y before, likewise.
+    /// `y += M x` with x given node by node. `see` is called for each node with the entries of y
+    /// before the addition.
     #[inline(always)]
     pub fn multiply_add_seen(&self, x: impl Fn(usize) -> [f64; 4], y: &mut [f64], see: impl FnMut([f64; 4])) {
         match self {
@@ -223,7 +228,7 @@ impl Inertia {
         }
     }
 
-    /// `y += M x` for four vectors side by side; `scratch` has two vectors of their length.
+    /// `y += M x` for four vectors side by side; `scratch` holds two vectors of the same length.
     pub fn multiply_add_lanes(&self, x: &[Lanes], y: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
         match self {
             Self::Isotropic(band) => band.multiply_add_lanes(x, y),

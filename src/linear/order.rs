@@ -1,23 +1,22 @@
-//! In which order the nodes of a symmetric band are eliminated.
+//! The order in which the nodes of a symmetric band are eliminated.
 //!
-//! Each elimination of a node and each step of a substitution waits for the one before, and the
-//! processor with it. A cable element couples neighbours only, so that its nodes can be eliminated
-//! from both ends towards the middle in turn,
+//! The elimination of a node, and each step of a substitution, has to wait for the result of the
+//! one before. A cable element couples only neighbouring nodes, so that its nodes can be eliminated
+//! alternately from both ends towards the middle:
 //!
 //! ```text
-//! 0, n − 1, 1, n − 2, 2, …        position k leads to position k + 2, the last two but one to the last
+//! 0, n − 1, 1, n − 2, 2, …     position k leads to position k + 2, the last but one to the last
 //! ```
 //!
-//! two chains, each half as long, that do not wait for each other: a factorisation takes four
-//! fifths of the time, a substitution three fifths.
+//! These are two chains of half the length that do not wait for each other: a factorisation takes
+//! four fifths of the time, a substitution three fifths.
 //!
-//! That is for matrices with a mass in them. Without one, in equilibria, what is eliminated last
-//! decides how digits are lost, and from the first node to the last fewer are: from both ends the
-//! relaxation of a slack cable did not come to rest in 2000 iterations instead of 17, and a beam
-//! with EA L²/EI of 10¹⁴ took one more. Wider bands are eliminated from the first node to the last
-//! too.
+//! This order is used only for matrices that contain a mass. In equilibria, without a mass, the
+//! nodes eliminated last decide how many digits are lost, and the order from the first node to the
+//! last loses fewer: from both ends, the relaxation of a slack cable did not converge. Wider bands
+//! are eliminated from the first node to the last, too.
 
-/// The order for a number of nodes.
+/// The order of elimination for a number of nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct Order {
     nodes: usize,
@@ -25,7 +24,8 @@ pub struct Order {
 }
 
 impl Order {
-    /// For `nodes` nodes, from both ends only if each is coupled with no more than its neighbours.
+    /// An order of `nodes` nodes; `from_both_ends` requires that each node is coupled only with its
+    /// neighbours.
     #[inline(always)]
     pub fn new(nodes: usize, from_both_ends: bool) -> Self {
         Self { nodes, from_both_ends }
@@ -41,23 +41,23 @@ impl Order {
         }
     }
 
-    /// The position of the `block`th node (from 1 on) with which that at `position` is coupled when
-    /// it is eliminated.
+    /// The position of the `block`th node (from 1 on) with which the node at `position` is coupled
+    /// when it is eliminated.
     #[inline(always)]
     pub fn next(self, position: usize, block: usize) -> Option<usize> {
         let next = if self.from_both_ends { (position + 2).min(self.nodes - 1) } else { position + block };
         (next < self.nodes && next > position).then_some(next)
     }
 
-    /// Whether the nodes at this position and the one after it do not wait for each other: the
-    /// first of such a pair.
+    /// Whether `position` is the first of two successive positions whose nodes do not depend on
+    /// each other and can be eliminated together.
     #[inline(always)]
     pub fn is_pair(self, position: usize) -> bool {
         self.from_both_ends && position.is_multiple_of(2) && position + 2 < self.nodes
     }
 
-    /// Where block number `block` of the node at `position` is in the matrix: in which node's
-    /// panel, and whether transposed.
+    /// The place of block number `block` of the node at `position` in the matrix: the node in whose
+    /// panel it is, and whether it must be transposed.
     #[inline(always)]
     pub fn source(self, position: usize, block: usize) -> (usize, bool) {
         let node = self.node(position);

@@ -1,17 +1,17 @@
 //! Symmetric band of 4 × 4 blocks and its factorisation A = L D Lᵀ.
 //!
-//! Block row I is kept as a panel of four rows, each holding the columns of nodes I, I + 1, …, I +
-//! b contiguously (b + 1 blocks, 4(b + 1) numbers). Within the diagonal block the entries left of
-//! the diagonal are carried along but never read. The factorisation keeps blocks, a row of one in a
-//! register, and works node by node: its blocks are reduced by its own four pivots, and each block
-//! of a later node then takes them in one pass, 4 multiply–adds per number loaded and stored.
+//! Block row I is stored as a panel of four rows, each of which holds the columns of nodes I,
+//! I + 1, …, I + b contiguously (b + 1 blocks, 4(b + 1) numbers). Within the diagonal block the
+//! entries left of the diagonal are computed along with the others but never read. The
+//! factorisation works with blocks, each row of a block in a register, node by node: the node's own
+//! four pivots reduce its blocks, and then each block of a later node is updated in one pass, with
+//! 4 multiply–adds per number loaded and stored.
 //!
-//! Per node it takes 4·4·(b + 1) + 16·b·(b + 1)/2 · 4 multiplications, 112 for the cable element
-//! (b = 1) and 1 056 for six-node supports (b = 5); a pivoted LU of the same band takes 3.5 to 4
-//! times as many. Another 40 b give the blocks W of [`Ldl`], which are worth it: a substitution from
-//! pivot to pivot waits eight times a node for the result before. With blocks a step of the
-//! trapezoidal rule (30 cable elements) takes a fifth less time, one of Radau's method (20 nodes,
-//! six-node supports) a twelfth.
+//! Per node the updates take 32·b·(b + 1) multiplications, 64 for the cable element (b = 1) and 960
+//! for six-node supports (b = 5); a pivoted LU of the same band takes 3.5 to 4 times as many.
+//! Another 40 b yield the blocks W of [`Ldl`]. They pay off, because a substitution from pivot to
+//! pivot would wait eight times per node for the result before: with blocks, a step of the
+//! trapezoidal rule (30 cable elements) takes a fifth less time.
 
 use super::Singular;
 use super::band::Band;
@@ -19,11 +19,11 @@ use super::order::Order;
 use crate::lanes::Lanes;
 use crate::lanes::fma;
 
-/// Upper half of a symmetric matrix, banded by blocks.
+/// Upper half of a symmetric matrix that is a band of blocks.
 #[derive(Clone, Debug)]
 pub struct SymmetricBand {
     nodes: usize,
-    /// Blocks in a panel, the diagonal one included.
+    /// Number of blocks in a panel, the diagonal one included.
     blocks: usize,
     data: Vec<f64>,
 }
@@ -45,7 +45,7 @@ impl SymmetricBand {
         size_of_val(&self.data[..])
     }
 
-    /// Multiplies all entries.
+    /// Multiplies all entries by `factor`.
     pub fn scale(&mut self, factor: f64) {
         self.data.iter_mut().for_each(|entry| *entry *= factor);
     }
@@ -55,21 +55,23 @@ impl SymmetricBand {
         self.data.fill(0.0);
     }
 
-    /// Four rows of node `node`, from its own columns on; each row has [`Self::stride`] numbers.
+    /// The four rows of node `node`, from its own columns on; each row has [`Self::stride`]
+    /// numbers.
     #[inline]
     pub fn panel_mut(&mut self, node: usize) -> &mut [f64] {
         let length = 16 * self.blocks;
         &mut self.data[node * length..(node + 1) * length]
     }
 
-    /// Rows of `node`, columns of the node `block` further on.
+    /// The block in the rows of `node` and the columns of the node that is `block` nodes further
+    /// on.
     #[inline(always)]
     pub(super) fn block(&self, node: usize, block: usize) -> [Lanes; 4] {
         let rows = self.data.as_chunks::<4>().0;
         std::array::from_fn(|r| Lanes::new(rows[(4 * node + r) * self.blocks + block]))
     }
 
-    /// Numbers in a row of a panel.
+    /// Number of entries in a row of a panel.
     #[inline]
     pub fn stride(&self) -> usize {
         4 * self.blocks
@@ -97,7 +99,7 @@ impl SymmetricBand {
     /// Sets the entries (i, j) and (j, i), which must lie in the band.
     ///
     /// # Panics
-    /// Where they do not.
+    /// If they do not.
     pub fn set(&mut self, i: usize, j: usize, value: f64) {
         match self.index(i, j) {
             Some(k) => self.data[k] = value,
@@ -121,7 +123,7 @@ impl SymmetricBand {
         }
     }
 
-    /// With the `STRIDE` numbers of x and y that a panel touches in windows of registers.
+    /// Keeps the `STRIDE` entries of x and y that a panel touches in registers.
     fn multiply_add_window<const STRIDE: usize>(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         let panels = self.data.as_chunks::<STRIDE>().0.as_chunks::<4>().0;
         let ahead = STRIDE - 4;
@@ -168,8 +170,8 @@ impl SymmetricBand {
             let (x_here, x_later) = x[first..].split_at(4);
             let (y_here, y_later) = y[first..].split_at_mut(4);
             let scaled: [f64; 4] = std::array::from_fn(|r| factor * x_here[r]);
-            // The block to the right of the diagonal's, and its transpose: one pass over it, four
-            // columns at a time.
+            // Uses each block to the right of the diagonal block, and its transpose, in one pass
+            // over it, four columns at a time.
             let mut sums = [[0.0; 4]; 4];
             for (b, (x, y)) in
                 x_later.chunks_exact(4).zip(y_later.chunks_exact_mut(4)).take(self.blocks - 1).enumerate()
@@ -208,26 +210,27 @@ impl SymmetricBand {
     }
 }
 
-/// Rows of 4 × 4 numbers.
+/// A block of 4 × 4 numbers, row by row.
 type Block = [Lanes; 4];
 
-/// A = L D Lᵀ without pivoting, D of blocks of 4 × 4, which are D = l d lᵀ in turn.
+/// A = L D Lᵀ without pivoting, where D consists of blocks of 4 × 4, each of which is D = l d lᵀ in
+/// turn.
 ///
-/// The blocks right of the diagonal hold W = D⁻¹ U, so that a substitution is a product with W or
-/// Wᵀ from node to node: one after the other only as far as it must be, and by whole registers. The
-/// solutions with the diagonal blocks D do not depend on each other. Where there is a mass in the
-/// matrix, which bounds its condition, they are products with D⁻¹, which takes a quarter off the
-/// instructions of a substitution.
+/// The blocks right of the diagonal hold W = D⁻¹ U. A substitution is then a product of whole
+/// registers with W or Wᵀ from node to node, and only these products must come one after the other;
+/// the solutions with the diagonal blocks D do not depend on each other. If the matrix contains a
+/// mass, which bounds its condition, and couples only neighbouring nodes, the latter are products
+/// with D⁻¹, which saves a quarter of the instructions of a substitution.
 #[derive(Clone, Debug)]
 pub struct Ldl {
-    /// Blocks of a node, the diagonal one included.
+    /// Number of blocks of a node, the diagonal one included.
     blocks: usize,
-    /// Of each node, in the order of elimination: d lᵀ (where both ends are begun with: D⁻¹), and
-    /// the blocks W.
+    /// Per node, in the order of elimination: d lᵀ (D⁻¹ if elimination proceeds from both ends),
+    /// followed by the blocks W.
     rows: Vec<Block>,
     /// The blocks Wᵀ.
     transposed: Vec<Block>,
-    /// 1/d.
+    /// 1/d of each node.
     reciprocal: Vec<[f64; 4]>,
     negative: usize,
     from_both_ends: bool,
@@ -237,10 +240,10 @@ pub struct Ldl {
 pub(super) const SMALLEST_PIVOT: f64 = 1e-15;
 
 impl Ldl {
-    /// Factorises.
+    /// Factorises `matrix`.
     ///
     /// # Errors
-    /// [`Singular`] where a pivot vanishes against the diagonal entry it came from, or is not
+    /// [`Singular`] if a pivot vanishes relative to the diagonal entry it came from, or is not
     /// finite.
     pub fn new(matrix: &SymmetricBand) -> Result<Self, Singular> {
         Self::again(None, matrix, None)
@@ -281,7 +284,7 @@ impl Ldl {
         Ok(ldl)
     }
 
-    /// With the number of blocks a compile-time constant, or 0.
+    /// Factorises, with the number of blocks as a compile-time constant, or 0 if it is uncommon.
     fn factorize<const BLOCKS: usize, const FROM_BOTH_ENDS: bool>(
         &mut self,
         matrix: &SymmetricBand,
@@ -355,7 +358,7 @@ impl Ldl {
         }
     }
 
-    /// With the number of blocks a compile-time constant, or 0.
+    /// Substitutes, with the number of blocks as a compile-time constant, or 0 if it is uncommon.
     fn substitute<const BLOCKS: usize, const FROM_BOTH_ENDS: bool>(&self, b: &mut [f64]) {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
         let x = b.as_chunks_mut::<4>().0;
@@ -391,12 +394,12 @@ impl Ldl {
     }
 }
 
-/// Takes row `R` of the first block times what makes zeros below its pivot from the rows below;
-/// 1/pivot, or nothing where it is none against `scale`.
+/// Subtracts multiples of row `R` of the panel from the rows below so that the entries below its
+/// pivot become zero. Returns 1/pivot, or `None` if the pivot vanishes relative to `scale`.
 #[inline(always)]
 fn reduce<const R: usize>(panel: &mut [Block], scale: f64) -> Option<f64> {
     let row = panel[0][R].to_array();
-    // Written so that a NaN fails too.
+    // Written with a negation, so that a NaN fails, too.
     if !(row[R].abs() > SMALLEST_PIVOT * scale.abs() && row[R].is_finite()) {
         return None;
     }
@@ -410,7 +413,7 @@ fn reduce<const R: usize>(panel: &mut [Block], scale: f64) -> Option<f64> {
     Some(reciprocal)
 }
 
-/// `target − Σ_r rows_r · factors_r`, in two chains.
+/// `target − Σ_r rows_r · factors_r`, summed in two independent chains.
 #[inline(always)]
 fn subtract(rows: &Block, factors: [f64; 4], target: [f64; 4]) -> [f64; 4] {
     let factors = factors.map(Lanes::splat);
@@ -419,7 +422,7 @@ fn subtract(rows: &Block, factors: [f64; 4], target: [f64; 4]) -> [f64; 4] {
     (rest - sum).to_array()
 }
 
-/// `Σ_r rows_r · factors_r`, in two chains.
+/// `Σ_r rows_r · factors_r`, summed in two independent chains.
 #[inline(always)]
 fn multiply(rows: &Block, factors: [f64; 4]) -> [f64; 4] {
     let factors = factors.map(Lanes::splat);
@@ -427,7 +430,7 @@ fn multiply(rows: &Block, factors: [f64; 4]) -> [f64; 4] {
     (rows[3].mul_add(factors[3], rows[2] * factors[2]) + sum).to_array()
 }
 
-/// D⁻¹ from the rows of d lᵀ.
+/// D⁻¹, from the rows of d lᵀ and 1/d.
 fn inverse(pivots: &Block, reciprocal: &[f64; 4]) -> Block {
     let mut inverse: Block =
         std::array::from_fn(|r| Lanes::new(std::array::from_fn(|c| f64::from(u8::from(r == c)))));
@@ -440,7 +443,7 @@ fn inverse(pivots: &Block, reciprocal: &[f64; 4]) -> Block {
     divide_by_pivots(pivots, reciprocal, inverse)
 }
 
-/// W = D⁻¹ U of a block, from the rows of d lᵀ and l⁻¹ U that elimination leaves.
+/// W = D⁻¹ U of a block, from the rows of d lᵀ and the block l⁻¹ U that the elimination leaves.
 #[inline(always)]
 fn divide_by_pivots(pivots: &Block, reciprocal: &[f64; 4], mut u: Block) -> Block {
     for r in (0..4).rev() {
@@ -453,7 +456,7 @@ fn divide_by_pivots(pivots: &Block, reciprocal: &[f64; 4], mut u: Block) -> Bloc
     u
 }
 
-/// D⁻¹ b with the rows of d lᵀ.
+/// D⁻¹ b, from the rows of d lᵀ and 1/d.
 #[inline(always)]
 fn solve_pivots(rows: &Block, reciprocal: &[f64; 4], mut b: [f64; 4]) -> [f64; 4] {
     let rows = rows.map(Lanes::to_array);

@@ -1,8 +1,8 @@
-//! What is to be computed, and how.
+//! Analyses and their settings.
 
 use std::fmt;
 
-/// What is to be computed.
+/// An analysis of a model.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Analysis {
@@ -19,23 +19,23 @@ pub enum Analysis {
 /// Settings of a buckling analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Buckling {
-    /// How many critical loads are wanted.
+    /// Number of critical loads wanted.
     pub count: usize,
 }
 
 /// Settings of a modal analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Modal {
-    /// How many vibrations are wanted, motions without resistance (0 Hz) included.
+    /// Number of vibrations wanted, including motions without resistance (0 Hz).
     pub count: usize,
-    /// The state about which they are small.
+    /// The state about which the vibrations are small.
     pub about: About,
 }
 
 /// The state about which vibrations are small.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum About {
-    /// The stress-free one, without loads.
+    /// The stress-free state, without loads.
     #[default]
     Reference,
     /// The equilibrium under all loads and prescribed displacements.
@@ -45,13 +45,14 @@ pub enum About {
 /// Settings of a static analysis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Static {
-    /// Load factors at which states are recorded: this many equal parts. `None`: chosen by the
-    /// solver.
+    /// Number of equal steps of the load factor after each of which a state is recorded. `None`:
+    /// chosen by the solver.
     pub steps: Option<usize>,
-    /// Relative accuracy of every equilibrium, in increments per length. `None`: the solver's
-    /// default.
+    /// Relative accuracy of every equilibrium, as the size of the last increment per beam length.
+    /// `None`: the solver's default.
     pub tolerance: Option<f64>,
-    /// Follow the path by arc length, through limit points.
+    /// Whether, and how, to follow the path by arc length, through limit points. `None`: by load
+    /// steps.
     pub arc_length: Option<ArcLength>,
 }
 
@@ -75,38 +76,38 @@ pub struct ProbeTarget {
     pub probe: String,
     /// 0 for x, 1 for y.
     pub axis: usize,
-    /// \[m\].
+    /// The value \[m\].
     pub value: f64,
 }
 
 /// Settings of a dynamic analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dynamic {
-    /// Simulated time \[s\], from time zero or from that of a saved state on.
+    /// Simulated time \[s\], counted from time zero or from the time of a saved state.
     pub duration: f64,
     /// Time between records \[s\].
     pub output_every: f64,
-    /// How time advances.
+    /// The method of time integration.
     pub integrator: Integrator,
-    /// What to watch for.
+    /// Events to detect.
     pub events: Vec<EventCondition>,
 }
 
-/// A probe's coordinate reaches a value from one side, also where it turns back there.
+/// The event that a probe's coordinate reaches a value from one side, even if it turns back there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EventCondition {
-    /// Which, and which value.
+    /// The coordinate and its value.
     pub target: ProbeTarget,
-    /// Which way.
+    /// The direction in which the value is reached.
     pub crossing: Crossing,
-    /// Whether the motion ends there.
+    /// Whether the simulation ends at the event.
     pub stop: bool,
 }
 
-/// The way in which a value is crossed.
+/// The direction in which a value is crossed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Crossing {
-    /// Either way.
+    /// Either direction.
     #[default]
     Any,
     /// From below.
@@ -121,46 +122,46 @@ pub enum Crossing {
 pub enum Integrator {
     /// Chung and Hulbert's generalised-α method.
     GeneralizedAlpha {
-        /// How steps are chosen.
+        /// Choice of the steps.
         step: StepControl,
         /// Spectral radius at infinite frequency, from 0 to 1.
         spectral_radius: f64,
-        /// Error of positions, in beam lengths, that the iteration of a step of fixed length may
-        /// leave.
+        /// Error of positions, in beam lengths, that the iterations may leave in a step of fixed
+        /// length.
         newton_tolerance: f64,
     },
     /// Gauss collocation, of order 2 `stages`.
     Gauss {
-        /// 1, 2 or 3.
+        /// Number of stages: 1, 2 or 3.
         stages: usize,
-        /// How steps are chosen.
+        /// Choice of the steps.
         step: StepControl,
     },
     /// Radau IIA collocation, of order 2 `stages` − 1.
     Radau {
-        /// 2 or 3.
+        /// Number of stages: 2 or 3.
         stages: usize,
-        /// How steps are chosen.
+        /// Choice of the steps.
         step: StepControl,
     },
 }
 
 impl Integrator {
-    /// Newton tolerance of generalised-α where nothing is said: a thousand steps then add up to
-    /// less than 1e-8.
+    /// Default Newton tolerance of generalised-α: the errors of a thousand steps add up to 1e-8 at
+    /// most.
     pub const NEWTON_TOLERANCE: f64 = 1e-11;
 
-    /// The method where nothing is said: Radau IIA collocation with three stages. It damps what is
-    /// too fast to be followed, suits every model, and over the motions of the suite with a
-    /// tolerance it took fewer iterations than Gauss' methods for the same error.
+    /// The default method: Radau IIA collocation with three stages. It damps vibrations that are
+    /// too fast to be resolved, suits every model, and needed fewer iterations than Gauss methods
+    /// for the same error in the motions of the test suite.
     pub fn usual(step: StepControl) -> Self {
         Self::Radau { stages: 3, step }
     }
 
-    /// Checks that the method can do with the model.
+    /// Checks that the method can integrate the model.
     ///
     /// # Errors
-    /// [`Undamped`].
+    /// [`Undamped`] if it cannot.
     pub fn suits(&self, model: &super::Model) -> Result<(), Undamped> {
         let damps = match self {
             Self::GeneralizedAlpha { spectral_radius, .. } => *spectral_radius < 1.0,
@@ -170,7 +171,7 @@ impl Integrator {
         if damps || !model.is_inextensible() { Ok(()) } else { Err(Undamped { integrator: *self }) }
     }
 
-    /// The same method with other steps.
+    /// The same method with another choice of steps.
     #[must_use]
     pub fn with_step(mut self, control: StepControl) -> Self {
         match &mut self {
@@ -181,7 +182,7 @@ impl Integrator {
         self
     }
 
-    /// How steps are chosen.
+    /// The choice of steps.
     pub fn step_control(&self) -> StepControl {
         match *self {
             Self::GeneralizedAlpha { step, .. } | Self::Gauss { step, .. } | Self::Radau { step, .. } => step,
@@ -189,8 +190,8 @@ impl Integrator {
     }
 }
 
-/// A method without damping at infinite frequency, and a beam that is inextensible: an error of its
-/// axial force would be carried on from step to step, and grow.
+/// The method has no damping at infinite frequency, which an inextensible beam needs: an error of
+/// the axial force would be carried from step to step, and grow.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{integrator}: the error that it makes in the axial force of an inextensible beam would grow")]
 pub struct Undamped {
@@ -199,7 +200,7 @@ pub struct Undamped {
 }
 
 impl Undamped {
-    /// What to try.
+    /// Alternatives, for messages.
     pub const HELP: &str = "use `radau`, or `generalized_alpha` with a `spectral_radius` below 1; or give the beam an `axial_stiffness`";
 }
 
@@ -225,11 +226,11 @@ impl fmt::Display for Integrator {
     }
 }
 
-/// How the steps of an integrator are chosen.
+/// The choice of an integrator's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepControl {
-    /// All alike \[s\].
+    /// Equal steps of this length \[s\].
     Fixed(f64),
-    /// As long as this relative accuracy allows.
+    /// Steps as long as this relative accuracy allows.
     Tolerance(f64),
 }

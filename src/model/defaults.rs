@@ -1,17 +1,18 @@
-//! What is taken where nothing else is said, by whoever makes a model, with the measurements that
-//! chose it.
+//! Default settings, for every way of making a model, with the measurements by which they were
+//! chosen.
 
 use super::{
     Beam, Centreline, Discretization, GaussPoints, Kernel, Nodes, Section, SideCondition, StepControl,
     StrainMeasure,
 };
 
-/// Points of ANCF elements where nothing else is said: three of Lobatto's for stretching,
-/// which neighbours share at the nodes, two of Gauss' for bending.
+/// Default quadrature of ANCF elements: three Lobatto points for stretching, of which neighbours
+/// share those at the nodes, and two Gauss points for bending.
 ///
-/// Distance of the tip from the exact place, per length, at EA L²/EI = 6e5 in the units of
-/// [`RPIM_KERNEL`]'s table; the limit load of the deep arch at 1e8 (right: 8.973), by
-/// `ancf run verification/cases/deep-arch/scene.toml --set beam.arch.axial_stiffness=7.1e6 --set 'beam.arch.basis={ ancf = { elements = 20 } }'`:
+/// The table lists the error of the tip's position, per length, at EA L²/EI = 6e5, for the beam of
+/// [`RPIM_KERNEL`]'s table; and the limit load of the deep arch at 1e8 (exact: 8.973), computed by
+/// `ancf run verification/cases/deep-arch/scene.toml --set beam.arch.axial_stiffness=7.1e6 --set
+/// 'beam.arch.basis={ ancf = { elements = 20 } }'`:
 ///
 /// | stretch/bend | M = πEI/L, n = 6 | 10 | 20 | dead load PL²/EI = 10, n = 6 | 10 | 20 | deep arch, n = 20 | 40 |
 /// |---|---|---|---|---|---|---|---|---|
@@ -19,15 +20,15 @@ use super::{
 /// | Gauss 4/2 | 8e-4 | 1e-4 | 6e-6 | 5e-3 | 1e-3 | 8e-5 | 9.28 | |
 /// | **Lobatto 3, Gauss 2** | 7e-4 | 1e-4 | 6e-6 | 6e-4 | 9e-5 | 6e-6 | 9.02 | 8.98 |
 pub const ANCF_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 3, bend: 2, lobatto: true };
-/// Points of ANCF elements of a string, or of a beam that keeps its length, unless the scene says
-/// otherwise: neither locks, nothing but its stretch keeps a cell of a string from folding, and a
-/// third point for bending makes the error of an inextensible beam four times smaller.
+/// Default quadrature of ANCF elements of a string, or of a beam that keeps its length. Neither of
+/// them locks, so more points do no harm: only its stretch keeps a cell of a string from folding,
+/// and a third point for bending makes the error of an inextensible beam four times smaller.
 pub const STRING_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 5, bend: 3, lobatto: false };
-/// Radial function of RPIM where nothing else is said.
+/// Default radial function of RPIM.
 ///
-/// Distance of the tip from the exact place, per length, of a cantilever at EA L²/EI = 6e5 with
-/// uniform nodes, q = 1.03, m = 2, two neighbours, four Gauss points a cell where the row does not
-/// say otherwise; `ancf cost SCENE` makes such a table of any scene:
+/// The table lists the error of the tip's position, per length, of a cantilever at EA L²/EI = 6e5
+/// with uniform nodes; unless the row says otherwise, q = 1.03, m = 2, two neighbours, and four
+/// Gauss points per cell. `ancf cost SCENE` makes such a table for any scene:
 ///
 /// | shape, sign | M = πEI/L, n = 6 | 10 | 20 | dead load PL²/EI = 10, n = 6 | 10 | 20 |
 /// |---|---|---|---|---|---|---|
@@ -42,23 +43,23 @@ pub const STRING_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 5, bend: 3, 
 /// | Gauss 3/4 | 2e-7 | 6e-9 | 5e-9 | 6e-6 | 9e-8 | 8e-9 |
 /// | Gauss 5/5, 8/8 | 2e-6 | 4e-8 | 8e-9 | 1e-5 | 4e-7 | 3e-8 |
 ///
-/// Flatter functions win in statics, but not in motion, where the curvature of 14 nodes at shape 20
-/// errs twice as much as at 3.3; and up to about 6 the moment matrices can be solved in
-/// double-double arithmetic, ten times faster than beyond.
+/// Flatter functions are more accurate in statics, but not in motion: with 14 nodes, the error of
+/// the curvature at shape 20 is twice that at 3.3. Besides, up to a shape of about 6 the moment
+/// matrices can be solved in double-double arithmetic, ten times faster than beyond.
 pub const RPIM_KERNEL: Kernel = Kernel::Multiquadric { q: 1.03, shape: 5.0 };
-/// Polynomial terms of RPIM where nothing else is said.
+/// Default number of polynomial terms of RPIM.
 pub const RPIM_POLYNOMIAL_TERMS: usize = 2;
-/// Side condition of RPIM where nothing else is said.
+/// Default side condition of RPIM.
 pub const RPIM_SIDE_CONDITION: SideCondition = SideCondition::Plus;
-/// Support width of RPIM where nothing else is said.
+/// Default number of neighbours on each side of a cell in a support of RPIM.
 pub const RPIM_NEIGHBOURS: usize = 2;
-/// Gauss points of RPIM cells where nothing else is said; compared in the table of
+/// Default number of Gauss points of RPIM cells; alternatives are compared in the table of
 /// [`RPIM_KERNEL`].
 pub const RPIM_GAUSS_POINTS: GaussPoints = GaussPoints { stretch: 4, bend: 4, lobatto: false };
 
-/// Accuracy of a motion where nothing else is said.
+/// Default accuracy of a motion.
 pub const STEP_CONTROL: StepControl = StepControl::Tolerance(1e-6);
-/// Spectral radius of the generalised-α method where nothing else is said.
+/// Default spectral radius of the generalised-α method.
 pub const SPECTRAL_RADIUS: f64 = 0.9;
 
 impl Discretization {
@@ -80,7 +81,7 @@ impl Discretization {
 }
 
 impl GaussPoints {
-    /// Those of a discretisation for a beam of such a section.
+    /// The default quadrature of a discretisation for a beam with such a section.
     pub fn usual(discretization: &Discretization, section: &Section) -> Self {
         let locks = section.axial_stiffness.is_some() && section.bending_stiffness.is_some();
         match discretization {
@@ -92,7 +93,7 @@ impl GaussPoints {
 }
 
 impl Beam {
-    /// A beam along `centreline` with the usual strain and Gauss points.
+    /// A beam along `centreline` with the default strain measure and quadrature.
     pub fn new(name: &str, centreline: Centreline, section: Section, discretization: Discretization) -> Self {
         let gauss_points = GaussPoints::usual(&discretization, &section);
         let strain = StrainMeasure::default();

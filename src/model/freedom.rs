@@ -1,18 +1,19 @@
-//! Which rigid motions supports and joints leave to the beams of a model.
+//! Rigid motions that supports and joints leave to the beams of a model.
 //!
-//! A planar rigid motion of a beam is (t_x, t_y, ω): the displacement of its start, and its turn
-//! per length. A support at r₀ holds t_x − ω (y₀ − ȳ), t_y + ω (x₀ − x̄) and ω, and a joint equals
-//! those of two beams: one row each. What the rows leave is their null space, by Gauss and Jordan's
-//! elimination: a singular value decomposition gives mixtures of motions, which no message could
-//! name, and does not say which row was one too many.
+//! A planar rigid motion of a beam is (t_x, t_y, ω): the displacement of its start (x̄, ȳ), divided
+//! by a length L, and its rotation. A support at (x₀, y₀) fixes t_x − ω (y₀ − ȳ)/L,
+//! t_y + ω (x₀ − x̄)/L or ω, and a joint makes these equal for two beams; each such condition is
+//! one row. The motions left are the null space of the rows. It is found by Gauss–Jordan
+//! elimination, because a singular value decomposition would return mixtures of motions, which a
+//! message could not name.
 
 use super::{FixedRotation, Joint, Model, Place};
 use crate::assembly::Resistance;
 
-/// Residual of a row against its size at which it is a combination of others.
+/// A row is a combination of others if its residual, relative to its size, is at most this.
 const DEPENDENT: f64 = 1e-9;
 
-/// Rows that motions must satisfy, reduced: each is 1 in a column in which all others vanish.
+/// Reduced rows that motions must satisfy: each is 1 in a column in which all others are 0.
 #[derive(Clone, Debug)]
 pub struct Freedom {
     length: f64,
@@ -20,12 +21,13 @@ pub struct Freedom {
     rows: Vec<(usize, Vec<f64>)>,
 }
 
-/// Of every beam (t_x, t_y, ω) per length.
+/// A rigid motion of the model: per beam (t_x, t_y, ω), with the displacements in units of the
+/// length.
 pub type Motion = Vec<[f64; 3]>;
 
 impl Freedom {
-    /// What supports and joints of `model` leave. `position` is where a place is in the stress-free
-    /// shape, `length` the scale of lengths \[m\].
+    /// The motions that supports and joints of `model` leave. `position` gives the position of a
+    /// place in the stress-free shape \[m\], and `length` is the scale of lengths \[m\].
     pub fn new(model: &Model, length: f64, position: impl Fn(Place) -> [f64; 2]) -> Self {
         let origins = (0..model.beams.len()).map(|beam| position(Place { beam, s: 0.0 })).collect();
         let mut freedom = Self { length, origins, rows: Vec::new() };
@@ -58,8 +60,8 @@ impl Freedom {
         freedom
     }
 
-    /// Holds what the model's parts may resist by elasticity. Contacts count where springs may
-    /// press beams to them.
+    /// Removes the motions that the model's parts may resist by elasticity. Contacts count only
+    /// where there are springs, which may press beams against them.
     pub fn resist(&mut self, model: &Model, position: impl Fn(Place) -> [f64; 2]) {
         let all: Vec<_> = model.parts.iter().flat_map(|part| part.resists()).collect();
         let springs = all.iter().any(|resistance| !matches!(resistance, Resistance::Contact(_)));
@@ -81,12 +83,12 @@ impl Freedom {
         }
     }
 
-    /// Holds the direction of a beam.
+    /// Removes the rotation of a beam.
     pub fn fix_direction(&mut self, beam: usize) {
         self.fix_turns(&[(beam, 1.0)]);
     }
 
-    /// Σ n·u = 0 over points.
+    /// Adds the row Σ n·u = 0, with the displacements u of points of beams.
     fn fix_displacement(&mut self, terms: &[(usize, [f64; 2], [f64; 2])]) {
         let mut row = vec![0.0; 3 * self.origins.len()];
         for &(beam, [x, y], n) in terms {
@@ -99,7 +101,7 @@ impl Freedom {
         self.add(row);
     }
 
-    /// Σ ω = 0.
+    /// Adds the row Σ ±ω = 0, with the rotations ω of beams.
     fn fix_turns(&mut self, terms: &[(usize, f64)]) {
         let mut row = vec![0.0; 3 * self.origins.len()];
         terms.iter().for_each(|(beam, sign)| row[3 * beam + 2] += sign);
@@ -125,7 +127,7 @@ impl Freedom {
         self.rows.push((column, row));
     }
 
-    /// A basis of the motions that are left.
+    /// A basis of the motions left.
     pub fn motions(&self) -> Vec<Motion> {
         let columns = 3 * self.origins.len();
         let mut pivots = vec![false; columns];
@@ -140,7 +142,7 @@ impl Freedom {
         .collect()
     }
 
-    /// Where a beam starts, from which its displacement is taken.
+    /// The start of a beam, to which its displacement refers \[m\].
     pub fn origin(&self, beam: usize) -> [f64; 2] {
         self.origins[beam]
     }

@@ -1,8 +1,8 @@
-//! How beams are joined to each other, and to lines of the ground.
+//! Joints between beams, and between beams and lines of the ground.
 
 use super::Place;
 
-/// A joint.
+/// A joint between two points of beams, or between a point and the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Joint {
@@ -21,8 +21,8 @@ pub enum Joint {
         /// A point of another beam, or of the same.
         second: Place,
     },
-    /// The point moves along a straight line of the ground, through where it is in the stress-free
-    /// shape.
+    /// The point moves along a straight line that is fixed to the ground and passes through the
+    /// position of the point in the stress-free shape.
     Slider {
         /// A point of a beam.
         at: Place,
@@ -32,7 +32,7 @@ pub enum Joint {
 }
 
 impl Joint {
-    /// Where it is.
+    /// The points that it joins.
     pub fn places(&self) -> impl Iterator<Item = Place> + use<> {
         let (first, second) = match *self {
             Self::Hinge { first, second } | Self::Weld { first, second } => (first, Some(second)),

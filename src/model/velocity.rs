@@ -1,8 +1,9 @@
-//! How beams move at the start of a motion.
+//! Velocities of beams at the start of a motion.
 
 use super::Tabulated;
 
-/// The velocity of a beam at the start: ṙ = v + ω × (r − c) + w(s). Several of one beam add up.
+/// The velocity of a beam at the start: ṙ = v + ω × (r − c) + w(s). Several entries of one beam add
+/// up.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InitialVelocity {
     /// Index of the beam.
@@ -13,7 +14,7 @@ pub struct InitialVelocity {
     pub rotation: f64,
     /// c \[m\].
     pub center: [f64; 2],
-    /// w along x and y.
+    /// w(s) along x and y.
     pub along: [Profile; 2],
 }
 
@@ -26,7 +27,7 @@ pub enum Profile {
     None,
     /// Σ c_k s^k, s in metres, c_k in m/s/mᵏ.
     Polynomial(Vec<f64>),
-    /// Through given points.
+    /// Interpolates given points.
     Table(Tabulated),
 }
 
@@ -48,8 +49,8 @@ impl Profile {
 }
 
 impl InitialVelocity {
-    /// Rates of \[x, y, x', y'\] at the arc length `s` \[m\], where the beam is at `position` \[m\]
-    /// with the gradient `gradient`.
+    /// Rates of \[x, y, x', y'\] at the arc length `s` \[m\], where the beam has the position \[m\]
+    /// and the gradient given by the other arguments.
     pub fn at(&self, s: f64, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> [f64; 4] {
         let ([vx, vy], [cx, cy], turn) = (self.translation, self.center, self.rotation);
         let [[wx, dwx], [wy, dwy]] = [self.along[0].at(s), self.along[1].at(s)];

@@ -1,19 +1,19 @@
-//! Gauss–Legendre rules on (0, 1): places in ascending order, and weights that sum to one.
+//! Gauss–Legendre rules on (0, 1): abscissae in ascending order, and weights that sum to one.
 //!
-//! Rounded from sixty digits. [`crate::basis::Quadrature`] computes rules with any number of
-//! points.
+//! The numbers are rounded from sixty digits. [`crate::basis::Quadrature`] computes rules with any
+//! number of points.
 
-/// Exact up to the degree 3.
+/// Two points, exact up to degree 3.
 pub const GAUSS_2: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
 
-/// Exact up to the degree 5.
+/// Three points, exact up to degree 5.
 pub const GAUSS_3: [(f64, f64); 3] = [
     (0.112_701_665_379_258_31, 0.277_777_777_777_777_8),
     (0.5, 0.444_444_444_444_444_4),
     (0.887_298_334_620_741_7, 0.277_777_777_777_777_8),
 ];
 
-/// Exact up to the degree 11.
+/// Six points, exact up to degree 11.
 pub const GAUSS_6: [(f64, f64); 6] = [
     (0.033_765_242_898_423_99, 0.085_662_246_189_585_18),
     (0.169_395_306_766_867_73, 0.180_380_786_524_069_3),
@@ -23,7 +23,7 @@ pub const GAUSS_6: [(f64, f64); 6] = [
     (0.966_234_757_101_576, 0.085_662_246_189_585_18),
 ];
 
-/// Exact up to the degree 19.
+/// Ten points, exact up to degree 19.
 pub const GAUSS_10: [(f64, f64); 10] = [
     (0.013_046_735_741_414_14, 0.033_335_672_154_344_07),
     (0.067_468_316_655_507_75, 0.074_725_674_575_290_3),
@@ -41,7 +41,7 @@ pub const GAUSS_10: [(f64, f64); 10] = [
 mod tests {
     use super::*;
 
-    /// ∫₀¹ x^k dx = 1/(k + 1) as far as a rule is exact, and no further.
+    /// A rule of n points integrates x^k exactly, to 1/(k + 1), up to k = 2n − 1 and no further.
     fn is_exact(rule: &[(f64, f64)]) {
         let error = |degree: usize| {
             let sum: f64 = rule.iter().map(|(x, weight)| weight * x.powi(degree as i32)).sum();
@@ -49,7 +49,7 @@ mod tests {
         };
         let degree = 2 * rule.len() - 1;
         assert!((0..=degree).all(|k| error(k) < 4e-16), "{} points", rule.len());
-        // (n!)⁴/((2n + 1) ((2n)!)²) for x^(2n) with n points.
+        // The error of n points for x^(2n) is (n!)⁴/((2n + 1) ((2n)!)²).
         let missing =
             (1..=rule.len()).fold(1.0, |e, n| e * (n * n) as f64 / (2 * n * (2 * n - 1)) as f64).powi(2)
                 / (degree + 2) as f64;

@@ -1,6 +1,6 @@
-//! Cubic splines: through values at knots, twice continuously differentiable.
+//! Cubic splines: piecewise cubics through given values, twice continuously differentiable.
 
-/// What holds at an end of a spline.
+/// The condition at an end of a spline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The first derivative is zero.
@@ -11,20 +11,20 @@ pub enum End {
     Smooth,
 }
 
-/// First derivatives at the knots, from the spacings `h` of these and the divided differences
-/// `slope` of the values between them, for D components at once.
+/// First derivatives at the knots of a spline, for D components at once, from the spacings `h` of
+/// the knots and the divided differences `slope` of the values between them.
 ///
-/// Every pivot of the elimination is positive, whatever the spacings.
+/// Every pivot of the elimination is positive, whatever the spacings are.
 pub fn rates<const D: usize>(h: &[f64], slope: &[[f64; D]], ends: [End; 2]) -> Vec<[f64; D]> {
     let n = h.len() + 1;
     if n == 3 && ends == [End::Smooth; 2] {
-        // The parabola through three points.
+        // The parabola through the three points.
         let total = h[0] + h[1];
         let middle = combine(h[1] / total, slope[0], h[0] / total, slope[1]);
         return vec![combine(2.0, slope[0], -1.0, middle), middle, combine(2.0, slope[1], -1.0, middle)];
     }
-    // Rows lower d[i − 1] + diagonal d[i] + upper d[i + 1] = right. The first and the last are
-    // those of an end: diagonal, that of the neighbour, and the right side.
+    // Rows: lower d[i − 1] + diagonal d[i] + upper d[i + 1] = right. For an end, `row` returns the
+    // diagonal entry, the entry of the neighbour, and the right side.
     let row = |end: End, [near, far]: [usize; 2]| match end {
         End::Flat => (1.0, 0.0, [0.0; D]),
         End::Smooth if n > 2 => {
@@ -65,7 +65,7 @@ fn combine<const D: usize>(a: f64, p: [f64; D], b: f64, q: [f64; D]) -> [f64; D]
 mod tests {
     use super::*;
 
-    /// Knots at 0, 1, 3, 4, 6 and values of a polynomial there.
+    /// The first derivatives of the spline through the values of a function at `knots`.
     fn of(value: impl Fn(f64) -> f64, knots: &[f64], ends: [End; 2]) -> Vec<f64> {
         let h: Vec<f64> = knots.windows(2).map(|t| t[1] - t[0]).collect();
         let slope: Vec<[f64; 1]> =
@@ -80,16 +80,16 @@ mod tests {
         }
     }
 
-    /// A cubic that has what an end asks for is the spline through its own values.
+    /// A cubic that satisfies the end conditions is the spline through its own values.
     #[test]
     fn cubics_are_their_own_splines() {
         let knots = [0.0, 1.0, 3.0, 4.0, 6.0];
         let any = |t: f64| 2.0 - t + 0.5 * t * t - 0.25 * t * t * t;
         near(&of(any, &knots, [End::Smooth; 2]), |t| -1.0 + t - 0.75 * t * t, &knots);
-        // Flat at 0 and at 6.
+        // The derivative is zero at 0 and at 6.
         let flat = |t: f64| t * t * (9.0 - t);
         near(&of(flat, &knots, [End::Flat; 2]), |t| 18.0 * t - 3.0 * t * t, &knots);
-        // Straight at 0, flat at 6.
+        // The second derivative is zero at 0, the first at 6.
         let mixed = |t: f64| 108.0 * t - t * t * t;
         near(&of(mixed, &knots, [End::Straight, End::Flat]), |t| 108.0 - 3.0 * t * t, &knots);
         let back = |t: f64| mixed(6.0 - t);

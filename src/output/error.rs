@@ -55,7 +55,7 @@ pub enum OutputError {
     Inconsistent {
         /// Which list has the wrong length.
         quantity: String,
-        /// Its length by the list that it belongs to.
+        /// The length that it should have, by the list to which it belongs.
         expected: usize,
         /// Its length.
         found: usize,

@@ -44,7 +44,7 @@ impl Sketch {
 /// Size of a plot that stands beside another one \[px\].
 const SMALL: (u32, u32) = (540, 300);
 
-/// All plots of what was found, the most telling first.
+/// All plots of the results, the most telling first.
 pub(super) fn figures(results: &Results) -> Result<Vec<Figure>, OutputError> {
     let t = results.states();
     let mut sketches = vec![modes(results), shape(t)];
@@ -59,7 +59,7 @@ pub(super) fn figures(results: &Results) -> Result<Vec<Figure>, OutputError> {
     sketches.into_iter().flatten().map(Sketch::draw).collect()
 }
 
-/// How records are ordered, for an axis.
+/// The axis of the parameter by which records are ordered.
 fn parameter_axis(t: &Trajectory) -> Axis {
     match t.run.analysis {
         AnalysisKind::Static | AnalysisKind::Modal => Axis::linear("load factor"),
@@ -89,7 +89,7 @@ fn length(t: &Trajectory) -> f64 {
     lengths.filter(|l| l.is_finite()).fold(0.0, f64::max)
 }
 
-/// What is zero to the reader, for positions \[m\].
+/// Positions below this are drawn as zero \[m\].
 fn negligible(t: &Trajectory) -> f64 {
     1e-9 * length(t)
 }
@@ -107,7 +107,7 @@ fn selection(length: usize, count: usize) -> impl Iterator<Item = usize> {
     (0..length.saturating_sub(1)).step_by(stride)
 }
 
-/// The last state before the undeformed beams, with states on the way.
+/// The last state in front of the undeformed beams, with states on the way.
 fn shape(t: &Trajectory) -> Option<Sketch> {
     if t.last.is_empty() || t.parameter.is_empty() {
         return None;
@@ -147,7 +147,7 @@ fn shape(t: &Trajectory) -> Option<Sketch> {
     Some(Sketch::one("shape", format!("Shape {}, in true proportion.", moment(t)), chart))
 }
 
-/// Skips the colour of the states on the way.
+/// The colour of a beam; it is never that of the states on the way.
 fn colour_of_beam(index: usize) -> Colour {
     [PALETTE[0], PALETTE[1], PALETTE[2], PALETTE[3], PALETTE[4], PALETTE[6]][index % 6]
 }
@@ -183,7 +183,7 @@ fn over_parameter(t: &Trajectory, values: impl Iterator<Item = f64>) -> Vec<[f64
     t.parameter.iter().zip(values).map(|(&p, v)| [p, v]).collect()
 }
 
-/// Up to this many records each has a dot: between few of them the line is no more than a line.
+/// Up to this many records each has a dot: the line between few records is only a guide.
 const DOTS: usize = 60;
 
 /// The chart with dots at the records, where these are few.
@@ -265,7 +265,7 @@ fn energy(t: &Trajectory) -> Option<Sketch> {
     let axis = Axis::linear("energy [J]").negligible(1e-12 * largest);
     let mut chart = Chart::new("", parameter_axis(t), axis).sized(SMALL.0, SMALL.1);
     for (name, points, colour) in parts {
-        // What is not simulated is zero throughout and would only hide the others.
+        // An energy that is not simulated is zero throughout and would only hide the others.
         if size(&points) > 0.0 {
             chart = with_dots(chart, &points, colour);
             chart = chart.with(Series::line(name, points, colour));
@@ -352,7 +352,7 @@ fn iterations(t: &Trajectory) -> Sketch {
 fn last_iterations(t: &Trajectory) -> Sketch {
     let pick = |values: fn(&crate::results::StepRecord) -> Option<&f64>| -> Vec<[f64; 2]> {
         let kept: Vec<_> = t.history.iter().filter(|s| s.accepted).collect();
-        // More marks than this lie on each other.
+        // More marks than this would overlap.
         let stride = kept.len().div_ceil(1200).max(1);
         kept.iter().step_by(stride).filter_map(|s| Some([s.parameter, *values(s)?])).collect()
     };

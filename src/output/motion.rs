@@ -11,7 +11,7 @@ use crate::results::{AnalysisKind, Results, Shape};
 const CELLS: f64 = 8000.0;
 /// Coordinates in all; each takes about five characters.
 const COORDINATES: usize = 200_000;
-/// Part of the beams' extent by which the picture grows for obstacles.
+/// Part of the beams' extent by which the picture may grow to show obstacles.
 const GROUND: f64 = 0.25;
 /// Points of a beam in a mode shape.
 const MODE_POINTS: usize = 101;
@@ -21,7 +21,7 @@ type Lines = Vec<Vec<i32>>;
 
 #[derive(Serialize)]
 pub(super) struct Motion {
-    /// Frames follow each other, or are vibrations about rest.
+    /// Whether the frames are vibrations about rest; otherwise they follow each other.
     vibration: bool,
     /// Name of the parameter.
     name: &'static str,
@@ -91,7 +91,7 @@ impl Motion {
         }
         let extent = |low: [f64; 2], high: [f64; 2]| [high[0] - low[0], high[1] - low[1]];
         let longest = |[width, height]: [f64; 2]| width.max(height);
-        // Of obstacles what is near the beams: a plane has no end.
+        // Only obstacles near the beams enlarge the picture: a plane has no end.
         let margin = GROUND * longest(extent(low, high));
         let (nearest, farthest) = (low.map(|c| c - margin), high.map(|c| c + margin));
         let near = |p: &&[f64; 2]| (0..2).all(|axis| (nearest[axis]..=farthest[axis]).contains(&p[axis]));

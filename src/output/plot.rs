@@ -37,7 +37,7 @@ pub const PALETTE: [Colour; 8] = [
     Colour(150, 110, 60),
 ];
 
-/// For what stands back: references, undeformed shapes.
+/// For elements in the background: references, undeformed shapes.
 pub const GREY: Colour = Colour(130, 130, 130);
 
 /// The colour of the series with this number.
@@ -104,12 +104,12 @@ impl Series {
         Self::new(label, points, Mark::Points, colour)
     }
 
-    /// The same with another width of lines or radius of marks \[px\].
+    /// The series with another width of lines or radius of marks \[px\].
     pub fn size(self, size: f64) -> Self {
         Self { size, ..self }
     }
 
-    /// The same more transparent.
+    /// The series with another opacity.
     pub fn opacity(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
@@ -118,13 +118,13 @@ impl Series {
 /// A plot: axes, series, and how large.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// Above the plot; empty: none.
+    /// The text above the plot; none if empty.
     pub title: String,
     /// The horizontal axis.
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
-    /// What is drawn, the last on top.
+    /// The series that are drawn, the last on top.
     pub series: Vec<Series>,
     /// Faint vertical lines at these x.
     pub separators: Vec<f64>,

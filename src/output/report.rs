@@ -121,7 +121,7 @@ fn energy(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
         ("lost", e.lost),
         ("total", e.total),
     ];
-    // What is not simulated has no column.
+    // Energies that are not simulated have no column.
     let there = |(name, value): &(&str, f64)| {
         *value != 0.0 || !matches!(*name, "springs and contacts" | "put in" | "lost")
     };

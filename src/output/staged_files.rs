@@ -18,8 +18,8 @@ pub(crate) struct StagedFiles {
     waiting: Vec<(TempPath, PathBuf)>,
     /// Names relative to `directory`, of everything staged so far.
     names: Vec<String>,
-    /// A file that cannot be written fails before the first one is renamed, so that what fails
-    /// leaves no mixture.
+    /// Whether files have received their final names. All files are written before the first one is
+    /// renamed, so that a failure leaves no mixture of old and new ones.
     committed: bool,
 }
 
@@ -137,7 +137,7 @@ mod tests {
         );
         drop(stage);
         assert_eq!(names(&before), Vec::<String>::new());
-        // What others have put there in the meantime stays.
+        // Files that others have put there in the meantime stay.
         let stage = StagedFiles::new(&before.join("new")).expect("made");
         fs::write(before.join("new/notes.txt"), "").expect("written");
         drop(stage);

@@ -4,7 +4,7 @@ use serde::{Serialize, Serializer};
 
 use crate::results::{AnalysisKind, Energy, Event, ProbeSample, Results, Seconds, Statistics};
 
-/// What `summary.json` holds; keys and their order are the fields and theirs.
+/// The contents of `summary.json`; keys and their order are those of the fields.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// The scene's title.
@@ -34,9 +34,9 @@ pub struct Summary {
     /// Critical load factors, ascending; buckling only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load_factors: Option<Vec<f64>>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
-    /// Counts.
+    /// Counts of steps, iterations and factorisations.
     pub statistics: Statistics,
     /// Wall time \[s\].
     pub seconds: Seconds,
@@ -61,14 +61,14 @@ pub struct EnergySummary {
     /// Taken by damping since the start; left out where there is none.
     #[serde(skip_serializing_if = "is_zero")]
     pub lost: f64,
-    /// Sum of the energies, less the work, with what was lost.
+    /// Sum of the energies, less the work, plus the energy lost.
     pub total: f64,
     /// max |total − initial total| / max kinetic over all records; `null` where nothing moves.
     pub drift: Option<f64>,
 }
 
 impl Summary {
-    /// Reads the summary off what was found.
+    /// The summary of the results.
     pub fn of(results: &Results) -> Self {
         let (trajectory, run) = (results.states(), results.run());
         let last_sample =

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 
 use crate::results::{AnalysisKind, Frame, ModeShape, ProbeSample, Trajectory};
 
-/// Name of the first column: what the records are ordered by.
+/// Name of the first column, by which the records are ordered.
 pub(super) fn parameter_name(analysis: AnalysisKind) -> &'static str {
     match analysis {
         // Vibrations have one record, the equilibrium about which they are small.
@@ -21,8 +21,8 @@ pub(crate) fn exact(value: f64) -> String {
     format!("{value:.16e}")
 }
 
-/// A text as a cell of a table: what a spreadsheet would take for a formula has an apostrophe
-/// before it, which makes it text there. Numbers are as they are.
+/// A text as a cell of a table. A text that a spreadsheet would take for a formula has an
+/// apostrophe before it, which makes it text there. Numbers are as they are.
 pub(crate) fn cell(text: &str) -> Cow<'_, str> {
     let signed = text.starts_with(['+', '-']) && text.parse::<f64>().is_err();
     if signed || text.starts_with(['=', '@', '\t', '\r']) { format!("'{text}").into() } else { text.into() }
@@ -134,7 +134,8 @@ pub(super) fn effects(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     table.finish()
 }
 
-/// One row for each arc length, the first of the columns; the same words before all.
+/// One row for each arc length, which is the first of the columns; every row begins with the same
+/// words.
 fn rows(table: &mut CsvTable<'_>, words: &[&str], columns: &[&Vec<f64>]) -> io::Result<()> {
     let count = columns.first().map_or(0, |s| s.len());
     (0..count).try_for_each(|i| {

@@ -45,7 +45,7 @@ impl CriticalLoads {
     }
 }
 
-/// One way to buckle.
+/// One critical load with its buckling shape.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct BucklingMode {
     /// Factor of all loads at which the structure buckles.

@@ -11,17 +11,17 @@ pub struct Frame {
     pub beams: Vec<Vec<[f64; 2]>>,
 }
 
-/// One beam sampled at 201 arc lengths or more. Of the last state a place where a force or a couple
-/// acts in a point is there twice: before and behind it.
+/// One beam sampled at 201 arc lengths or more. In the last state a point where a force or a couple
+/// acts is there twice: before and behind it.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Shape {
     /// Name of the beam.
     pub beam: String,
     /// Arc lengths \[m\].
     pub s: Vec<f64>,
-    /// Positions \[m\].
+    /// Positions along x \[m\].
     pub x: Vec<f64>,
-    /// Positions \[m\].
+    /// Positions along y \[m\].
     pub y: Vec<f64>,
     /// Direction of r' \[rad\], continuous along s.
     pub angle: Vec<f64>,
@@ -29,8 +29,8 @@ pub struct Shape {
     pub strain: Vec<f64>,
     /// κ \[1/m\].
     pub curvature: Vec<f64>,
-    /// N \[N\], positive in tension; of the last state alone, as are Q and M. All three balance
-    /// what acts on the beam before the cut.
+    /// N \[N\], positive in tension; given for the last state alone, like Q and M. All three
+    /// balance the forces that act on the beam before the cut.
     pub axial_force: Vec<f64>,
     /// Q \[N\], along the normal J r' on the side of the cut that looks to the beam's end.
     pub shear_force: Vec<f64>,

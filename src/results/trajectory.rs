@@ -8,7 +8,7 @@ use serde::Serialize;
 /// The path of a static analysis, or a motion.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Trajectory {
-    /// What is to be said of the run as a whole.
+    /// Information on the run as a whole.
     pub run: Run,
     /// Load factors (statics; also the one equilibrium about which vibrations are small) or times
     /// \[s\] (dynamics) of the records, in order.
@@ -21,8 +21,8 @@ pub struct Trajectory {
     pub reactions: Vec<ReactionSeries>,
     /// Energies and forces of effects, where they were asked for.
     pub effects: Vec<EffectSeries>,
-    /// Centrelines at the records, or evenly at as many of them as [`crate::Options::frames`] lets
-    /// be kept.
+    /// Centrelines at the records, or, where these are more than [`crate::Options::frames`], at
+    /// about so many of them, evenly spread.
     pub frames: Vec<Frame>,
     /// The last state of each beam, with section forces.
     pub last: Vec<Shape>,
@@ -30,12 +30,13 @@ pub struct Trajectory {
     pub history: Vec<StepRecord>,
     /// Events of a motion, in order.
     pub events: Vec<Event>,
-    /// From which a motion can go on: the end of a motion, or the equilibrium under the full loads.
+    /// A state from which a motion can go on: the end of a motion, or the equilibrium under the
+    /// full loads.
     #[serde(skip)]
     pub saved: Option<SavedState>,
 }
 
-/// What one probe saw.
+/// The samples of one probe.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct ProbeSeries {
     /// The probe's name.
@@ -47,9 +48,9 @@ pub struct ProbeSeries {
 /// The state of one point of a beam.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ProbeSample {
-    /// Position \[m\].
+    /// Position along x \[m\].
     pub x: f64,
-    /// Position \[m\].
+    /// Position along y \[m\].
     pub y: f64,
     /// Direction of r' \[rad\], continuous along a run (not folded into ±π).
     pub angle: f64,
@@ -57,10 +58,10 @@ pub struct ProbeSample {
     pub curvature: f64,
     /// Axial strain ε by the beam's measure, zero in the stress-free state.
     pub strain: f64,
-    /// Velocity \[m/s\]; dynamics only.
+    /// Velocity along x \[m/s\]; dynamics only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vx: Option<f64>,
-    /// Velocity \[m/s\]; dynamics only.
+    /// Velocity along y \[m/s\]; dynamics only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vy: Option<f64>,
 }
@@ -108,7 +109,7 @@ pub enum Event {
         contact: String,
         /// Whether it touches from then on.
         touches: bool,
-        /// What it did while it touched; where it ends.
+        /// Its impulse while it touched; only where it ends.
         #[serde(flatten)]
         impulse: Option<ContactImpulse>,
     },

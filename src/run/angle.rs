@@ -4,8 +4,8 @@ use crate::assembly::{DiscretizedBeam, Node, nodes};
 use crate::system::unfold;
 
 /// By how much the node of a beam nearest to `s` has turned between two states. One load step may
-/// wind a beam up by whole turns; but some node has turned by less than half of one, such as one
-/// that is clamped, and the others follow from cell to cell.
+/// wind a beam up by whole turns. But some node, such as a clamped one, has turned by less than
+/// half a turn, and the turns of the others follow from cell to cell.
 pub(super) fn turn(part: &DiscretizedBeam, s: f64, before: &[f64], now: &[f64]) -> f64 {
     let first = 4 * part.first_node;
     let angles = |q: &'_ [f64]| {

@@ -30,14 +30,14 @@ pub enum RunError {
         cause: String,
         /// The beam on which the iteration went worst.
         beam: String,
-        /// Where on it \[m\].
+        /// Arc length on it \[m\].
         s: f64,
         /// What to try.
         advice: String,
-        /// What was computed until then.
+        /// The results until then.
         partial: Box<Trajectory>,
     },
-    /// A path has as many points as it may have, and has not reached its target.
+    /// A path has reached its largest number of points before its target.
     #[error(
         "the path ends after `max_points = {points}` at load factor {}, before {target}",
         plain(*.load, 6)
@@ -52,7 +52,7 @@ pub enum RunError {
         load: f64,
         /// Which load factor or place of a probe was to be reached.
         target: String,
-        /// What was computed until then.
+        /// The results until then.
         partial: Box<Trajectory>,
     },
     /// A setting refers to a probe that does not exist.
@@ -67,7 +67,7 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Eigen(#[from] crate::solve::eigen::EigenError),
-    /// An integrator cannot do with inextensible beams.
+    /// An integrator cannot handle inextensible beams.
     #[error(transparent)]
     #[diagnostic(help("{}", Undamped::HELP))]
     Undamped(#[from] Undamped),
@@ -81,17 +81,17 @@ pub enum RunError {
     NoStep {
         /// Time of the last state \[s\].
         time: f64,
-        /// The step \[s\].
+        /// Length of the step \[s\].
         step: f64,
         /// What went wrong.
         cause: String,
-        /// The beam on which the iteration went worst.
+        /// The beam on which the last iterate changed most.
         beam: String,
-        /// Where on it \[m\].
+        /// Arc length on it \[m\].
         s: f64,
         /// What to try.
         advice: String,
-        /// What was computed until then.
+        /// The results until then.
         partial: Box<Trajectory>,
     },
     /// The motion cannot start as the scene says.
@@ -102,22 +102,22 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Restart(#[from] RestartError),
-    /// There is not so much memory.
+    /// The memory that a model needs is not free.
     #[error("this needs about {:.3} GiB of memory, and {:.3} GiB are free", gib(*.needed), gib(*.free))]
     #[diagnostic(help("ask for fewer nodes, records or modes, or end other programs"))]
     Memory {
-        /// Bytes.
+        /// Memory needed \[bytes\].
         needed: f64,
-        /// Bytes.
+        /// Free memory \[bytes\].
         free: f64,
     },
     /// The scene is legal, but this version cannot compute it.
     #[error("{what} is not available in this version")]
     #[diagnostic(help("{instead}"))]
     Unavailable {
-        /// What the scene asks for.
+        /// The feature that the scene asks for.
         what: &'static str,
-        /// What to use.
+        /// What to use instead.
         instead: &'static str,
     },
 }
@@ -140,14 +140,13 @@ impl RunError {
         }
     }
 
-    /// What was computed before the failure, if it is more than the state at which everything
-    /// starts.
+    /// The results before the failure, if they are more than the state at the start.
     pub fn take_partial(&mut self) -> Option<Results> {
         let partial = self.partial().filter(|partial| partial.parameter.len() > 1);
         partial.map(std::mem::take).map(Results::Trajectory)
     }
 
-    /// What was computed before the failure.
+    /// The results before the failure.
     pub fn partial(&mut self) -> Option<&mut Trajectory> {
         match self {
             Self::NoEquilibrium { partial, .. }
@@ -162,8 +161,8 @@ fn gib(bytes: f64) -> f64 {
     bytes / 1024f64.powi(3)
 }
 
-/// A number with so many decimals, or in powers of ten where these would show too few digits of it
-/// or too many.
+/// A number with this many decimals, or with a power of ten where they would show too few digits of
+/// it or too many.
 fn plain(value: f64, decimals: usize) -> String {
     if value == 0.0 || (1e-2..1e6).contains(&value.abs()) {
         format!("{value:.decimals$}")

@@ -1,18 +1,19 @@
 //! Membrane locking, measured on the states of a run.
 //!
-//! A cell whose shape functions cannot follow a bent axis stretches where it only should bend, up
-//! and down within the cell. What a load stretches is smooth there, so that the part of ε that is
-//! not linear in a cell tells the two apart:
+//! A cell whose shape functions cannot follow a bent axis is stretched where it should only bend,
+//! by a strain that oscillates within the cell. The strain due to loads is smooth, so that the part
+//! of ε that is not linear in a cell tells the two apart:
 //!
 //! ```text
 //! ½ ∫ EA (ε − ε_linear)² ds / ½ ∫ EI (κ − κ₀)² ds
 //! ```
 //!
-//! is the energy that bending costs beyond its own: by so much a beam is too stiff.
+//! is the energy that bending takes beyond its own, relative to its own: by this part a beam is too
+//! stiff.
 //!
-//! A string may lock in another way: where its cells are too few for the shape that it wants, it is
-//! held by tensions and thrusts of neighbouring points that cancel, far larger than the force that
-//! the balance of one side of a cut gives. Their energy tells it.
+//! A string may lock in another way. With too few cells for its shape, it is held by tensions and
+//! thrusts of neighbouring points that cancel each other and are far larger than the axial force
+//! that follows from the balance of one side of a cut. Their energy reveals it.
 
 use crate::assembly::BuildError;
 use crate::basis::BasisTable;
@@ -22,19 +23,19 @@ use crate::results::Shape;
 use crate::system::{Fields, System};
 use nalgebra::Vector2;
 
-/// Part of the bending energy beyond which it is said.
+/// Part of the bending energy beyond which locking is reported.
 const TOLERATED: f64 = 0.005;
-/// States that bend less, per energy of the one that bends most, are not looked at.
+/// States whose bending energy is a smaller part of the largest one are not considered.
 const STRAIGHT: f64 = 0.1;
-/// Energy of a string's stretch, per energy of the forces that its cuts balance, beyond which most
-/// of it holds itself.
+/// Ratio of a string's stretch energy to that of the forces that balance its cuts, beyond which
+/// most of the stretch is in equilibrium with itself.
 const JAMMED: f64 = 10.0;
-/// Strain whose energy is never that of a string that holds itself: round-off makes it.
+/// Strain up to which the stretch of a string counts as round-off.
 const LEAST_STRAIN: f64 = 1e-9;
-/// Part of a beam's whole elastic energy below which nothing depends on it.
+/// Part of a beam's whole elastic energy up to which locking does not matter.
 const IRRELEVANT: f64 = 1e-3;
 
-/// The beams of a model that may lock, and what was seen of them.
+/// The beams of a model that may lock, with their energies in the states so far.
 #[derive(Clone)]
 pub(super) struct Locking {
     beams: Vec<LockingBeam>,
@@ -58,14 +59,13 @@ struct LockingBeam {
 }
 
 impl Locking {
-    /// Watches strings, and all beams but those that resist stretch at no more points than a cell
-    /// can follow.
+    /// Watches strings, and all beams that resist stretch at more points than a cell can follow.
     pub fn new(model: &Model, system: &System) -> Result<Self, BuildError> {
         let mut beams = Vec::new();
         for (beam, part) in model.beams.iter().zip(system.beams()) {
             let points = beam.gauss_points;
             let Some(axial) = beam.section.axial_stiffness else { continue };
-            // Resisted at no more points than a cell can follow.
+            // Stretch is resisted at no more points than a cell can follow.
             let follows = points.stretch <= if points.lobatto { 3 } else { 2 };
             if beam.section.bending_stiffness.is_some() && follows {
                 continue;
@@ -99,8 +99,9 @@ impl Locking {
         }
     }
 
-    /// Of strings that hold themselves in the last state, whose section forces are in `shapes`,
-    /// with an energy that counts against the work `scale` of the loads \[J\].
+    /// Messages on strings whose stretch is in equilibrium with itself in the last state, where its
+    /// energy matters against the work `scale` of the loads \[J\]. `shapes` holds the section
+    /// forces.
     pub fn jammed(&self, shapes: &[Shape], scale: f64) -> impl Iterator<Item = String> {
         let strings = self.beams.iter().filter(|beam| beam.stiffness[1] == 0.0);
         strings.filter_map(move |beam| {
@@ -121,14 +122,14 @@ impl Locking {
         })
     }
 
-    /// What there is to say.
+    /// Messages on beams that lock.
     pub fn warnings(&self) -> impl Iterator<Item = String> + '_ {
         self.beams.iter().filter_map(LockingBeam::warning)
     }
 }
 
 impl LockingBeam {
-    /// A field at all points, of the rows of each.
+    /// A field at all points of a table, computed from the derivatives at each.
     fn at_points(&self, table: &BasisTable, q: &[f64], of: impl Fn(&[[f64; 2]]) -> f64) -> Vec<f64> {
         let mut values = Vec::with_capacity(table.points());
         for cell in &table.cells {

@@ -1,5 +1,5 @@
-//! Whether there is memory for what a model needs, before it is asked for: an allocation that fails
-//! ends a program without a word.
+//! Checks beforehand whether there is memory for what a model needs: an allocation that fails ends
+//! a program without a message.
 
 use super::RunError;
 use crate::model::{About, Analysis, Beam, Buckling, Discretization, Modal, Model};
@@ -9,7 +9,7 @@ const NUMBER: f64 = 8.0;
 /// Vectors of all coordinates that solvers keep beside states and matrices, at most.
 const VECTORS: f64 = 40.0;
 
-/// Refuses what the machine cannot give.
+/// Refuses a model that needs more memory than is free.
 ///
 /// # Errors
 /// [`RunError::Memory`] where less is free than is needed.
@@ -45,7 +45,7 @@ fn nodes(beam: &Beam) -> f64 {
     beam.discretization.nodes().count() as f64
 }
 
-/// Shape functions over a cell.
+/// Number of shape functions of a cell.
 fn width(beam: &Beam) -> f64 {
     match &beam.discretization {
         Discretization::Ancf { .. } => 4.0,
@@ -64,7 +64,7 @@ fn tangent(beam: &Beam) -> f64 {
     4.0 * nodes(beam) * 2.0 * width(beam) * NUMBER
 }
 
-/// Bytes that this process may still take; none where the system does not say.
+/// Bytes that this process may still take; none if the operating system does not tell.
 fn free() -> Option<f64> {
     let read = |path: &str| std::fs::read_to_string(path).ok();
     let number = |text: &str| text.split_whitespace().next()?.parse::<f64>().ok();

@@ -19,9 +19,9 @@ const TO_THE_END: f64 = 1e-14;
 /// of a perfect one. Before a state is refused as unstable, its path is followed again in so many
 /// parts of the load.
 const FINER: [usize; 2] = [20, 200];
-/// Turn of a node before buckling to which the linear solution is trusted \[rad\].
+/// Turn of a node before buckling up to which the linear solution is trusted \[rad\].
 const STRAIGHT: f64 = 0.1;
-/// Axial strain before buckling to which it is trusted; critical loads err by as much.
+/// Axial strain before buckling up to which it is trusted; critical loads err by as much.
 const STRAINED: f64 = 0.05;
 impl Solve for Modal {
     type Results = Vibrations;
@@ -84,7 +84,7 @@ impl Sampler<'_> {
             if let Some(stuck) = &solution.stuck {
                 return Err(self.stuck(stuck, &solution));
             }
-            // The way there is of no interest, only that it led there.
+            // Only the last equilibrium matters, not the path to it.
             solution.keep_last();
             let trajectory = self.equilibria(AnalysisKind::Modal, &solution);
             let variables = solution.variables.last().cloned().unwrap_or_default();
@@ -158,8 +158,8 @@ impl Sampler<'_> {
     }
 }
 
-/// What there is to say about critical loads before which the linear solution turns or strains the
-/// beams by more than it may.
+/// The warning about critical loads at which the linear solution would turn or strain the beams by
+/// more than it may.
 fn beyond_the_linear(modes: &buckling::Modes) -> Option<String> {
     let numbered = || modes.load_factors.iter().zip(1..);
     let (turned, number) = numbered().find(|(load, _)| *load * modes.turn > STRAIGHT).unzip();

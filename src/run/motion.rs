@@ -67,16 +67,16 @@ impl Solve for Dynamic {
 /// Where a motion begins, and when it ends.
 struct Beginning {
     start: Checkpoint,
-    /// \[s\]
+    /// End time \[s\].
     end: f64,
     /// The motion's fingerprint.
     motion: String,
-    /// What the reader should know of it.
+    /// A message on how a saved state was taken up.
     told: Option<String>,
 }
 
-/// Where a motion begins. Of a motion that is taken up, supports that follow no law hold the beams
-/// where the state has them.
+/// Where a motion begins. If it starts from a saved state, supports without a law of time fix the
+/// beams where they are in that state.
 fn beginning(
     model: &Model,
     settings: &Dynamic,
@@ -96,7 +96,7 @@ fn beginning(
     start::check_jumps(system, begin, end)?;
     let start = match same {
         true => start,
-        // Velocities of the scene start a motion; one that is under way has its own.
+        // The scene's velocities apply at the start of a motion; one that is under way has its own.
         false if saved.is_equilibrium() => start::from_state(system, start.state, &model.initial_velocities)?,
         false => start::from_state(system, start.state, &[])?,
     };
@@ -109,14 +109,14 @@ fn beginning(
     Ok(Beginning { start, end, motion, told: Some(told) })
 }
 
-/// The sum of two times as decimals have it, so that a motion in parts ends when it does as a
-/// whole.
+/// The sum of two times, rounded as decimals, so that a motion in parts ends exactly when it does
+/// as a whole.
 fn later(time: f64, duration: f64) -> f64 {
     let sum = time + duration;
     if time == 0.0 { sum } else { format!("{sum:.14e}").parse().unwrap_or(sum) }
 }
 
-/// The model with supports that hold still unless they follow a law.
+/// The model in which supports without a law of time do not move.
 fn left_where_it_is(model: &Model) -> Cow<'_, Model> {
     let mut model = model.clone();
     for support in model.supports.iter_mut().filter(|support| support.law.is_none()) {

@@ -1,4 +1,4 @@
-//! Looking at the states of a system: probes, shapes, frames, and the trajectories made of them.
+//! Evaluates states of a system: probes, shapes, frames, and the trajectories made of them.
 
 use super::RunError;
 use super::angle;
@@ -21,30 +21,30 @@ use crate::system::{Change, Reaction, System, View, unfold};
 use nalgebra::Vector2;
 use std::f64::consts::FRAC_PI_2;
 
-/// Distance of two places that are one, in beam lengths.
+/// Places nearer to each other than this, in beam lengths, are one.
 const SAME_PLACE: f64 = 1e-9;
 /// Points at which shapes are sampled.
 const SHAPE_POINTS: usize = 201;
-/// Every so many of them are in a frame of the animation.
+/// A frame of the animation takes every so many of these points.
 const FRAME_STRIDE: usize = 2;
-/// Round-off of internal forces, relative to the loads, that leaves nothing to converge to.
+/// Part of the loads beyond which the round-off of internal forces prevents convergence.
 const DROWNED: f64 = 1e-2;
-/// An increment so small that did not vanish is round-off \[beam lengths\].
+/// Increments below this that do not vanish are round-off \[beam lengths\].
 const STALLED: f64 = 1e-6;
 /// What to try where a beam is crushed.
 const TOO_SOFT: &str = "a beam is a model for small strains: use smaller loads, or a larger axial stiffness";
 /// What to try where a beam is pushed through an obstacle.
 const PUSHED_THROUGH: &str = "the obstacle gives way by more than half its thickness: give the contact a larger `stiffness`, or the obstacle a larger size";
-/// Part of the largest energy by which the work of actuators may err without a word.
+/// Part of the largest energy by which the work of actuators may err without a warning.
 const WORK_KNOWN: f64 = 1e-2;
 /// Change of the total energy, relative to the largest energy, that is worth a warning.
 const LARGEST_DRIFT: f64 = 1e-2;
-/// Energies below this, in EA L, are those of the round-off of strains.
+/// Energies below this, in EA L, are due to the round-off of strains.
 const LEAST_ENERGY: f64 = 1e-20;
-/// States, evenly among all, that are looked at for locking, at most.
+/// Largest number of states, evenly spread, that are checked for locking.
 const LOOKED_AT: usize = 400;
 
-/// Everything needed to look at states of one system.
+/// Everything needed to evaluate states of one system.
 pub(super) struct Sampler<'a> {
     model: &'a Model,
     pub(super) system: &'a System,
@@ -55,7 +55,7 @@ pub(super) struct Sampler<'a> {
     frames: usize,
 }
 
-/// A probe with the rows that see its point.
+/// A probe with the shape functions at its point.
 struct ProbePoint {
     name: String,
     beam: usize,
@@ -65,8 +65,8 @@ struct ProbePoint {
     reference_strain: f64,
 }
 
-/// What there is to say about a motion whose balance of energy is off by more than a hundredth of
-/// its largest energy, where that is more than `least` \[J\].
+/// The warning about a motion whose balance of energy is off by more than a hundredth of its
+/// largest energy, if that is more than `least` \[J\].
 fn unbalanced(energy: &[Energy], least: f64) -> Option<String> {
     let first = energy.first()?;
     let change = |e: &Energy| e.total() - first.total();
@@ -93,8 +93,8 @@ fn unbalanced(energy: &[Energy], least: f64) -> Option<String> {
     })
 }
 
-/// What there is to say about the work of actuators, where it is not known well against the
-/// energies of the state.
+/// The warning about the work of actuators, if its error is not small against the energies of the
+/// state.
 fn put_in(work: &Work, energy: &Energy) -> Option<String> {
     let parts = [energy.stretch, energy.bend, energy.stored, energy.potential, work.value, work.size];
     let largest = parts.iter().fold(0.0_f64, |m, part| m.max(part.abs()));
@@ -107,11 +107,11 @@ fn put_in(work: &Work, energy: &Energy) -> Option<String> {
     })
 }
 
-/// The places `even`, and those of `jumps` twice; each with the side on which to cut there.
+/// The places `even`, and those of `jumps` twice; each with the side of the cut there.
 fn stations(even: &[f64], jumps: &[f64]) -> (Vec<f64>, Vec<Side>) {
     let end = even.last().copied().unwrap_or(0.0);
     let apart = |s: &&f64| jumps.iter().all(|jump| (jump - **s).abs() > SAME_PLACE * end);
-    // At the beam's end what acts there is beyond the cut.
+    // At the beam's end the cut is before the forces that act there.
     let plain = even.iter().filter(apart).map(|s| (*s, if *s == end { Side::Left } else { Side::Right }));
     let mut stations: Vec<_> =
         plain.chain(jumps.iter().flat_map(|s| [(*s, Side::Left), (*s, Side::Right)])).collect();
@@ -119,17 +119,17 @@ fn stations(even: &[f64], jumps: &[f64]) -> (Vec<f64>, Vec<Side>) {
     stations.into_iter().unzip()
 }
 
-/// How often the directions have turned.
+/// From where the turns of directions are counted.
 #[derive(Clone, Copy)]
 pub(super) enum History<'h> {
-    /// As they have since this state, that of the record before.
+    /// Since this state, that of the record before.
     Before(Option<&'h [f64]>),
-    /// Directions at all probes with their turns.
+    /// Directions at all probes, with full turns included already.
     Angles(&'h [f64]),
 }
 
-/// Whether record `i` is among `most` or about so many that are even among `count`, the last being
-/// one of them.
+/// Whether record `i` of `count` is kept, if about `most` of them are, evenly spread and with the
+/// last.
 fn is_among(i: usize, count: usize, most: usize) -> bool {
     most > 0 && (i.is_multiple_of(count.div_ceil(most)) || i + 1 == count)
 }
@@ -221,7 +221,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// What the model names and the analysis leaves out.
+    /// A message on parts of the model that the analysis ignores.
     fn left_out(&self, analysis: AnalysisKind) -> Option<String> {
         let name = match analysis {
             AnalysisKind::Static => "statics",
@@ -282,7 +282,7 @@ impl<'a> Sampler<'a> {
         settings
     }
 
-    /// Of a vector of all unknowns the coordinates, without the multipliers behind them.
+    /// The coordinates in a vector of all unknowns, without the multipliers behind them.
     pub(super) fn coordinates_of<'x>(&self, x: &'x [f64]) -> &'x [f64] {
         &x[..self.system.coordinates()]
     }
@@ -309,7 +309,8 @@ impl<'a> Sampler<'a> {
         let first = 4 * part.first_node;
         let nodes = nodes(&q[first..first + 4 * part.basis.nodes().len()]);
         shape.nodes = nodes.map(|node| node.position).collect();
-        // A curved beam is free of stress with the strain that its interpolated shape has.
+        // The stress-free shape of a curved beam has a strain by its interpolation, which does not
+        // count.
         if !part.straight {
             let reference = view.all(self.system.reference());
             for (strain, reference) in shape.strain.iter_mut().zip(reference) {
@@ -319,7 +320,7 @@ impl<'a> Sampler<'a> {
         shape
     }
 
-    /// What a mode of the state `q` changes along one beam, at the arc lengths `s`.
+    /// The change of one beam by a mode of the state `q`, at the arc lengths `s`.
     pub(super) fn change(&self, beam: usize, s: &[f64], q: &[f64], mode: &[f64]) -> ModeShape {
         let part = &self.system.beams()[beam];
         let (name, measure) = (self.model.beams[beam].name.clone(), self.model.beams[beam].strain);
@@ -340,8 +341,8 @@ impl<'a> Sampler<'a> {
         shape
     }
 
-    /// The same with section forces, from what acts on each beam; where that is a force or a couple
-    /// in a point there are two rows, before and behind it.
+    /// [`Self::shape`] with section forces, from the forces that act on each beam. A point where a
+    /// force or a couple acts has two rows, before and behind it.
     pub(super) fn loaded(&self, q: &[f64], actions: &[Actions]) -> Vec<Shape> {
         let beams = self.shapes.iter().zip(actions).enumerate();
         beams
@@ -356,7 +357,7 @@ impl<'a> Sampler<'a> {
             .collect()
     }
 
-    /// Adds the section forces; a string has no other than N.
+    /// Adds the section forces; a string has only N.
     fn cut(&self, beam: usize, actions: &Actions, sides: &[Side], shape: &mut Shape) {
         let bends = self.model.beams[beam].section.bending_stiffness.is_some();
         let length = self.system.beams()[beam].basis.length();
@@ -449,7 +450,7 @@ impl<'a> Sampler<'a> {
         self.equilibria(AnalysisKind::Static, solution)
     }
 
-    /// Of equilibria that an analysis needs.
+    /// The trajectory of equilibria that an analysis needs.
     pub(super) fn equilibria(&self, analysis: AnalysisKind, solution: &Solution) -> Trajectory {
         let mut trajectory = self.empty(analysis);
         let count = solution.states.len();
@@ -522,14 +523,14 @@ impl<'a> Sampler<'a> {
         Some(SavedState::new(self.model, self.system, String::new(), checkpoint))
     }
 
-    /// Where directions are watched.
+    /// The points whose directions are watched: those of the probes.
     pub(super) fn directions(&self) -> Vec<View> {
         self.probes.iter().map(|probe| probe.view.clone()).collect()
     }
 
-    /// Beams that turn back within a cell. Nothing resists such a fold of a string but its length,
-    /// and in a beam it lies between the points at which bending is summed, so that it may stay
-    /// where a large step has left it.
+    /// Messages on beams that turn back within a cell. In a string only the axial stiffness resists
+    /// such a fold; in a beam it lies between the quadrature points of bending, so that it may
+    /// remain where a large step has left it.
     fn folds(&self, shapes: &[Shape]) -> Vec<String> {
         let beams = shapes.iter().zip(self.system.beams()).zip(&self.model.beams);
         let folds = beams.filter_map(|((shape, part), beam)| {
@@ -545,7 +546,7 @@ impl<'a> Sampler<'a> {
                             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
                         high - low
                     } else {
-                        // However much a beam bends, it does so from one point to the next little.
+                        // Even a beam that bends strongly turns little from one point to the next.
                         angles.windows(2).fold(0.0_f64, |turn, pair| turn.max((pair[1] - pair[0]).abs()))
                     };
                     (turn > FRAC_PI_2).then_some(start)
@@ -605,7 +606,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Of a path that has not reached its target.
+    /// The error of a path that has not reached its target.
     pub(super) fn out_of_points(&self, arc: &ArcLength, solution: &Solution) -> RunError {
         let load = arc.until_load.map(|load| format!("load factor {load}"));
         let probe = arc.until_probe.as_ref().map(|ProbeTarget { probe, axis, value }| {

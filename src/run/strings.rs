@@ -1,10 +1,10 @@
-//! What a model asks of its strings that a string cannot do.
+//! Demands of a model on its strings that a string cannot meet.
 
 use crate::model::{FixedRotation, Joint, Model, Place};
 
-/// A line for every place where a string, which has no bending stiffness, is held in a direction or
-/// given a couple. It passes none on: its first cells alone would bend, whatever their length, so
-/// that the result depends on the mesh.
+/// A message for every place where a string, which has no bending stiffness, has a fixed direction
+/// or carries a couple. It transmits no couple: only its first cells would bend, whatever their
+/// length, so that the result depends on the mesh.
 pub(super) fn couples(model: &Model) -> impl Iterator<Item = String> {
     let supports = model.supports.iter().enumerate();
     let supports = supports.filter(|(_, support)| support.fix.rotation != FixedRotation::Free);

@@ -75,7 +75,7 @@ pub(super) fn data(error: &toml::de::Error, document: &DeTable<'_>) -> Fault {
 }
 
 /// How to write a list, where one is expected and something else was found: an array of tables
-/// takes two brackets, though there be one table.
+/// takes two brackets, even for a single table.
 fn list_form(path: &str, message: &str) -> Option<String> {
     let found = message.strip_prefix("found ")?.strip_suffix(", expected a sequence")?;
     let key = path.rsplit('.').next().unwrap_or(path);
@@ -90,8 +90,8 @@ fn list_form(path: &str, message: &str) -> Option<String> {
     Some(format!("write a list, also of one: `{key} = [{value}]`"))
 }
 
-/// How to write a table, where one is expected and a list was found. The list of an analysis is
-/// read as what its first key is.
+/// How to write a table, where one is expected and a list was found. A list in place of an analysis
+/// is read as the values of its keys in turn, so that the message is about the first key.
 fn table_form(path: &str, message: &str) -> Option<String> {
     let listed = message == "found sequence, expected a map"
         || path.starts_with("analysis.") && message.starts_with("found map");

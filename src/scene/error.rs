@@ -1,4 +1,4 @@
-//! What is wrong with a scene, and where.
+//! Faults of a scene, and their places.
 
 use std::fmt;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Tables put into a scene in place of its own.
+//! Replaces tables of a scene by those of another text.
 
 use toml_edit::{DocumentMut, Item, TableLike};
 
@@ -9,12 +9,12 @@ use super::error::{Fault, SceneError};
 const INTEGRATORS: [&str; 3] = ["generalized_alpha", "gauss", "radau"];
 
 impl Scene {
-    /// This scene with what `lines`, a TOML text, say in place of what it says itself: a `basis`
-    /// replaces the whole basis of its beam, and an integrator the integrator; other keys are set
-    /// one by one. Comments elsewhere stay.
+    /// This scene with the keys of `lines`, a TOML text, in place of its own: a `basis` replaces
+    /// the whole basis of its beam, and an integrator the integrator; other keys are set one by
+    /// one. Comments elsewhere stay.
     ///
     /// # Errors
-    /// Where `lines` are not TOML, or what comes of it is not a legal scene.
+    /// Where `lines` are not TOML, or the result is not a legal scene.
     pub fn merged(&self, lines: &str) -> Result<Self, SceneError> {
         let document = |name: &str, text: &str| {
             text.parse::<DocumentMut>()
@@ -55,7 +55,7 @@ fn merge(into: &mut dyn TableLike, from: &dyn TableLike, path: &mut Vec<String>)
     }
 }
 
-/// Tables go where their parent is, not where they were in another text.
+/// A table is written where its parent is, not where it was in another text.
 fn unplace(item: &mut Item) {
     if let Item::Table(table) = item {
         table.set_position(None);

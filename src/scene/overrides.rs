@@ -13,7 +13,7 @@ use super::error::{Fault, SceneError};
 pub(super) struct Overridden<'a> {
     name: &'a str,
     overrides: &'a [String],
-    /// One more than overrides; the last is what is read.
+    /// The texts: one more than overrides; the last one is read.
     texts: Vec<String>,
     /// Paths that were set.
     paths: Vec<Vec<String>>,
@@ -102,7 +102,8 @@ fn set(text: &str, option: &str) -> Result<(String, Vec<String>), Fault> {
     assign(document.as_item_mut(), &names, value)
         .map_err(|(message, help)| Fault::new(0..path.len(), message).help(help))?;
     let text = document.to_string();
-    // The editor writes what it reads; should it ever not, say so rather than blame the file.
+    // The editor should write only what can be read. If it ever does not, the option is blamed, not
+    // the file.
     if let Err(error) = DeTable::parse(&text) {
         return Err(
             Fault::new(0..option.len(), format!("cannot be applied here: {}", error.message())).help(USAGE)
@@ -119,8 +120,7 @@ fn assign(root: &mut Item, path: &[String], value: Value) -> Result<(), (String,
     };
     let mut item = root;
     for (depth, key) in parents.iter().enumerate() {
-        // A beam cannot come into being by a single value: a name that is not there is a misspelt
-        // one.
+        // A single value cannot define a beam: an unknown name is a misspelt one.
         let may_add = depth != 1 || path.first().is_none_or(|first| first != "beam");
         item = child(item, path, depth, key, may_add)?;
     }

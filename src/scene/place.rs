@@ -6,7 +6,7 @@ use super::value::{At, Located};
 use crate::centreline::Curve;
 use crate::model::Place;
 
-/// A beam with what the checks of other tables need to know of it.
+/// Name and curve of a beam, for the checks of other tables.
 pub(super) struct Built {
     pub name: Located<String>,
     pub curve: Curve,

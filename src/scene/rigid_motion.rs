@@ -1,5 +1,4 @@
-//! What supports hold: nothing twice, no more than a mesh can give, and in statics every rigid
-//! motion of every beam.
+//! Checks of supports: they fix nothing twice, and in statics they prevent every rigid motion.
 
 use crate::effect::{DistributedForce, Force, Gravity};
 use crate::model::freedom::{Freedom, Motion};
@@ -10,8 +9,8 @@ use super::error::Fault;
 use super::file::SceneTable;
 use super::place::Built;
 
-/// Places nearer to each other than this, per length of the beam, are one: what two supports hold
-/// there differs by less than the equations can tell.
+/// Places nearer to each other than this, per length of the beam, are one: the equations cannot
+/// tell two supports there apart.
 const NEAR: f64 = 1e-6;
 
 /// Refuses two supports at one point of a beam that hold the same quantity.
@@ -45,18 +44,18 @@ pub(super) fn check_duplicates(file: &SceneTable, model: &Model, built: &[Built]
     Ok(())
 }
 
-/// What takes part in an equilibrium that no elasticity gives.
+/// Forces other than elastic ones that may resist a rigid motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Resisting {
-    /// Nothing: the analysis asks for the stiffness of the unloaded structure.
+    /// None: the analysis asks for the stiffness of the unloaded structure.
     Nothing,
     /// Weight, under which a pendulum hangs still, and the loads of fixed direction beside it.
     Weight,
 }
 
-/// Refuses a structure that can move without deforming. The direction of a string is found with its
-/// shape, from the load that it carries; and weight gives a direction to the beams that it pulls
-/// straight.
+/// Refuses a structure that can move without deforming. The direction of a string need not be
+/// fixed: it follows from the load that the string carries. Weight gives a direction to the beams
+/// that it pulls straight.
 pub(super) fn check_rigid_motions(model: &Model, built: &[Built], resisting: Resisting) -> Result<(), Fault> {
     let length = built.iter().map(|beam| beam.curve.length()).fold(0.0, f64::max);
     let position = |place: Place| built[place.beam].curve.position(place.s);
@@ -99,9 +98,10 @@ pub(super) fn check_rigid_motions(model: &Model, built: &[Built], resisting: Res
     ))
 }
 
-/// Per beam, whether weight, and loads of fixed direction beside it, may pull on it at one point
-/// and something else at another, so that they give it a direction: whether it is joined to a beam
-/// on which they act, itself perhaps, and does not dangle.
+/// Per beam, whether weight, and loads of fixed direction beside it, give it a direction, because
+/// they may pull on it at one point and something else at another. Such a beam is joined, perhaps
+/// through others, to one on which these loads act, and it is loaded, joined or supported at two
+/// points or more.
 fn taut(model: &Model, built: &[Built]) -> Vec<bool> {
     let length = built.iter().map(|beam| beam.curve.length()).fold(0.0, f64::max);
     let loads = acted_upon(model, built);
@@ -144,8 +144,8 @@ fn taut(model: &Model, built: &[Built]) -> Vec<bool> {
     }
 }
 
-/// Points on which loads of fixed direction act: of weight and of distributed forces both ends,
-/// where a mass per length or a force acts.
+/// Points on which loads of fixed direction act. Weight and distributed forces count as acting on
+/// both ends of a beam.
 fn acted_upon(model: &Model, built: &[Built]) -> Vec<Place> {
     let ends = |beam: usize| [0.0, built[beam].curve.length()].map(|s| Place { beam, s });
     let acts = |value: &[f64; 2]| value.iter().any(|component| *component != 0.0);

@@ -63,7 +63,7 @@ fn modes<const MIN: u64>(located: &Located<Count<MIN>>, size: Size) -> Result<us
     Ok(modes)
 }
 
-/// Refuses more states than any memory holds: each is four numbers a node.
+/// Refuses more states than any memory can hold: each has four numbers per node.
 fn check_memory(span: Range<usize>, what: &str, states: f64, size: Size) -> Result<(), Fault> {
     let memory = states * size.nodes * 32.0 / 1024f64.powi(3);
     if memory > MAX_MEMORY {

@@ -21,16 +21,16 @@ pub const MAX_GAUSS_POINTS: u64 = 64;
 /// Most neighbours on each side of a cell: moment matrices grow with the square of it.
 pub const MAX_NEIGHBOURS: u64 = 16;
 
-/// What a discretisation will need, to be summed over the beams of a scene.
+/// Nodes and memory that a discretisation will need, to be summed over the beams of a scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Size {
     pub nodes: f64,
-    /// Of shape-function tables, the banded tangent and its factors [GiB].
+    /// Memory of shape-function tables, the banded tangent and its factors [GiB].
     pub memory: f64,
 }
 
-/// The discretisation that `basis` asks for, on a beam of the given length \[m\], which may lock if
-/// it resists both stretch and bending.
+/// The discretisation that `basis` asks for, on a beam of the given length \[m\]. It may lock, as
+/// `locks` tells, if the beam resists both stretch and bending.
 pub(super) fn discretization(
     beam: &str,
     basis: &Located<BasisTable>,
@@ -61,15 +61,15 @@ pub(super) fn discretization(
                 .help("give one kind: `[beam.NAME.basis.ancf]` with `elements = 10`, or `[beam.NAME.basis.rpim]` with `nodes = 11`"));
         }
     };
-    // Two components share a table; of each unknown the band is stored with its fill-in, three
-    // half bandwidths and the diagonal.
+    // The two components share a table. The band of the tangent is stored with its fill-in: three
+    // half bandwidths and the diagonal for each unknown.
     let tables = (nodes - 1.0) * (gauss.stretch + gauss.bend) as f64 * 3.0 * width * 8.0;
     let tangent = 4.0 * nodes * (3.0 * (2.0 * width - 1.0) + 1.0) * 8.0;
     let size = Size { nodes, memory: (tables + tangent) / 1024f64.powi(3) };
     Ok((discretization, gauss, size))
 }
 
-/// Refuses what no computer of today could hold.
+/// Refuses a scene that no computer of today could hold.
 pub(super) fn check_size(total: Size, basis: &Located<BasisTable>) -> Result<(), Fault> {
     if total.nodes > MAX_NODES || total.memory > MAX_MEMORY {
         return Err(Fault::new(

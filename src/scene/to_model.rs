@@ -18,7 +18,7 @@ use super::{rigid_motion, to_analysis, to_law, to_parts, to_velocity};
 
 /// Converts and checks everything.
 pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
-    // In the order of the file: the reader returns tables sorted by name.
+    // Restores the order of the file: the reader returns tables sorted by name.
     let mut tables: Vec<_> = file.beam.iter().collect();
     tables.sort_by_key(|(name, _)| name.span().start);
     if tables.is_empty() {
@@ -139,7 +139,8 @@ fn section(beam: &str, table: &BeamTable) -> Result<Section, Fault> {
     let ei = table.bending_stiffness.as_ref().map(|v| (v.get().si, v.span()));
     let mass = table.mass_per_length.as_ref().map(|v| (v.get().si, v.span()));
     if let (Some((_, span)), None, None) = (&e, &area, &ea) {
-        // Inextensible, or forgotten? An elastic modulus speaks for the latter.
+        // A beam without axial stiffness keeps its length, but with an elastic modulus its area was
+        // forgotten.
         let message = format!("beam `{beam}` has a `youngs_modulus` but no `area`: is it to stretch?");
         return Err(Fault::new(span.clone(), message).help(
             "give `area`, or `axial_stiffness`; or, for a beam that keeps its length, `bending_stiffness` in place of \
@@ -182,7 +183,7 @@ fn section(beam: &str, table: &BeamTable) -> Result<Section, Fault> {
     })
 }
 
-/// Refuses a scene whose analysis or effects need what a beam lacks.
+/// Refuses a scene in which a beam lacks a property that the analysis or an effect needs.
 fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Analysis) -> Result<(), Fault> {
     let kind = match analysis {
         Analysis::Static(_) => "a static analysis",

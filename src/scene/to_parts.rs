@@ -14,7 +14,7 @@ use super::place::{Built, beam_index, place};
 use super::to_law;
 use super::value::Located;
 
-/// Adds what the file names to the model.
+/// Adds the parts that the file names to the model.
 pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {
     let effects = &file.effect;
     let parts = &mut model.parts;

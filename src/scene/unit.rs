@@ -27,7 +27,7 @@ impl Dimension {
         Self { metre, kilogram, second, radian: 0 }
     }
 
-    /// That of an angle.
+    /// The dimension of an angle.
     pub const ANGLE: Self = Self { metre: 0, kilogram: 0, second: 0, radian: 1 };
 
     fn combine(self, other: Self, times: i16) -> Option<Self> {
@@ -64,12 +64,12 @@ impl fmt::Display for Dimension {
     }
 }
 
-/// A unit: so many of the SI unit of its dimension.
+/// A unit of measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     /// Multiply a number in this unit by it to have SI.
     pub factor: f64,
-    /// What it measures.
+    /// The dimension that it measures.
     pub dimension: Dimension,
 }
 

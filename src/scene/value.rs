@@ -248,7 +248,7 @@ impl<M: Measure> JsonSchema for Vector<M> {
 /// How many nodes, or where each one is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NodeList {
-    /// This many.
+    /// This many nodes.
     Count(u64),
     /// At these arc lengths \[m\].
     At(Vec<Located<Quantity<Length>>>),

@@ -2,14 +2,15 @@
 //! linear solution, becomes singular,
 //!
 //! ```text
-//! (K₀ + λ K₁) φ = 0,   K₁ = ∫ N₁ ∂²ε/∂q∂q + M₁ ∂²κ/∂q∂q ds + …,   N₁ = EA ∂ε/∂q·u,  M₁ = EI ∂κ/∂q·u,   K₀ u = −f_load
+//! (K₀ + λ K₁) φ = 0,   K₀ u = −f_load,   N₁ = EA ∂ε/∂q·u,   M₁ = EI ∂κ/∂q·u
+//! K₁ = ∫ N₁ ∂²ε/∂q∂q + M₁ ∂²κ/∂q∂q ds + …
 //! ```
 //!
-//! with all derivatives in the stress-free state. The directions in which a beam resists stretch
-//! are those of that state too: that they turn with the rotations of u is a term of the first order
-//! which one of the second cancels, and alone it would let a stiff beam that bends buckle at once.
-//! An effect whose tangent extrapolates its resultants ([`crate::effect`]) gives K₀ + λ K₁ when it
-//! is asked for the tangent one increment λ u ahead.
+//! with all derivatives taken in the stress-free state. The direction in which a beam resists
+//! stretch is that of this state too. Its turn with the rotations of u is a first-order term that a
+//! second-order term cancels; keeping the first alone would make a stiff beam in bending buckle at
+//! once. An effect whose tangent extrapolates its resultants ([`crate::effect`]) gives K₀ + λ K₁
+//! when it is asked for the tangent one increment λ u ahead.
 
 use super::eigen::{EigenError, Pencil, largest_reciprocals, round_off};
 use super::equilibrium::Equilibrium;
@@ -23,7 +24,7 @@ pub struct Modes {
     pub load_factors: Vec<f64>,
     /// Buckling shapes as changes of the coordinates.
     pub shapes: Vec<Vec<f64>>,
-    /// Largest turn of a node in the linear solution, per load factor \[rad\].
+    /// Largest rotation of a node in the linear solution, per load factor \[rad\].
     pub turn: f64,
     /// Largest axial strain of a node in the linear solution, per load factor.
     pub strain: f64,
@@ -31,21 +32,23 @@ pub struct Modes {
     pub factorizations: usize,
 }
 
-/// Load factor at which K₀ + λ K₁ is K₁ to round-off: it is linear in λ, and so no digit is lost
-/// when K₀ is taken away.
+/// Load factor at which K₀ + λ K₁ is evaluated to find K₁. It is so large that the subtraction of
+/// K₀ costs no digit; any factor will do, because the tangent is linear in λ.
 const FAR_AHEAD: f64 = 1e18;
 
-/// Reciprocal of a load factor, in units of the load on the structure's stiffness, that round-off
-/// may leave.
+/// Reciprocals of load factors below this, in units of the load over the structure's stiffness, may
+/// be round-off.
 const ROUND_OFF: f64 = 1e-11;
 
-/// Standard deviations of its round-off that a reciprocal must have to be none.
+/// A reciprocal counts as different from zero if it exceeds its round-off by this many standard
+/// deviations.
 const CERTAIN: f64 = 10.0;
 
 /// The `count` lowest positive critical load factors.
 ///
 /// # Errors
-/// [`EigenError`] where the unloaded structure is a mechanism or the loads follow.
+/// [`EigenError`] where the unloaded structure is a mechanism or the loads have no symmetric
+/// tangent.
 pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     if !system.is_symmetric() {
         return Err(EigenError::NotSymmetric { analysis: "buckling" });
@@ -77,11 +80,12 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let (border, fixed) = (system.border(0.0, system.reference()), system.fixed());
     let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, fixed: &fixed };
     let mut pairs = largest_reciprocals(&pencil, count)?;
-    // A load that compresses nothing leaves round-off.
+    // A load that compresses nothing gives reciprocals that are round-off alone.
     let mut load = vec![0.0; n];
     system.add_load_rate(1.0, reference, &mut load);
     let least = ROUND_OFF * system.norm(&load) / system.stiffness();
-    // Of 1/λ = φᵀ B φ with φᵀ A φ = 1, by the round-off of both matrices.
+    // The standard deviation of 1/λ = φᵀ B φ, with φᵀ A φ = 1, due to the round-off of both
+    // matrices.
     let known = |(reciprocal, shape): (&f64, &Vec<f64>)| {
         let deviation = round_off(&geometric, shape) + reciprocal * round_off(&stiffness, shape);
         *reciprocal > least.max(CERTAIN * deviation)

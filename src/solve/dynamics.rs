@@ -3,27 +3,25 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | [`motion`] | the equations, with what is held eliminated |
-//! | [`method`] | what a method is to the driver |
+//! | [`motion`] | the equations of motion, with the fixed coordinates eliminated |
+//! | [`method`] | the interface between a method and the driver |
 //! | [`generalized_alpha`] | second order, numerical damping by choice |
 //! | [`collocation`], [`tableau`] | Gauss (order 2, 4, 6; symplectic), Radau IIA (order 3, 5; stiff) |
 //! | [`start`] | initial velocities |
 //! | [`integrate`] | the driver: steps, restart; with its records and events in `record` and `crossing`, forces and powers in `forces`, steps that gain energy in `balance`, contacts in `touch` |
 //!
 //! # No explicit method
-//! Störmer's and Verlet's rule and the six-stage method of order 4 of Blanes and Moan were built
-//! and measured on the soft pendulum (E = 68.95 MPa, the least stiff scene at hand): axial waves
-//! limit the step to 90 µs with 23 cable elements and to 70 µs with 20 RPIM nodes, so that the
-//! cheaper of the two took 1.8 times (ANCF) and 2.5 times (RPIM) as long as Gauss' method with
-//! three stages and 4 ms, whose error is smaller. They were left out.
+//! Störmer's and Verlet's rule and the six-stage method of order 4 of Blanes and Moan were measured
+//! on the soft pendulum, the least stiff scene at hand, and left out. Axial waves limit their step
+//! so much that they take about twice as long as Gauss' method with three stages, whose error is
+//! smaller.
 //!
 //! # No energy–momentum scheme
 //! Schemes that keep the discrete energy exactly (discrete gradients; Simo & Tarnow 1992, Gonzalez
 //! 2000) are of second order, and their tangent is not symmetric. Gauss' methods keep linear and
-//! angular momentum to round-off and are symplectic, so that the energy errs by a bounded
-//! O(h^{2s}): 1e-7 of the kinetic energy where a step of the same length by an energy–momentum
-//! scheme errs by 1e-3 in the motion itself. Its exact energy would be the only digit that it has
-//! right; it was left out.
+//! angular momentum to round-off and are symplectic, so that the error of the energy stays bounded,
+//! O(h^{2s}). With steps at which it is 1e-7 of the kinetic energy, an energy–momentum scheme errs
+//! by 1e-3 in the motion itself: exact energy would be the only gain. So they were left out.
 
 mod balance;
 pub mod collocation;
@@ -66,10 +64,10 @@ pub struct State {
     pub work: f64,
     /// Energy that damping has taken since the start \[J\].
     pub lost: f64,
-    /// What friction and torsion springs remember.
+    /// Internal variables of friction and torsion springs, which depend on the path.
     #[serde(default)]
     pub variables: InternalVariables,
-    /// Directions of r' at the places where they are watched \[rad\], with all turns.
+    /// Directions of r' at the watched points \[rad\], full turns included.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub angles: Vec<f64>,
 }
@@ -80,8 +78,8 @@ impl State {
         Self { q: q.to_vec(), v: vec![0.0; q.len()], ..Self::default() }
     }
 
-    /// The two inner control states of the cubic that has positions and velocities of this state
-    /// and a later one.
+    /// The two inner control states of the cubic Bézier curve that has the positions and velocities
+    /// of this state and a later one.
     pub fn controls(&self, later: &Self) -> [Vec<f64>; 2] {
         let third = (later.time - self.time) / 3.0;
         let moved =
@@ -89,9 +87,10 @@ impl State {
         [moved(self, third), moved(later, -third)]
     }
 
-    /// The state at `time` between this one and a later one, by the polynomial that has positions
-    /// and velocities of both (cubic, error of the fourth order in the step), and with
-    /// `accelerations` those too (quintic, sixth order). Work, loss and angles are this state's.
+    /// The state at `time` between this one and a later one, by the polynomial that has the
+    /// positions and velocities of both (cubic, error of the fourth order in the step), and with
+    /// `accelerations` those too (quintic, sixth order). Work, loss and angles are copied from this
+    /// state.
     pub fn between(&self, later: &Self, time: f64, accelerations: Option<[&[f64]; 2]>) -> Self {
         let h = later.time - self.time;
         let x = (time - self.time) / h;
@@ -104,8 +103,8 @@ impl State {
             variables: InternalVariables::default(),
             angles: self.angles.clone(),
         };
-        // From the start: q = q₀ + x h v₀ + x² …; the end's data enter through their defects
-        // against the lower terms.
+        // At the start q = q₀ + x h v₀ + x² …; the higher coefficients follow from the data at the
+        // end, less the lower terms.
         for i in 0..self.q.len() {
             let (q0, v0, v1) = (self.q[i], h * self.v[i], h * later.v[i]);
             let rise = later.q[i] - q0;
@@ -133,28 +132,29 @@ impl State {
     }
 }
 
-/// What an integration found.
+/// The results of an integration.
 #[derive(Clone, Debug, Default)]
 pub struct Solution {
     /// States at the requested times.
     pub states: Vec<State>,
     /// Forces of supports and joints in each of them, where they were asked for.
     pub reactions: Vec<Vec<Reaction>>,
-    /// All forces in the last of them.
+    /// All forces in the last state.
     pub end: Option<motion::Balance>,
     /// Attempted steps, thinned out where there are very many.
     pub history: Vec<StepRecord>,
     /// Events in the order of their times: (number of the watch, state).
     pub events: Vec<(usize, State)>,
-    /// Contacts that gave way, by number, and when they first did \[s\].
+    /// Contacts in which the beam was pushed past the middle of the obstacle: the number of the
+    /// contact, and the end of the first such step \[s\].
     pub crossings: Vec<(usize, f64)>,
     /// Contacts that began or ended, in order.
     pub contacts: Vec<Change>,
-    /// Counts.
+    /// Counts of steps, iterations and factorisations.
     pub statistics: Statistics,
-    /// From which the motion can be continued.
+    /// The state from which the motion can be continued.
     pub checkpoint: Option<Checkpoint>,
-    /// Why it ends before its time, if it does.
+    /// Why the motion ended early, if it did.
     pub stuck: Option<NoStep>,
 }
 
@@ -162,20 +162,21 @@ pub struct Solution {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint {
-    /// The state.
+    /// The state from which the next step is taken.
     pub state: State,
-    /// The method and its settings, whose memory this is.
+    /// The method with its settings, to which `memory` belongs.
     pub method: String,
-    /// The method's memory.
+    /// The quantities that the method carries from step to step.
     pub memory: Memory,
     /// The next step \[s\].
     pub step: f64,
-    /// Error of the last step against what it was allowed.
+    /// Error of the last step relative to the allowed one.
     pub last_ratio: f64,
-    /// Where steps of fixed length are counted from \[s\], and how many were taken.
+    /// For steps of fixed length: the time from which they are counted \[s\], and how many were
+    /// taken.
     pub origin: (f64, u64),
     /// The state that was reached, where the motion's end or an event cut the step from `state`
-    /// short: this step is taken once more.
+    /// short. A continued motion takes this step again in full.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cut: Option<State>,
 }
@@ -192,7 +193,7 @@ impl Checkpoint {
 pub struct NoStep {
     /// Time of the last state \[s\].
     pub time: f64,
-    /// The step \[s\].
+    /// Length of the step \[s\].
     pub step: f64,
     /// What went wrong.
     pub failure: Failure,

@@ -10,7 +10,7 @@ use crate::linear::{Factor, Matrix, NOT_FACTORISED, Singular};
 use crate::solve::Statistics;
 use crate::system::System;
 
-/// Residuals of so many round-offs of the internal forces count as zero.
+/// Residuals up to this many round-offs of the internal forces count as zero.
 const ROUND_OFFS: f64 = 100.0;
 
 /// Residual, tangent and its factorisation at one load factor. Unknowns are the system's
@@ -24,7 +24,7 @@ pub struct Equilibrium<'a> {
     border: Vec<BorderRow>,
     workspace: Workspace,
     prescribed_rate: Vec<f64>,
-    /// The last accepted state, for what depends on the way.
+    /// The last accepted state, for effects that depend on the path.
     accepted: AcceptedState,
     /// Counts so far.
     pub statistics: Statistics,
@@ -52,7 +52,7 @@ impl<'a> Equilibrium<'a> {
         self.system
     }
 
-    /// Takes `x` for the last accepted state, from which internal variables are counted.
+    /// Makes `x` the last accepted state, from which internal variables are counted.
     pub fn set_accepted(&mut self, x: &[f64]) {
         if self.system.has_history() {
             let variables = self.internal_variables(x);
@@ -60,15 +60,15 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
-    /// Counts the turns of torsion springs on to `x`, which need not be accepted, on a way of many
-    /// small changes.
+    /// Counts the turns of torsion springs up to `x` without accepting it, on a path of many small
+    /// changes.
     pub fn follow_windings(&mut self, x: &[f64]) {
         if self.system.has_windings() {
             self.accepted.variables.angles = self.internal_variables(x).angles;
         }
     }
 
-    /// What `solve` finds, whose way leaves no trace in the last accepted state.
+    /// Calls `solve`, and restores the last accepted state afterwards.
     pub fn without_trace<T>(&mut self, solve: impl FnOnce(&mut Self) -> T) -> T {
         let held = self.accepted.clone();
         let found = solve(self);
@@ -86,7 +86,7 @@ impl<'a> Equilibrium<'a> {
         self.system.coordinates() + self.system.multipliers()
     }
 
-    /// The stress-free state without multipliers.
+    /// The stress-free state with zero multipliers.
     pub fn start(&self) -> Vec<f64> {
         let mut x = self.system.reference().to_vec();
         x.resize(self.unknowns(), 0.0);
@@ -175,8 +175,8 @@ impl<'a> Equilibrium<'a> {
         Ok(())
     }
 
-    /// −∂R/∂λ − K v with the prescribed rates v of held coordinates; the tangent must not be
-    /// eliminated yet.
+    /// −∂R/∂λ − K v with the prescribed rates v of fixed coordinates, which must not have been
+    /// eliminated from the tangent yet.
     fn rate_right_hand_side(&mut self, load: f64, x: &[f64], rate: &mut [f64]) {
         let system = self.system;
         let n = system.coordinates();
@@ -203,8 +203,8 @@ impl<'a> Equilibrium<'a> {
         system.supports().to_frames(load, &mut rate[..n]);
     }
 
-    /// Solves with the last tangent; `b` comes in the supports' frames and leaves in fixed axes.
-    /// With `moving`, held coordinates receive their prescribed rates.
+    /// Solves with the last tangent; `b` is given in the supports' frames and returned in fixed
+    /// axes. With `moving`, fixed coordinates receive their prescribed rates.
     ///
     /// # Panics
     /// Where no tangent has been factorised.
@@ -213,7 +213,7 @@ impl<'a> Equilibrium<'a> {
         self.factor.as_ref().expect(NOT_FACTORISED).solve(b);
         if moving {
             for (b, rate) in b[..n].iter_mut().zip(&self.prescribed_rate) {
-                // Held components are zero in a solved right-hand side, free ones have no
+                // Fixed components are zero in a solved right-hand side, free ones have no
                 // prescribed rate.
                 *b += rate;
             }
@@ -264,9 +264,9 @@ pub(super) fn balance(system: &System, load: f64, x: &[f64], mut scale: f64, r: 
     scale
 }
 
-/// Makes −R of the R that [`balance`] left, which `turn` may turn node after node; returns the
-/// residual scaled by the largest force. Newton's method satisfies constraints that are linear in q
-/// to round-off at once, and lengths as soon as its increments vanish: they do not count.
+/// Negates the R that [`balance`] left; `turn` may then turn it node by node. Returns the residual
+/// scaled by the largest force. Constraints do not count: Newton's method satisfies those that are
+/// linear in q to round-off at once, and lengths as soon as its increments vanish.
 #[inline(always)]
 pub(super) fn negate(system: &System, scale: f64, r: &mut [f64], mut turn: impl FnMut(&mut [f64; 4])) -> f64 {
     let (force, gaps) = r.split_at_mut(system.coordinates());
@@ -294,7 +294,7 @@ pub(super) fn size(system: &System, increment: &[f64]) -> f64 {
     largest.size()
 }
 
-/// The largest of many nodes' numbers, those of a node in units of their own.
+/// The largest of the numbers of many nodes, each component in a unit of its own.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Largest {
     units: Lanes,
@@ -303,13 +303,13 @@ pub(super) struct Largest {
 }
 
 impl Largest {
-    /// Of forces \[N\], and of what works on gradients per beam length.
+    /// For forces \[N\]; those on gradients are divided by the beam length.
     pub fn force(system: &System) -> Self {
         let inverse = 1.0 / system.length();
         Self::new([1.0, 1.0, inverse, inverse])
     }
 
-    /// Of changes of positions in beam lengths, and of gradients.
+    /// For changes of positions, in beam lengths, and of gradients.
     pub fn change(system: &System) -> Self {
         let inverse = 1.0 / system.length();
         Self::new([inverse, inverse, 1.0, 1.0])
@@ -324,7 +324,7 @@ impl Largest {
     pub fn see(&mut self, node: &[f64; 4]) {
         let sizes = (Lanes::new(*node) * self.units).abs();
         self.sizes = sizes.fast_max(self.sizes);
-        // Of ∞ and NaN a NaN is left, which a maximum may drop.
+        // Times zero, ∞ and NaN give NaN, which a maximum might drop.
         self.not_finite += sizes * Lanes::ZERO;
     }
 

@@ -1,7 +1,7 @@
 //! Newton's method, which knows nothing of loads or time.
 //!
 //! Convergence is judged by the increment in a scaled norm, which is what the user's accuracy
-//! means, and by the scaled residual, which catches a tangent that lies; increments below the
+//! refers to, and by the scaled residual, which reveals a wrong tangent. Increments below the
 //! tolerance that no longer shrink are the round-off of the forces, which then balance as well as
 //! they can. Because convergence is quadratic, an increment δ_k with contraction Θ =
 //! |δ_k|/|δ_{k−1}| leaves an error of about Θ² |δ_k|; iteration stops when that is below the
@@ -14,7 +14,7 @@ use crate::linear::Singular;
 /// A nonlinear system of equations.
 pub trait Equations {
     /// Writes the Newton increment at `x` to `increment` and returns the scaled residual at `x`.
-    /// The tangent may take account of the iterate before.
+    /// The tangent may use the iterate before.
     ///
     /// # Errors
     /// [`Singular`] where the tangent has no inverse.
@@ -98,20 +98,21 @@ pub enum Failure {
     /// that continues the path.
     #[error("the solution lies {turn:.2} rad from where the path's tangents lead, perhaps on another branch")]
     OtherBranch {
-        /// Largest turn of a node between solution and prediction \[rad\].
+        /// Largest turn of a node between solution and prediction, or turn that the path's tangents
+        /// do not explain, if that is larger \[rad\].
         turn: f64,
     },
-    /// A node's gradient has shrunk so far that the beam is no beam there.
+    /// A node's gradient has shrunk so far that the beam model no longer holds there.
     #[error(
         "the beam is crushed: |r'|, its length against the stress-free one, is down to {stretch:.2} at a node"
     )]
     Crushed {
-        /// |r'| there; 0 where it has turned about.
+        /// |r'| there; 0 where it has reversed.
         stretch: f64,
         /// The node.
         node: usize,
     },
-    /// The way of the step leads through an obstacle, or into it too far for its force to be seen.
+    /// The path of the step leads through an obstacle, or into it too far for its force to be seen.
     #[error("the step would carry the beam through the obstacle of contact {}", contact + 1)]
     Crossed {
         /// Number of the contact.
@@ -155,12 +156,12 @@ pub enum Failure {
     },
 }
 
-/// Increments that no longer shrink count as converged below this size: what is left is round-off.
+/// Increments that no longer shrink count as converged below this size: they are round-off.
 const ROUND_OFF: f64 = 1e-6;
 
-/// Iterates from `x`, which receives the solution; `start` is from where that was predicted and by
-/// which increment: the first tangent is extrapolated from it. `record` receives what happened,
-/// also on failure.
+/// Iterates from `x`, which receives the solution. `start` holds the state and the increment from
+/// which `x` was predicted; the first tangent is extrapolated from them. `record` receives the
+/// course of the iteration, also on failure.
 ///
 /// # Errors
 /// [`Failure`]; `x` is then meaningless.
@@ -212,8 +213,8 @@ pub fn solve(
     Err(Failure::TooSlow { iterations: settings.max_iterations, last })
 }
 
-/// |r'| at a node below which no section stands any more. Green's strain gives a force even to a beam that is compressed
-/// to a point and through it; it has long lost any meaning there.
+/// |r'| at a node below which the beam counts as crushed. With Green's strain even a beam that is
+/// compressed to a point and beyond has a force, which has long lost any meaning there.
 const CRUSHED: f64 = 0.05;
 
 /// Refuses coordinates in which a node's gradient has all but vanished.
@@ -228,7 +229,7 @@ pub fn not_crushed(q: &[f64]) -> Result<(), Failure> {
     }
 }
 
-/// Refuses a step from `before` to `q` that turns a node's gradient about, or ends where it has all
+/// Refuses a step from `before` to `q` that reverses a node's gradient, or ends where it has all
 /// but vanished.
 ///
 /// # Errors

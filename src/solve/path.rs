@@ -1,4 +1,4 @@
-//! Following a path of equilibria: predictor, step control, and what is noticed on the way.
+//! Following a path of equilibria: predictor, step control, and the detection of instabilities.
 //!
 //! Points of the path are functions of a parameter t, the load factor or the arc length. The next
 //! point is predicted by going on along the path's tangent, which costs one substitution, and
@@ -7,31 +7,32 @@
 //! for slender beams whatever their size. The predictor errs by O(h²), so that the step for a
 //! wanted turn follows at once. A step whose corrector turns too far is redone smaller even though
 //! it converged: a solution that far from the prediction may lie on another branch. If already the
-//! first correction is that large the step is refused before it is followed, and the correction
-//! tells how much shorter the next one is to be.
+//! first correction is that large, the step is refused before it is followed, and the correction
+//! tells how much shorter the next one has to be.
 //!
 //! States are moved along tangents and increments with finite turns ([`super::retraction`]), so
-//! that a step may turn a tip by a whole turn: a straight cantilever takes one step and three
-//! iterations to a full circle, where increments that are added allow steps of 0.8 rad and take
-//! nine and thirty-eight.
+//! that one step may turn a tip by a whole turn: a straight cantilever takes one step and three
+//! iterations to a full circle. Increments that are added would allow steps of 0.8 rad and take
+//! nine of them.
 //!
 //! A step is redone, too, if the tangents at its two ends do not explain it. On a smooth path the
 //! trapezoidal rule for the angles of the nodes, φ₁ ≈ φ₀ + ½h (φ̇₀ + φ̇₁), errs by O(h³) and thus
-//! by a fraction of the corrector's own O(h²), or of the step's turn where the corrector has little
-//! left to do. A step to another branch misses it by all of the jump. Twelve thousand random
-//! cantilevers end where two hundred small steps end. Two of ten thousand do not if few cable
-//! elements with full quadrature lock (four of them, EA L²/EI of 2·10⁶ and 7·10⁶): such meshes have
-//! branches of their own within a step.
+//! by a fraction of the corrector's own O(h²), or of the step's turn where the corrector turns
+//! little. A step to another branch differs from the rule by the whole jump. With this check twelve
+//! thousand random cantilevers end where two hundred small steps end. Only a mesh of few cable
+//! elements that locks under full quadrature may still fail, because it has branches of its own
+//! within a step.
 //!
 //! A step that passes no limit point and yet ends in an unstable equilibrium is redone smaller too,
-//! and so is one that ends opposite to where it was to go. The path of an imperfect column bends
-//! away from its critical load and stays stable; long steps, of which no corrector turns far, end
-//! on the unstable path beside it, or on the branch that bends to the other side. Only where ever
-//! smaller steps lose stability as well does the path itself, and it goes on with a warning.
+//! and so is one that turns the nodes against the prediction. The path of an imperfect column bends
+//! away from its critical load and stays stable. A long step may end on the unstable path beside
+//! it, or on the branch that bends to the other side, although its corrector turns little. Only
+//! where ever smaller steps lose stability as well is the path itself unstable; it is then followed
+//! further, with a warning.
 //!
-//! Polynomials through the last points, with and without the tangents there, were tried: their
-//! corrections are smaller, but the first steps, which find no past to extrapolate, decide, and
-//! Newton's method takes as many iterations a step.
+//! Predictors by polynomials through the last points, with and without the tangents there, were
+//! rejected: their corrections are smaller, but Newton's method takes as many iterations a step,
+//! and the first steps, which have no past to extrapolate, decide on the cost.
 
 use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
 use super::newton::{self, Failure, Iterations, Settings};
@@ -57,7 +58,7 @@ pub struct Point {
     pub rate: Vec<f64>,
 }
 
-/// By what the path is parametrised.
+/// The parameter of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// The load factor, which is prescribed.
@@ -77,32 +78,34 @@ const UNEXPLAINED_PART: f64 = 0.5;
 /// Unexplained turn that is never refused \[rad\]: near an inflection of the path the corrector's
 /// own turn vanishes.
 const UNEXPLAINED_TURN: f64 = 0.02;
-/// The same as a part of the step's predicted turn: of a whole turn as much as a corrector may
-/// turn.
+/// The same as a part of the step's predicted turn: for a whole turn as much as
+/// [`UNEXPLAINED_PART`] allows the wanted turn of the corrector.
 const UNEXPLAINED_OF_STEP: f64 = 0.02;
-/// Predicted turn of any node in one step \[rad\], with finite turns and with increments that are
-/// added.
+/// Largest predicted turn of any node in one step \[rad\], with finite turns and with increments
+/// that are added.
 const LARGEST_STEP: (f64, f64) = (7.0, 0.8);
-/// The same where the way between two points counts, as it does for contacts and for springs that
-/// are wound up.
+/// The same where the path between two points matters, as it does for contacts and for torsion
+/// springs.
 const BY_SMALL_STEPS: f64 = 0.5;
 /// A corrector that turns no node by more than this, and by less than was predicted, stays on its
 /// side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
-/// A step without a count of unstable directions is looked at between its ends where it turns no
-/// node by more than this \[rad\], and in how many parts: what is bent keeps to its side.
+/// A step without a count of unstable directions is also checked between its ends, if it turns no
+/// node by more than this \[rad\]: a beam that is bent more keeps to its side of a bifurcation.
 const STRAIGHT: f64 = 0.1;
+/// Number of parts of such a step at whose ends it is checked.
 const BETWEEN: u32 = 5;
-/// Most trials for the length of a step that ends where it is told to: halving alone needs as many
-/// as a number has digits.
+/// Most trials for the length of a step that must end at a target: halving alone needs as many as a
+/// number has binary digits.
 const MOST_TRIALS: usize = 60;
-/// How many times what was wanted such a step may miss where shorter ones change nothing.
+/// Such a step may miss its target by this many times the tolerance where shorter steps change
+/// nothing.
 const ROUND_OFFS: f64 = 1e4;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
-/// A step of this size in which stability is lost is believed. The knee of an imperfect path is
-/// about as wide as the imperfection to the power of 2/3 (Koiter), which leaves it to imperfections
-/// of 1e-7.
+/// A step of this size in which stability is lost is accepted. The knee of an imperfect path is
+/// about as wide as the imperfection to the power of 2/3 (Koiter), so that only knees of
+/// imperfections below 1e-7 are mistaken for bifurcations.
 const BELIEVED_STEP: f64 = 1e-5;
 
 /// Why a path could not be followed.
@@ -127,7 +130,8 @@ pub struct Path<'e, 'a> {
     points: Vec<Point>,
     step: f64,
     first_step: f64,
-    /// A doubtful equilibrium ahead, by the shortest step that led to one.
+    /// A doubtful equilibrium ahead, from the shortest step that led to one, with its corrector's
+    /// turn.
     crossing: Option<(Point, f64)>,
     /// Attempted steps so far.
     pub history: Vec<StepRecord>,
@@ -195,7 +199,7 @@ impl<'e, 'a> Path<'e, 'a> {
         self.step = self.step.min(largest);
     }
 
-    /// Takes one step to a new equilibrium, not beyond the parameter `end`, halving it as often as
+    /// Takes one step to a new equilibrium, not beyond the parameter `end`, shortened as often as
     /// needed.
     ///
     /// # Errors
@@ -265,7 +269,8 @@ impl<'e, 'a> Path<'e, 'a> {
                     if self.step >= SMALLEST_STEP * self.first_step {
                         continue;
                     }
-                    // Close to the singular tangent nothing may converge that does beyond it.
+                    // Close to a singular tangent no step may converge, although the doubtful one
+                    // beyond it did.
                     match self.crossing.take() {
                         Some((point, turn)) if point.parameter > here => {
                             self.step = point.parameter - here;
@@ -298,7 +303,7 @@ impl<'e, 'a> Path<'e, 'a> {
         let along = |rate: &[f64]| rate.last().is_some_and(|load| *load > 0.0);
         let lost = match (last.unstable, point.unstable) {
             (Some(before), Some(after)) => after > before,
-            // Under follower loads the determinant is all that tells.
+            // Under follower loads only the determinant tells of stability.
             _ => last.negative.is_some() && point.negative.is_some() && last.negative != point.negative,
         };
         lost && along(&last.rate) == along(&point.rate)
@@ -315,8 +320,8 @@ impl<'e, 'a> Path<'e, 'a> {
         self.parameter == Parameter::Load && along < 0.0
     }
 
-    /// Whether the determinant changes its sign twice on the way to a point, where it is all that
-    /// tells of stability: at several states between.
+    /// Whether the determinant changes its sign twice on the way to a point, where it alone tells
+    /// of stability. It is evaluated at several states between.
     fn crosses_twice(&mut self, point: &Point) -> bool {
         let last = self.last().clone();
         let bent = self.turn(&point.x, &last.x) >= STRAIGHT;
@@ -332,12 +337,12 @@ impl<'e, 'a> Path<'e, 'a> {
             self.equilibrium.linearize(load, &x, None, &mut scratch, &mut rate).is_err()
                 || self.equilibrium.determinant_is_negative() != last.negative
         });
-        // What was factorised last belongs to the point.
+        // The last factorisation must be that of the point.
         differs || self.equilibrium.linearize(point.load, &point.x, None, &mut scratch, &mut rate).is_err()
     }
 
-    /// Stability at the point itself: near a critical load what the last increment still changed
-    /// decides over the sign.
+    /// Determines stability at the point itself: near a critical load the last increment may still
+    /// have changed the sign.
     fn judge_again(&mut self, point: &mut Point) {
         let mut scratch = vec![0.0; point.x.len()];
         let mut rate = scratch.clone();
@@ -436,8 +441,8 @@ impl<'e, 'a> Path<'e, 'a> {
         turns(&a[..n], &b[..n]).fold(0.0, f64::max)
     }
 
-    /// Largest angle between a gradient of `to` and where the trapezoidal rule leads from `from` by
-    /// the turning rates at both; 0 where one is unknown.
+    /// Largest angle between a gradient of `to` and the one to which the trapezoidal rule leads
+    /// from `from`, with the turning rates at both; 0 where one is unknown.
     fn unexplained(&self, from: &Point, to: &Point) -> f64 {
         let half = 0.5 * (to.parameter - from.parameter);
         let n = self.equilibrium.system().coordinates();
@@ -546,7 +551,7 @@ impl<'e, 'a> Path<'e, 'a> {
         Ok((point, turn))
     }
 
-    /// Refuses a step whose way leads through an obstacle: the cubic with the rates at both ends.
+    /// Refuses a step that leads through an obstacle, on the cubic with the rates at both ends.
     fn not_crossed(&self, before: &Point, point: &Point) -> Result<(), Failure> {
         let system = self.equilibrium.system();
         if !system.has_contacts() {
@@ -574,13 +579,13 @@ impl<'e, 'a> Path<'e, 'a> {
         self.equilibrium.system().place_of(4 * node)
     }
 
-    /// Takes the last step anew, so much shorter that `miss` of its end vanishes to within `near`;
-    /// it must have opposite signs at both ends of the step (the secant method with halved ends,
-    /// known as Illinois).
+    /// Shortens the last step until `miss` of its end vanishes to within `near`, by the secant
+    /// method with halved ends (known as Illinois). `miss` must have opposite signs at both ends of
+    /// the step.
     ///
     /// # Errors
-    /// [`NoStep`] where a shorter step does not converge, or leads to another branch on which it
-    /// does not vanish.
+    /// [`NoStep`] where a shorter step does not converge, or leads to another branch on which
+    /// `miss` does not vanish.
     pub fn end_where(&mut self, miss: impl Fn(&Point) -> f64, near: f64) -> Result<&Point, NoStep> {
         let [.., before, point] = &self.points[..] else { return Ok(self.last()) };
         let mut low = (0.0, miss(before));
@@ -630,8 +635,9 @@ impl<'e, 'a> Path<'e, 'a> {
         let [.., a, b] = &self.points[..] else { return None };
         let share = (load - a.load) / (b.load - a.load);
         let mut x: Vec<f64> = a.x.iter().zip(&b.x).map(|(a, b)| a + share * (b - a)).collect();
-        // Long steps are not straight: they go along the tangent at the first, and of what that
-        // misses the second by a part that grows as its error does.
+        // A long step is not straight: the state follows the tangent at the first point, corrected
+        // by a part of the tangent's miss at the second that grows as the square of the length,
+        // like the error.
         if self.turn(&a.x, &b.x) > LARGEST_STEP.1 {
             let led = |h: f64| {
                 let increment: Vec<f64> = a.rate[..a.x.len()].iter().map(|rate| h * rate).collect();

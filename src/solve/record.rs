@@ -1,4 +1,4 @@
-//! What solvers tell of their way: attempted steps, counts of work, what contacts did.
+//! Records that solvers leave: attempted steps, counts of work, impulses of contacts.
 
 use serde::Serialize;
 
@@ -36,11 +36,11 @@ pub struct Statistics {
     pub factorizations: usize,
 }
 
-/// What a contact did to a beam from its beginning to its end; without friction.
+/// The impulse of a contact on a beam from its beginning to its end, without friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ContactImpulse {
     /// ∫ F dt \[N s\].
     pub impulse: [f64; 2],
-    /// The largest \|F\| \[N\] that was seen, at three points of every step and more.
+    /// The largest \|F\| \[N\] at three points of every step.
     pub largest_force: f64,
 }

@@ -1,10 +1,10 @@
-//! Equilibria of what has no stiffness before it is loaded: strings and cables, and beams that hang
-//! on hinges.
+//! Equilibria of structures that have no stiffness before they are loaded: strings and cables, and
+//! beams that hang on hinges.
 //!
 //! A slack string or a pendulum under ever so small a load takes a shape far from its stress-free
-//! one, so that no path of load steps leads there. It is found as the rest of a creeping motion, σ
-//! D ẋ = −R(x), by implicit Euler steps (pseudo-transient continuation; Kelley & Keyes, *SIAM J.
-//! Numer. Anal.* 35, 1998, 508–523):
+//! one, so that no path of load steps leads there. The equilibrium is found as the end of a
+//! creeping motion, σ D ẋ = −R(x), by implicit Euler steps (pseudo-transient continuation; Kelley &
+//! Keyes, *SIAM J. Numer. Anal.* 35, 1998, 508–523):
 //!
 //! ```text
 //! (K(x) + σ D) δ = −R(x),   σ ← σ |δ|/δ_wanted
@@ -13,9 +13,8 @@
 //! With falling increments σ vanishes and the iteration becomes Newton's. D weighs a node by its
 //! share w of the length, EA/L² (w, w³/10) for position and gradient, as a beam's mass matrix does;
 //! the first σ lets the load move it by some beam lengths. The axial force in K is extrapolated
-//! from the iterate before ([`crate::effect`]). A slack cable of 24 elements whose EA is 100 to
-//! 10,000 times its weight takes 17 iterations; without the extrapolation they grow from 18 to 450,
-//! and with EA of 100,000 times the weight they are 600 anyway.
+//! from the iterate before ([`crate::effect`]). Otherwise the iterations of a slack cable would
+//! grow with its EA: to 450, in place of 17, where EA is 10,000 times the weight.
 
 use super::equilibrium::Equilibrium;
 use super::newton::{Failure, Iterations, Settings};
@@ -24,7 +23,8 @@ use crate::system::System;
 
 /// Largest change of an iterate: positions in beam lengths, gradients as they are.
 const LARGEST: f64 = 0.3;
-/// Smallest part of a change that may be clear where all of it leads through an obstacle.
+/// Smallest clear part of a change that is still taken, where the whole would lead through an
+/// obstacle.
 const SHORTEST: f64 = 1e-3;
 /// σ changes at most by these factors in an iteration.
 const LIMITS: (f64, f64) = (0.3, 4.0);
@@ -32,13 +32,14 @@ const LIMITS: (f64, f64) = (0.3, 4.0);
 const WANTED: f64 = 0.1;
 /// σ below which the iteration is Newton's.
 const NONE: f64 = 1e-14;
-/// Part of the first σ below which increments tell how far the equilibrium is.
+/// Part of the first σ below which increments measure the distance from the equilibrium.
 const SETTLED: f64 = 1e-3;
 /// Most iterations.
 const ITERATIONS: usize = 2000;
 
-/// Relaxes `x` to an equilibrium at load factor `load`: a minimum of the energy, or a crest on
-/// which it begins. K + σ D is kept definite, so that every increment leads downhill.
+/// Relaxes `x` to an equilibrium at load factor `load`: a minimum of the energy, or an unstable
+/// equilibrium in which it begins. K + σ D is kept definite, so that every increment leads
+/// downhill.
 ///
 /// # Errors
 /// [`Failure`] where it does not come to rest.
@@ -51,8 +52,8 @@ pub fn relax(
 ) -> Result<(), Failure> {
     let n = equilibrium.system().coordinates();
     let mut increment = vec![0.0; x.len()];
-    // Where supports move together, all moves with them: alone they would fold the cells beside
-    // them back, which nothing unfolds.
+    // Where supports move together, the whole structure moves with them: moving the supports alone
+    // would fold back the adjacent cells, and nothing would unfold these.
     let shared = equilibrium.system().shared_move(load, &x[..n]);
     for node in x[..n].chunks_exact_mut(4) {
         node[0] += shared[0];
@@ -70,7 +71,8 @@ pub fn relax(
         if sigma == 0.0 {
             let (system, (forces, gaps)) = (equilibrium.system(), increment.split_at(n));
             let unbalanced = system.norm(forces);
-            // Where nothing acts there is nowhere to go, and no stiffness that would say so.
+            // Without unbalanced forces `x` is an equilibrium already, and the tangent may be
+            // singular.
             let round_off = system.round_off();
             if unbalanced <= round_off && gaps.iter().all(|gap| gap.abs() <= round_off) {
                 return Ok(());
@@ -107,7 +109,7 @@ pub fn relax(
         change.iter_mut().zip(&increment).for_each(|(change, d)| *change = part * d);
         x.iter_mut().zip(&change).for_each(|(x, d)| *x += d);
         equilibrium.follow_windings(x);
-        // On a crest σ stays as large as what there is unstable.
+        // On an unstable equilibrium σ stays large enough to outweigh the unstable directions.
         let settled = sigma < SETTLED * first || on_a_crest;
         on_a_crest = false;
         if size <= settings.tolerance && settled && residual <= settings.residual_tolerance {
@@ -117,8 +119,8 @@ pub fn relax(
     Err(Failure::TooSlow { iterations: ITERATIONS, last: size })
 }
 
-/// The part of the straight way by `part` of an increment from `q` that does not lead through an
-/// obstacle.
+/// The part of the straight path from `q`, along `part` of an increment, that is clear of
+/// obstacles.
 fn clear(system: &System, q: &[f64], increment: &[f64], part: f64) -> Result<f64, Failure> {
     let moved = |part: f64| -> Vec<f64> { q.iter().zip(increment).map(|(q, d)| q + part * d).collect() };
     let (first, second, end) = (moved(part / 3.0), moved(part / 1.5), moved(part));

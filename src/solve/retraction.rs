@@ -1,27 +1,27 @@
 //! Moving a beam along an increment, with turns that are finite.
 //!
 //! An increment Δq of Newton's method is a tangent vector. Added to the coordinates it stretches
-//! what it turns: a gradient of length 1 turned by φ becomes √(1 + φ²) long, and nothing but ever
-//! smaller steps undoes the error. Here every gradient and every chord from node to node *turns*
-//! instead by the angle that its increment means,
+//! the vectors that it turns: a gradient of length 1 turned by φ becomes √(1 + φ²) long, an error
+//! that only smaller steps could reduce. Here every gradient and every chord from node to node is
+//! *turned* instead by the angle that its increment means,
 //!
 //! ```text
 //! φ = (g × Δg)/|g|²,  g ← (1 + g·Δg/|g|²) R(φ) g        and the same for the chord c with ψ
 //! ```
 //!
-//! and the chords are put one behind the other from where the beam is held. A chord whose ends turn
-//! against it by α = φ₁ − ψ and β = φ₂ − ψ would, with its cubic between them, become longer by
-//! (2α² − αβ + 2β²)/30, and is shortened by that. Between two nodes that are held the chords would
-//! miss the second; what they miss by is distributed along the way. The result differs from q + Δq
-//! in the second order, so that Newton's convergence stays what it is (a retraction, in the
-//! language of Absil, Mahony, Sepulchre, *Optimization Algorithms on Matrix Manifolds*, 2008, ch.
-//! 4), but a straight cantilever is bent into a circle of any angle but for the fourth order of
-//! that of a cell.
+//! and the chords are joined end to end, beginning where the beam is held. If the ends of a chord
+//! turn against it by α = φ₁ − ψ and β = φ₂ − ψ, the cubic between them would become longer by (2α²
+//! − αβ + 2β²)/30, and the chord is shortened by that. Between two fixed nodes the chords would
+//! miss the second; the gap is distributed along the chain. The result differs from q + Δq in the
+//! second order, so that Newton's convergence stays what it is (a retraction, in the language of
+//! Absil, Mahony, Sepulchre, *Optimization Algorithms on Matrix Manifolds*, 2008, ch. 4). Yet a
+//! straight cantilever is bent into a circle of any angle, with an error of the fourth order in the
+//! angle of a cell.
 
 use crate::system::System;
 
-/// Increments that turn no gradient by more are simply added \[rad\]: what that stretches is less
-/// than Newton's method itself leaves.
+/// Increments that turn no gradient by more than this are simply added \[rad\]: the stretch is then
+/// smaller than the error of Newton's method itself.
 const SMALL: f64 = 0.01;
 
 /// No vector shrinks to a smaller part of its length in one increment.
@@ -38,13 +38,13 @@ pub struct Retraction {
 struct Chain {
     /// Its nodes.
     nodes: std::ops::Range<usize>,
-    /// Those of them whose positions are held, or the first one.
+    /// Those of them whose positions are fixed, or the first node if there are none.
     anchors: Vec<usize>,
 }
 
 impl Retraction {
-    /// For `system`. Where constraint rows tie nodes to each other all increments are added: the
-    /// rows are linear.
+    /// The retraction of `system`. Where constraint rows tie nodes to each other all increments are
+    /// simply added, because the rows are linear.
     pub fn new(system: &System) -> Self {
         if system.multipliers() > 0 {
             return Self { chains: Vec::new() };
@@ -62,12 +62,12 @@ impl Retraction {
         Self { chains: system.beams().iter().map(chain).collect() }
     }
 
-    /// Whether anything turns.
+    /// Whether increments turn vectors, and are not simply added.
     pub fn turns(&self) -> bool {
         !self.chains.is_empty()
     }
 
-    /// Moves `x` by `increment`; what follows the coordinates is added.
+    /// Moves `x` by `increment`; the entries behind the coordinates are added.
     pub fn apply(&self, increment: &[f64], x: &mut [f64]) {
         let coordinates = self.chains.last().map_or(0, |chain| 4 * chain.nodes.end);
         let turning = increment[..coordinates].as_chunks::<4>().0;
@@ -92,8 +92,8 @@ impl Chain {
             [x[node][2], x[node][3]] = gradient;
             turns.push(turn);
         }
-        // By how much every node lands beside its linear place, if the chords are put one behind
-        // the other from the first node on.
+        // How far every node lands from its linear place if the chords are joined end to end from
+        // the first node on.
         let mut beside = Vec::with_capacity(self.nodes.len());
         let mut sum = [0.0; 2];
         beside.push(sum);
@@ -111,8 +111,8 @@ impl Chain {
         let at = |node: usize| beside[node - self.nodes.start];
         let (first, last) = (self.anchors[0], self.anchors[self.anchors.len() - 1]);
         for node in self.nodes.clone() {
-            // The two anchors around a node share its error by its distance to them; beyond the
-            // outer ones it is theirs.
+            // Between two anchors the gap is distributed in proportion to the distance; beyond the
+            // outer ones it is that of the nearest.
             let next = self.anchors.partition_point(|anchor| *anchor <= node);
             let (left, right) = match next {
                 0 => (first, first),
@@ -131,8 +131,7 @@ impl Chain {
 /// A vector after its change, stretched and turned, and the angle.
 fn turned([x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> ([f64; 2], f64) {
     let inverse = 1.0 / (x * x + y * y);
-    // Whatever an iterate far from the solution asks for: nothing is turned about by being
-    // compressed.
+    // The bound keeps an iterate far from the solution from compressing a vector until it reverses.
     let stretch = (1.0 + (x * dx + y * dy) * inverse).max(SHORTEST);
     let turn = (x * dy - y * dx) * inverse;
     let (sine, cosine) = turn.sin_cos();

@@ -10,22 +10,23 @@ use crate::model::{ArcLength, Static};
 use crate::solve::{Statistics, StepRecord, Work};
 use crate::system::{System, View};
 
-/// By how much the state at which stability and the path's tangent are judged may miss the
-/// equilibrium, in beam lengths. Far from it, that of Newton's last iterate carries the stress of a
-/// state not yet converged, which in a slender beam is enough to change the signs.
+/// Largest last increment, in beam lengths, with which stability and the path's tangent are judged.
+/// The tangent of Newton's last iterate carries the stress of a state that has not converged yet,
+/// which in a slender beam is enough to change the signs.
 const LAST_INCREMENT: f64 = 1e-6;
 
-/// Largest push that takes a structure from a crest of its energy: positions in beam lengths,
-/// gradients as they are.
+/// Largest perturbation that pushes a structure off an unstable equilibrium: positions in beam
+/// lengths, gradients as they are.
 const PUSH: f64 = 1e-3;
 
-/// Difference of two equilibria that are one, positions in beam lengths, gradients as they are.
+/// Two equilibria that differ by less are the same: positions in beam lengths, gradients as they
+/// are.
 const SAME_SIDE: f64 = 1e-5;
 
-/// By how much a path may miss its target, of the load factor wanted or of a beam length.
+/// By how much a path may miss its target, relative to the wanted load factor or in beam lengths.
 const AT_TARGET: f64 = 1e-12;
 
-/// What a static analysis found.
+/// The results of a static analysis.
 #[derive(Clone, Debug, Default)]
 pub struct Solution {
     /// (load factor, coordinates and scaled multipliers) of the recorded equilibria, the
@@ -33,23 +34,23 @@ pub struct Solution {
     pub states: Vec<(f64, Vec<f64>)>,
     /// The internal variables of each of them.
     pub variables: Vec<InternalVariables>,
-    /// What actuators have put in until each of them.
+    /// Work of the actuators up to each of them.
     pub work: Vec<Work>,
     /// Attempted steps.
     pub history: Vec<StepRecord>,
     /// Instabilities met.
     pub events: Vec<StabilityChange>,
-    /// Where a mechanism that loads press, at its start, is unstable in more directions than it can
-    /// move in freely.
+    /// A mechanism under its loads that, before it was relaxed, had more unstable directions than
+    /// free motions.
     pub pressed: Option<UnstableMechanism>,
-    /// Where a mechanism first stood on a crest of its energy, from which it comes to rest in one
-    /// equilibrium or in another.
+    /// Load factor at which a mechanism first reached an unstable equilibrium, from which it comes
+    /// to rest in one stable equilibrium or in another.
     pub crest: Option<f64>,
     /// Counts.
     pub statistics: Statistics,
     /// Why the path ends before its target, if it does.
     pub stuck: Option<NoStep>,
-    /// Whether the path has a target and as many points as it may have, but has not reached it.
+    /// Whether the path has reached its largest number of points before its target.
     pub out_of_points: bool,
 }
 
@@ -80,8 +81,8 @@ pub struct StabilityChange {
     pub after: usize,
 }
 
-/// A mechanism whose beams buckle where they are before it moves: to which equilibrium it then
-/// comes to rest is left to the smallest of causes.
+/// A mechanism whose beams buckle before it moves: the smallest disturbance then decides in which
+/// equilibrium it comes to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnstableMechanism {
     /// Load factor at which it was relaxed.
@@ -92,7 +93,7 @@ pub struct UnstableMechanism {
     pub free: usize,
 }
 
-/// Where a path ends.
+/// The target at which a path ends.
 pub struct Target<'a> {
     /// The settings of the path.
     pub arc: &'a ArcLength,
@@ -101,7 +102,7 @@ pub struct Target<'a> {
 }
 
 impl Target<'_> {
-    /// What may end the path.
+    /// The conditions that may end the path.
     fn end_conditions(&self) -> Vec<EndCondition<'_>> {
         let load = self.arc.until_load.map(EndCondition::Load);
         let probe = self.probe.as_ref().map(|(view, axis, value)| EndCondition::Probe(view, *axis, *value));
@@ -109,11 +110,11 @@ impl Target<'_> {
     }
 }
 
-/// What ends a path where it vanishes.
+/// A quantity at whose zero a path ends.
 enum EndCondition<'a> {
-    /// The load factor, against this one.
+    /// The load factor less this one.
     Load(f64),
-    /// Of a probe a component of the position \[m\], against this value.
+    /// A component of a probe's position less this value \[m\].
     Probe(&'a View, usize, f64),
 }
 
@@ -130,7 +131,7 @@ impl EndCondition<'_> {
         (self.of(before) < 0.0) != (self.of(after) < 0.0) || self.of(after) == 0.0
     }
 
-    /// Ends the path there.
+    /// Ends the path where it vanishes.
     fn end(&self, path: &mut Path<'_, '_>, system: &System) -> Result<Point, NoStep> {
         let near = match self {
             Self::Load(until) => AT_TARGET * until.abs(),
@@ -138,14 +139,14 @@ impl EndCondition<'_> {
         };
         let mut point = path.end_where(|point| self.of(point), near)?.clone();
         if let Self::Load(until) = self {
-            // That which is missing to the last digit leaves the equilibrium what it is.
+            // The remaining miss, in the last digit, does not change the equilibrium.
             point.load = *until;
         }
         Ok(point)
     }
 }
 
-/// Whether to go on.
+/// Called with (load factor, step, counts) after every step; returns whether to go on.
 pub type Observer<'o> = &'o mut dyn FnMut(f64, f64, &Statistics) -> bool;
 
 /// Solves for the full loads by adaptive load steps, or follows the path by arc length to `target`.
@@ -210,7 +211,7 @@ fn along_load(
             break Ok(());
         }
     };
-    // Where the path ends early, its end is worth a record too.
+    // Where the path ends early, its end is recorded too.
     let last = path.last();
     if solution.states.last().is_none_or(|(load, _)| *load != last.load) {
         solution.record(path.equilibrium, last.load, &last.x, work);
@@ -242,7 +243,8 @@ fn relaxed(
         let mut record = Iterations::default();
         let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
         if outcome.is_ok() && unstable(equilibrium, load, &x) > 0 {
-            // On a crest, such as a pendulum that stands on its head.
+            // An unstable equilibrium, such as a pendulum that stands on its head: both sides are
+            // tried.
             let mut other = x.clone();
             push(equilibrium, 1.0, &mut x);
             push(equilibrium, -1.0, &mut other);
@@ -289,8 +291,8 @@ fn unstable(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> usize {
     linearized.ok().and_then(|_| equilibrium.unstable_directions()).unwrap_or(0)
 }
 
-/// Moves every free coordinate a little and unevenly, the same in every run, to one side or the
-/// other.
+/// Perturbs every free coordinate a little and unevenly, in the same way in every run, to one side
+/// or the other.
 fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
     let system = equilibrium.system();
     let mut push: Vec<f64> = (1..=system.coordinates())
@@ -347,7 +349,7 @@ fn along_arc(
             }
             Ok(point) => {
                 let point = point.clone();
-                // Of two targets within a step the one that comes first.
+                // Of two targets within a step the one that comes first counts.
                 let (mut last, mut reached) = (Ok(point), false);
                 for miss in target.end_conditions() {
                     if let Ok(point) = &last

@@ -1,14 +1,15 @@
 //! The work of actuators along a path of equilibria.
 //!
 //! What actuators put in as the load factor grows, W = ∫ P(λ, q(λ)) dλ with P that of
-//! [`System::actuators_rate`], depends on the whole path. Its steps are long where the equations
-//! converge well, so that between their ends P is looked at until Simpson's rule no longer changes.
+//! [`System::actuators_rate`], depends on the whole path. Where the equations converge well its
+//! steps are long, so that P is also evaluated between their ends, until Simpson's rule no longer
+//! changes.
 
 use super::path::Path;
 use crate::system::System;
 
-/// Change of Simpson's rule by a halving that ends the halvings, against the work that there would
-/// be if nothing gave way.
+/// Halving ends where it changes Simpson's rule by less than this, relative to the work on rigid
+/// beams.
 const CHANGE: f64 = 1e-7;
 /// Most halvings.
 const HALVINGS: usize = 8;
@@ -16,13 +17,13 @@ const HALVINGS: usize = 8;
 /// Work so far, with its estimated error.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Work {
-    /// \[J\]
+    /// The work \[J\].
     pub value: f64,
-    /// \[J\]
+    /// Its estimated error \[J\].
     pub error: f64,
-    /// What it would be if nothing gave way \[J\].
+    /// The work if the beams were rigid \[J\].
     pub size: f64,
-    /// dP/dλ in the last step between whose ends nothing is known.
+    /// dP/dλ in the last step that was integrated by the trapezoidal rule.
     slope: Option<f64>,
 }
 
@@ -30,7 +31,7 @@ pub struct Work {
 type Sample = (f64, f64);
 
 impl Work {
-    /// Adds that of the path's last step along the load factor.
+    /// Adds the work of the path's last step along the load factor.
     pub fn add_step(&mut self, path: &mut Path<'_, '_>) {
         let system = path.equilibrium.system();
         let Some([a, b]) = path.last_two().filter(|_| system.has_actuators()) else { return };
@@ -42,7 +43,8 @@ impl Work {
         }
     }
 
-    /// Adds that between two states of which nothing between is known, by the trapezoidal rule.
+    /// Adds the work between two states by the trapezoidal rule, where no state between them is
+    /// known.
     pub fn add_states(&mut self, system: &System, (from, x): (f64, &[f64]), (to, y): (f64, &[f64])) {
         if system.has_actuators() {
             self.size += unyielding(system, from, to);
@@ -82,7 +84,7 @@ fn sample(system: &System, load: f64, x: &[f64]) -> Sample {
     (load, system.actuators_rate(load, &x[..system.coordinates()]))
 }
 
-/// The work from one load factor to another if nothing gave way.
+/// The work from one load factor to another if the beams were rigid.
 fn unyielding(system: &System, from: f64, to: f64) -> f64 {
     0.5 * (system.actuators_size(from) + system.actuators_size(to)) * (to - from).abs()
 }

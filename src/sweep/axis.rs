@@ -1,4 +1,4 @@
-//! What varies in a sweep, as the command line and lists write it.
+//! The values that vary in a sweep, as the command line and lists write them.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub struct Axis {
     pub lines: Lines,
 }
 
-/// A file, and a line of it for each value; of no weight in comparisons.
+/// A file, and a line of it for each value; comparisons ignore it.
 #[derive(Clone, Debug, Default)]
 pub struct Lines(Option<(PathBuf, Vec<u64>)>);
 
@@ -164,7 +164,7 @@ fn range(start: &str, stop: &str, count: &str, logarithmic: bool) -> Result<Vec<
         } else if i == count - 1 {
             to
         } else if logarithmic {
-            // A ratio of numbers that are too far apart has no number.
+            // The ratio of numbers that are too far apart overflows or underflows.
             match (to / from).powf(t) {
                 power if power.is_normal() => from * power,
                 _ => from.signum() * from.abs().powf(1.0 - t) * to.abs().powf(t),
@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(values("a=-1.7e308:1.7e308:2"), ["-1.7e308", "1.7e308"]);
     }
 
-    /// Both ends are what they are, however far apart, and as short as they may be.
+    /// Ranges have exactly the given ends, however far apart, written as short as possible.
     #[test]
     fn ranges_end_where_they_are_told_to() {
         assert_eq!(values("a=0.1:10:3:log"), ["0.1", "1", "10"]);
@@ -235,7 +235,7 @@ mod tests {
         let line = |line: usize| Some(format!("{}:{line}", path.display()));
         assert_eq!(places, [line(4), line(5), None]);
         assert_eq!(Axis::parse("a=1,2").unwrap().lines.place(0), None);
-        // Where values come from makes no other sweep.
+        // A sweep is the same wherever its values come from.
         assert_eq!(axis, Axis { lines: Lines::default(), ..axis.clone() });
         std::fs::write(&path, "a.b,c\n").unwrap();
         let empty = Axis::list(&path).unwrap_err().to_string();

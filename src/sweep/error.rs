@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use crate::output::OutputError;
 use crate::scene::SceneError;
 
-/// Why a sweep cannot be done, or not be joined. A run that fails is no reason: it is recorded.
+/// Why a sweep cannot be done, or its runs not be joined. A run that fails is no reason: it is
+/// recorded.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 #[non_exhaustive]
 pub enum SweepError {
@@ -63,16 +64,16 @@ pub enum SweepError {
     #[error("{} holds another sweep: {difference}", directory.display())]
     #[diagnostic(help("name another directory with `-o DIR`, or remove that sweep's files"))]
     Another {
-        /// The directory.
+        /// Directory of the sweep.
         directory: PathBuf,
         /// What differs.
         difference: String,
     },
-    /// The directory holds journals, and nothing says of what.
+    /// The directory holds journals, but no manifest that says of which sweep.
     #[error("{} holds journals of a sweep whose manifest {} is missing", directory.display(), super::MANIFEST)]
     #[diagnostic(help("name another directory with `-o DIR`, or remove the journals"))]
     Stray {
-        /// The directory.
+        /// Directory of the sweep.
         directory: PathBuf,
     },
     /// The manifest cannot be read or written.
@@ -81,7 +82,7 @@ pub enum SweepError {
     Manifest {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Cause of the failure.
         reason: String,
     },
     /// Another process computes the same part.
@@ -106,11 +107,11 @@ pub enum SweepError {
     #[error("cannot start the threads of the sweep")]
     #[diagnostic(help("ask for fewer with --threads"))]
     Threads(#[from] rayon::ThreadPoolBuildError),
-    /// Whoever watched wanted it to end.
+    /// The observer stopped the sweep.
     #[error("interrupted; {finished} of {runs} runs are finished and recorded in {}", directory.display())]
     #[diagnostic(help("call the same command again to go on: it repeats no finished run"))]
     Interrupted {
-        /// The directory.
+        /// Directory of the sweep.
         directory: PathBuf,
         /// Runs of this part that are finished.
         finished: usize,
@@ -126,13 +127,13 @@ pub enum SweepError {
         super::MANIFEST
     ))]
     Missing {
-        /// The directory.
+        /// Directory of the sweep.
         directory: PathBuf,
-        /// How many.
+        /// Number of missing runs.
         count: usize,
-        /// Of how many.
+        /// Number of all runs.
         runs: usize,
-        /// Their numbers.
+        /// Numbers of the missing runs.
         missing: String,
     },
     /// The table cannot be written.

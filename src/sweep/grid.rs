@@ -60,7 +60,7 @@ impl Grid {
         chosen
     }
 
-    /// What the paths are set to in `run` (from 1), in their order.
+    /// The texts to which the paths are set in `run` (from 1), in their order.
     pub fn values(&self, run: usize) -> Vec<&str> {
         self.chosen(run)
             .into_iter()

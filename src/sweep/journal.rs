@@ -1,4 +1,4 @@
-//! Finished runs, one line each, only ever appended to.
+//! The journal of finished runs: one line each, only ever appended to.
 //!
 //! A record counts when its line is complete and legal; whatever else a process that was killed has
 //! left is passed over.
@@ -28,7 +28,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// As the table writes it.
+    /// The word for it in the table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Solved => "solved",
@@ -98,8 +98,8 @@ impl Journal {
         Ok(Self { path, file, length })
     }
 
-    /// Appends a record. What a failing write leaves is removed, so that the next one begins a
-    /// line.
+    /// Appends a record. The remains of a failed write are removed, so that the next record begins
+    /// a line.
     pub fn append(&mut self, record: &Record) -> Result<(), SweepError> {
         let write = |file: &mut File| -> io::Result<usize> {
             let mut line = serde_json::to_vec(record)?;
@@ -113,7 +113,7 @@ impl Journal {
                 Ok(())
             }
             Err(source) => {
-                // If this fails too, the next process that opens the journal does it.
+                // If this fails too, the next process that opens the journal removes them.
                 let _ = self.file.set_len(self.length);
                 Err(SweepError::Journal { path: self.path.clone(), source })
             }
@@ -250,7 +250,7 @@ mod tests {
         assert_eq!(paths(folder.path()).unwrap(), expected);
     }
 
-    /// What is torn is longer than the parts in which its beginning is looked for.
+    /// The torn line is longer than the blocks in which its beginning is searched.
     #[test]
     fn a_long_torn_line_is_removed() {
         let folder = tempfile::tempdir().unwrap();

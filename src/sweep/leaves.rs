@@ -1,5 +1,5 @@
-//! Values by name, in the order in which they were written: a summary becomes columns whatever its
-//! fields are.
+//! Flattens a summary, whatever its fields are, into values with names, in the order in which they
+//! were written.
 
 use std::fmt;
 
@@ -7,9 +7,9 @@ use serde_json::Value;
 
 use crate::output::exact;
 
-/// Calls `see` with the path of every value in `value` that is neither null nor made of others,
-/// keys joined by dots, entries of lists counted from 1, and its text, numbers that are not whole
-/// with 17 significant digits. `path` stands before all of them.
+/// Calls `see` with the path and the text of every value in `value` that is neither null nor made
+/// of others. A path begins with `path`, its keys are joined by dots, and entries of lists are
+/// counted from 1. Numbers that are not whole have 17 significant digits.
 pub(super) fn visit(value: &Value, path: &str, see: &mut dyn FnMut(&str, String)) {
     let below = |key: &dyn fmt::Display| {
         if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }

@@ -1,4 +1,4 @@
-//! What a directory's sweep is, so that no other one is mixed into it.
+//! The description of a directory's sweep, so that no other one is mixed into it.
 
 use std::fs;
 use std::io::{self, Write};
@@ -24,12 +24,12 @@ pub(super) struct Manifest {
     sha256: String,
     /// Overrides that all runs share.
     set: Vec<String>,
-    /// What varies.
+    /// The axes along which the runs vary.
     axes: Vec<Axis>,
 }
 
 impl Manifest {
-    /// Of a sweep of `scene`, to which `set` has been applied.
+    /// The manifest of a sweep of `scene`, to which `set` has been applied.
     pub fn new(scene: &Scene, set: &[String], grid: &Grid) -> Self {
         let digest = Sha256::digest(scene.text().as_bytes());
         Self {
@@ -57,7 +57,7 @@ impl Manifest {
         }
     }
 
-    /// Makes `directory` that of this sweep, or sees that it is.
+    /// Makes `directory` that of this sweep, or checks that it is.
     pub fn claim(&self, directory: &Path) -> Result<(), SweepError> {
         // In this order: whoever writes a journal has written the manifest before.
         let journals = journal::paths(directory)?;
@@ -174,14 +174,14 @@ mod tests {
         assert!(matches!(this.claim(folder.path()), Err(SweepError::Stray { .. })));
     }
 
-    /// Of two that begin a sweep at once, one finds that the other's manifest is its own: so many
-    /// values take so long to write that the other's is there before.
+    /// Of two processes that begin a sweep at once, one finds the other's manifest, which equals
+    /// its own: so many values take so long to write that the other's is there before.
     #[test]
     fn two_may_begin_it_at_once() {
         let folder = tempfile::tempdir().unwrap();
         let (this, ready) = (manifest(1, &[], &["b=1:2:4000"]), folder.path().join("ready"));
         fs::write(&ready, serde_json::to_vec(&this).unwrap()).unwrap();
-        // Whoever writes has seen that there is none.
+        // A process that writes has seen that there is no manifest yet.
         let writes = || {
             let mut files = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path());
             files.any(|path| path.extension().is_some_and(|extension| extension == "part"))
@@ -196,7 +196,7 @@ mod tests {
         });
     }
 
-    /// As any file that this user makes.
+    /// The manifest has the permissions of any file that this user makes.
     #[cfg(unix)]
     #[test]
     fn others_may_read_it() {

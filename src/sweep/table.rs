@@ -24,7 +24,7 @@ fn cells(record: &Record) -> Vec<(String, String)> {
     cells
 }
 
-/// The columns of all results, in an order that keeps the one that each run gives its own.
+/// The columns of all results, in an order that keeps the order of every run's own results.
 #[derive(Default)]
 pub(super) struct Columns(Vec<String>);
 
@@ -90,7 +90,7 @@ impl<'a> SweepTable<'a> {
         Ok(())
     }
 
-    /// Writes what is left.
+    /// Writes the rest to the file.
     pub fn finish(mut self) -> io::Result<()> {
         self.writer.flush()
     }

@@ -1,32 +1,33 @@
-//! The elastic energy of beams that are actuated, and the work of what actuates them.
+//! The elastic energy of actuated beams, and the work of the actuators.
 //!
-//! With the amplitudes a_i of what acts on a beam, ε₀ = Σ a_i ε₀ᵢ, the elastic energy is
+//! If several actuations with the amplitudes a_i act on a beam, ε₀ = Σ a_i ε₀ᵢ, the elastic energy
+//! is
 //!
 //! ```text
 //! ½ ∫ EA (ε − ε₀)² ds = ½ ∫ EA ε² ds − Σ a_i ∫ EA ε₀ᵢ ε ds + ½ EA L ε₀²
 //! ```
 //!
-//! and likewise that of bending. The first term is that of the beam, the terms of the sum are those
-//! by which the actuation acts on its motion. When an amplitude changes, the actuator puts in −∫ N
-//! ε̇₀ ds − ∫ M κ̇₀ ds.
+//! and likewise for bending. The first term is the energy of the beam without actuation, and the
+//! terms of the sum are the potentials by which actuation acts on the motion. When an amplitude
+//! changes, the actuator supplies the power −∫ N ε̇₀ ds − ∫ M κ̇₀ ds.
 
 use super::System;
 use crate::assembly::Amplitude;
 use crate::assembly::Kind;
 use crate::model::Model;
 
-/// The strain or the curvature that a beam would take by itself.
+/// The strains, or the curvatures, that actuations impose on a beam.
 #[derive(Debug)]
 pub(super) struct Actuated {
     beam: usize,
     kind: Kind,
     /// EA L or EI L.
     stiffness: f64,
-    /// ε₀ᵢ or κ₀ᵢ, and its amplitude; none: that of all loads.
+    /// ε₀ᵢ or κ₀ᵢ with its amplitude; `None` stands for the amplitude of all loads without a law.
     own: Vec<(f64, Option<Amplitude>)>,
 }
 
-/// What the model's actuations stand for.
+/// Collects the actuations of the model's parts by beam.
 pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
     let mut all = Vec::new();
     for (index, (beam, part)) in model.beams.iter().zip(&system.beams).enumerate() {
@@ -48,7 +49,7 @@ pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
 }
 
 impl System {
-    /// ε₀ or κ₀, and by how much it grows with the amplitude that all loads without a law have.
+    /// ε₀ or κ₀, and its derivative with respect to the amplitude of all loads without a law.
     fn own(&self, actuated: &Actuated, parameter: f64) -> (f64, f64) {
         actuated.own.iter().fold((0.0, 0.0), |(sum, rate), (value, law)| match law {
             Some(law) => (sum + law.at(parameter) * value, rate),
@@ -56,8 +57,9 @@ impl System {
         })
     }
 
-    /// −∫ EA ε₀ᵢ ε ds or −∫ EI κ₀ᵢ κ ds of those with a law of time and of those without one, the
-    /// former times their amplitudes.
+    /// −∫ EA ε₀ᵢ ε ds or −∫ EI κ₀ᵢ κ ds, relative to the stress-free shape: the sum over actuations
+    /// with a law of time, times their amplitudes, and the sum over those without a law, without
+    /// their amplitude.
     fn coupling(&self, actuated: &Actuated, parameter: f64, q: &[f64]) -> [f64; 2] {
         let of = self
             .terms
@@ -73,8 +75,8 @@ impl System {
         })
     }
 
-    /// What actuation adds to the energies of stretch and of bending \[J\], and the part of it that
-    /// laws of time have put in since the start.
+    /// The terms that actuation adds to the energies of stretch and of bending \[J\], and the part
+    /// of them that actuators with laws of time have supplied since the start.
     pub(super) fn actuation_energy(&self, parameter: f64, q: &[f64]) -> ([f64; 2], f64) {
         let (mut energy, mut put_in) = ([0.0; 2], 0.0);
         for actuated in &self.actuated {
@@ -94,8 +96,9 @@ impl System {
         !self.actuated.is_empty()
     }
 
-    /// What each actuator would put in if nothing gave way, summed: the size of what cancels where
-    /// beams follow their actuators \[J\].
+    /// The scale of [`Self::actuators_rate`] \[J\]: the sum of its terms for beams that do not
+    /// deform at all. Where beams follow their actuators, these terms cancel others of the same
+    /// size.
     pub fn actuators_size(&self, load: f64) -> f64 {
         let size = |actuated: &Actuated| {
             let (own, rate) = self.own(actuated, load);
@@ -104,8 +107,8 @@ impl System {
         self.actuated.iter().map(size).sum()
     }
 
-    /// What actuators put in as their amplitude grows with the load factor \[J\]: −∫ N ε₀ ds − ∫ M
-    /// κ₀ ds in the state `q`.
+    /// Derivative of the actuators' work with respect to the load factor \[J\]: −∫ N ε₀ ds − ∫ M κ₀
+    /// ds in the state `q`.
     pub fn actuators_rate(&self, load: f64, q: &[f64]) -> f64 {
         let rate = |actuated: &Actuated| {
             let (own, rate) = self.own(actuated, load);

@@ -1,13 +1,13 @@
 //! Supports between nodes, joints and inextensible beams, as constraint rows with Lagrange
 //! multipliers.
 //!
-//! At an arc length between nodes a support holds a combination of coordinates, g = n(λ)·Σ_a N_a
-//! q_a − c(λ) = 0, with the rows N of r or of r' there: a component of the position, a component of
-//! the gradient, or, for a held direction θ, the gradient's component across it, n = (−sin θ, cos
-//! θ). A joint ties the fields of two points, each with a normal of its own. These rows are linear
-//! in q. The length of the gradient, which an inextensible beam keeps ([`super::inextensible`]), is
-//! quadratic: its row's normal follows the gradient. So does that of the angle from one direction
-//! to another, which a weld keeps.
+//! A support at an arc length between nodes constrains a combination of coordinates,
+//! g = n(λ)·Σ_a N_a q_a − c(λ) = 0, with the shape functions N of r or of r' there: a component of
+//! the position, a component of the gradient, or, for a fixed direction θ, the component of the
+//! gradient across it, n = (−sin θ, cos θ). A joint ties the fields of two points, each with its
+//! own normal. These rows are linear in q. The length of the gradient, which an inextensible beam
+//! keeps ([`super::inextensible`]), is quadratic in q: the normal of its row depends on the
+//! gradient. So does the normal of the angle between two directions, which a weld keeps.
 
 use super::prescribed::Prescribed;
 use crate::assembly::Action;
@@ -15,17 +15,17 @@ use crate::basis::BasisTable;
 use nalgebra::Vector2;
 use std::ops::Range;
 
-/// What a row holds.
+/// The quantity that a constraint row fixes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Row {
     /// Component `axis` of the position \[m\].
     Position {
         /// 0 for x, 1 for y.
         axis: usize,
-        /// Its value.
+        /// Its prescribed value.
         value: Prescribed,
     },
-    /// Component `axis` of the gradient, R(φ) r'₀.
+    /// Component `axis` of the gradient, which is to be R(φ) r'₀.
     Gradient {
         /// 0 for x', 1 for y'.
         axis: usize,
@@ -34,24 +34,24 @@ pub enum Row {
         /// φ \[rad\].
         rotation: Prescribed,
     },
-    /// The direction of the gradient \[rad\].
+    /// The direction of the gradient, with its prescribed angle \[rad\].
     Direction(Prescribed),
-    /// Σ n·r⁽ᵒ⁾ over several points.
+    /// The sum Σ n·r⁽ᵒ⁾ over several points.
     Joint {
         /// Derivative order of r: 0 or 1.
         order: usize,
-        /// n of each point.
+        /// The normal n of each point.
         normals: Vec<[f64; 2]>,
-        /// What the sum is.
+        /// The value that the sum must have.
         value: f64,
     },
     /// The angle from the direction of the first gradient to that of the second, θ_b − θ_a \[rad\].
     Angle(f64),
-    /// The gradient's length over part of a beam, Σ_p ½ w_p (r'_p·r'_p − |r'_p|₀²).
+    /// The length of the gradient over a part of a beam, Σ_p ½ w_p (r'_p·r'_p − |r'_p|₀²).
     Length {
-        /// w_p \[m\].
+        /// The weights w_p \[m\].
         weights: Vec<f64>,
-        /// Σ_p ½ w_p |r'_p|₀² of the stress-free state.
+        /// Σ_p ½ w_p |r'_p|₀² in the stress-free state.
         value: f64,
     },
 }
@@ -59,9 +59,9 @@ pub enum Row {
 /// The shape functions of a field at one point.
 #[derive(Clone, Debug)]
 struct Field {
-    /// First coordinate that the shape functions touch.
+    /// Index of the first coordinate on which the field depends.
     first: usize,
-    /// N of r or r'.
+    /// The shape functions N of r or r'.
     shape: Vec<f64>,
 }
 
@@ -72,32 +72,33 @@ impl Field {
         Self { first: 2 * (offset + table.cells[0].first as usize), shape: shape.to_vec() }
     }
 
-    /// Σ N_a q_a.
+    /// The value of the field, Σ N_a q_a.
     fn at(&self, q: &[f64]) -> [f64; 2] {
         let terms = self.shape.iter().zip(q[self.first..].chunks_exact(2));
         terms.fold([0.0; 2], |sum, (n, q)| [sum[0] + n * q[0], sum[1] + n * q[1]])
     }
 }
 
-/// One constraint.
+/// One constraint row.
 #[derive(Clone, Debug)]
 pub struct Constraint {
     fields: Vec<Field>,
-    /// Arc lengths of the fields \[m\]; of a length, which is no force on the beam from without,
-    /// none.
+    /// Arc lengths of the fields \[m\]; empty for the length of an inextensible beam, whose force
+    /// is not an external action on the beam.
     places: Vec<f64>,
     row: Row,
 }
 
 impl Constraint {
-    /// `table` holds one point with the single row that `row` needs (order 0 for a position, 1
-    /// otherwise); `offset` is the beam's first coefficient.
+    /// A row at one point. `table` holds the point with the single row of shape functions that
+    /// `row` needs (order 0 for a position, 1 otherwise); `offset` is the beam's first coefficient.
     pub fn new(table: &BasisTable, offset: usize, row: Row) -> Self {
         Self { fields: vec![Field::new(table, offset)], places: vec![table.s[0]], row }
     }
 
-    /// The length of the gradient as in the state `reference`, weighted over several points: of
-    /// each (first coordinate that its shape functions touch, shape functions of r', weight \[m\]).
+    /// Keeps the length of the gradient as in the state `reference`, weighted over several points.
+    /// Each point is given by the first coordinate on which it depends, its shape functions of r',
+    /// and its weight \[m\].
     pub fn length(points: &[(usize, &[f64], f64)], reference: &[f64]) -> Self {
         let field = |&(first, shape, _): &(usize, &[f64], f64)| Field { first, shape: shape.to_vec() };
         let fields = points.iter().map(field).collect();
@@ -110,8 +111,8 @@ impl Constraint {
         row
     }
 
-    /// Σ n·r⁽ᵒ⁾ = 0 over the points of several tables of one row, each with the first coefficient
-    /// of its beam.
+    /// The row Σ n·r⁽ᵒ⁾ = 0. Each of its points is given by a table with one row, and the first
+    /// coefficient of its beam.
     pub fn joint<'t>(
         points: impl Iterator<Item = (&'t BasisTable, usize)>,
         order: usize,
@@ -121,16 +122,16 @@ impl Constraint {
         Self { fields, places, row: Row::Joint { order, normals, value: 0.0 } }
     }
 
-    /// The angle from the direction of the first of two gradients to that of the second, from
-    /// tables of one row each with the first coefficient of its beam.
+    /// Keeps `angle` from the direction of the first of two gradients to that of the second. Each
+    /// gradient is given by a table with one row, and the first coefficient of its beam.
     pub fn angle(points: [(&BasisTable, usize); 2], angle: f64) -> Self {
         let (fields, places) =
             points.into_iter().map(|(table, offset)| (Field::new(table, offset), table.s[0])).unzip();
         Self { fields, places, row: Row::Angle(angle) }
     }
 
-    /// Of a support that holds a component of a position: the axis, and how far it is in `q` from
-    /// its value at load factor `load` \[m\].
+    /// For a support that fixes a component of a position: the axis, and the distance of that
+    /// component in `q` from its value at the load factor `load` \[m\].
     pub fn position_change(&self, load: f64, q: &[f64]) -> Option<(usize, f64)> {
         match (&self.row, &self.fields[..]) {
             (Row::Position { axis, value }, [field]) => Some((*axis, value.at(load) - field.at(q)[*axis])),
@@ -138,19 +139,19 @@ impl Constraint {
         }
     }
 
-    /// Whether it is a slider: a single point on a line that stands still.
+    /// Whether it is a slider: a single point on a fixed line.
     pub fn is_slider(&self) -> bool {
         matches!((&self.row, &self.fields[..]), (Row::Joint { .. }, [_]))
     }
 
-    /// Sets what the sum of a joint is.
-    pub fn set_sum(&mut self, sum: f64) {
+    /// Adds `sum` to the value that the sum of a joint must have.
+    pub fn add_to_sum(&mut self, sum: f64) {
         if let Row::Joint { value, .. } = &mut self.row {
             *value += sum;
         }
     }
 
-    /// The same with the sum zero.
+    /// The same row, except that the sum of a joint must be zero.
     #[must_use]
     pub fn closed(mut self) -> Self {
         if let Row::Joint { value, .. } = &mut self.row {
@@ -159,7 +160,7 @@ impl Constraint {
         self
     }
 
-    /// Bytes of its shape functions.
+    /// Memory that it takes \[bytes\].
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + self.fields.iter().map(|field| size_of_val(&field.shape[..])).sum::<usize>()
     }
@@ -169,12 +170,12 @@ impl Constraint {
         matches!(self.row, Row::Length { .. } | Row::Angle(_))
     }
 
-    /// The first coordinate that it combines.
+    /// Index of the first coordinate that it combines.
     pub fn first(&self) -> usize {
         self.fields.first().map_or(0, |field| field.first)
     }
 
-    /// |g(q, λ)|: positions in units of `length`, gradients as they are.
+    /// |g(q, λ)|: positions in units of `length`, gradients and angles unscaled.
     pub fn miss(&self, load: f64, q: &[f64], length: f64) -> f64 {
         let value = self.value(load, q).abs();
         match self.row {
@@ -183,7 +184,8 @@ impl Constraint {
         }
     }
 
-    /// What follows no law holds what it holds in the state `q`.
+    /// Fixes a quantity of a support that follows no law at the value that it has in the state `q`;
+    /// `length` is the scale of lengths.
     pub fn freeze(&mut self, q: &[f64], length: f64) {
         let Some(field) = self.fields.first().map(|field| field.at(q)) else { return };
         match &mut self.row {
@@ -194,7 +196,7 @@ impl Constraint {
         }
     }
 
-    /// The coordinates that it combines, where they belong to one point.
+    /// The indices of the coordinates that it combines, if they belong to one point.
     pub fn span(&self) -> Option<Range<usize>> {
         match &self.fields[..] {
             [field] => Some(field.first..field.first + 2 * field.shape.len()),
@@ -202,7 +204,8 @@ impl Constraint {
         }
     }
 
-    /// n, c and their derivatives by λ; of a joint without the normals.
+    /// n, c and their derivatives with respect to λ; for joints, lengths and angles, n is not
+    /// meaningful.
     fn normal(&self, load: f64) -> ([f64; 2], f64, [f64; 2], f64) {
         let axis = |a: usize| [f64::from(a == 0), f64::from(a == 1)];
         match &self.row {
@@ -222,8 +225,8 @@ impl Constraint {
         }
     }
 
-    /// The normal of field `k` in the state `q`, that of all fields being `n` for what is no joint
-    /// and no length.
+    /// The normal of field `k` in the state `q`; `n` is the normal of the rows that are neither
+    /// joints, lengths nor angles.
     fn normal_of(&self, k: usize, n: [f64; 2], q: &[f64]) -> [f64; 2] {
         match &self.row {
             Row::Joint { normals, .. } => normals.get(k).copied().unwrap_or(n),
@@ -237,7 +240,7 @@ impl Constraint {
         }
     }
 
-    /// Of the direction of field `k` in an angle.
+    /// Sign of the direction of field `k` in an angle.
     fn sign(k: usize) -> f64 {
         if k == 0 { -1.0 } else { 1.0 }
     }
@@ -250,8 +253,8 @@ impl Constraint {
         fields.sum()
     }
 
-    /// The number by which the row is multiplied so that its entries compare with those of the
-    /// tangent: EA/L \[N/m\] for a position and for a length, EA L \[N m\] for a gradient.
+    /// Factor of the row that makes its entries comparable with those of the tangent: EA/L \[N/m\]
+    /// for a position or a length, EA L \[N m\] for a gradient.
     pub fn scale(&self, stiffness: f64, length: f64) -> f64 {
         match self.row {
             Row::Position { .. } | Row::Length { .. } | Row::Joint { order: 0, .. } => stiffness / length,
@@ -261,13 +264,13 @@ impl Constraint {
         }
     }
 
-    /// g(q, λ).
+    /// The constraint g(q, λ).
     pub fn value(&self, load: f64, q: &[f64]) -> f64 {
         if let (Row::Angle(angle), [a, b]) = (&self.row, &self.fields[..]) {
             let ([ax, ay], [bx, by]) = (a.at(q), b.at(q));
             let (sine, cosine) = angle.sin_cos();
-            // From where the first direction should have the second, so that no full turn is
-            // counted.
+            // Measured from the direction that the second gradient should have, so that full turns
+            // do not count.
             let (wx, wy) = (cosine * ax - sine * ay, sine * ax + cosine * ay);
             return (wx * by - wy * bx).atan2(wx * bx + wy * by);
         }
@@ -276,7 +279,7 @@ impl Constraint {
         degree * self.combine(|k| self.normal_of(k, n, q), q) - c
     }
 
-    /// ∂g/∂λ.
+    /// ∂g/∂λ in the state `q`.
     pub fn rate(&self, load: f64, q: &[f64]) -> f64 {
         match &self.row {
             Row::Joint { .. } | Row::Length { .. } | Row::Angle(_) => 0.0,
@@ -287,7 +290,7 @@ impl Constraint {
         }
     }
 
-    /// The normal of the last field, and of a row of gradients the field r' itself.
+    /// The normal of the last field, and, for a row of gradients, the field r' itself.
     pub fn last_field(&self, load: f64, q: &[f64]) -> ([f64; 2], Option<[f64; 2]>) {
         let (n, _, _, _) = self.normal(load);
         let k = self.fields.len().saturating_sub(1);
@@ -298,8 +301,8 @@ impl Constraint {
         (normal, Some(self.fields[k].at(q)))
     }
 
-    /// What a support or joint with the multiplier `mu` does in the state `q`: per point its first
-    /// coordinate, its arc length, and the action.
+    /// The actions of a support or joint with the multiplier `mu` in the state `q`: per point its
+    /// first coordinate, its arc length, and the action on the beam.
     pub fn actions<'q>(
         &'q self,
         load: f64,
@@ -315,12 +318,12 @@ impl Constraint {
         })
     }
 
-    /// Whether it holds positions, and not gradients.
+    /// Whether it constrains positions, not gradients.
     fn is_of_positions(&self) -> bool {
         matches!(self.row, Row::Position { .. } | Row::Joint { order: 0, .. })
     }
 
-    /// (coordinate, ∂g/∂q) in the state `q`.
+    /// The entries of ∂g/∂q in the state `q` as (coordinate, value).
     pub fn gradient<'q>(&'q self, load: f64, q: &'q [f64]) -> impl Iterator<Item = (usize, f64)> + 'q {
         let (n, _, _, _) = self.normal(load);
         self.fields.iter().enumerate().flat_map(move |(k, field)| {
@@ -330,7 +333,8 @@ impl Constraint {
         })
     }
 
-    /// ∂²g/∂r'∂r' of field `k` in the state `q`; none of what is linear. No row mixes fields.
+    /// ∂²g/∂r'∂r' of field `k` in the state `q`; `None` for a linear row. No row couples two
+    /// fields.
     fn hessian(&self, k: usize, q: &[f64]) -> Option<[[f64; 2]; 2]> {
         match &self.row {
             Row::Length { weights, .. } => Some([[weights[k], 0.0], [0.0, weights[k]]]),
@@ -344,7 +348,8 @@ impl Constraint {
         }
     }
 
-    /// (coordinate, coordinate, ∂²g/∂q∂q) in the state `q`, symmetric; nothing for what is linear.
+    /// The entries of ∂²g/∂q∂q in the state `q` as (coordinate, coordinate, value); none for a
+    /// linear row.
     pub fn second_derivative<'q>(&'q self, q: &'q [f64]) -> impl Iterator<Item = (usize, usize, f64)> + 'q {
         let hessians =
             self.fields.iter().enumerate().filter_map(|(k, field)| Some((field, self.hessian(k, q)?)));

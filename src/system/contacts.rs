@@ -1,16 +1,17 @@
-//! The contacts of a system: which touch, how hard, and what they meet between two states.
+//! The contacts of a system: whether they touch, their forces, and obstacles met between two
+//! states.
 
 use super::System;
 use super::sums::resultant;
 use crate::assembly::{AcceptedState, Effect};
 
 impl System {
-    /// Whether there are any.
+    /// Whether there are any contacts.
     pub fn has_contacts(&self) -> bool {
         !self.terms.contacts.is_empty()
     }
 
-    /// Per contact, how many separate intervals of the beam touch in the state `q`.
+    /// Per contact: the number of separate intervals of the beam that touch in the state `q`.
     pub fn intervals<'q>(&'q self, q: &'q [f64]) -> impl Iterator<Item = usize> + 'q {
         self.terms.contacts.iter().map(|contact| contact.intervals(q))
     }
@@ -30,28 +31,29 @@ impl System {
         resultant(scratch)
     }
 
-    /// Names of the contacts: the beam and a number, such as `arm.1`.
+    /// Names of the contacts: the beam's name and the number of the contact, such as `arm.1`.
     pub fn contact_names(&self) -> impl Iterator<Item = String> + '_ {
         let names = self.terms.contacts.iter().enumerate();
         names.map(|(i, contact)| format!("{}.{}", self.beams[contact.beam()].name, i + 1))
     }
 
-    /// Where on the cubic with the control states `way` a contact would be crossed, and which: the
-    /// part of the way that is clear, and the number of the contact. With `may_cross` only what
-    /// goes too fast for its force to be seen is in conflict.
+    /// The first conflict with an obstacle on the cubic path with the control states `way`, if
+    /// there is one: the θ of the path at which it occurs, and the index of the contact. With
+    /// `may_cross`, crossing an obstacle is allowed, and only penetrating it so fast that a step
+    /// would miss the force is a conflict; see [`crate::assembly::ContactEffect::conflict`].
     pub fn conflict(&self, way: [&[f64]; 4], may_cross: bool) -> Option<(f64, usize)> {
         let contacts = self.terms.contacts.iter().enumerate();
         let met = contacts.filter_map(|(i, contact)| contact.conflict(way, may_cross).map(|part| (part, i)));
         met.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Whether contact number `contact` is crossed on the way.
+    /// Whether contact number `contact` is crossed on the path `way`.
     pub fn crosses(&self, contact: usize, way: [&[f64]; 4]) -> bool {
         self.terms.contacts.get(contact).is_some_and(|contact| contact.crosses(way))
     }
 
-    /// The part of the way until contact number `contact`, which does not touch at its start,
-    /// begins to, if it does.
+    /// The θ of the path `way` at which contact number `contact`, which does not touch at the
+    /// start, begins to touch, if it does.
     pub fn first_touch(&self, contact: usize, way: [&[f64]; 4]) -> Option<f64> {
         self.terms.contacts.get(contact).and_then(|contact| contact.first_touch(way))
     }
@@ -61,8 +63,8 @@ impl System {
         !self.terms.friction.is_empty()
     }
 
-    /// Per contact with friction whether the larger part of it slides, and whether against
-    /// friction.
+    /// Per contact with friction: whether the greater part of it slides, and if so, whether against
+    /// the friction ([`crate::assembly::FrictionEffect::sliding`]).
     pub fn sliding(&self, accepted: &AcceptedState, q: &[f64], v: &[f64]) -> Vec<Option<bool>> {
         self.terms.friction.iter().map(|friction| friction.sliding(accepted, q, v)).collect()
     }

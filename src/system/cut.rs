@@ -1,24 +1,24 @@
-//! Section forces: what a cut through a beam passes on, by the balance of one side of it.
+//! Section forces, from the balance of all actions on one side of a cut through a beam.
 //!
-//! In the discrete equations, constants and r itself are among the shape functions, so that the
-//! forces on a whole beam and their moments balance to round-off, those of supports and joints
-//! included. The piece before a cut is therefore held by
+//! Constants and r itself are among the functions that the shape functions reproduce, so that in
+//! the discrete equations the forces on a whole beam, including those of supports and joints, and
+//! their moments balance to round-off. The section forces at a cut therefore balance all actions on
+//! the piece before it:
 //!
 //! ```text
 //! F(s) = −Σ f      M(s) = −Σ ((r_i − r(s)) × f_i + couples)      N = F·t   Q = F·Jt   t = r'/|r'|
 //! ```
 //!
-//! summed over all that acts on it: loads, inertia, springs, contacts, fluids, supports, joints. F
-//! and M are those on the side of the cut that looks to the beam's end: N is positive in tension, M
-//! has the sign of EI κ, and M' = −Q |r'| where no couple acts. Stiffness times strain is another
-//! thing: its error is that of the strain times EA, of any size against a load that bends a slender
-//! beam.
+//! The sums run over loads, inertia, springs, contacts, fluids, supports and joints. F and M act on
+//! the cut face of the piece before the cut: N is positive in tension, M has the sign of EI κ, and
+//! M' = −Q |r'| where no couple acts. Stiffness times strain would be much less accurate: its error
+//! is EA times the error of the strain, which may exceed by far the loads that bend a slender beam.
 
 use super::System;
 use crate::assembly::{Action, Actions, InternalVariables, Turning};
 use nalgebra::Vector2;
 
-/// A state in which all forces balance.
+/// A state in which all forces are in balance.
 #[derive(Clone, Copy, Debug)]
 pub struct Balanced<'b> {
     /// Load factor or time.
@@ -27,16 +27,16 @@ pub struct Balanced<'b> {
     pub q: &'b [f64],
     /// Velocities and accelerations, in a motion.
     pub motion: Option<[&'b [f64]; 2]>,
-    /// Forces of supports on the held coordinates, in fixed axes; zero on all others.
+    /// Forces of supports on the fixed coordinates, in fixed axes; zero on all others.
     pub support_forces: &'b [f64],
-    /// Scaled multipliers.
+    /// The scaled multipliers.
     pub multipliers: &'b [f64],
     /// The internal variables.
     pub variables: &'b InternalVariables,
 }
 
 impl System {
-    /// What acts on each beam.
+    /// The actions on each beam.
     pub fn actions(&self, state: Balanced<'_>) -> Vec<Actions> {
         let Balanced { parameter, q, motion, support_forces, multipliers, variables } = state;
         let mut actions = vec![Actions::default(); self.beams.len()];
@@ -88,7 +88,7 @@ impl System {
         actions
     }
 
-    /// The same in equilibrium, `x` being coordinates and scaled multipliers.
+    /// As [`Self::actions`], in equilibrium; `x` holds the coordinates and the scaled multipliers.
     pub fn static_actions(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<Actions> {
         let (q, multipliers) = x.split_at(self.coordinates());
         let support_forces = self.static_support_forces(load, x, variables);

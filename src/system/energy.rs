@@ -6,33 +6,34 @@ use serde::Serialize;
 /// Energies \[J\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Energy {
-    /// ½∫ EA (ε − ε₀)² ds, ε₀ that of an actuation.
+    /// ½∫ EA (ε − ε₀)² ds, where ε₀ is the strain imposed by actuation.
     pub stretch: f64,
-    /// ½∫ EI (κ − κ₀)² ds.
+    /// ½∫ EI (κ − κ₀)² ds, where κ₀ is the curvature imposed by actuation.
     pub bend: f64,
-    /// Of springs, foundations and contacts.
+    /// Energy stored in springs, foundations, contacts and friction.
     pub stored: f64,
-    /// ½∫ ρA ṙ·ṙ ds, with masses and rotary inertias.
+    /// ½∫ ρA ṙ·ṙ ds, with point masses and rotary inertias.
     pub kinetic: f64,
-    /// −∫ ρA g·(r − r₀) ds, zero in the stress-free shape, and that of conservative loads.
+    /// Potential of the weight, −∫ ρA g·(r − r₀) ds, which is zero in the stress-free shape, and of
+    /// other conservative loads.
     pub potential: f64,
-    /// Work that loads without a potential (moments, follower forces), moving supports and
-    /// actuators that follow a law have done since the start of a motion; in statics that of
+    /// Work done since the start of a motion by loads without a potential (moments, follower
+    /// forces), by moving supports and by actuators that follow a law; in statics the work of
     /// actuators along the path.
     pub work: f64,
-    /// Energy that damping has taken since the start of a motion.
+    /// Energy dissipated since the start of a motion.
     pub lost: f64,
 }
 
 impl Energy {
-    /// With what no function of the coordinates counts.
+    /// Adds the energies that cannot be computed from the coordinates alone.
     #[must_use]
     pub fn with(mut self, variables: &InternalVariables) -> Self {
         self.stored += variables.energy();
         self
     }
 
-    /// Sum of all parts, less the work put in and with what was lost: constant.
+    /// The sum of all energies, less the work done and plus the energy dissipated; it is constant.
     pub fn total(&self) -> f64 {
         self.stretch + self.bend + self.stored + self.kinetic + self.potential - self.work + self.lost
     }

@@ -1,5 +1,5 @@
-//! What a model's supports hold: coordinates of nodes, which are eliminated, and rows of
-//! constraints between nodes.
+//! The supports of a model: fixed coordinates of nodes, which are eliminated, and constraint rows
+//! between nodes.
 
 use super::constraints::{Constraint, Row};
 use super::prescribed::Prescribed;
@@ -9,7 +9,7 @@ use super::{BuildError, Needs, System, View};
 use crate::model::{Displacement, FixedRotation, Support};
 
 impl System {
-    /// Supports that follow no law of time hold the beams where they are in the state `q`.
+    /// Fixes supports without a law of time at the quantities that they have in the state `q`.
     pub fn freeze(&mut self, q: &[f64]) {
         let length = self.length;
         self.supports.freeze(q, length);
@@ -18,9 +18,9 @@ impl System {
 }
 
 impl System {
-    /// The translation that all supports share where they move from the state `q` to their places
-    /// at load factor `load` \[m\]: per axis the smallest of the changes that they prescribe, and
-    /// none where they part or a slider's line stands still.
+    /// The translation that all supports share when they move from the state `q` to their places at
+    /// load factor `load` \[m\]: per axis the smallest of the prescribed changes, and zero if they
+    /// have different signs or if there is a slider, whose line does not move.
     pub fn shared_move(&self, load: f64, q: &[f64]) -> [f64; 2] {
         if self.constraints.iter().any(Constraint::is_slider) {
             return [0.0; 2];
@@ -37,7 +37,7 @@ impl System {
     }
 }
 
-/// Eliminated supports and constraint rows.
+/// Makes the eliminated supports, the constraint rows, and per support the place where it acts.
 pub(super) fn fix(
     system: &System,
     supports: &[Support],

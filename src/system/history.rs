@@ -1,33 +1,33 @@
-//! Forces that depend on the way to a state ([`crate::assembly::AcceptedState`]): dry friction, and
-//! torsion springs with their turns.
+//! Forces that depend on the path to a state ([`crate::assembly::AcceptedState`]): dry friction,
+//! and torsion springs with their full turns.
 
 use super::System;
 use crate::assembly::{AcceptedState, InternalVariables, Workspace};
 use crate::linear::Matrix;
 
 impl System {
-    /// Whether there are any.
+    /// Whether there are such forces.
     pub fn has_history(&self) -> bool {
         !self.terms.friction.is_empty() || !self.terms.windings.is_empty()
     }
 
-    /// Whether torsion springs count turns.
+    /// Whether there are torsion springs, whose full turns count.
     pub fn has_windings(&self) -> bool {
         !self.terms.windings.is_empty()
     }
 
-    /// `f += ` these forces in the state `q`, where `held` was the last accepted one.
+    /// `f += ` these forces in the state `q`, where `accepted` is the last accepted state.
     pub fn add_history(&self, accepted: &AcceptedState, q: &[f64], f: &mut [f64]) {
         self.add_friction(accepted, q, f);
         self.terms.windings.iter().for_each(|winding| winding.add_force(accepted, q, f));
     }
 
-    /// `f += ` those of them that take energy.
+    /// `f += ` only those of these forces that dissipate energy.
     pub fn add_friction(&self, accepted: &AcceptedState, q: &[f64], f: &mut [f64]) {
         self.terms.friction.iter().for_each(|friction| friction.add_force(accepted, q, f));
     }
 
-    /// `f += ` all of them, and `k += ` their derivative.
+    /// `f += ` all of these forces, and `k += ` their derivative.
     pub fn add_history_and_tangent(
         &self,
         accepted: &AcceptedState,
@@ -46,7 +46,7 @@ impl System {
             .for_each(|winding| winding.add_force_and_tangent(accepted, q, f, k, workspace));
     }
 
-    /// The internal variables in the state `q`, where `held` was the last accepted one.
+    /// The internal variables in the state `q`, where `accepted` is the last accepted state.
     pub fn internal_variables(&self, accepted: &AcceptedState, q: &[f64]) -> InternalVariables {
         let mut variables = InternalVariables::default();
         for friction in &self.terms.friction {
@@ -62,25 +62,26 @@ impl System {
         variables
     }
 
-    /// Energy of windings in the state `q`, where `held` was the last accepted one \[J\].
+    /// Energy of the full turns in the state `q`, where `accepted` is the last accepted state
+    /// \[J\].
     pub fn winding_energy(&self, accepted: &AcceptedState, q: &[f64]) -> f64 {
         self.terms.windings.iter().map(|winding| winding.energy(winding.angle(accepted, q))).sum()
     }
 
-    /// The largest turn of a torsion spring since the last accepted state `held` \[rad\]; beyond π
-    /// the spring would seem to have turned the other way.
+    /// The largest turn of a torsion spring since the last accepted state \[rad\]. If it exceeds π,
+    /// the spring is taken to have turned the other way.
     pub fn winding_turn(&self, accepted: &AcceptedState, q: &[f64]) -> f64 {
         self.terms.windings.iter().fold(0.0, |turn: f64, winding| turn.max(winding.turn(accepted, q).abs()))
     }
 
-    /// `k += ` the tangent of windings in the state `q` that has these internal variables.
+    /// `k += ` the tangent of windings in the state `q` with the internal variables `variables`.
     pub fn add_winding_tangent(&self, variables: &InternalVariables, q: &[f64], k: &mut Matrix) {
         for (winding, angle) in self.terms.windings.iter().zip(&variables.angles) {
             winding.add_tangent_at(*angle, q, k);
         }
     }
 
-    /// `f += ` that tangent times `v`.
+    /// `f += ` the tangent of windings times `v`.
     pub fn add_winding_tangent_product(
         &self,
         variables: &InternalVariables,
@@ -93,7 +94,7 @@ impl System {
         }
     }
 
-    /// `f += ` the forces in the state `q` that has these internal variables.
+    /// `f += ` the forces in the state `q` with the internal variables `variables`.
     pub fn add_known_history(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]) {
         self.terms.friction.iter().for_each(|friction| friction.add_force_of(variables, q, f));
         for (winding, angle) in self.terms.windings.iter().zip(&variables.angles) {

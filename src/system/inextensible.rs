@@ -1,7 +1,7 @@
 //! Beams whose axis keeps its length: the constraint |r'| = |r'₀|, with the axial force as its
 //! multiplier.
 //!
-//! A beam that names no axial stiffness is not given a large one. The axial force N(s) is an
+//! A beam without an axial stiffness is not given a large one. Instead, the axial force N(s) is an
 //! unknown of its own,
 //!
 //! ```text
@@ -9,34 +9,36 @@
 //! g_k = ∫ φ_k ½ (r'·r' − |r'₀|²) ds = 0,   force  ∫ N r' N' ds,   tangent  ∫ N N'ᵀN' ds ⊗ I
 //! ```
 //!
-//! with continuous quadratics φ_k: one for every node and one for every cell between nodes. The
-//! multipliers N_k \[N\] are the axial force at nodes and midpoints. No stretch is stored, no axial
-//! wave limits a step, and no digit is lost to a ratio EA L²/EI.
+//! where N' are the derivatives of the shape functions, and φ_k are continuous quadratic functions:
+//! one for every node and one for every cell between nodes. The multipliers N_k \[N\] are the axial
+//! force at nodes and midpoints. The beam stores no energy of stretch, no axial wave limits a step,
+//! and no digits are lost to a large ratio EA L²/EI.
 //!
 //! # How many rows
-//! A node adds four coordinates. Two rows a cell leave two for bending, three would leave one and a
-//! chain of cells that cannot take the shape of an arc (membrane locking). The n + 1 nodes and n
-//! cells hold the 2n + 2 coordinates of a straight beam along its axis but for the translation; two
-//! rows a cell without continuity would hold one less, and all nodal gradients could shrink
-//! together: those of a pendulum do, to nothing.
+//! A node adds four coordinates. Two rows per cell leave two of them for bending. Three rows would
+//! leave one, and a chain of such cells could not take the shape of an arc (membrane locking). The
+//! n + 1 nodes and n cells fix the 2n + 2 coordinates of a straight beam along its axis except for
+//! the translation. Two rows per cell without continuity would fix one less, and all nodal
+//! gradients could shrink together; those of a pendulum shrink to nothing.
 //!
-//! Where a support holds a gradient wholly one row would be too many: N is linear in a cell there.
+//! Where a support fixes both components of a gradient one row would be too many; there N is linear
+//! in a cell.
 //!
 //! # Why integrals
-//! Rows at the nodes and midpoints themselves, |r'| = 1, give the same motion. But their
-//! multipliers are no axial force where shape functions are no polynomials: with radial point
-//! interpolation they scatter by a tenth about it on any mesh, and a chain that has no other
-//! stiffness than ∫ N N'ᵀN' ds misses its fourth frequency by 5e-4.
+//! Rows at the nodes and midpoints themselves, |r'| = 1, would yield the same motion. But their
+//! multipliers are not the axial force if shape functions are not polynomials: with radial point
+//! interpolation they scatter by a tenth about it on any mesh, and a chain, whose only stiffness is
+//! ∫ N N'ᵀN' ds, has an error of 5e-4 in its fourth frequency.
 
 use super::constraints::Constraint;
 use super::{BuildError, System};
 use crate::basis::Quadrature;
 use crate::model::{FixedRotation, Model, Place};
 
-/// Gauss points a cell: exact for cubic shape functions and quadratic forces.
+/// Number of Gauss points per cell: exact for cubic shape functions and a quadratic axial force.
 const POINTS: usize = 4;
 
-/// Where a multiplier is the axial force.
+/// The place where a multiplier is the axial force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
     /// Index of the beam.
@@ -45,7 +47,7 @@ pub(super) struct Row {
     pub s: f64,
 }
 
-/// The rows of all inextensible beams in the order of their arc lengths.
+/// The rows of all inextensible beams, in the order of their arc lengths, with their places.
 pub(super) fn rows(system: &System, model: &Model) -> Result<(Vec<Row>, Vec<Constraint>), BuildError> {
     let held = held_lengths(system, model);
     let (mut places, mut rows) = (Vec::new(), Vec::new());
@@ -54,8 +56,8 @@ pub(super) fn rows(system: &System, model: &Model) -> Result<(Vec<Row>, Vec<Cons
             continue;
         }
         let nodes = part.basis.nodes();
-        // A cell beside a node whose gradient is held already: that on the right, of the last node
-        // that on the left.
+        // N is linear in the cell to the right of a node with a fixed gradient, or to the left if
+        // it is the last node.
         let linear = |cell: usize| {
             let held = |node: usize| held.contains(&(part.first_node + node));
             held(cell) || cell + 2 == nodes.len() && held(cell + 1)
@@ -63,7 +65,7 @@ pub(super) fn rows(system: &System, model: &Model) -> Result<(Vec<Row>, Vec<Cons
         let in_basis = |e| BuildError::basis(&part.name, e);
         let table = part.basis.table(Quadrature::Gauss(POINTS), &[1]).map_err(in_basis)?;
         let (xi, _) = Quadrature::Gauss(POINTS).rule().map_err(in_basis)?;
-        // Per node, and per cell, the points at which its function does not vanish.
+        // Per node, and per cell: the points at which its function φ does not vanish.
         let mut of_node: Vec<Vec<(usize, &[f64], f64)>> = vec![Vec::new(); nodes.len()];
         let mut of_cell = vec![Vec::new(); nodes.len() - 1];
         for (c, cell) in table.cells.iter().enumerate() {
@@ -90,7 +92,7 @@ pub(super) fn rows(system: &System, model: &Model) -> Result<(Vec<Row>, Vec<Cons
     Ok((places, rows))
 }
 
-/// The functions of the left node, the cell and the right node at ξ.
+/// The functions φ of the left node, the cell and the right node at ξ.
 fn functions(xi: f64, linear: bool) -> [f64; 3] {
     if linear {
         [1.0 - xi, 0.0, xi]
@@ -99,7 +101,7 @@ fn functions(xi: f64, linear: bool) -> [f64; 3] {
     }
 }
 
-/// Nodes whose gradient keeps its length already, since supports hold all of it.
+/// Nodes whose gradient keeps its length already, because supports fix both of its components.
 fn held_lengths(system: &System, model: &Model) -> Vec<usize> {
     let node_at = |at: Place| {
         let part = system.beams.get(at.beam)?;
@@ -110,14 +112,14 @@ fn held_lengths(system: &System, model: &Model) -> Vec<usize> {
 }
 
 impl System {
-    /// Per row the beam, and the row's bytes.
+    /// Per row of an inextensible beam: the index of the beam, and the row's bytes.
     pub(super) fn lengths(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let first = self.constraints.len() - self.lengths.len();
         self.lengths.iter().zip(&self.constraints[first..]).map(|(row, c)| (row.beam, c.bytes()))
     }
 
-    /// The axial force \[N\] at the arc lengths `s` of an inextensible beam; of any other none.
-    /// `multipliers` are the scaled μ.
+    /// The axial force \[N\] at the arc lengths `s` of an inextensible beam; `None` for other
+    /// beams. `multipliers` are the scaled μ.
     pub fn axial_force(&self, beam: usize, multipliers: &[f64], s: &[f64]) -> Option<Vec<f64>> {
         let first = self.constraints.len() - self.lengths.len();
         let rows = self.constraints[first..].iter().zip(multipliers.get(first..)?);

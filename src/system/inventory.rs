@@ -1,4 +1,4 @@
-//! What was built, and what was not.
+//! Inventory of the parts of a system.
 
 use super::System;
 use super::measure::Measured;
@@ -14,23 +14,23 @@ use std::fmt;
 pub struct Inventory {
     /// Effects that were built, by beam.
     pub effects: Vec<EffectEntry>,
-    /// Kinds of effects that exist and that this system is without.
+    /// Kinds of effects that exist but that this system does not contain.
     pub absent: Vec<Kind>,
-    /// Per beam: name, discretisation's size and quality.
+    /// The beams, with the size and quality of their discretisations.
     pub beams: Vec<BeamEntry>,
-    /// Unknowns after elimination, plus multipliers.
+    /// Number of unknowns: coordinates that are not eliminated, plus multipliers.
     pub degrees_of_freedom: usize,
-    /// Coordinates, held ones included.
+    /// Number of coordinates, including fixed ones.
     pub coordinates: usize,
-    /// Coordinates eliminated by supports at nodes.
+    /// Number of coordinates eliminated by supports at nodes.
     pub fixed: usize,
-    /// Multipliers of supports between nodes, joints and inextensible beams.
+    /// Number of multipliers of supports between nodes, joints and inextensible beams.
     pub multipliers: usize,
     /// Whether the tangent is symmetric.
     pub symmetric: bool,
-    /// Diagonals on either side of the main one.
+    /// Number of diagonals on either side of the main one.
     pub half_bandwidth: usize,
-    /// The factorisation that the pattern asks for.
+    /// The factorisation that follows from the pattern.
     pub solver: &'static str,
     /// Bytes of one tangent.
     pub matrix_bytes: usize,
@@ -38,50 +38,50 @@ pub struct Inventory {
     pub mass_bytes: usize,
     /// Bytes of the damping matrix; 0 where there is none.
     pub damping_bytes: usize,
-    /// Times of the linear algebra, where they were measured.
+    /// Times of the linear algebra, if they were measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
 }
 
-/// One effect.
+/// An effect on a beam.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectEntry {
-    /// What it is.
+    /// The kind of effect.
     pub kind: Kind,
     /// The beam's name.
     pub beam: String,
-    /// Quadrature points.
+    /// Number of quadrature points.
     pub points: usize,
     /// Bytes of tables and data.
     pub bytes: usize,
-    /// Time of one evaluation with its tangent \[s\], where it was measured.
+    /// Time of one evaluation with its tangent \[s\], if it was measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
 }
 
-/// One beam.
+/// A discretised beam.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BeamEntry {
     /// The beam's name.
     pub name: String,
-    /// Nodes.
+    /// Number of nodes.
     pub nodes: usize,
     /// Length \[m\].
     pub length: f64,
-    /// Arc lengths between the ends to which nodes were put because something holds, joins or turns
-    /// the beam there \[m\].
+    /// Arc lengths between the ends at which nodes were placed because a support, a joint or a
+    /// couple acts on the beam there \[m\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub breaks: Vec<f64>,
-    /// Functions that are different from zero at a point.
+    /// Number of shape functions that are different from zero at a point.
     pub width: usize,
-    /// Distinct cells whose shape functions were solved.
+    /// Number of distinct cells, for which shape functions were computed.
     pub distinct_cells: usize,
-    /// Bits of the arithmetic in which they were solved; 53 for closed-form shape functions.
+    /// Bits of the arithmetic in which shape functions were computed; 53 for explicit formulas.
     pub bits: usize,
 }
 
 impl System {
-    /// Lists what was built.
+    /// Lists the parts of the system.
     pub fn inventory(&self) -> Inventory {
         let mut entries: BTreeMap<(usize, Kind), (usize, usize)> = BTreeMap::new();
         let loads = self.terms.loads.iter().map(|load| &load.effect);

@@ -7,11 +7,11 @@
 //! | slider along d | (J d)·(r − r₀) = 0 |
 //!
 //! with φ the angle between the gradients of the stress-free shapes. A weld leaves the lengths of
-//! the gradients free: the axial strains of the two beams jump where their stiffnesses do. Its
-//! direction is not linear in q; in statics its row follows the state, and in motion the gradients
-//! of both points are polar ([`super::polar`]), in which all rows are linear and constant, so that
-//! a motion stays an ordinary differential equation on the subspace that they leave
-//! ([`crate::solve::dynamics::motion`]). There are nodes where joints are
+//! the gradients free, because the axial strains of the two beams jump where their stiffnesses do.
+//! The direction is not linear in q. In statics the row depends on the state; in a motion the
+//! gradients of both points are described by polar coordinates ([`super::polar`]), in which all
+//! rows are linear and constant, so that a motion remains an ordinary differential equation on the
+//! subspace that the rows leave ([`crate::solve::dynamics::motion`]). Every joint is at a node
 //! ([`crate::model::Model::breaks`]).
 
 use super::constraints::Constraint;
@@ -20,10 +20,10 @@ use super::{BuildError, System};
 use crate::basis::BasisTable;
 use crate::model::{Joint, Place};
 
-/// Distance of two points that are one \[beam lengths\].
+/// Largest distance of two points that coincide, in beam lengths.
 const APART: f64 = 1e-9;
 
-/// The rows of a joint.
+/// The constraint rows of a joint.
 pub(super) fn rows(system: &System, joint: Joint) -> Result<Vec<Constraint>, BuildError> {
     let mut rows = Vec::new();
     match joint {
@@ -45,7 +45,7 @@ const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 fn coincide(system: &System, first: Place, second: Place) -> Result<[Constraint; 2], BuildError> {
     let rows = AXES.map(|[x, y]| row(system, 0, &[(first, [-x, -y]), (second, [x, y])]));
     let rows = transpose(rows)?;
-    // What the row holds at zero coordinates is the distance in the stress-free shape.
+    // The value of the row at zero coordinates is the negative distance in the stress-free shape.
     let [x, y] = rows.each_ref().map(|row| -row.value(0.0, &vec![0.0; system.coordinates()]));
     let gap = x.hypot(y);
     if gap > APART * system.length() {
@@ -58,7 +58,7 @@ fn coincide(system: &System, first: Place, second: Place) -> Result<[Constraint;
             gap,
         });
     }
-    // Round-off of where the points are is no gap.
+    // The remaining distance is round-off and is not kept as a gap.
     Ok(rows.map(|row| row.closed()))
 }
 
@@ -74,7 +74,8 @@ fn transpose<T, E>(results: [Result<T, E>; 2]) -> Result<[T; 2], E> {
     Ok([a?, b?])
 }
 
-/// Σ n·r⁽ᵒ⁾ over the given places, with the value that it has in the stress-free shape.
+/// The row Σ n·r⁽ᵒ⁾ over the given places, where the sum keeps the value that it has in the
+/// stress-free shape.
 fn row(system: &System, order: usize, terms: &[(Place, [f64; 2])]) -> Result<Constraint, BuildError> {
     let mut parts = Vec::with_capacity(terms.len());
     for (place, normal) in terms {
@@ -83,7 +84,7 @@ fn row(system: &System, order: usize, terms: &[(Place, [f64; 2])]) -> Result<Con
     }
     let normals = parts.iter().map(|(.., normal)| *normal).collect();
     let mut row = Constraint::joint(parts.iter().map(|(table, offset, _)| (table, *offset)), order, normals);
-    row.set_sum(row.value(0.0, system.reference()));
+    row.add_to_sum(row.value(0.0, system.reference()));
     Ok(row)
 }
 
@@ -94,8 +95,8 @@ fn table(system: &System, order: usize, place: Place) -> Result<(BasisTable, usi
     Ok((table, part.offset()))
 }
 
-/// The gradients that a motion has in polar coordinates: those of welded nodes of which supports
-/// hold nothing.
+/// The gradients that are described by polar coordinates in a motion: those of welded nodes, unless
+/// a support fixes something of the gradient.
 pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, BuildError> {
     let fixed: Vec<usize> = system.supports.eliminated().map(|i| i / 2).collect();
     let mut pairs = Vec::new();

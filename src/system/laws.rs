@@ -1,18 +1,18 @@
-//! What follows laws of time: when it is not smooth, and what of it the points of a step do not
-//! see.
+//! Laws of time in a system: the times at which they are not smooth, and the parts of them that a
+//! method of integration misses.
 //!
-//! A method of integration looks at loads and supports at a few times of a step, and takes them for
-//! what is interpolated between these. What they do beside that is known exactly, for it does not
-//! depend on the motion: of every law the mean over the step and the first moment
-//! ([`crate::law::Law::moments`]). Less the same of what the method sees, they are the change of
-//! velocity and of position that it misses, however fast a law oscillates against the step.
+//! A method evaluates loads and supports at a few times of a step, and takes them to be
+//! interpolated between these. The error of this is known exactly, because a law does not depend on
+//! the motion: each law has a mean over the step and a first moment ([`crate::law::Law::moments`]).
+//! The differences between these and the values that the method uses are the changes of velocity
+//! and position that it misses, however fast a law oscillates compared with the step.
 
 use super::System;
 use crate::assembly::{ActingLoad, Amplitude};
 use crate::law::Law;
 
-/// A time at which a method looks, and its weights in the mean over the step and in the first
-/// moment.
+/// A time at which a method evaluates loads, with its weights in the mean over the step and in the
+/// first moment.
 pub type LoadSample = (f64, [f64; 2]);
 
 fn law(load: &ActingLoad) -> Option<&Law> {
@@ -22,7 +22,7 @@ fn law(load: &ActingLoad) -> Option<&Law> {
     }
 }
 
-/// Moments of `f` as the looks have them.
+/// Mean and first moment of `f` as the method computes them from its samples `looks`.
 fn seen(looks: &[LoadSample], f: impl Fn(f64) -> f64) -> [f64; 2] {
     looks.iter().fold([0.0; 2], |[mean, moment], (time, [a, b])| {
         let f = f(*time);
@@ -31,20 +31,20 @@ fn seen(looks: &[LoadSample], f: impl Fn(f64) -> f64) -> [f64; 2] {
 }
 
 impl System {
-    /// Times at which a load or the motion of a support is not smooth, in no order.
+    /// Times at which a load or the motion of a support is not smooth, in no particular order.
     pub fn kinks(&self) -> Vec<f64> {
         let laws = self.terms.loads.iter().filter_map(law).map(Law::kinks);
         let travelling = self.terms.moving_loads.iter().flat_map(|load| load.kinks());
         laws.flatten().chain(self.supports.kinks()).chain(travelling).collect()
     }
 
-    /// Whether a load follows a law of time or moves.
+    /// Whether a load follows a law of time or moves along a beam.
     pub fn loads_follow_time(&self) -> bool {
         !self.terms.moving_loads.is_empty() || self.terms.loads.iter().any(|load| law(load).is_some())
     }
 
-    /// Adds to `mean` and `moment` those of the loads from `start` to `end`, less what `looks` have
-    /// of them, in the state `q`. `scratch` is overwritten.
+    /// Adds to `mean` and `moment` those of the loads from `start` to `end` in the state `q`, less
+    /// the values that the method computes from its samples `looks`. `scratch` is overwritten.
     pub fn add_unseen_loads(
         &self,
         [start, end]: [f64; 2],
@@ -73,8 +73,9 @@ impl System {
         }
     }
 
-    /// By how much the supports' motions from `start` to `end` differ from what `looks` at their
-    /// accelerations make of them: the largest, positions in beam lengths, angles as they are.
+    /// The largest difference between the motions of supports from `start` to `end` and those that
+    /// a method computes from their accelerations at its samples `looks`; positions in beam
+    /// lengths, angles in rad.
     pub fn unseen_motion(&self, [start, end]: [f64; 2], looks: &[LoadSample]) -> f64 {
         let h = end - start;
         let miss = |(course, unit): (&super::prescribed::Prescribed, f64)| {

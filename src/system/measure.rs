@@ -1,5 +1,5 @@
-//! Where the time of an iteration goes, by the clock: one evaluation of each effect with its
-//! tangent, one factorisation, one substitution.
+//! Measures the time of an iteration: of one evaluation of each effect with its tangent, of one
+//! factorisation, and of one substitution.
 
 use super::{Inventory, System};
 use crate::assembly::{Kind, Workspace};
@@ -7,22 +7,22 @@ use crate::linear::Factor;
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
-/// How long one thing is repeated: clocks of shared machines are good to a few per cent in that
-/// time.
+/// Time for which each item is repeated: enough to measure it to a few per cent on a shared
+/// machine.
 const PATIENCE: Duration = Duration::from_millis(10);
 
-/// What the linear algebra of an iteration takes.
+/// Times of the linear algebra of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Measured {
-    /// A factorisation \[s\].
+    /// Time of a factorisation \[s\].
     pub factorization: f64,
-    /// A substitution \[s\].
+    /// Time of a substitution \[s\].
     pub substitution: f64,
-    /// Both, and all effects with their tangents \[s\].
+    /// Time of a factorisation, a substitution and all effects with their tangents \[s\].
     pub iteration: f64,
 }
 
-/// Seconds of one call.
+/// Seconds that one call takes.
 fn time(mut call: impl FnMut()) -> f64 {
     call();
     let (start, mut count) = (Instant::now(), 0_u32);
@@ -34,7 +34,7 @@ fn time(mut call: impl FnMut()) -> f64 {
 }
 
 impl System {
-    /// The inventory with the time that each effect takes in the stress-free state.
+    /// The inventory, with the time that each effect takes in the stress-free state.
     pub fn measured_inventory(&self) -> Inventory {
         let mut inventory = self.inventory();
         let q = &self.reference;
@@ -59,7 +59,7 @@ impl System {
                 note(&mut inventory, damping.kind(), damping.beam(), seconds);
             }
         }
-        // Inertia takes part in every residual as one product with the mass matrix.
+        // In every residual, inertia is one product with the mass matrix.
         if !self.terms.inertia.is_empty() {
             let mass = self.mass_matrix();
             let seconds = time(|| mass.multiply_add(1.0, q, &mut f));
@@ -71,7 +71,7 @@ impl System {
         self.supports.turn_matrix(0.0, &mut k);
         self.supports.eliminate(0.0, &mut k);
         let border = self.border(0.0, q);
-        // As a motion with short steps does, where there is one.
+        // If there is a mass, factorises as a motion with short steps does.
         let mass = (!self.terms.inertia.is_empty()).then(|| self.mass_matrix());
         let factorize = || match &mass {
             None => Factor::new(&k, &border),

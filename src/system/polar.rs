@@ -1,29 +1,31 @@
 //! Gradients of welded nodes in polar coordinates.
 //!
 //! A weld ties the directions of two gradients and leaves their lengths free: θ_b − θ_a = φ. In
-//! components of r' that is not linear, and a motion under it would be differential-algebraic of
-//! index 3. With length y and direction θ as the unknowns,
+//! components of r' this is not linear, and a motion under this constraint would be a
+//! differential-algebraic system of index 3. With the length y and the direction θ as unknowns,
 //!
 //! ```text
-//! r' = y e,   ṙ' = ẏ e + y θ̇ n,   r̈' = (ÿ − y θ̇²) e + (2 ẏ θ̇ + y θ̈) n,   e = (cos θ, sin θ), n = (−sin θ, cos θ)
+//! r' = y e,   ṙ' = ẏ e + y θ̇ n,   r̈' = (ÿ − y θ̇²) e + (2 ẏ θ̇ + y θ̈) n
+//! e = (cos θ, sin θ),   n = (−sin θ, cos θ)
 //! f → Pᵀ f,   K → Pᵀ K P,   P = ∂r'/∂(y, θ) = [e, y n]
 //! ```
 //!
-//! it is linear with constant rows, and the motion an ordinary differential equation on the
-//! subspace that they leave: every method keeps its order, and Gauss' methods conserve the energy
-//! as they do elsewhere. What the change of P adds to a tangent, f·∂²r'/∂(y, θ)², vanishes where
-//! forces and inertia balance, and is left out.
+//! the constraint is linear with constant rows, and the motion is an ordinary differential equation
+//! on the subspace that the rows leave. Every method keeps its order, and Gauss methods conserve
+//! the energy as well as elsewhere. The change of P would add f·∂²r'/∂(y, θ)² to a tangent; it
+//! vanishes where forces and inertia balance, and is neglected.
 
 use super::System;
 use crate::linear::Matrix;
 
-/// The pairs of coordinates, 2·pair and 2·pair + 1, that are polar in a motion.
+/// The pairs of coordinates, 2·pair and 2·pair + 1, that are described by polar coordinates in a
+/// motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polar {
     pairs: Vec<usize>,
 }
 
-/// e, and y n.
+/// The columns e and y n of P for the gradient (x, y).
 fn tangents([x, y]: [f64; 2]) -> [[f64; 2]; 2] {
     let length = x.hypot(y);
     [[x / length, y / length], [-y, x]]
@@ -38,24 +40,24 @@ fn of(v: &mut [f64], pair: usize) -> &mut [f64; 2] {
 }
 
 impl Polar {
-    /// The given pairs.
+    /// Polar coordinates for the given pairs.
     pub fn new(mut pairs: Vec<usize>) -> Self {
         pairs.sort_unstable();
         pairs.dedup();
         Self { pairs }
     }
 
-    /// Whether there is none.
+    /// Whether there are no such pairs.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
 
-    /// Their nodes.
+    /// The nodes of the pairs.
     pub fn nodes(&self) -> impl Iterator<Item = usize> + '_ {
         self.pairs.iter().map(|pair| pair / 2)
     }
 
-    /// r', ṙ', r̈' from (y, θ) and its rates.
+    /// Replaces (y, θ) and its first two rates by r', ṙ', r̈'.
     pub fn carry(&self, [q, v, a]: [&mut [f64]; 3]) {
         for &pair in &self.pairs {
             let (q, v, a) = (of(q, pair), of(v, pair), of(a, pair));
@@ -69,7 +71,8 @@ impl Polar {
         }
     }
 
-    /// (y, θ) and its rates from r' and ṙ': the inverse of [`Self::carry`], with θ from −π to π.
+    /// Replaces r' and ṙ' by (y, θ) and its rates: the inverse of [`Self::carry`], with θ from −π
+    /// to π.
     pub fn uncarry(&self, q: &mut [f64], v: &mut [f64]) {
         for &pair in &self.pairs {
             let (q, v) = (of(q, pair), of(v, pair));
@@ -80,7 +83,7 @@ impl Polar {
         }
     }
 
-    /// Pᵀ f in the state `q` in fixed axes.
+    /// Replaces f by Pᵀ f; `q` is the state in fixed axes.
     pub fn forces(&self, q: &[f64], f: &mut [f64]) {
         for &pair in &self.pairs {
             let f = of(f, pair);
@@ -88,7 +91,7 @@ impl Polar {
         }
     }
 
-    /// P d in the state `q` in fixed axes.
+    /// Replaces d by P d; `q` is the state in fixed axes.
     pub fn changes(&self, q: &[f64], d: &mut [f64]) {
         for &pair in &self.pairs {
             let d = of(d, pair);
@@ -97,7 +100,7 @@ impl Polar {
         }
     }
 
-    /// Pᵀ K P in the state `q` in fixed axes.
+    /// Replaces K by Pᵀ K P; `q` is the state in fixed axes.
     pub fn matrix(&self, q: &[f64], k: &mut Matrix) {
         for &pair in &self.pairs {
             k.change_pair(pair, tangents([q[2 * pair], q[2 * pair + 1]]));
@@ -106,24 +109,26 @@ impl Polar {
 }
 
 impl System {
-    /// Whether unknowns of a motion are not all coordinates in fixed axes with rates of their own.
+    /// Whether [`Self::carry`] changes anything: a support moves with time, or gradients are
+    /// described by polar coordinates.
     pub fn carries(&self) -> bool {
         self.supports.moves_in_time() || !self.polar.is_empty()
     }
 
-    /// Whether the directions in which unknowns of a motion are counted turn.
+    /// Whether the frames of some unknowns of a motion rotate.
     pub fn turns(&self) -> bool {
         self.supports.turn_in_time() || !self.polar.is_empty()
     }
 
-    /// Positions, velocities and accelerations in fixed axes from the unknowns of a motion.
+    /// Transforms the unknowns of a motion to positions, velocities and accelerations in fixed
+    /// axes.
     pub fn carry(&self, time: f64, [q, v, a]: [&mut [f64]; 3]) {
         self.supports.carry(time, [&mut *q, &mut *v, &mut *a]);
         self.polar.carry([q, v, a]);
     }
 
-    /// The unknowns of a motion from positions and velocities in fixed axes: the inverse of
-    /// [`Self::carry`].
+    /// Transforms positions and velocities in fixed axes to the unknowns of a motion: the inverse
+    /// of [`Self::carry`].
     pub fn uncarry(&self, time: f64, q: &mut [f64], v: &mut [f64]) {
         self.supports.uncarry(time, q, v);
         self.polar.uncarry(q, v);

@@ -1,37 +1,39 @@
-//! How supports follow the parameter of an analysis: the load factor of statics, the time of a
-//! motion.
+//! Prescribed quantities of supports as functions of the parameter of an analysis: the load factor
+//! in statics, the time in a motion.
 
 use crate::law::Law;
 
-/// Relative difference that is none.
+/// Relative difference that counts as round-off.
 const ROUND_OFF: f64 = 1e-9;
 
-/// A prescribed quantity: start + change · (load factor or law of time).
+/// A prescribed quantity: start + change · (load factor, or law of time).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Prescribed {
     /// Value in the stress-free state.
     pub start: f64,
-    /// By how much it changes.
+    /// The change, which is multiplied by the load factor or the law.
     pub change: f64,
-    /// The law of time; none: the load factor.
+    /// The law of time; `None` if it follows the load factor.
     pub law: Option<Law>,
 }
 
 impl Prescribed {
-    /// The value at load factor or time `parameter`.
+    /// The value at the load factor or time `parameter`.
     pub fn at(&self, parameter: f64) -> f64 {
         let part = self.law.as_ref().map_or(parameter, |law| law.at(parameter)[0]);
         self.change.mul_add(part, self.start)
     }
 
-    /// Stays at `value`, unless it follows a law or is there but for round-off against `unit`.
+    /// Sets the start to `value`, unless the quantity follows a law or `value` differs only by
+    /// round-off relative to `unit`.
     pub fn freeze(&mut self, value: f64, unit: f64) {
         if self.law.is_none() && (self.start - value).abs() > ROUND_OFF * unit {
             self.start = value;
         }
     }
 
-    /// The same of an angle by which `reference` is turned to `field`.
+    /// As [`Self::freeze`], for the angle by which `reference` is turned to the direction of
+    /// `field`.
     pub fn freeze_angle(&mut self, reference: [f64; 2], field: [f64; 2]) {
         let (sine, cosine) = self.start.sin_cos();
         let [x, y] =
@@ -40,13 +42,13 @@ impl Prescribed {
         self.freeze(self.start + further, 1.0);
     }
 
-    /// Value and first two derivatives by the parameter.
+    /// Value and first two derivatives with respect to the parameter.
     pub fn rates(&self, parameter: f64) -> [f64; 3] {
         let [part, first, second] = self.law.as_ref().map_or([parameter, 1.0, 0.0], |law| law.at(parameter));
         [self.change.mul_add(part, self.start), self.change * first, self.change * second]
     }
 
-    /// The same in a motion, where what follows no law stays.
+    /// As [`Self::rates`] in a motion, where a quantity without a law is constant.
     pub fn prescribed(&self, time: f64) -> [f64; 3] {
         if self.law.is_some() { self.rates(time) } else { [self.start, 0.0, 0.0] }
     }

@@ -1,8 +1,8 @@
 //! Forces of supports and joints on the beams.
 //!
-//! A support at a node acts on the held coordinates with R = M q̈ + f; one between nodes, and a
-//! joint, with −Bᵀμ. A generalised force F' on a gradient r' has the moment r' × F' on the section,
-//! for δW = F'·δr' = M δθ with δr' = δθ J r'.
+//! A support at a node acts on the fixed coordinates with R = M q̈ + f; a support between nodes, or
+//! a joint, acts with −Bᵀμ. A generalised force F' on a gradient r' is the moment r' × F' on the
+//! section, because δW = F'·δr' = M δθ with δr' = δθ J r', where J is the quarter turn.
 
 use super::System;
 use crate::assembly::InternalVariables;
@@ -21,12 +21,12 @@ pub struct Reaction {
     pub moment: f64,
 }
 
-/// Where a support or joint acts.
+/// The place where a support or joint acts.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Source {
-    /// On what is held of a node.
+    /// The fixed components of a node.
     Node { node: usize, position: [bool; 2], rotation: bool },
-    /// By constraint rows.
+    /// The indices of constraint rows.
     Rows(Range<usize>),
 }
 
@@ -37,15 +37,15 @@ impl Source {
     }
 }
 
-/// r' × F'.
+/// The moment r' × F'.
 fn moment(gradient: [f64; 2], force: [f64; 2]) -> f64 {
     gradient[0] * force[1] - gradient[1] * force[0]
 }
 
 impl System {
-    /// Forces on the beams of all supports and then of all joints (on their second points), in the
-    /// model's order. `support_forces` are the forces on held coordinates in fixed axes, `multipliers` the
-    /// scaled μ.
+    /// Forces on the beams of all supports, and then of all joints (on their second points), in the
+    /// model's order. `support_forces` are the forces on fixed coordinates in fixed axes,
+    /// `multipliers` the scaled μ.
     pub fn reactions(
         &self,
         parameter: f64,
@@ -81,14 +81,14 @@ impl System {
         self.sources.iter().map(of).collect()
     }
 
-    /// The same in equilibrium, `x` being coordinates and scaled multipliers, with the internal
-    /// variables.
+    /// As [`Self::reactions`], in equilibrium; `x` holds the coordinates and the scaled
+    /// multipliers, and `variables` are the internal variables.
     pub fn static_reactions(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<Reaction> {
         let (q, multipliers) = x.split_at(self.coordinates());
         self.reactions(load, q, &self.static_support_forces(load, x, variables), multipliers)
     }
 
-    /// Forces of supports on the held coordinates in equilibrium, in fixed axes.
+    /// Forces of supports on the fixed coordinates in equilibrium, in fixed axes.
     pub(super) fn static_support_forces(
         &self,
         load: f64,
@@ -104,8 +104,8 @@ impl System {
         force
     }
 
-    /// Per effect with an energy or a load its kind, its beam's name, its energy \[J\] and the
-    /// resultant \[N\] of its forces on the beam. Of damping the energy is left out.
+    /// Per effect: its name (kind and beam), its energy \[J\] if it has one, and the resultant
+    /// \[N\] of its forces on the beam.
     pub fn effects(
         &self,
         parameter: f64,
@@ -161,7 +161,7 @@ impl System {
     }
 }
 
-/// Numbers those that share a name: `force.arm.1`, `force.arm.2`.
+/// Appends numbers to equal names: `force.arm.1`, `force.arm.2`.
 fn number<T>(effects: &mut [(String, Option<f64>, T)]) {
     let mut count: HashMap<String, usize> = HashMap::new();
     for (name, ..) in effects.iter() {

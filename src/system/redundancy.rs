@@ -1,13 +1,14 @@
-//! Constraint rows that hold what others hold already.
+//! Constraint rows that are linearly dependent.
 //!
-//! The multipliers of rows that depend on each other have no values, and no factorisation a pivot
-//! for them. Whether rows do is seen in the stress-free state from the Gram matrix G = B Bᵀ of the
-//! rows, each of length 1, without what supports at nodes hold: its smallest eigenvalue is the
-//! square of the combination of rows, of size 1, that comes nearest to nothing. Inverse iteration
-//! finds it with the combination. (Elimination row by row does not: the rows of a chain of cells
-//! that is held at both ends come exponentially near to each other before the last of them tells
-//! whether they depend.) A loop of beams that bend may be closed more often than it needs to be,
-//! and keeps its multipliers; one of straight beams that keep their length may not.
+//! The multipliers of linearly dependent rows are undetermined, and a factorisation finds no pivot
+//! for them. Dependence is detected in the stress-free state by the Gram matrix G = B Bᵀ of the
+//! rows, each normalised to length 1, without coordinates fixed by supports at nodes. The smallest
+//! eigenvalue of G is the squared length of the shortest combination of rows with coefficients of
+//! norm 1. Inverse iteration finds it together with the combination. (Row-by-row elimination is not
+//! suitable: the rows of a chain of cells that is fixed at both ends become exponentially close to
+//! each other before the last of them decides whether they are dependent.) A closed loop of beams
+//! that bend may be constrained more often than necessary and still has determined multipliers; a
+//! loop of straight inextensible beams may not.
 
 use super::reaction::Source;
 use super::{BuildError, System};
@@ -18,22 +19,23 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 use std::collections::BTreeMap;
 
-/// Eigenvalue that is none: far below that of a shallow arch's thrust, far above round-off.
+/// Largest eigenvalue that counts as zero: far below that of a shallow arch's thrust, far above
+/// round-off.
 const DEPENDENT: f64 = 1e-12;
-/// What is added to the diagonal, so that it can be factorised where rows depend.
+/// Added to the diagonal, so that G can be factorised even if rows are dependent.
 const SHIFT: f64 = 1e-13;
-/// Inverse iterations: each brings an eigenvalue that is none forward by more than a thousand
-/// against those that are ten thousand times as large.
+/// Number of inverse iterations. Each amplifies the share of an eigenvalue that counts as zero more
+/// than a thousandfold relative to eigenvalues ten thousand times as large.
 const ITERATIONS: usize = 6;
-/// Share of a row in a combination that counts.
+/// Smallest coefficient with which a row counts as part of a combination.
 const SHARE: f64 = 1e-6;
 
 impl System {
-    /// Refuses rows that depend on each other.
+    /// Refuses linearly dependent rows.
     pub(super) fn check_rows(&self, model: &Model) -> Result<(), BuildError> {
         let rows = self.directions();
         let Some(involved) = dependent(&rows) else { return Ok(()) };
-        // A row of which supports at nodes leave nothing.
+        // A row that is empty because supports at nodes fix all of its coordinates.
         let held = involved.first().copied().filter(|row| rows[*row].is_empty());
         let mut parts: Vec<String> = Vec::new();
         for (source, joint) in self.sources[model.supports.len()..].iter().zip(&model.joints) {
@@ -50,7 +52,7 @@ impl System {
         parts.extend(
             beams.iter().map(|&beam| format!("the length that beam `{}` keeps", self.beams[beam].name)),
         );
-        // It names them.
+        // The supports at the places of the joint of such a row are named, too.
         let tie = held.and_then(|row| self.joint_of(row, model));
         let ties: Vec<Place> = tie.map_or(Vec::new(), |joint| joint.places().collect());
         for (source, support) in self.sources.iter().zip(&model.supports) {
@@ -78,13 +80,13 @@ impl System {
         joints.find(|(source, _)| of_joint(source)).map(|(_, joint)| *joint)
     }
 
-    /// The rows in the stress-free state, positions in beam lengths, each of length 1; empty where
-    /// supports at nodes hold all of it.
+    /// The rows in the stress-free state, with positions in beam lengths, each normalised to length
+    /// 1; a row is empty if supports at nodes fix all of its coordinates.
     fn directions(&self) -> Vec<BorderRow> {
         let mut rows = self.border(0.0, &self.reference);
         for (row, constraint) in rows.iter_mut().zip(&self.constraints) {
-            // Entries for gradients are lengths where those for positions are none, or have no unit
-            // where these are inverse lengths.
+            // Dividing the entries for gradients by the length gives them the unit of the entries
+            // for positions: none, or an inverse length.
             row.iter_mut().filter(|(i, _)| i % 4 > 1).for_each(|(_, value)| *value /= self.length);
             let scale = constraint.scale(self.stiffness, self.length);
             let size = row.iter().map(|(_, value)| value * value).sum::<f64>().sqrt();
@@ -115,7 +117,8 @@ impl System {
     }
 }
 
-/// Rows of which one is a combination of the others; one of which nothing is left alone.
+/// The rows of a linear combination that vanishes, or a single empty row; `None` if all rows are
+/// independent.
 fn dependent(rows: &[BorderRow]) -> Option<Vec<usize>> {
     if let Some(empty) = rows.iter().position(Vec::is_empty) {
         return Some(vec![empty]);
@@ -135,7 +138,7 @@ fn dependent(rows: &[BorderRow]) -> Option<Vec<usize>> {
     let gram: Vec<_> = pairs.chain(shift).collect();
     let gram = SparseColMat::<usize, f64>::try_new_from_triplets(rows.len(), rows.len(), &gram).ok()?;
     let factor = gram.sp_cholesky(Side::Upper).ok()?;
-    // Shares without any order, the same in every run.
+    // Irregular starting values, the same in every run.
     let mut shares =
         Mat::from_fn(rows.len(), 1, |i, _| ((i + 1) as f64 * 0.618_033_988_749_895).fract() - 0.5);
     for _ in 0..ITERATIONS {
@@ -152,7 +155,7 @@ fn dependent(rows: &[BorderRow]) -> Option<Vec<usize>> {
     (square <= DEPENDENT).then(|| involved.collect())
 }
 
-/// `a, b and c`.
+/// Joins the parts as `a, b and c`.
 fn enumerate(parts: Vec<String>) -> String {
     match &parts[..] {
         [all @ .., last] if !all.is_empty() => format!("{} and {last}", all.join(", ")),
@@ -164,7 +167,7 @@ fn enumerate(parts: Vec<String>) -> String {
 mod tests {
     use super::*;
 
-    /// Rows of length 1.
+    /// Rows normalised to length 1.
     fn rows(of: &[&[(usize, f64)]]) -> Vec<BorderRow> {
         let unit = |row: &&[(usize, f64)]| {
             let size = row.iter().map(|(_, value)| value * value).sum::<f64>().sqrt();
@@ -182,7 +185,7 @@ mod tests {
         assert_eq!(dependent(&rows(&[a, other, b])), None);
         assert_eq!(dependent(&rows(&[a, other, b, sum])), Some(vec![0, 2, 3]));
         assert_eq!(dependent(&[rows(&[a]), vec![Vec::new()]].concat()), Some(vec![1]));
-        // Off by an angle of 1e-4, of 1e-8.
+        // The last row differs from a combination by an angle of 1e-4, or of 1e-8.
         for (angle, found) in [(1e-4, None), (1e-8, Some(vec![0, 2, 3]))] {
             let nearly: &[_] = &[(0, 1.0), (1, 3.0), (2, -3.0), (5, angle * 19.0_f64.sqrt())];
             assert_eq!(dependent(&rows(&[a, other, b, nearly])), found);

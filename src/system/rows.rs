@@ -1,4 +1,4 @@
-//! The rows of supports between nodes, of joints and of inextensible beams, all together.
+//! The constraint rows of supports between nodes, of joints and of inextensible beams.
 
 use super::constraints::Constraint;
 use super::polar::Polar;
@@ -8,13 +8,13 @@ use crate::linear::bordered::BorderRow;
 use std::collections::BTreeMap;
 
 impl System {
-    /// Scaled rows of ∂g/∂q in the supports' frames, without the held coordinates. An entry that
-    /// happens to vanish stays, so that the pattern does.
+    /// Scaled rows of ∂g/∂q in the supports' frames, without fixed coordinates. Entries of
+    /// nonlinear rows that happen to vanish are kept, so that the pattern does not change.
     pub fn border(&self, load: f64, q: &[f64]) -> Vec<BorderRow> {
         self.border_of(&Polar::default(), load, q)
     }
 
-    /// The same of the unknowns of a motion.
+    /// As [`Self::border`], for the unknowns of a motion.
     pub fn border_in_motion(&self, time: f64, q: &[f64]) -> Vec<BorderRow> {
         self.border_of(&self.polar, time, q)
     }
@@ -42,7 +42,7 @@ impl System {
         rows
     }
 
-    /// Whether rows depend on the state.
+    /// Whether any row depends on the state.
     pub fn has_nonlinear_constraints(&self) -> bool {
         self.constraints.iter().any(Constraint::is_nonlinear)
     }
@@ -63,8 +63,8 @@ impl System {
         }
     }
 
-    /// The row that the state `q` misses most: a coordinate of it, and by how much (beam lengths;
-    /// of directions rad).
+    /// The row that the state `q` violates most: one of its coordinates, and the violation (in beam
+    /// lengths; in rad for directions).
     pub fn missed(&self, parameter: f64, q: &[f64]) -> Option<(usize, f64)> {
         let missed = self.constraints.iter().map(|row| (row.first(), row.miss(parameter, q, self.length)));
         missed.max_by(|a, b| a.1.total_cmp(&b.1))
@@ -77,8 +77,8 @@ impl System {
         }
     }
 
-    /// Writes −∂g/∂q·v, scaled, in the state `q`, which is what the rates of unknowns must make up
-    /// for where supports have the rates `v`.
+    /// Writes −∂g/∂q·v, scaled, in the state `q`. If `v` are the velocities that supports
+    /// prescribe, this is what the rates of the unknowns must contribute.
     pub fn constraint_rates(&self, parameter: f64, q: &[f64], v: &[f64], rates: &mut [f64]) {
         for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
             let scale = constraint.scale(self.stiffness, self.length);
@@ -86,7 +86,8 @@ impl System {
         }
     }
 
-    /// Adds −v·∂²g/∂q∂q·v in the state `q`, scaled: the part of −g̈ that velocities have.
+    /// Adds −v·∂²g/∂q∂q·v in the state `q`, scaled: the part of −g̈ that is quadratic in
+    /// velocities.
     pub fn add_constraint_curvatures(&self, q: &[f64], v: &[f64], rates: &mut [f64]) {
         for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
             *rate -= constraint.scale(self.stiffness, self.length) * constraint.curvature(q, v);
@@ -101,7 +102,7 @@ impl System {
         }
     }
 
-    /// Refuses more constraint rows on the same coordinates than there are free ones.
+    /// Refuses more constraint rows on the same coordinates than these have free ones.
     pub(super) fn check_room(&self) -> Result<(), BuildError> {
         let fixed = self.fixed();
         let mut rows_of: BTreeMap<(usize, usize), usize> = BTreeMap::new();

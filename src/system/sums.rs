@@ -8,7 +8,7 @@ use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 
 impl System {
-    /// `f = f_int(q) + f_load(q)` at load factor or time `parameter`.
+    /// `f = f_int(q) + f_load(q)` at the load factor or time `parameter`.
     pub fn force(&self, parameter: f64, q: &[f64], f: &mut [f64]) {
         self.start_with_constant_load(parameter, f);
         for effect in &self.terms.internal {
@@ -20,8 +20,8 @@ impl System {
         self.terms.moving_loads.iter().for_each(|force| force.add_force(1.0, parameter, f));
     }
 
-    /// The forces of [`Self::force`] in the states of four lanes, each at its own `parameters`;
-    /// `scratch` has two vectors of coordinates.
+    /// The forces of [`Self::force`] in four states, one per lane, each at its own parameter;
+    /// `scratch` holds two vectors of coordinates.
     pub fn forces(&self, parameters: [f64; 4], q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
         let factor = Lanes::new(parameters.map(|parameter| self.amplitude.at(parameter)));
         f.iter_mut().zip(&self.constant_load).for_each(|(f, load)| *f = factor * Lanes::splat(*load));
@@ -37,7 +37,7 @@ impl System {
         }
     }
 
-    /// `f += factor · ∂f/∂λ` of loads in proportion to the load factor.
+    /// `f += factor · ∂f/∂λ`, for loads that are proportional to the load factor λ.
     pub fn add_load_rate(&self, factor: f64, q: &[f64], f: &mut [f64]) {
         self.add_constant_load(factor, f);
         for (effect, one) in self.varying_loads(1.0) {
@@ -66,17 +66,17 @@ impl System {
         load.amplitude.as_ref().unwrap_or(&self.amplitude)
     }
 
-    /// By what factor loads without a law of their own act.
+    /// The factor of all loads without a law of their own.
     pub fn amplitude(&self, parameter: f64) -> f64 {
         self.amplitude.at(parameter)
     }
 
-    /// Whether there is any load that grows with the load factor or acts in a motion.
+    /// Whether there are loads, other than moving ones.
     pub fn has_loads(&self) -> bool {
         !self.terms.loads.is_empty()
     }
 
-    /// Whether a load does work that no potential counts.
+    /// Whether a load does work that no potential accounts for.
     pub fn has_work(&self) -> bool {
         !self.terms.moving_loads.is_empty() || self.terms.loads.iter().any(|load| !load.has_potential())
     }
@@ -86,7 +86,7 @@ impl System {
         !self.terms.damping.is_empty()
     }
 
-    /// Power \[W\] at time `parameter` of the loads without potential in the state (q, v);
+    /// Power \[W\] at time `parameter` of the loads without a potential in the state (q, v);
     /// `scratch` is overwritten.
     pub fn power(&self, parameter: f64, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
         scratch.fill(0.0);
@@ -104,7 +104,8 @@ impl System {
         }
     }
 
-    /// `f += ` the forces that depend on velocities, `d = ` their derivative by the velocities.
+    /// `f += ` the forces that depend on velocities, `d = ` their derivative with respect to the
+    /// velocities.
     pub fn damping_matrix(
         &self,
         q: &[f64],
@@ -119,15 +120,16 @@ impl System {
         }
     }
 
-    /// Power \[W\] that damping takes in the state (q, v); `scratch` is overwritten.
+    /// Power \[W\] dissipated by damping in the state (q, v); `scratch` is overwritten.
     pub fn lost_power(&self, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
         scratch.fill(0.0);
         self.add_damping(q, v, scratch);
         scratch.iter().zip(v).map(|(f, v)| f * v).sum()
     }
 
-    /// The same force as [`Self::force`], and its derivative by q; stress resultants in the tangent
-    /// are extrapolated from an earlier iterate, if there is one (see [`crate::effect`]).
+    /// The same force as [`Self::force`], and its derivative with respect to q. Stress resultants
+    /// in the tangent are extrapolated from an earlier iterate, if there is one (see
+    /// [`crate::assembly`]).
     pub fn force_and_tangent(
         &self,
         parameter: f64,
@@ -148,8 +150,8 @@ impl System {
         self.terms.moving_loads.iter().for_each(|force| force.add_force(1.0, parameter, f));
     }
 
-    /// `f = K v` with the tangent of [`Self::force_and_tangent`] at `q`, but to many more digits
-    /// where the mesh is fine.
+    /// `f = K v` with the tangent of [`Self::force_and_tangent`] at `q`, but with many more correct
+    /// digits on fine meshes.
     pub fn tangent_product(&self, parameter: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
         for effect in &self.terms.internal {
@@ -165,12 +167,13 @@ impl System {
         self.sum_of_tangents(&self.terms.internal, q)
     }
 
-    /// Whether the mass matrix follows the state, as that of rotary inertia follows directions.
+    /// Whether the mass matrix depends on the state, as that of rotary inertia depends on
+    /// directions.
     pub fn has_turning_inertia(&self) -> bool {
         !self.terms.turning.is_empty()
     }
 
-    /// `m += ` the part of the mass matrix that follows the state `q`.
+    /// `m += ` the part of the mass matrix that depends on the state `q`.
     pub fn add_turning_mass(&self, q: &[f64], m: &mut Matrix) {
         if self.terms.turning.is_empty() {
             return;
@@ -182,19 +185,19 @@ impl System {
         }
     }
 
-    /// `f += ` that part times `v`.
+    /// `f += ` the state-dependent part of the mass matrix times `v`.
     pub fn add_turning_momentum(&self, q: &[f64], v: &[f64], f: &mut [f64]) {
         self.terms.turning.iter().for_each(|turning| turning.momentum.add_force(q, v, f));
     }
 
-    /// `f += ` its force of inertia at the velocities `v` and accelerations `a`.
+    /// `f += ` the force of state-dependent inertia at the velocities `v` and accelerations `a`.
     pub fn add_turning_force(&self, q: &[f64], v: &[f64], a: &[f64], f: &mut [f64]) {
         self.add_turning_momentum(q, a, f);
         self.terms.turning.iter().for_each(|turning| turning.rate.add_force(q, v, f));
     }
 
-    /// Kinetic energy \[J\] of each inertia whose matrix follows the state: its kind, its beam's
-    /// index and ½ v·M v.
+    /// Kinetic energy \[J\] of each inertia whose mass matrix depends on the state: its kind, its
+    /// beam's index and ½ v·M v.
     pub(super) fn turning_energies<'q>(
         &'q self,
         q: &'q [f64],
@@ -208,12 +211,12 @@ impl System {
         })
     }
 
-    /// The constant part of the mass matrix, if inertia was asked for.
+    /// The constant part of the mass matrix; zero in an analysis without inertia.
     pub fn mass_matrix(&self) -> Matrix {
         self.sum_of_tangents(&self.terms.inertia, &vec![0.0; self.coordinates()])
     }
 
-    /// A zero matrix for [`Self::damping_matrix`].
+    /// A zero matrix with the pattern of the damping and mass matrices.
     pub fn damping_pattern(&self) -> Matrix {
         Matrix::zeros(self.nodes, self.blocks, true)
     }
@@ -228,12 +231,12 @@ impl System {
         sum
     }
 
-    /// Energies at load factor or time `parameter`; `velocity` where there is motion. Of the work
-    /// here is what actuation by laws of time has put into the elastic energy beyond what
-    /// [`Self::power`] counts.
+    /// Energies at the load factor or time `parameter`; `velocity` is given in a motion. The `work`
+    /// returned is only the work of actuation by laws of time that is contained in the elastic
+    /// energy but not in [`Self::power`].
     pub fn energy(&self, parameter: f64, q: &[f64], velocity: Option<&[f64]>) -> Energy {
         let sum = |effects: &[Box<dyn Effect>], kind: Kind, q: &[f64]| -> f64 {
-            // `sum` of nothing is −0.
+            // `fold` instead of `sum`, because the `sum` of nothing is −0.
             effects.iter().filter(|e| e.kind() == kind).fold(0.0, |sum, e| sum + e.energy(q))
         };
         let actuates = |load: &ActingLoad| matches!(load.effect.kind(), Kind::PreStrain | Kind::PreCurvature);
@@ -254,15 +257,17 @@ impl System {
         }
     }
 
-    /// Energy \[J\] in springs, foundations and contacts.
+    /// Energy \[J\] of all internal effects but stretch and bend: springs, foundations and
+    /// contacts.
     fn stored_energy(&self, q: &[f64]) -> f64 {
         let others = self.terms.internal.iter().filter(|e| !matches!(e.kind(), Kind::Stretch | Kind::Bend));
         others.map(|e| e.energy(q)).sum()
     }
 }
 
-/// The resultant of forces on a beam \[N\], from their negative on the coordinates: position
-/// functions sum to 1, and gradient functions have no part in it.
+/// The resultant \[N\] of forces on a beam, where `f` is the negative of the forces on the
+/// coordinates: the shape functions of positions sum to 1, and those of gradients do not
+/// contribute.
 pub(super) fn resultant(f: &[f64]) -> [f64; 2] {
     nodes(f).fold([0.0; 2], |sum, f| [sum[0] - f.position[0], sum[1] - f.position[1]])
 }

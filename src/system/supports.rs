@@ -1,41 +1,42 @@
 //! Supports at nodes, by elimination.
 //!
 //! Both discretisations interpolate values and slopes at their nodes (Kronecker delta), so that
-//! what a support holds there *is* a coordinate, if need be in a turned frame, and is eliminated
-//! exactly: its row and column become those of the identity, which keeps the band as it is.
-//! Coordinates come in pairs, (x, y) or (x', y') of a node:
+//! every quantity fixed there *is* a coordinate, if necessary in a rotated frame. It is eliminated
+//! exactly: its row and column are replaced by those of the identity, which does not change the
+//! band. Coordinates come in pairs, (x, y) or (x', y') of a node:
 //!
-//! - a held position fixes one or both components of its pair;
-//! - a held gradient fixes both components of (x', y') to R(φ) r'₀, φ the prescribed rotation;
-//! - a held direction θ lets (x', y') = a (cos θ, sin θ) with a free: in the frame turned by θ the
-//!   second component is fixed to zero.
+//! - a fixed position fixes one or both components of its pair;
+//! - a fixed gradient fixes both components of (x', y') to R(φ) r'₀, where φ is the prescribed
+//!   rotation;
+//! - a fixed direction θ leaves the length a free in (x', y') = a (cos θ, sin θ): in the frame
+//!   rotated by θ the second component is fixed to zero.
 
 use super::prescribed::Prescribed;
 use crate::lanes::Real;
 use crate::linear::Matrix;
 
-/// What is held of a pair of coordinates.
+/// The quantities that are fixed in a pair of coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Restraint {
     /// One or both components of a position.
     Position([Option<Prescribed>; 2]),
-    /// Both components of a gradient, turned by an angle.
+    /// Both components of a gradient, rotated by an angle.
     Gradient {
-        /// r'₀.
+        /// The gradient without rotation, r'₀.
         reference: [f64; 2],
-        /// The angle by which it is turned \[rad\].
+        /// The angle of rotation \[rad\].
         rotation: Prescribed,
     },
     /// The direction of a gradient \[rad\].
     Direction(Prescribed),
 }
 
-/// A pair of coordinates, 2·pair and 2·pair + 1, of which something is held.
+/// A pair of coordinates, 2·pair and 2·pair + 1, with a fixed quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RestrainedPair {
-    /// Number of the pair.
+    /// Index of the pair.
     pub pair: usize,
-    /// What is held.
+    /// The fixed quantities.
     pub restraint: Restraint,
 }
 
@@ -50,7 +51,7 @@ impl RestrainedPair {
         all.into_iter().flatten()
     }
 
-    /// Whether its frame turns with time.
+    /// Whether its frame rotates with time.
     fn turns(&self) -> bool {
         matches!(&self.restraint, Restraint::Direction(angle) if angle.moves_in_time())
     }
@@ -67,7 +68,7 @@ impl RestrainedPair {
         }
     }
 
-    /// ∂/∂λ of the fixed components, in the frame.
+    /// Derivatives of the fixed components with respect to λ, in the frame.
     fn rate(&self, load: f64, q: &[f64]) -> [f64; 2] {
         match &self.restraint {
             Restraint::Position(components) => {
@@ -89,7 +90,7 @@ pub struct Supports {
     pairs: Vec<RestrainedPair>,
 }
 
-/// Values of a pair of coordinates, their velocities and accelerations.
+/// Values of a pair of coordinates, with their velocities and accelerations.
 type PairMotion = [[f64; 2]; 3];
 
 fn rotate<T: Real>([cosine, sine]: [f64; 2], pair: &mut [T]) {
@@ -106,21 +107,22 @@ fn clear<T: Real>(pair: &mut [T], which: [bool; 2]) {
 }
 
 impl Supports {
-    /// The given pairs are held.
+    /// Supports that fix the given pairs.
     pub fn new(pairs: Vec<RestrainedPair>) -> Self {
         Self { pairs }
     }
 
     /// The coordinates that are eliminated, in the supports' frames.
     pub fn eliminated(&self) -> impl Iterator<Item = usize> + '_ {
-        // Which components are fixed in a frame does not depend on where the frame stands.
+        // The angle of a frame does not affect which of its components are fixed.
         self.pairs.iter().flat_map(|restrained| {
             let (_, fixed) = restrained.frame(0.0);
             (0..2).filter(move |component| fixed[*component]).map(|component| 2 * restrained.pair + component)
         })
     }
 
-    /// Nodes of which one component of a pair is held and the other free, in the support's frame.
+    /// Nodes with a pair of which one component is fixed and the other free, in the support's
+    /// frame.
     pub fn half_fixed(&self) -> impl Iterator<Item = usize> + '_ {
         let half = |restrained: &&RestrainedPair| {
             let (_, [first, second]) = restrained.frame(0.0);
@@ -129,7 +131,7 @@ impl Supports {
         self.pairs.iter().filter(half).map(|restrained| restrained.pair / 2)
     }
 
-    /// Nodes whose position is held, or a component of it.
+    /// Nodes at which one or both components of the position are fixed.
     pub fn positions(&self) -> impl Iterator<Item = usize> + '_ {
         self.pairs
             .iter()
@@ -142,15 +144,15 @@ impl Supports {
         self.eliminated().count()
     }
 
-    /// Sets the held coordinates of `q` to their values at load factor `load`.
+    /// Sets the fixed coordinates of `q` to their values at the load factor `load`.
     pub fn impose(&self, load: f64, q: &mut [f64]) {
         for restrained in &self.pairs {
             restrained.impose(load, &mut q[2 * restrained.pair..2 * restrained.pair + 2]);
         }
     }
 
-    /// Per held component of a position its axis, and how far it is in `q` from its value at load
-    /// factor `load` \[m\].
+    /// Per fixed component of a position: its axis, and the distance of the component in `q` from
+    /// its value at the load factor `load` \[m\].
     pub fn position_changes<'a>(
         &'a self,
         load: f64,
@@ -167,7 +169,8 @@ impl Supports {
         })
     }
 
-    /// What follows no law holds what it holds in the state `q` of a system of this `length`.
+    /// Fixes quantities that follow no law at the values that they have in the state `q`; `length`
+    /// is the scale of lengths.
     pub fn freeze(&mut self, q: &[f64], length: f64) {
         for RestrainedPair { pair, restraint } in &mut self.pairs {
             let field = [q[2 * *pair], q[2 * *pair + 1]];
@@ -186,13 +189,13 @@ impl Supports {
         }
     }
 
-    /// Whether anything moves by prescription.
+    /// Whether any prescribed quantity changes.
     pub fn moves(&self) -> bool {
         self.pairs.iter().flat_map(RestrainedPair::prescribed).any(Prescribed::moves)
     }
 
-    /// Turns a vector of forces or increments into the frames of the supports and clears what is
-    /// held.
+    /// Transforms a vector of forces or increments to the frames of the supports and clears the
+    /// fixed components.
     pub fn to_frames<T: Real>(&self, load: f64, v: &mut [T]) {
         for restrained in &self.pairs {
             let (frame, fixed) = restrained.frame(load);
@@ -202,8 +205,8 @@ impl Supports {
         }
     }
 
-    /// Turns increments back from the frames of the supports, except where these turn with time:
-    /// there the unknowns of a motion are components in the frame.
+    /// Transforms increments back from the frames of the supports, except from frames that rotate
+    /// with time: there the unknowns of a motion are components in the frame.
     pub fn from_frames<T: Real>(&self, load: f64, v: &mut [T]) {
         for restrained in self.pairs.iter().filter(|restrained| !restrained.turns()) {
             let ([cosine, sine], _) = restrained.frame(load);
@@ -211,7 +214,7 @@ impl Supports {
         }
     }
 
-    /// Writes ∂q/∂λ of the held coordinates, in their frames, and zero elsewhere.
+    /// Writes ∂q/∂λ of the fixed coordinates, in their frames, and zero elsewhere.
     pub fn rate(&self, load: f64, q: &[f64], rate: &mut [f64]) {
         rate.fill(0.0);
         for restrained in &self.pairs {
@@ -219,7 +222,7 @@ impl Supports {
         }
     }
 
-    /// Turns a tangent into the frames of the supports.
+    /// Transforms a tangent to the frames of the supports.
     pub fn turn_matrix(&self, load: f64, k: &mut Matrix) {
         for restrained in &self.pairs {
             if let ([cosine, sine], _) = restrained.frame(load)
@@ -230,7 +233,7 @@ impl Supports {
         }
     }
 
-    /// Clears the diagonal of held coordinates in a matrix from which they are eliminated.
+    /// Sets the rows, columns and diagonal entries of fixed coordinates to zero.
     pub fn clear_fixed(&self, load: f64, k: &mut Matrix) {
         for restrained in &self.pairs {
             let (_, fixed) = restrained.frame(load);
@@ -240,8 +243,8 @@ impl Supports {
         }
     }
 
-    /// Eliminates the held coordinates from a tangent that is already in their frames. The diagonal
-    /// is left in place of the row, so that the matrix keeps its units.
+    /// Eliminates the fixed coordinates from a tangent that is already in their frames. The
+    /// magnitude of the diagonal entry is kept, so that the matrix keeps its units.
     pub fn eliminate(&self, load: f64, k: &mut Matrix) {
         for restrained in &self.pairs {
             let (_, fixed) = restrained.frame(load);
@@ -255,13 +258,13 @@ impl Supports {
         }
     }
 
-    /// Whether anything moves by a law of time.
+    /// Whether any prescribed quantity changes by a law of time.
     pub fn moves_in_time(&self) -> bool {
         self.pairs.iter().flat_map(RestrainedPair::prescribed).any(Prescribed::moves_in_time)
     }
 
-    /// What moves by a law of time, each with the unit by which it is measured: `per_length` for
-    /// positions, 1 for angles.
+    /// The quantities that change by a law of time, each with a factor that makes it dimensionless:
+    /// `per_length` for positions, 1 for angles.
     pub fn moving(&self, per_length: f64) -> impl Iterator<Item = (&Prescribed, f64)> {
         let of = move |restrained: &RestrainedPair| {
             if matches!(restrained.restraint, Restraint::Position(_)) { per_length } else { 1.0 }
@@ -273,19 +276,20 @@ impl Supports {
         prescribed.filter(|(course, _)| course.moves_in_time())
     }
 
-    /// Whether a held direction turns by a law of time.
+    /// Whether a fixed direction rotates by a law of time.
     pub fn turn_in_time(&self) -> bool {
         self.pairs.iter().any(RestrainedPair::turns)
     }
 
-    /// Whether coordinate `i` belongs to a pair of which something is held, and nothing moves.
+    /// Whether coordinate `i` belongs to a pair with a fixed quantity, and no quantity of the pair
+    /// moves with time.
     pub fn is_stationary(&self, i: usize) -> bool {
         self.pairs.iter().any(|restrained| {
             restrained.pair == i / 2 && !restrained.prescribed().any(Prescribed::moves_in_time)
         })
     }
 
-    /// Times at which a law of motion is not smooth.
+    /// Times at which the law of a prescribed quantity is not smooth.
     pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
         self.pairs
             .iter()
@@ -294,7 +298,8 @@ impl Supports {
             .flat_map(|law| law.kinks())
     }
 
-    /// What jumps by a law: a coordinate, when, and by how much (m, or rad).
+    /// Prescribed quantities that jump by a law: a coordinate of the pair, the time, and the height
+    /// (m, or rad).
     pub fn jumps(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         self.pairs.iter().flat_map(|restrained| {
             let jump = |course: &Prescribed| {
@@ -305,8 +310,8 @@ impl Supports {
         })
     }
 
-    /// Turns changes of a motion's unknowns into the frames of the supports and clears what is
-    /// held.
+    /// Transforms changes of a motion's unknowns to the frames of the supports and clears the fixed
+    /// components.
     pub fn unknowns_to_frames(&self, v: &mut [f64]) {
         for restrained in &self.pairs {
             let (frame, fixed) = restrained.frame(0.0);
@@ -318,11 +323,12 @@ impl Supports {
         }
     }
 
-    /// Takes what is held out of changes or rates of a motion's unknowns.
+    /// Removes fixed components from changes or rates of a motion's unknowns.
     ///
-    /// In a frame that is no axis of the coordinates round-off leaves something of the held
-    /// component in every sum. A solution never touches it, so that whatever is continued from step
-    /// to step must be freed from it: a polynomial of stages multiplies it with every step.
+    /// In a frame that is not parallel to the axes, round-off leaves a small fixed component in
+    /// every sum. The equations never correct it, so that it must be removed from all vectors that
+    /// are continued from step to step: extrapolating the polynomial of the stages would multiply
+    /// it in every step.
     pub fn release<T: Real>(&self, v: &mut [T]) {
         for restrained in &self.pairs {
             let ([cosine, sine], fixed) = restrained.frame(0.0);
@@ -337,7 +343,7 @@ impl Supports {
         }
     }
 
-    /// Turns a vector back from all frames.
+    /// Transforms a vector back from all frames.
     pub fn to_fixed_axes(&self, time: f64, v: &mut [f64]) {
         for restrained in &self.pairs {
             let ([cosine, sine], _) = restrained.frame(time);
@@ -345,7 +351,7 @@ impl Supports {
         }
     }
 
-    /// Sets a motion's unknowns where they are held.
+    /// Sets the fixed components of a motion's unknowns.
     pub fn impose_unknowns(&self, time: f64, x: &mut [f64]) {
         for restrained in &self.pairs {
             let pair = &mut x[2 * restrained.pair..2 * restrained.pair + 2];
@@ -353,7 +359,8 @@ impl Supports {
         }
     }
 
-    /// Writes the velocities that supports prescribe in the state `q`, zero for all that is free.
+    /// Writes the velocities that supports prescribe in the state `q`, and zero for all free
+    /// components.
     pub fn prescribed_velocity(&self, time: f64, q: &[f64], velocity: &mut [f64]) {
         velocity.fill(0.0);
         for restrained in &self.pairs {
@@ -364,7 +371,7 @@ impl Supports {
         }
     }
 
-    /// Clears all forces but those on held components, in fixed axes.
+    /// Clears all forces except those on fixed components, in fixed axes.
     pub fn keep_fixed(&self, time: f64, force: &mut [f64]) {
         let mut kept = vec![0.0; force.len()];
         for restrained in &self.pairs {
@@ -379,11 +386,12 @@ impl Supports {
         force.copy_from_slice(&kept);
     }
 
-    /// Positions, velocities and accelerations in fixed axes from the unknowns of a motion: what a
-    /// support moves receives its prescribed values, and along a direction that turns with θ(t),
+    /// Transforms the unknowns of a motion to positions, velocities and accelerations in fixed
+    /// axes. Prescribed components receive their values. Along a direction that rotates with θ(t),
     ///
     /// ```text
-    /// r' = y e,   ṙ' = ẏ e + y θ̇ n,   r̈' = (ÿ − y θ̇²) e + (2 ẏ θ̇ + y θ̈) n,   e = (cos θ, sin θ), n = (−sin θ, cos θ).
+    /// r' = y e,   ṙ' = ẏ e + y θ̇ n,   r̈' = (ÿ − y θ̇²) e + (2 ẏ θ̇ + y θ̈) n
+    /// e = (cos θ, sin θ),   n = (−sin θ, cos θ)
     /// ```
     pub fn carry(&self, time: f64, [q, v, a]: [&mut [f64]; 3]) {
         for restrained in &self.pairs {
@@ -396,8 +404,8 @@ impl Supports {
         }
     }
 
-    /// The unknowns of a motion from positions and velocities in fixed axes: the inverse of
-    /// [`Self::carry`].
+    /// Transforms positions and velocities in fixed axes to the unknowns of a motion: the inverse
+    /// of [`Self::carry`].
     pub fn uncarry(&self, time: f64, q: &mut [f64], v: &mut [f64]) {
         for restrained in self.pairs.iter().filter(|restrained| restrained.turns()) {
             let (frame, _) = restrained.frame(time);

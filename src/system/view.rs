@@ -1,4 +1,4 @@
-//! Looking at a state: position, gradient, strain and curvature anywhere on a beam.
+//! Evaluation of a state: position, gradient, strain and curvature anywhere on a beam.
 
 use crate::basis::{Basis, BasisError, BasisTable};
 use crate::effect::{Engineering, Green, Strain, curvature};
@@ -23,7 +23,7 @@ impl Fields {
         curvature(&Vector2::from(self.gradient), &Vector2::from(self.second))
     }
 
-    /// ε by the given measure, against a straight unit reference.
+    /// ε by the given measure, relative to a reference with |r'| = 1.
     pub fn strain(&self, measure: StrainMeasure) -> f64 {
         let gradient = Vector2::from(self.gradient);
         match measure {
@@ -32,7 +32,7 @@ impl Fields {
         }
     }
 
-    /// What changes to first order where the fields change by `by`.
+    /// First-order changes of direction, strain and curvature when the fields change by `by`.
     pub fn change(&self, by: &Self, measure: StrainMeasure) -> Change {
         let [first, second] = [self.gradient, self.second].map(Vector2::from);
         let [by_first, by_second] = [by.gradient, by.second].map(Vector2::from);
@@ -53,23 +53,23 @@ impl Fields {
     }
 }
 
-/// First variations at a point, of a change of the coordinates.
+/// First-order changes at a point caused by a change of the coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
-    /// Of the direction of r' \[rad\].
+    /// Change of the direction of r' \[rad\].
     pub angle: f64,
-    /// Of ε.
+    /// Change of ε.
     pub strain: f64,
-    /// Of κ \[1/m\].
+    /// Change of κ \[1/m\].
     pub curvature: f64,
 }
 
-/// The representative of an angle nearest to `near`.
+/// `angle` plus the multiple of a full turn that brings it nearest to `near`.
 pub fn unfold(angle: f64, near: Option<f64>) -> f64 {
     near.map_or(angle, |near| angle + TAU * ((near - angle) / TAU).round())
 }
 
-/// Rows of r, r', r'' at one point or several of a beam.
+/// Shape functions of r, r', r'' at one or several points of a beam.
 #[derive(Clone, Debug)]
 pub struct View {
     table: BasisTable,
@@ -77,12 +77,12 @@ pub struct View {
 }
 
 impl View {
-    /// At one arc length; `offset` is the beam's first coefficient in the system.
+    /// A view at one arc length; `offset` is the beam's first coefficient in the system.
     pub fn point(basis: &Basis, offset: usize, s: f64) -> Result<Self, BasisError> {
         Self::points(basis, offset, &[s])
     }
 
-    /// At several arc lengths.
+    /// A view at several arc lengths.
     pub fn points(basis: &Basis, offset: usize, s: &[f64]) -> Result<Self, BasisError> {
         Ok(Self { table: basis.points(s, &[0, 1, 2])?, offset })
     }
@@ -112,8 +112,8 @@ impl View {
         Fields { position, gradient, second }
     }
 
-    /// What the first point has of a vector of coordinates: its position, of their velocities its
-    /// velocity.
+    /// The vector that nodal values `vector` have at the first point: its position for coordinates,
+    /// its velocity for their rates.
     pub fn at_point(&self, vector: &[f64]) -> [f64; 2] {
         self.combine(0, 0, vector)
     }

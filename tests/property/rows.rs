@@ -43,7 +43,7 @@ fn single(s: f64, order: usize, row: Row) -> Constraint {
 fn joint(order: usize, normals: Vec<[f64; 2]>, value: f64) -> Constraint {
     let tables = [table(0.2, order), table(1.7, order)];
     let mut joint = Constraint::joint(tables.iter().take(normals.len()).map(|t| (t, OFFSET)), order, normals);
-    joint.set_sum(value);
+    joint.add_to_sum(value);
     joint
 }
 
@@ -297,7 +297,7 @@ fn rows_hold_what_they_are_told_to() {
     }
     let mut open = joint(0, vec![[0.6, -0.8], [-0.3, 0.4]], 0.05);
     let before = open.value(0.0, &q);
-    open.set_sum(0.2);
+    open.add_to_sum(0.2);
     assert!((open.value(0.0, &q) - (before - 0.2)).abs() < 1e-14);
     assert!((open.closed().value(0.0, &q) - (before + 0.05)).abs() < 1e-14);
     // What follows a law goes by it, and what is there but for round-off stays as it is written.

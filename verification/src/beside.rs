@@ -1,4 +1,4 @@
-//! `verify peers`: what a peer makes of a case's scenes, beside ours.
+//! `verify peers`: the results of a peer for a case's scenes, beside ours.
 
 use ancf::scene::Scene;
 use ancf_check::case::{Family, Peer};
@@ -9,8 +9,8 @@ use ancf_verification::{Failure, peers};
 use crate::chosen;
 
 /// Runs the cases by Exudyn and by ours, and prints the last place of every probe, or the
-/// frequencies, side by side. No case named: those with a peer among their oracles. The answer is
-/// whether any scene could be compared.
+/// frequencies, side by side. If no case is named, these are the cases with a peer among their
+/// oracles. Returns whether any scene could be compared.
 pub fn print(suite: &Suite, cases: &[String]) -> Result<bool, Failure> {
     let mut compared = 0;
     for name in chosen(suite, cases)? {

@@ -35,7 +35,7 @@ const RUNS: [(&str, &str); 8] = [
     ("bounce", "verification/cases/bounce/scene.toml"),
     ("slider-crank", "verification/cases/slider-crank/scene.toml"),
 ];
-/// The scene whose accuracy is priced, and that is swept.
+/// The scene of the cost study and of the sweep.
 const STATIC: &str = "tests/scenes/tip-load.toml";
 const SWEPT: &str = "effect.force.0.value";
 const LOADS: [&str; 2] = ["[0.0, -1.0]", "[0.0, -4.0]"];
@@ -59,7 +59,7 @@ const DAMAGES: [(&str, &str, &str); 10] = [
     ("\"cell\":0.", "\"cell\":1.", "beside the movie's beams"),
 ];
 
-/// What `browser/look.py` reads.
+/// The question that `browser/look.py` reads.
 #[derive(Serialize)]
 struct Wanted {
     screenshots: PathBuf,
@@ -95,7 +95,7 @@ struct Row {
     row: usize,
 }
 
-/// What it prints.
+/// The answer that it prints.
 #[derive(Deserialize)]
 struct Found {
     browser: String,
@@ -115,7 +115,7 @@ struct Seen {
 /// is whether nothing is wrong.
 pub fn print(suite: &Suite, report: Option<&Path>, prove: bool) -> Result<bool, Failure> {
     let folder = suite.root.join(FOLDER);
-    // What an earlier version wrote is not to be looked at.
+    // The pages of an earlier version must not be looked at.
     if folder.exists() {
         std::fs::remove_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     }

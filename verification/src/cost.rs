@@ -52,7 +52,7 @@ pub fn print(suite: &Suite, names: &[String], quick: bool, out: &Path) -> Result
     Ok(held)
 }
 
-/// A problem's claims, and how much is missing.
+/// A problem's claims, and the number of settings that are missing.
 fn told(results: &Results) -> String {
     let mut lines = vec![format!("{}: {} settings", results.name, results.points.len())];
     for claim in &results.claims {
@@ -74,13 +74,13 @@ fn told(results: &Results) -> String {
     lines.join("\n")
 }
 
-/// What a claim asks for, in words.
+/// The limits of a claim, in words.
 pub fn wanted(claim: &Verdict) -> Vec<String> {
     let limit = claim.limit.as_ref().map(|(norm, error)| format!("{norm} to {}", short(*error)));
     limit.into_iter().chain([format!("{} × faster", claim.times)]).collect()
 }
 
-/// What was found, in words.
+/// The outcome of a claim, in words.
 pub fn found(claim: &Verdict) -> Vec<String> {
     let ratio = claim.ratio.map(|ratio| format!("{ratio:.1} × faster"));
     let alone = claim.ours.as_ref().map(|ours| time(ours.seconds));

@@ -13,8 +13,8 @@ use ancf_verification::{Failure, bridge, peers};
 use crate::chosen;
 
 /// Makes the tables of all oracles of some cases. With `check` nothing is written, and the answer
-/// is whether the tables are what is there, but for the round-off of another processor.
-/// Transcriptions are only copied: of these it says that nothing was computed.
+/// is whether the tables agree with those that are there, but for the round-off of another
+/// processor. Transcriptions are only copied: of these it says that nothing was computed.
 pub fn freeze(suite: &Suite, cases: &[String], check: bool) -> Result<bool, Failure> {
     let names = chosen(suite, cases)?;
     let python = bridge::environment()?;
@@ -122,8 +122,8 @@ fn make(
     Ok((table, provenance))
 }
 
-/// The reference of another case with its own provenance: how, when and where it was made there.
-/// Computed anew it is there alone.
+/// The reference of another case with its own provenance: how, when and where it was made there. It
+/// is computed anew for that case only.
 fn shared(suite: &Suite, other: &str, key: &str, oracle: &Oracle) -> Result<(String, Provenance), Failure> {
     let (case, of) = other.split_once('/').ok_or_else(|| format!("`{other}` is not `<case>/<oracle>`"))?;
     let path = suite.table_path(case, of);
@@ -146,7 +146,8 @@ fn shared(suite: &Suite, other: &str, key: &str, oracle: &Oracle) -> Result<(Str
     Ok((text, made))
 }
 
-/// Whether all is the same but the day and the machine, which alone are no reason to write.
+/// Whether all is the same but the day, the machine and the tools, which alone are no reason to
+/// write.
 fn says_the_same(old: &Provenance, new: &Provenance) -> bool {
     let without = |p: &Provenance| {
         let mut p = p.clone();

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::report::now;
 
-/// What is counted, from the root of the repository.
+/// The list of the runs that are counted, from the root of the repository.
 const LIST: &str = "verification/instructions.toml";
 /// Where counts of all times are kept, from the root of the repository.
 pub const HISTORY: &str = "target/verification/instructions.json";
@@ -64,7 +64,7 @@ struct Run {
 /// The counts of one day.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Day {
-    /// When.
+    /// Day and time.
     pub date: String,
     /// What was counted: the commit, as `git describe` names it.
     pub commit: String,

@@ -2,8 +2,8 @@
 //! with.
 //!
 //! ```text
-//! scene.toml ──ancf::scene──► Model + Analysis ─┬─► ancf::run                                   ─► tips, energies, …
-//!                                               └─► Description ─json─► peers/exudyn_scene.py   ─► the same
+//! scene.toml ──► Model + Analysis ─┬─► ancf::run                                 ─► results
+//!                                  └─► Description ─json─► peers/exudyn_scene.py ─► the same
 //! ```
 //!
 //! | module | subject |

@@ -124,7 +124,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The named cases, or all; a name that is none is an error.
+/// The named cases, or all; an unknown name is an error.
 fn chosen(suite: &Suite, cases: &[String]) -> Result<Vec<String>, Failure> {
     let all = suite.names()?;
     if let Some(unknown) = cases.iter().find(|c| !all.contains(c)) {

@@ -66,7 +66,7 @@ struct Number {
     scene: String,
     #[serde(default)]
     set: Vec<String>,
-    /// What the digits mean.
+    /// The interval that the digits mean.
     between: [f64; 2],
     check: Check,
 }

@@ -21,7 +21,7 @@ use crate::bridge::Script;
 
 pub use table::{scenes, table};
 
-/// What a peer found.
+/// The results of a peer.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Answer {
     /// Load factors or times \[s\] of the records; empty in a modal analysis.
@@ -39,11 +39,11 @@ pub struct Answer {
 /// The places of a probe, one per record.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Track {
-    /// Its name.
+    /// Name of the probe.
     pub name: String,
-    /// Position \[m\].
+    /// Positions along x \[m\].
     pub x: Vec<f64>,
-    /// Position \[m\].
+    /// Positions along y \[m\].
     pub y: Vec<f64>,
 }
 
@@ -70,7 +70,7 @@ fn about(peer: Peer) -> (&'static str, &'static str, &'static Script) {
     }
 }
 
-/// What a peer makes of a scene.
+/// The answer of a peer to a scene.
 ///
 /// # Errors
 /// What of the scene has no counterpart, a Python that cannot be had, and what the peer raises.

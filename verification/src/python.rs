@@ -13,18 +13,18 @@ use crate::Failure;
 /// for another version.
 const INTERPRETER: &str = env!("ANCF_PYTHON");
 
-/// What to install where something is missing.
+/// The message that tells what to install where something is missing.
 const REMEDY: &str = "The verification suite needs Python 3 with its venv module and its shared library (Debian: apt install \
                       python3 python3-venv python3-dev), and once a connection to the package index.";
 
 /// A virtual environment under `target/`, made on first use.
 pub struct Python {
     program: PathBuf,
-    /// What it is.
+    /// Its interpreter, packages and machine.
     pub facts: Facts,
 }
 
-/// What provenance says of the interpreter and the machine.
+/// Data on the interpreter and the machine, for provenance.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Facts {
     /// Today, by the system's clock.

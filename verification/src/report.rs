@@ -41,7 +41,7 @@ use self::overview::Made;
 use self::page::{Page, document};
 use crate::{Failure, chosen};
 
-/// A case as it came out.
+/// A case with its results.
 pub struct Entry {
     /// Name of the folder.
     pub name: String,

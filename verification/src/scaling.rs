@@ -29,9 +29,9 @@ const LEAST: Duration = Duration::from_secs(2);
 /// One day's measurement.
 #[derive(Deserialize, Serialize)]
 pub struct Scaling {
-    /// When.
+    /// Day and time.
     pub date: String,
-    /// On what.
+    /// Processor and system.
     pub machine: String,
     /// From few elements to many.
     pub rows: Vec<Row>,
@@ -40,7 +40,7 @@ pub struct Scaling {
 /// A number of elements.
 #[derive(Deserialize, Serialize)]
 pub struct Row {
-    /// How many.
+    /// Number of elements.
     pub elements: usize,
     /// Shortest time of a step, per element \[s\].
     pub seconds: f64,
@@ -121,7 +121,7 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
     Ok(true)
 }
 
-/// What was last measured, if anything.
+/// The last measurement, if there is one.
 pub fn read(file: &Path) -> Result<Option<Scaling>, Failure> {
     if !file.exists() {
         return Ok(None);

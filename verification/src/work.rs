@@ -2,7 +2,8 @@
 //! minute.
 //!
 //! ```text
-//! work-precision/<name>.toml ──► Problem ──► Task per setting ──► times, errors ──► Point ──► claims, diagram, csv, json
+//! work-precision/<name>.toml ──► Problem ──► Task per setting ──► times, errors ──► Point
+//!                                            Point ──► claims, diagram, csv, json
 //! ```
 //!
 //! All settings of a problem, ours and theirs in turn, run once before any runs again, so that a
@@ -43,7 +44,7 @@ const TURN: f64 = 0.02;
 /// … but not more often than this.
 const OFTEN: f64 = 7.0;
 
-/// One setting, and what its runs have left so far.
+/// One setting, and the results of its runs so far.
 struct Task<'a> {
     key: &'a str,
     method: &'a Method,
@@ -215,7 +216,7 @@ impl Task<'_> {
         Ok(timed.results)
     }
 
-    /// What the setting is worth.
+    /// The times, errors and counts of the setting.
     fn point(
         self,
         norms: &IndexMap<String, Check>,

@@ -1,20 +1,20 @@
-//! Force and tangent of the cells of a table whose width is known when this is compiled.
+//! Force and tangent of the cells of a table whose width is known at compile time.
 //!
-//! Two passes a cell. The first evaluates the density at the cell's points and multiplies its
-//! second derivatives into the rows,
+//! Each cell takes two passes. The first evaluates the density at the cell's points and multiplies
+//! its second derivatives by the rows:
 //!
 //! ```text
 //! P_md = w Σ_n H_mn(d, ·) N⁽ᵒⁿ⁾        (2 M rows of 2 W numbers per point)
 //! ```
 //!
-//! the second adds Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md to row (a, d) of the matrix, a tile of 4 × 4 numbers
-//! (two nodes) at a time, so that the tile stays in registers while the points go by and is loaded
-//! and stored once per cell. Of a symmetric matrix only the tiles on and above the diagonal are
-//! computed.
+//! The second adds Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md to row (a, d) of the matrix, one tile of 4 × 4 numbers
+//! (two nodes) at a time, so that the tile stays in registers during the loop over the points and
+//! is loaded and stored once per cell. Of a symmetric matrix only the tiles on and above the
+//! diagonal are computed.
 //!
-//! Cable elements that are alike are summed four at a time, a number of each in a lane: what
-//! surrounds their few tiles costs more than the tiles. Wider cells, which have many, are summed
-//! one at a time with four columns of a tile in the lanes.
+//! Equal cable elements are summed four at a time, each in its own lane, because the work around
+//! their few tiles costs more than the tiles. Wider cells have many tiles; they are summed one at a
+//! time, with four columns of a tile in the lanes.
 
 use super::force::{coefficients, fields, fields_of_four, sums_of_points};
 use crate::assembly::{Density, Earlier, Integral, Workspace};
@@ -114,7 +114,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         });
     }
 
-    /// All cells that come by fours, `P` points in each.
+    /// The cells that are grouped by four, with `P` points in each.
     #[allow(clippy::too_many_arguments)]
     fn tangents_of_fours<const W: usize, const P: usize>(
         &self,
@@ -176,7 +176,8 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     }
 }
 
-/// Calls `add` for the tiles of a cell that `k` needs, by the numbers of the nodes within the cell.
+/// Calls `add` for each tile of a cell that `k` needs, with the indices of its two nodes within the
+/// cell.
 #[inline(always)]
 fn for_tiles<const W: usize>(k: &mut Matrix, mut add: impl FnMut(&mut Matrix, usize, usize)) {
     let below = matches!(k, Matrix::General(_));
@@ -187,7 +188,7 @@ fn for_tiles<const W: usize>(k: &mut Matrix, mut add: impl FnMut(&mut Matrix, us
     }
 }
 
-/// Adds a tile: the rows of node `a`, the columns of node `b`.
+/// Adds a tile to the rows of node `a` and the columns of node `b`.
 #[inline(always)]
 fn add_tile(k: &mut Matrix, a: usize, b: usize, tile: &[Lanes; 4]) {
     match k {
@@ -213,7 +214,7 @@ fn add_to(target: &mut [f64], values: Lanes) {
     }
 }
 
-/// Rows of node `a`, columns of node `b`: Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md.
+/// The tile in the rows of node `a` and the columns of node `b`: Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md.
 #[inline(always)]
 fn tile<const M: usize, const W: usize>(
     rows: &[[f64; W]],
@@ -233,7 +234,7 @@ fn tile<const M: usize, const W: usize>(
     tile
 }
 
-/// The tiles of four cells, cell after cell.
+/// The tiles of four cells, one per cell.
 #[inline(always)]
 fn tiles_of_four<const M: usize, const W: usize, const P: usize>(
     rows: &[[f64; W]],

@@ -1,4 +1,4 @@
-//! What accuracy costs, on a terminal.
+//! The table of a cost study on a terminal.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -6,8 +6,8 @@ use std::path::Path;
 use ancf::cost::{LeftOut, Report, ReportedTrial};
 use ancf::output::plot::human;
 
-/// A setting is close to the front where nothing with its error takes less than this part of its
-/// time.
+/// A setting is close to the front if no setting with at most its error takes less than this part
+/// of its time.
 const CLOSE: f64 = 0.8;
 
 /// Settings left out for one reason that are named on the terminal.

@@ -1,36 +1,36 @@
 //! The curve of a cell as a polynomial in Bernstein's form, r(ξ) = Σ_j B_j(ξ) P_j with ξ ∈ [0, 1].
 //!
-//! The curve lies within the convex hull of its control points P_j, which tells in one look what is
-//! far from an obstacle; and a polynomial has at most as many roots as its coefficients have
-//! changes of sign (Farin, *Curves and Surfaces for CAGD*, 2002, ch. 5), which finds all places
-//! where a curve crosses a border.
+//! The curve lies within the convex hull of its control points P_j, so that curves far from an
+//! obstacle are recognised at once. A polynomial has at most as many roots in [0, 1] as its
+//! Bernstein coefficients have changes of sign (Farin, *Curves and Surfaces for CAGD*, 2002, ch.
+//! 5), by which all crossings of a curve and a border are found.
 //!
-//! Control points are linear in the beam's coordinates. The cable element's cubic is exact; shape
-//! functions that are no polynomials are interpolated between Lobatto points, by as high a degree
-//! as they need.
+//! Control points are linear in the beam's coordinates. The cable element's cubic is represented
+//! exactly; shape functions that are not polynomials are interpolated between Lobatto points, with
+//! a degree as high as they need.
 
 use crate::basis::{Basis, BasisError, Quadrature};
 use nalgebra::{DMatrix, Vector2};
 
-/// Degrees that are tried, in this order.
+/// Degrees that are tried, in this order, until one is accurate.
 const DEGREES: [usize; 3] = [3, 7, 11];
-/// Most control points of a curve.
+/// Largest number of control points of a curve.
 pub const MOST: usize = 12;
-/// Most coefficients of the square of a distance.
+/// Largest number of coefficients of the square of a distance.
 const MOST_COEFFICIENTS: usize = 2 * MOST - 1;
-/// What interpolation may leave of a shape function.
+/// Largest accepted error of an interpolated shape function.
 const EXACT: f64 = 1e-9;
-/// Coefficients this small beside the largest numbers that they were made of are zero.
+/// Coefficients smaller than this, relative to the numbers they were computed from, count as zero.
 const ROUND_OFF: f64 = 1e-14;
-/// Length of ξ below which roots are not told apart.
+/// Intervals of ξ shorter than this are not divided further to separate roots.
 const APART: f64 = 1e-10;
 
-/// C(n, k).
+/// The binomial coefficient C(n, k).
 fn binomial(n: usize, k: usize) -> f64 {
     (1..=k.min(n - k)).fold(1.0, |c, i| c * (n + 1 - i) as f64 / i as f64)
 }
 
-/// B_j(ξ) of degree `degree`, into the first places of `values`.
+/// Writes the Bernstein polynomials B_j(ξ) of degree `degree` to the first entries of `values`.
 pub fn bernstein(degree: usize, xi: f64, values: &mut [f64]) {
     values[0] = 1.0;
     for d in 1..=degree {
@@ -42,7 +42,7 @@ pub fn bernstein(degree: usize, xi: f64, values: &mut [f64]) {
     }
 }
 
-/// Control points of a curve.
+/// A curve, by its control points.
 #[derive(Clone, Copy, Debug)]
 pub struct Curve {
     points: [Vector2<f64>; MOST],
@@ -55,12 +55,12 @@ impl Curve {
         &self.points[..self.count]
     }
 
-    /// The point with the Bernstein polynomials `values`.
+    /// The point at which the Bernstein polynomials have the values `values`.
     pub fn at(&self, values: &[f64]) -> Vector2<f64> {
         self.points().iter().zip(values).fold(Vector2::zeros(), |sum, (p, b)| sum + p * *b)
     }
 
-    /// The point half way.
+    /// The point at ξ = ½.
     pub fn middle(&self) -> Vector2<f64> {
         self.halves()[1].points[0]
     }
@@ -78,7 +78,7 @@ impl Curve {
         [first, second]
     }
 
-    /// Point by point `f` of this curve and others.
+    /// The curve whose control points are `f` of the corresponding control points of `curves`.
     pub fn combine<const N: usize>(
         curves: [&Self; N],
         f: impl Fn([Vector2<f64>; N]) -> Vector2<f64>,
@@ -91,10 +91,10 @@ impl Curve {
     }
 }
 
-/// A border of the plane that a curve may cross: a line n · r = c, or a circle.
+/// A line n · r = c or a circle that a curve may cross.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Border {
-    /// Normal and distance from the origin along it \[m\].
+    /// Unit normal n, and distance c of the line from the origin along it \[m\].
     Line(Vector2<f64>, f64),
     /// Centre and radius \[m\].
     Circle(Vector2<f64>, f64),
@@ -161,7 +161,8 @@ impl Polynomial {
         b[0]
     }
 
-    /// Adds the places in `[from, to]`, which [0, 1] stands for, where the sign changes.
+    /// Appends the places at which the sign changes; [0, 1] of the polynomial stands for
+    /// `[from, to]`.
     fn roots(&self, zero: f64, [from, to]: [f64; 2], roots: &mut Vec<f64>) {
         let coefficients = &self.coefficients[..self.count];
         let signs = coefficients.iter().filter(|b| b.abs() > zero).map(|b| *b > 0.0);
@@ -177,7 +178,7 @@ impl Polynomial {
         let middle = 0.5 * (from + to);
         let [first, second] = self.halves();
         first.roots(zero, [from, middle], roots);
-        // A root at the very middle belongs to neither half.
+        // A root exactly in the middle belongs to neither half.
         let next = second.coefficients[0];
         if next.abs() <= zero && self.at(0.5 - 0.5 * APART) * self.at(0.5 + 0.5 * APART) < 0.0 {
             roots.push(middle);
@@ -185,8 +186,8 @@ impl Polynomial {
         second.roots(zero, [middle, to], roots);
     }
 
-    /// The only root, by false position that halves the value at an end that stays (the Illinois
-    /// rule).
+    /// The only root, by the Illinois variant of false position, which halves the value at an end
+    /// that is kept twice in a row.
     fn root(&self, [mut low, mut high]: [f64; 2]) -> f64 {
         let (mut from, mut to, mut side) = (0.0, 1.0, 0_i8);
         let mut x = 0.0;
@@ -219,7 +220,7 @@ impl Polynomial {
 struct Cell {
     /// The first of its coordinates in the system.
     first: usize,
-    /// Number of its control rows.
+    /// Index of its block of control rows.
     block: usize,
     /// Arc length at its start \[m\].
     start: f64,
@@ -227,7 +228,7 @@ struct Cell {
     length: f64,
 }
 
-/// The cells of a beam as polynomials: rows that make control points of coordinates.
+/// The cells of a beam as polynomials, with the rows by which coordinates yield control points.
 #[derive(Clone, Debug)]
 pub struct Cells {
     cells: Vec<Cell>,
@@ -273,7 +274,7 @@ impl Cells {
                 cell
             });
             let cells = Self { cells: cells.collect(), width, degree, rows };
-            // The same at other points.
+            // Measures the error of the interpolation at other points.
             let mut missed = 0.0_f64;
             let mut found = vec![0.0; width];
             for (number, entry) in probe.cells.iter().enumerate() {
@@ -305,7 +306,7 @@ impl Cells {
         self.degree
     }
 
-    /// Coefficients that a row multiplies.
+    /// Number of coefficients that a row multiplies.
     pub fn width(&self) -> usize {
         self.width
     }
@@ -321,20 +322,20 @@ impl Cells {
         start + xi * length
     }
 
-    /// The coordinates of a cell.
+    /// The indices of the coordinates of a cell.
     pub fn coordinates(&self, cell: usize) -> std::ops::Range<usize> {
         let first = self.cells[cell].first;
         first..first + 2 * self.width
     }
 
-    /// The rows of the control points of a cell.
+    /// The rows of a cell that yield its control points, one row per control point.
     pub fn control(&self, cell: usize) -> impl Iterator<Item = &[f64]> {
         let size = (self.degree + 1) * self.width;
         let start = self.cells[cell].block * size;
         self.rows[start..start + size].chunks_exact(self.width)
     }
 
-    /// A cell in the state `q`.
+    /// The curve of a cell in the state `q`.
     pub fn curve(&self, cell: usize, q: &[f64]) -> Curve {
         let q = q[self.coordinates(cell)].as_chunks::<2>().0;
         let mut curve = Curve { points: [Vector2::zeros(); MOST], count: self.degree + 1 };
@@ -345,7 +346,7 @@ impl Cells {
         curve
     }
 
-    /// The row of shape functions where the Bernstein polynomials are `values`.
+    /// Writes the row of shape functions at the point where the Bernstein polynomials are `values`.
     pub fn row(&self, cell: usize, values: &[f64], row: &mut [f64]) {
         row.fill(0.0);
         for (control, value) in self.control(cell).zip(values) {

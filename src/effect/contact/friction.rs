@@ -1,8 +1,8 @@
 //! Dry friction of a contact: elastic tangential springs with Coulomb's limit.
 //!
-//! Every point of the beam that touches is held to the obstacle by a spring of its own along the
-//! surface. With the elastic slip eₙ that it had in the last accepted state and the way Δσ that it
-//! has gone along the surface since,
+//! Every touching point of the beam is connected to the obstacle by a spring along the surface.
+//! With the elastic slip eₙ of the last accepted state and the distance Δσ that the point has moved
+//! along the surface since,
 //!
 //! ```text
 //! trial     e' = eₙ + Δσ
@@ -12,13 +12,13 @@
 //! ```
 //!
 //! (the return mapping of elastoplasticity; Wriggers, *Computational Contact Mechanics*, 2006, ch.
-//! 5 and 10). σ counts along the surface of the obstacle at the beam's distance, so that the spring
-//! turns with the surface's normal. A point that has come to touch since the last state counts the
-//! part of its way that it touched.
+//! 5 and 10). σ is measured along the surface of the obstacle at the beam's distance, so that the
+//! spring turns with the surface's normal. For a point that has begun to touch since the last
+//! accepted state, Δσ is the part of its way on which it touched.
 //!
-//! The tangent is that of the mapping: with sliding it is not symmetric. Newton's method leaves a
-//! concave force behind if it starts far in the sliding range, so that points that have only come
-//! to touch take the secant μ p/|e'| instead.
+//! The tangent is that of the return mapping; where points slide it is not symmetric. Newton's
+//! method may diverge on a force that levels off if it starts far in the sliding range. Points that
+//! touch only since the last accepted state therefore use the secant μ p/|e'| instead.
 
 use super::ContactIntegral;
 use super::curve::{Curve, MOST};
@@ -31,34 +31,34 @@ use crate::numeric::GAUSS_2;
 use nalgebra::{Matrix2, Vector2};
 use std::sync::Arc;
 
-/// Part of the limit from which on a point counts as sliding: one that slid in the last state goes
-/// on, as the tangent there has to know.
+/// Relative distance to the limit at which a point counts as sliding already: a point that slid in
+/// the last accepted state has exactly the limit, and its tangent must be that of sliding.
 const AT_LIMIT: f64 = 1e-9;
 
-/// Parts of a cell in each of which friction is summed and remembered by two points. What is
-/// remembered moves with the edges of a contact only in the parts where these are, in which little
-/// is borne.
+/// Number of parts of a cell, in each of which friction is summed and its slips are stored at two
+/// points. The division does not move with the contact; only in the parts that contain an edge of
+/// the contact, where little load is carried, do the points move with the edge.
 const PARTS: f64 = 4.0;
 
-/// Dry friction.
+/// Dry friction of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
-    /// μ.
+    /// Coefficient of friction μ.
     pub coefficient: f64,
-    /// k_t \[N/m²\]: traction per length and elastic slip.
+    /// k_t \[N/m²\]: traction per length, divided by the elastic slip.
     pub stiffness: f64,
 }
 
-/// A point that touches.
+/// A touching point after the return mapping.
 struct Touching {
-    /// Weight \[m\], with the Bernstein polynomials of the point.
+    /// Quadrature weight \[m\]; `values` are the Bernstein polynomials at the point.
     weight: f64,
     values: [f64; MOST],
-    /// e after the mapping.
+    /// Elastic slip e after the mapping \[m\].
     slip: f64,
     /// ∂σ/∂r.
     along: Vector2<f64>,
-    /// The largest e.
+    /// Largest possible |e| \[m\].
     limit: f64,
     /// Whether it slides.
     slides: bool,
@@ -71,18 +71,18 @@ struct Touching {
 pub struct FrictionIntegral {
     contact: Arc<ContactIntegral>,
     friction: Friction,
-    /// Its number among the contacts with friction.
+    /// Its index among the contacts with friction.
     number: usize,
 }
 
 impl FrictionIntegral {
-    /// The friction of `contact`, number `number` of those with friction.
+    /// The friction of `contact`; `number` is its index among the contacts with friction.
     pub fn new(contact: Arc<ContactIntegral>, friction: Friction, number: usize) -> Self {
         Self { contact, friction, number }
     }
 
-    /// Calls `visit` with the points of the pieces that touch in the state `q`: cell, piece, and
-    /// points in the order of the rule.
+    /// Calls `visit` with the points of the pieces that touch in the state `q`: the cell, the
+    /// piece, and the point; the points of a piece come in the order of the rule.
     fn for_touching(
         &self,
         accepted: &AcceptedState,
@@ -106,8 +106,7 @@ impl FrictionIntegral {
         }
     }
 
-    /// Calls `visit` with the pieces of a cell that touch, divided at places that do not move with
-    /// the edges of the contact.
+    /// Calls `visit` with the pieces of a cell that touch, divided at fixed places of the cell.
     fn for_pieces(&self, curve: &Curve, mut visit: impl FnMut([f64; 2])) {
         self.contact.for_pieces(curve, |mut from, to| {
             while from < to {
@@ -133,8 +132,8 @@ impl FrictionIntegral {
         let (distance, normal, _) = penalty.obstacle.distance(&r);
         let depth = penalty.gap - distance;
         let (way, along, bend) = penalty.obstacle.travel(penalty.gap, &start, &r);
-        // Of a point that did not touch before: the part of the way on which it does, and how that
-        // part grows.
+        // For a point that did not touch before: the fraction of its way on which it touches, and
+        // the derivative of this fraction.
         let away = penalty.gap_at(&start).max(0.0);
         let new = slip.is_none();
         let (share, growth) = match depth + away {
@@ -210,7 +209,7 @@ impl FrictionEffect for FrictionIntegral {
 
     fn add_force_of(&self, variables: &InternalVariables, q: &[f64], f: &mut [f64]) {
         let contact = &*self.contact;
-        // A saved state may be that of another scene.
+        // A saved state may belong to another scene, with fewer cells.
         let pieces = variables.contacts.get(self.number).into_iter().flatten();
         for piece in pieces.filter(|piece| piece.cell < contact.cells.count()) {
             let curve = contact.cells.curve(piece.cell, q);
@@ -254,7 +253,7 @@ impl FrictionEffect for FrictionIntegral {
     }
 }
 
-/// Forces on the control points of one cell after another.
+/// Sums forces on the control points of one cell after another.
 #[derive(Default)]
 struct ControlForces {
     cell: Option<usize>,
@@ -285,7 +284,8 @@ impl ControlForces {
     }
 }
 
-/// The elastic slip at ξ of a cell, from that at the points of a piece that has it.
+/// The elastic slip at `place` on a cell, interpolated from the points of `piece`; `None` if the
+/// piece does not contain the place.
 fn slip_at(piece: &ContactPiece, place: f64) -> Option<f64> {
     if !(piece.from..=piece.to).contains(&place) {
         return None;
@@ -293,6 +293,6 @@ fn slip_at(piece: &ContactPiece, place: f64) -> Option<f64> {
     let [(first, _), (second, _)] = GAUSS_2;
     let [start, end] = *piece.slip.first_chunk()?;
     let share = ((place - piece.from) / (piece.to - piece.from) - first) / (second - first);
-    // No point slips more than its neighbours.
+    // The interpolation is limited, so that no point slips more than its neighbours.
     Some((start + share * (end - start)).max(start.min(end)).min(start.max(end)))
 }

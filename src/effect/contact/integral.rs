@@ -7,29 +7,30 @@ use crate::basis::{Basis, BasisError, Quadrature};
 use crate::linear::Matrix;
 use nalgebra::Vector2;
 
-/// Points of the rule on a piece, beyond the polynomial's degree: with a straight border forces are
-/// then exact.
+/// Number of points of the rule on a piece, beyond the polynomial's degree. Forces are then exact
+/// for a straight border.
 const MORE_POINTS: usize = 2;
-/// Length of a part of a piece against its distance from the point that the obstacle's distance is
-/// measured from, at most. That distance is a root of a polynomial, which the rule sums the worse
-/// the nearer its branch points are: with this length to 1e-5 (3.3⁻¹⁰ for five points).
+/// Longest part of a piece, relative to its distance from the point from which the obstacle's
+/// distance is measured. That distance is a square root of a polynomial, which the rule integrates
+/// the less accurately the nearer its branch points are; with this limit the relative error is
+/// about 1e-5 (3.3⁻¹⁰ for five points).
 const LENGTH_TO_MIDDLE: f64 = 4.0 / 3.0;
-/// Most parts of a piece: beyond them the beam has come too near to the obstacle's middle, which
-/// analyses refuse or report.
+/// Largest number of parts of a piece. More would be needed only if the beam came close to the
+/// obstacle's middle, which analyses refuse or report.
 const MOST_PARTS: f64 = 16.0;
-/// Pieces shorter than this part of a cell are none.
+/// Pieces shorter than this fraction of a cell are ignored.
 const SHORTEST: f64 = 1e-12;
 
-/// A point at which a contact is summed.
+/// A quadrature point of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactPoint {
-    /// Where it is on its cell, from 0 to 1.
+    /// Its place ξ on its cell, from 0 to 1.
     pub place: f64,
     /// Its weight \[m\].
     pub weight: f64,
-    /// Its Bernstein polynomials.
+    /// The Bernstein polynomials at ξ.
     pub values: [f64; MOST],
-    /// Where it is \[m\].
+    /// Its position \[m\].
     pub r: Vector2<f64>,
 }
 
@@ -40,7 +41,7 @@ pub struct ContactIntegral {
     pub(super) cells: Cells,
     beam: usize,
     borders: Vec<Border>,
-    /// Places on (0, 1) and weights.
+    /// Gauss points on (0, 1), each with its weight.
     rule: Vec<(f64, f64)>,
 }
 
@@ -63,7 +64,7 @@ impl ContactIntegral {
     }
 
     /// Calls `visit` with the pieces of a cell that touch, in order: intervals of ξ in which the
-    /// distance is smooth.
+    /// distance is a smooth function.
     pub(super) fn for_pieces(&self, curve: &Curve, mut visit: impl FnMut(f64, f64)) {
         let mut roots = Vec::new();
         self.borders.iter().for_each(|border| border.crossings(curve, &mut roots));
@@ -82,7 +83,7 @@ impl ContactIntegral {
         }
     }
 
-    /// Calls `visit` with the points of a cell at which the contact is summed.
+    /// Calls `visit` with the quadrature points of the contact on a cell.
     pub(super) fn for_spots(&self, cell: usize, curve: &Curve, mut visit: impl FnMut(&ContactPoint)) {
         self.for_pieces(curve, |from, to| {
             let parts = self.parts(curve, from, to);
@@ -94,7 +95,7 @@ impl ContactIntegral {
         });
     }
 
-    /// In how many parts a piece is summed.
+    /// Number of parts into which a piece is divided for the quadrature.
     fn parts(&self, curve: &Curve, from: f64, to: f64) -> usize {
         let mut values = [0.0; MOST];
         let [start, half, end] = [from, 0.5 * (from + to), to].map(|place| {
@@ -113,7 +114,7 @@ impl ContactIntegral {
         if parts > 1.0 { parts.min(MOST_PARTS).ceil() as usize } else { 1 }
     }
 
-    /// The points of a rule on a piece of a cell.
+    /// The points of the quadrature rule `rule` on a piece of a cell.
     pub(super) fn spots_of(
         &self,
         rule: &[(f64, f64)],
@@ -130,7 +131,7 @@ impl ContactIntegral {
         })
     }
 
-    /// How deep the deepest of the points is at which the contact is summed in the state `q` \[m\].
+    /// The largest depth of any quadrature point of the contact in the state `q` \[m\].
     pub fn depth(&self, q: &[f64]) -> f64 {
         let mut depth = 0.0_f64;
         for (cell, curve) in self.near(q) {
@@ -139,7 +140,8 @@ impl ContactIntegral {
         depth
     }
 
-    /// `f += Σ_j C_j F_j` with forces on the control points of a cell.
+    /// `f += Σ_j C_j F_j` with the forces F_j on the control points of a cell, and the rows C_j of
+    /// these.
     pub(super) fn add_control_forces(&self, cell: usize, forces: &[Vector2<f64>; MOST], f: &mut [f64]) {
         let f = f[self.cells.coordinates(cell)].as_chunks_mut::<2>().0;
         for (row, force) in self.cells.control(cell).zip(forces) {

@@ -1,26 +1,26 @@
-//! What a beam can touch: signed distances, and what tells where a curve meets them.
+//! Obstacles: signed distances, and bounds by which it is decided whether a curve can touch them.
 
 use super::curve::Border;
 use nalgebra::{Matrix2, Vector2};
 
-/// What a beam can touch.
+/// An obstacle that a beam can touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Obstacle {
-    /// A disc, or with `inside` the rim of a round hole.
+    /// A disc, or, with `inside`, the rim of a round hole.
     Circle {
         /// Its centre \[m\].
         center: [f64; 2],
         /// Its radius \[m\].
         radius: f64,
-        /// Whether the beam is within it.
+        /// Whether the beam is inside the circle.
         inside: bool,
     },
-    /// All that lies behind a straight line.
+    /// All points behind a straight line.
     HalfPlane {
         /// A point of the line \[m\].
         point: [f64; 2],
-        /// Towards the beam, of length 1.
+        /// Unit normal of the line, pointing to the side of the beam.
         normal: [f64; 2],
     },
     /// A rectangle.
@@ -29,13 +29,14 @@ pub enum Obstacle {
         center: [f64; 2],
         /// Half its sides \[m\].
         half: [f64; 2],
-        /// By which it is turned \[rad\].
+        /// Angle by which the rectangle is rotated \[rad\].
         angle: f64,
     },
 }
 
 impl Obstacle {
-    /// Its border; of a half-plane as long as the beams.
+    /// The border as a line for pictures; for a half-plane, its part within `size` \[m\] of its
+    /// point.
     pub fn outline(&self, size: f64) -> Vec<[f64; 2]> {
         match *self {
             Self::Circle { center: [x, y], radius, .. } => {
@@ -56,9 +57,10 @@ impl Obstacle {
         }
     }
 
-    /// Signed distance of a point, its gradient, and its second derivative.
+    /// Signed distance of the point `r`, with its gradient and second derivative.
     pub fn distance(&self, r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>) {
-        // From a point: the distance and its derivatives.
+        // Distance from a fixed point and its derivatives; d is the position relative to that
+        // point.
         let from = |d: Vector2<f64>| {
             let length = d.norm();
             if length == 0.0 {
@@ -83,7 +85,7 @@ impl Obstacle {
                 let beyond = Vector2::new(local.x.abs() - half[0], local.y.abs() - half[1]);
                 let sign = local.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
                 let (distance, e, second) = if beyond.x > 0.0 && beyond.y > 0.0 {
-                    // Nearest to a corner.
+                    // Here a corner of the box is nearest.
                     from(beyond)
                 } else if beyond.x > beyond.y {
                     (beyond.x, Vector2::x(), Matrix2::zeros())
@@ -96,13 +98,14 @@ impl Obstacle {
         }
     }
 
-    /// Axes of a box and its half sides; the place of `r` in them.
+    /// The axes of a box that is rotated by `angle`.
     fn axes(angle: f64) -> [Vector2<f64>; 2] {
         let (sine, cosine) = angle.sin_cos();
         [Vector2::new(cosine, sine), Vector2::new(-sine, cosine)]
     }
 
-    /// The point from which the distance of `r` is measured, if it is one.
+    /// The point from which the distance of `r` is measured: a circle's centre or a box's corner.
+    /// `None` if it is measured from a line.
     pub fn middle(&self, r: &Vector2<f64>) -> Option<Vector2<f64>> {
         match *self {
             Self::Circle { center, .. } => Some(center.into()),
@@ -122,8 +125,8 @@ impl Obstacle {
         }
     }
 
-    /// How deep a point can be within what begins at the distance `gap`: infinite where there is no
-    /// other side.
+    /// The largest depth of a point inside the obstacle enlarged by `gap`, measured from its
+    /// enlarged border; infinite for an obstacle without another side.
     pub fn deepest(&self, gap: f64) -> f64 {
         match *self {
             Self::Circle { radius, inside: false, .. } => radius + gap,
@@ -132,7 +135,8 @@ impl Obstacle {
         }
     }
 
-    /// Borders between which the distance is smooth and its difference from `gap` keeps its sign.
+    /// Lines and circles such that, on the pieces of a curve between them, the distance is smooth
+    /// and its difference from `gap` keeps its sign.
     pub fn borders(&self, gap: f64) -> Vec<Border> {
         match *self {
             Self::Circle { center, radius, inside } => {
@@ -152,7 +156,7 @@ impl Obstacle {
                 let mut borders = Vec::new();
                 for sign in [-1.0, 1.0] {
                     borders.extend([line(x, sign * a), line(y, sign * b)]);
-                    // Where two sides are equally near.
+                    // Lines on which two sides of the box are equally near.
                     borders.extend([line(x - y, sign * (a - b)), line(x + y, sign * (a - b))]);
                     if gap > 0.0 {
                         borders.extend([line(x, sign * (a + gap)), line(y, sign * (b + gap))]);
@@ -167,8 +171,8 @@ impl Obstacle {
         }
     }
 
-    /// By how much a point that goes from `start` to `r` moves along the surface at the distance
-    /// `gap`, counter-clockwise \[m\]; its gradient and second derivative by `r`.
+    /// The way along the surface at the distance `gap`, counter-clockwise \[m\], of a point that
+    /// moves from `start` to `r`; with its gradient and second derivative by `r`.
     pub fn travel(
         &self,
         gap: f64,
@@ -201,7 +205,7 @@ impl Obstacle {
         }
     }
 
-    /// A distance below which no point of the convex hull of `points` lies.
+    /// A lower bound of the distances of all points in the convex hull of `points`.
     pub fn clearance<'p>(&self, points: impl Iterator<Item = &'p Vector2<f64>> + Clone) -> f64 {
         let least = |f: &dyn Fn(&Vector2<f64>) -> f64| points.clone().map(f).fold(f64::INFINITY, f64::min);
         match *self {
@@ -235,8 +239,8 @@ impl Obstacle {
     }
 }
 
-/// Gradient and second derivative of the way along a circle of radius `reach` by the point `d` from
-/// its centre.
+/// Gradient and second derivative of the way along a circle of radius `reach`, by the position `d`
+/// of a point relative to the centre.
 fn around(d: &Vector2<f64>, reach: f64) -> (Vector2<f64>, Matrix2<f64>) {
     let square = d.norm_squared();
     if square == 0.0 {
@@ -247,12 +251,13 @@ fn around(d: &Vector2<f64>, reach: f64) -> (Vector2<f64>, Matrix2<f64>) {
     (across * (reach / square), bend)
 }
 
-/// The place along the border of a box with half sides `half`, rounded by `gap`, that is nearest to
-/// `r`: counter-clockwise from the start of its side at x > 0.
+/// The arc length, along the border of a box with half sides `half` rounded by `gap`, of the point
+/// nearest to `r`, with its gradient and second derivative; it counts counter-clockwise from the
+/// start of the side at x > 0.
 fn along_box(half: [f64; 2], gap: f64, r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>) {
     let mut offset = 0.0;
     let mut nearest = (f64::NEG_INFINITY, 0.0, Vector2::zeros());
-    // Side after side: the axis towards it, and the one along it.
+    // For each side: the axis towards it, and the axis along it.
     for side in 0..4 {
         let (out, along) = [
             (Vector2::x(), Vector2::y()),
@@ -276,7 +281,7 @@ fn along_box(half: [f64; 2], gap: f64, r: &Vector2<f64>) -> (f64, Vector2<f64>, 
     (nearest.1, nearest.2, Matrix2::zeros())
 }
 
-/// The mean of points, from `origin`.
+/// The mean of `points`, relative to `origin`.
 fn mean<'p>(points: impl Iterator<Item = &'p Vector2<f64>>, origin: &Vector2<f64>) -> Vector2<f64> {
     let (sum, count) =
         points.fold((Vector2::zeros(), 0.0), |(sum, count), p| (sum + p - origin, count + 1.0));

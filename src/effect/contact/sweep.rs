@@ -1,22 +1,22 @@
-//! What a beam passes on its way from one state to another.
+//! Obstacles that a beam meets on the path from one state to another.
 //!
-//! Between two states coordinates are taken to move along a cubic of a parameter θ ∈ [0, 1]. A cell
-//! then sweeps a patch r(ξ, θ), a polynomial in both, which lies in the convex hull of its control
-//! points. Patches that this shows to be clear of the obstacle are done with; others are divided,
-//! in θ or in ξ, and the earlier half is looked at first. So the first θ is found at which any
-//! point of the curve is deeper than a given level, however thin the obstacle and however long the
-//! way.
+//! Between two states the coordinates are taken to follow a cubic of a parameter θ ∈ [0, 1]. A cell
+//! then sweeps a patch r(ξ, θ), a polynomial in both parameters, which lies in the convex hull of
+//! its control points. Patches whose hull is clear of the obstacle are discarded; others are
+//! divided in half, in θ or in ξ, and the earlier half is examined first. This yields the first θ
+//! at which any point of the curve is deeper than a given level, however thin the obstacle and
+//! however long the path.
 
 use super::ContactIntegral;
 use super::curve::Curve;
 use crate::assembly::{ContactEffect, CubicStates};
 
-/// Most patches that are looked at; what is not clear by then counts as met.
+/// Largest number of patches that are examined; a patch that is not clear by then counts as a hit.
 const PATCHES: usize = 20_000;
-/// Part of the way that is not divided further.
+/// Length of an interval of θ that is not divided further.
 const SHORTEST: f64 = 1e-9;
 
-/// The part of a patch over `[from, to]` of the way.
+/// The part of a patch for θ from `from` to `to`.
 struct Patch {
     rows: [Curve; 4],
     from: f64,
@@ -24,7 +24,7 @@ struct Patch {
 }
 
 impl Patch {
-    /// Both halves of the way.
+    /// The two halves in θ.
     fn halves(&self) -> [Self; 2] {
         let [a, b, c, d] = &self.rows;
         let half = |a: &Curve, b: &Curve| Curve::combine([a, b], |[a, b]| 0.5 * (a + b));
@@ -38,13 +38,13 @@ impl Patch {
         ]
     }
 
-    /// Both halves of the cell.
+    /// The two halves in ξ, along the cell.
     fn parts(&self) -> [Self; 2] {
         let halves = self.rows.each_ref().map(Curve::halves);
         [0, 1].map(|i| Self { rows: halves.each_ref().map(|half| half[i]), from: self.from, to: self.to })
     }
 
-    /// How far its control points reach along the way, and along the cell.
+    /// Extents of its control points along the path, and along the cell \[m\].
     fn extents(&self) -> (f64, f64) {
         let apart = |a: &Curve, b: &Curve| {
             let pairs = a.points().iter().zip(b.points());
@@ -59,8 +59,8 @@ impl Patch {
 }
 
 impl ContactIntegral {
-    /// The first θ at which a point of the beam is deeper than `level` \[m\] on its way, if there
-    /// is one. Depths are found to `fine` \[m\].
+    /// The first θ on the path `way` at which a point of the beam is deeper than `level` \[m\], if
+    /// there is one. Depths are resolved to `fine` \[m\].
     pub fn first_deeper(&self, way: CubicStates<'_>, level: f64, fine: f64) -> Option<f64> {
         let mut first = f64::INFINITY;
         let (mut patches, mut left) = (0, Vec::new());
@@ -120,7 +120,8 @@ impl ContactEffect for ContactIntegral {
         if deepest.is_infinite() {
             return None;
         }
-        // Most states are far away or stay where they are.
+        // In most calls the path is far from the obstacle, or hardly changes, so a cheap test comes
+        // first.
         self.first_deeper(way, DEEPER * deepest, FINE * deepest)?;
         let largest = if may_cross { f64::INFINITY } else { MIDDLE * deepest };
         let level = (self.depth(way[0]) + DEEPER * deepest).min(largest);
@@ -133,11 +134,11 @@ impl ContactEffect for ContactIntegral {
     }
 }
 
-/// Part of a cell's length to which it is found whether the beam touches on the way.
+/// Fraction of a cell's length to which the beginning of a contact on the path is resolved.
 const GRAZE: f64 = 1e-6;
-/// By which part of half an obstacle's thickness a step may carry a beam deeper into it.
+/// Fraction of half an obstacle's thickness by which a step may carry a beam deeper into it.
 const DEEPER: f64 = 0.25;
-/// Part of half an obstacle's thickness at which the beam counts as crossing it.
+/// Fraction of half an obstacle's thickness at which the beam counts as crossing it.
 const MIDDLE: f64 = 0.95;
-/// Part of half an obstacle's thickness to which the depth on the way is found.
+/// Fraction of half an obstacle's thickness to which the depth on the path is resolved.
 const FINE: f64 = 1e-2;

@@ -5,9 +5,9 @@ use super::number::{fixed, superscript};
 /// How an axis maps values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// In proportion.
+    /// Proportional to the value.
     Linear,
-    /// By the decimal logarithm; what is not positive is not shown.
+    /// By the decimal logarithm; values that are not positive are not shown.
     Log,
 }
 
@@ -131,7 +131,7 @@ impl Ruler {
     pub(super) fn new(axis: &Axis, [low, high]: [f64; 2], count: f64) -> Self {
         match axis.scale {
             Scale::Linear => {
-                // A single number, or none, tells no scale.
+                // A scale can be read only from two numbers or more.
                 let tells = |step: &f64| (low / step - 1e-9).ceil() < (high / step + 1e-9).floor();
                 let step = nice((high - low) / count.max(1.0));
                 let step = if tells(&step) { step } else { nice(0.3 * (high - low)) };
@@ -187,7 +187,7 @@ impl Ruler {
         self.ticks.iter().map(|&t| self.label(t).chars().count()).max().unwrap_or(0)
     }
 
-    /// What the labels are to be multiplied by, where that is not 1.
+    /// The factor by which the labels are to be multiplied, if it is not 1.
     pub(super) fn factor(&self) -> Option<String> {
         (self.exponent != 0).then(|| format!("× 10{}", superscript(self.exponent)))
     }
@@ -249,7 +249,7 @@ mod tests {
         assert_eq!(of(&axis, &[-3.0, -1.0]), [-3.5, -0.5]);
         assert_eq!(of(&axis, &[0.0, 4.0]), [-1.0, 5.0]);
         assert_eq!(of(&axis, &[]), [-0.25, 1.25], "nothing is shown between 0 and 1");
-        // A range that is given, unless it is none.
+        // A given range is used, unless it is not valid.
         assert_eq!(of(&axis.clone().range(-2.0, 5.0), &[100.0]), [-2.0, 5.0]);
         assert_eq!(of(&axis.clone().range(0.0, 1e300), &[1.0]), [0.0, 1e300]);
         for (low, high) in [(5.0, -2.0), (1.0, 1.0), (f64::NAN, 1.0), (0.0, 2e300)] {
@@ -337,7 +337,7 @@ mod tests {
         }
     }
 
-    /// Ticks with their texts, and what these are to be multiplied by.
+    /// Ticks with their texts, and the factor of these.
     fn texts(ruler: &Ruler) -> (Vec<String>, Option<String>) {
         (ruler.ticks.iter().map(|&tick| ruler.label(tick)).collect(), ruler.factor())
     }
@@ -353,7 +353,7 @@ mod tests {
         assert_eq!(ticks(&axis, [0.0, 2.0], 4.0), [0.0, 0.5, 1.0, 1.5, 2.0]);
         assert_eq!(ticks(&whole, [0.0, 2.0], 4.0), [0.0, 1.0, 2.0]);
         assert_eq!(ticks(&whole, [0.0, 100.0], 5.0), [0.0, 20.0, 40.0, 60.0, 80.0, 100.0]);
-        // However little of a range f64 resolves.
+        // The number of ticks is bounded.
         assert_eq!(Ruler::linear([0.0, 1000.0], 1.0).ticks.len(), 101);
         assert_eq!(Ruler::new(&Axis::log(""), [0.0, 500.0], 1000.0).ticks.len(), 401);
     }
@@ -389,16 +389,16 @@ mod tests {
         let (written, factor) = texts(&few);
         assert_eq!(written, ["1", "10", "10²", "10³"]);
         assert_eq!((few.widest(), factor), (3, None));
-        // Between them the whole multiples.
+        // Between them there are minor ticks at the whole multiples.
         assert_eq!(few.minor.len(), 3 * 8);
         for (i, minor) in few.minor.iter().enumerate() {
             let (decade, digit) = ((i / 8) as f64, (i % 8 + 2) as f64);
             assert!((minor - decade - digit.log10()).abs() < 1e-12, "{minor}");
         }
         assert_eq!(Ruler::new(&log, [-1.0, 4.0], 5.0).minor.len(), 5 * 8);
-        // In a part of two decades 4 to 9, and 20 and 30.
+        // In a part of two decades these are 4 to 9, and 20 and 30.
         assert_eq!(Ruler::new(&log, [0.5, 1.5], 5.0).minor.len(), 6 + 2);
-        // Of more decades than that the decades, where not each has a tick.
+        // With more decades the minor ticks are at the decades, where not each has a tick.
         let many = Ruler::new(&log, [-1.0, 5.0], 5.0);
         assert_eq!(many.ticks, [0.0, 2.0, 4.0]);
         assert_eq!(many.minor, [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
@@ -409,7 +409,7 @@ mod tests {
         assert_eq!(wide.minor.len(), 9);
         assert_eq!(Ruler::new(&log, [-6.0, 0.0], 2.0).ticks, [-6.0, -3.0, 0.0]);
         assert_eq!(Ruler::new(&log, [0.0, 3.0], 0.2).ticks, [0.0, 3.0]);
-        // Of a given range that ends between decades.
+        // A given range may end between decades.
         assert_eq!(Ruler::new(&log, [0.5, 1.2], 5.0).ticks, [1.0]);
         assert_eq!(Ruler::new(&log, [-0.5, 6.5], 3.0).minor, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
     }

@@ -84,7 +84,7 @@ struct Layout {
     legend: Vec<Entry>,
 }
 
-/// A place in the legend.
+/// An entry of the legend, with its place.
 struct Entry {
     series: usize,
     x: f64,
@@ -93,8 +93,8 @@ struct Entry {
 
 const LEGEND_LINE: f64 = 20.0;
 
-/// Part of the picture's height that the legend takes at most: of hundreds of beams the last are
-/// drawn without their names.
+/// Largest part of the picture's height that the legend may take: series that do not fit are drawn
+/// without their names.
 const LEGEND_PART: f64 = 0.3;
 
 /// Room for the sample of a series in the legend \[px\].

@@ -1,16 +1,18 @@
-//! The balance of energy of a motion: what loads and supports put in, what damping takes, and steps
-//! that gain what nobody put in.
+//! The energy balance of a motion: work of loads and supports, energy taken by damping, and the
+//! refusal of steps that gain energy without any work.
 
 use super::State;
 use super::integrate::Driver;
 use crate::assembly::nodes;
 use crate::solve::newton::Failure;
 
-/// Turn of a node beyond which a step of fixed length is asked what it does to the energy \[rad\].
+/// A step of fixed length that turns a node by more than this is checked for a gain of energy
+/// \[rad\].
 const COARSE_TURN: f64 = 0.1;
-/// Turn of a torsion spring in one step \[rad\].
+/// Largest turn of a torsion spring in one step \[rad\]; beyond it the sense of the turn is
+/// doubtful.
 const LARGEST_WINDING: f64 = 2.0;
-/// Energy that such a step may gain, relative to the kinetic energy.
+/// Largest energy that such a coarse step may gain, relative to the kinetic energy.
 const LARGEST_GAIN: f64 = 1e-3;
 
 impl Driver<'_, '_> {
@@ -26,7 +28,7 @@ impl Driver<'_, '_> {
         let energy = |state: &State| self.system.energy(state.time, &state.q, Some(&state.v));
         let (before, after) = (energy(&self.state), energy(new));
         let (work, _) = self.work(new, new.time, None);
-        // Springs of friction give back what they hold at most.
+        // The springs of sticking friction can give back no more than they store.
         let put_in =
             work - self.state.work - self.taken_by_damping(new, new.time) + self.state.variables.friction;
         let wound = self.system.winding_energy(&self.accepted, &new.q) - self.state.variables.winding;
@@ -38,7 +40,7 @@ impl Driver<'_, '_> {
         }
     }
 
-    /// Whether energy enters or leaves by other ways than potentials.
+    /// Whether energy enters or leaves through forces without a potential or moving supports.
     pub(super) fn has_work(&self) -> bool {
         self.system.has_work()
             || self.system.is_damped()
@@ -46,8 +48,8 @@ impl Driver<'_, '_> {
             || self.system.supports().moves_in_time()
     }
 
-    /// Gives a state of the present step its internal variables. What the springs of friction hold
-    /// is not lost.
+    /// Sets the internal variables of a state of the present step. The energy that the springs of
+    /// friction store is not counted as lost.
     pub(super) fn settle(&self, state: &mut State) {
         if self.system.has_history() {
             state.variables = self.system.internal_variables(&self.accepted, &state.q);
@@ -62,9 +64,10 @@ impl Driver<'_, '_> {
         if turn > LARGEST_WINDING { Err(Failure::Overwound { turn }) } else { Ok(()) }
     }
 
-    /// Work of the loads without potential and of moving supports, and what damping and friction
-    /// took, until `time` in the step to `new`: of what a state tells by the trapezoidal rule where
-    /// the method itself is of second order, and else by three Gauss points.
+    /// Work of the loads without potential and of moving supports, and energy taken by damping and
+    /// friction, until `time` in the step to `new`. The powers of loads and friction, which follow
+    /// from a state alone, are integrated by the trapezoidal rule if the method is of second order,
+    /// and otherwise at three Gauss points.
     pub(super) fn work(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> (f64, f64) {
         let (mut work, mut lost) = (self.state.work, self.state.lost);
         if !self.has_work() {
@@ -100,8 +103,9 @@ impl Driver<'_, '_> {
         (work, lost)
     }
 
-    /// Power at the start of the step, which was its end before, unless an attempt since then ended
-    /// elsewhere. Friction counts from another state since.
+    /// Power at the start of the step. It is known from the end of the last step, unless an attempt
+    /// since then ended elsewhere. With friction it is computed anew, because friction depends on
+    /// the last accepted state, which has changed.
     pub(super) fn power_at_start(&mut self) -> (f64, f64) {
         let known = self.powers.iter().find(|(time, _)| *time == self.state.time).map(|(_, power)| *power);
         let power = known.filter(|_| !self.system.has_friction()).unwrap_or_else(|| {

@@ -10,77 +10,76 @@
 //!
 //! Newton's method with one tangent K for all stages turns, by A⁻¹ = T Λ T⁻¹, into one system
 //! (ζ²/h² M + K) w = r for each eigenvalue ζ of A⁻¹: a real one and a complex one for three stages,
-//! both as banded as K is (Butcher, *BIT* 16, 1976, 237–240; Bickart). Its convergence is linear,
-//! at a rate that the change of K within the step decides.
+//! both as banded as K is (Butcher, *BIT* 16, 1976, 237–240; Bickart). It converges linearly, at a
+//! rate that depends on the change of K within the step.
 //!
 //! # The tangent turns with the nodes
-//! What changes K most is the beam's rotation. The tangent is taken at the start of the step, where
-//! the axial force is right (at a predicted state a large EA makes it meaningless), and turned with
-//! the nodes to each stage ([`super::turns`]). On the soft pendulum (20 nodes, 4 ms) that takes a
-//! third fewer iterations than the tangent at the mean of the stages, and converges where that does
-//! not (5 ms). Anderson's acceleration on top of it saved another tenth of the iterations and no
-//! failure, and was left out.
+//! K changes mostly because the beam rotates. The tangent is therefore taken at the start of the
+//! step, where the axial force is right (at a predicted state a large EA makes it meaningless), and
+//! turned with the nodes to each stage ([`super::turns`]). This takes a third fewer iterations than
+//! the tangent at the mean of the stages. Anderson's acceleration was left out: it saved another
+//! tenth of the iterations, but no failure.
 //!
 //! # A tangent for many steps
-//! Where steps are chosen by a tolerance, tangent and factors are kept, turned with the nodes, as
-//! long as the length of the step stays and the increments shrink to 5 % and less from one
-//! iteration to the next. A tangent with its factors costs as much as two iterations. Where it is
-//! kept and found slow, one is taken at the start of the step, and at the mean of the stages if
-//! that is slow too. Radau's method with a tolerance of 3e-5 (soft pendulum, 20 nodes) takes a
-//! tangent every fourth step and is a quarter cheaper for the same error; with 1e-3 most steps take
-//! one, and nothing is lost. To factorise a kept tangent anew for another length of the step takes
-//! as many iterations more as it saves. So does a tangent that is kept over steps of given length,
-//! whose stages are solved almost to round-off.
+//! Where steps are chosen by a tolerance, the tangent and its factors are kept, turned with the
+//! nodes, as long as the step length stays the same and every iteration shrinks the increments to a
+//! twentieth or less. A tangent with its factors costs as much as two iterations. If a kept tangent
+//! turns out to be slow, a new one is taken at the start of the step, and if that is slow too, at
+//! the mean of the stages. With Radau's method and a tolerance of 3e-5 a solution thus costs a
+//! quarter less. It does not pay to factorise a kept tangent for another step length, or to keep it
+//! over steps of given length, whose stages are solved almost to round-off: either costs as many
+//! iterations as it saves.
 //!
 //! # Predicted stages
-//! A motion begins with its first acceleration. With that of a load which sets in at once a node of
-//! a fine mesh would go through many elements; where the iteration goes astray, the mean of all
-//! nodes takes its place, with which a body flies, and the first iteration finds the rest.
+//! The first step is predicted by the initial acceleration. Under a load that sets in suddenly this
+//! would carry a node of a fine mesh across many elements. If the iteration then diverges, all
+//! nodes are predicted by their mean acceleration, that of a rigid flight.
 //!
-//! Then the polynomial of the last step's accelerations is continued. Where steps are chosen by a
-//! tolerance it, or the accelerations' mean: whichever would have come closer to the last stage of
-//! the last step. Gauss' methods do not damp what is too stiff to be followed, whose accelerations
-//! a polynomial continues to a hundred times what they were; with a tolerance of 1e-4 the soft
-//! pendulum (20 nodes) takes half the iterations from the mean. Radau's methods would take a fifth
-//! more, and Gauss' in a smooth motion a third. With steps of given length the choice saves a tenth
-//! of the iterations in the pendulums and costs a half more in small damped vibrations, although
-//! the mean comes nearer by a factor of eight there.
+//! Later steps continue the polynomial of the last step's accelerations. Where steps are chosen by
+//! a tolerance, they use either this polynomial or the mean of the accelerations, whichever would
+//! have come closer to the last stage of the last step: Gauss' methods do not damp vibrations that
+//! are too fast to be followed, and a polynomial would continue their accelerations to a hundred
+//! times their size. Steps of given length always use the polynomial, because the choice would save
+//! a tenth of the iterations in pendulums but cost half as many again in small damped vibrations.
 //!
 //! # Gauss' methods with a tolerance
-//! They neither damp nor follow what oscillates many times in a step: axial waves of fine meshes,
+//! They neither damp nor follow vibrations with many periods in a step. Axial waves of fine meshes,
 //! which loads, kinks and the error of the stages excite, are carried on with changing sign, until
-//! stages take ever more iterations and steps are wrong that the estimate, blind to them, accepts.
-//! Where steps are chosen by a tolerance, so that most are too long for some of the waves, the end
-//! of a step is drawn towards its last stage:
+//! the stages take ever more iterations and the steps are wrong in a way that the error estimate
+//! does not see. Where steps are chosen by a tolerance, most are too long for some of these waves.
+//! The end of a step is therefore drawn towards its last stage:
 //!
 //! ```text
 //! q₁ ← q₁ − Fˢ⁺¹ (q₁ − Q_s),   v₁ ← v₁ − Fˢ⁺¹ (v₁ − V_s),   F = (γ²/h² M + K)⁻¹ K
 //! ```
 //!
-//! F leaves alone what moves slowly, as (ω h/γ)², and takes all of what is infinitely fast, whose
-//! stages are in equilibrium. The differences are of the order h, so that what is changed is two
-//! orders smaller than the method's error; no amplitude grows by it at any frequency: ω h = 1 loses
-//! 2e-8 a step with three stages (Radau IIA: 1.3e-4), ω h = 30 four fifths. Linear momentum is
-//! kept. K (q₁ − Q_s) is taken as the difference of the forces, and K (v₁ − V_s) as that of their
-//! rates: a beam that turns as a whole has none. What is changed of slow motions counts as an error
-//! of the step: where a stiff rod turns, its end leaves the circle, and drawn back to it takes some
-//! of its angular momentum away, step after step. With steps of given length the methods remain
-//! symplectic.
+//! F is (ω h/γ)² for slow motions, which hardly change, and 1 for infinitely fast ones, whose
+//! stages are in equilibrium. The differences are of the order h, so that the change is two orders
+//! smaller than the method's error. No amplitude grows at any frequency: with three stages a
+//! vibration of ω h = 1 loses 2e-8 of it in a step (Radau IIA: 1.3e-4), one of ω h = 30 four
+//! fifths. Linear momentum is kept. K (q₁ − Q_s) is computed as the difference of the forces, and K
+//! (v₁ − V_s) as that of their rates, because both must vanish in a rigid rotation. The change of
+//! slow motions counts as an error of the step: the end of a step of a stiff rotating rod lies off
+//! the circle, and drawing it back takes away some angular momentum in every step. With steps of
+//! given length the methods remain symplectic.
 //!
 //! # Error of a step
 //! The polynomial of the stage accelerations is compared with the acceleration at the start, where
 //! it has no node. Its defect δ = q̈(t₀) − Σ ℓ_j(0) Q̈_j = O(hˢ), applied through the step's own
-//! matrix, e = (γ²/h² M + K)⁻¹ M δ = O(hˢ⁺²), does not see what oscillates too fast to be followed
-//! (Hairer & Wanner do the same for Radau IIA). The step itself is of higher order. Of a vibration
-//! with ω, whatever its amplitude, F multiplies e by (ω h/γ)², so that |e| (|F e|/|e|)^{(p − 1 −
-//! s)/2} is O(h^{p+1}) and a constant times its error: a tenth is about right for all methods. Of F
-//! e, F (1 − F) e is taken: what is too fast to be followed is lost once, and its error does not
-//! add up. What turns or flies has little stiffness, and its error is modelled as e to the power
-//! that makes it O(h^{p+1}). The larger counts.
+//! matrix, e = (γ²/h² M + K)⁻¹ M δ = O(hˢ⁺²), does not see vibrations too fast to be followed
+//! (Hairer & Wanner do the same for Radau IIA).
 //!
-//! What loads and supports do between the stages, which these do not see ([`crate::system::laws`]),
-//! is added to it through the same matrix. Its mean and first moment are also given to the end of
-//! the step, for a load that is looked at always in the same phase would push on and on.
+//! The step itself is of higher order p. For a vibration of frequency ω and any amplitude, F
+//! multiplies e by (ω h/γ)², so that |e| (|F e|/|e|)^{(p − 1 − s)/2} is O(h^{p+1}) and proportional
+//! to the step's error; a factor of a tenth suits all methods. In place of F e, F (1 − F) e is
+//! used, because motions too fast to be followed are lost only once, so that their error does not
+//! add up. Rigid rotation and flight involve little stiffness: their error is modelled as the power
+//! of |e| that is O(h^{p+1}). The larger of the two counts.
+//!
+//! Changes of loads and supports between the stages, which the stages do not see
+//! ([`crate::system::laws`]), are added to the error through the same matrix. The mean and first
+//! moment of the unseen loads are also applied to the end of the step, because a load that is
+//! sampled always in the same phase would push the same way in every step.
 
 use super::State;
 use super::memory::{CollocationMemory, Memory, TangentMemory};
@@ -98,53 +97,52 @@ use crate::solve::newton::{Failure, Iterations};
 use crate::system::laws::LoadSample;
 use nalgebra::{Complex, DMatrix, RowDVector};
 
-/// Error of the stages of a step of given length, relative to the displacement in the step: the
-/// velocity takes the same relative error.
+/// Tolerance of the stages in steps of given length, relative to the displacement in the step; the
+/// velocity has the same relative error.
 const TOLERANCE: f64 = 1e-11;
-/// The same against the error that a step may make, for methods that do not damp and for those that
-/// do. Increments are the largest of any node, gradients too, and the error of a step is a mean of
-/// positions: with thirty times smaller tolerances the pendulum errs the same. What Gauss' methods
-/// leave adds up in a stiff rod that turns: with ten times the error it turns at the wrong speed by
-/// three times as much as without.
+/// Tolerance of the stages relative to the error that a step may make, for methods that do not damp
+/// and for those that do. Increments are the largest of any node, gradients included, whereas the
+/// error of a step is a mean of positions, so that a loose tolerance is enough. It is tighter for
+/// Gauss' methods, whose stage errors add up in a stiff rotating rod.
 const TOLERANCE_OF_ERROR: [f64; 2] = [1.0, 10.0];
-/// The error of a vibration in a step against the defect's, with the power of the step that it has.
+/// Factor between the error of a vibration in a step and its estimate from the defect.
 const ERROR_OF_DEFECT: f64 = 0.1;
-/// By how much more errors of the damping at the ends of steps count: they have the same sign in
-/// every step.
+/// Weight of the errors due to the damping at the ends of steps: they have the same sign in every
+/// step.
 const ERRORS_OF_DAMPING: f64 = 3.0;
-/// Largest error of a step to which the stages' error is measured.
+/// The tolerance of the stages is relative to the allowed error of a step, but at most to this.
 const LARGEST_ERROR: f64 = 1e-6;
-/// Increments in beam lengths below which a beam rests: without a floor one that nothing moves yet
-/// would be solved for the round-off of zero.
+/// Smallest tolerance of the stages in beam lengths: without it a beam that nothing moves yet would
+/// be solved to the round-off of zero.
 const REST: f64 = 1e-26;
-/// Increments that no longer shrink count as converged below this size: what is left is round-off.
+/// Increments that no longer shrink count as converged below this size: they are round-off.
 const ROUND_OFF: f64 = 1e-8;
-/// Increments in beam lengths with which an iteration has gone astray: round-off makes smaller
-/// ones.
+/// Increments in beam lengths beyond which an iteration has diverged; smaller ones may be
+/// round-off.
 const FAR: f64 = 1.0;
 /// Most iterations of a step.
 const ITERATIONS: usize = 25;
-/// Iterations that shrink the increments by less than this ask for a new tangent.
+/// Rate of convergence beyond which the present step takes a new tangent.
 const SLOW: f64 = 0.4;
 /// Rate of convergence beyond which the next step takes a new tangent.
 const KEEP: f64 = 0.05;
-/// A step that could grow by less than this keeps its length.
+/// A step that could grow by less than this factor keeps its length.
 const LEAST_GROWTH: f64 = 1.2;
-/// Steps by which the polynomial of the last one is continued, at most: after a short one before a
-/// kink of a load it would lead anywhere.
+/// The polynomial of the last step is continued over at most this many of its lengths. Farther out
+/// it would be meaningless, as after a short step before a kink of a load.
 const LONGEST: f64 = 4.0;
-/// Relative change of the step's length that is none.
+/// Relative change of the step length that is ignored.
 const SAME_STEP: f64 = 1e-6;
 
 /// A tangent K with the factors of the transformed systems.
 struct FactoredTangent {
     /// Where it was taken.
     at: State,
-    /// And with which multipliers.
+    /// The multipliers with which it was taken.
     multipliers: Vec<f64>,
     /// The step h of ζ²/h² M + K.
     step: f64,
-    /// Of ζ²/h² M + K, for each of the tableau's blocks.
+    /// The factors of ζ²/h² M + K, one for each block of the tableau.
     factors: Vec<BlockFactor>,
     /// How much an iteration of the last step shrank the increments.
     rate: f64,
@@ -174,10 +172,10 @@ pub struct Collocation<'a> {
     /// Q̈_i of the last accepted step, and its length.
     accelerations: Vec<Lanes>,
     last_step: f64,
-    /// Whether the iteration of the last attempt went far astray.
+    /// Whether the iteration of the last attempt diverged.
     astray: bool,
     trial_step: f64,
-    /// Where the last attempt ends: loads and supports are seen no later.
+    /// When the last attempt ends; loads and supports are evaluated no later.
     end: f64,
     kept: Option<FactoredTangent>,
     /// Whether a polynomial predicts the stages better than a mean.
@@ -186,7 +184,7 @@ pub struct Collocation<'a> {
     stages: Stages,
     transformed: Vec<Vec<f64>>,
     increment: Vec<f64>,
-    /// From where the tangent was taken.
+    /// Turns of the nodes since the tangent was taken.
     turns: Turns,
 }
 
@@ -212,8 +210,8 @@ impl<'a> Collocation<'a> {
         }
     }
 
-    /// What makes Y_i of the accelerations of the last step: their polynomial, continued, or their
-    /// mean.
+    /// The matrix that predicts Y_i from the accelerations of the last step, by continuing their
+    /// polynomial or by their mean.
     fn extrapolation(&self, h: f64, smooth: bool) -> DMatrix<f64> {
         let Tableau { nodes, a_squared, weights, .. } = &self.tableau;
         let (ratio, shift) = if self.last_step > 0.0 { (h / self.last_step, 1.0) } else { (0.0, 0.0) };
@@ -234,7 +232,7 @@ impl<'a> Collocation<'a> {
         let (displacement, multipliers) = self.stages.displacement.split_at_mut(self.motion.coordinates());
         displacement.iter_mut().zip(&self.accelerations).for_each(|(y, a)| *y = mixture.of(*a));
         self.motion.release(displacement);
-        // What an iteration that failed has left.
+        // A failed iteration may have left numbers that are not finite.
         for mu in multipliers.iter_mut().filter(|mu| !mu.to_array().into_iter().all(f64::is_finite)) {
             *mu = Lanes::ZERO;
         }
@@ -262,8 +260,8 @@ impl<'a> Collocation<'a> {
         self.stages.place(from, self.in_lanes(|i| self.tableau.nodes[i] * h));
     }
 
-    /// How far from the last stage of the last attempt it would have been predicted, by the
-    /// polynomial and by the mean.
+    /// By how much a prediction would have missed the last stage of the last attempt: with the
+    /// polynomial and with the mean.
     fn misses(&mut self) -> [f64; 2] {
         let last = self.tableau.stages() - 1;
         let rows =
@@ -306,18 +304,18 @@ impl<'a> Collocation<'a> {
         Ok(())
     }
 
-    /// Turns the tangent with each node to where it is in each stage.
+    /// Measures the turn of every node from where the tangent was taken to each stage.
     fn turn(&mut self) {
         let FactoredTangent { at, .. } = self.kept.as_ref().expect(NOT_FACTORISED);
         self.stages.measure_turns(&at.q);
     }
 
-    /// When a stage of the attempt is.
+    /// Time of a stage of the attempt.
     fn time(&self, from: &State, stage: usize) -> f64 {
         (self.tableau.nodes[stage] * (self.end - from.time) + from.time).min(self.end)
     }
 
-    /// A number for every stage; the last one again in lanes beyond it.
+    /// One number for every stage; lanes beyond the last stage repeat it.
     fn in_lanes(&self, of: impl Fn(usize) -> f64) -> Lanes {
         let last = self.tableau.stages() - 1;
         Lanes::new(std::array::from_fn(|lane| of(lane.min(last))))
@@ -377,17 +375,17 @@ impl<'a> Collocation<'a> {
         let fits = |kept: &FactoredTangent| kept.rate <= KEEP && (kept.step - h).abs() <= SAME_STEP * h;
         let mut tangent = TangentAge::Before;
         if !(keep && self.kept.as_ref().is_some_and(fits)) {
-            // At the converged state, whose axial force is right: that of a predicted one is not,
-            // with a large EA.
+            // Taken at the converged start of the step: with a large EA the axial force of a
+            // predicted state is wrong.
             self.linearize(from, self.multipliers(), h)?;
             tangent = TangentAge::AtStart;
         }
         self.turn();
-        // Sizes of the last two increments with the present tangent; rates alternate, and two
-        // together tell more than one.
+        // Sizes of the last two increments with the present tangent. Rates alternate, so that their
+        // mean over two iterations tells more than one of them.
         let mut last = [0.0_f64; 2];
-        // The rate of the last step tells how far the first increment is from the solution, unless
-        // it is too good: where steps take one iteration each it is not measured again.
+        // The error after the first increment is estimated with the rate of the last step. It has a
+        // lower bound, because steps of one iteration do not measure the rate again.
         let mut rate = last_rate.clamp(if keep { KEEP } else { 0.01 }, 1.0);
         for iteration in 0..ITERATIONS {
             let (size, residual) = self.iterate(from, h);
@@ -435,8 +433,9 @@ impl<'a> Collocation<'a> {
     }
 
     /// The defect of the polynomial of accelerations at `x` (0: start, 1: end of the step), where
-    /// the coordinates are `q`, through the step's own matrix: (ζ²/h² M + K)⁻¹ M (q̈ − Σ ℓ_j(x)
-    /// Q̈_j), in fixed axes. Also the polynomial there, and ζ²/h² where it is real.
+    /// the state is `state`, through the step's own matrix: (ζ²/h² M + K)⁻¹ M (q̈ − Σ ℓ_j(x) Q̈_j),
+    /// in fixed axes; then also |ζ|²/h², or 0 with two stages. The polynomial's value is left in
+    /// `self.acceleration`.
     fn defect(&mut self, x: f64, state: &State) -> (Vec<f64>, f64) {
         let n = self.motion.coordinates();
         let h = self.trial_step;
@@ -468,8 +467,8 @@ impl<'a> Collocation<'a> {
         }
     }
 
-    /// The real part of (ζ²/h² M + K)⁻¹ `factor` e, in the supports' frames, with the tangent where
-    /// it is turned to.
+    /// The real part of (ζ²/h² M + K)⁻¹ `factor` e, in the supports' frames, with the tangent
+    /// turned as `self.turns` says.
     fn solve_turned(&self, factor: Complex<f64>, e: &mut [f64]) {
         let n = self.motion.coordinates();
         self.turns.back(&mut e[..n]);
@@ -498,7 +497,8 @@ impl<'a> Collocation<'a> {
         self.eigenvalue().norm_sqr()
     }
 
-    /// e − F e in the supports' frames: what of e moves slowly against a step of length `h`.
+    /// e − F e in the supports' frames: the part of e that is slow compared with a step of length
+    /// `h`.
     fn slow(&self, h: f64, e: &[f64]) -> Vec<f64> {
         let mut slow = vec![0.0; e.len()];
         self.motion.multiply_free_mass((h * h).recip(), e, &mut slow);
@@ -506,7 +506,7 @@ impl<'a> Collocation<'a> {
         slow
     }
 
-    /// F e: what of it moves fast.
+    /// Replaces e by F e, its fast part.
     fn keep_fast(&self, h: f64, e: &mut [f64]) {
         let slow = self.slow(h, e);
         e.iter_mut().zip(&slow).for_each(|(e, slow)| *e -= slow);
@@ -530,9 +530,8 @@ impl<'a> Collocation<'a> {
         free.max(ERROR_OF_DEFECT * size * fast.powf(0.5 * (order - 1.0 - s)))
     }
 
-    /// Draws the unknowns `to` at the end of the step to its last stage, as far as they move too
-    /// fast for the step. Returns by how much the position errs in the step for what is changed of
-    /// slow motions.
+    /// Draws the unknowns `to` at the end of the step towards its last stage, as far as they move
+    /// too fast for the step. Returns the error of the position due to the change of slow motions.
     fn damp(&mut self, from: &State, to: &mut State) -> f64 {
         let (n, last, h) = (self.motion.coordinates(), self.tableau.stages() - 1, self.end - from.time);
         let weights =
@@ -567,10 +566,10 @@ impl<'a> Collocation<'a> {
         ERRORS_OF_DAMPING * error
     }
 
-    /// Makes up in `to` for what the stages do not see of loads, as far as what they drive can be
-    /// followed, so that it does not add up; returns by how much the position would err for it, and
-    /// for what they do not see of supports. `state` is the start of the step in fixed axes, `from`
-    /// its unknowns.
+    /// Corrects `to` for the loads that the stages do not see, as far as the motion can follow
+    /// them, so that their effect does not add up. Returns the error that the position would have
+    /// without the correction, or has because of motions of supports that the stages do not see.
+    /// `state` is the start of the step in fixed axes, `from` its unknowns.
     fn make_up(&mut self, state: &State, from: &State, to: &mut State) -> f64 {
         let h = self.end - from.time;
         let Tableau { nodes, weights, .. } = &self.tableau;
@@ -600,8 +599,8 @@ impl<'a> Collocation<'a> {
         self.stages.sum(|j| if j < s { weights(j) } else { 0.0 }, &mut self.acceleration);
     }
 
-    /// q̈ at an end of the step without what oscillates faster than the step can follow: that part,
-    /// however small its amplitude, would dominate an interpolation by accelerations.
+    /// q̈ at an end of the step without vibrations faster than the step can follow: however small
+    /// their amplitude, they would dominate an interpolation by accelerations.
     fn smooth_acceleration(&mut self, x: f64, state: &State) -> Vec<f64> {
         let state = &self.motion.unknowns_of(state);
         let (defect, factor) = self.defect(x, state);
@@ -619,7 +618,7 @@ impl Method for Collocation<'_> {
     }
 
     fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
-        // Constant accelerations, until there is a step to continue.
+        // The accelerations count as constant until there is a step to continue.
         let mut acceleration = vec![0.0; state.q.len()];
         self.motion.set_accepted(state);
         let unknowns = self.motion.unknowns_of(state);
@@ -641,7 +640,7 @@ impl Method for Collocation<'_> {
     ) -> Result<f64, Failure> {
         self.motion.set_accepted(state);
         if self.motion.remembers() {
-            // What a kept tangent is of depends on the state that was held then.
+            // A kept tangent belongs to the accepted state at which it was taken.
             self.kept = None;
         }
         let start = self.motion.unknowns_of(state);
@@ -691,7 +690,8 @@ impl Method for Collocation<'_> {
 
     fn accept(&mut self) {
         let h = self.trial_step;
-        // Round-off must not decide where both are as good.
+        // The polynomial is preferred where both are about as good, so that round-off does not
+        // decide.
         let [smooth, mean] = self.misses();
         self.smooth = smooth <= 2.0 * mean;
         let mixture = Mixture::new(&self.tableau.inverse_squared, (h * h).recip());
@@ -710,7 +710,8 @@ impl Method for Collocation<'_> {
     }
 
     fn end_accelerations(&mut self, from: &State, to: &State) -> Option<[Vec<f64>; 2]> {
-        // Two stages need no accelerations, and have no real eigenvalue.
+        // Below three stages a cubic is accurate enough; with two there is no real eigenvalue to
+        // filter by.
         if self.tableau.stages() < 3 {
             return None;
         }

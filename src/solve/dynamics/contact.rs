@@ -1,4 +1,4 @@
-//! What a motion remembers of its contacts.
+//! The state of the contacts of a motion.
 
 use crate::solve::ContactImpulse;
 
@@ -7,9 +7,9 @@ use crate::solve::ContactImpulse;
 pub(super) struct ContactState {
     /// Whether it touches.
     pub touches: bool,
-    /// Since it began.
+    /// Its impulse since it began.
     pub impulse: ContactImpulse,
-    /// Whether it has given way once.
+    /// Whether the beam has been pushed past the middle of the obstacle.
     pub crossed: bool,
 }
 
@@ -22,12 +22,12 @@ pub struct Change {
     pub touches: bool,
     /// When \[s\].
     pub time: f64,
-    /// What it did since it began, or since the motion was taken up; where it ends.
+    /// Its impulse since it began, or since the motion was taken up; only where it ends.
     pub impulse: Option<ContactImpulse>,
 }
 
 impl ContactState {
-    /// A contact that touches already, or not.
+    /// A contact at the start of a motion, which touches already or not.
     pub(super) fn new(touches: bool) -> Self {
         Self { touches, ..Self::default() }
     }

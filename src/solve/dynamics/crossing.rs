@@ -1,19 +1,20 @@
 //! Where in a step a coordinate of a probe reaches a value.
 //!
 //! A coordinate is linear in q, so that in a step it is one polynomial of time, the Hermite
-//! interpolation of what is known at both ends: positions and velocities (cubic), and accelerations
-//! (quintic). Between the zeros of its derivative a polynomial rises or falls throughout and has at
-//! most one zero, and the derivative's zeros are found in the same way: so none is missed, and none
-//! is looked for by sampling.
+//! interpolation of the data at both ends: positions and velocities (cubic), and if known
+//! accelerations (quintic). Between the zeros of its derivative a polynomial is monotonic and has
+//! at most one zero, and the zeros of the derivative are found in the same way. So no zero is
+//! missed, and no sampling is needed.
 //!
 //! A value is reached from below (rising) or from above (falling). A coordinate that turns back at
-//! the value has reached it too, once; within round-off it cannot be told from one that turns just
-//! before or just beyond. So a coordinate is *at* the value within [`NEAR`] beam lengths where it
-//! turns or a step ends, and must leave it by more to reach it again.
+//! the value has reached it too, once; round-off cannot tell it from one that turns just before or
+//! just beyond. So a coordinate is *at* the value if it is within [`NEAR`] beam lengths of it at a
+//! turning point or at the end of a step, and must leave this range before it can reach the value
+//! again.
 
-/// Distance from a value that is none, in beam lengths: what round-off leaves of positions.
+/// Distance from a value that counts as zero, in beam lengths: the round-off of positions.
 pub(super) const NEAR: f64 = 1e-9;
-/// Bisections, to the last bits of a step.
+/// Bisections of a step: down to its last bits.
 const BISECTIONS: u32 = 55;
 /// Largest degree of an interpolation.
 const DEGREE: usize = 5;
@@ -25,21 +26,21 @@ pub(super) struct Polynomial([f64; DEGREE + 1]);
 /// A value that is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reached {
-    /// Part of the step.
+    /// Where in the step, from 0 to 1.
     pub at: f64,
-    /// From below.
+    /// Whether from below.
     pub rising: bool,
 }
 
 impl Polynomial {
-    /// With the value, h times the velocity and, if they are given, h²/2 times the acceleration at
-    /// both ends of a step of length h.
+    /// The polynomial with these values, h times these velocities and, if given, h²/2 times these
+    /// accelerations at both ends of a step of length h.
     pub(super) fn hermite([q0, q1]: [f64; 2], [v0, v1]: [f64; 2], halves: Option<[f64; 2]>) -> Self {
         let rise = q1 - q0;
         let Some([a0, a1]) = halves else {
             return Self([q0, v0, 3.0 * rise - 2.0 * v0 - v1, v0 + v1 - 2.0 * rise, 0.0, 0.0]);
         };
-        // The end's data enter through their defects against the lower terms.
+        // The higher coefficients follow from the data at the end, less the lower terms.
         let (d, s, c) = (rise - v0 - a0, v1 - v0 - 2.0 * a0, a1 - a0);
         let [third, fourth, fifth] =
             [10.0 * d - 4.0 * s + c, -15.0 * d + 7.0 * s - 2.0 * c, 6.0 * d - 3.0 * s + c];
@@ -65,7 +66,8 @@ impl Polynomial {
         self.0[1..].iter().all(|c| *c == 0.0)
     }
 
-    /// Where the polynomial turns in (0, 1), rising; flat places without a turn may be left out.
+    /// The turning points in (0, 1), in ascending order; flat points without a turn may be left
+    /// out.
     fn turns(&self) -> Vec<f64> {
         let slope = self.derivative();
         if slope.is_constant() {
@@ -82,11 +84,11 @@ impl Polynomial {
         turns.filter(|x| *x < 1.0).collect()
     }
 
-    /// Where in the step zero is reached, in order of time; what is nearer to zero than `near` is
-    /// there already.
+    /// The points of the step at which zero is reached, in order of time. A value nearer to zero
+    /// than `near` counts as zero.
     pub(super) fn reaches_zero(&self, near: f64) -> Vec<Reached> {
         let mut found = Vec::new();
-        // On which side it last was; zero where it was on none.
+        // The side of zero, or 0 within `near`.
         let side = |value: f64| if value.abs() > near { value.signum() } else { 0.0 };
         let (mut from, mut on) = (0.0, side(self.at(0.0)[0]));
         for to in self.turns().into_iter().chain([1.0]) {
@@ -101,7 +103,7 @@ impl Polynomial {
     }
 }
 
-/// Where `beyond` becomes true between the ends, to the last bits; the later end where it does not.
+/// Where `beyond` becomes true between the ends, to the last bits; the later end if it never does.
 fn bisect([mut before, mut after]: [f64; 2], beyond: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (before + after);
@@ -115,8 +117,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// c Π (x − root), and what is made of its values, slopes and half second derivatives at both
-    /// ends.
+    /// The polynomial c Π (x − root), made from its values, slopes and half second derivatives at
+    /// both ends.
     fn with_roots(scale: f64, roots: &[f64]) -> Polynomial {
         let mut c = [0.0; DEGREE + 1];
         c[0] = scale;
@@ -151,7 +153,8 @@ mod tests {
             }
         }
 
-        /// One that turns back at the value reaches it once, one that goes through it flatly too.
+        /// A polynomial that turns back at the value reaches it once, and so does one that passes
+        /// with slope 0.
         #[test]
         fn touches_count_once(root in 0.05..0.95_f64, outside in 1.5..3.0_f64, scale in prop_oneof![-3.0..-0.1, 0.1..3.0_f64]) {
             let touching = with_roots(scale, &[root, root, outside]).reaches_zero(1e-9);

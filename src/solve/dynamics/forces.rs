@@ -15,7 +15,7 @@ fn lagrange(times: &[f64], at: f64) -> Vec<f64> {
     (0..times.len()).map(share).collect()
 }
 
-/// Their integrals from `start` to `end`, of up to four times.
+/// The integrals of Lagrange's polynomials on up to four `times` from `start` to `end`.
 fn integrals(times: &[f64], start: f64, end: f64) -> Vec<f64> {
     let (middle, half) = (0.5 * (start + end), 0.5 * (end - start));
     let offset = half / 3.0_f64.sqrt();
@@ -24,8 +24,8 @@ fn integrals(times: &[f64], start: f64, end: f64) -> Vec<f64> {
 }
 
 impl<'a> Driver<'_, 'a> {
-    /// Work of moving supports until `time` in the step to `new`, by the quadrature that the method
-    /// itself is.
+    /// Work of moving supports until `time` in the step to `new`, by the quadrature rule of the
+    /// method itself.
     pub(super) fn work_of_supports(&mut self, new: &State, time: f64) -> f64 {
         if !self.system.supports().moves_in_time() {
             return 0.0;
@@ -40,10 +40,11 @@ impl<'a> Driver<'_, 'a> {
         self.until(time, &self.support_powers)
     }
 
-    /// What damping takes until `time` in the step to `new`, by the quadrature that the method
-    /// itself is: of what decays faster than a step can follow, that alone is what the motion
-    /// loses, and the powers at the step's ends are arbitrarily larger. Methods of second order
-    /// take, in a whole step, what the mean of its ends takes.
+    /// Energy taken by damping until `time` in the step to `new`, by the quadrature rule of the
+    /// method itself. Where vibrations decay faster than a step can follow, only this rule gives
+    /// the energy that the computed motion loses; the powers at the step's ends are arbitrarily
+    /// larger. With methods of second order a whole step takes what damping takes in the mean state
+    /// of its ends.
     pub(super) fn taken_by_damping(&mut self, new: &State, time: f64) -> f64 {
         if !self.system.is_damped() {
             return 0.0;
@@ -74,8 +75,8 @@ impl<'a> Driver<'_, 'a> {
         weights.iter().zip(powers).map(|(weight, (_, power))| weight * power).sum()
     }
 
-    /// The equations of motion for looking at states, apart from those of the method and its
-    /// counts; friction counts from the last state.
+    /// Equations of motion for evaluating states, separate from those of the method and its counts.
+    /// Friction depends on the last accepted state.
     fn observer(&mut self) -> Option<&mut Motion<'a>> {
         if self.observer.is_none() {
             self.observer = Motion::new(self.system).ok();
@@ -98,8 +99,8 @@ impl<'a> Driver<'_, 'a> {
         self.settled(state, rates, h)
     }
 
-    /// All forces in the first record `first`: exact where nothing has led to it, and otherwise a
-    /// part of a step after the last state.
+    /// All forces in the first record `first`. They are exact at the start of a motion; in one that
+    /// is continued, they follow from the rates at the end of the last step.
     pub(super) fn balance_at_start(&mut self, first: &State) -> Option<Balance> {
         if self.state.time > 0.0 {
             let (rates, h) = (self.method.end_rates(), self.last_step);
@@ -122,8 +123,8 @@ impl<'a> Driver<'_, 'a> {
     }
 
     /// Whether states between the ends of steps are moved into balance: where forces are wanted,
-    /// and where moving supports ask for the balance of energy, in which the strain of an
-    /// interpolated state would count.
+    /// and with moving supports, whose energy balance would suffer from the strain error of an
+    /// interpolated state.
     pub(super) fn settles(&self) -> bool {
         self.task.reactions || self.system.supports().moves_in_time()
     }

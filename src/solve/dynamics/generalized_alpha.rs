@@ -13,15 +13,14 @@
 //!
 //! # Error of a step
 //! a lies (α_m − α_f) h away from q̈ in time, so that the position errs by h³ q⃛ (β + (α_m − α_f)/2
-//! − 1/6) in a step. With h q⃛ ≈ q̈₁ − q̈₀ that is known at no cost; multiplied by (K + cM)⁻¹ cM it
-//! leaves out what lies above the step's own frequency and would not be followed anyway. What loads
-//! and supports do between the ends of the step ([`crate::system::laws`]) is added to it, and made
-//! up for, through the same matrix.
+//! − 1/6) in a step. With h q⃛ ≈ q̈₁ − q̈₀ this estimate costs nothing. The factor (K + cM)⁻¹ cM
+//! removes vibrations too fast for the step, which it would not follow anyway. Changes of loads and
+//! supports between the ends of the step ([`crate::system::laws`]) are added to the estimate, and
+//! corrected for, through the same matrix.
 //!
-//! Where a contact begins, ends, or turns, a starts anew from the q̈ of the equations of motion: a
-//! carries the force that was before into the steps behind, by which a hinged beam on a stiff box
-//! erred by 364 times a tolerance of 1e-5, and q̈ of the formula rings, by which it still erred by
-//! 40.
+//! Where a contact begins, ends, or turns, a is set to the q̈ of the equations of motion. Otherwise
+//! it would carry the earlier force into the next steps: a hinged beam on a stiff box erred by 364
+//! times the tolerance. The q̈ of the formula above would not do, because it rings.
 //!
 //! # A tangent for many steps
 //! The tangent is kept, turned with the nodes ([`super::turns`]), as long as the increments shrink
@@ -39,26 +38,27 @@ use crate::linear::{Factor, NOT_FACTORISED, Singular};
 use crate::solve::Statistics;
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
 
-/// Newton tolerance relative to the displacement in the step and to the absolute tolerance: it
-/// counts where steps are very short, for the velocity takes the same relative error.
+/// In a step that moves the beam by less than the reciprocal of this, in beam lengths, Newton's
+/// tolerance is smaller in proportion to the displacement: the velocity has the same relative
+/// error.
 const RELATIVE_TOLERANCE: f64 = 10.0;
-/// The same as a part of the error that a step may make.
+/// Newton's tolerance as a part of the error that a step may make.
 const TOLERANCE_OF_ERROR: f64 = 0.02;
 
 /// Rate of convergence beyond which the next step takes a new tangent.
 const KEEP: f64 = 0.006;
-/// Rate of convergence beyond which the present step does.
+/// Rate of convergence beyond which the present step takes a new tangent.
 const SLOW: f64 = 0.5;
 /// Largest correction of a predicted state with a kept tangent.
 const LARGEST_CORRECTION: f64 = 0.05;
-/// Relative change of the step's length that is none.
+/// Relative change of the step length that is ignored.
 const ROUND_OFF: f64 = 1e-6;
-/// Steps by which the acceleration of the last one is continued, at most.
+/// The acceleration is extrapolated over at most this many lengths of the last step.
 const LONGEST: f64 = 4.0;
 /// Most iterations with a kept tangent.
 const ITERATIONS: usize = 12;
 
-/// The numbers of the method.
+/// The coefficients of the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Coefficients {
     alpha_m: f64,
@@ -137,11 +137,11 @@ pub struct GeneralizedAlpha<'a> {
 struct FactoredTangent {
     /// Where it was taken.
     at: State,
-    /// And with which multipliers.
+    /// The multipliers with which it was taken.
     multipliers: Vec<f64>,
-    /// Of K + cM; 0 before it is factorised.
+    /// c of the factorised K + cM; 0 before there is one.
     c: f64,
-    /// How much increments shrink an iteration.
+    /// The factor by which an iteration shrinks the increments.
     rate: f64,
 }
 
@@ -179,8 +179,8 @@ impl<'a> GeneralizedAlpha<'a> {
         self.kept = Some(FactoredTangent { at: at.clone(), multipliers, c: 0.0, rate });
     }
 
-    /// Factorises K + dD + cM, unless that is what is there but for the round-off of the step's
-    /// length.
+    /// Factorises K + dD + cM, unless the present factors are those, up to the round-off of the
+    /// step length.
     fn factorize(&mut self, c: f64, d: f64) -> Result<(), Singular> {
         if let Some(kept) = &mut self.kept
             && (kept.c - c).abs() > ROUND_OFF * c
@@ -191,7 +191,7 @@ impl<'a> GeneralizedAlpha<'a> {
         Ok(())
     }
 
-    /// Solves for `x` with the kept tangent; false where that fails, `x` is then as it was.
+    /// Solves for `x` with the kept tangent. Returns false where that fails, with `x` as it was.
     fn solve_with_kept(
         &mut self,
         from: &State,
@@ -207,7 +207,8 @@ impl<'a> GeneralizedAlpha<'a> {
         loop {
             self.factorize(c, d)?;
             let Some(kept) = &self.kept else { return Ok(false) };
-            // What an earlier step found may no longer hold where steps take one iteration each.
+            // The rate of an earlier step may no longer hold: steps of one iteration do not measure
+            // it again.
             let mut rate = kept.rate.max(KEEP);
             self.turns.measure(&kept.at.q, &self.x[..n]);
             let mut last = 0.0;
@@ -220,8 +221,8 @@ impl<'a> GeneralizedAlpha<'a> {
                 self.motion.statistics.newton_iterations += 1;
                 record.residuals.push(residual);
                 record.increments.push(size);
-                // Far from the solution there may be another one, and Newton's method finds the
-                // nearer of them. Also true for a NaN.
+                // After so large a correction there may be several solutions; Newton's method,
+                // which finds the nearest, takes over. The negated condition also catches NaN.
                 if !(size <= LARGEST_CORRECTION && residual.is_finite()) {
                     break;
                 }
@@ -290,12 +291,12 @@ impl<'a> GeneralizedAlpha<'a> {
         self.motion.distance(e)
     }
 
-    /// Makes up in `to` for what both ends of a step do not see of loads, as far as what they drive
-    /// can be followed, so that it does not add up; returns by how much the position would err for
-    /// it, and for what they do not see of supports.
+    /// Corrects `to` for the loads that the ends of a step do not see, as far as the motion can
+    /// follow them, so that their effect does not add up. Returns the error that the position would
+    /// have without the correction, or has because of motions of supports that the ends do not see.
     fn make_up(&mut self, from: &State, to: &mut State, c: f64) -> f64 {
         let h = to.time - from.time;
-        // What varies evenly between the ends has these moments.
+        // The moments of a load that varies linearly between the ends.
         let looks = [(from.time, [0.5, 1.0 / 3.0]), (to.time, [0.5, 1.0 / 6.0])];
         let mut error = self.motion.unseen_motion(from.time, to.time, &looks);
         let Some(moments) = self.motion.unseen_loads(from, to.time, &looks) else { return error };
@@ -322,7 +323,7 @@ impl Equations for AtEnd<'_, '_> {
         let rates = self.rule.at(x, self.motion.needs_velocity());
         let residual = self.motion.linearize(x, earlier, rates, increment);
         if !residual.is_finite() {
-            // What overflows has no pivots either, but that is not why.
+            // An overflow leaves no pivots either, but must not be reported as a singular matrix.
             return Ok(residual);
         }
         let factor = self.motion.factorize(self.rule.c, self.rule.d, self.factor.take())?;
@@ -369,7 +370,7 @@ impl Method for GeneralizedAlpha<'_> {
     ) -> Result<f64, Failure> {
         self.motion.set_accepted(state);
         if self.motion.remembers() {
-            // What a kept tangent is of depends on the state that was held then.
+            // A kept tangent belongs to the accepted state at which it was taken.
             self.kept = None;
         }
         let Coefficients { alpha_m, alpha_f, beta, gamma } = self.coefficients;
@@ -390,8 +391,8 @@ impl Method for GeneralizedAlpha<'_> {
             _ => (0.0, algorithmic),
         };
         let (of_algorithmic, of_physical) = (alpha_m / (1.0 - alpha_f), alpha_f / (1.0 - alpha_f));
-        // What is known of the position at the end. It is computed where it is needed: to keep it
-        // would be one pass over memory more.
+        // The known part of the position at the end. It is computed where it is needed, because
+        // storing it would cost one more pass over memory.
         let known = |q: f64, v: f64, a: f64| q + h * (v + h * (0.5 - beta) * a);
         for i in 0..n {
             let a = algorithmic[i];
@@ -413,7 +414,8 @@ impl Method for GeneralizedAlpha<'_> {
         let tight = self.newton_tolerance * (RELATIVE_TOLERANCE * moved).min(1.0);
         let settings = Settings {
             tolerance: accuracy.map_or(tight, |allowed| (TOLERANCE_OF_ERROR * allowed).max(tight)),
-            // The tangent is exact, and inertia makes it well conditioned: the increments tell all.
+            // The tangent is exact, and inertia makes it well conditioned: the increments alone
+            // tell convergence.
             residual_tolerance: f64::INFINITY,
             ..Settings::default()
         };

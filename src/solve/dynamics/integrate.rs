@@ -1,33 +1,32 @@
-//! The driver of all methods: chooses steps, records states, locates events, keeps what a restart
-//! needs.
+//! The driver of all methods: chooses steps, records states, locates events, keeps the data for a
+//! restart.
 //!
 //! # Steps that meet a stated accuracy
 //! The tolerance is the wanted error of positions at the end, root mean square over the nodes,
-//! relative to the beam length. A step may err by a fixed part of it; with an estimate of order p +
-//! 1 the step for that follows, by the proportional–integral rule of Gustafsson (*ACM Trans. Math.
-//! Softw.* 20, 1994, 496–517). Of methods that gain by it a step that could grow by little keeps
-//! its length ([`Method::hold`]).
+//! relative to the beam length. A step may err by a fixed part of it. From an estimate of order p +
+//! 1 the step length follows by the proportional–integral rule of Gustafsson (*ACM Trans. Math.
+//! Softw.* 20, 1994, 496–517). A step that could grow only a little keeps its length, if the method
+//! can then use its factorisation again ([`Method::least_growth`]).
 //!
-//! Two other choices were tried and left. An allowance in proportion to the step asks for ever
-//! smaller steps once a high frequency rings, whose share in the error does not add up. The largest
-//! change of any gradient, in place of positions, sees the shortest waves most, which the sudden
-//! release of a beam excites: steps were then four times as many as needed, and not fewer for
-//! looser tolerances.
+//! Two other choices were tried and rejected. An allowance in proportion to the step asks for ever
+//! smaller steps once a high frequency rings, although its errors do not add up. The largest change
+//! of any gradient, in place of positions, overrates the shortest waves, which the sudden release
+//! of a beam excites: it took four times as many steps as needed.
 //!
 //! # Kinks
-//! Where a load or a support's motion is not smooth a step ends, whatever the method and however
-//! steps are chosen: the last stage sees what was just before, the next step begins with what is
-//! just after (`Driver::pass_kinks`), and no interpolation reaches over it. Where a contact begins,
-//! ends, or turns, a step that is to meet an accuracy ends too, and what the method remembers of
-//! the acceleration is made anew ([`Method::renew`]). A step of fixed length is divided there, and
-//! all later ones end where they would have.
+//! Where a load or a support's motion is not smooth a step ends, with every method and step
+//! control: its last stage sees the values just before, the next step begins with those just after
+//! (`Driver::pass_kinks`), and no interpolation reaches across. A step of fixed length is divided
+//! there, and all later ones end where they would have. Where a contact begins, ends, or turns, a
+//! step with a tolerance ends too, and the accelerations that the method carries on are computed
+//! anew ([`Method::renew`]).
 //!
 //! # Steps of fixed length
-//! Where the equations of a step cannot be solved, that step is divided, which the counts of
-//! rejected steps and a warning tell; all others keep their length and their places. The equations
-//! of a step in which nodes turn far have several solutions, and the trapezoidal rule pumps energy
-//! into a stiff beam there; so a step that turns a node by more than 0.1 rad is divided too if it
-//! gains energy, and one whose way leads through an obstacle (the private module `touch`).
+//! A step whose equations cannot be solved is divided, and the count of rejected steps and a
+//! warning tell so; all others keep their lengths and their ends. In a step in which nodes turn far
+//! the equations have several solutions, and the trapezoidal rule pumps energy into a stiff beam.
+//! So a step that turns a node by more than 0.1 rad is also divided if it gains energy, and so is
+//! one that leads through an obstacle (the private module `touch`).
 
 use super::collocation::Collocation;
 use super::contact::ContactState;
@@ -45,27 +44,27 @@ use crate::system::{System, View, unfold};
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
-/// What is to be integrated, and how.
+/// The task of an integration.
 pub struct Task<'t> {
     /// Time at which it ends \[s\].
     pub duration: f64,
     /// Time between recorded states \[s\].
     pub output_every: f64,
-    /// The method.
+    /// The method and its step control.
     pub integrator: Integrator,
-    /// Where it starts.
+    /// The state from which it starts.
     pub start: Checkpoint,
     /// Whether forces of supports and joints are wanted.
     pub reactions: bool,
-    /// What to watch for.
+    /// Events to watch for.
     pub watches: &'t [EventWatch],
-    /// Where to watch directions, whose turns are counted from step to step.
+    /// Points whose directions are followed from step to step, so that full turns are counted.
     pub directions: &'t [View],
-    /// Where to leave checkpoints on the way.
+    /// Receives checkpoints during the motion.
     pub keep: Option<Checkpointing<'t>>,
 }
 
-/// Takes checkpoints on the way.
+/// Receives checkpoints during a motion.
 #[derive(Clone, Copy)]
 pub struct Checkpointing<'k> {
     /// Wall time between them.
@@ -88,26 +87,27 @@ pub struct EventWatch {
     pub stop: bool,
 }
 
-/// Part of the tolerance that a step may err by: as if ten thousand errors added up; a shorter step
-/// by its part of the time until its end, so that steps do not depend on when the motion ends.
-/// Measured on the soft pendulum (2.5 s) with all methods and tolerances from 1e-3 to 1e-6, the
-/// largest error of the tip is then 0.01 to 2.7 times the tolerance.
+/// Part of the tolerance that a step may err by: as if ten thousand errors added up. A step that is
+/// shorter than this part of the time until its end may err by its share of that time, so that
+/// steps do not depend on when the motion ends. On the soft pendulum, with all methods and
+/// tolerances from 1e-3 to 1e-6, the largest error of the tip is at most 2.7 times the tolerance.
 const STEP_PART: f64 = 1e-4;
-/// The longest first step, per period of the slowest vibration: nothing may move yet.
+/// Longest first step in periods of the slowest vibration: where nothing moves yet, speeds set no
+/// limit.
 const FIRST_STEP: f64 = 0.01;
 /// Part of the wanted step that is taken, so that few are rejected.
 const SAFETY: f64 = 0.9;
 /// Steps grow and shrink at most by these factors.
 const LIMITS: (f64, f64) = (0.2, 4.0);
-/// After an iteration that did not converge.
+/// Factor of the step length after an iteration that did not converge.
 const SHRINK: f64 = 0.3;
 /// Smallest step, relative to the duration.
 const SMALLEST_STEP: f64 = 1e-12;
 /// Smallest part of a step of fixed length into which it is divided where its equations cannot be
 /// solved.
 pub(super) const SMALLEST_PART: f64 = 1e-3;
-/// Part of a step of fixed length by which its end is moved to a kink, so that no sliver is left:
-/// round-off in accelerations grows with its inverse square.
+/// Part of a step of fixed length by which its end may be moved to a kink. A very short step to the
+/// kink would be worse: round-off in accelerations grows with the inverse square of the step.
 const NEAR: f64 = 1e-3;
 /// Iterations beyond which a step does not grow: the next tangent would be worse.
 const MANY_ITERATIONS: usize = 10;
@@ -164,38 +164,36 @@ pub(super) struct Driver<'t, 'a> {
     pub(super) next_record: u64,
     pub(super) last_ratio: f64,
     pub(super) rejected: bool,
-    /// The state in which the motion was taken up: what happened until then has been reported.
+    /// The state in which the motion was taken up; everything until then has been reported.
     pub(super) first: State,
-    /// What there was before the step that the end of the motion or an event cuts short, once it is
-    /// taken.
+    /// The checkpoint before the step that the end of the motion or an event has cut short.
     whole: Option<Checkpoint>,
     pub(super) stride: usize,
     /// Times at which loads or supports are not smooth, rising.
     pub(super) kinks: Vec<f64>,
-    /// The last state, for what depends on the way.
+    /// The last accepted state, for effects that depend on the path.
     pub(super) accepted: AcceptedState,
-    /// Per contact, how it is.
+    /// The state of each contact.
     pub(super) touching: Vec<ContactState>,
     /// Times and powers at the start and the end of the last step.
     pub(super) powers: [(f64, (f64, f64)); 2],
     /// Times and powers of moving supports in the stages of the last attempt; empty before they are
     /// asked for.
     pub(super) support_powers: Vec<(f64, f64)>,
-    /// The same of what damping takes.
+    /// The same for the powers of damping.
     pub(super) damping_powers: Vec<(f64, f64)>,
     /// Length of the last accepted step \[s\].
     pub(super) last_step: f64,
-    /// What looks at forces.
+    /// Equations of motion for evaluating forces; made when first needed.
     pub(super) observer: Option<Motion<'a>>,
 }
 
-/// How forces are where a step ends.
+/// Whether forces are smooth at the end of a step.
 #[derive(Clone, Copy, Debug)]
 enum End {
-    /// Of them only loads and supports may have a kink there, and those are known beforehand.
+    /// Only loads and supports may have a kink there, at a time known in advance.
     Smooth,
-    /// A contact begins, ends, or turns: accelerations from before say nothing about those
-    /// afterwards.
+    /// A contact begins, ends, or turns: accelerations from before do not apply afterwards.
     ContactChanges,
 }
 
@@ -304,7 +302,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
-    /// Takes the state for the one from which internal variables are counted.
+    /// Makes the present state the one from which internal variables are counted.
     fn set_accepted(&mut self) {
         if self.system.has_history() {
             self.accepted =
@@ -329,9 +327,10 @@ impl<'t, 'a> Driver<'t, 'a> {
         self.solution
     }
 
-    /// From which the motion goes on.
+    /// The checkpoint from which the motion can be continued.
     fn checkpoint(&self) -> Checkpoint {
-        // A motion that was ended before it was where it was taken up goes on from there.
+        // A motion that was stopped before it came back to where it was taken up continues from
+        // there.
         let reached = if self.state.time < self.first.time { &self.first } else { &self.state };
         if let Some(whole) = &self.whole {
             return Checkpoint { cut: Some(reached.clone()), ..whole.clone() };
@@ -347,8 +346,8 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
-    /// Whether the next step is shorter for the end of the motion, which another duration would
-    /// have elsewhere.
+    /// Whether the end of the motion cuts the next step short, which it would not with a longer
+    /// duration.
     fn end_cuts(&self) -> bool {
         match self.control {
             StepControl::Fixed(step) => {
@@ -368,12 +367,13 @@ impl<'t, 'a> Driver<'t, 'a> {
         self.whole.is_none() && (self.end_cuts() || self.task.watches.iter().any(|watch| watch.stop))
     }
 
-    /// Takes one step, smaller as often as needed, to `new`.
+    /// Takes one step to `new`, shortened as often as needed.
     fn advance(&mut self, new: &mut State) -> Result<End, NoStep> {
         let (mut touch, mut cuts) = (f64::INFINITY, 0);
         loop {
             let end = self.next_end(touch);
-            // Of a load that jumps the step sees what is before.
+            // At a kink the step ends just before it, so that it sees a load that jumps as it was
+            // before.
             let until = if self.kinks.contains(&end) { end.next_down() } else { end };
             let h = until - self.state.time;
             let accuracy = match self.control {
@@ -490,7 +490,7 @@ impl<'t, 'a> Driver<'t, 'a> {
                 let end = self.grid_end(step);
                 (kink.filter(|kink| *kink <= end + NEAR * step).unwrap_or(end), 1.0 + SLACK)
             }
-            // The last two steps share what is left.
+            // The last two steps share the remaining time.
             StepControl::Tolerance(_) => (kink.unwrap_or(self.task.duration).min(touch), 2.0),
         };
         let left = end - now;
@@ -503,7 +503,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
-    /// Prepares the step that follows one with such an `end`.
+    /// Prepares the step that follows one with this `end`.
     fn go_on(&mut self, end: End) {
         let renewed = match end {
             End::ContactChanges => self.method.renew(&self.state),
@@ -516,7 +516,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
     }
 
-    /// Goes on just after the kinks at which the last step ended, if it did.
+    /// Continues just after the kinks at which the last step ended, if it ended at any.
     fn pass_kinks(&mut self) -> Result<(), Singular> {
         let before = self.state.time;
         let slack = SMALLEST_STEP * self.task.duration;
@@ -527,7 +527,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         let earlier = kinetic(self);
         self.state.time = kink;
         let jump = self.method.pass(before, &mut self.state)?;
-        // An impulse of supports whose velocity jumps.
+        // Work of the impulse of supports whose velocity jumps.
         self.state.work += kinetic(self) - earlier;
         if let StepControl::Tolerance(tolerance) = self.control {
             let n = self.state.q.len();
@@ -536,8 +536,8 @@ impl<'t, 'a> Driver<'t, 'a> {
         Ok(())
     }
 
-    /// Keeps every second record of the past where there are too many; rejected ones stay unless
-    /// they are the most.
+    /// Records an attempted step. Where there are too many, every second record of the past is
+    /// dropped, but rejected steps only if most are rejected.
     fn remember(&mut self, record: StepRecord) {
         let steps = self.method.statistics().steps;
         if record.accepted && !steps.is_multiple_of(self.stride) {
@@ -559,15 +559,16 @@ impl<'t, 'a> Driver<'t, 'a> {
     }
 }
 
-/// Directions in a state at a place each, as near as can be to those that it says it has.
+/// The direction at each watched point in a state, with as many full turns as bring it nearest to
+/// the angle stored in the state.
 pub(super) fn turned(directions: &[View], state: &State) -> Vec<f64> {
     let known = state.angles.iter().copied().chain(std::iter::repeat(f64::NAN));
     let angles = directions.iter().map(|view| view.fields(&state.q).angle()).zip(known);
     angles.map(|(angle, near)| unfold(angle, near.is_finite().then_some(near))).collect()
 }
 
-/// Whether a time lies in the step of fixed length that is to be taken next; a saved state may say
-/// otherwise.
+/// Whether `time` lies in the step of fixed length that is to be taken next; a saved state may
+/// contradict this.
 fn on_grid(control: StepControl, (start, taken): (f64, u64), time: f64) -> bool {
     match control {
         StepControl::Fixed(step) => {
@@ -587,12 +588,12 @@ fn first_step(
 ) -> f64 {
     let by_speed = step_by(system, method, tolerance, 1, velocity);
     let by_acceleration = step_by(system, method, tolerance, 2, acceleration);
-    // A motion that is interrupted has the steps of one that is not: they do not depend on when it
-    // ends.
+    // The end of the motion must not matter: one that is interrupted takes the same steps as one
+    // that is not.
     by_speed.min(by_acceleration).min(FIRST_STEP * TAU / system.lowest_vibration_scale().sqrt())
 }
 
-/// The same by the derivative of positions of the given order alone.
+/// The step that suits one derivative of the positions, of the given order.
 fn step_by(system: &System, method: &dyn Method, tolerance: f64, order: i32, derivative: &[f64]) -> f64 {
     let largest = nodes(derivative).fold(0.0_f64, |m, v| m.max(v.shift() / system.length()).max(v.slope()));
     let part = 0.3 * tolerance.powf(1.0 / (method.order() + 1.0));

@@ -1,4 +1,4 @@
-//! What methods carry from step to step, as a saved state has it.
+//! What integration methods carry from step to step, in the form that a saved state stores.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,16 +6,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Memory {
-    /// Of none, where no motion was.
+    /// No memory: no step has been taken.
     #[default]
     None,
-    /// Of Gauss and Radau.
+    /// Of Gauss' and Radau's methods.
     Collocation(CollocationMemory),
     /// Of generalised-α.
     GeneralizedAlpha(GeneralizedAlphaMemory),
 }
 
-/// What Gauss and Radau carry.
+/// Data that Gauss' and Radau's methods carry.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CollocationMemory {
@@ -33,7 +33,7 @@ pub struct CollocationMemory {
     pub tangent_step: f64,
 }
 
-/// What generalised-α carries.
+/// Data that generalised-α carries.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GeneralizedAlphaMemory {
@@ -51,7 +51,7 @@ pub struct GeneralizedAlphaMemory {
     pub factorized: [f64; 2],
 }
 
-/// From what a tangent is made again.
+/// Data from which a tangent is computed again.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TangentMemory {
@@ -59,16 +59,16 @@ pub struct TangentMemory {
     pub time: f64,
     /// Coordinates there.
     pub q: Vec<f64>,
-    /// And their velocities.
+    /// Velocities there.
     pub v: Vec<f64>,
-    /// And scaled multipliers.
+    /// Scaled multipliers there.
     pub multipliers: Vec<f64>,
-    /// How much an iteration with it shrinks the increments.
+    /// The factor by which an iteration with it shrinks the increments.
     pub rate: f64,
 }
 
 impl Memory {
-    /// Whether all of it are numbers.
+    /// Whether all its numbers are finite.
     pub fn is_finite(&self) -> bool {
         let all = |values: &[f64]| values.iter().all(|v| v.is_finite());
         let tangent = |tangent: &Option<TangentMemory>| {
@@ -123,7 +123,7 @@ mod tests {
         }
     }
 
-    /// Each number in turn is none.
+    /// Would catch a number that is not checked: each in turn is NaN.
     #[test]
     fn no_number_is_overlooked() {
         let of_tangent: [fn(&mut TangentMemory) -> &mut f64; 5] =

@@ -1,4 +1,4 @@
-//! What a method of time integration is, for the driver that takes its steps.
+//! The interface between a method of time integration and the driver that takes its steps.
 
 use super::State;
 use super::memory::Memory;
@@ -7,14 +7,14 @@ use crate::linear::Singular;
 use crate::solve::Statistics;
 use crate::solve::newton::{Failure, Iterations};
 
-/// A method of time integration. It keeps what it carries from step to step (accelerations, last
-/// stages).
+/// A method of time integration, with the quantities that it carries from step to step
+/// (accelerations, last stages).
 pub trait Method {
     /// Order p: the local error is of the order p + 1.
     fn order(&self) -> f64;
 
-    /// A step that could grow by less than this factor keeps its length: what was factorised for it
-    /// serves again.
+    /// A step that could grow by less than this factor keeps its length, so that its factorisation
+    /// can be used again.
     fn least_growth(&self) -> f64 {
         1.0
     }
@@ -42,19 +42,18 @@ pub trait Method {
         record: &mut Iterations,
     ) -> Result<f64, Failure>;
 
-    /// Takes over what the last attempt found.
+    /// Accepts the step of the last attempt.
     fn accept(&mut self);
 
-    /// Goes on from `state`, at a time at which loads or supports are not smooth, instead of from
-    /// the end of the last step at `before`, just before it. Returns by how much the accelerations
-    /// jump.
+    /// Continues from `state`, just after a time at which loads or supports are not smooth; the
+    /// last step ended at `before`, just before that time. Returns the jump of the accelerations.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
     fn pass(&mut self, before: f64, state: &mut State) -> Result<Vec<f64>, Singular>;
 
-    /// Forgets accelerations from before `state`, the end of the last step, for forces have changed
-    /// there. Nothing has to be done where the past only serves to predict.
+    /// Discards accelerations from before `state`, the end of the last step, because forces have
+    /// changed there. A method that only predicts from them need not do anything.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
@@ -62,8 +61,8 @@ pub trait Method {
         Ok(())
     }
 
-    /// The accelerations at both ends of the last attempt by which it is to be interpolated; none
-    /// where positions and velocities alone match the order of the method.
+    /// The accelerations at both ends of the last attempt, for its interpolation; none where
+    /// positions and velocities alone match the order of the method.
     fn end_accelerations(&mut self, from: &State, to: &State) -> Option<[Vec<f64>; 2]>;
 
     /// The stages of the last attempt, which led from `from` to `to`, in the order of their times.
@@ -72,13 +71,13 @@ pub trait Method {
     /// Accelerations of the unknowns and scaled multipliers at the end of the last accepted step.
     fn end_rates(&self) -> Vec<f64>;
 
-    /// The last Newton increment, by which the place of a failure is told.
+    /// The last Newton increment, which shows the place of a failure.
     fn last_increment(&self) -> &[f64];
 
-    /// Counts so far.
+    /// Counts of steps, iterations and factorisations so far.
     fn statistics(&mut self) -> &mut Statistics;
 
-    /// What is carried from step to step, for a restart that continues bit for bit.
+    /// The data carried from step to step, for a restart that continues bit for bit.
     fn memory(&self) -> Memory;
 
     /// Restores what [`Self::memory`] gave; false where it does not fit.

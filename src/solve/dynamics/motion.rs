@@ -4,31 +4,32 @@
 //! M q̈ + f(q, t) + f_d(q, q̇) + Bᵀ μ = 0,   g(q) = 0,   f = f_int + f_load
 //! ```
 //!
-//! What supports hold at nodes is eliminated from every matrix *before* it is factorised, the mass
-//! matrix included: solving with the mass matrix of the free beam and clearing the held components
-//! afterwards would give wrong accelerations to all others. Supports between nodes and joints are
-//! linear in q with constant rows, so that a method which satisfies them in its stages integrates
-//! an ordinary differential equation on the subspace g(q) = 0, with all of its order.
+//! Coordinates that supports fix or prescribe at nodes are eliminated from every matrix *before* it
+//! is factorised, the mass matrix included: solving with the mass matrix of the free beam and
+//! clearing the fixed components afterwards would give all others wrong accelerations. Supports
+//! between nodes and joints are linear in q with constant rows, so that a method which satisfies
+//! them in its stages integrates an ordinary differential equation on the subspace g(q) = 0, with
+//! all of its order.
 //!
 //! # Inextensible beams
-//! Their rows follow the gradients, and the equations are differential-algebraic of index 3: the
-//! constraint is an equation of every stage, and after a step positions and velocities are put back
-//! onto it ([`Motion::project`]; Hairer, Wanner, *Solving Ordinary Differential Equations II*,
-//! 1996, ch. VII). Methods that damp infinite frequencies serve: Radau IIA, and generalised-α with
-//! ρ∞ < 1. Gauss' methods and the trapezoidal rule carry an error of the axial force on from step
-//! to step, undamped, and are refused.
+//! Their constraint rows depend on the gradients, and the equations are differential-algebraic of
+//! index 3: the constraint is an equation of every stage, and after a step positions and velocities
+//! are put back onto it ([`Motion::project`]; Hairer, Wanner, *Solving Ordinary Differential
+//! Equations II*, 1996, ch. VII). This needs a method that damps infinite frequencies: Radau IIA,
+//! or generalised-α with ρ∞ < 1. Gauss' methods and the trapezoidal rule carry an error of the
+//! axial force on from step to step, undamped, and are refused.
 //!
 //! # Welds
 //! The gradients of welded nodes are polar: length y and direction θ are the unknowns, in which a
 //! weld's rows are linear and constant ([`crate::system::polar`]). Rows and forces are computed in
-//! fixed axes and turned into these unknowns; the mass matrix follows the state there.
+//! fixed axes and turned into these unknowns; the mass matrix then depends on the state.
 //!
 //! # Supports that move
-//! A coordinate that moves by a law of time has its exact value, velocity and acceleration in every
-//! stage, whatever a method makes of them; what is left is again an ordinary differential equation
-//! for the others. Of a gradient whose *direction* θ(t) is prescribed the length y along that
-//! direction is the unknown, and the method integrates (y, ẏ); fixed axes are met here only, with
-//! the centrifugal and Coriolis terms of the turning direction
+//! A coordinate prescribed by a law of time has its exact value, velocity and acceleration in every
+//! stage, whatever the method; the others again satisfy an ordinary differential equation. Where
+//! the *direction* θ(t) of a gradient is prescribed, its length y along that direction is the
+//! unknown, and the method integrates (y, ẏ). Only this module converts to fixed axes, with the
+//! centrifugal and Coriolis terms of the turning direction
 //! ([`crate::system::supports::Supports::carry`]). The mass matrix in that frame turns too and is
 //! formed anew with each tangent.
 
@@ -72,7 +73,7 @@ pub struct Acceleration<'r> {
 }
 
 impl<'r> Acceleration<'r> {
-    /// The same whatever the unknowns are.
+    /// An acceleration that does not depend on the unknowns.
     pub fn constant(rest: &'r [f64]) -> Self {
         Self { factor: 0.0, rest }
     }
@@ -83,28 +84,28 @@ impl<'r> Acceleration<'r> {
 pub struct Motion<'a> {
     pub(super) system: &'a System,
     pub(super) mass: Inertia,
-    /// In the supports' frames, without the held coordinates.
+    /// The mass matrix in the supports' frames, with zeros for the fixed coordinates.
     free_mass: Matrix,
     mass_factor: Factor,
     border: Vec<BorderRow>,
-    /// Of the elastic forces and loads, in the supports' frames, held coordinates eliminated.
+    /// Tangent of elastic forces and loads in the supports' frames, fixed coordinates eliminated.
     tangent: Matrix,
-    /// Of the forces that depend on velocities, likewise; none where there are none.
+    /// Damping matrix in the same form; none if no force depends on velocities.
     damping: Option<Matrix>,
-    /// Whether unknowns are not all coordinates in fixed axes with rates of their own: where
-    /// supports move with time, and where gradients are polar.
+    /// Whether unknowns must be converted to coordinates in fixed axes: with supports that move in
+    /// time, and with polar gradients.
     pub(super) carries: bool,
-    /// Whether the border follows the state.
+    /// Whether the constraint rows depend on the state.
     follows: bool,
     workspace: Workspace,
-    /// The force that comes with a tangent, where none is asked for.
+    /// Receives the force that is computed along with a tangent.
     force: Vec<f64>,
     scratch: Vec<f64>,
     /// The last accepted state, for friction.
     pub(super) accepted: AcceptedState,
-    /// What forces of several states at once put down in between.
+    /// Working memory for the forces of several states at once.
     pub(super) side_by_side: [Vec<f64>; 2],
-    /// Of the last accelerations.
+    /// The scaled multipliers of the last accelerations.
     multipliers: Vec<f64>,
     /// Positions, velocities and accelerations in fixed axes, where supports move.
     carried: [Vec<f64>; 3],
@@ -112,8 +113,9 @@ pub struct Motion<'a> {
     pub statistics: Statistics,
 }
 
-/// The mass matrix of the unknowns in the state `q` in fixed axes: with zeros for the held
-/// coordinates, and with their diagonal.
+/// The mass matrix of the unknowns in the state `q`, given in fixed axes, with the fixed
+/// coordinates eliminated: once with zeros on their diagonal, and once so that it can be
+/// factorised.
 fn free_mass(system: &System, time: f64, q: &[f64], mass: &Inertia) -> [Matrix; 2] {
     let mut free = mass.to_matrix();
     system.add_turning_mass(q, &mut free);
@@ -159,15 +161,15 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// Takes a state for the last accepted one, from which internal variables are counted.
+    /// Makes a state the last accepted one, from which internal variables are counted.
     pub fn set_accepted(&mut self, state: &State) {
         if self.system.has_history() {
             self.accepted = AcceptedState { q: state.q.clone(), variables: state.variables.clone() };
         }
     }
 
-    /// Whether tangents depend on the way to the last accepted state: with friction, and with
-    /// springs that are wound up.
+    /// Whether tangents depend on the path to the last accepted state: with friction, and with
+    /// torsion springs that are wound up.
     pub fn remembers(&self) -> bool {
         self.system.has_friction() || self.accepted.variables.winding != 0.0
     }
@@ -187,8 +189,8 @@ impl<'a> Motion<'a> {
         Turns::new(self.coordinates() / 4, self.still())
     }
 
-    /// Nodes that a tangent does not turn with: a held component of a position must stay what it
-    /// is, and polar gradients turn by themselves.
+    /// Nodes with which a tangent is not turned: a fixed component of a position must keep its
+    /// axis, and polar gradients contain the turn themselves.
     pub fn still(&self) -> Vec<usize> {
         self.system.supports().half_fixed().chain(self.system.polar().nodes()).collect()
     }
@@ -203,15 +205,15 @@ impl<'a> Motion<'a> {
         self.system.coordinates() + self.system.multipliers()
     }
 
-    /// Whether a residual depends on velocities: by damping, or by the terms of a frame, a gradient
-    /// or an inertia that turns.
+    /// Whether a residual depends on velocities: through damping, or through turning frames,
+    /// gradients or inertias.
     pub fn needs_velocity(&self) -> bool {
         self.damping.is_some() || self.system.has_turning_inertia() || self.system.turns()
     }
 
-    /// Factorises the mass matrix of the unknowns at `time` in the state `q` in fixed axes, if it
-    /// is not constant, with the constraints' rows, if they follow it. The mass and the rows beside
-    /// the tangent remain those of its state, so that a saved motion finds them again.
+    /// Factorises the mass matrix of the unknowns with the constraint rows, at `time` in the state
+    /// `q` in fixed axes, if they are not constant. The mass matrix and rows that belong to the
+    /// tangent stay as they are, so that a motion continued from a saved state finds the same.
     fn mass_at(&mut self, time: f64, q: &[f64]) -> Result<(), Singular> {
         if self.system.turns() || self.system.has_turning_inertia() || self.follows {
             let border = self.system.border_in_motion(time, q);
@@ -234,8 +236,8 @@ impl<'a> Motion<'a> {
         Ok(())
     }
 
-    /// −f, and −B q̈ of supports that move and directions that turn, as if no unknown had an
-    /// acceleration.
+    /// −f, and −B q̈ of moving supports and turning directions, with zero accelerations of the
+    /// unknowns.
     fn free_forces(&mut self, state: &State) -> Vec<f64> {
         let n = self.coordinates();
         let mut forces = vec![0.0; self.unknowns()];
@@ -253,7 +255,8 @@ impl<'a> Motion<'a> {
         forces
     }
 
-    /// Turns such forces into the accelerations of the unknowns and the multipliers.
+    /// Replaces the forces of [`Self::free_forces`] by the accelerations of the unknowns and
+    /// multipliers.
     fn accelerate(&mut self, state: &State, forces: &mut [f64]) -> Result<(), Singular> {
         let mut fixed = std::borrow::Cow::Borrowed(state);
         if self.carries {
@@ -275,7 +278,8 @@ impl<'a> Motion<'a> {
         let n = self.coordinates();
         self.mass_at(time, q)?;
         let supports = self.system.supports();
-        // That of moving supports, all else at rest; the others' part is then found without it.
+        // The velocity with moving supports and all else at rest; the rest is then found without
+        // supports.
         let mut prescribed = vec![0.0; n];
         supports.prescribed_velocity(time, q, &mut prescribed);
         let mut wanted: Vec<f64> = v.iter().zip(&prescribed).map(|(v, p)| v - p).collect();
@@ -299,7 +303,7 @@ impl<'a> Motion<'a> {
         negate(self.system, scale, negative, |_| ())
     }
 
-    /// The same, and turned back node by node.
+    /// [`Self::residual`], turned back node by node.
     pub fn residual_turned_back(
         &mut self,
         x: &[f64],
@@ -316,7 +320,7 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// Writes M a + f(q) + Bᵀμ and g; returns the largest force beside the inertia.
+    /// Writes M a + f(q) + Bᵀμ and g; returns the largest force apart from inertia.
     fn balance(&mut self, x: &[f64], rates: Rates<'_>, r: &mut [f64]) -> f64 {
         self.statistics.residual_evaluations += 1;
         let n = self.coordinates();
@@ -332,7 +336,8 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// The same, and the tangent ∂f/∂q with stress resultants extrapolated from an earlier iterate.
+    /// [`Self::residual`], and the tangent ∂f/∂q with stress resultants extrapolated from an
+    /// earlier iterate.
     pub fn linearize(
         &mut self,
         x: &[f64],
@@ -397,7 +402,7 @@ impl<'a> Motion<'a> {
         result
     }
 
-    /// Force, tangent and damping matrix, in fixed axes and in the supports' frames.
+    /// Force in fixed axes, and tangent and damping matrix in the supports' frames.
     fn assemble(&mut self, x: &[f64], earlier: Option<Earlier<'_>>, rates: Rates<'_>, force: &mut [f64]) {
         let n = self.coordinates();
         let Self { system, tangent, damping, workspace, scratch, accepted, .. } = self;
@@ -423,8 +428,8 @@ impl<'a> Motion<'a> {
         self.statistics.tangent_evaluations += 1;
     }
 
-    /// Adds to the forces in `r` what is left to add; returns the largest of them beside the
-    /// inertia.
+    /// Adds damping, inertia and constraints to the forces in `r`; returns the largest force apart
+    /// from inertia.
     fn finish(&mut self, x: &[f64], rates: Rates<'_>, r: &mut [f64]) -> f64 {
         let n = self.coordinates();
         if self.damping.is_some() {
@@ -506,14 +511,14 @@ impl<'a> Motion<'a> {
         ComplexFactor::again(earlier, &real, &imaginary, c64::new(0.0, 1.0), &self.border)
     }
 
-    /// Multiplies by the mass matrix without the held coordinates: `b += factor · M d`, both in the
-    /// supports' frames.
+    /// Multiplies by the mass matrix without the fixed coordinates: `b += factor · M d`, both in
+    /// the supports' frames.
     pub fn multiply_free_mass(&self, factor: f64, d: &[f64], b: &mut [f64]) {
         let n = self.coordinates();
         self.free_mass.multiply_add(factor, &d[..n], &mut b[..n]);
     }
 
-    /// Turns changes of unknowns into the supports' frames and clears what is held.
+    /// Turns changes of unknowns into the supports' frames and clears the fixed coordinates.
     pub fn to_frames(&self, v: &mut [f64]) {
         let n = self.coordinates();
         self.system.supports().unknowns_to_frames(&mut v[..n]);
@@ -525,13 +530,13 @@ impl<'a> Motion<'a> {
         self.system.supports().from_frames(0.0, &mut v[..n]);
     }
 
-    /// Takes what is held out of changes or rates of the unknowns.
+    /// Removes the fixed components from changes or rates of the unknowns.
     pub fn release<T: Real>(&self, v: &mut [T]) {
         let n = self.coordinates();
         self.system.supports().release(&mut v[..n]);
     }
 
-    /// Sets the held coordinates to their values at `time`.
+    /// Sets the fixed coordinates to their values at `time`.
     pub fn impose(&self, time: f64, x: &mut [f64]) {
         let n = self.coordinates();
         self.system.supports().impose_unknowns(time, &mut x[..n]);
@@ -547,8 +552,8 @@ impl<'a> Motion<'a> {
         std::borrow::Cow::Owned(state)
     }
 
-    /// Turns the state of unknowns at the end of a step into fixed axes; what is held receives its
-    /// prescribed values.
+    /// Turns the state of unknowns at the end of a step into fixed axes; fixed coordinates receive
+    /// their prescribed values.
     pub fn carry(&self, state: &mut State) {
         self.impose(state.time, &mut state.q);
         self.release(&mut state.v);
@@ -568,9 +573,9 @@ impl<'a> Motion<'a> {
         acceleration
     }
 
-    /// Moves a state onto the constraints, which holds to round-off only in the step's equations:
-    /// what they leave in position and velocity adds up over many steps. The change is the smallest
-    /// in the norm of the kinetic energy.
+    /// Moves a state onto the constraints, by the smallest change in the norm of the kinetic
+    /// energy. They hold to round-off only in the equations of a step, and what remains of their
+    /// error in positions and velocities would add up over many steps.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
@@ -582,7 +587,8 @@ impl<'a> Motion<'a> {
         self.mass_at(state.time, &state.q)?;
         let supports = self.system.supports();
         let mut change = vec![0.0; self.unknowns()];
-        // What a step leaves is so small that once is enough, with quadratic rows too.
+        // The error that a step leaves is so small that one correction is enough, for quadratic
+        // rows too.
         self.system.constraint_values(state.time, &state.q, &mut change[n..]);
         self.mass_factor.solve(&mut change);
         supports.to_fixed_axes(state.time, &mut change[..n]);
@@ -609,7 +615,7 @@ impl<'a> Motion<'a> {
         equilibrium::size(self.system, increment)
     }
 
-    /// The same of the change from `start` to `end`.
+    /// [`Self::size`] of the change from `start` to `end`.
     pub fn size_of_change(&self, start: &[f64], end: &[f64]) -> f64 {
         let mut largest = Largest::change(self.system);
         for (start, end) in start.as_chunks::<4>().0.iter().zip(end.as_chunks::<4>().0) {
@@ -621,7 +627,7 @@ impl<'a> Motion<'a> {
     /// Turns an increment forth node by node and back from the supports' frames, and adds it to
     /// `x`; returns its size.
     pub fn update(&self, turns: &Turns, increment: &mut [f64], x: &mut [f64]) -> f64 {
-        // Both turn in the plane: which is first does not matter.
+        // Turns in the plane commute: the order does not matter.
         self.from_frames(increment);
         let n = self.coordinates();
         let mut largest = Largest::change(self.system);

@@ -1,4 +1,4 @@
-//! What a motion leaves behind on its way: records at the requested times, crossings of probes.
+//! Records of a motion at the requested times, and of probes that cross a value.
 
 use super::crossing::{NEAR, Polynomial};
 use super::integrate::{Driver, SLACK, turned, worst};
@@ -7,8 +7,8 @@ use crate::model::Crossing;
 use crate::solve::newton::Failure;
 
 impl Driver<'_, '_> {
-    /// Records and events of the step from the last state to `new`, which an event may cut short;
-    /// true where the motion ends.
+    /// Records states and events of the step from the last state to `new`, which an event may cut
+    /// short; returns whether the motion ends.
     pub(super) fn look(&mut self, new: &mut State) -> bool {
         let slack = SLACK * (new.time - self.state.time);
         let due = self.next_record as f64 * self.task.output_every < new.time - slack;
@@ -55,7 +55,7 @@ impl Driver<'_, '_> {
         }
     }
 
-    /// Keeps a state for the reader, if its energy is a number; else the motion ends.
+    /// Records a state if its energy is finite; otherwise the motion ends.
     pub(super) fn keep(&mut self, state: State) -> bool {
         let energy = self.system.energy(state.time, &state.q, Some(&state.v)).total();
         if !(energy + state.work + state.lost).is_finite() {
@@ -98,7 +98,7 @@ impl Driver<'_, '_> {
             let new = reached.filter(|reached| self.state.time + reached.at * h > self.first.time);
             found.extend(new.map(|reached| (reached.at, number)));
         }
-        // Of those at once one that ends the motion comes last.
+        // Among simultaneous events, one that ends the motion comes last.
         found.sort_by(|a, b| {
             a.0.total_cmp(&b.0).then(self.task.watches[a.1].stop.cmp(&self.task.watches[b.1].stop))
         });

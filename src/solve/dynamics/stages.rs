@@ -1,10 +1,10 @@
 //! The stages of a collocation method side by side: stage i of every unknown in lane i of a
 //! register.
 //!
-//! All stages ask the same of every cell, so that forces, products with the mass matrix and turns
-//! are computed for all of them at once. Lanes beyond the last stage repeat it. Substitutions go
-//! through one vector after the other; between them and the lanes blocks of 4 × 4 numbers are
-//! transposed.
+//! All stages need the same computations in every cell, so that forces, products with the mass
+//! matrix and turns are computed for all of them at once. Lanes beyond the last stage repeat it.
+//! Substitutions work on one vector after the other; between vectors and lanes, blocks of 4 × 4
+//! numbers are transposed.
 
 use super::State;
 use super::motion::{Acceleration, Motion, Rates};
@@ -13,17 +13,18 @@ use crate::lanes::{self, Lanes};
 use crate::solve::equilibrium::{self, larger};
 use nalgebra::DMatrix;
 
-/// Stages that fit into a register and are in use: three at most.
+/// Most stages of a method, of the four that would fit into a register.
 const STAGES: usize = 3;
 
-/// A small matrix that takes the stages of an unknown to up to four other numbers.
+/// A small matrix that maps the stages of an unknown to up to four other numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Mixture {
     columns: [Lanes; STAGES],
 }
 
 impl Mixture {
-    /// `factor` times `matrix`, which has a column a stage; lanes beyond its last row repeat that.
+    /// `factor` times `matrix`, which has a column per stage; lanes beyond its last row repeat
+    /// that.
     pub fn new(matrix: &DMatrix<f64>, factor: f64) -> Self {
         let (rows, columns) = matrix.shape();
         let column = |j: usize| Lanes::new(std::array::from_fn(|i| factor * matrix[(i.min(rows - 1), j)]));
@@ -40,7 +41,7 @@ impl Mixture {
     }
 }
 
-/// Takes vectors, one a stage, into lanes.
+/// Copies vectors, one per stage, into lanes.
 pub fn gather(vectors: &[Vec<f64>], lanes: &mut [Lanes]) {
     let of_lane = |lane: usize| &vectors[lane.min(vectors.len() - 1)][..];
     let of_lane: [&[f64]; 4] = std::array::from_fn(of_lane);
@@ -54,7 +55,7 @@ pub fn gather(vectors: &[Vec<f64>], lanes: &mut [Lanes]) {
     }
 }
 
-/// Writes lanes back to vectors, one a stage.
+/// Copies lanes back to vectors, one per stage.
 pub fn scatter(lanes: &[Lanes], vectors: &mut [Vec<f64>]) {
     let (blocks, rest) = lanes.as_chunks::<4>();
     for (k, block) in blocks.iter().enumerate() {
@@ -77,7 +78,8 @@ pub fn lane(lanes: &[Lanes], lane: usize) -> Vec<f64> {
     lanes.iter().map(|values| values.to_array()[lane]).collect()
 }
 
-/// The largest size of any stage of any number, those of a node in `units`; a NaN wins.
+/// The largest size of all numbers in each lane, those of a node in `units`; NaN if one is not
+/// finite.
 pub fn largest(numbers: &[Lanes], units: [f64; 4]) -> Lanes {
     let mut sizes = Lanes::ZERO;
     let mut not_finite = Lanes::ZERO;
@@ -85,14 +87,14 @@ pub fn largest(numbers: &[Lanes], units: [f64; 4]) -> Lanes {
         for (number, unit) in node.iter().zip(units) {
             let size = (*number * Lanes::splat(unit)).abs();
             sizes = size.fast_max(sizes);
-            // Of ∞ and NaN a NaN is left, which a maximum may drop.
+            // Times zero, ∞ and NaN give NaN, which a maximum might drop.
             not_finite += size * Lanes::ZERO;
         }
     }
     sizes + not_finite
 }
 
-/// What an iteration works with.
+/// Working memory of an iteration.
 #[derive(Clone, Debug)]
 pub struct Stages {
     /// Y, followed by the multipliers.
@@ -105,7 +107,7 @@ pub struct Stages {
     pub velocity: Vec<Lanes>,
     /// The residual, then the increment.
     pub residual: Vec<Lanes>,
-    /// From where the tangent was taken.
+    /// Turns of the nodes since the tangent was taken.
     turns: Vec<Turn<Lanes>>,
     still: Vec<usize>,
 }
@@ -135,7 +137,7 @@ impl Stages {
         self.x[n..].copy_from_slice(&self.displacement[n..]);
     }
 
-    /// Q̈_i and, where forces depend on it, Q̇_i.
+    /// Computes Q̈_i and, where forces depend on it, Q̇_i.
     pub fn move_on(&mut self, from: &State, acceleration: &Mixture, velocity: &Mixture) {
         for (a, y) in self.acceleration.iter_mut().zip(&self.displacement) {
             *a = acceleration.of(*y);
@@ -156,8 +158,8 @@ impl Stages {
         }
     }
 
-    /// Turns the residual back to where the tangent was taken, mixes the stages and writes them to
-    /// `rows`.
+    /// Turns the residual back to where the tangent was taken, combines the stages and writes them
+    /// to `rows`.
     pub fn take_apart(&mut self, mixture: &Mixture, rows: &mut [Vec<f64>]) {
         let nodes = self.residual.as_chunks_mut::<4>().0;
         for (turn, node) in self.turns.iter().zip(nodes) {
@@ -168,7 +170,7 @@ impl Stages {
         scatter(&self.residual, rows);
     }
 
-    /// The increments of the stages from those of the rows.
+    /// Computes the increments of the stages from those of `rows`.
     pub fn put_together(&mut self, mixture: &Mixture, rows: &[Vec<f64>]) {
         gather(rows, &mut self.residual);
         let nodes = self.residual.as_chunks_mut::<4>().0;
@@ -203,8 +205,8 @@ impl Motion<'_> {
         Stages::new(self.coordinates(), self.unknowns(), self.needs_velocity() || self.carries, self.still())
     }
 
-    /// [`Self::residual`] of the stages of a step at their `times`, the first `count` lanes: leaves
-    /// those of all in `stages`, returns the largest.
+    /// [`Self::residual`] of the first `count` stages of a step, at their `times`: writes all of
+    /// them to `stages` and returns the largest.
     pub fn residuals(&mut self, times: [f64; 4], count: usize, stages: &mut Stages) -> f64 {
         if self.carries || self.system.multipliers() > 0 || self.system.has_turning_inertia() {
             let mut largest = 0.0_f64;

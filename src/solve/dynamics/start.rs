@@ -8,13 +8,13 @@ use crate::model::InitialVelocity;
 use crate::solve::dynamics::motion::Motion;
 use crate::system::System;
 
-/// Difference between given and admissible velocities, relative to the largest, and between places
-/// in beam lengths, that counts as round-off.
+/// Differences that count as round-off: between given and admissible velocities relative to the
+/// largest, and between positions in beam lengths.
 const ROUND_OFF: f64 = 1e-9;
-/// The same of joints, which equations keep.
+/// The same for joints, which hold only to the accuracy of the equations.
 const JOINED: f64 = 1e-6;
 
-/// Why a motion cannot start so.
+/// Why a motion cannot start in the given state.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
 pub enum StartError {
     /// A support does not allow the velocity.
@@ -26,9 +26,9 @@ pub enum StartError {
          and its slope where the direction is held, such as by `polynomial = {{ vy = [0, 0, 1] }}`"
     ))]
     Held {
-        /// The beam.
+        /// Name of the beam.
         beam: String,
-        /// Where \[m\].
+        /// Arc length \[m\].
         s: f64,
         /// By how much the supports change the velocity \[m/s\].
         change: f64,
@@ -41,11 +41,11 @@ pub enum StartError {
         "the joints of a motion that starts from a saved state must be closed in it: begin with the joints that it had"
     ))]
     Open {
-        /// The beam.
+        /// Name of the beam.
         beam: String,
-        /// Where \[m\].
+        /// Arc length \[m\].
         s: f64,
-        /// By how much.
+        /// By how much the state misses it, in beam lengths or rad.
         miss: f64,
     },
     /// A support jumps.
@@ -57,13 +57,13 @@ pub enum StartError {
          `smooth_ramp = {{ start = \"{time} s\", duration = \"10 ms\" }}`, a `table` with `smooth = true`, or a harmonic of phase 0"
     ))]
     Jump {
-        /// The beam.
+        /// Name of the beam.
         beam: String,
-        /// Where \[m\].
+        /// Arc length \[m\].
         s: f64,
-        /// When \[s\].
+        /// Time of the jump \[s\].
         time: f64,
-        /// By how much.
+        /// By how much the support jumps \[m or rad\].
         change: f64,
     },
     /// A coordinate has no mass.
@@ -104,8 +104,8 @@ pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Chec
     from_state(system, State::at_rest(system.reference()), velocities)
 }
 
-/// A state with the given velocities added to its own. What supports that move at once make of them
-/// is work.
+/// A state with the given velocities added to its own. The kinetic energy that supports add by
+/// moving from the first instant counts as work.
 ///
 /// # Errors
 /// [`StartError::Held`] where supports do not allow the velocities, [`StartError::Jump`] where a

@@ -1,5 +1,5 @@
-//! The coefficients of collocation methods, and the transformation that takes their stage systems
-//! apart.
+//! The coefficients of collocation methods, and the transformation that decouples their stage
+//! equations.
 //!
 //! A method with the nodes c_i integrates ẏ = F(y) by the polynomial that satisfies the equation at
 //! the nodes:
@@ -10,7 +10,7 @@
 //!
 //! Gauss: the zeros of the Legendre polynomial shifted to [0, 1], order 2s, symplectic and
 //! symmetric. Radau IIA: the zeros of d^{s−1}/dx^{s−1} (x^{s−1} (x − 1)^s), order 2s − 1, c_s = 1,
-//! damps what is infinitely stiff in one step (Hairer, Wanner, *Solving Ordinary Differential
+//! damps infinitely stiff components in one step (Hairer, Wanner, *Solving Ordinary Differential
 //! Equations II*, 1996, IV.5, IV.8).
 
 use nalgebra::{Complex, DMatrix, DVector};
@@ -116,8 +116,8 @@ impl Tableau {
         self.nodes.len()
     }
 
-    /// Whether what oscillates infinitely fast dies out in one step: where the last stage is the
-    /// end of the step.
+    /// Whether infinitely fast vibrations die out in one step: where the last stage is the end of
+    /// the step.
     pub fn damps(&self) -> bool {
         self.nodes.last() == Some(&1.0)
     }
@@ -133,13 +133,14 @@ fn lagrange(nodes: &[f64], x: f64) -> Vec<f64> {
     (0..nodes.len()).map(|j| (0..nodes.len()).filter(|k| *k != j).map(|k| factor(j, k)).product()).collect()
 }
 
-/// Of the matrices of this module, which are fixed and regular; a failure shows as NaN in the first
-/// test.
+/// The inverse of a matrix of this module. These are constant and regular; a failure would show as
+/// NaN in the first test.
 fn invert(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     matrix.clone().try_inverse().unwrap_or_else(|| matrix.map(|_| f64::NAN))
 }
 
-/// Columns u of a real eigenvector, (p, q) of a pair p + iq, and the blocks in that order.
+/// The eigenvectors as columns, u for a real one and (p, q) for a pair p ± iq, and the blocks in
+/// the same order.
 fn diagonalise(matrix: &DMatrix<f64>) -> (DMatrix<f64>, Vec<Block>) {
     let s = matrix.nrows();
     let mut columns = Vec::new();

@@ -1,15 +1,17 @@
-//! Contacts of a motion: when they begin and end, what they did, and steps that end where they do.
+//! Contacts of a motion: when they begin and end, their impulses, and steps that end where they
+//! change.
 //!
 //! Where a contact begins or ends the force has a kink. A step across it has an error of low order,
-//! which estimates that presume a smooth motion do not see: with Gauss' method and a tolerance of
-//! 1e-8 a rod that falls flat left the ground at a height wrong by 1e-3. So a step that is to meet
-//! an accuracy ends at the kink: the place is found by the interpolated motion of the step, which
-//! is tried again until it hits. The rod then errs by 1e-10.
+//! which estimates that presume a smooth motion do not see: a rod that falls flat left the ground
+//! at a height wrong by 1e-3 with a tolerance of 1e-8. So a step with a tolerance ends at the kink.
+//! Its time is found from the interpolated motion of the step, and the step is repeated until it
+//! ends there.
 //!
-//! Nothing is crossed. The way of every step, on which it is interpolated, is swept
-//! ([`crate::effect::ContactIntegral`]): a step that carries the beam deeper into a thin obstacle
-//! than a part of its thickness is rejected, so that the force is seen before the beam is through;
-//! and a step of fixed length is divided where it touches and leaves an obstacle unseen.
+//! No obstacle is stepped over. The interpolated path of every step is swept
+//! ([`crate::effect::ContactIntegral`]). A step that carries the beam deeper into a thin obstacle
+//! than a part of its thickness is rejected, so that the contact force acts before the beam is
+//! through. A step of fixed length that touches an obstacle and leaves it again, without an effect
+//! on its equations, is divided.
 
 use super::State;
 use super::contact::{Change, ContactState};
@@ -19,16 +21,16 @@ use crate::numeric::GAUSS_3;
 use crate::solve::ContactImpulse;
 use crate::solve::newton::Failure;
 
-/// Parts of a step after which contacts are looked at.
+/// Number of parts of a step at whose ends contacts are checked.
 const PARTS: u32 = 4;
 /// Part of a step by which its end may miss the kink.
 const NEAR: f64 = 1e-6;
-/// Part of a step after which it is asked whether a contact slides.
+/// Part of a step after which it is first checked whether a contact slides.
 const BEGUN: f64 = 1e-2;
 
 impl Driver<'_, '_> {
-    /// Refuses a step to `new` whose way leads through an obstacle, and one of fixed length that
-    /// would not see that it touches one.
+    /// Refuses a step to `new` that leads through an obstacle, and one of fixed length whose
+    /// equations would not see that it touches one.
     pub(super) fn not_crossed(&self, new: &State) -> Result<(), Failure> {
         if self.touching.is_empty() {
             return Ok(());
@@ -51,13 +53,14 @@ impl Driver<'_, '_> {
         }
     }
 
-    /// A time well within the step to `new` at which an interval of a contact first begins or ends.
+    /// The first time well within the step to `new` at which an interval of a contact begins or
+    /// ends, or a contact begins to slide, sticks, or turns.
     pub(super) fn kink_within(&self, new: &State) -> Option<f64> {
         if self.touching.is_empty() {
             return None;
         }
         let near = NEAR * (new.time - self.state.time);
-        // The step may have been made to begin where a contact does.
+        // The step itself may begin where a contact begins.
         let after = self.state.between(new, self.state.time + near, None);
         let begun: Vec<usize> = self.system.intervals(&after.q).collect();
         let change =
@@ -75,8 +78,8 @@ impl Driver<'_, '_> {
         (self.state.time + near..new.time - near).contains(&first).then_some(first)
     }
 
-    /// A time in the step to `new` at which a contact that gives way begins to push the other way;
-    /// `after` is the state after its beginning.
+    /// A time in the step to `new` at which the force of a contact reverses, as where the beam is
+    /// pushed through an obstacle; `after` is the state just after the start of the step.
     fn turn_within(&self, new: &State, after: &State) -> Option<f64> {
         let mut scratch = vec![0.0; new.q.len()];
         let mut forces = |state: &State| -> Vec<[f64; 2]> {
@@ -100,8 +103,8 @@ impl Driver<'_, '_> {
         self.first_change(new, 1.0, |state| sliding(state) != begun)
     }
 
-    /// When states first are `changed` in the first `part` of the step to `new`: bisection of the
-    /// interpolated motion.
+    /// The time at which `changed` first becomes true in the first `part` of the step to `new`, by
+    /// bisection of the interpolated motion.
     fn first_change(&self, new: &State, part: f64, mut changed: impl FnMut(&State) -> bool) -> Option<f64> {
         let (start, h) = (self.state.time, new.time - self.state.time);
         let mut changed = |part: f64| changed(&self.state.between(new, start + part * h, None));
@@ -119,7 +122,8 @@ impl Driver<'_, '_> {
         Some(start + after * h)
     }
 
-    /// Sums up what contacts do in the step to `new`, and records those that begin or end in it.
+    /// Adds up the impulses of contacts in the step to `new`, and records those that begin or end
+    /// in it.
     pub(super) fn notice_contacts(&mut self, new: &State) {
         let now: Vec<bool> = self.system.intervals(&new.q).map(|intervals| intervals > 0).collect();
         let mut scratch = Vec::new();

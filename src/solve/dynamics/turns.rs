@@ -1,10 +1,10 @@
-//! A tangent that turns with the nodes.
+//! A tangent that turns with the nodes of a beam.
 //!
 //! What changes a slender beam's tangent K most is rotation. Between the state q₀ at which K was
-//! taken and the state q, node i turns by φ_i, the angle from r'_i(q₀) to r'_i(q); with R =
-//! diag(R(φ_i)) over the pairs (x, y) and (x', y') of the nodes, R K Rᵀ is K at q but for the
-//! change of stress and shape. So a residual is turned back by Rᵀ, solved for with the old
-//! factorisation, and the increment turned forth by R.
+//! taken and the state q, node i turns by φ_i, the angle from r'_i(q₀) to r'_i(q). With R =
+//! diag(R(φ_i)) over the pairs (x, y) and (x', y') of the nodes, R K Rᵀ is K at q apart from the
+//! change of stress and shape. So a residual is turned back by Rᵀ, the equations are solved with
+//! the old factorisation, and the increment is turned forth by R.
 
 use crate::lanes::{Pair, Real, cross, dot};
 
@@ -49,11 +49,11 @@ impl<T: Real> Turn<T> {
     }
 }
 
-/// R, node by node.
+/// R of a whole system, node by node.
 #[derive(Clone, Debug)]
 pub struct Turns {
     turns: Vec<Turn<f64>>,
-    /// Nodes that do not turn: a held component of a position must stay what it is.
+    /// Nodes that do not turn: a fixed component of a position must keep its axis.
     still: Vec<usize>,
 }
 

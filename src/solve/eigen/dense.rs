@@ -1,6 +1,7 @@
 //! All eigenpairs of a small problem, multiple ones included.
 //!
-//! Held coordinates are left out, constraint rows by a basis Z of their null space (QR), and then
+//! Fixed coordinates are left out, and constraints are satisfied by a basis Z of their null space
+//! (QR):
 //!
 //! ```text
 //! A = L Lᵀ,   L⁻¹ B L⁻ᵀ y = (1/θ) y,   φ = Z L⁻ᵀ y
@@ -11,7 +12,7 @@ use crate::linear::{Matrix, Singular};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, Par, Side};
 
-/// A constraint whose row is a combination of others to this fraction holds nothing of its own.
+/// A constraint row that is a combination of others to within this fraction is redundant.
 const DEPENDENT: f64 = 1e-12;
 
 /// The `count` largest positive 1/θ, fewer where there are not so many.

@@ -1,26 +1,27 @@
 //! Lanczos' method for the operator A⁻¹ B in the inner product of A, with full reorthogonalisation.
 //!
 //! One factorisation of A serves all steps. A Krylov space holds one vector of every eigenspace, so
-//! that a structure with equal frequencies (two beams alike, the rigid motions of a free one) hides
-//! the others from it. What has converged is therefore set aside, and the search repeated
-//! orthogonally to it until nothing larger turns up.
+//! that of equal frequencies (of two equal beams, or of the rigid motions of a free one) it finds
+//! only one mode. Converged pairs are therefore set aside, and the search is repeated orthogonally
+//! to them until it finds nothing larger.
 //!
-//! Constraint rows B φ = 0 hold for A⁻¹ B v, but where much of it is taken away by the
-//! orthogonalisation, round-off in the rows is a larger share of what remains, and grows from
-//! vector to vector until it passes for a solution. It is therefore taken out of every vector
-//! (Nour-Omid, Parlett, Ericsson, Jensen, *Mathematics of Computation* 48, 1987, 663–673).
+//! The constraint rows hold for A⁻¹ B v. But where orthogonalisation removes most of this vector,
+//! round-off in the rows is a larger share of the rest, and grows from vector to vector until it
+//! passes for a solution. It is therefore removed from every vector (Nour-Omid, Parlett, Ericsson,
+//! Jensen, *Mathematics of Computation* 48, 1987, 663–673).
 
 use super::{EigenError, NEGLIGIBLE, Pairs, Pencil, dot};
 use crate::linear::{Factor, Matrix};
 use faer::Side;
 
-/// Vectors that a search may keep, over twice the wanted ones.
+/// A search may keep twice as many vectors as pairs are wanted, and this many more.
 const EXTRA_VECTORS: usize = 120;
-/// Residual against 1/θ at which a pair is found. Eigenvalues are accurate to its square.
+/// Residual relative to 1/θ at which a pair counts as found; its eigenvalue errs by the square of
+/// this.
 const TOLERANCE: f64 = 1e-12;
 /// A pair found later counts as larger only beyond this fraction.
 const LARGER: f64 = 1e-9;
-/// Against the operator's size, what remains of a vector when its space is exhausted.
+/// Size of a new vector, relative to the operator, at which the Krylov space is exhausted.
 const EXHAUSTED: f64 = 1e-14;
 
 /// The `count` largest positive 1/θ, fewer where there are not so many.
@@ -66,7 +67,7 @@ struct Pair {
 struct Search<'a> {
     pencil: &'a Pencil<'a>,
     factor: Factor,
-    /// Converged, the largest first.
+    /// Converged pairs, the largest first.
     found: Vec<Pair>,
     searches: usize,
 }
@@ -94,11 +95,11 @@ impl Search<'_> {
         w.iter_mut().zip(&change).for_each(|(w, change)| *w += change);
     }
 
-    /// The largest pairs orthogonal to those found, up to `count`; none where there are none.
+    /// The largest pairs orthogonal to those found, up to `count`; empty if there are none.
     fn krylov(&mut self, count: usize) -> Result<Vec<Pair>, EigenError> {
         let n = self.pencil.a.size();
-        // A start with a share of every mode: low-discrepancy numbers, others in every search, the
-        // same in every run.
+        // A start with a share of every mode: low-discrepancy numbers, different in every search
+        // but the same in every run.
         self.searches += 1;
         let shift = self.searches as f64 * 0.754_877_666_246_693;
         let seed: Vec<f64> =

@@ -1,4 +1,4 @@
-//! What must be true of the files themselves: everything is used, nothing is edited by hand.
+//! Checks of the files themselves: everything is used, nothing is edited by hand.
 
 use std::path::Path;
 
@@ -113,7 +113,7 @@ fn audit_case(suite: &Suite, case: &Case) -> Result<Vec<String>> {
     Ok(problems)
 }
 
-/// Notes a file whose contents have not the hash.
+/// Notes a file whose contents do not have the hash.
 fn changed(suite: &Suite, path: &Path, hash: &str, remedy: &str, problems: &mut Vec<String>) -> Result<()> {
     match std::fs::read(path) {
         Ok(bytes) if sha256(&bytes) == hash => {}

@@ -6,7 +6,7 @@
 //! source = "Where the problem comes from."
 //! nightly = true                        # left out of `cargo test`; default false
 //!
-//! [hard]                                # only where it is: a line in the report's page of hard cases
+//! [hard]                                # only for hard cases: a line in the report's page of them
 //! difficulty = "What makes it hard."
 //! plain = "What the plain method does."
 //! ours = "What ours does."
@@ -15,15 +15,16 @@
 //! class = "closed-form"                 # closed-form | published | code | integrator | refinement
 //! title = "Elastica by shooting, 30 digits"
 //! citation = "Bisshopp & Drucker 1945"
-//! script = "static_beam.py"             # in verification/oracles/; or transcribed = "file.csv" there; or peer = "exudyn"; or shared = "case/oracle"
+//! script = "static_beam.py"             # in verification/oracles/; or transcribed = "file.csv"
+//!                                       # there; or peer = "exudyn"; or shared = "case/oracle"
 //! arguments = ["tip-load"]
 //! note = "What a reader of the numbers must know."
 //!
 //! [run.loads]                           # a family of runs: the product of its axes
 //! scene = "scene.toml"                  # the default
 //! set = ["effect.force.0.value=[0.0, -{load}]"]
-//! [run.loads.over.load]                 # an axis: lists of equal length, one value per point and variable
-//! load = [1, 5, 10]
+//! [run.loads.over.load]                 # an axis: lists of equal length, one value per point
+//! load = [1, 5, 10]                     # and variable
 //!
 //! [[check]]
 //! run = "loads"
@@ -67,7 +68,7 @@ pub struct Case {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct CaseText {
-    /// A few words.
+    /// A title of a few words.
     pub title: String,
     /// One sentence that is true or false.
     pub claim: String,
@@ -86,9 +87,9 @@ pub struct CaseText {
     /// stands.
     #[serde(default)]
     pub run: IndexMap<String, Family>,
-    /// What must hold.
+    /// The checks that must hold.
     pub check: Vec<Check>,
-    /// What is drawn in the report.
+    /// The figures of the report.
     #[serde(default)]
     pub figure: Vec<Figure>,
 }
@@ -140,13 +141,13 @@ impl Class {
 pub struct Oracle {
     /// How much it can be trusted.
     pub class: Class,
-    /// A few words.
+    /// A title of a few words.
     pub title: String,
     /// Literature, or the formula's name.
     pub citation: String,
     /// A script in `verification/oracles/` that prints the table.
     pub script: Option<String>,
-    /// What the script is called with.
+    /// Arguments of the script.
     #[serde(default)]
     pub arguments: Vec<String>,
     /// Scenes of the case that the script reads, appended to its arguments.
@@ -170,7 +171,8 @@ pub struct Oracle {
 pub enum Peer {
     /// Exudyn, whose ANCFCable2D is the element of our ANCF with engineering strain.
     Exudyn,
-    /// scikit-fem's Hermite elements: what our beam becomes as deflections become small.
+    /// scikit-fem's Hermite elements: the linear beam that ours becomes as deflections become
+    /// small.
     ScikitFem,
 }
 
@@ -225,13 +227,13 @@ impl std::fmt::Display for Scalar {
     }
 }
 
-/// One or several.
+/// One name or several.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub enum OneOrMore {
-    /// A number.
+    /// The name of a number.
     One(String),
-    /// The components of a point.
+    /// The names of the components of a point.
     More(Vec<String>),
 }
 
@@ -259,7 +261,7 @@ pub struct Check {
     /// See [`crate::quantity`]. Several are the components of a point, compared by Euclidean
     /// distance.
     pub quantity: OneOrMore,
-    /// What of a series over time or load is compared, where no curve is.
+    /// Which number of a series over time or load is compared, if not a curve.
     #[serde(default)]
     pub pick: Pick,
     /// A quantity that replaces time, load factor or s as our abscissa.
@@ -273,10 +275,10 @@ pub struct Check {
     pub rows: IndexMap<String, Scalar>,
     /// Column of the reference that is the abscissa of a curve.
     pub along: Option<String>,
-    /// How the distances at the points of a curve make one number.
+    /// How the distances at the points of a curve are combined into one number.
     #[serde(default)]
     pub norm: Norm,
-    /// What the error is divided by.
+    /// The number by which the error is divided.
     pub per: Option<Per>,
     /// Largest error, a number or a template. May be left out where an order is asked for.
     pub allowed: Option<Scalar>,
@@ -291,7 +293,7 @@ pub struct Check {
     pub why: String,
 }
 
-/// What of a series over time or load factor is compared.
+/// Which number of a series over time or load factor is compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Pick {
@@ -304,7 +306,7 @@ pub enum Pick {
     Largest,
 }
 
-/// How the distances at the points of a curve make one number.
+/// How the distances at the points of a curve are combined into one number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Norm {
@@ -315,7 +317,7 @@ pub enum Norm {
     Rms,
 }
 
-/// What an error is divided by.
+/// The number by which an error is divided.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub enum Per {

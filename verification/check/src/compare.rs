@@ -1,4 +1,4 @@
-//! Compares what runs left with references, check by check.
+//! Compares the results of runs with references, check by check.
 
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -27,13 +27,13 @@ pub struct Outcome {
     /// Abscissae of a curve; empty for a number.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub abscissa: Vec<f64>,
-    /// Ours, per point its components. A rate: the observed order.
+    /// Our values, per point their components; for a rate the observed order.
     pub ours: Vec<Vec<f64>>,
-    /// The reference, likewise. A rate: the expected order.
+    /// The reference's values, likewise; for a rate the expected order.
     pub reference: Vec<Vec<f64>>,
     /// The error in the check's norm.
     pub error: f64,
-    /// Whether it is what was claimed.
+    /// Whether the claim holds.
     pub verdict: Verdict,
     /// Why this tolerance.
     pub why: String,
@@ -46,12 +46,12 @@ pub struct Verdict {
     pub allowed: Option<f64>,
     /// Smallest error, for claims that a method is not good at something.
     pub at_least: Option<f64>,
-    /// The error keeps the limits.
+    /// Whether the error keeps the limits.
     pub pass: bool,
-    /// The error keeps the limits, but is larger than one unit of the last digit that the
+    /// Whether the error keeps the limits, but is larger than one unit of the last digit that the
     /// publication prints.
     pub beyond_last_digit: bool,
-    /// What is wrong besides the size of the error.
+    /// A problem other than the size of the error.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
 }
@@ -74,7 +74,7 @@ impl Verdict {
 }
 
 impl Outcome {
-    /// Decimal digits between the error and what is allowed; negative where it fails.
+    /// Decimal digits between the error and the allowed one; negative where the check fails.
     pub fn margin(&self) -> Option<f64> {
         self.verdict.allowed.filter(|&a| a > 0.0 && self.error > 0.0).map(|a| (a / self.error).log10())
     }
@@ -152,13 +152,13 @@ fn one(examined: &Examined, number: usize, check: &Check) -> std::result::Result
     Ok(outcomes)
 }
 
-/// Compares what one run left with what the check asks for.
+/// Compares the results of one run with the reference of a check.
 ///
 /// `number` and `index` are those of the check in its case and of the run in its family; `tables`
 /// are references by the names under which checks know them.
 ///
 /// # Errors
-/// Where the check asks for what is not there.
+/// Where the check asks for a quantity or a reference that is not there.
 pub fn member(
     tables: &IndexMap<String, Table>,
     number: usize,
@@ -339,8 +339,7 @@ fn interpolated(abscissa: &[f64], values: &[f64], at: f64) -> std::result::Resul
             return Ok(*y);
         }
     }
-    // A place that is there twice, because a force acts in a point, ends one curve and begins the
-    // next.
+    // A place that appears twice, because a force acts there, ends one curve and begins the next.
     let twice = |w: &[f64]| matches!(w, [a, b] if a == b);
     let from = abscissa[..right].windows(2).rposition(twice).map_or(0, |i| i + 1);
     let to = abscissa[right..].windows(2).position(twice).map_or(abscissa.len(), |i| right + i + 1);
@@ -359,7 +358,7 @@ fn interpolated(abscissa: &[f64], values: &[f64], at: f64) -> std::result::Resul
         .sum())
 }
 
-/// Outcomes whose runs differ in nothing but the axis of `against`, with what they have in common.
+/// Outcomes whose runs differ only in the axis of `against`, with the label of their common values.
 fn groups<'a>(runs: &[Run], outcomes: &'a [Outcome], against: &str) -> Vec<(String, Vec<&'a Outcome>)> {
     let mut groups: Vec<(String, Vec<&Outcome>)> = Vec::new();
     for outcome in outcomes {

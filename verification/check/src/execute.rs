@@ -1,4 +1,4 @@
-//! Runs the families of a case and holds what they left.
+//! Runs the families of a case and keeps their results.
 
 use std::time::{Duration, Instant};
 
@@ -16,11 +16,11 @@ use crate::{Case, Error, Result, Suite};
 /// One finished run.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// Which.
+    /// The member of the family.
     pub member: Member,
     /// The member in one line; empty where the family has no axes.
     pub label: String,
-    /// What it left.
+    /// Its results.
     pub result: quantity::Result,
     /// Wall time of reading and solving.
     pub took: Duration,

@@ -1,4 +1,4 @@
-//! What `case.toml` says of a drawing in the report.
+//! The format of drawings in `case.toml`.
 
 use indexmap::IndexMap;
 use serde::Deserialize;
@@ -11,7 +11,7 @@ use crate::case::Scalar;
 pub struct Figure {
     /// Heading.
     pub title: String,
-    /// What to see in it.
+    /// A caption: what to see in the drawing.
     #[serde(default)]
     pub caption: String,
     /// Label of the horizontal axis.
@@ -24,7 +24,7 @@ pub struct Figure {
     /// Logarithmic axes.
     #[serde(default)]
     pub logarithmic: bool,
-    /// What is drawn.
+    /// The curves that are drawn.
     pub curve: Vec<Curve>,
 }
 

@@ -1,4 +1,4 @@
-//! What a discretisation makes of exact nodal values, without any equilibrium.
+//! The interpolation of exact nodal values by a discretisation, without any equilibrium.
 //!
 //! Every node is given the exact position and gradient of the beam's centreline; between the nodes
 //! the shape functions decide. The strain that appears there is wrong throughout ("pseudo-strain"),
@@ -23,9 +23,9 @@ pub struct Interpolation {
     pub distance: f64,
     /// Arc lengths \[m\].
     pub s: Vec<f64>,
-    /// Positions \[m\].
+    /// Positions along x \[m\].
     pub x: Vec<f64>,
-    /// Positions \[m\].
+    /// Positions along y \[m\].
     pub y: Vec<f64>,
     /// ε.
     pub strain: Vec<f64>,

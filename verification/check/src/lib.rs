@@ -15,9 +15,9 @@
 //! adding a folder.
 //!
 //! ```text
-//! case.toml ──► Case ─┬─ families ──► Member (scene, overrides) ──► Run (trajectory) ─┐
-//!                     ├─ oracles ───► Table (csv, provenance) ────────────────────────┼─► Outcome per number, curve, rate
-//!                     └─ checks ── quantity, norm, tolerance, why ────────────────────┘
+//! case.toml ──► Case ─┬─ families ──► Member ──► Run (trajectory) ──────┐
+//!                     ├─ oracles ───► Table (csv, provenance) ──────────┼─► Outcome per number,
+//!                     └─ checks ── quantity, norm, tolerance, why ──────┘   curve, rate
 //! ```
 //!
 //! The crate is pure Rust and starts no process, so that `cargo test` of the root package needs
@@ -51,12 +51,12 @@ pub enum Error {
     /// A file or folder cannot be read.
     #[error("cannot read {path}: {source}")]
     Read {
-        /// What was to be read.
+        /// The file or folder.
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
     },
-    /// A file is not what it should be.
+    /// A file does not have the right format.
     #[error("{path}: {message}")]
     Format {
         /// The file.

@@ -1,4 +1,4 @@
-//! What a check compares: a path of words that picks numbers out of a finished run.
+//! The quantities that a check compares: paths of words that pick numbers out of a finished run.
 //!
 //! | quantity | what it is | a series over |
 //! |---|---|---|
@@ -20,12 +20,12 @@ use ancf::system::Reaction;
 use crate::case::Pick;
 use crate::interpolation::Interpolation;
 
-/// What a run leaves.
+/// The results of a run.
 #[derive(Clone, Debug)]
 pub enum Result {
-    /// Of a computation.
+    /// The results of a computation.
     Solved(Box<Results>),
-    /// Of an interpolation of exact nodal values.
+    /// An interpolation of exact nodal values.
     Interpolated(Box<Interpolation>),
 }
 
@@ -51,8 +51,8 @@ pub enum Values {
 }
 
 impl Values {
-    /// One number: of a series what `pick` says. `over` replaces the abscissa in the search for a
-    /// maximum.
+    /// One number, for a series the one that `pick` selects. `over` replaces the abscissa in the
+    /// search for a maximum.
     pub fn number(&self, pick: Pick, over: Option<&[f64]>) -> std::result::Result<f64, String> {
         match self {
             Self::Number(v) => Ok(*v),
@@ -78,7 +78,8 @@ impl Values {
     }
 }
 
-/// The top of the parabola through the first record that exceeds both its neighbours, and these.
+/// The top of the parabola through the first record that exceeds both its neighbours, and through
+/// these.
 fn first_maximum(abscissa: &[f64], values: &[f64]) -> std::result::Result<f64, String> {
     let top = values.windows(3).position(|w| matches!(w, [a, b, c] if b >= a && b > c)).ok_or_else(|| {
         "the series rises or falls throughout: it has no maximum between its ends".to_owned()

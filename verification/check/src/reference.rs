@@ -22,13 +22,13 @@ pub struct Table {
     pub provenance: Provenance,
 }
 
-/// How the numbers came about.
+/// The origin of the numbers.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
     /// Name of the oracle.
     pub oracle: String,
-    /// A few words.
+    /// A title of a few words.
     pub title: String,
     /// How much it can be trusted.
     pub class: Class,
@@ -39,7 +39,7 @@ pub struct Provenance {
     pub note: Option<String>,
     /// Programs and versions that made the numbers.
     pub tool: String,
-    /// What was typed, from the root of the repository.
+    /// The command that was typed in the root of the repository.
     pub command: String,
     /// Day on which the numbers were made.
     pub date: String,
@@ -122,15 +122,15 @@ impl Table {
     }
 }
 
-/// Of a column's largest number, what another processor's round-off may move.
+/// Part of a column's largest number by which another processor's round-off may change its numbers.
 const ROUND_OFF: f64 = 1e-9;
-/// Two units of the last of the twelve decimals that many oracles print: where a column is zero but
-/// for round-off there is no largest number to speak of.
+/// Two units of the last of the twelve decimals that many oracles print. It is needed in a column
+/// that is zero but for round-off, where the largest number means nothing.
 const LAST_DECIMAL: f64 = 2e-12;
 
-/// Where a table made today is not the one that was frozen but for another processor's round-off:
-/// the header and words differ, or numbers by more than 1e-9 of their column's largest. `None`
-/// where it is the same.
+/// The difference between a table made today and the frozen one, if it is more than the round-off
+/// of another processor: other words, or numbers that differ by more than 1e-9 of their column's
+/// largest. `None` if there is no such difference.
 pub fn difference(today: &str, frozen: &str) -> Option<String> {
     let rows = |text: &str| -> Vec<Vec<String>> {
         text.lines().map(|line| line.split(',').map(|cell| cell.trim().to_owned()).collect()).collect()
@@ -170,8 +170,8 @@ mod tests {
 
     const FROZEN: &str = "load,x,y\n1,0.500000000000,1e-17\n2,-20.0,3e-16\n";
 
-    /// Catches a comparison that lets a digit go, a row, a column or a word, and one that takes
-    /// round-off for a difference, be it in the last decimal or of a number that is zero.
+    /// Would catch a comparison that overlooks a digit, a row, a column or a word, and one that
+    /// takes round-off for a difference, be it in the last decimal or of a number that is zero.
     #[test]
     fn round_off_is_no_difference_and_a_digit_is() {
         for same in [

@@ -1,9 +1,10 @@
 //! The differential fuzzer: draws legal scenes over the whole vocabulary, and runs each in several
 //! ways that must agree.
 //!
-//! A finding is a run of status 0 without a warning that disagrees by more than ten times what was
-//! asked for, one that has a result in one of two equivalent ways alone, or a panic. Scenes that no
-//! computation can hold still are known by their neighbours, which depart as much.
+//! A finding is a run of status 0 without a warning that disagrees by more than ten times the
+//! accuracy asked for, a scene that has a result in only one of two equivalent ways, or a panic. A
+//! disagreement is no finding if the results of neighbouring scenes depart as much, because then no
+//! computation can give a definite result.
 
 mod balance;
 mod cut;
@@ -34,19 +35,19 @@ use outcome::Outcome;
 use report::{Report, alike};
 use ways::WAYS;
 
-/// Ways in which a scene is run, of those that there are.
+/// Number of ways in which each scene is run, of those that there are.
 const WAYS_A_SCENE: usize = 5;
-/// Draws until a legal one.
+/// Most draws until a scene is legal.
 const DRAWS: usize = 60;
 
-/// What is to be done.
+/// The task of a campaign.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'t> {
     /// How many scenes at most.
     pub scenes: usize,
     /// For how long at most.
     pub time: Duration,
-    /// The same gives the same scenes.
+    /// The same seed gives the same scenes.
     pub seed: u64,
     /// The one scene to look at.
     pub only: Option<usize>,
@@ -60,13 +61,13 @@ pub struct Task<'t> {
 pub struct Written {
     /// Number of the scene, and the way.
     pub name: String,
-    /// What disagrees.
+    /// The disagreement.
     pub what: String,
     /// The smallest scene.
     pub scene: String,
 }
 
-/// Draws and judges scenes; what was seen, and the findings in the order of the scenes.
+/// Draws and judges scenes; returns the counts, and the findings in the order of the scenes.
 pub fn campaign(task: &Task<'_>) -> (Report, Vec<Written>) {
     outcome::hear_panics();
     let next = AtomicUsize::new(0);
@@ -183,7 +184,7 @@ fn keep(task: &Task<'_>, written: &Written) {
 mod tests {
     use super::*;
 
-    /// Decided by the number of scenes, and never by the clock.
+    /// The number of scenes ends the test, never the clock.
     const SCENES: usize = 80;
 
     #[test]

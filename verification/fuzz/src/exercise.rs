@@ -1,4 +1,4 @@
-//! What is done with an input, and what of that is a complaint.
+//! What is done with an input, and which outcomes are complaints.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ const RUN: usize = 80;
 const MODES: usize = 100;
 /// Steps after which a run is stopped.
 const STEPS: usize = 5;
-/// Most records of a run, which one step may pass.
+/// Most records of a run: one step may pass them all.
 const RECORDS: f64 = 2e4;
 
 /// A scene, and perhaps a saved state that it starts from.
@@ -115,8 +115,8 @@ pub fn meet(input: &Input, write: bool) -> Result<Reached, String> {
     Ok(Reached::Run)
 }
 
-/// The saved state that a text is, if it is one: as damaged as it is, for a checksum would refuse
-/// all alike. Files are read too.
+/// The saved state in a text, if there is one. It is also read as a file, but there the checksum
+/// would refuse every damaged state.
 fn load(text: &str) -> Result<Option<SavedState>, String> {
     let file = tempfile::NamedTempFile::new().map_err(|error| error.to_string())?;
     std::fs::write(file.path(), text).map_err(|error| error.to_string())?;

@@ -1,5 +1,5 @@
-//! `fuzz`: feeds the solver damaged scenes and saved states, and keeps those that it does not take
-//! well; with `--agree` legal ones, each in several ways that must agree ([`mod@agree`]).
+//! `fuzz`: feeds the solver damaged scenes and saved states, and keeps those that it handles badly;
+//! with `--agree` legal ones, each in several ways that must agree ([`mod@agree`]).
 //!
 //! The seeds are all scenes of the repository. A worker process damages them, as trees of values
 //! and as text, reads, inspects and, where they are small, runs them for a few steps and writes the
@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 use cap::Cap;
 use clap::Parser;
 
-/// Refuses what is beyond the limit that the worker sets, which ends the process.
+/// Refuses memory beyond the limit that the worker sets, which ends the process.
 #[global_allocator]
 static MEMORY: Cap<System> = Cap::new(System, usize::MAX);
 

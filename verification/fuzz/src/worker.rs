@@ -1,4 +1,4 @@
-//! The process that meets the inputs.
+//! The process that tries the inputs.
 
 use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
@@ -16,7 +16,7 @@ use crate::{Arguments, MEMORY, damage};
 /// The file that holds the present input.
 pub const IN_HAND: &str = "in-hand.txt";
 
-/// Meets inputs until the time is over.
+/// Tries inputs until the time is over.
 pub fn work(arguments: &Arguments) -> ExitCode {
     let scenes = seeds();
     assert!(!scenes.is_empty(), "no scenes below {}", root().display());
@@ -38,7 +38,7 @@ pub fn work(arguments: &Arguments) -> ExitCode {
     while start.elapsed() < Duration::from_secs_f64(60.0 * arguments.minutes) {
         let input = damage::input(&mut rng, &scenes, &states);
         let text = input.to_string();
-        // Where this fails there is only less to look at.
+        // If this fails, only the record of the present input is lost.
         let _ = std::fs::write(arguments.out.join(IN_HAND), &text);
         began.store(now(), Ordering::Relaxed);
         inputs += 1;

@@ -1,4 +1,4 @@
-//! The copy built, without the mutants that do not compile.
+//! Builds the copy, without the mutants that do not compile.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -25,7 +25,7 @@ pub struct Program {
     pub folder: PathBuf,
 }
 
-/// What a build came to.
+/// The result of a build.
 pub enum Built {
     /// The programs of tests; none where it was only checked.
     Programs(Vec<Program>),
@@ -96,8 +96,8 @@ impl Place {
 }
 
 impl Message {
-    /// The mutants that it is about: by its first places, otherwise by the others, otherwise by
-    /// what it adds.
+    /// The mutants that the message is about: those at its primary places, otherwise those at its
+    /// other places, otherwise those of the messages below it.
     fn blame(&self, spliced: &[(String, Spliced)]) -> BTreeSet<usize> {
         for primary in [true, false] {
             let places = self.spans.iter().filter(|place| place.is_primary == primary);

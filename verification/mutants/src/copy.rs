@@ -23,13 +23,13 @@ pub struct Workshop {
     pub target: PathBuf,
     /// Temporary files of tests.
     pub temporary: PathBuf,
-    /// What is known so far.
+    /// The outcomes known so far.
     pub outcomes: PathBuf,
 }
 
 impl Workshop {
-    /// That of a repository. It lies in `target`, so that the copy is built with the repository's
-    /// own `.cargo/config.toml`.
+    /// The workshop of a repository. It lies in `target`, so that the copy is built with the
+    /// repository's own `.cargo/config.toml`.
     pub fn new(root: &Path) -> Result<Self, Failure> {
         let folder = root.join("target").join("mutants");
         let workshop = Self {
@@ -45,9 +45,9 @@ impl Workshop {
         Ok(workshop)
     }
 
-    /// Makes the copy equal to the repository but for sources with mutants, by files that git knows
-    /// or would take. What is equal already keeps its time, and so need not be built anew. Returns
-    /// a fingerprint of all files.
+    /// Makes the copy equal to the repository, except for sources with mutants. It has the files
+    /// that git tracks or would add. Files that are equal already keep their times, so that they
+    /// are not built anew. Returns a fingerprint of all files.
     pub fn fill(&self, spliced: &[(String, Spliced)], number: usize) -> Result<u64, Failure> {
         let listed = Command::new("git")
             .arg("-C")

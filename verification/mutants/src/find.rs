@@ -8,9 +8,9 @@
 //! | number | 0 for 1, 1 for 0 and for 2, otherwise one more; so are indices exchanged |
 //! | method | `max` for `min`, `cos` for `sin`, `last` for `first` and the like |
 //!
-//! Not looked at: tests, constants, `const fn`, patterns, types and lengths, for no switch can
-//! stand there; macros other than those that format text and make vectors; `Debug`, which nobody
-//! relies upon; how much room a collection is given beforehand, which nothing that it holds shows.
+//! Left out are: tests, constants, `const fn`, patterns, types and lengths, because no switch can
+//! stand there; macros other than those that format text and make vectors; `Debug`, on which
+//! nothing relies; the capacity of a collection, which has no effect on its contents.
 
 use std::ops::Range;
 
@@ -133,7 +133,7 @@ impl Finder<'_> {
             (Some(owner), true) => format!("{owner}::{own}"),
             _ => own.clone(),
         };
-        // The default of a type is not to be made by itself.
+        // `default` must not be replaced by a call of itself.
         let itself = own == "default" && signature.inputs.is_empty();
         if !itself && self.file != "src/main.rs" {
             let open = block.brace_token.span.open();
@@ -169,7 +169,7 @@ impl Finder<'_> {
             }
             Lit::Int(number) => {
                 let Ok(n) = number.base10_parse::<u64>() else { return };
-                // A whole number with the suffix of a float is one.
+                // A whole number with the suffix of a float is a float.
                 let other = if n == 1 || n == 2 { n - 1 } else { n.saturating_add(1) };
                 (other.to_string(), number.suffix().to_owned())
             }
@@ -411,7 +411,7 @@ fn others(operator: &BinOp) -> &'static [&'static str] {
     }
 }
 
-/// Whether a function only gives a collection room for what is to come.
+/// Whether a function only reserves room in a collection.
 fn gives_room(name: &syn::Ident) -> bool {
     ["with_capacity", "reserve", "reserve_exact"].iter().any(|other| name == other)
 }
@@ -474,8 +474,8 @@ mod tests {
         assert_eq!(mutants[3].name(), "src/a.rs:2:10: replace < with <= in f");
     }
 
-    /// Would catch switches where the compiler wants a constant or a pattern, and faults in what is
-    /// no product.
+    /// Would catch switches where the compiler wants a constant or a pattern, and faults in code
+    /// that is not part of the product.
     #[test]
     fn no_mutants_where_no_switch_can_stand() {
         for text in [

@@ -15,7 +15,7 @@ use ancf_mutants::sample::parts;
 use ancf_mutants::trial;
 use clap::Parser;
 
-/// So many more are put in than are wanted, for some do not compile.
+/// More mutants are put in than are wanted, by this factor, because some do not compile.
 const SPARE: f64 = 1.25;
 
 /// Put small faults into the sources of ancf, one at a time, and see whether a test fails
@@ -95,7 +95,7 @@ fn run(arguments: &Arguments) -> Result<bool, Failure> {
     let mut unviable: BTreeSet<usize> = BTreeSet::new();
     for (number, order) in &wanted {
         let own: Vec<usize> = order.iter().copied().filter(|i| inside.contains(i)).take(*number).collect();
-        // Those beyond the last that is tried were not needed.
+        // Mutants beyond the last that is tried were not needed.
         let all_of_them = own.len() < *number;
         let needed = |i: &&usize| all_of_them || own.last() != Some(i);
         unviable.extend(order.iter().take_while(needed).filter(|i| !inside.contains(i)));

@@ -12,15 +12,15 @@ use crate::find::Mutant;
 use crate::reasons::{Survivor, UNEXPLAINED, explain, without_place};
 use crate::trial::Outcome;
 
-/// The file.
+/// The contents of the file.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Record {
     /// Day of the run.
     pub date: String,
-    /// The sources.
+    /// The commit of the sources.
     pub commit: String,
-    /// What repeats it.
+    /// The command that repeats the run.
     pub command: String,
     /// Over all folders.
     pub total: Counts,
@@ -35,17 +35,17 @@ pub struct Record {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Counts {
-    /// There are.
+    /// Mutants that exist.
     pub exist: usize,
-    /// Tried: all that follow.
+    /// Mutants that were tried: the sum of all that follow.
     pub tried: usize,
-    /// A test failed.
+    /// Mutants with which a test failed.
     pub caught: usize,
-    /// The tests did not come to their end.
+    /// Mutants with which the tests did not come to their end.
     pub timed_out: usize,
-    /// Did not compile.
+    /// Mutants that did not compile.
     pub unviable: usize,
-    /// All tests passed.
+    /// Mutants with which all tests passed.
     pub missed: usize,
 }
 
@@ -77,7 +77,8 @@ impl Record {
         }
     }
 
-    /// Counts what came of some of all mutants, and keeps the reasons of an earlier record.
+    /// Counts the outcomes of the mutants that were tried, and keeps the reasons of an earlier
+    /// record.
     pub fn of(
         all: &[Mutant],
         unviable: &BTreeSet<usize>,
@@ -187,7 +188,7 @@ mod tests {
         assert_eq!(record.folder["src/basis"], basis);
         let moved = "src/basis.rs:1:1: leave the body out in f".to_owned();
         assert_eq!(record.survivor, [Survivor { mutant: moved, ..reason }]);
-        // What is written reads back.
+        // The file reads back as it was written.
         let text = toml::to_string(&record).expect("serialisable");
         assert_eq!(toml::from_str::<Record>(&text).expect("the same format"), record);
     }

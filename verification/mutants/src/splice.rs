@@ -12,14 +12,14 @@ use crate::find::{Edit, Mutant};
 pub struct Spliced {
     /// Sources in which all given mutants stand.
     pub text: String,
-    /// What each mutant brought.
+    /// The code that each mutant brought.
     regions: Vec<Region>,
 }
 
-/// Bytes of the new text.
+/// A range of the new text, in bytes.
 struct Region {
     mutant: usize,
-    /// The new code alone; the whole switch, with the old code, if not.
+    /// Whether it is the new code alone; otherwise it is the whole switch, with the old code.
     own: bool,
     range: Range<usize>,
 }
@@ -180,7 +180,7 @@ mod tests {
         splice(text, &numbered, "m::on")
     }
 
-    /// The tokens of an expression with one mutant, by which of its operators and by what.
+    /// The tokens of an expression with the mutant of which `change` is a part of the name.
     fn with(expression: &str, change: &str) -> String {
         let text = format!("fn f() {{ x = {expression}; }}");
         let mutants = find("src/a.rs", &text).expect("a source");
@@ -197,7 +197,7 @@ mod tests {
         branch[open..close].to_owned()
     }
 
-    /// Would catch an operator that takes other operands than that which it stands for.
+    /// Would catch an operator that takes other operands than the one that it replaces.
     #[test]
     fn the_new_operator_takes_the_operands_of_the_old() {
         assert_eq!(with("a - b + c", "replace + with *"), "(a - b) * (c)");

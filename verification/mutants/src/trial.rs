@@ -18,7 +18,7 @@ use crate::Failure;
 use crate::build::Program;
 use crate::copy::Workshop;
 
-/// A test takes too long beyond its usual time this many times, and this long.
+/// A test takes too long after this many times its usual time, and this much more.
 const TIMES: f64 = 5.0;
 const MORE: Duration = Duration::from_secs(5);
 /// A test without mutant may take so long.
@@ -34,7 +34,7 @@ pub struct Test {
     program: PathBuf,
     folder: PathBuf,
     own: String,
-    /// What it takes without mutant.
+    /// Time that it takes without mutant \[s\].
     seconds: f64,
     /// Numbers of the mutants that it asks for.
     reaches: BTreeSet<usize>,
@@ -42,7 +42,7 @@ pub struct Test {
     passes: bool,
 }
 
-/// What came of a mutant.
+/// The outcome of a mutant.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub enum Outcome {
     /// This test failed.
@@ -190,7 +190,7 @@ impl Test {
         limit: Duration,
         job: usize,
     ) -> Result<End, Failure> {
-        // What a killed test left behind.
+        // Removes the files that a killed test left behind.
         let own = workshop.temporary.join(format!("job-{job}"));
         let _ = fs::remove_dir_all(&own);
         fs::create_dir_all(&own)?;

@@ -1,4 +1,4 @@
-//! What the body of a function is replaced by, from the type that it returns.
+//! Values that replace the body of a function, by the type that it returns.
 
 use syn::{GenericArgument, Path, PathArguments, ReturnType, Type};
 

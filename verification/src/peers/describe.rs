@@ -17,7 +17,7 @@ use serde::Serialize;
 /// Parts of the load in statics where the scene leaves it to the solver.
 const LOAD_STEPS: usize = 20;
 
-/// What another code is asked to solve.
+/// The problem that another code is asked to solve.
 #[derive(Debug, Serialize)]
 pub struct Description {
     beams: Vec<Cable>,
@@ -54,8 +54,8 @@ struct Support {
     x: bool,
     y: bool,
     rotation: &'static str,
-    /// What the held quantities have moved by, x \[m\], y \[m\], angle \[rad\], at the start and at
-    /// the end of every step.
+    /// The displacements of the fixed quantities, x \[m\], y \[m\], angle \[rad\], at the start and
+    /// at the end of every step.
     moved: Option<Vec<[f64; 3]>>,
 }
 
@@ -76,7 +76,7 @@ struct Moment {
     factors: Option<Factors>,
 }
 
-/// What multiplies a load at the start of a motion and at the end of every step.
+/// The factors of a load at the start of a motion and at the end of every step.
 type Factors = Vec<f64>;
 
 #[derive(Debug, Serialize)]

@@ -1,4 +1,4 @@
-//! What a peer makes of a family of runs, as a table of reference data.
+//! The results of a peer for a family of runs, as a table of reference data.
 
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ fn runs(case: &Case, oracle: &Oracle) -> Result<Vec<Member>, Failure> {
 /// The scene file of each of the oracle's runs.
 ///
 /// # Errors
-/// Where the family is none.
+/// Where there is no such family.
 pub fn scenes(case: &Case, oracle: &Oracle) -> Result<Vec<PathBuf>, Failure> {
     Ok(runs(case, oracle)?.into_iter().map(|member| case.folder.join(member.scene)).collect())
 }

@@ -39,7 +39,7 @@ struct JsonOutcome {
     error: Option<f64>,
 }
 
-/// Part of what is allowed below which an error is no news: four digits of margin are left.
+/// Errors below this part of the allowed one count as equal to it: four digits of margin are left.
 const QUIET: f64 = 1e-4;
 
 impl Before {

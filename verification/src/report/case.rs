@@ -16,7 +16,7 @@ struct Body<'a> {
     readme: Vec<Paragraph>,
     error: Option<String>,
     seconds: String,
-    /// What the case says and what was found; none where it could not be examined.
+    /// The claim of the case and its results; none if it could not be examined.
     found: Option<Found<'a>>,
 }
 

@@ -7,7 +7,7 @@ use ancf_check::{Examined, Outcome};
 use super::figure::{self, FigureView};
 use super::number::{at_resolution, limits, margin, short};
 
-/// What the page shows of a check.
+/// A check as the page shows it.
 pub struct CheckView {
     pub title: String,
     pub why: String,

@@ -37,8 +37,8 @@ pub fn of_case(examined: &Examined, figure: &Figure) -> FigureView {
     FigureView { title: figure.title.clone(), caption: figure.caption.clone(), drawing }
 }
 
-/// What a check shows of itself: errors over the variable of an order; or along a curve, ours upon
-/// the reference, and the error.
+/// The drawings of a check: errors over the variable of an order; or along a curve, ours upon the
+/// reference, and the error.
 pub fn of_check(examined: &Examined, check: &Check, outcomes: &[&Outcome]) -> Vec<FigureView> {
     if check.order.is_some() {
         return convergence(examined, check, outcomes).into_iter().collect();

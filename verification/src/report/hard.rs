@@ -15,7 +15,7 @@ use crate::Failure;
 #[template(path = "hard.html")]
 struct Body<'a> {
     cases: Vec<View<'a>>,
-    /// Hard or not, no one knows: these could not be examined.
+    /// Cases that could not be examined, so that nobody knows whether they are hard.
     unknown: Vec<&'a str>,
 }
 

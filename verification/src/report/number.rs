@@ -26,7 +26,7 @@ pub fn signed(value: f64) -> String {
     format!("{value:+.1}").replace('-', "−")
 }
 
-/// What an error must keep.
+/// The limits of an error.
 pub fn limits(outcome: &Outcome) -> String {
     let mut parts = Vec::new();
     parts.extend(outcome.verdict.allowed.map(|a| format!("≤ {}", short(a))));

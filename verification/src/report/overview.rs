@@ -117,7 +117,7 @@ fn of_class(examined: &Examined, class: Option<Class>, before: Option<&Before>) 
         outcomes().filter(|o| o.is_rate()).filter_map(|o| Some(format!("{:.2}", o.numbers()?.0))).collect();
     let urgency = |o: &&Outcome| if o.verdict.passed() { o.margin().unwrap_or(99.0) } else { -99.0 };
     let least = |a: &&Outcome, b: &&Outcome| urgency(a).total_cmp(&urgency(b));
-    // Rates have the last word: their margin is that of an exponent.
+    // Rates are taken only if there is nothing else: their margin is that of an exponent.
     let pick = outcomes()
         .filter(|o| !o.is_rate() && o.verdict.allowed.is_some())
         .min_by(least)

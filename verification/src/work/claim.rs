@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::problem::{Claim, Code};
 use super::results::Point;
 
-/// A claim as it came out.
+/// A claim with its outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// What it means, for the reader.
+    /// Its meaning, for the reader.
     pub says: String,
     /// The name of the norm, and the largest error; none: any error.
     pub limit: Option<(String, f64)>,
@@ -16,9 +16,9 @@ pub struct Verdict {
     pub times: f64,
     /// Our cheapest setting that keeps the limit.
     pub ours: Option<Cheapest>,
-    /// That of the other code, or of those of our methods that it is compared with.
+    /// The cheapest setting of the other code, or of those of our methods that it is compared with.
     pub theirs: Option<Cheapest>,
-    /// Their time by ours.
+    /// Their time divided by ours.
     pub ratio: Option<f64>,
     /// Whether the claim holds; none where no setting that ours is compared with was run and is
     /// good enough.
@@ -48,7 +48,7 @@ pub fn cheapest<'a>(
     points.filter(good).min_by(|a, b| a.seconds.median.total_cmp(&b.seconds.median))
 }
 
-/// Whether no other point is both as exact and as fast, and better in one of them.
+/// Per point, whether no other one is at least as exact and as fast, and better in one of the two.
 pub fn on_front(points: &[&Point], norm: &str) -> Vec<bool> {
     let place = |point: &Point| Some((*point.error.get(norm)?, point.seconds.median));
     let beaten = |(error, seconds): (f64, f64)| {

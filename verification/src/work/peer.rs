@@ -27,7 +27,7 @@ struct Question<'a> {
     repeat: usize,
 }
 
-/// What a code does not know or was not asked for is empty.
+/// The answer of another code; fields that it does not know or was not asked for are empty.
 #[derive(Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Answer {
@@ -46,11 +46,11 @@ struct Answer {
 
 /// Times of the repetitions \[s\], and the result of the last.
 pub struct Timed {
-    /// Of the solution alone.
+    /// Times of the solution alone.
     pub seconds: Vec<f64>,
-    /// Of what goes before it; empty where it is not known.
+    /// Times of the preparation; empty where they are not known.
     pub build: Vec<f64>,
-    /// What was found.
+    /// The results.
     pub results: Results,
 }
 
@@ -71,7 +71,7 @@ pub fn solve(
     Ok(Timed { seconds: answer.seconds, build: answer.build, results })
 }
 
-/// What was found, as ours would leave it: records of the probes, the last shapes, frequencies.
+/// The results in the form of ours: records of the probes, the last shapes, frequencies.
 fn results(model: &Model, answer: &Answer) -> Result<Results, Failure> {
     let samples = |track: &Track| {
         let places = track.x.iter().zip(&track.y);

@@ -7,14 +7,14 @@
 //! case = "roll-up-convergence"            # whose scene is solved
 //! set = ["effect.moment.0.value=1.0"]     # overrides for all methods
 //!
-//! [norm.tip]                              # an error: a check as in case.toml, of a reference of any case
+//! [norm.tip]                              # an error: a check as in case.toml, by any reference
 //! title = "distance of the tip [m]"
 //! quantity = ["probe.tip.x", "probe.tip.y"]
 //! oracle = "roll-up-convergence/circle"
 //! where = { quarters = 2, s = 1.8 }
 //! why = "How good the reference is."
 //!
-//! [method.ancf]                           # a family of runs; methods of one label are one line of the diagram
+//! [method.ancf]                           # a family of runs; one line of the diagram per label
 //! code = "ours"                           # or "exudyn", "scikit-fem"
 //! label = "ANCF"
 //! set = ["beam.cantilever.basis.ancf.elements={elements}"]
@@ -29,9 +29,12 @@
 //!
 //! [[claim]]
 //! norm = "tip"
-//! error = 1e-4                            # the cheapest setting of either code with at most this error; none: the cheapest
-//! times = 30.0                            # so many times faster than the other code, in the same run: what a clock alone says depends on the machine
-//! ours = ["ancf"]                         # the methods that are meant; with `than` those they are compared with, perhaps ours too
+//! error = 1e-4                            # of either code the cheapest setting with at most this
+//!                                         # error counts; if there is no error, the cheapest
+//! times = 30.0                            # so many times faster than the other code, in the same
+//!                                         # run: a time alone depends on the machine
+//! ours = ["ancf"]                         # the methods that are meant; `than` names those they
+//!                                         # are compared with, perhaps ours too
 //!
 //! [[left-out]]
 //! what = "Explicit solvers"
@@ -53,7 +56,7 @@ use crate::Failure;
 pub struct Problem {
     /// A few words.
     pub title: String,
-    /// What is solved.
+    /// A description of the problem.
     pub about: String,
     /// The case whose scenes are solved.
     pub case: String,
@@ -64,10 +67,10 @@ pub struct Problem {
     pub norm: IndexMap<String, Check>,
     /// Methods, by name.
     pub method: IndexMap<String, Method>,
-    /// What shall hold.
+    /// The claims that must hold.
     #[serde(default)]
     pub claim: Vec<Claim>,
-    /// What is not in the diagram though a reader may look for it.
+    /// Methods that are not in the diagram though a reader may look for them.
     #[serde(default)]
     pub left_out: Vec<LeftOut>,
 }
@@ -109,7 +112,7 @@ pub struct Method {
     /// Overrides, after those of the problem.
     #[serde(default)]
     pub set: Vec<String>,
-    /// What another code is told besides the scene; `{variables}` are filled in.
+    /// Settings of another code besides the scene; `{variables}` are filled in.
     #[serde(default)]
     pub settings: IndexMap<String, Scalar>,
     /// Left out of quick measurements, and run once.
@@ -128,7 +131,7 @@ fn scene_toml() -> String {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Claim {
-    /// What it means, for the reader.
+    /// Its meaning, for the reader.
     #[serde(default)]
     pub says: String,
     /// Name of the norm; none: any error will do.
@@ -149,14 +152,14 @@ pub struct Claim {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeftOut {
-    /// What.
+    /// Methods or settings.
     pub what: String,
-    /// Why.
+    /// Reason for leaving them out.
     pub why: String,
 }
 
 impl Method {
-    /// The same as a family of a case, `first` being overrides that go before its own.
+    /// The method as a family of a case; the overrides `first` go before its own.
     pub fn family(&self, first: &[String]) -> Family {
         Family {
             scene: self.scene.clone(),
@@ -171,7 +174,7 @@ impl Problem {
     /// Reads a problem.
     ///
     /// # Errors
-    /// Where the file cannot be read, is no such file, or contradicts itself.
+    /// Where the file cannot be read, has another format, or contradicts itself.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
         Self::parse(&text).map_err(|e| format!("{}: {e}", path.display()).into())
@@ -180,7 +183,7 @@ impl Problem {
     /// A problem from the text of its file.
     ///
     /// # Errors
-    /// Where it is none or contradicts itself.
+    /// Where it has another format or contradicts itself.
     pub fn parse(text: &str) -> Result<Self, String> {
         let problem: Self = toml::from_str(text).map_err(|e| e.to_string())?;
         problem.validate()?;

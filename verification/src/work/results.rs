@@ -1,4 +1,4 @@
-//! What was measured, as files: `<problem>.json` with everything, `<problem>.csv` with a row per
+//! The files of a measurement: `<problem>.json` with everything, `<problem>.csv` with a row per
 //! setting.
 
 use std::path::Path;
@@ -10,20 +10,20 @@ use super::claim::Verdict;
 use super::problem::{Code, LeftOut};
 use crate::Failure;
 
-/// A problem as it came out.
+/// A problem with its results.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Results {
     /// Name of the problem's file.
     pub name: String,
     /// A few words.
     pub title: String,
-    /// What is solved.
+    /// A description of the problem.
     pub about: String,
     /// When it was measured.
     pub date: String,
-    /// Where.
+    /// Processor and system.
     pub machine: String,
-    /// What the other codes are, with versions.
+    /// The other codes with their versions.
     pub tools: String,
     /// Whether slow settings were left out.
     pub quick: bool,
@@ -31,9 +31,9 @@ pub struct Results {
     pub norm: IndexMap<String, Norm>,
     /// One per setting that came to its end, method by method.
     pub points: Vec<Point>,
-    /// What became of the claims.
+    /// The outcomes of the claims.
     pub claims: Vec<Verdict>,
-    /// What is missing: by decision, or because it failed.
+    /// The settings that are missing, by decision or because they failed.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -63,9 +63,9 @@ pub struct Point {
     pub setting: String,
     /// Errors by norm.
     pub error: IndexMap<String, f64>,
-    /// Of the solution alone \[s\].
+    /// Times of the solution alone \[s\].
     pub seconds: Spread,
-    /// Of what goes before it: shape functions, tables, patterns \[s\]; none of Exudyn.
+    /// Times of the preparation: shape functions, tables, patterns \[s\]; none for Exudyn.
     pub build: Option<Spread>,
     /// Unknowns; ours only.
     pub degrees_of_freedom: Option<usize>,
@@ -100,7 +100,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of one number or more; NaN of none.
+    /// The spread of one number or more; NaN for none.
     pub fn of(seconds: &[f64]) -> Self {
         let mut sorted = seconds.to_vec();
         sorted.sort_by(f64::total_cmp);

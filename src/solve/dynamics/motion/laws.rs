@@ -1,5 +1,5 @@
-//! Laws of time in a motion: what a step does not see of them, and what changes where they are not
-//! smooth.
+//! Laws of time in a motion: the part of them that a step does not see, and jumps where they are
+//! not smooth.
 
 use super::super::State;
 use super::Motion;
@@ -7,8 +7,9 @@ use crate::linear::Singular;
 use crate::system::laws::LoadSample;
 
 impl Motion<'_> {
-    /// Mean and first moment of the loads from `state`, in fixed axes, to the time `end`, less what
-    /// `looks` have of them; in the supports' frames. None where no load follows time.
+    /// Mean and first moment of the loads from the time of `state`, which is in fixed axes, to
+    /// `end`, less those that the samples `looks` give; in the supports' frames. None where no load
+    /// depends on time.
     pub fn unseen_loads(&self, state: &State, end: f64, looks: &[LoadSample]) -> Option<[Vec<f64>; 2]> {
         if !self.system.loads_follow_time() {
             return None;
@@ -25,7 +26,8 @@ impl Motion<'_> {
         Some([mean, moment])
     }
 
-    /// The same of the supports' motions, by which positions may err in beam lengths.
+    /// Error of positions, in beam lengths, due to motions of supports that the samples `looks`
+    /// miss.
     pub fn unseen_motion(&self, start: f64, end: f64, looks: &[LoadSample]) -> f64 {
         if self.system.supports().moves_in_time() {
             self.system.unseen_motion([start, end], looks)
@@ -34,9 +36,9 @@ impl Motion<'_> {
         }
     }
 
-    /// Goes from `before`, just before a time at which loads or supports are not smooth, to the
-    /// time of `state`, just after it: what supports move receives its velocity there, and all else
-    /// what an impulse of theirs gives it. Returns by how much accelerations and multipliers jump.
+    /// Passes from `before`, just before a time at which loads or supports are not smooth, to the
+    /// time of `state`, just after it. Moving supports take their velocity there, and all else the
+    /// velocity that their impulse gives it. Returns the jump of accelerations and multipliers.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.

@@ -1,20 +1,22 @@
-//! What supports and joints do to a motion: their forces, and the power that moving ones put in.
+//! Forces of supports and joints in a motion, and the power that moving supports put in.
 //!
 //! # Forces in a recorded state
-//! Positions of a recorded state err by a part of the tolerance, and stiffness times such an error
-//! is no force. What a step knows of forces is the inertia in its stages. Their accelerations a,
-//! continued to the record, are first freed of what would strain the beam faster than a step of
-//! length h can follow, then the state is moved by a δ of the size of its error until it balances
-//! them:
+//! The positions of a recorded state err by a part of the tolerance, and stiffness times this error
+//! would hide the forces. A step knows its forces through the inertia in its stages. The
+//! accelerations a of the stages, continued to the record, are first freed of components that would
+//! strain the beam faster than a step of length h can follow. Then the state is moved by δ, of the
+//! size of its error, until its forces balance them:
 //!
 //! ```text
-//! (K + c M) w + Bᵀν = −(K a + D²f[v, v])            B w = −B a − Ḃ v         a ← a + w       c = (4/h)², d = 4/h
-//! (K + d D + c M) δ + Bᵀμ = −(M a + f(q) + f_d(q, v))      B c δ = −B a − Ḃ v      q ← q + δ, v ← v + d δ, a ← a + c δ
+//! (K + c M) w + Bᵀν = −(K a + D²f[v, v])             B w = −B a − Ḃ v
+//!     a ← a + w,   c = (4/h)², d = 4/h
+//! (K + d D + c M) δ + Bᵀμ = −(M a + f(q) + f_d(q, v))   B c δ = −B a − Ḃ v
+//!     q ← q + δ, v ← v + d δ, a ← a + c δ
 //! ```
 //!
-//! K a + D²f[v, v] is f̈: what is stiff moves as a constraint would let it. What moves slowly gets
-//! the acceleration of its forces, what is too fast to be followed the quasi-static force under the
-//! inertia of the rest.
+//! K a + D²f[v, v] is f̈: stiff directions move as if they were constrained. Slow motions receive
+//! the acceleration that their forces give; motions too fast to be followed receive the
+//! quasi-static force under the inertia of the rest.
 
 use super::super::State;
 use super::{Acceleration, Motion, Rates};
@@ -37,14 +39,14 @@ pub struct Balance {
     pub state: State,
     /// Accelerations.
     pub acceleration: Vec<f64>,
-    /// Forces of supports on the held coordinates.
+    /// Forces of supports on the fixed coordinates.
     pub support_forces: Vec<f64>,
     /// Scaled multipliers.
     pub multipliers: Vec<f64>,
 }
 
 impl Balance {
-    /// The same, for the sums of a system.
+    /// The balance as the sums of a system take it.
     pub fn view(&self) -> Balanced<'_> {
         let State { time, q, v, variables, .. } = &self.state;
         let motion = Some([&v[..], &self.acceleration]);
@@ -61,7 +63,7 @@ impl Balance {
 
 /// ω h beyond which a vibration is too fast for steps of length h.
 const FAST: f64 = 4.0;
-/// How often a state is moved: the tangent of the state found first has the stress of its error.
+/// How often a state is moved: the first tangent contains the stress due to the error of the state.
 const PASSES: usize = 2;
 /// Change of a gradient, or of a position in beam lengths, over which a tangent is differenced.
 const DIFFERENCE: f64 = 1e-4;
@@ -86,7 +88,7 @@ impl Motion<'_> {
         Ok(self.balance_of(stage))
     }
 
-    /// The same in a balance.
+    /// Forces of supports and joints on the beams in a balance.
     pub fn reactions_in(&self, balance: &Balance) -> Vec<Reaction> {
         let Balance { state, support_forces, multipliers, .. } = balance;
         self.system.reactions(state.time, &state.q, support_forces, multipliers)
@@ -101,8 +103,8 @@ impl Motion<'_> {
         Ok(StageState { state, rates })
     }
 
-    /// The state `state`, to which a step of length `h` has led with the accelerations and
-    /// multipliers `rates` of the unknowns, moved into balance.
+    /// Moves into balance the state `state`, to which a step of length `h` has led with the
+    /// accelerations and multipliers `rates` of the unknowns.
     ///
     /// # Errors
     /// [`Singular`] where the step's matrix has no inverse.
@@ -147,7 +149,7 @@ impl Motion<'_> {
         let mut sum = vec![0.0; self.unknowns()];
         self.system.tangent_product(time, &q, &a, &mut sum[..n]);
         self.system.add_constraint_stiffness_product(&q, &rates[n..], &a, &mut sum[..n]);
-        // K v a little before and a little after.
+        // D²f[v, v] as the difference of K v a little after and a little before.
         let speed = self.size(&v);
         if speed > 0.0 {
             let ahead = DIFFERENCE / speed;
@@ -208,9 +210,10 @@ impl Motion<'_> {
 
     /// Power \[W\] that moving supports put in, in a stage.
     ///
-    /// It is R·v with their velocities v, and with those of all else as well, for M q̈ + f vanishes
-    /// there. It does so only as far as the stages were solved. The beam follows its supports, so
-    /// that the stiff forces, in which that shows, do no work on the latter velocities.
+    /// It is R·v with the reactions R = M q̈ + f, which vanish in all coordinates that no support
+    /// moves. So v may be the velocities of all coordinates. This is more accurate, because the
+    /// stages are solved only to a tolerance: the beam follows its supports, so that the remaining
+    /// stiff forces do no work on v.
     pub fn support_power(&self, stage: StageState) -> f64 {
         let (balance, force) = self.forces_of(stage);
         force.iter().zip(&balance.state.v).map(|(force, v)| force * v).sum()

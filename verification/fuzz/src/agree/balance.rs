@@ -1,4 +1,4 @@
-//! Balances that need no second run: forces on the whole, forces and couples at the ends of beams.
+//! Balances that need no second run: of all forces, and of forces and couples at the ends of beams.
 
 use toml::{Table, Value};
 
@@ -6,7 +6,7 @@ use super::gap::force_size;
 use super::outcome::Seen;
 use super::settings;
 
-/// The worst of the balances: by how much it is off, per the largest force, and which it is.
+/// The worst of the balances: its error relative to the largest force, and its name.
 pub fn worst(scene: &Table, seen: &Seen) -> Option<(f64, String)> {
     let kind = settings::analysis(scene);
     if !matches!(kind, "static" | "dynamic") {
@@ -42,7 +42,7 @@ pub fn worst(scene: &Table, seen: &Seen) -> Option<(f64, String)> {
                 Acts::Support(reaction) => reaction,
                 Acts::More => continue,
             };
-            // What acts at the start has this sign on the section behind it.
+            // Forces at the start have this sign on the section behind them.
             let sign = if end == "start" { -1.0 } else { 1.0 };
             let (sine, cosine) = angle.sin_cos();
             let [fx, fy, moment] = acts.map(|v| sign * v);
@@ -55,7 +55,7 @@ pub fn worst(scene: &Table, seen: &Seen) -> Option<(f64, String)> {
     Some(worst)
 }
 
-/// What acts at the end of a beam.
+/// The forces that act at the end of a beam.
 enum Acts {
     Nothing,
     /// A support alone, with this force and moment.

@@ -37,7 +37,7 @@ pub fn cut(scene: &Table) -> Option<Table> {
     };
     let other = format!("{name}2");
     let mut scene = scene.clone();
-    // Their velocities are given along the whole of a beam.
+    // Velocities along the arc length are given for the whole beam and are not cut.
     let along = |v: &Table| v.contains_key("polynomial") || v.contains_key("table");
     if settings::items(&scene, &["initial_velocity"]).any(along) {
         return None;
@@ -90,7 +90,7 @@ struct Cut<'c> {
 }
 
 impl Cut<'_> {
-    /// Points of the beam: on which piece they are.
+    /// Moves points of the beam to the piece on which they are.
     fn places(&self, scene: &mut Table) {
         for (_, value) in scene.iter_mut() {
             self.visit(value);
@@ -126,7 +126,7 @@ impl Cut<'_> {
         }
     }
 
-    /// What acts along the whole beam acts along both pieces.
+    /// Effects along the whole beam act along both pieces.
     fn whole(&self, scene: &mut Table) {
         let doubled = |list: &mut Vec<Value>| {
             let copies: Vec<Value> = list

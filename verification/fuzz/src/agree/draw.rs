@@ -12,7 +12,7 @@ use toml::{Table, Value};
 
 use super::frame::{Frame, has_axes};
 
-/// What later parts of a scene must know of earlier ones.
+/// The scene drawn so far, for the parts that are drawn later.
 pub struct Draw<'r> {
     rng: &'r mut Rng,
     scene: Table,
@@ -27,13 +27,13 @@ struct Drawn {
     name: String,
     curve: ancf::centreline::Curve,
     straight: bool,
-    /// Arc lengths where nodes may well be.
+    /// Length of the beam.
     length: f64,
     axial: Option<f64>,
     bends: bool,
 }
 
-/// What is to be computed.
+/// The kind of analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Static,
@@ -78,7 +78,7 @@ pub fn frame(rng: &mut Rng, scene: &Table) -> Frame {
     Frame { units, mirrored: rng.bool(), quarters: rng.u8(0..4), turn, shift }
 }
 
-/// To so many significant digits.
+/// Rounds to so many significant digits.
 pub fn round(value: f64, digits: i32) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
@@ -91,17 +91,17 @@ impl Draw<'_> {
         self.rng.f64() < probability
     }
 
-    /// Evenly between two numbers.
+    /// A number drawn evenly between two numbers.
     fn even(&mut self, low: f64, high: f64) -> f64 {
         round(low + (high - low) * self.rng.f64(), 4)
     }
 
-    /// Evenly between the logarithms of two numbers.
+    /// A number whose logarithm is drawn evenly between those of two numbers.
     fn log(&mut self, low: f64, high: f64) -> f64 {
         round(low * (high / low).powf(self.rng.f64()), 4)
     }
 
-    /// The same with either sign.
+    /// [`Self::log`] with either sign.
     fn signed(&mut self, low: f64, high: f64) -> f64 {
         let size = self.log(low, high);
         if self.rng.bool() { size } else { -size }

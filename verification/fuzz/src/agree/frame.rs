@@ -1,5 +1,5 @@
-//! Units, direction and place in which a scene is written down. What is drawn is drawn in natural
-//! units: L = 1, EI = 1, ρA = 1.
+//! Units, direction and place in which a scene is written down. Scenes are drawn in natural units:
+//! L = 1, EI = 1, ρA = 1.
 
 use toml::{Table, Value};
 
@@ -13,9 +13,9 @@ pub struct Frame {
     pub units: [f64; 3],
     /// Whether y points the other way.
     pub mirrored: bool,
-    /// Quarter turns, counter-clockwise, which keep axes axes.
+    /// Quarter turns, counter-clockwise, which turn axes into axes.
     pub quarters: u8,
-    /// Further turn \[rad\]; zero in scenes where something is said of an axis.
+    /// Further turn \[rad\]; zero in scenes with settings along one axis.
     pub turn: f64,
     /// Where the origin goes, in natural lengths.
     pub shift: [f64; 2],
@@ -33,7 +33,7 @@ impl Frame {
         self.units.iter().zip(dimension).map(|(unit, power)| unit.powi(power)).product()
     }
 
-    /// −1 in a mirror.
+    /// −1 if mirrored, otherwise 1.
     pub fn sign(&self) -> f64 {
         if self.mirrored { -1.0 } else { 1.0 }
     }
@@ -69,7 +69,7 @@ impl Frame {
         [x, self.sign() * y]
     }
 
-    /// A place.
+    /// A place in the coordinates of the scene.
     fn point(&self, p: [f64; 2]) -> [f64; 2] {
         let [x, y] = self.direction(p);
         [self.units[0] * (x + self.shift[0]), self.units[0] * (y + self.shift[1])]
@@ -145,7 +145,7 @@ impl Frame {
         }
     }
 
-    /// Says what is meant where nothing is said, if it is something else in this frame.
+    /// Writes out defaults that would mean something else in this frame.
     fn complete(&self, path: &str, table: &mut Table) {
         let absent = match path {
             "effect.contact.box" => Some(("angle", Value::Float(0.0))),
@@ -157,7 +157,7 @@ impl Frame {
         }
     }
 
-    /// Keys of the two axes. Coefficients of 1, s, s², … have a dimension each.
+    /// Converts a pair of keys for the two axes. Coefficients of 1, s, s², … have a dimension each.
     fn components(
         &self,
         path: &str,
@@ -194,7 +194,8 @@ impl Frame {
         }
     }
 
-    /// A coordinate that is reached: of another axis, and perhaps from the other side.
+    /// Converts a coordinate that is to be reached: it may become one of the other axis, reached
+    /// from the other side.
     fn crossing(&self, table: &mut Table, keys: [&str; 2], [x, y]: [Option<Value>; 2]) {
         let (axis, value) = if let Some(x) = x { (0, x) } else { (1, y.unwrap_or(Value::Float(0.0))) };
         let Value::Float(value) = value else { return };
@@ -215,7 +216,7 @@ impl Frame {
         }
     }
 
-    /// Names of what a support holds.
+    /// Exchanges the names of fixed components where the axes are exchanged.
     fn fixed(&self, support: &mut Table) {
         let Some(Value::Array(names)) = support.get_mut("fix") else { return };
         if self.quarters.is_multiple_of(2) {
@@ -231,7 +232,7 @@ impl Frame {
     }
 }
 
-/// Whether something is said of one axis, so that only quarter turns leave the scene what it is.
+/// Whether a scene has settings along one axis, so that only quarter turns leave it what it is.
 pub fn has_axes(scene: &Table) -> bool {
     let lists = |path: &[&str]| {
         let mut value = Some(scene);

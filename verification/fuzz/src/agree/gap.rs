@@ -2,22 +2,22 @@
 
 use super::outcome::{Sample, Seen};
 
-/// Differences of one scene's outcomes, each per the size of what differs.
+/// Differences between two outcomes of a scene, each relative to the size of the quantity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gap {
     /// Positions at probes and along beams \[natural lengths\], and eigenvalues \[of their size\]:
-    /// what a tolerance speaks of.
+    /// the quantities to which a tolerance refers.
     pub places: f64,
     /// The largest of all differences.
     pub all: f64,
-    /// What differs so.
+    /// The quantity with the largest difference.
     pub what: String,
 }
 
 impl Gap {
     fn note(&mut self, what: &str, difference: f64, size: f64) {
         let relative = if difference == 0.0 { 0.0 } else { difference / size };
-        // Also what is no number.
+        // NaN counts as the largest difference.
         if relative.is_nan() || relative > self.all {
             self.all = relative;
             self.what = what.to_owned();
@@ -35,7 +35,7 @@ impl Gap {
 /// Which records are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Records {
-    /// All, which must be as many.
+    /// All; both runs must have as many.
     All,
     /// Those at the same times, and the last.
     Common,
@@ -119,7 +119,7 @@ fn energies(a: &Seen, b: &Seen, pairs: &[(usize, usize)], gap: &mut Gap) {
     let (Some(first), Some(other)) = (a.energy.first(), b.energy.first()) else { return };
     let change = |e: &[f64; 7], first: &[f64; 7]| {
         let mut change = *e;
-        // A potential may count from elsewhere.
+        // The zero of the potential may differ.
         change[4] -= first[4];
         change
     };

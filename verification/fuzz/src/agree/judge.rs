@@ -10,22 +10,23 @@ use super::outcome::{self, Outcome, Seen};
 use super::ways::{self, Way};
 use super::{balance, cut, momentum, settings};
 
-/// What two runs may differ by, times what was asked for.
+/// Largest difference that two runs may have, in units of the accuracy asked for.
 const ALLOWED: f64 = 10.0;
 
-/// Growth of errors beyond which a scene has no one answer.
+/// Growth of errors beyond which a scene has no definite result.
 const NEUTRAL: f64 = 1e4;
-/// What the estimates of both meshes are worth at a cut, where other shape functions reach.
+/// Factor of the estimated errors of both meshes at a cut, beside which the shape functions are
+/// others.
 const WELDED: f64 = 3.0;
 /// Relative accuracy of eigenvalues.
 const EIGENVALUES: f64 = 1e-7;
-/// What a motion that was stopped and goes on may differ by from one that was not.
+/// Largest difference between a motion that was stopped and goes on and one that was not.
 const CONTINUED: f64 = 1e-8;
 /// Accuracy of forces and other things than positions, for which nothing is asked.
 const FORCES: f64 = 1e-5;
 
-/// A scene in natural units, with the frame in which it is run and what its other ways are drawn
-/// from.
+/// A scene in natural units, with the frame in which it is run and the seed from which its other
+/// ways are drawn.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub scene: Table,
@@ -33,20 +34,20 @@ pub struct Case {
     pub seed: u64,
 }
 
-/// What one way tells of a scene.
+/// The verdict of one way on a scene.
 #[derive(Clone, Debug)]
 pub enum Verdict {
-    /// The way is none for this scene.
+    /// The way does not apply to this scene.
     NotApplicable,
-    /// The runs differ by this share of what is allowed.
+    /// The runs differ by this share of the allowed difference.
     Agrees(f64),
     /// They differ by no more than the scene's own sensitivity explains.
     Unstable,
-    /// A warning says that something is not known well.
+    /// A warning says that a result is not accurate.
     Warned,
     /// Status 1 or 2 in all ways.
     Refused,
-    /// Given up.
+    /// A run took too long and was given up.
     TooLong,
     /// They differ.
     Finding(Finding),
@@ -61,18 +62,18 @@ pub struct Finding {
     pub other: String,
 }
 
-/// One disagreement, and what is allowed.
+/// One disagreement, and the allowed one.
 struct Measured {
     value: f64,
     allowed: f64,
-    /// Whether it is one of positions, so that their growth counts.
+    /// Whether it is a disagreement of positions, so that their growth counts.
     places: bool,
     what: String,
 }
 
 /// Judges one way.
 pub fn judge(case: &Case, way: Way, base: &Outcome) -> Verdict {
-    // A number of its own for each way, so that a smaller scene is judged in the same way.
+    // Each way has random numbers of its own, so that a smaller scene is judged in the same way.
     let mut rng = Rng::with_seed(case.seed ^ ((way as u64 + 1) << 32));
     if let Outcome::Panicked(said) = base {
         return finding(way, format!("a panic: {said}"), String::new());
@@ -88,7 +89,7 @@ pub fn judge(case: &Case, way: Way, base: &Outcome) -> Verdict {
     }
 }
 
-/// What a run is worth: without warnings it can be compared.
+/// The results of a run, if it has no warnings and can be compared; otherwise the verdict.
 fn solved(outcome: &Outcome) -> Result<&Seen, Verdict> {
     match outcome {
         Outcome::Solved(seen) if seen.warnings.is_empty() => Ok(seen),
@@ -103,18 +104,20 @@ fn finding(way: Way, what: String, other: String) -> Verdict {
     Verdict::Finding(Finding { way, what, other })
 }
 
-/// Round-off of forces per that of positions: a hundred for the differences of which they are made,
-/// and ten for beams that lie as many lengths from the origin.
+/// Ratio of the round-off of forces to that of positions: a factor of a hundred because forces
+/// follow from differences of positions, and one of ten for beams that lie ten lengths from the
+/// origin.
 const OF_FORCES: f64 = 1e3;
 
-/// Error of round-off in positions: that of the stretch, which the stiffest beam makes a force.
+/// Error of positions due to the round-off of the stretch, which the stiffest beam turns into a
+/// force.
 fn round_off(scene: &Table) -> f64 {
     1e-9 + 1e-15 * settings::stiffness_ratio(scene) * settings::all_cells(scene) as f64
 }
 
 fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng) -> Verdict {
     let Measured { value, allowed, places, what } = measured;
-    // What is no number agrees with nothing.
+    // A NaN agrees with nothing.
     if value <= allowed {
         return Verdict::Agrees(value / allowed);
     }
@@ -123,8 +126,8 @@ fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng)
     }
     let factor = match neighbour::growth(&case.scene, &case.frame, rng) {
         Growth::Unknown => return Verdict::Unstable,
-        // Nearly any shape is one: a string without a load across it, a column at its critical
-        // load.
+        // Nearly any shape is a solution: of a string without a load across it, of a column at its
+        // critical load.
         Growth::By { places, .. } if places > NEUTRAL => return Verdict::Unstable,
         Growth::By { places: grown, .. } if places => grown,
         Growth::By { all, .. } => all,
@@ -138,9 +141,8 @@ fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng)
     finding(way, says, other.to_owned())
 }
 
-/// How far a coarse mesh of strings that hang still is from its shape: a cell that would have to
-/// kink where a force acts, or fold up, has several equilibria, not further from each other than
-/// that.
+/// Error of a coarse mesh of strings that hang still. A cell that would have to kink where a force
+/// acts, or fold up, has several equilibria, which differ by no more than this error.
 fn error_of_strings(case: &Case) -> f64 {
     let Case { scene, frame, .. } = case;
     let statics = settings::get(scene, &["analysis", "static"]).is_some();
@@ -187,7 +189,8 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         return Verdict::NotApplicable;
     }
     let motion = settings::motion(scene);
-    // Where a path, or a load that is not divided, pauses on its way is nobody's wish.
+    // The records of a path, or of a load without `steps`, are chosen by the solver and need not
+    // agree.
     let pauses = settings::get(scene, &["analysis", "static", "steps"]).is_some() || motion.is_some();
     let records = if pauses { Records::All } else { Records::Last };
     let gap = gap::between(a, b, records);
@@ -199,7 +202,7 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         () => settings::tolerance(scene),
     };
     let (places, all) = match chosen {
-        // Round-off decides on a step, and the tolerance on what that does.
+        // Round-off may change the choice of a step; its effect is bounded by the tolerance.
         Some(_) if !same => (wanted, f64::INFINITY),
         Some(_) => (0.1 * wanted, FORCES.max(wanted)),
         None => (ALLOWED * wanted, FORCES.max(ALLOWED * wanted)),
@@ -219,7 +222,8 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
     decide(case, way, measured, &text(), rng)
 }
 
-/// Runs another scene in the same frame; without a warning, or else the verdict.
+/// Runs another scene in the same frame. Returns its results if there is no warning, otherwise the
+/// verdict.
 fn other(scene: &Table, frame: &Frame, way: Way) -> Result<Box<Seen>, Verdict> {
     match outcome::run(scene, frame) {
         Outcome::Panicked(said) => {
@@ -285,7 +289,7 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
                 let fine = settings::finer(scene).ok_or(Verdict::NotApplicable)?;
                 let fine_cut = settings::finer(&changed).ok_or(Verdict::NotApplicable)?;
                 let whole = gap::between(base, &*other(&fine, frame, way)?, records);
-                // Shape functions that reach over several cells are others beside a cut.
+                // Beside a cut, shape functions that reach over several cells are others.
                 let pieces = gap::between(&seen, &*other(&fine_cut, frame, way)?, records);
                 estimated(&gap, WELDED * (whole.places + pieces.places), 1e-6 + plain)
             }
@@ -365,7 +369,7 @@ fn balanced(case: &Case, seen: &Seen, rng: &mut Rng) -> Verdict {
     decide(case, Way::Balance, measured, "", rng)
 }
 
-/// In natural units, in which the whole motion is run once more.
+/// Judges the balance of momentum in natural units, in which the whole motion is run once more.
 fn keeps_momentum(case: &Case, rng: &mut Rng) -> Verdict {
     let Case { scene, .. } = case;
     let (way, natural) = (Way::Momentum, Frame::default());

@@ -1,5 +1,5 @@
-//! Momentum of what nothing holds: forces that stay as they are change it in proportion to time,
-//! and without forces it stays, as its moment does.
+//! Momentum of beams without supports: constant forces change it in proportion to time; without
+//! forces it is conserved, and its moment, too.
 
 use ancf::assembly::Needs;
 use ancf::scene;
@@ -47,8 +47,8 @@ pub fn is_known(scene: &Table) -> bool {
         && !settings::items(scene, &["effect", "damping"]).any(drawn)
 }
 
-/// What the momentum at the end of the motion lacks against that at the end of its first part and
-/// the forces since, per what it is made of.
+/// The error of the momentum at the end of the motion, against that at the end of its first part
+/// and the impulse of the forces since, relative to the size of its parts.
 pub fn lacks(scene: &Table, first: &Seen, whole: &Seen) -> Option<(f64, String)> {
     let [before, after] = [first, whole].map(|seen| momentum(scene, seen));
     let (before, after) = (before?, after?);
@@ -72,8 +72,8 @@ pub fn lacks(scene: &Table, first: &Seen, whole: &Seen) -> Option<(f64, String)>
     Some(worst)
 }
 
-/// The momentum in the state that a motion has left: M v, on the velocities of a rigid body. In
-/// natural units.
+/// The momentum in the state that a motion has left: M v, multiplied by the velocities of rigid
+/// motions. In natural units.
 fn momentum(natural: &Table, seen: &Seen) -> Option<Momentum> {
     let text = Frame::default().write(natural).to_string();
     let scene = scene::parse("drawn.toml", &text).ok()?;

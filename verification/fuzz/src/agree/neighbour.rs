@@ -1,5 +1,5 @@
-//! Neighbours of a scene, and how far they depart: what no computation can hold still is no
-//! finding.
+//! Neighbours of a scene, and how far they depart from it: a disagreement that the growth of errors
+//! explains is no finding.
 
 use fastrand::Rng;
 use toml::{Table, Value};
@@ -18,8 +18,8 @@ pub fn near(scene: &Table, share: f64, rng: &mut Rng) -> Table {
             shake(key, value, share, rng);
         }
     }
-    // A force that was not there tells what nothing holds: a string without a load across it, a
-    // column at its critical load.
+    // An additional force reveals motions that nothing resists: of a string without a load across
+    // it, or of a column at its critical load.
     let beams: Vec<String> = settings::beams(scene).map(|(name, _)| name.clone()).collect();
     for beam in beams {
         let (sine, cosine) = (std::f64::consts::TAU * rng.f64()).sin_cos();
@@ -46,7 +46,7 @@ pub fn near(scene: &Table, share: f64, rng: &mut Rng) -> Table {
 }
 
 fn shake(key: &str, value: &mut Value, share: f64, rng: &mut Rng) {
-    // Places on beams must stay on them, and where a beam is at the start.
+    // Points must stay on the beams, and the beams where they are at the start.
     if matches!(key, "at" | "s" | "start" | "times" | "about" | "polynomial") {
         return;
     }
@@ -73,7 +73,7 @@ pub fn growth(scene: &Table, frame: &Frame, rng: &mut Rng) -> Growth {
         Some(motion) => {
             let wanted = motion.tolerance.unwrap_or(1e-6).min(1e-4);
             let name = if motion.integrator == "gauss" { "gauss" } else { "radau" };
-            // Looser than that would tell nothing, tighter costs time.
+            // A looser tolerance would tell nothing, a tighter one costs time.
             (settings::with_integrator(scene, name, "tolerance", 1e-2 * wanted), (0.1 * wanted).max(1e-7))
         }
     };
@@ -92,10 +92,10 @@ pub fn growth(scene: &Table, frame: &Frame, rng: &mut Rng) -> Growth {
     growth
 }
 
-/// What neighbours tell.
+/// The growth of errors as neighbours show it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Growth {
-    /// By so much, of positions and of whatever grows most.
+    /// By these factors: of positions, and of the quantity that grows most.
     By { places: f64, all: f64 },
     /// A neighbour has no result.
     Unknown,
@@ -112,6 +112,6 @@ pub fn at_the_edge(scene: &Table, frames: [&Frame; 2], rng: &mut Rng) -> bool {
             }
         }
     }
-    // In the frame that fails all fail, and in the other none: nothing but the frame decides.
+    // If all fail in one frame and none in the other, nothing but the frame decides.
     !(solved == 2 && failed == 2)
 }

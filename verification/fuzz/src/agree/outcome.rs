@@ -1,5 +1,5 @@
-//! Runs a scene, and keeps what there is to compare: in natural units, turned back to where the
-//! scene was drawn.
+//! Runs a scene, and keeps the results that are compared: in natural units, turned back to where
+//! the scene was drawn.
 
 use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
@@ -19,11 +19,11 @@ const WORK: usize = 60_000;
 const STEPS: usize = 4_000;
 
 thread_local! {
-    /// What the last panic of this thread said.
+    /// The message of the last panic of this thread.
     static SAID: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// What became of a scene.
+/// The outcome of a scene.
 #[derive(Clone, Debug)]
 pub enum Outcome {
     /// Status 0.
@@ -32,13 +32,13 @@ pub enum Outcome {
     Failed(String),
     /// Status 2, found by the reader or later.
     Refused(String),
-    /// Given up.
+    /// It took too long and was given up.
     TooLong,
     /// A panic.
     Panicked(String),
 }
 
-/// What was seen, in natural units.
+/// The results of a run, in natural units.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
     pub warnings: Vec<String>,
@@ -62,11 +62,11 @@ pub struct Seen {
     pub saved: Option<SavedState>,
 }
 
-/// What a probe saw.
+/// A sample of a probe.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sample {
     pub place: [f64; 2],
-    /// Since the first record.
+    /// Turn since the first record.
     pub angle: f64,
     pub curvature: f64,
     pub strain: f64,
@@ -82,7 +82,7 @@ pub struct Line {
     pub forces: Vec<[f64; 3]>,
 }
 
-/// Keeps what panics say, and keeps them quiet.
+/// Keeps the messages of panics, and does not print them.
 pub fn hear_panics() {
     panic::set_hook(Box::new(|info| SAID.with(|said| *said.borrow_mut() = info.to_string())));
 }
@@ -92,7 +92,7 @@ pub fn run(natural: &Table, frame: &Frame) -> Outcome {
     run_from(natural, frame, None)
 }
 
-/// The same, from a saved state.
+/// [`run()`] from a saved state.
 pub fn run_from(natural: &Table, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
     let text = frame.write(natural).to_string();
     match panic::catch_unwind(AssertUnwindSafe(|| solve(&text, frame, saved))) {
@@ -106,7 +106,7 @@ pub fn check(natural: &Table, frame: &Frame) -> Result<(), String> {
     let text = frame.write(natural).to_string();
     match panic::catch_unwind(AssertUnwindSafe(|| scene::parse("drawn.toml", &text).map(|_| ()))) {
         Ok(read) => read.map_err(|error| first_line(&error.to_string())),
-        // The run will tell.
+        // The run will show the panic.
         Err(_) => Ok(()),
     }
 }

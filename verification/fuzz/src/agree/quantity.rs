@@ -7,10 +7,10 @@
 /// Powers of length, mass and time.
 pub type Dimension = [i32; 3];
 
-/// What a number, or a list of numbers, is.
+/// The nature of a number, or of a list of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Nature {
-    /// The same from every side.
+    /// Unchanged where the scene is turned or mirrored.
     Scalar(Dimension),
     /// Changes its sign in a mirror: what turns counter-clockwise.
     Turning(Dimension),
@@ -36,8 +36,8 @@ const FORCE_PER_LENGTH: Dimension = [0, 1, -2];
 const STRESS: Dimension = [-1, 1, -2];
 const MASS_PER_LENGTH: Dimension = [-1, 1, 0];
 
-/// Of the key at a path without list indices, beams going by `*`; none where it is no quantity, or
-/// holds tables.
+/// The nature of the key at a path without list indices, with `*` for the names of beams; none if
+/// it is not a quantity, or holds tables.
 pub fn nature(path: &str) -> Option<Nature> {
     use Nature::{Point, Polar, Polynomial, Scalar, Turning, Vector};
     if let Some((_, law)) = path.split_once(".in_time.") {
@@ -106,8 +106,8 @@ pub fn nature(path: &str) -> Option<Nature> {
     })
 }
 
-/// Of tables with one key for each axis: the keys, the dimension, and whether they are places
-/// rather than differences.
+/// Describes tables with one key for each axis: the keys, the dimension, and whether they are
+/// places rather than differences.
 pub fn axes(path: &str) -> Option<([&'static str; 2], Dimension, bool)> {
     match path {
         "support.move" => Some((["x", "y"], LENGTH, false)),

@@ -1,4 +1,4 @@
-//! What a campaign has seen.
+//! The counts of a campaign.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -19,7 +19,7 @@ struct Counts {
     refused: usize,
     too_long: usize,
     findings: usize,
-    /// The largest disagreement that is allowed, per what is allowed.
+    /// The largest disagreement that is no finding, relative to the allowed one.
     nearest: f64,
 }
 
@@ -29,11 +29,11 @@ pub struct Report {
     pub scenes: usize,
     /// Draws that the reader refused, by reason.
     pub illegal: BTreeMap<String, usize>,
-    /// What became of the scenes as they were drawn.
+    /// Outcomes of the scenes as they were drawn.
     pub outcomes: BTreeMap<&'static str, usize>,
     /// Reasons of status 1 and 2.
     pub reasons: BTreeMap<String, usize>,
-    /// The scene that took longest, with its seconds; shown, and deciding nothing.
+    /// The scene that took longest, with its seconds; only shown.
     pub slowest: (f64, usize),
     keys: BTreeMap<String, usize>,
     ways: [Counts; WAYS.len()],

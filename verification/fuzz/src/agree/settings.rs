@@ -30,7 +30,7 @@ pub fn analysis(scene: &Table) -> &str {
         .map_or("", String::as_str)
 }
 
-/// What a motion is asked for.
+/// The settings of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     /// `radau`, `gauss` or `generalized_alpha`.
@@ -42,7 +42,7 @@ pub struct Motion {
     pub output_every: f64,
 }
 
-/// The settings of a motion.
+/// Reads the settings of a motion.
 pub fn motion(scene: &Table) -> Option<Motion> {
     let dynamic = get(scene, &["analysis", "dynamic"])?.as_table()?;
     let float = |table: &Table, key: &str| table.get(key).and_then(Value::as_float);
@@ -65,7 +65,7 @@ pub fn motion(scene: &Table) -> Option<Motion> {
     })
 }
 
-/// The scene by another integrator.
+/// The scene with another integrator.
 pub fn with_integrator(scene: &Table, name: &str, key: &str, value: f64) -> Table {
     let mut scene = scene.clone();
     if let Some(dynamic) = table(&mut scene, &["analysis", "dynamic"]) {
@@ -92,7 +92,7 @@ pub fn with_integrator(scene: &Table, name: &str, key: &str, value: f64) -> Tabl
 /// The accuracy that is asked for.
 pub fn tolerance(scene: &Table) -> f64 {
     match motion(scene) {
-        // Iterations of fixed steps: a thousand of them should add up to less.
+        // The errors of the iterations of a thousand fixed steps should add up to less.
         Some(motion) => motion.tolerance.unwrap_or_else(|| 1e-8_f64.max(1e3 * newton_tolerance(scene))),
         None => get(scene, &["analysis", "static", "tolerance"]).and_then(Value::as_float).unwrap_or(1e-10),
     }
@@ -121,8 +121,8 @@ pub fn cells(basis: &Table) -> usize {
     basis.iter().next().map_or(1, |(_, kind)| of(kind))
 }
 
-/// Largest EA L²/EI in natural units, a string's stiffness counting against its loads, an
-/// inextensible beam's not.
+/// Largest EA L²/EI in natural units. The stiffness of a string counts relative to its loads;
+/// inextensible beams do not count.
 pub fn stiffness_ratio(scene: &Table) -> f64 {
     let of = |beam: &Table| {
         let float = |key: &str| beam.get(key).and_then(Value::as_float);
@@ -146,8 +146,8 @@ pub fn has_friction(scene: &Table) -> bool {
     items(scene, &["effect", "contact"]).any(|contact| contact.contains_key("friction"))
 }
 
-/// Whether an equilibrium is that of a string that nothing pulls along the whole of its length: any
-/// of its shapes is one.
+/// Whether an equilibrium contains a string without a load along its whole length: then any of its
+/// shapes is one.
 pub fn is_slack(scene: &Table) -> bool {
     let pulled = |beam: &str| {
         items(scene, &["effect", "distributed_force"])
@@ -196,8 +196,7 @@ fn halved(list: &[Value]) -> Option<Vec<Value>> {
     Some(all)
 }
 
-/// The other discretisation, with the same nodes and the settings that it takes when nothing is
-/// said.
+/// The other discretisation, with the same nodes and its default settings.
 pub fn other_basis(scene: &Table) -> Option<Table> {
     map_bases(scene, |basis| {
         let (name, kind) = basis.iter().next()?;

@@ -12,7 +12,7 @@ use super::ways::Way;
 /// Scenes that are tried at most.
 const TRIES: usize = 100;
 
-/// What a beam resists and weighs.
+/// Keys of a beam's stiffness and mass.
 const SECTION: [&str; 7] = [
     "axial_stiffness",
     "bending_stiffness",
@@ -122,7 +122,7 @@ fn removable(table: &Table, here: &mut Vec<Step>, found: &mut Vec<Vec<Step>>) {
             found.push(here.clone());
         }
         match value {
-            // The balances need them.
+            // The balances need the outputs.
             _ if key == "output" => {}
             Value::Table(table) => removable(table, here, found),
             Value::Array(list) => {

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
-/// All keys of the schema, as paths without list indices, beams going by `*`. A law is one,
-/// wherever it is.
+/// All keys of the schema, as paths without list indices, with `*` for the names of beams. A law of
+/// time counts as the same keys wherever it is.
 pub fn keys() -> BTreeSet<String> {
     let schema = ancf::scene::schema();
     let mut keys = BTreeSet::new();

@@ -1,4 +1,4 @@
-//! The ways in which a scene must give the same.
+//! The ways of running a scene that must give the same results.
 
 use fastrand::Rng;
 use toml::{Table, Value};
@@ -89,7 +89,7 @@ pub fn other_frame(way: Way, frame: &Frame, scene: &Table, rng: &mut Rng) -> Fra
             let near = |unit: f64| if even { unit.log2().round().exp2() } else { unit };
             let factors = [length, mass, time].map(near);
             for (unit, factor) in other.units.iter_mut().zip(factors) {
-                // Back towards one, and beyond.
+                // The units of the frame scaled by powers of two, or other units.
                 *unit = if even { *unit * factor } else { factor };
             }
             for (unit, most) in other.units.iter_mut().zip([1e6, 1e9, 1e6]) {
@@ -123,12 +123,12 @@ pub fn load_steps(scene: &Table, rng: &mut Rng) -> Option<Table> {
     Some(other)
 }
 
-/// Whether a path is refused where an equilibrium is not.
+/// Whether the scene has strings, so that a path is refused although an equilibrium is not.
 fn rests_on_weight(scene: &Table) -> bool {
     settings::beams(scene).any(|(_, beam)| !settings::bends(beam))
 }
 
-/// The same by a hundredth of the tolerance.
+/// The scene with a hundredth of the tolerance.
 pub fn tighter(scene: &Table) -> Option<Table> {
     if let Some(motion) = settings::motion(scene) {
         return Some(settings::with_integrator(
@@ -144,7 +144,7 @@ pub fn tighter(scene: &Table) -> Option<Table> {
     Some(other)
 }
 
-/// The same by another integrator, with the same tolerance.
+/// The scene with another integrator and the same tolerance.
 pub fn integrator(scene: &Table, rng: &mut Rng) -> Option<Table> {
     let motion = settings::motion(scene)?;
     let tolerance = motion.tolerance?;
@@ -154,7 +154,7 @@ pub fn integrator(scene: &Table, rng: &mut Rng) -> Option<Table> {
     if !inextensible {
         others.push("gauss");
     }
-    // Of second order: what is asked for more than this takes it too long.
+    // The method is of second order: smaller tolerances would take too long.
     if tolerance > 1e-6 {
         others.push("generalized_alpha");
     }
@@ -163,7 +163,7 @@ pub fn integrator(scene: &Table, rng: &mut Rng) -> Option<Table> {
     Some(settings::with_integrator(scene, name, "tolerance", tolerance))
 }
 
-/// The same by steps of half the length.
+/// The scene with steps of half the length.
 pub fn half_steps(scene: &Table) -> Option<Table> {
     let motion = settings::motion(scene)?;
     Some(settings::with_integrator(scene, &motion.integrator, "step", 0.5 * motion.step?))
@@ -192,7 +192,7 @@ pub fn parts(scene: &Table, rng: &mut Rng) -> Option<[Table; 2]> {
     Some([of(first)?, of(rest)?])
 }
 
-/// The same with more or fewer modes.
+/// The scene with more or fewer modes.
 pub fn count(scene: &Table, rng: &mut Rng) -> Option<Table> {
     let kind = settings::analysis(scene).to_owned();
     let count = settings::get(scene, &["analysis", &kind, "count"])?.as_integer()?;

@@ -29,7 +29,7 @@ impl Draw<'_> {
         self.scene.insert("beam".into(), beams.into());
     }
 
-    /// EA L²/EI.
+    /// Draws EA L²/EI; none for an inextensible beam.
     fn axial(&mut self) -> Option<f64> {
         match self.rng.u8(0..20) {
             0..3 => None,
@@ -40,8 +40,7 @@ impl Draw<'_> {
 
     fn beam(&mut self, name: &str, axial: Option<f64>, like: Option<Table>, count: usize) -> Table {
         let (geometry, centreline) = self.geometry(count);
-        // Points that double back are refused by the reader too; a straight beam keeps the draw
-        // going.
+        // The reader, too, refuses points that double back; a straight beam takes their place.
         let (geometry, centreline, curve) = match Curve::new(&centreline) {
             Ok(curve) => (geometry, centreline, curve),
             Err(_) => self.fallback(),
@@ -49,7 +48,7 @@ impl Draw<'_> {
         let length = curve.length();
         let straight = matches!(centreline, Centreline::Line { .. });
         let bends = like.as_ref().map_or_else(
-            // From a string without a load no path goes on.
+            // No path by arc length leads away from a string without a load.
             || axial.is_none() || self.kind == Kind::ArcLength || !self.chance(0.08),
             |like| like.contains_key("bending_stiffness") || like.contains_key("second_moment"),
         );
@@ -139,8 +138,8 @@ impl Draw<'_> {
         }
     }
 
-    /// Joins the next beam to beam `last`; from which arc length of it, and whether by other than a
-    /// weld along the tangent.
+    /// Joins the next beam to beam `last`. Returns the arc length of the joint on that beam, and
+    /// whether it is other than a weld along the tangent.
     fn joint(&mut self, last: usize) -> (f64, bool) {
         let drawn = &self.beams[last];
         let (name, length, straight, bends) = (drawn.name.clone(), drawn.length, drawn.straight, drawn.bends);
@@ -149,7 +148,7 @@ impl Draw<'_> {
         let middle = straight && self.chance(0.15);
         let (at, s): (Value, f64) =
             if middle { ((0.5 * length).into(), 0.5 * length) } else { ("end".into(), length) };
-        // Of a string nothing keeps a direction.
+        // A string cannot keep a direction.
         let kind = if self.chance(0.6) && bends { "weld" } else { "hinge" };
         let point = |beam: &str, at: Value| {
             let mut point = Table::new();

@@ -1,4 +1,4 @@
-//! What acts on the beams, and how they move at the start.
+//! The effects on the beams, and their velocities at the start.
 
 use toml::{Table, Value};
 
@@ -43,7 +43,8 @@ impl Draw<'_> {
         }
     }
 
-    /// A dead force along the last beam, towards its start: what buckles, and does not bend before.
+    /// A dead force along the last beam, towards its start, under which it buckles without bending
+    /// before.
     fn compression(&mut self, size: f64) {
         let Some(last) = self.beams.last() else { return };
         let ([x, y], name) = (last.curve.tangent(last.length), last.name.clone());
@@ -157,7 +158,7 @@ impl Draw<'_> {
         }
     }
 
-    /// Statics knows no velocities, and warns.
+    /// Adds a dashpot; seldom in statics, which ignores velocities with a warning.
     fn dashpot(&mut self, table: &mut Table) {
         let share = if self.is_motion() { 0.6 } else { 0.02 };
         if self.chance(share) {
@@ -309,8 +310,8 @@ impl Draw<'_> {
         if !self.is_motion() || !self.chance(0.6) {
             return;
         }
-        // What is held at the start must not move: beyond a pin all may turn about it, beyond a
-        // clamp a beam may bend.
+        // Initial velocities must agree with the supports at the start: beams may turn about a pin,
+        // and bend at a clamp.
         let held: Vec<Table> = super::super::settings::items(&self.scene, &["support"]).cloned().collect();
         let slides = super::super::settings::items(&self.scene, &["joint"])
             .any(|joint| joint.get("type").and_then(Value::as_str) == Some("slider"));

@@ -5,8 +5,8 @@ use toml::{Table, Value};
 use super::Draw;
 
 impl Draw<'_> {
-    /// A law that changes within the motion; `smooth` where what it drives must not jump, and start
-    /// at rest.
+    /// A law that changes within the motion; `smooth` if the driven quantity must not jump and must
+    /// start at rest.
     pub(super) fn law(&mut self, smooth: bool) -> Table {
         let duration = self.duration;
         let mut law = Table::new();
@@ -68,7 +68,7 @@ impl Draw<'_> {
         law
     }
 
-    /// Perhaps a law, in a motion.
+    /// In a motion, adds a law with the probability `share`.
     pub(super) fn perhaps_in_time(&mut self, table: &mut Table, share: f64) {
         if self.is_motion() && self.chance(share) {
             let law = self.law(false);

@@ -75,7 +75,7 @@ impl Draw<'_> {
         self.push(&["support"], table);
     }
 
-    /// Where a support goes: by a law in a motion, where it must have been at rest before.
+    /// The prescribed motion of a support. In a motion it follows a law that starts at rest.
     fn moves(&mut self, fix: &[&str]) -> Table {
         let turns = fix.iter().any(|name| matches!(*name, "angle" | "gradient"));
         let mut table = Table::new();
