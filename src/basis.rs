@@ -134,6 +134,7 @@ impl Basis {
                 let supports = Supports::new(*neighbours, nodes.len(), &breaks);
                 Self::rpim(nodes, interpolation, supports)
             }
+            Discretization::Open => Err(BasisError::Open),
         }
     }
 

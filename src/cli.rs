@@ -18,6 +18,7 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
+use ancf::accuracy;
 use ancf::output::OutputOptions;
 use ancf::restart::SavedState;
 use ancf::run::{self, Control, Progress};
@@ -75,6 +76,13 @@ struct RunArguments {
     checkpoint: Option<Duration>,
     #[command(flatten)]
     overrides: Overrides,
+    /// Largest error of the results, in place of the scene's: what the scene leaves open is chosen
+    /// for it
+    #[arg(long, value_name = "ERROR")]
+    accuracy: Option<String>,
+    /// Estimate the errors of the results of a scene that names its mesh and steps itself
+    #[arg(long, conflicts_with = "accuracy")]
+    error: bool,
     /// Print warnings and errors only
     #[arg(short, long)]
     quiet: bool,
@@ -142,7 +150,12 @@ fn load(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
 }
 
 fn solve(arguments: &RunArguments) -> Result<(), Failure> {
-    let scene = load(&arguments.scene, &arguments.overrides)?;
+    let mut scene = load(&arguments.scene, &arguments.overrides)?;
+    if let Some(error) = &arguments.accuracy {
+        let analysis = scene.analysis().kind();
+        let wanted = [format!("analysis.{analysis}.accuracy={error}")];
+        scene = scene.with(&wanted).map_err(Failure::Scene)?;
+    }
     let saved = arguments.from.as_deref().map(SavedState::load).transpose();
     let saved = saved.map_err(|error| Failure::run(scene.name(), error.into()))?;
     let interrupted = interrupt::listen("the run ends after this step");
@@ -168,10 +181,17 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
         checkpoints,
         frames: wanted.frames(),
     };
-    let outcome = scene.model().solve_with(scene.analysis(), options);
+    let outcome = if arguments.error && scene.accuracy().is_none() {
+        accuracy::estimate(scene.model(), scene.analysis(), options)
+    } else {
+        accuracy::run(&scene, options)
+    };
     progress.clear();
     let (mut results, failure) = match outcome {
-        Ok(results) if results.run().complete => (results, None),
+        Ok(results) if results.run().complete => {
+            let failure = Failure::inaccurate(scene.name(), results.run());
+            (results, failure)
+        }
         Ok(partial) => {
             let (scene, results) = (scene.name().to_owned(), destination.path().to_owned());
             (partial, Some(Failure::Interrupted { scene, results }))
@@ -205,7 +225,8 @@ fn check(arguments: &CheckArguments) -> Result<(), Vec<Failure>> {
         let checked = load(path, &arguments.overrides).and_then(|scene| {
             // Some faults, such as shape functions that cannot be solved for, show only when they
             // are built.
-            run::inspect(scene.model(), scene.analysis()).map_err(|error| Failure::run(scene.name(), error))
+            let (model, analysis) = accuracy::first(&scene);
+            run::inspect(&model, &analysis).map_err(|error| Failure::run(scene.name(), error))
         });
         match checked {
             Ok(_) if arguments.quiet => {}
@@ -219,8 +240,8 @@ fn check(arguments: &CheckArguments) -> Result<(), Vec<Failure>> {
 fn inspect(arguments: &InspectArguments) -> Result<(), Failure> {
     let scene = load(&arguments.scene, &arguments.overrides)?;
     let look = if arguments.measure { run::measure } else { run::inspect };
-    let inventory =
-        look(scene.model(), scene.analysis()).map_err(|error| Failure::run(scene.name(), error))?;
+    let (model, analysis) = accuracy::first(&scene);
+    let inventory = look(&model, &analysis).map_err(|error| Failure::run(scene.name(), error))?;
     if arguments.json { print_json(&inventory) } else { print(&inventory.to_string()) }
 }
 

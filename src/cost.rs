@@ -30,28 +30,30 @@ mod error;
 mod output;
 mod reference;
 mod search;
-mod setting;
 mod trial;
 
+use std::fmt;
 use std::time::{Duration, Instant};
 
+pub use crate::accuracy::setting::{Family, Setting, Solver};
 pub use deviation::Deviation;
 pub use error::CostError;
 #[cfg(feature = "report")]
 pub use output::{Report, ReportedTrial, write};
 pub use reference::Reference;
 pub use search::LeftOut;
-pub use setting::{Family, Setting, Solver};
 pub use trial::{Measured, Trial};
 
 pub use crate::run::Control;
 
+use crate::accuracy;
 use crate::centreline::Curve;
-use crate::model::{Analysis, Beam, Model, Place, Probe};
+use crate::model::{Accuracy, Analysis, Beam, Model, Open, Place, Probe};
 use crate::run;
 use crate::scene::Scene;
 use bench::{Measuring, Runner};
 use search::{Found, Task};
+use serde::Serialize;
 
 /// The target and the budget of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,12 +102,44 @@ pub struct Study {
     pub front: Vec<usize>,
     /// The cheapest trial that meets the target.
     pub best: Option<Best>,
+    /// What accuracy alone chooses.
+    pub alone: Option<Alone>,
     /// Settings that were not tried, and why.
     pub left_out: Vec<LeftOut>,
     /// Whether it came to its end: not where it was interrupted.
     pub complete: bool,
     /// Wall time of everything \[s\].
     pub seconds: f64,
+}
+
+/// What is chosen, and what it costs, where the target is the scene's accuracy and the scene names
+/// neither mesh nor steps.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Alone {
+    /// The setting in words.
+    pub setting: String,
+    /// Its tables of a scene file.
+    pub lines: String,
+    /// Its unknowns.
+    pub degrees_of_freedom: usize,
+    /// Time of all runs, those for the choice and the estimate included \[s\].
+    pub seconds: f64,
+    /// Its error against the reference.
+    pub error: f64,
+    /// The error that it was estimated to have.
+    pub estimated: f64,
+}
+
+impl fmt::Display for Alone {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { setting, degrees_of_freedom, seconds, error, estimated, .. } = self;
+        write!(
+            f,
+            "{setting}, {degrees_of_freedom} unknowns; errs by {error:.1e} ({estimated:.0e} estimated), in {:.3} ms for choice, solution \
+             and estimate",
+            1e3 * seconds
+        )
+    }
 }
 
 /// The cheapest setting that meets the target.
@@ -168,7 +202,7 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
     if !(0.01..=604_800.0).contains(&budget) {
         return Err(CostError::Budget { budget });
     }
-    let analysis = scene.analysis();
+    let (model, analysis) = &accuracy::first(scene);
     if let Analysis::Static(settings) = analysis
         && let Some(arc) = &settings.arc_length
         && arc.until_load.is_none()
@@ -176,8 +210,8 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
     {
         return Err(CostError::Path);
     }
-    run::inspect(scene.model(), analysis)?;
-    let model = &watched(scene.model());
+    run::inspect(model, analysis)?;
+    let model = &watched(model);
     let runner = Runner { model, analysis, start: Instant::now(), budget, watcher };
     let reference = reference::make(&runner, target, FOR_REFERENCE * budget)?;
     let uncertainty = reference.uncertainty.error;
@@ -198,8 +232,34 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
         }
     };
     let front = trial::front(&points);
+    let alone = if interrupted { None } else { alone(&runner, &reference, target) };
     let seconds = runner.now();
-    Ok(Study { options, reference, trials, front, best, left_out, complete: !interrupted, seconds })
+    Ok(Study { options, reference, trials, front, best, alone, left_out, complete: !interrupted, seconds })
+}
+
+/// Solves the scene for the target alone; `None` where it takes more than half the budget, or does
+/// not come to its end.
+fn alone(runner: &Runner<'_>, reference: &Reference, target: f64) -> Option<Alone> {
+    let deadline = runner.now() + 0.5 * runner.budget;
+    let observer = &mut |_: &run::Progress| {
+        let stopped = runner.tell("accuracy alone") == Control::Stop || runner.now() > deadline;
+        if stopped { Control::Stop } else { Control::Continue }
+    };
+    let options = run::Options { observer: Some(observer), frames: 0, ..run::Options::default() };
+    let (model, analysis) = (runner.model, runner.analysis);
+    let open =
+        Open { beams: vec![true; model.beams.len()], integrator: matches!(analysis, Analysis::Dynamic(_)) };
+    let found = accuracy::solve(model, analysis, &open, Accuracy::new(target), options).ok()?;
+    let run = found.results.run();
+    let error = run.error.as_ref().filter(|error| error.met && run.complete)?;
+    Some(Alone {
+        setting: error.runs.last()?.setting.clone(),
+        lines: found.chosen.clone(),
+        degrees_of_freedom: run.degrees_of_freedom,
+        seconds: error.runs.iter().map(|run| run.seconds).sum(),
+        error: Deviation::between(model, analysis, &found.results, &reference.results).ok()?.error,
+        estimated: error.estimated.result,
+    })
 }
 
 fn least(target: f64, reference: &Reference) -> f64 {
@@ -314,6 +374,7 @@ mod tests {
             trials: settings.map(trial).into(),
             front: vec![1, 3],
             best: Some(Best { trial: 1, lines, scene: self::scene() }),
+            alone: None,
             left_out: vec![],
             complete: true,
             seconds: 17.5,

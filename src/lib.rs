@@ -60,8 +60,9 @@
 //! | [`run`](mod@run) | one model, one analysis | `linear`, [`basis`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
 //! | [`output`] | files, plots, the report page | [`restart`], [`results`] |
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`effect`], [`model`] |
-//! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`] |
-//! | [`cost`] | computing time for a given accuracy: settings of all kinds compared with a reference | [`centreline`], [`model`], [`results`], [`scene`], [`run`](mod@run), [`output`] |
+//! | [`accuracy`] | everything that a scene leaves open chosen for an accuracy, and the errors of results | [`centreline`], [`basis`], [`model`], [`results`], [`run`](mod@run), [`scene`] |
+//! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`], [`accuracy`] |
+//! | [`cost`] | computing time for a given accuracy: settings of all kinds compared with a reference | [`centreline`], [`model`], [`results`], [`scene`], [`run`](mod@run), [`output`], [`accuracy`] |
 //!
 //! `lanes`, `linear` and `solve` are internal to the crate and may change with any version;
 //! everything a user needs from them is available through other modules. A module imports only
@@ -181,6 +182,7 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+pub mod accuracy;
 pub mod assembly;
 pub mod basis;
 pub mod beam;

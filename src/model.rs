@@ -3,12 +3,14 @@
 //! A model does not contain nodes, elements or steps. A scene file is one way to make a [`Model`];
 //! a program that uses the library can fill one directly.
 
+mod accuracy;
 mod analysis;
 mod defaults;
 pub mod freedom;
 mod joint;
 mod velocity;
 
+pub use accuracy::{Accuracy, Open};
 pub use analysis::*;
 pub use defaults::*;
 pub use joint::Joint;

@@ -20,6 +20,7 @@
 //! Files are written under temporary names and renamed when all of them are complete: a failure
 //! leaves no half-written file under a final name.
 
+mod digits;
 mod error;
 #[cfg(feature = "report")]
 mod figures;
@@ -40,9 +41,10 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
+pub use digits::with_error;
 pub use error::OutputError;
 pub(crate) use summary::drift;
-pub use summary::{EnergySummary, Summary};
+pub use summary::{EnergySummary, ErrorSummary, ProbeSummary, Summary, WantedError};
 
 use crate::restart::SavedState;
 use crate::results::{PICTURES, Results};
@@ -68,7 +70,8 @@ impl OutputOptions {
 
 /// Names that a run may leave; those that this run does not write are removed when it replaces an
 /// older one, so that a directory never mixes two runs.
-const NAMES: [&str; 25] = [
+const NAMES: [&str; 27] = [
+    "chosen.toml",
     "reactions.csv",
     "effects.csv",
     "summary.json",
@@ -85,6 +88,7 @@ const NAMES: [&str; 25] = [
     "report.html",
     "shape.svg",
     "curvature.svg",
+    "error.svg",
     "strain.svg",
     "position.svg",
     "angle.svg",
@@ -130,6 +134,9 @@ pub fn write(
     stage.add("shape.csv", |out| tables::shape(t, out))?;
     if let Some(saved) = &t.saved {
         stage.add("state.json", |out| Ok(serde_json::to_writer(out, saved)?))?;
+    }
+    if let Some(chosen) = t.run.error.as_ref().and_then(|error| error.chosen.as_ref()) {
+        stage.add("chosen.toml", |out| out.write_all(chosen.as_bytes()))?;
     }
     let eigenvalues = match results {
         Results::Trajectory(_) => None,

@@ -1,10 +1,12 @@
 //! The results of an analysis: a [`Trajectory`] of statics and of motions, [`Vibrations`] or
 //! [`CriticalLoads`]. Output and verification read nothing else.
 
+mod estimate;
 mod modes;
 mod shape;
 mod trajectory;
 
+pub use estimate::{BeamErrors, ErrorEstimate, Errors, ProbeErrors, RunForError};
 pub use modes::{BucklingMode, CriticalLoads, ModeShape, Vibration, Vibrations};
 pub use shape::{Frame, Shape};
 pub use trajectory::{EffectSeries, Event, ProbeSample, ProbeSeries, ReactionSeries, Trajectory};
@@ -54,6 +56,11 @@ impl Results {
             Self::Vibrations(vibrations) => &mut vibrations.equilibrium,
             Self::CriticalLoads(loads) => &mut loads.unloaded,
         }
+    }
+
+    /// As [`Self::run`].
+    pub fn run_mut(&mut self) -> &mut Run {
+        &mut self.states_mut().run
     }
 
     /// As [`Self::states`].
@@ -125,6 +132,9 @@ pub struct Run {
     pub statistics: Statistics,
     /// Wall times of the parts of the run.
     pub seconds: Seconds,
+    /// How wrong the results are, where that was asked for.
+    #[serde(skip)]
+    pub error: Option<Box<ErrorEstimate>>,
 }
 
 /// The kind of an analysis.

@@ -36,7 +36,7 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::de::DeTable;
 
-use crate::model::{Analysis, Model};
+use crate::model::{Accuracy, Analysis, Model, Open};
 use error::Fault;
 use overrides::Overridden;
 
@@ -58,6 +58,8 @@ pub struct Scene {
     text: String,
     model: Model,
     analysis: Analysis,
+    accuracy: Option<Accuracy>,
+    open: Open,
     output: Output,
 }
 
@@ -103,8 +105,7 @@ impl Scene {
         DeTable::parse(text).map_err(|error| diagnose::syntax(&error, text).at(name, text))?;
         let overridden = Overridden::apply(name, text, overrides)?;
         let text = overridden.text();
-        let (model, analysis, output) = tables(text).map_err(|fault| overridden.blame(fault))?;
-        Ok(Self { name: name.to_owned(), text: text.to_owned(), model, analysis, output })
+        tables(name, text).map_err(|fault| overridden.blame(fault))
     }
 
     /// This scene with further `overrides`, of the form that [`load`](Self::load) takes.
@@ -123,6 +124,18 @@ impl Scene {
     /// What is to be computed.
     pub fn analysis(&self) -> &Analysis {
         &self.analysis
+    }
+
+    /// The largest errors that the results may have: as the scene says, or the usual ones where it
+    /// leaves a discretisation open; `None` where it says nothing of accuracy and leaves nothing
+    /// open.
+    pub fn accuracy(&self) -> Option<Accuracy> {
+        self.accuracy.or_else(|| self.open.beams.contains(&true).then(Accuracy::default))
+    }
+
+    /// What is to be chosen for the accuracy.
+    pub fn open(&self) -> &Open {
+        &self.open
     }
 
     /// Which further files are asked for.
@@ -179,10 +192,13 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     quantity::Quantity::<quantity::Time, quantity::Positive>::parse(text).map(|time| time.si)
 }
 
-fn tables(text: &str) -> Result<(Model, Analysis, Output), Fault> {
+fn tables(name: &str, text: &str) -> Result<Scene, Fault> {
     let root = DeTable::parse(text).map_err(|error| diagnose::syntax(&error, text))?;
     let file = file::SceneTable::deserialize(toml::Deserializer::from(root.clone()))
         .map_err(|error| diagnose::data(&error, root.get_ref()))?;
     let (model, analysis) = to_model::convert(&file)?;
-    Ok((model, analysis, Output { states: file.output.states, vtu: file.output.vtu }))
+    let accuracy = to_analysis::accuracy(&file)?;
+    let open = Open::of(&model, &analysis, !to_analysis::names_an_integrator(&file));
+    let output = Output { states: file.output.states, vtu: file.output.vtu };
+    Ok(Scene { name: name.to_owned(), text: text.to_owned(), model, analysis, accuracy, open, output })
 }

@@ -46,6 +46,7 @@ pub use journal::Outcome;
 pub use manifest::MANIFEST;
 pub use shard::Shard;
 
+use crate::accuracy;
 use crate::output::{StagedFiles, Summary};
 use crate::run::{self, Control};
 use crate::scene::Scene;
@@ -146,8 +147,13 @@ impl Sweep {
     fn record(&self, run: usize) -> Record {
         let start = Instant::now();
         let (outcome, message, results) = match self.scene.with(&self.grid.overrides(run)) {
-            Ok(scene) => match scene.model().solve_with(scene.analysis(), numbers_alone()) {
-                Ok(results) => (Outcome::Solved, None, Some(results)),
+            Ok(scene) => match accuracy::run(&scene, numbers_alone()) {
+                Ok(results) => {
+                    match results.run().error.as_ref().and_then(|e| e.missed(results.run().analysis)) {
+                        None => (Outcome::Solved, None, Some(results)),
+                        missed => (Outcome::Failed, missed, Some(results)),
+                    }
+                }
                 Err(mut error) => {
                     let refused = error.exit_status() == 2;
                     let outcome = if refused { Outcome::Refused } else { Outcome::Failed };

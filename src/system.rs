@@ -115,7 +115,7 @@ impl System {
                 reference.extend([x, y, tx, ty]);
             }
             let linear = match beam.discretization {
-                Discretization::Ancf { .. } => true,
+                Discretization::Ancf { .. } | Discretization::Open => true,
                 Discretization::Rpim { polynomial_terms, .. } => polynomial_terms >= 2,
             };
             let straight = linear && matches!(beam.centreline, Centreline::Line { .. });

@@ -34,6 +34,11 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
         None
     }
 
+    /// The point at which it acts, where it acts at a single one: there the shear force jumps.
+    fn point(&self) -> Option<Place> {
+        None
+    }
+
     /// The motions that the part may resist by elasticity against the ground. They are used to
     /// refuse models with a motion that nothing resists.
     fn resists(&self) -> Vec<Resistance> {

@@ -24,13 +24,19 @@ pub enum Discretization {
         /// Number of nodes of a support beyond the cell's own two, on each side.
         neighbours: usize,
     },
+    /// None: to be chosen for an accuracy. No basis can be made of it.
+    Open,
 }
 
 impl Discretization {
+    /// Where the search for an accuracy begins.
+    const FIRST: Nodes = Nodes::Uniform(9);
+
     /// Where the nodes are.
     pub fn nodes(&self) -> &Nodes {
         match self {
             Self::Ancf { nodes } | Self::Rpim { nodes, .. } => nodes,
+            Self::Open => &Self::FIRST,
         }
     }
 }
@@ -120,6 +126,7 @@ impl fmt::Display for Discretization {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Ancf { nodes } => write!(f, "ANCF cable elements, {nodes}"),
+            Self::Open => f.write_str("chosen for the accuracy"),
             Self::Rpim { nodes, kernel, polynomial_terms, side_condition, neighbours } => {
                 let sign = match side_condition {
                     SideCondition::Plus => '+',

@@ -6,6 +6,11 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum BasisError {
+    /// The beam has no discretisation.
+    #[error(
+        "it has none yet: one is chosen when the model is solved for an accuracy; give a basis to do without"
+    )]
+    Open,
     /// The beam has no usable length.
     #[error("expected a beam of positive, finite length, found {length} m")]
     Length {

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use ancf::cost::CostError;
 use ancf::output::OutputError;
+use ancf::results::Run;
 use ancf::run::RunError;
 use ancf::scene::SceneError;
 use ancf::sweep::SweepError;
@@ -31,6 +32,13 @@ pub enum Failure {
         scene: String,
         /// Cause of the failure.
         error: Box<CostError>,
+    },
+    /// The results are less accurate than was wanted.
+    Inaccurate {
+        /// The scene file.
+        scene: String,
+        /// Which accuracy, by how much, and why.
+        missed: String,
     },
     /// It was interrupted.
     Interrupted {
@@ -58,6 +66,12 @@ impl Failure {
         Self::Run { scene: name.to_owned(), error: Box::new(error) }
     }
 
+    /// The failure of results that are less accurate than was wanted.
+    pub fn inaccurate(name: &str, run: &Run) -> Option<Self> {
+        let missed = run.error.as_ref()?.missed(run.analysis)?;
+        Some(Self::Inaccurate { scene: name.to_owned(), missed })
+    }
+
     /// A failure to measure the cost of the scene called `name`.
     pub fn cost(name: &str, error: CostError) -> Self {
         Self::Cost { scene: name.to_owned(), error: Box::new(error) }
@@ -70,7 +84,7 @@ impl Failure {
             Self::Run { error, .. } => error.exit_status(),
             Self::Sweep(error) => error.exit_status(),
             Self::Cost { error, .. } => error.exit_status(),
-            Self::Interrupted { .. } | Self::Output(_) | Self::Print(_) => 1,
+            Self::Inaccurate { .. } | Self::Interrupted { .. } | Self::Output(_) | Self::Print(_) => 1,
         }
     }
 
@@ -81,7 +95,9 @@ impl Failure {
             Self::Sweep(error) => Some(error),
             Self::Cost { error, .. } => Some(error.as_ref()),
             Self::Output(error) => Some(error),
-            Self::Interrupted { .. } | Self::Directory { .. } | Self::Print(_) => None,
+            Self::Inaccurate { .. } | Self::Interrupted { .. } | Self::Directory { .. } | Self::Print(_) => {
+                None
+            }
         }
     }
 }
@@ -103,6 +119,7 @@ impl fmt::Display for Failure {
             Self::Run { scene, error } => write!(f, "{scene}: {error}"),
             Self::Sweep(error) => error.fmt(f),
             Self::Cost { scene, error } => write!(f, "{scene}: {error}"),
+            Self::Inaccurate { scene, missed } => write!(f, "{scene}: {missed}"),
             Self::Interrupted { scene, results } => {
                 write!(f, "{scene}: interrupted; what was computed until then is in {}", results.display())
             }

@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 use ancf::cost;
 use ancf::model::Analysis;
 use ancf::output::plot::human;
-use ancf::results::{AnalysisKind, ContactImpulse, Event, ProbeSample, Results, Run};
+use ancf::output::with_error;
+use ancf::results::{AnalysisKind, ContactImpulse, ErrorEstimate, Event, ProbeSample, Results, Run};
 use ancf::run::Progress;
 use ancf::sweep;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -205,6 +206,9 @@ pub fn warnings(run: &Run) {
     for warning in &run.warnings {
         note(&format!("warning: {warning}"));
     }
+    for remark in run.error.iter().flat_map(|error| &error.notes) {
+        note(&format!("note: {remark}"));
+    }
 }
 
 /// Prints the table at the end of a run.
@@ -228,10 +232,13 @@ fn table(results: &Results, directory: &Path) -> String {
     }
     for probe in &trajectory.probes {
         if let Some(sample) = probe.samples.last() {
-            row(&probe.name, sample_text(sample));
+            let error = run.error.as_ref().and_then(|error| error.last_of(&probe.name));
+            row(&probe.name, sample_text(sample, error));
         }
     }
+    let errors = run.error.as_ref().map(|error| &error.eigenvalues[..]).unwrap_or_default();
     for (value, mode) in results.eigenvalues().into_iter().zip(1..) {
+        let number = |value: f64| known(value, errors.get(mode - 1).map(|error| error * value.abs()));
         let free = if value == 0.0 { " (nothing resists)" } else { "" };
         match results {
             Results::CriticalLoads(_) => {
@@ -286,6 +293,9 @@ fn table(results: &Results, directory: &Path) -> String {
             work.push(format!("{count} {}", if count == 1 { one } else { many }));
         }
     }
+    if let Some(error) = &run.error {
+        row("error", error_text(error, run.analysis));
+    }
     row("unknowns", run.degrees_of_freedom.to_string());
     if !work.is_empty() {
         row("work", work.join(", "));
@@ -306,19 +316,49 @@ fn table(results: &Results, directory: &Path) -> String {
     text
 }
 
-fn sample_text(sample: &ProbeSample) -> String {
+/// The largest errors, what was wanted of them, and what it took.
+fn error_text(error: &ErrorEstimate, analysis: AnalysisKind) -> String {
+    let unit = match analysis {
+        AnalysisKind::Static | AnalysisKind::Dynamic => " of a beam length",
+        AnalysisKind::Modal | AnalysisKind::Buckling => ", relative",
+    };
+    let mut text = format!("{:.0e}{unit}", error.estimated.result);
+    if let Some(wanted) = error.wanted {
+        let _ = write!(text, " ({:e} wanted)", wanted.result);
+        for (what, wanted, found) in [
+            ("curvature", wanted.curvature, error.estimated.curvature),
+            ("section forces", wanted.section_force, error.estimated.section_force),
+        ] {
+            if let (Some(wanted), Some(found)) = (wanted, found) {
+                let _ = write!(text, ", {what} {found:.0e} ({wanted:e} wanted)");
+            }
+        }
+    }
+    let (seconds, runs) = (error.runs.iter().map(|run| run.seconds).sum::<f64>(), error.runs.len());
+    let _ = write!(text, "; {runs} runs in {seconds:.3} s");
+    text
+}
+
+fn sample_text(sample: &ProbeSample, error: Option<&ProbeSample>) -> String {
+    let of = |value: f64, error_of: fn(&ProbeSample) -> f64| known(value, error.map(error_of));
     let mut text = format!(
         "x = {} m, y = {} m, angle = {}°, curvature = {} /m, strain = {}",
-        number(sample.x),
-        number(sample.y),
-        number(sample.angle.to_degrees()),
-        number(sample.curvature),
-        number(sample.strain)
+        of(sample.x, |e| e.x),
+        of(sample.y, |e| e.y),
+        of(sample.angle.to_degrees(), |e| e.angle.to_degrees()),
+        of(sample.curvature, |e| e.curvature),
+        of(sample.strain, |e| e.strain)
     );
     if let (Some(vx), Some(vy)) = (sample.vx, sample.vy) {
-        let _ = write!(text, ", vx = {} m/s, vy = {} m/s", number(vx), number(vy));
+        let (x, y) = (of(vx, |e| e.vx.unwrap_or(0.0)), of(vy, |e| e.vy.unwrap_or(0.0)));
+        let _ = write!(text, ", vx = {x} m/s, vy = {y} m/s");
     }
     text
+}
+
+/// A value with no digit beyond its error, where that is known.
+fn known(value: f64, error: Option<f64>) -> String {
+    error.and_then(|error| with_error(value, error)).unwrap_or_else(|| number(value))
 }
 
 /// Seven significant digits, as short as they allow.

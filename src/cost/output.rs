@@ -16,7 +16,7 @@ use askama::Template;
 use serde::Serialize;
 
 use super::trial::front;
-use super::{Deviation, Family, LeftOut, Measured, Solver, Study, Trial, least};
+use super::{Alone, Deviation, Family, LeftOut, Measured, Solver, Study, Trial, least};
 use crate::model::Integrator;
 use crate::output::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, Series, human};
 use crate::output::{OutputError, StagedFiles, exact};
@@ -46,6 +46,8 @@ pub struct Report<'a> {
     pub best: Option<usize>,
     /// Tables of a scene file that select it.
     pub lines: Option<&'a str>,
+    /// What accuracy alone chooses.
+    pub alone: Option<&'a Alone>,
     /// Settings that were not tried, and why.
     pub left_out: &'a [LeftOut],
     /// Warnings for the reader.
@@ -100,6 +102,7 @@ impl Study {
             trials: self.trials.iter().enumerate().map(trial).collect(),
             best: self.best.as_ref().map(|best| best.trial),
             lines: self.best.as_ref().map(|best| best.lines.as_str()),
+            alone: self.alone.as_ref(),
             left_out: &self.left_out,
             warnings: self.warnings(),
         }
@@ -120,7 +123,13 @@ pub fn write(directory: &Path, study: &Study) -> Result<(), OutputError> {
         chart.svg().map_err(|source| OutputError::Plot { name: name.to_owned(), source })
     };
     let error = report.error;
-    let by_time = draw(time, &chart(study, "time to build and solve [s]", |m| m.seconds))?;
+    let mut by_time = chart(study, "time to build and solve [s]", |m| m.seconds);
+    if let Some(alone) = &study.alone {
+        let point = vec![[alone.seconds, alone.error]];
+        by_time =
+            by_time.with(Series::points("accuracy alone, estimate included", point, PALETTE[3]).size(6.0));
+    }
+    let by_time = draw(time, &by_time)?;
     let by_work =
         draw(work, &chart(study, "(tangent evaluations + factorisations) × unknowns", Measured::sized_work))?;
     let marks = "Dots on lines: meshes of one discretisation with an accurate solver; circles: other tolerances and Gauss; \
@@ -290,6 +299,7 @@ struct Page<'a> {
     seconds: String,
     warnings: &'a [String],
     lines: &'a str,
+    alone: String,
     figures: &'a [(&'a str, String)],
     header: [&'static str; 9],
     rows: Vec<(bool, [String; 9])>,
@@ -331,6 +341,7 @@ fn html(study: &Study, report: &Report<'_>, figures: &[(&str, String)]) -> Resul
         seconds: human(study.seconds, 3),
         warnings: &report.warnings,
         lines: report.lines.unwrap_or_default(),
+        alone: report.alone.map(Alone::to_string).unwrap_or_default(),
         figures,
         header: [
             "discretisation",

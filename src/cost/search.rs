@@ -8,8 +8,8 @@
 use serde::Serialize;
 
 use super::bench::{Bench, Unmeasured};
-use super::setting::{Family, Setting, Solver, cells};
 use super::trial::{Trial, front, points};
+use crate::accuracy::setting::{Family, Setting, Solver, cells};
 use crate::model::SPECTRAL_RADIUS;
 use crate::model::{Analysis, Integrator, Model, StepControl};
 
@@ -365,6 +365,7 @@ mod tests {
             }
             self.interrupt_after -= 1;
             let (meshfree, nodes) = match &setting.beams[0].0 {
+                Discretization::Open => unreachable!("a setting names its meshes"),
                 Discretization::Ancf { nodes } => (false, nodes),
                 Discretization::Rpim { nodes, .. } => (true, nodes),
             };
@@ -868,6 +869,7 @@ mod tests {
 
         fn measure(&mut self, setting: &Setting, deadline: f64) -> Result<Measured, Unmeasured> {
             let (meshfree, nodes) = match &setting.beams[0].0 {
+                Discretization::Open => unreachable!("a setting names its meshes"),
                 Discretization::Ancf { nodes } => (false, nodes),
                 Discretization::Rpim { nodes, .. } => (true, nodes),
             };

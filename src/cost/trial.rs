@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::deviation::Deviation;
-use super::setting::{Family, Setting};
+use crate::accuracy::setting::{Family, Setting};
 use crate::results::Statistics;
 
 /// A setting with its cost and its error.

@@ -36,6 +36,10 @@ impl Part for Force {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         add_force(assembly, Kind::Force, Extent::Point(self.at), self.value, self.follower, self.law.as_ref())
     }
+
+    fn point(&self) -> Option<Place> {
+        Some(self.at)
+    }
 }
 
 /// A force per reference length \[N/m\] along a whole beam.

@@ -45,6 +45,10 @@ impl Part for PointMass {
         self.rotary_inertia.map(|_| self.at)
     }
 
+    fn point(&self) -> Option<Place> {
+        Some(self.at)
+    }
+
     fn mass(&self) -> Option<(Place, f64)> {
         Some((self.at, self.mass?))
     }

@@ -46,6 +46,10 @@ impl Part for Spring {
         Ok(())
     }
 
+    fn point(&self) -> Option<Place> {
+        Some(self.at)
+    }
+
     fn resists(&self) -> Vec<Resistance> {
         let axes = self.stiffness.map_or(&[][..], |_| &[[1.0, 0.0], [0.0, 1.0]]);
         axes.iter().map(|axis| Resistance::Displacement(self.at, *axis)).collect()

@@ -16,6 +16,18 @@ pub enum Analysis {
     Modal(Modal),
 }
 
+impl Analysis {
+    /// Its name in a scene.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Static(_) => "static",
+            Self::Dynamic(_) => "dynamic",
+            Self::Buckling(_) => "buckling",
+            Self::Modal(_) => "modal",
+        }
+    }
+}
+
 /// Settings of a buckling analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Buckling {

@@ -86,8 +86,8 @@ impl GaussPoints {
         let locks = section.axial_stiffness.is_some() && section.bending_stiffness.is_some();
         match discretization {
             Discretization::Rpim { .. } => RPIM_GAUSS_POINTS,
-            Discretization::Ancf { .. } if locks => ANCF_GAUSS_POINTS,
-            Discretization::Ancf { .. } => STRING_GAUSS_POINTS,
+            Discretization::Ancf { .. } | Discretization::Open if locks => ANCF_GAUSS_POINTS,
+            Discretization::Ancf { .. } | Discretization::Open => STRING_GAUSS_POINTS,
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::error::OutputError;
 use super::mode::displaced;
 use super::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, PlotError, Series, colour, grid, human};
-use crate::results::{AnalysisKind, ProbeSample, Results, Shape, Trajectory};
+use crate::results::{AnalysisKind, BeamErrors, ProbeSample, Results, Shape, Trajectory};
 
 /// A drawn plot with the words below it.
 pub(super) struct Figure {
@@ -15,6 +15,9 @@ pub(super) struct Figure {
 
 /// A quantity along a beam.
 type Along = fn(&Shape) -> &Vec<f64>;
+
+/// The estimated error of a quantity along a beam.
+type ErrorAlong = fn(&BeamErrors) -> &Vec<f64>;
 
 /// Two quantities of a probe with their names.
 type Pair = [(&'static str, fn(&ProbeSample) -> f64); 2];
@@ -49,6 +52,7 @@ pub(super) fn figures(results: &Results) -> Result<Vec<Figure>, OutputError> {
     let t = results.states();
     let mut sketches = vec![modes(results), shape(t)];
     sketches.extend(along(t));
+    sketches.push(error(t));
     sketches.push(position(t));
     sketches.push(angle(t));
     sketches.push(velocity(t));
@@ -154,7 +158,7 @@ fn colour_of_beam(index: usize) -> Colour {
 
 /// Curvature and strain along the arc length.
 fn along(t: &Trajectory) -> [Option<Sketch>; 2] {
-    let sketch = |name, title: &str, axis: Axis, unit: &str, values: Along| {
+    let sketch = |name, title: &str, axis: Axis, unit: &str, values: Along, errors: Option<ErrorAlong>| {
         if t.last.is_empty() || t.parameter.is_empty() {
             return None;
         }
@@ -164,6 +168,12 @@ fn along(t: &Trajectory) -> [Option<Sketch>; 2] {
             let points: Vec<[f64; 2]> = beam.s.iter().zip(values(beam)).map(|(&s, &v)| [s, v]).collect();
             largest = points.iter().fold(largest, |m, p| m.max(p[1].abs()));
             let label = if t.last.len() > 1 { beam.beam.as_str() } else { "" };
+            let error = t.run.error.as_ref().and_then(|error| error.beams.get(i));
+            if let (Some(error), Some(of)) = (error, errors) {
+                let known = |s: f64| nearest(&error.s, of(error), s);
+                let side = |sign: f64| points.iter().map(|&[s, v]| [s, v + sign * known(s)]).collect();
+                chart = chart.with(Series::band("", side(-1.0), side(1.0), colour_of_beam(i)));
+            }
             chart = chart.with(Series::line(label, points, colour_of_beam(i)));
         }
         let caption = format!("{title} {}; largest magnitude {}{unit}.", moment(t), human(largest, 5));
@@ -174,9 +184,48 @@ fn along(t: &Trajectory) -> [Option<Sketch>; 2] {
     let curvature = Axis::linear("curvature κ [1/m]").negligible(straight);
     let strain = Axis::linear("axial strain ε [–]").negligible(1e-9);
     [
-        sketch("curvature", "Curvature", curvature, " 1/m", |b| &b.curvature),
-        sketch("strain", "Axial strain", strain, "", |b| &b.strain),
+        sketch("curvature", "Curvature", curvature, " 1/m", |b| &b.curvature, Some(|e| &e.curvature)),
+        sketch("strain", "Axial strain", strain, "", |b| &b.strain, None),
     ]
+}
+
+/// The larger of the values at the places before and behind `s`.
+fn nearest(places: &[f64], values: &[f64], s: f64) -> f64 {
+    let behind = places.partition_point(|place| *place < s);
+    let at = |i: usize| values.get(i).copied().unwrap_or(0.0);
+    at(behind).max(behind.checked_sub(1).map_or(0.0, at))
+}
+
+/// Where along the beams and when the estimated error of positions is.
+fn error(t: &Trajectory) -> Option<Sketch> {
+    let error = t.run.error.as_ref().filter(|error| !error.beams.is_empty())?;
+    let axis = || Axis::log("error of positions [beam lengths]");
+    let mut along = Chart::new("", Axis::linear("arc length s [m]"), axis()).sized(SMALL.0, SMALL.1);
+    for (i, beam) in error.beams.iter().enumerate() {
+        let points = beam.s.iter().zip(&beam.position).map(|(&s, &v)| [s, v]).collect();
+        let label = if error.beams.len() > 1 { beam.beam.as_str() } else { "" };
+        along = along.with(Series::line(label, points, colour_of_beam(i)));
+    }
+    let mut charts = vec![along];
+    let records = over_parameter(t, error.records.iter().copied());
+    if records.len() > 1 {
+        let chart = Chart::new("", parameter_axis(t), axis()).sized(SMALL.0, SMALL.1);
+        let mut chart =
+            with_dots(chart, &records, PALETTE[0]).with(Series::line("largest", records, PALETTE[0]));
+        if let (Some(wanted), [first, .., last]) = (error.wanted, &t.parameter[..]) {
+            let level = vec![[*first, wanted.result], [*last, wanted.result]];
+            chart = chart.with(Series::dashed("wanted", level, GREY));
+        }
+        charts.push(chart);
+    }
+    let caption = match charts.len() {
+        1 => "Estimated error of positions along the beams, the largest of all records.",
+        _ => {
+            "Estimated error of positions: along the beams, the largest of all records; and at each record, the largest of all beams."
+        }
+    };
+    let drawn = error.estimated.result > 0.0;
+    drawn.then(|| Sketch { name: "error", caption: caption.into(), charts })
 }
 
 fn over_parameter(t: &Trajectory, values: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
@@ -203,6 +252,13 @@ fn probes(t: &Trajectory, axis: Axis, pair: Pair) -> Option<Chart> {
     for (i, probe) in t.probes.iter().enumerate() {
         for (mark, (name, value)) in [Mark::Line, Mark::Dashed].into_iter().zip(pair) {
             let points = over_parameter(t, probe.samples.iter().map(value));
+            if let Some(error) = t.run.error.as_ref().and_then(|error| error.probes.get(i)) {
+                let side = |sign: f64| {
+                    let of = |(p, e): (&[f64; 2], &ProbeSample)| [p[0], p[1] + sign * value(e)];
+                    points.iter().zip(&error.samples).map(of).collect()
+                };
+                chart = chart.with(Series::band("", side(-1.0), side(1.0), colour(i)));
+            }
             chart = with_dots(chart, &points, colour(i));
             chart = chart.with(Series::new(format!("{}.{name}", probe.name), points, mark, colour(i)));
         }

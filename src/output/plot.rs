@@ -58,6 +58,8 @@ pub enum Mark {
     Circles,
     /// Crosses.
     Crosses,
+    /// The area inside the points, which go round it.
+    Area,
 }
 
 /// One set of points.
@@ -85,6 +87,7 @@ impl Series {
             Mark::Dashed => 1.4,
             Mark::Points => 2.6,
             Mark::Circles | Mark::Crosses => 3.4,
+            Mark::Area => 0.0,
         };
         Self { label: label.into(), points, mark, colour, size, opacity: 1.0 }
     }
@@ -97,6 +100,12 @@ impl Series {
     /// A dashed line.
     pub fn dashed(label: impl Into<String>, points: Vec<[f64; 2]>, colour: Colour) -> Self {
         Self::new(label, points, Mark::Dashed, colour)
+    }
+
+    /// The band between `low` and `high`, both in rising order of their first coordinate.
+    pub fn band(label: impl Into<String>, low: Vec<[f64; 2]>, high: Vec<[f64; 2]>, colour: Colour) -> Self {
+        let round: Vec<[f64; 2]> = low.into_iter().chain(high.into_iter().rev()).collect();
+        Self::new(label, round, Mark::Area, colour).opacity(0.22)
     }
 
     /// Filled circles.

@@ -2,12 +2,13 @@
 
 use askama::Template;
 
+use super::digits::with_error;
 use super::error::OutputError;
 use super::figures::Figure;
 use super::motion::Motion;
 use super::plot::human;
-use super::summary::Summary;
-use crate::results::{AnalysisKind, Results, Trajectory};
+use super::summary::{ProbeSummary, Summary};
+use crate::results::{AnalysisKind, ProbeSample, Results, Trajectory};
 
 #[derive(Template)]
 #[template(path = "report.html", config = "src/output/askama.toml")]
@@ -84,7 +85,7 @@ fn probes(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
     if summary.probes.is_empty() {
         return None;
     }
-    let moving = summary.probes.iter().any(|(_, s)| s.vx.is_some());
+    let moving = summary.probes.iter().any(|(_, p)| p.sample.vx.is_some());
     let mut header: Vec<String> =
         ["probe", "x [m]", "y [m]", "angle [°]", "κ [1/m]", "ε [–]"].map(String::from).into();
     if moving {
@@ -93,12 +94,17 @@ fn probes(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
     let length = t.run.undeformed.iter().filter_map(|b| b.s.last()).fold(0.0_f64, |m, l| m.max(*l));
     // One digit is enough for round-off.
     let number = |(v, scale): (f64, f64)| human(v, if v.abs() < 1e-12 * scale { 1 } else { 7 });
-    let row = |(name, s): &(String, crate::results::ProbeSample)| {
+    let row = |(name, ProbeSummary { sample: s, error }): &(String, ProbeSummary)| {
+        let known = |value: f64, scale: f64, of: fn(&ProbeSample) -> f64| {
+            error.and_then(|error| with_error(value, of(&error))).unwrap_or_else(|| number((value, scale)))
+        };
         let mut row = vec![name.clone()];
-        row.extend([(s.x, length), (s.y, length), (s.angle.to_degrees(), 1.0)].map(number));
-        row.extend([(s.curvature, 1.0 / length), (s.strain, 1.0)].map(number));
+        row.extend([known(s.x, length, |e| e.x), known(s.y, length, |e| e.y)]);
+        row.push(known(s.angle.to_degrees(), 1.0, |e| e.angle.to_degrees()));
+        row.extend([known(s.curvature, 1.0 / length, |e| e.curvature), known(s.strain, 1.0, |e| e.strain)]);
         if moving {
-            row.extend([s.vx, s.vy].map(|v| v.map_or("–".into(), |v| human(v, 7))));
+            let [vx, vy]: [fn(&ProbeSample) -> f64; 2] = [|e| e.vx.unwrap_or(0.0), |e| e.vy.unwrap_or(0.0)];
+            row.extend([(s.vx, vx), (s.vy, vy)].map(|(v, of)| v.map_or("–".into(), |v| known(v, 0.0, of))));
         }
         row
     };
@@ -144,9 +150,13 @@ fn eigenvalues(results: &Results) -> Option<NumberTable> {
         Results::CriticalLoads(_) => ("Critical loads", "load factor", "0"),
         Results::Trajectory(_) => return None,
     };
-    let number = |v: f64| if v == 0.0 { none.into() } else { human(v, 8) };
+    let errors = results.run().error.as_ref().map(|error| &error.eigenvalues[..]).unwrap_or_default();
+    let number = |i: usize, v: f64| {
+        let error = errors.get(i).and_then(|error| with_error(v, error * v.abs()));
+        error.unwrap_or_else(|| if v == 0.0 { none.into() } else { human(v, 8) })
+    };
     let values = results.eigenvalues();
-    let rows = values.iter().enumerate().map(|(i, &v)| vec![format!("{}", i + 1), number(v)]).collect();
+    let rows = values.iter().enumerate().map(|(i, &v)| vec![format!("{}", i + 1), number(i, v)]).collect();
     Some(NumberTable { caption: caption.into(), header: vec!["mode".into(), name.into()], rows })
 }
 

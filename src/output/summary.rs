@@ -2,7 +2,9 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::results::{AnalysisKind, Energy, Event, ProbeSample, Results, Seconds, Statistics};
+use crate::results::{
+    AnalysisKind, Energy, ErrorEstimate, Event, ProbeSample, Results, RunForError, Seconds, Statistics,
+};
 
 /// The contents of `summary.json`; keys and their order are those of the fields.
 #[derive(Clone, Debug, Serialize)]
@@ -21,7 +23,10 @@ pub struct Summary {
     pub last: Option<f64>,
     /// Per probe, by name, its last sample.
     #[serde(serialize_with = "as_map")]
-    pub probes: Vec<(String, ProbeSample)>,
+    pub probes: Vec<(String, ProbeSummary)>,
+    /// Estimated errors of the results, where they are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<ErrorSummary>,
     /// Energies of the last record; `null` where there is none (modal, buckling).
     pub energy: Option<EnergySummary>,
     /// Events of a motion, in order; left out where none was asked for or none happened.
@@ -31,15 +36,92 @@ pub struct Summary {
     /// only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Vec<f64>>,
+    /// Estimated errors of the frequencies \[Hz\], where they are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequency_errors: Option<Vec<f64>>,
     /// Critical load factors, ascending; buckling only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load_factors: Option<Vec<f64>>,
+    /// Estimated errors of the critical load factors, where they are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_factor_errors: Option<Vec<f64>>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Counts of steps, iterations and factorisations.
     pub statistics: Statistics,
     /// Wall time \[s\].
     pub seconds: Seconds,
+}
+
+/// What a probe saw at the last record.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ProbeSummary {
+    /// The last sample.
+    #[serde(flatten)]
+    pub sample: ProbeSample,
+    /// The estimated error of each quantity, in its unit; of x and y the distance from the right
+    /// place.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<ProbeSample>,
+}
+
+/// The estimated errors of the results.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ErrorSummary {
+    /// The largest error that was wanted: of positions in beam lengths, or of numbers, relative;
+    /// `null` where nobody asked for any.
+    pub wanted: Option<f64>,
+    /// The largest error of the results.
+    pub estimated: f64,
+    /// Whether no error is larger than wanted.
+    pub met: bool,
+    /// The reason why an error is larger than wanted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The time \[s\] or load factor until which the results are as good as was wanted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub good_until: Option<f64>,
+    /// Error of the curvature, relative to the largest curvature.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curvature: Option<WantedError>,
+    /// Error of axial force, shear force and bending moment in the last state, relative to the
+    /// largest of each.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub section_force: Option<WantedError>,
+    /// Where the model itself errs, which no finer mesh mends.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
+    /// The runs that were made to choose the mesh and to estimate the errors, in their order.
+    pub runs: Vec<RunForError>,
+}
+
+/// An error and the largest that was wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WantedError {
+    /// `null` where nobody asked for any.
+    pub wanted: Option<f64>,
+    /// The estimate.
+    pub estimated: f64,
+}
+
+impl ErrorSummary {
+    fn of(error: &ErrorEstimate) -> Self {
+        let pair = |wanted: Option<f64>, estimated: Option<f64>| {
+            estimated.map(|estimated| WantedError { wanted, estimated })
+        };
+        let (wanted, found) = (error.wanted, error.estimated);
+        Self {
+            wanted: wanted.map(|wanted| wanted.result),
+            estimated: found.result,
+            met: error.met,
+            reason: error.reason.clone(),
+            good_until: error.good_until,
+            curvature: pair(wanted.and_then(|wanted| wanted.curvature), found.curvature),
+            section_force: pair(wanted.and_then(|wanted| wanted.section_force), found.section_force),
+            notes: error.notes.clone(),
+            runs: error.runs.clone(),
+        }
+    }
 }
 
 /// Energies \[J\] of the last record.
@@ -71,8 +153,16 @@ impl Summary {
     /// The summary of the results.
     pub fn of(results: &Results) -> Self {
         let (trajectory, run) = (results.states(), results.run());
-        let last_sample =
-            |p: &crate::results::ProbeSeries| p.samples.last().map(|sample| (p.name.clone(), *sample));
+        let error = run.error.as_deref();
+        let last_sample = |p: &crate::results::ProbeSeries| {
+            let of_probe = error.and_then(|error| error.last_of(&p.name)).copied();
+            p.samples.last().map(|sample| (p.name.clone(), ProbeSummary { sample: *sample, error: of_probe }))
+        };
+        let absolute = |kind: AnalysisKind| {
+            let error = error.filter(|_| run.analysis == kind)?;
+            let pairs = results.eigenvalues().into_iter().zip(&error.eigenvalues);
+            Some(pairs.map(|(value, error)| error * value.abs()).collect())
+        };
         Self {
             title: run.title.clone(),
             analysis: run.analysis,
@@ -80,6 +170,7 @@ impl Summary {
             complete: run.complete,
             degrees_of_freedom: run.degrees_of_freedom,
             last: trajectory.parameter.last().copied(),
+            error: error.map(ErrorSummary::of),
             probes: trajectory.probes.iter().filter_map(last_sample).collect(),
             energy: trajectory.energy.last().map(|last| EnergySummary {
                 stretch: last.stretch,
@@ -93,6 +184,8 @@ impl Summary {
                 drift: drift(&trajectory.energy),
             }),
             events: trajectory.events.clone(),
+            frequency_errors: absolute(AnalysisKind::Modal),
+            load_factor_errors: absolute(AnalysisKind::Buckling),
             frequencies: (run.analysis == AnalysisKind::Modal).then(|| results.eigenvalues()),
             load_factors: (run.analysis == AnalysisKind::Buckling).then(|| results.eigenvalues()),
             warnings: run.warnings.clone(),
@@ -123,6 +216,6 @@ pub(crate) fn drift(energy: &[Energy]) -> Option<f64> {
     (kinetic > 0.0).then(|| change / kinetic)
 }
 
-fn as_map<S: Serializer>(probes: &[(String, ProbeSample)], serializer: S) -> Result<S::Ok, S::Error> {
+fn as_map<S: Serializer>(probes: &[(String, ProbeSummary)], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(probes.iter().map(|(name, sample)| (name, sample)))
 }

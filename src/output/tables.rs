@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-use crate::results::{AnalysisKind, Frame, ModeShape, ProbeSample, Trajectory};
+use crate::results::{AnalysisKind, Frame, ModeShape, ProbeErrors, ProbeSample, Trajectory};
 
 /// Name of the first column, by which the records are ordered.
 pub(super) fn parameter_name(analysis: AnalysisKind) -> &'static str {
@@ -65,19 +65,26 @@ pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     if moving {
         quantities.extend(["vx", "vy"]);
     }
+    let errors = t.run.error.as_ref().map(|error| &error.probes[..]).unwrap_or_default();
+    if !errors.is_empty() {
+        quantities.push("error");
+    }
     let mut header = words(&[parameter_name(t.run.analysis)]);
     header.extend(t.probes.iter().flat_map(|p| quantities.iter().map(move |q| format!("{}.{q}", p.name))));
-    let values = |sample: &ProbeSample| {
+    let values = |sample: &ProbeSample, error: Option<&ProbeErrors>, i: usize| {
         let mut values = vec![sample.x, sample.y, sample.angle, sample.curvature, sample.strain];
         if moving {
             values.extend([sample.vx.unwrap_or(f64::NAN), sample.vy.unwrap_or(f64::NAN)]);
         }
+        values.extend(error.map(|error| error.samples.get(i).map_or(f64::NAN, |error| error.x)));
         values
     };
     let mut table = CsvTable::new(out, &header)?;
     for (i, &parameter) in t.parameter.iter().enumerate() {
-        let samples = t.probes.iter().filter_map(|p| p.samples.get(i));
-        table.row(&[], std::iter::once(parameter).chain(samples.flat_map(values)))?;
+        let samples =
+            t.probes.iter().enumerate().filter_map(|(k, p)| Some((p.samples.get(i)?, errors.get(k))));
+        let values = samples.flat_map(|(sample, error)| values(sample, error, i));
+        table.row(&[], std::iter::once(parameter).chain(values))?;
     }
     table.finish()
 }

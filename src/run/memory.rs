@@ -48,7 +48,7 @@ fn nodes(beam: &Beam) -> f64 {
 /// Number of shape functions of a cell.
 fn width(beam: &Beam) -> f64 {
     match &beam.discretization {
-        Discretization::Ancf { .. } => 4.0,
+        Discretization::Ancf { .. } | Discretization::Open => 4.0,
         Discretization::Rpim { neighbours, .. } => 2.0 * (2 * neighbours + 2) as f64,
     }
 }

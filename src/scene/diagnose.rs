@@ -47,7 +47,6 @@ pub(super) fn data(error: &toml::de::Error, document: &DeTable<'_>) -> Fault {
         return Fault::new(span, format!("missing key `{missing}` {place}"))
             .help(match missing.as_str() {
                 "analysis" => "add one of `[analysis.static]`, `[analysis.dynamic]`, `[analysis.buckling]`, `[analysis.modal]`".into(),
-                "basis" => format!("add `[{path}.basis.ancf]` with `elements = 10`, or `[{path}.basis.rpim]` with `nodes = 11`"),
                 _ => format!("add `{missing} = …` there; `ancf schema` describes every key"),
             });
     }

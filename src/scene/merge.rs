@@ -25,6 +25,31 @@ impl Scene {
         merge(scene.as_table_mut(), lines.as_table(), &mut Vec::new());
         Self::read(&self.name, &scene.to_string(), &[])
     }
+
+    /// This scene with `lines` merged and without the accuracy for which they were chosen: what is
+    /// solved as it stands.
+    ///
+    /// # Errors
+    /// As [`Self::merged`].
+    pub fn chosen(&self, lines: &str) -> Result<Self, SceneError> {
+        let merged = self.merged(lines)?;
+        let mut scene = merged.text.parse::<DocumentMut>().map_err(|error| {
+            Fault::new(error.span().unwrap_or(0..0), error.message()).at(&self.name, &merged.text)
+        })?;
+        if let Some(analyses) = scene.get_mut("analysis").and_then(Item::as_table_like_mut) {
+            for (_, analysis) in analyses.iter_mut() {
+                if let Some(table) = analysis.as_table_like_mut() {
+                    table.remove("accuracy");
+                }
+                // A dotted table without keys would not be written.
+                if let Item::Table(table) = analysis {
+                    table.set_dotted(false);
+                    table.set_implicit(false);
+                }
+            }
+        }
+        Self::read(&self.name, &scene.to_string(), &[])
+    }
 }
 
 fn merge(into: &mut dyn TableLike, from: &dyn TableLike, path: &mut Vec<String>) {

@@ -3,18 +3,18 @@
 use std::ops::Range;
 
 use crate::model::{
-    About, Analysis, ArcLength, Buckling, Crossing, Dynamic, EventCondition, Integrator, Modal, Model,
-    ProbeTarget, SPECTRAL_RADIUS, STEP_CONTROL, Static, StepControl, Undamped,
+    About, Accuracy, Analysis, ArcLength, Buckling, Crossing, Discretization, Dynamic, EventCondition,
+    Integrator, Modal, Model, ProbeTarget, SPECTRAL_RADIUS, STEP_CONTROL, Static, StepControl, Undamped,
 };
 
 use super::diagnose::choices;
 use super::error::Fault;
 use super::file::{
-    AboutName, ArcLengthTable, CrossingName, DynamicTable, EventTable, SceneTable, StaticTable,
+    AboutName, AnalysisTable, ArcLengthTable, CrossingName, DynamicTable, EventTable, SceneTable, StaticTable,
 };
 use super::quantity::{Length, Positive, Quantity, Ratio, Time};
 use super::to_basis::{MAX_MEMORY, Size};
-use super::value::{Count, Located};
+use super::value::{AccuracyTable, AccuracyValue, Count, Located};
 
 /// Points on a path unless the scene says otherwise.
 pub const ARC_LENGTH_MAX_POINTS: usize = 1000;
@@ -25,6 +25,50 @@ pub const MAX_STEPS: f64 = 1e9;
 /// Records of a dynamic run unless the scene says otherwise.
 pub const DYNAMIC_RECORDS: f64 = 200.0;
 
+/// The errors that the results may have; `None` where the scene does not say.
+pub(super) fn accuracy(file: &SceneTable) -> Result<Option<Accuracy>, Fault> {
+    let AnalysisTable { statics, dynamic, buckling, modal } = file.analysis.get();
+    let value = statics.as_ref().and_then(|table| table.accuracy.as_ref());
+    let value = value.or_else(|| dynamic.as_ref().and_then(|table| table.get().accuracy.as_ref()));
+    if let Some(value) = value {
+        return match value.get() {
+            AccuracyValue::Position(position) if position.si < 1.0 => Ok(Some(Accuracy::new(position.si))),
+            AccuracyValue::Position(position) => Err(too_large(value.span(), position.si)),
+            AccuracyValue::Table(AccuracyTable { position, curvature, section_force }) => {
+                let read = |value: &Option<Located<Quantity<Ratio, Positive>>>| {
+                    value.as_ref().map(largest_error).transpose()
+                };
+                Ok(Some(Accuracy {
+                    result: read(position)?.unwrap_or(Accuracy::USUAL),
+                    curvature: read(curvature)?,
+                    section_force: read(section_force)?,
+                }))
+            }
+        };
+    }
+    let value = buckling.as_ref().and_then(|table| table.accuracy.as_ref());
+    let value = value.or_else(|| modal.as_ref().and_then(|table| table.accuracy.as_ref()));
+    value.map(|value| largest_error(value).map(Accuracy::new)).transpose()
+}
+
+fn largest_error(value: &Located<Quantity<Ratio, Positive>>) -> Result<f64, Fault> {
+    let error = value.get().si;
+    if error < 1.0 { Ok(error) } else { Err(too_large(value.span(), error)) }
+}
+
+fn too_large(span: Range<usize>, error: f64) -> Fault {
+    Fault::new(span, format!("found the largest error {error}"))
+        .help("it must be smaller than 1; 1e-4 is the usual choice")
+}
+
+/// Whether a motion names its integrator.
+pub(super) fn names_an_integrator(file: &SceneTable) -> bool {
+    file.analysis.get().dynamic.as_ref().is_some_and(|table| {
+        let DynamicTable { generalized_alpha, gauss, radau, .. } = table.get();
+        generalized_alpha.is_some() || gauss.is_some() || radau.is_some()
+    })
+}
+
 /// The one analysis of the scene.
 pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<Analysis, Fault> {
     let table = file.analysis.get();
@@ -32,10 +76,10 @@ pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<A
         (Some(table), None, None, None) => Ok(Analysis::Static(statics(table, model, size)?)),
         (None, Some(table), None, None) => Ok(Analysis::Dynamic(dynamic(table, model, size)?)),
         (None, None, Some(table), None) => {
-            Ok(Analysis::Buckling(Buckling { count: modes(&table.count, size)? }))
+            Ok(Analysis::Buckling(Buckling { count: modes(&table.count, model, size)? }))
         }
         (None, None, None, Some(table)) => Ok(Analysis::Modal(Modal {
-            count: modes(&table.count, size)?,
+            count: modes(&table.count, model, size)?,
             about: match table.about {
                 AboutName::Reference => About::Reference,
                 AboutName::Equilibrium => About::Equilibrium,
@@ -50,10 +94,11 @@ pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<A
 
 const ANALYSES: &str = "give exactly one of `[analysis.static]`, `[analysis.dynamic]`, `[analysis.buckling]`, `[analysis.modal]`";
 
-fn modes<const MIN: u64>(located: &Located<Count<MIN>>, size: Size) -> Result<usize, Fault> {
+fn modes<const MIN: u64>(located: &Located<Count<MIN>>, model: &Model, size: Size) -> Result<usize, Fault> {
     let most = 4.0 * size.nodes;
     let count = located.get().0;
-    if count as f64 > most {
+    let open = model.beams.iter().any(|beam| beam.discretization == Discretization::Open);
+    if count as f64 > most && !open {
         return Err(Fault::new(located.span(), format!("found {count} modes"))
             .help(format!("this scene has {most} coordinates and so at most as many modes")));
     }

@@ -29,14 +29,18 @@ pub(super) struct Size {
     pub memory: f64,
 }
 
-/// The discretisation that `basis` asks for, on a beam of the given length \[m\]. It may lock, as
-/// `locks` tells, if the beam resists both stretch and bending.
+/// The discretisation that `basis` asks for, on a beam of the given length \[m\], which may lock if
+/// it resists both stretch and bending; without a `basis` it is to be chosen.
 pub(super) fn discretization(
     beam: &str,
-    basis: &Located<BasisTable>,
+    basis: Option<&Located<BasisTable>>,
     length: f64,
     locks: bool,
 ) -> Result<(Discretization, GaussPoints, Size), Fault> {
+    let Some(basis) = basis else {
+        let gauss = if locks { ANCF_GAUSS_POINTS } else { STRING_GAUSS_POINTS };
+        return Ok((Discretization::Open, gauss, Size::default()));
+    };
     let table = basis.get();
     let (discretization, gauss, nodes, width) = match (&table.ancf, &table.rpim) {
         (Some(ancf), None) => {

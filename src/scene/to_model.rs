@@ -35,7 +35,9 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
         let (beam, curve, needs) = beam(name, table)?;
         size.nodes += needs.nodes;
         size.memory += needs.memory;
-        to_basis::check_size(size, &table.basis)?;
+        if let Some(basis) = &table.basis {
+            to_basis::check_size(size, basis)?;
+        }
         model.beams.push(beam);
         built.push(Built { name: name.clone(), curve });
     }
@@ -73,7 +75,7 @@ fn beam(name: &Located<String>, table: &BeamTable) -> Result<(Beam, Curve, Size)
     let section = section(label, table)?;
     let locks = section.bending_stiffness.is_some() && section.axial_stiffness.is_some();
     let (discretization, gauss_points, size) =
-        to_basis::discretization(label, &table.basis, curve.length(), locks)?;
+        to_basis::discretization(label, table.basis.as_ref(), curve.length(), locks)?;
     let beam = Beam {
         name: label.clone(),
         centreline,

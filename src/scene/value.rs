@@ -7,10 +7,11 @@ use std::marker::PhantomData;
 use std::ops::Range as ByteRange;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserialize, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
-use super::quantity::{Length, Measure, Quantity};
+use super::quantity::{Length, Measure, Positive, Quantity, Ratio};
 
 /// A value and the bytes of the text that it came from.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -308,6 +309,86 @@ impl JsonSchema for NodeList {
                 { "type": "array", "items": length, "minItems": 2 },
             ],
             "examples": [5, [0.0, "45 cm", 1.8]],
+        })
+    }
+}
+
+/// The error that results may have: of the positions, or of several quantities.
+#[derive(Clone, Debug)]
+pub enum AccuracyValue {
+    /// Of the positions, in beam lengths.
+    Position(Quantity<Ratio, Positive>),
+    /// Of each quantity that is named.
+    Table(AccuracyTable),
+}
+
+/// The errors that results may have.
+#[derive(Clone, Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AccuracyTable {
+    /// Of the positions of probes and shape, in lengths of the beam; 1e-4 when left out.
+    pub position: Option<Located<Quantity<Ratio, Positive>>>,
+    /// Of the curvature, relative to the largest.
+    pub curvature: Option<Located<Quantity<Ratio, Positive>>>,
+    /// Of axial force, shear force and bending moment, relative to the largest.
+    pub section_force: Option<Located<Quantity<Ratio, Positive>>>,
+}
+
+impl<'de> Deserialize<'de> for AccuracyValue {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+
+        /// Reads a number or text as a quantity does.
+        fn position<'de, E: serde::de::Error>(
+            value: impl IntoDeserializer<'de, E>,
+        ) -> Result<AccuracyValue, E> {
+            Quantity::deserialize(value.into_deserializer()).map(AccuracyValue::Position)
+        }
+
+        impl<'de> Visitor<'de> for Reader {
+            type Value = AccuracyValue;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an error such as 1e-4, or a table such as { position = 1e-5, curvature = 1e-3 }")
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<AccuracyValue, E> {
+                position(value)
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<AccuracyValue, E> {
+                position(value)
+            }
+
+            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<AccuracyValue, E> {
+                position(value)
+            }
+
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<AccuracyValue, E> {
+                position(text)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<AccuracyValue, A::Error> {
+                AccuracyTable::deserialize(MapAccessDeserializer::new(map)).map(AccuracyValue::Table)
+            }
+        }
+
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+impl JsonSchema for AccuracyValue {
+    fn schema_name() -> Cow<'static, str> {
+        "Accuracy".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let position = generator.subschema_for::<Quantity<Ratio, Positive>>();
+        let table = generator.subschema_for::<AccuracyTable>();
+        json_schema!({
+            "description": "The largest error of the positions in beam lengths, or of several quantities.",
+            "anyOf": [position, table],
+            "examples": [1e-4, { "position": 1e-5, "curvature": 1e-3, "section_force": 1e-2 }],
         })
     }
 }

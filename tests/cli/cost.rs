@@ -180,6 +180,7 @@ fn study() -> Study {
         trials,
         front: vec![0, 4, 7, 12],
         best: Some(best),
+        alone: None,
         left_out: ["one", "two", "three", "four"]
             .map(|what| LeftOut { what: what.to_owned(), why: "no time is left in the budget".to_owned() })
             .into(),

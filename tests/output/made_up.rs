@@ -128,6 +128,7 @@ pub(super) fn path() -> Trajectory {
                 factorizations: 9,
             },
             seconds: Seconds { build: 0.0123, solve: 0.1, write: 0.0 },
+            error: None,
         },
         parameter: loads.to_vec(),
         probes: vec![

@@ -145,11 +145,22 @@ fn every_column_of_every_file_has_a_value_test() {
         effect.spring = [{ beam = 'arm', at = 0.5, stiffness = 1 }]
         analysis.dynamic = { duration = 0.6, output_every = 0.2, event = [{ probe = 'end', y = 0.1 }] }\n";
     let held = beam.replace("fix = ['x', 'y'] }", "fix = ['x', 'y', 'angle'] }");
+    let bent = held.replace("value = [-1e-3, 0]", "value = [-1e-3, 1]");
+    let open = bent.replace(", basis.ancf.elements = 4", "");
+    let short = bent.replace("axial_stiffness = 1e3", "axial_stiffness = 1e2");
     let written = [
         Written::of(&format!("{beam}{moving}")),
         Written::of(&format!("{held}analysis.static = {{}}\n")),
         Written::of(&format!("{held}analysis.modal.count = 2\n")),
         Written::of(&format!("{held}analysis.buckling.count = 2\n")),
+        Written::of(&format!(
+            "{open}analysis.static.accuracy = {{ position = 1e-3, curvature = 1e-1, section_force = 1e-1 }}\n"
+        )),
+        Written::of(&format!("{open}analysis.dynamic = {{ duration = 0.1, accuracy = 1e-2 }}\n")),
+        Written::of(&format!("{open}analysis.modal.count = 2\n")),
+        Written::of(&format!("{open}analysis.buckling.count = 2\n")),
+        // Missed, and short.
+        Written::of(&format!("{short}analysis.static = {{ steps = 2, accuracy = 1e-12 }}\n")),
     ];
     let mut names: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
     for files in &written {

@@ -44,7 +44,7 @@ impl Written {
     /// Reads, solves and writes as `ancf run` does.
     pub(crate) fn of(text: &str) -> Self {
         let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let solved = scene.model().solve(scene.analysis());
+        let solved = ancf::accuracy::run(&scene, ancf::Options::default());
         let mut trajectory = solved.unwrap_or_else(|error| panic!("{error}\n{text}"));
         let options = OutputOptions { states: scene.output().states, vtu: scene.output().vtu };
         let folder = tempfile::tempdir().expect("a folder");

@@ -81,6 +81,9 @@ pub fn table(report: &Report<'_>, directory: &Path) -> String {
         report.trials.len(),
         directory.join("cost.html").display(),
     );
+    if let Some(alone) = report.alone {
+        let _ = write!(text, "\naccuracy = {:e} alone: {alone}", report.target);
+    }
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
     for LeftOut { what, why } in report.left_out {
         match reasons.iter_mut().find(|(reason, _)| reason == why) {
@@ -157,6 +160,7 @@ mod tests {
                 trial("exact", 4.5e-2, error(1e-8), [true, true]),
             ],
             best: Some(2),
+            alone: None,
             lines: Some("elements = 8\n"),
             left_out: &[
                 left("a", slow),

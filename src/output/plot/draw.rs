@@ -102,6 +102,7 @@ fn sample_length(mark: Mark) -> f64 {
     match mark {
         Mark::Line | Mark::Dashed => 24.0,
         Mark::Points | Mark::Circles | Mark::Crosses => 10.0,
+        Mark::Area => 24.0,
     }
 }
 
@@ -352,6 +353,13 @@ fn draw_series(
                 }
             }
         }
+        Mark::Area => {
+            let round: Vec<(f64, f64)> = series.points.iter().filter_map(|&p| place(p)).collect();
+            let fill = RGBColor::from(series.colour).mix(series.opacity).filled();
+            if round.len() > 2 {
+                area.draw_series([Polygon::new(round, fill)]).map_err(failed)?;
+            }
+        }
         Mark::Points => {
             let fill = RGBColor::from(series.colour).mix(series.opacity).filled();
             let marks = series.points.iter().filter_map(|&p| place(p)).map(|p| Circle::new(p, radius, fill));
@@ -390,6 +398,10 @@ fn sample(root: &Root<'_>, entry: &Entry, series: &Series) -> Result<(), PlotErr
         )),
         Mark::Circles => root.draw(&Circle::new(middle, radius, rim)),
         Mark::Crosses => root.draw(&Cross::new(middle, radius, rim)),
+        Mark::Area => root.draw(&Rectangle::new(
+            [(from, y - units(4.0)), (to, y + units(4.0))],
+            RGBColor::from(series.colour).mix(series.opacity).filled(),
+        )),
     }
     .map_err(failed)
 }

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::super::quantity::{Length, Positive, Quantity, Ratio, Time};
-use super::super::value::{Count, Located};
+use super::super::value::{AccuracyValue, Count, Located};
 
 /// What to compute.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -32,6 +32,8 @@ pub struct StaticTable {
     pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
     /// Follow the path by arc length, through limit points.
     pub arc_length: Option<Located<ArcLengthTable>>,
+    /// Largest error of the results, for which everything is chosen that the scene does not name.
+    pub accuracy: Option<Located<AccuracyValue>>,
 }
 
 /// Arc-length continuation; at least one of the `until` keys or `max_points` ends it.
@@ -82,6 +84,8 @@ pub struct DynamicTable {
     /// Probes' coordinates that cross a value.
     #[serde(default)]
     pub event: Vec<EventTable>,
+    /// Largest error of the results, for which everything is chosen that the scene does not name.
+    pub accuracy: Option<Located<AccuracyValue>>,
 }
 
 /// A probe's coordinate reaches a value, `x` or `y`, from one side: also where it turns back there,
@@ -168,6 +172,9 @@ pub struct RadauTable {
 pub struct ModesTable {
     /// How many.
     pub count: Located<Count<1>>,
+    /// Largest relative error of the load factors, for which the mesh is chosen where the scene
+    /// names none.
+    pub accuracy: Option<Located<Quantity<Ratio, Positive>>>,
 }
 
 /// Natural frequencies, the lowest first.
@@ -179,6 +186,9 @@ pub struct ModalTable {
     /// The state about which the beams vibrate.
     #[serde(default)]
     pub about: AboutName,
+    /// Largest relative error of the frequencies, for which the mesh is chosen where the scene names
+    /// none.
+    pub accuracy: Option<Located<Quantity<Ratio, Positive>>>,
 }
 
 /// The state about which vibrations are small.

@@ -60,7 +60,7 @@ impl Family {
     /// The beams of `model` with new meshes: the beam with the most cells has `cells` of them, the
     /// others in proportion to their numbers in the model. Nodes are spaced evenly, or graded as
     /// the model's given ones.
-    pub(super) fn beams(self, model: &Model, cells: usize) -> Vec<(Discretization, GaussPoints)> {
+    pub(crate) fn beams(self, model: &Model, cells: usize) -> Vec<(Discretization, GaussPoints)> {
         let most = model.beams.iter().map(cells_of).max().unwrap_or(1);
         let beam = |beam: &Beam| {
             let share = cells as f64 * cells_of(beam) as f64 / most as f64;
@@ -96,7 +96,7 @@ impl Family {
 
     /// The discretisation without the parameters of RPIM other than the number of neighbours: for
     /// the colours of plots.
-    pub(super) fn kind(self) -> String {
+    pub(crate) fn kind(self) -> String {
         match self {
             Self::Rpim { neighbours, .. } => {
                 format!("RPIM, {neighbours} neighbour{}", if neighbours == 1 { "" } else { "s" })
@@ -128,7 +128,7 @@ fn cells_of(beam: &Beam) -> usize {
 }
 
 /// Cells of the beam of `model` that has the most.
-pub(super) fn cells(model: &Model) -> usize {
+pub(crate) fn cells(model: &Model) -> usize {
     model.beams.iter().map(cells_of).max().unwrap_or(1)
 }
 
@@ -196,12 +196,20 @@ impl Setting {
     /// The lines of a scene that select this setting, to stand in place of the tables of the same
     /// names: the bases of all beams and the integrator.
     pub fn toml(&self, model: &Model) -> String {
+        self.toml_of(model, |_| true, true)
+    }
+
+    /// The same for some of the beams, by index, and with the solver or without.
+    pub fn toml_of(&self, model: &Model, which: impl Fn(usize) -> bool, solver: bool) -> String {
         let mut tables = Vec::new();
-        for (beam, (discretization, points)) in model.beams.iter().zip(&self.beams) {
-            let name = Key::new(beam.name.as_str());
-            tables.push(basis(&format!("beam.{name}.basis"), discretization, *points));
+        for (index, (beam, (discretization, points))) in model.beams.iter().zip(&self.beams).enumerate() {
+            if which(index) {
+                let name = Key::new(beam.name.as_str());
+                tables.push(basis(&format!("beam.{name}.basis"), discretization, *points));
+            }
         }
         match self.solver {
+            _ if !solver => {}
             Solver::Scene => {}
             Solver::Tolerance(tolerance) => {
                 tables.push(format!("[analysis.static]\ntolerance = {tolerance:e}\n"));
@@ -216,6 +224,7 @@ fn basis(path: &str, discretization: &Discretization, points: GaussPoints) -> St
     let (kind, nodes, default_points) = match discretization {
         Discretization::Ancf { nodes } => ("ancf", nodes, ANCF_GAUSS_POINTS),
         Discretization::Rpim { nodes, .. } => ("rpim", nodes, RPIM_GAUSS_POINTS),
+        Discretization::Open => return String::new(),
     };
     let mut text = format!("[{path}.{kind}]\n");
     // Writing to a string does not fail.

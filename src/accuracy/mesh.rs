@@ -1,0 +1,268 @@
+//! Places of nodes: where a search begins, every second node of a mesh, and nodes spread so that
+//! every cell errs alike.
+//!
+//! A cell of length h whose curvature (of a string: direction) is approximated with order q errs by
+//! η_c = C_c h^{q + 1/2} in the root of its integral. With the density d_c = C_c^{2/(2q + 1)} of
+//! cells per length the sum of all η_c² is the smallest for a given number of cells where every
+//! cell has the same ∫ d ds, and then it is (∫ d ds)^{2q + 1} N^{−2q}.
+
+use std::f64::consts::FRAC_PI_4;
+
+use crate::centreline::Curve;
+use crate::model::{Model, Nodes};
+
+/// Cells with which the search begins, of the longest beam …
+const FIRST: f64 = 4.0;
+/// … and of every beam or part of a beam between two places that must be nodes.
+const LEAST: usize = 2;
+/// Largest turn of a stress-free centreline in a cell of the first mesh \[rad\].
+const TURN: f64 = FRAC_PI_4;
+/// Smallest density, relative to the mean: where nothing happens at first, something may happen
+/// later.
+const SPARSEST: f64 = 0.3;
+/// The densities of neighbouring cells differ by this factor at most.
+const GRADING: f64 = 2.0;
+/// Where densities differ by less than this factor, even spacing does as well.
+const EVEN: f64 = 3.0;
+/// Where other places of as many cells would make the sum of squares this part of what it is …
+const UNEVEN: f64 = 0.1;
+/// … at most so many times the cells are taken at once.
+const CAREFUL: f64 = 2.0;
+/// Largest relative difference of the cells of even spacing.
+const SAME: f64 = 1e-9;
+
+/// The nodes of one beam.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Mesh {
+    /// Arc lengths \[m\], from 0 to the beam's length.
+    pub nodes: Vec<f64>,
+    /// Nodes that must be, ends included.
+    fixed: Vec<f64>,
+}
+
+/// What the cells of a mesh err by.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CellErrors {
+    /// ∫ η² ds of each cell.
+    pub squares: Vec<f64>,
+    /// The order q with which cells become better.
+    pub order: f64,
+}
+
+impl Mesh {
+    /// Where the search begins, for every beam.
+    pub fn first(model: &Model) -> Vec<Self> {
+        let curves: Vec<Option<Curve>> =
+            model.beams.iter().map(|beam| Curve::new(&beam.centreline).ok()).collect();
+        let longest = curves.iter().flatten().map(Curve::length).fold(0.0, f64::max);
+        let mesh = |(beam, curve): (usize, &Option<Curve>)| {
+            // A centreline without length is refused where the model is built.
+            let Some(curve) = curve else { return Self { nodes: vec![0.0], fixed: vec![0.0] } };
+            let length = curve.length();
+            let mut fixed = vec![0.0];
+            let mut breaks = model.breaks(beam);
+            let supports = model.supports.iter().map(|support| support.at);
+            let points = supports.chain(model.parts.iter().filter_map(|part| part.point()));
+            breaks.extend(points.filter(|at| at.beam == beam).map(|at| at.s));
+            breaks.sort_by(f64::total_cmp);
+            for s in breaks.into_iter().filter(|s| *s < (1.0 - SAME) * length) {
+                if fixed.last().is_some_and(|last| s - last > SAME * length) {
+                    fixed.push(s);
+                }
+            }
+            fixed.push(length);
+            let straight = (FIRST * length / longest).ceil() as usize;
+            let turns = (turning(curve) / TURN).ceil() as usize;
+            let cells = straight.max(turns).max(LEAST);
+            let spread = |part: &[f64]| {
+                let share = (cells as f64 * (part[1] - part[0]) / length).ceil() as usize;
+                // An even number, so that every second node makes a mesh, too.
+                even(part[0], part[1], share.next_multiple_of(2).max(LEAST))
+            };
+            let mut nodes: Vec<f64> = fixed.windows(2).flat_map(spread).collect();
+            nodes.push(length);
+            Self { nodes, fixed }
+        };
+        curves.iter().enumerate().map(mesh).collect()
+    }
+
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.nodes.len().saturating_sub(1)
+    }
+
+    /// Length of the beam \[m\].
+    pub fn length(&self) -> f64 {
+        self.nodes.last().copied().unwrap_or(0.0)
+    }
+
+    /// Every cell cut in two.
+    pub fn halved(&self) -> Self {
+        let mut nodes: Vec<f64> =
+            self.nodes.windows(2).flat_map(|cell| [cell[0], 0.5 * (cell[0] + cell[1])]).collect();
+        nodes.extend(self.nodes.last());
+        Self { nodes, fixed: self.fixed.clone() }
+    }
+
+    /// Every second of the nodes of a beam, and its end.
+    pub fn every_second_of(&self, nodes: &[f64]) -> Self {
+        let mut places: Vec<f64> = nodes.iter().copied().step_by(2).collect();
+        if nodes.len().is_multiple_of(2) {
+            places.extend(nodes.last());
+        }
+        Self { nodes: places, fixed: self.fixed.clone() }
+    }
+
+    /// As a scene says it.
+    pub fn places(&self) -> Nodes {
+        let cells = self.cells() as f64;
+        let length = self.nodes.last().copied().unwrap_or(0.0);
+        let even =
+            self.nodes.windows(2).all(|cell| ((cell[1] - cell[0]) * cells / length - 1.0).abs() <= SAME);
+        if even && self.fixed.len() == 2 {
+            Nodes::Uniform(self.nodes.len())
+        } else {
+            Nodes::Given(self.nodes.clone())
+        }
+    }
+
+    /// Densities of cells for the errors of this mesh, graded, and never too sparse against
+    /// `mean`.
+    fn densities(&self, errors: &CellErrors, mean: f64) -> Vec<f64> {
+        let power = 2.0 * errors.order + 1.0;
+        let density =
+            |(cell, square): (&[f64], &f64)| (square / (cell[1] - cell[0]).powf(power)).powf(power.recip());
+        let mut densities: Vec<f64> =
+            self.nodes.windows(2).zip(&errors.squares).map(density).map(|d| d.max(SPARSEST * mean)).collect();
+        for i in 1..densities.len() {
+            densities[i] = densities[i].max(densities[i - 1] / GRADING);
+        }
+        for i in (1..densities.len()).rev() {
+            densities[i - 1] = densities[i - 1].max(densities[i] / GRADING);
+        }
+        densities
+    }
+
+    /// The integral of a density over the cells.
+    fn integral(&self, densities: &[f64]) -> f64 {
+        self.nodes.windows(2).zip(densities).map(|(cell, d)| d * (cell[1] - cell[0])).sum()
+    }
+
+    /// Nodes with `per_cell` = ∫ d ds in each cell, or less.
+    fn spread(&self, densities: &[f64], per_cell: f64) -> Self {
+        let largest = densities.iter().copied().fold(0.0, f64::max);
+        let smallest = densities.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut nodes = Vec::new();
+        for part in self.fixed.windows(2) {
+            let inside: Vec<(usize, &[f64])> = self
+                .nodes
+                .windows(2)
+                .enumerate()
+                .filter(|(_, cell)| cell[0] >= part[0] && cell[0] < part[1])
+                .collect();
+            let total: f64 = inside.iter().map(|(i, cell)| densities[*i] * (cell[1] - cell[0])).sum();
+            let cells = ((total / per_cell).ceil() as usize).max(LEAST);
+            if largest <= EVEN * smallest {
+                nodes.extend(even(part[0], part[1], cells));
+                continue;
+            }
+            let (mut sum, mut next) = (0.0, 0);
+            for (i, cell) in inside {
+                let step = densities[i] * (cell[1] - cell[0]);
+                while next < cells && next as f64 * total / cells as f64 <= sum + step {
+                    let share = (next as f64 * total / cells as f64 - sum) / step;
+                    let s = rounded(cell[0] + share.max(0.0) * (cell[1] - cell[0]), self.length());
+                    nodes.push(if next == 0 { part[0] } else { s });
+                    next += 1;
+                }
+                sum += step;
+            }
+        }
+        nodes.extend(self.fixed.last());
+        Self { nodes, fixed: self.fixed.clone() }
+    }
+}
+
+/// Meshes for errors that are smaller as if `times` as many cells had been spread as they are now,
+/// but with every cell where it is needed. At most `most` cells; beams without errors keep their
+/// mesh.
+pub(super) fn refined(meshes: &[Mesh], errors: &[Option<CellErrors>], times: f64, most: usize) -> Vec<Mesh> {
+    let densities = |mean: f64| -> Vec<Option<Vec<f64>>> {
+        let of = |(mesh, errors): (&Mesh, &Option<CellErrors>)| Some(mesh.densities(errors.as_ref()?, mean));
+        meshes.iter().zip(errors).map(of).collect()
+    };
+    // Over all beams with errors: ∫ d ds, their length, their cells.
+    let sums = |densities: &[Option<Vec<f64>>]| {
+        let with = meshes.iter().zip(densities).filter_map(|(mesh, d)| Some((mesh, d.as_ref()?)));
+        with.fold((0.0, 0.0, 0), |(sum, length, cells), (mesh, d)| {
+            (sum + mesh.integral(d), length + mesh.length(), cells + mesh.cells())
+        })
+    };
+    let plain = densities(0.0);
+    let (sum, length, _) = sums(&plain);
+    let mean = sum / length;
+    if !(mean > 0.0 && mean.is_finite()) {
+        // Nothing tells where: everywhere.
+        let divided = |(mesh, errors): (&Mesh, &Option<CellErrors>)| match errors {
+            Some(_) => mesh.divided((times.ceil() as usize).clamp(1, 4)),
+            None => mesh.clone(),
+        };
+        return meshes.iter().zip(errors).map(divided).collect();
+    }
+    let graded = densities(mean);
+    let (total, _, cells) = sums(&graded);
+    // Σ η² as it is, against that of as many cells with equal shares.
+    let order = errors.iter().flatten().map(|errors| errors.order).fold(0.0, f64::max);
+    let power = 2.0 * order + 1.0;
+    let now: f64 = meshes
+        .iter()
+        .zip(&graded)
+        .filter_map(|(mesh, d)| Some((mesh, d.as_ref()?)))
+        .flat_map(|(mesh, d)| {
+            mesh.nodes.windows(2).zip(d).map(|(cell, d)| (d * (cell[1] - cell[0])).powf(power))
+        })
+        .sum();
+    let gain = (total.powf(power) * (cells as f64).powf(1.0 - power) / now).min(1.0);
+    // How fast errors fall on cells that are where they should be is only known when they are there.
+    let times = if gain < UNEVEN { times.min(CAREFUL) } else { times };
+    let number = cells as f64 * times * gain.powf((2.0 * order).recip());
+    let per_cell = total / number.min(most as f64);
+    let spread = |(mesh, d): (&Mesh, &Option<Vec<f64>>)| match d {
+        Some(d) => mesh.spread(d, per_cell),
+        None => mesh.clone(),
+    };
+    meshes.iter().zip(&graded).map(spread).collect()
+}
+
+impl Mesh {
+    /// Every cell cut into `times`.
+    fn divided(&self, times: usize) -> Self {
+        let mut nodes: Vec<f64> =
+            self.nodes.windows(2).flat_map(|cell| even(cell[0], cell[1], times)).collect();
+        nodes.extend(self.nodes.last());
+        Self { nodes, fixed: self.fixed.clone() }
+    }
+}
+
+/// A place to five digits of the beam's length, which nobody wants to read more of.
+pub(super) fn rounded(s: f64, length: f64) -> f64 {
+    let digits = 5.0 - length.log10().floor();
+    let decimals = digits.clamp(0.0, 300.0) as usize;
+    format!("{s:.decimals$}").parse().unwrap_or(s)
+}
+
+/// The starts of `cells` even cells from `start` to `end`.
+fn even(start: f64, end: f64, cells: usize) -> Vec<f64> {
+    (0..cells).map(|i| start + (end - start) * i as f64 / cells as f64).collect()
+}
+
+/// By how much a stress-free centreline turns in all \[rad\].
+fn turning(curve: &Curve) -> f64 {
+    const SAMPLES: usize = 256;
+    let tangent = |i: usize| curve.tangent(curve.length() * i as f64 / SAMPLES as f64);
+    let turn = |i: usize| {
+        let ([a, b], [c, d]) = (tangent(i), tangent(i + 1));
+        (a * d - b * c).atan2(a * c + b * d).abs()
+    };
+    (0..SAMPLES).map(turn).sum()
+}

@@ -1,0 +1,54 @@
+//! What error results may have, and what may be chosen to that end.
+
+use super::{Analysis, Discretization, Model};
+
+/// The largest errors that results may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Statics and motions: of the positions of the probes and of the shape, in lengths of the
+    /// beam. Vibrations and critical loads: of every number, relative.
+    pub result: f64,
+    /// Of the curvature, relative to its largest; `None`: not asked for.
+    pub curvature: Option<f64>,
+    /// Of the section forces, relative to their largest; `None`: not asked for.
+    pub section_force: Option<f64>,
+}
+
+impl Accuracy {
+    /// Where nothing else is said.
+    pub const USUAL: f64 = 1e-4;
+
+    /// This error of the result; curvature and section forces are not asked for.
+    pub fn new(result: f64) -> Self {
+        Self { result, curvature: None, section_force: None }
+    }
+}
+
+impl Default for Accuracy {
+    fn default() -> Self {
+        Self::new(Self::USUAL)
+    }
+}
+
+/// What a scene leaves to be chosen for an accuracy.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Open {
+    /// Per beam, whether it has no discretisation of its own.
+    pub beams: Vec<bool>,
+    /// Whether a motion has no integrator of its own.
+    pub integrator: bool,
+}
+
+impl Open {
+    /// The beams of `model` that are [`Discretization::Open`]; with `integrator` also how time
+    /// advances.
+    pub fn of(model: &Model, analysis: &Analysis, integrator: bool) -> Self {
+        let beams = model.beams.iter().map(|beam| beam.discretization == Discretization::Open).collect();
+        Self { beams, integrator: integrator && matches!(analysis, Analysis::Dynamic(_)) }
+    }
+
+    /// Whether nothing is left to be chosen.
+    pub fn is_closed(&self) -> bool {
+        !self.integrator && !self.beams.contains(&true)
+    }
+}

@@ -1,0 +1,125 @@
+//! How wrong results are, estimated.
+
+use super::{AnalysisKind, ProbeSample};
+use serde::Serialize;
+
+/// How wrong the results of a run are, as far as the run itself can tell.
+#[derive(Clone, Debug, Default)]
+pub struct ErrorEstimate {
+    /// The largest errors that were wanted; `None` where nobody asked for any.
+    pub wanted: Option<Errors>,
+    /// The largest errors of the results.
+    pub estimated: Errors,
+    /// Whether no error is larger than wanted.
+    pub met: bool,
+    /// Why not.
+    pub reason: Option<String>,
+    /// The time \[s\] or load factor until which the results are as good as was wanted, where they
+    /// are not to the end.
+    pub good_until: Option<f64>,
+    /// Where the model itself errs, which no finer mesh mends.
+    pub notes: Vec<String>,
+    /// Per frequency or load factor its error, relative.
+    pub eigenvalues: Vec<f64>,
+    /// Per probe and record.
+    pub probes: Vec<ProbeErrors>,
+    /// Per record: the largest error of a position on any beam, in beam lengths.
+    pub records: Vec<f64>,
+    /// Per beam: where the error is.
+    pub beams: Vec<BeamErrors>,
+    /// The scene with everything that was chosen, which gives the same results.
+    pub chosen: Option<String>,
+    /// The runs that were made to choose the mesh and to know the errors, in their order.
+    pub runs: Vec<RunForError>,
+}
+
+impl ErrorEstimate {
+    /// The errors of what a probe sees at the last record.
+    pub fn last_of(&self, probe: &str) -> Option<&ProbeSample> {
+        self.probes.iter().find(|errors| errors.name == probe)?.samples.last()
+    }
+
+    /// Which accuracy is missed, by how much, and why; `None` where nobody asked for any, or it is
+    /// met.
+    pub fn missed(&self, analysis: AnalysisKind) -> Option<String> {
+        let wanted = self.wanted.filter(|_| !self.met)?;
+        let (unit, parameter, second) = match analysis {
+            AnalysisKind::Static => (" of a beam length", "load factor ", ""),
+            AnalysisKind::Dynamic => (" of a beam length", "", " s"),
+            AnalysisKind::Modal | AnalysisKind::Buckling => (", relative", "", ""),
+        };
+        let mut text = format!("the wanted accuracy of {:e}{unit} is not met", wanted.result);
+        let found = self.estimated;
+        if found.result > wanted.result {
+            text += &format!("; the results may err by {:.1e}", found.result);
+        }
+        for (what, wanted, found) in [
+            ("the curvature", wanted.curvature, found.curvature),
+            ("section forces", wanted.section_force, found.section_force),
+        ] {
+            if let (Some(wanted), Some(found)) = (wanted, found)
+                && found > wanted
+            {
+                text += &format!("; {what} may err by {found:.1e} where {wanted:e} is wanted");
+            }
+        }
+        if let Some(reason) = &self.reason {
+            text += &format!(": {reason}");
+        }
+        if let Some(until) = self.good_until {
+            text += &format!("; good to {:e} until {parameter}{until:.4}{second}", wanted.result);
+        }
+        Some(text)
+    }
+}
+
+/// Errors of the results as a whole.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Statics and motions: of positions, in beam lengths. Vibrations and critical loads: of the
+    /// numbers, relative.
+    pub result: f64,
+    /// Of the curvature, relative to its largest.
+    pub curvature: Option<f64>,
+    /// Of axial force, shear force and bending moment in the last state, relative to the largest
+    /// of each kind.
+    pub section_force: Option<f64>,
+}
+
+/// Errors of what a probe sees.
+#[derive(Clone, Debug, Default)]
+pub struct ProbeErrors {
+    /// The probe's name.
+    pub name: String,
+    /// Per record: of x and y the distance from the right place \[m\], of all else the size of the
+    /// error, in its unit.
+    pub samples: Vec<ProbeSample>,
+}
+
+/// Where along a beam its positions and curvature err.
+#[derive(Clone, Debug, Default)]
+pub struct BeamErrors {
+    /// Name of the beam.
+    pub beam: String,
+    /// Arc lengths \[m\].
+    pub s: Vec<f64>,
+    /// The largest error of the position there over all records, in lengths of the beam.
+    pub position: Vec<f64>,
+    /// The largest error of the curvature there over all records \[1/m\].
+    pub curvature: Vec<f64>,
+}
+
+/// A run that was made on the way.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct RunForError {
+    /// Its discretisation and integrator in words.
+    pub setting: String,
+    /// Its unknowns.
+    pub degrees_of_freedom: usize,
+    /// Time to build and to solve \[s\].
+    pub seconds: f64,
+    /// The error of the result that it was estimated to have; `None` for a run that only serves
+    /// another one's estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<f64>,
+}

@@ -1,0 +1,118 @@
+//! What is chosen, what is kept, and what the files say of it.
+
+use super::{cantilever, error, last, run, scene};
+use ancf::model::{Analysis, Discretization, Integrator, Nodes, StepControl};
+use ancf::scene::parse;
+
+const MOTION: &str = "effect.gravity.acceleration = [0, -9.81]\n\
+                      analysis.dynamic = { duration = 0.4, output_every = 0.05, accuracy = 1e-4 }";
+
+/// The chosen scene is a plain one, and gives the same numbers to the last bit.
+#[test]
+fn the_chosen_scene_gives_the_same_bits() {
+    let statics =
+        "effect.force = [{ beam = 'arm', at = 0.3, value = [0, 9] }]\nanalysis.static = { accuracy = 1e-6 }";
+    for text in [cantilever(1e4, 1.0, statics), cantilever(1e4, 1.0, MOTION)] {
+        let results = run(&scene(&text));
+        let chosen = error(&results).chosen.clone().expect("the chosen scene");
+        let chosen = parse("chosen.toml", &chosen).expect("a legal scene");
+        assert_eq!(chosen.accuracy(), None);
+        let again = run(&chosen);
+        assert!(again.run().error.is_none());
+        assert_eq!(results.states().parameter, again.states().parameter);
+        assert_eq!(results.states().probes[0].samples, again.states().probes[0].samples);
+        assert_eq!(results.run().statistics, again.run().statistics);
+    }
+}
+
+/// A basis that the scene names stays, as does an integrator; the other beam's basis is chosen.
+#[test]
+fn what_the_scene_names_is_kept() {
+    let text = "\
+        beam.first = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 31 }\n\
+        beam.second = { start = [1, 0], end = [2, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1 }\n\
+        support = [{ beam = 'first', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+        joint = [{ type = 'weld', first = { beam = 'first', at = 'end' }, second = { beam = 'second', at = 'start' } }]\n\
+        effect.gravity.acceleration = [0, -1]\n\
+        analysis.dynamic = { duration = 0.2, output_every = 0.1, accuracy = 1e-3, gauss = { stages = 3, tolerance = 1e-5 } }";
+    let results = run(&scene(text));
+    let chosen = parse("chosen.toml", error(&results).chosen.as_ref().expect("a scene")).expect("legal");
+    let beams = &chosen.model().beams;
+    assert_eq!(beams[0].discretization, Discretization::Ancf { nodes: Nodes::Uniform(32) });
+    assert!(matches!(beams[1].discretization, Discretization::Ancf { .. }), "{:?}", beams[1].discretization);
+    let Analysis::Dynamic(settings) = chosen.analysis() else { panic!("a motion") };
+    assert_eq!(settings.integrator, Integrator::Gauss { stages: 3, step: StepControl::Tolerance(1e-5) });
+}
+
+/// A scene that names neither a basis nor an accuracy takes the usual one.
+#[test]
+fn the_usual_accuracy_is_a_ten_thousandth() {
+    let results = run(&scene(&cantilever(1e4, 1.0, "analysis.static = {}")));
+    assert_eq!(error(&results).wanted.map(|wanted| wanted.result), Some(1e-4));
+    // With a basis nothing is chosen, nothing estimated, and nothing paid.
+    let text = cantilever(1e4, 1.0, "analysis.static = {}")
+        .replace("mass_per_length", "basis.ancf.elements = 4, mass_per_length");
+    let plain = run(&scene(&text));
+    assert!(plain.run().error.is_none());
+}
+
+/// Curvature and section forces converge more slowly than positions; what is wanted of them takes
+/// more cells.
+#[test]
+fn curvatures_and_forces_have_accuracies_of_their_own() {
+    let with = |accuracy: &str| {
+        let rest = format!(
+            "effect.force = [{{ beam = 'arm', at = 'end', value = [0, 5] }}]\nanalysis.static.accuracy = {accuracy}"
+        );
+        run(&scene(&cantilever(1e4, 1.0, &rest)))
+    };
+    let coarse = with("1e-3");
+    let fine = with("{ position = 1e-3, curvature = 1e-3, section_force = 1e-3 }");
+    let (wanted, found) = (error(&fine).wanted.expect("wanted"), error(&fine).estimated);
+    assert_eq!((wanted.curvature, wanted.section_force), (Some(1e-3), Some(1e-3)));
+    assert!(found.curvature.expect("curvature") <= 1e-3 && found.section_force.expect("forces") <= 1e-3);
+    assert!(error(&fine).met);
+    assert!(fine.run().degrees_of_freedom > coarse.run().degrees_of_freedom);
+    // EI κ at the clamp is the moment of the force about it.
+    let moment = 5.0 * last(&fine).x;
+    let curvature = fine.states().last[0].curvature[0];
+    assert!((curvature / moment - 1.0).abs() <= 1e-3, "{curvature} {moment}");
+}
+
+/// A force within the span has a node of its own.
+#[test]
+fn a_force_within_the_span_has_a_node() {
+    let rest =
+        "effect.force = [{ beam = 'arm', at = 0.37, value = [0, 5] }]\nanalysis.static.accuracy = 1e-5";
+    let results = run(&scene(&cantilever(1e4, 1.0, rest)));
+    let chosen = parse("chosen.toml", error(&results).chosen.as_ref().expect("a scene")).expect("legal");
+    let Discretization::Ancf { nodes: Nodes::Given(nodes) } = &chosen.model().beams[0].discretization else {
+        panic!("given nodes")
+    };
+    assert!(nodes.contains(&0.37), "{nodes:?}");
+}
+
+/// Two motions of which the coarse one takes the same steps tell nothing of time.
+#[test]
+fn estimates_for_a_scene_as_it_is_take_its_own_mesh() {
+    let text = cantilever(
+        1e4,
+        1.0,
+        "effect.force = [{ beam = 'arm', at = 'end', value = [0, 5] }]\nanalysis.static = {}",
+    );
+    let text = text.replace("mass_per_length", "basis.ancf.elements = 12, mass_per_length");
+    let scene = scene(&text);
+    let plain = scene.model().solve(scene.analysis()).expect("an equilibrium");
+    let known =
+        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+    assert_eq!(plain.states().probes[0].samples, known.states().probes[0].samples);
+    let fine = run(&super::scene(&cantilever(
+        1e4,
+        1.0,
+        "effect.force = [{ beam = 'arm', at = 'end', value = [0, 5] }]\nanalysis.static.accuracy = 1e-9",
+    )));
+    let truth = (last(&known).x - last(&fine).x).hypot(last(&known).y - last(&fine).y);
+    let estimated = error(&known).estimated.result;
+    assert!(error(&known).wanted.is_none());
+    assert!((0.2..3.0).contains(&(truth / estimated)), "{truth:e} {estimated:e}");
+}

@@ -1,0 +1,58 @@
+//! Accuracies that cannot be had end with what was reached, and why.
+
+use super::{cantilever, error, run, scene};
+use ancf::results::AnalysisKind;
+
+/// No mesh of its own to refine.
+#[test]
+fn a_basis_that_is_named_cannot_be_refined() {
+    let rest =
+        "effect.force = [{ beam = 'arm', at = 'end', value = [0, 5] }]\nanalysis.static.accuracy = 1e-9";
+    let text =
+        cantilever(1e4, 1.0, rest).replace("mass_per_length", "basis.ancf.elements = 6, mass_per_length");
+    let results = run(&scene(&text));
+    assert!(!error(&results).met && error(&results).estimated.result > 1e-9);
+    let missed = error(&results).missed(AnalysisKind::Static).expect("a message");
+    assert!(missed.contains("1e-9") && missed.contains("names the basis"), "{missed}");
+}
+
+/// Beyond round-off nothing converges.
+#[test]
+fn round_off_is_an_end() {
+    let rest =
+        "effect.force = [{ beam = 'arm', at = 'end', value = [0, 5] }]\nanalysis.static.accuracy = 1e-15";
+    let results = run(&scene(&cantilever(1e9, 1.0, rest)));
+    assert!(!error(&results).met, "{:?}", error(&results).estimated);
+    let missed = error(&results).missed(AnalysisKind::Static).expect("a message");
+    assert!(missed.contains("1e-15"), "{missed}");
+}
+
+/// A model that is wrong is refused at once, not after rounds of finer meshes.
+#[test]
+fn accuracies_of_one_and_more_are_no_accuracies() {
+    for (accuracy, said) in [
+        ("1.0", "smaller than 1"),
+        ("0.0", "positive"),
+        ("{ positions = 1e-3 }", "positions"),
+        ("'x'", "expected"),
+    ] {
+        let text = cantilever(1e4, 1.0, &format!("analysis.static.accuracy = {accuracy}"));
+        let error = ancf::scene::parse("scene.toml", &text).expect_err(accuracy).to_string();
+        assert!(error.contains(said), "{accuracy}: {error}");
+    }
+}
+
+/// What a beam without shear and of small strains does not describe is said.
+#[test]
+fn errors_of_the_model_are_noted() {
+    let note = |stretch: f64, bend: f64, moment: f64| {
+        let rest = format!(
+            "effect.moment = [{{ beam = 'arm', at = 'end', value = {moment:e} }}]\nanalysis.static = {{}}"
+        );
+        error(&run(&scene(&cantilever(stretch, bend, &rest)))).notes.join("; ")
+    };
+    // A rectangle of the thickness h = 0.01: EI = EA h²/12.
+    assert_eq!(note(1e6, 1e6 * 1e-4 / 12.0, 1.0), "");
+    assert!(note(1e6, 1e6 * 0.3 * 0.3 / 12.0, 1.0).contains("shear"));
+    assert!(note(1e6, 1e6 * 0.05 * 0.05 / 12.0, 1e6 * 0.05 * 0.05 / 12.0 * 7.0).contains("radius"));
+}

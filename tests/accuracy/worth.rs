@@ -1,0 +1,90 @@
+//! The estimate against closed forms: the accuracy is met, and the true error is near the estimate.
+
+use super::{cantilever, error, last, run, scene};
+use std::f64::consts::{PI, TAU};
+
+/// The true error is no larger than wanted, and not far from the estimate: at most three times as
+/// large; where it is much smaller the estimate is only cautious.
+fn judge(what: &str, wanted: f64, estimated: f64, truth: f64) {
+    assert!(estimated <= wanted, "{what}: {estimated:e} where {wanted:e} was wanted");
+    assert!(truth <= wanted, "{what}: errs by {truth:e} where {wanted:e} was wanted");
+    assert!(truth <= 3.0 * estimated, "{what}: errs by {truth:e} where {estimated:e} was estimated");
+    assert!(truth >= estimated / 20.0 || truth < 1e-9, "{what}: {truth:e} against {estimated:e}");
+}
+
+/// βL of a clamped beam with a free end: cos β cosh β = −1.
+const ROOTS: [f64; 4] =
+    [1.875_104_068_711_961, 4.694_091_132_974_175, 7.854_757_438_237_613, 10.995_540_734_875_467];
+
+#[test]
+fn frequencies_are_as_accurate_as_wanted() {
+    for wanted in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7] {
+        let text = format!("analysis.modal = {{ count = 4, accuracy = {wanted:e} }}");
+        let results = run(&scene(&cantilever(1e8, 1.0, &text)));
+        let exact = ROOTS.map(|root| root * root / TAU);
+        let relative = results.eigenvalues().into_iter().zip(exact).map(|(f, exact)| (f / exact - 1.0).abs());
+        judge("frequencies", wanted, error(&results).estimated.result, relative.fold(0.0, f64::max));
+    }
+}
+
+#[test]
+fn critical_loads_are_as_accurate_as_wanted() {
+    for wanted in [1e-2, 1e-4, 1e-6] {
+        let text = format!(
+            "effect.force = [{{ beam = 'arm', at = 'end', value = [-1, 0] }}]\nanalysis.buckling = {{ count = 3, accuracy = {wanted:e} }}"
+        );
+        let results = run(&scene(&cantilever(1e8, 1.0, &text)));
+        let exact = [1.0, 3.0, 5.0].map(|n| (n * PI / 2.0) * (n * PI / 2.0));
+        let relative = results.eigenvalues().into_iter().zip(exact).map(|(f, exact)| (f / exact - 1.0).abs());
+        judge("critical loads", wanted, error(&results).estimated.result, relative.fold(0.0, f64::max));
+    }
+}
+
+/// An end moment bends a straight beam into an arc of the angle M L/EI.
+#[test]
+fn arcs_are_as_accurate_as_wanted() {
+    for turn in [0.5, 2.0, TAU] {
+        for wanted in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7] {
+            let text = format!(
+                "effect.moment = [{{ beam = 'arm', at = 'end', value = {turn:?} }}]\nanalysis.static.accuracy = {wanted:e}"
+            );
+            let results = run(&scene(&cantilever(1e7, 1.0, &text)));
+            let tip = last(&results);
+            let truth = (tip.x - turn.sin() / turn).hypot(tip.y - (1.0 - turn.cos()) / turn);
+            judge(&format!("an arc of {turn} rad"), wanted, error(&results).estimated.result, truth);
+        }
+    }
+}
+
+/// A tight cable with bending stiffness, clamped at both ends, under a small even load: EI w⁗ − T w″
+/// = q has boundary layers of the length √(EI/T). Even cells see them late; a pair of meshes that
+/// are too coarse for them differs little, and errs much.
+#[test]
+fn boundary_layers_are_seen() {
+    let (tension, bend, load) = (100.0_f64, 1e-3_f64, 1e-4_f64);
+    let k = (tension / bend).sqrt();
+    // With w = w′ = 0 at both ends: w = q/(2T) (s − s²) + q/(2Tk) (cosh k(s − ½)/sinh(k/2) − coth(k/2)).
+    let middle = load / tension * (0.125 + (1.0 / (0.5 * k).sinh() - 1.0 / (0.5 * k).tanh()) / (2.0 * k));
+    let mut unknowns = Vec::new();
+    for wanted in [1e-8, 1e-9, 3e-10] {
+        let text = format!(
+            "beam.cable = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e9, bending_stiffness = {bend:e} }}\n\
+             support = [{{ beam = 'cable', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'cable', at = 'end', fix = ['y', 'angle'] }}]\n\
+             effect.force = [{{ beam = 'cable', at = 'end', value = [{tension:?}, 0] }}]\n\
+             effect.distributed_force = [{{ beam = 'cable', value = [0, {load:e}] }}]\n\
+             probe = [{{ name = 'middle', beam = 'cable', at = 0.5 }}]\n\
+             analysis.static.accuracy = {wanted:e}"
+        );
+        let results = run(&scene(&text));
+        let truth = (last(&results).y - middle).abs();
+        assert!(error(&results).met && truth <= wanted, "{truth:e} where {wanted:e} was wanted");
+        assert!(
+            truth <= 5.0 * error(&results).estimated.result,
+            "{truth:e}, {:?}",
+            error(&results).estimated
+        );
+        unknowns.push(results.run().degrees_of_freedom);
+    }
+    // 128 even cells, 511 unknowns, err by more than the last one.
+    assert!(unknowns.iter().all(|n| *n < 400), "{unknowns:?}");
+}
