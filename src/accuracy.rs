@@ -2,9 +2,9 @@
 //! that is wanted.
 //!
 //! ```text
-//! wanted accuracy ─► mesh, tolerance ─► run ──────────────┐
-//!       ▲               └─► halved, a 16th ─► run ────────┴─► difference ─► error of the finer run ─► good enough: done
-//!       └──────────── cells and steps where they are needed ◄──────┘                                  else
+//! wanted ─► mesh, tolerance ─► run ───────────────┐
+//!   ▲             └─► halved, a 16th ─► run ──────┴─► difference ─► error ─► small enough: done
+//!   └───────── cells and steps where they are needed ◄───────────────┘ else
 //! ```
 //!
 //! # The estimate
@@ -80,6 +80,8 @@ const CELLS_MORE: usize = 16;
 const ROUND_OFF: f64 = 1e-12;
 /// Most times as many cells, and fewer tolerance, in the next round.
 const LEAP: f64 = 6.0;
+/// Errors of positions, in beam lengths, beyond which two motions have nothing in common.
+const LOST: f64 = 0.2;
 /// Errors that did not fall below this part of what they were, in spite of a finer mesh or smaller
 /// steps, will not fall.
 const STALLED: f64 = 0.7;
@@ -445,7 +447,15 @@ impl<'a, 'o> Search<'a, 'o> {
                 }
             };
             if !round.results.run().complete {
-                return Ok(self.finished(Judged::unknown(round), None));
+                // Somebody stopped it: what an earlier round found is more than a part of this one.
+                let why = Some("the search for it was interrupted".to_owned());
+                return Ok(match best {
+                    Some(mut best) => {
+                        best.round.results.run_mut().complete = false;
+                        self.finished(best, why)
+                    }
+                    None => self.finished(Judged::unknown(round), why),
+                });
             }
             let difference = match &round.difference {
                 Ok(difference) => difference.clone(),
@@ -493,6 +503,8 @@ impl<'a, 'o> Search<'a, 'o> {
                 Some(format!("errors below {ROUND_OFF:e} are those of round-off"))
             } else if stalls >= STALLS {
                 Some(SEVERAL.to_owned())
+            } else if let Some(growth) = self.outgrown(&judged, wanted) {
+                Some(growth)
             } else if rounds >= ROUNDS {
                 Some(format!("{ROUNDS} rounds of finer meshes and smaller steps were not enough"))
             } else {
@@ -508,6 +520,33 @@ impl<'a, 'o> Search<'a, 'o> {
             }
             best = Some(best_now);
         }
+    }
+
+    /// Why no steps are small enough for a motion whose errors grow with time: as fast as they grew
+    /// from what is wanted to what tells nothing any more, they would have to begin below all
+    /// tolerances.
+    fn outgrown(&self, judged: &Judged, wanted: Accuracy) -> Option<String> {
+        let Analysis::Dynamic(_) = self.analysis else { return None };
+        let difference = judged.difference.as_ref()?;
+        let times = &judged.round.results.states().parameter;
+        let divide = judged.contractions[0] - 1.0;
+        let passes = |level: f64| {
+            let first = difference.records.iter().position(|error| error / divide > level)?;
+            times.get(first).copied()
+        };
+        let (good, lost, end) = (passes(wanted.result)?, passes(LOST)?, *times.last()?);
+        if lost <= good || wanted.result >= LOST {
+            return None;
+        }
+        // Errors grow like exp(λ t).
+        let rate = (LOST / wanted.result).ln() / (lost - good);
+        let needed = rate * (end - good);
+        let left = (self.tolerance / FINEST).ln();
+        // Errors go with a power of 0.75 of the tolerance.
+        (0.75 * left < needed).then(|| {
+            let twice = std::f64::consts::LN_2 / rate;
+            format!("errors of this motion double every {twice:.2} s, so that no steps are small enough for all of it")
+        })
     }
 
     /// Finer meshes where cells err and smaller steps where steps err, so that the next round is
@@ -590,8 +629,15 @@ impl<'a, 'o> Search<'a, 'o> {
             curvature: wanted.curvature,
             section_force: wanted.section_force,
         });
-        let mut estimate =
-            ErrorEstimate { wanted, reason, notes, runs: self.runs, ..ErrorEstimate::default() };
+        let unknown = Errors { result: f64::INFINITY, ..Errors::default() };
+        let mut estimate = ErrorEstimate {
+            wanted,
+            reason,
+            notes,
+            runs: self.runs,
+            estimated: unknown,
+            ..ErrorEstimate::default()
+        };
         if let Some(difference) = difference {
             let divide = [contractions[0] - 1.0, contractions[1] - 1.0];
             estimate.estimated = scaled(difference.errors, contractions);

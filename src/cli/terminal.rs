@@ -322,7 +322,10 @@ fn error_text(error: &ErrorEstimate, analysis: AnalysisKind) -> String {
         AnalysisKind::Static | AnalysisKind::Dynamic => " of a beam length",
         AnalysisKind::Modal | AnalysisKind::Buckling => ", relative",
     };
-    let mut text = format!("{:.0e}{unit}", error.estimated.result);
+    let mut text = match error.estimated.result.is_finite() {
+        true => format!("{:.0e}{unit}", error.estimated.result),
+        false => "unknown".to_owned(),
+    };
     if let Some(wanted) = error.wanted {
         let _ = write!(text, " ({:e} wanted)", wanted.result);
         for (what, wanted, found) in [

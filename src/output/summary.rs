@@ -71,7 +71,7 @@ pub struct ErrorSummary {
     /// The largest error that was wanted: of positions in beam lengths, or of numbers, relative;
     /// `null` where nobody asked for any.
     pub wanted: Option<f64>,
-    /// The largest error of the results.
+    /// The largest error of the results; `null` where nothing is known of it.
     pub estimated: f64,
     /// Whether no error is larger than wanted.
     pub met: bool,

@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct ErrorEstimate {
     /// The largest errors that were wanted; `None` where nobody asked for any.
     pub wanted: Option<Errors>,
-    /// The largest errors of the results.
+    /// The largest errors of the results; infinite where nothing is known of them.
     pub estimated: Errors,
     /// Whether no error is larger than wanted.
     pub met: bool,
@@ -50,7 +50,9 @@ impl ErrorEstimate {
         };
         let mut text = format!("the wanted accuracy of {:e}{unit} is not met", wanted.result);
         let found = self.estimated;
-        if found.result > wanted.result {
+        if found.result.is_infinite() {
+            text += "; nothing is known of the errors";
+        } else if found.result > wanted.result {
             text += &format!("; the results may err by {:.1e}", found.result);
         }
         for (what, wanted, found) in [

@@ -2,6 +2,8 @@
 
 use super::{cantilever, error, run, scene};
 use ancf::results::AnalysisKind;
+use ancf::run::{Control, Progress};
+use ancf::{Options, accuracy};
 
 /// No mesh of its own to refine.
 #[test]
@@ -55,4 +57,19 @@ fn errors_of_the_model_are_noted() {
     assert_eq!(note(1e6, 1e6 * 1e-4 / 12.0, 1.0), "");
     assert!(note(1e6, 1e6 * 0.3 * 0.3 / 12.0, 1.0).contains("shear"));
     assert!(note(1e6, 1e6 * 0.05 * 0.05 / 12.0, 1e6 * 0.05 * 0.05 / 12.0 * 7.0).contains("radius"));
+}
+
+/// A search that is stopped leaves what was computed, and claims nothing of it.
+#[test]
+fn an_interrupted_search_claims_nothing() {
+    let rest =
+        "effect.gravity.acceleration = [0, -9.81]\nanalysis.dynamic = { duration = 2.0, accuracy = 1e-4 }";
+    let scene = scene(&cantilever(1e4, 1.0, rest));
+    let observer = &mut |now: &Progress| if now.parameter > 0.5 { Control::Stop } else { Control::Continue };
+    let options = Options { observer: Some(observer), ..Options::default() };
+    let results = accuracy::run(&scene, options).expect("a part");
+    assert!(!results.run().complete);
+    assert!(!error(&results).met && error(&results).estimated.result.is_infinite());
+    let missed = error(&results).missed(AnalysisKind::Dynamic).expect("a message");
+    assert!(missed.contains("nothing is known") && missed.contains("interrupted"), "{missed}");
 }
