@@ -22,7 +22,7 @@
 //! The result is that of the finer run, as it would be without any estimate: the scene with what
 //! was chosen gives the same numbers.
 
-mod difference;
+pub(crate) mod difference;
 mod mesh;
 mod model_error;
 pub(crate) mod setting;
@@ -32,7 +32,9 @@ use crate::centreline::Curve;
 use crate::model::{
     Accuracy, Analysis, Discretization, GaussPoints, Integrator, Model, Nodes, Open, StepControl,
 };
-use crate::results::{BeamErrors, ErrorEstimate, Errors, ProbeErrors, ProbeSample, Results, RunForError};
+use crate::results::{
+    AnalysisKind, BeamErrors, ErrorEstimate, Errors, ProbeErrors, ProbeSample, Results, RunForError,
+};
 use crate::run::{Options, RunError};
 use crate::scene::Scene;
 use difference::{Difference, Stations};
@@ -92,6 +94,9 @@ const STALLS: usize = 2;
 /// Why errors do not fall.
 const SEVERAL: &str = "finer meshes and smaller steps do not bring the results nearer to each other: there are several solutions, or \
                        errors grow with time";
+/// Why nothing is known of a motion whose steps the tolerance does not decide about.
+const MUTE_STEPS: &str = "with a looser tolerance the motion takes hardly fewer steps, so that the errors of its steps cannot be seen; give a \
+                          smaller tolerance, or leave the integrator out";
 /// Why nothing can be refined.
 const NAMED: &str =
     "the scene names the basis of every beam, and with it the mesh: leave it out, or give it more nodes";
@@ -253,7 +258,8 @@ impl Round {
             let counts = results.run().statistics;
             (counts.steps + counts.rejected_steps) as f64
         };
-        self.coarse.as_ref().is_none_or(|coarse| steps(&self.results) >= MORE_STEPS * steps(coarse))
+        let moves = self.results.run().analysis == AnalysisKind::Dynamic;
+        !moves || self.coarse.as_ref().is_none_or(|coarse| steps(&self.results) >= MORE_STEPS * steps(coarse))
     }
 }
 
@@ -265,7 +271,12 @@ impl<'a, 'o> Search<'a, 'o> {
         wanted: Option<Accuracy>,
         options: Options<'o>,
     ) -> Self {
-        let mut meshes = Mesh::first(model);
+        let waves = match analysis {
+            Analysis::Modal(settings) => settings.count,
+            Analysis::Buckling(settings) => settings.count,
+            _ => 0,
+        };
+        let mut meshes = Mesh::first(model, waves);
         for (beam, mesh) in model.beams.iter().zip(&mut meshes) {
             if beam.discretization != Discretization::Open {
                 let curve = Curve::new(&beam.centreline);
@@ -473,6 +484,9 @@ impl<'a, 'o> Search<'a, 'o> {
                 mute += 1;
                 self.tolerance = short((self.tolerance / LOOSER).max(FINEST));
                 continue;
+            }
+            if !self.open.integrator && !round.tells_of_steps() {
+                return Ok(self.finished(Judged::unknown(round), Some(MUTE_STEPS.to_owned())));
             }
             rounds += 1;
             let now = Seen {
@@ -691,6 +705,9 @@ fn of_probe(mut probe: ProbeErrors, [result, curvature]: [f64; 2]) -> ProbeError
     let around: Vec<ProbeSample> = (0..probe.samples.len())
         .map(|i| {
             let last = (i + reach).min(probe.samples.len() - 1);
+            if probe.samples[i].x.is_nan() {
+                return probe.samples[i];
+            }
             probe.samples[i.saturating_sub(reach)..=last].iter().fold(
                 ProbeSample::default(),
                 |most, sample| {

@@ -227,7 +227,7 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
         None => None,
         Some(trial) => {
             let lines = trials[trial].setting.toml(model);
-            let scene = scene.merged(&lines).map_err(CostError::Lines)?;
+            let scene = scene.chosen(&lines).map_err(CostError::Lines)?;
             Some(Best { trial, lines, scene })
         }
     };

@@ -102,25 +102,44 @@ pub(super) fn between(
     }
 }
 
-/// Pairs of records with the same parameter. Along a path each run takes points of its own: only
-/// the ends belong together.
-fn pairs(analysis: &Analysis, coarse: &[f64], fine: &[f64]) -> Result<Vec<(usize, usize)>, String> {
-    let (Some(last), Some(_)) = (fine.last(), coarse.last()) else {
-        return Err("a run has no record".into());
-    };
-    if matches!(analysis, Analysis::Static(settings) if settings.arc_length.is_some()) {
-        return Ok(vec![(coarse.len() - 1, fine.len() - 1)]);
+/// Pairs of records that belong together. Along a path each run takes points of its own, and only
+/// the ends do. So do the ends of motions that an event ends, which are moments of their own.
+///
+/// # Errors
+/// In words, where no records belong together.
+pub(crate) fn pairs(
+    analysis: &Analysis,
+    run: &[f64],
+    reference: &[f64],
+) -> Result<Vec<(usize, usize)>, String> {
+    let ends = run.len().checked_sub(1).zip(reference.len().checked_sub(1)).ok_or("no record")?;
+    if is_path(analysis) {
+        return Ok(vec![ends]);
     }
-    let (mut pairs, mut i) = (Vec::with_capacity(fine.len()), 0);
-    for (j, &at) in fine.iter().enumerate() {
-        while i < coarse.len() && coarse[i] < at - SAME * last.abs() {
+    let mut pairs = common(run, reference)?;
+    if matches!(analysis, Analysis::Dynamic(_)) && pairs.iter().all(|&(i, j)| i != ends.0 && j != ends.1) {
+        pairs.push(ends);
+    }
+    Ok(pairs)
+}
+
+fn is_path(analysis: &Analysis) -> bool {
+    matches!(analysis, Analysis::Static(settings) if settings.arc_length.is_some())
+}
+
+/// Pairs of records at the same time or load factor; both lists ascend. At least one is required.
+pub(crate) fn common(run: &[f64], reference: &[f64]) -> Result<Vec<(usize, usize)>, String> {
+    let last = *reference.last().ok_or("no record")?;
+    let (mut pairs, mut i) = (Vec::new(), 0);
+    for (j, &at) in reference.iter().enumerate() {
+        while i < run.len() && run[i] < at - SAME * last.abs() {
             i += 1;
         }
-        if coarse.get(i).is_some_and(|found| (found - at).abs() <= SAME * last.abs()) {
+        if run.get(i).is_some_and(|found| (found - at).abs() <= SAME * last.abs()) {
             pairs.push((i, j));
         }
     }
-    if pairs.is_empty() { Err("the runs have no record in common".into()) } else { Ok(pairs) }
+    if pairs.is_empty() { Err("no record at the times or loads of the reference".into()) } else { Ok(pairs) }
 }
 
 fn states(
@@ -131,7 +150,7 @@ fn states(
     fine: &Trajectory,
 ) -> Result<Difference, String> {
     let pairs = pairs(analysis, &coarse.parameter, &fine.parameter)?;
-    let lengths: Vec<f64> = meshes.iter().map(|mesh| mesh.nodes.last().copied().unwrap_or(0.0)).collect();
+    let lengths: Vec<f64> = meshes.iter().map(Mesh::length).collect();
     let mut difference = Difference { records: vec![0.0; fine.parameter.len()], ..Difference::default() };
     let mut result = 0.0_f64;
     for ((probe, a), b) in model.probes.iter().zip(&coarse.probes).zip(&fine.probes) {
@@ -148,7 +167,7 @@ fn states(
     let (mut curvature, mut largest) = (0.0_f64, 0.0_f64);
     let of_beams = stations.of_beams(coarse).zip(stations.of_beams(fine));
     for (((beam, mesh), s), (a, b)) in model.beams.iter().zip(meshes).zip(&stations.s).zip(of_beams) {
-        let length = mesh.nodes.last().copied().unwrap_or(0.0);
+        let length = mesh.length();
         let bends = beam.section.bending_stiffness.is_some();
         let mut along = BeamErrors {
             beam: beam.name.clone(),
@@ -193,9 +212,17 @@ fn states(
         }
     }
     let known: Vec<usize> = pairs.iter().map(|&(_, j)| j).collect();
-    fill(&mut difference.records, &known, |a, b| larger(*a, *b));
-    for probe in &mut difference.probes {
-        fill(&mut probe.samples, &known, |a, b| if a.x >= b.x { *a } else { *b });
+    if is_path(analysis) {
+        // What other points of the path err by is not known.
+        for j in 0..fine.parameter.len() - 1 {
+            difference.records[j] = f64::NAN;
+            difference.probes.iter_mut().for_each(|probe| probe.samples[j] = unknown(&probe.samples[j]));
+        }
+    } else {
+        fill(&mut difference.records, &known, |a, b| larger(*a, *b));
+        for probe in &mut difference.probes {
+            fill(&mut probe.samples, &known, |a, b| if a.x >= b.x { *a } else { *b });
+        }
     }
     let scale = lengths.iter().copied().fold(0.0, f64::max);
     difference.errors = Errors {
@@ -234,6 +261,13 @@ fn differ(a: &ProbeSample, b: &ProbeSample) -> ProbeSample {
         vx: of(a.vx, b.vx),
         vy: of(a.vy, b.vy),
     }
+}
+
+/// Errors of which nothing is known.
+fn unknown(like: &ProbeSample) -> ProbeSample {
+    let nan = f64::NAN;
+    let of = |v: Option<f64>| v.map(|_| nan);
+    ProbeSample { x: nan, y: nan, angle: nan, curvature: nan, strain: nan, vx: of(like.vx), vy: of(like.vy) }
 }
 
 /// The largest difference of axial and shear forces, relative to the largest of both and of M/L,
@@ -284,11 +318,8 @@ fn modes(model: &Model, meshes: &[Mesh], coarse: &Results, fine: &Results) -> Re
     if a.len() != b.len() || b.is_empty() {
         return Err(format!("one run has {} values, the other {}", a.len(), b.len()));
     }
-    let largest = b.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    // Motions that nothing resists have the frequency 0, or its round-off.
-    let relative = |(a, b): (&f64, &f64)| {
-        (a - b).abs() / if b.abs() > 1e-6 * largest { b.abs() } else { largest.max(f64::MIN_POSITIVE) }
-    };
+    // The frequency of a motion that nothing resists is zero in both.
+    let relative = |(a, b): (&f64, &f64)| if a == b { 0.0 } else { (a - b).abs() / b.abs() };
     let eigenvalues: Vec<f64> = a.iter().zip(&b).map(relative).collect();
     let result = eigenvalues.iter().copied().fold(0.0, larger);
     if !result.is_finite() {

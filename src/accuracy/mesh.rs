@@ -50,8 +50,9 @@ pub(super) struct CellErrors {
 }
 
 impl Mesh {
-    /// Where the search begins, for every beam.
-    pub fn first(model: &Model) -> Vec<Self> {
+    /// Where the search begins, for every beam; with `waves` half-waves of a mode along the longest
+    /// each has a cell.
+    pub fn first(model: &Model, waves: usize) -> Vec<Self> {
         let curves: Vec<Option<Curve>> =
             model.beams.iter().map(|beam| Curve::new(&beam.centreline).ok()).collect();
         let longest = curves.iter().flatten().map(Curve::length).fold(0.0, f64::max);
@@ -71,7 +72,7 @@ impl Mesh {
                 }
             }
             fixed.push(length);
-            let straight = (FIRST * length / longest).ceil() as usize;
+            let straight = (FIRST.max(waves as f64) * length / longest).ceil() as usize;
             let turns = (turning(curve) / TURN).ceil() as usize;
             let cells = straight.max(turns).max(LEAST);
             let spread = |part: &[f64]| {
@@ -98,8 +99,13 @@ impl Mesh {
 
     /// Every cell cut in two.
     pub fn halved(&self) -> Self {
+        self.divided(2)
+    }
+
+    /// Every cell cut into `times`.
+    fn divided(&self, times: usize) -> Self {
         let mut nodes: Vec<f64> =
-            self.nodes.windows(2).flat_map(|cell| [cell[0], 0.5 * (cell[0] + cell[1])]).collect();
+            self.nodes.windows(2).flat_map(|cell| even(cell[0], cell[1], times)).collect();
         nodes.extend(self.nodes.last());
         Self { nodes, fixed: self.fixed.clone() }
     }
@@ -171,7 +177,8 @@ impl Mesh {
                 let step = densities[i] * (cell[1] - cell[0]);
                 while next < cells && next as f64 * total / cells as f64 <= sum + step {
                     let share = (next as f64 * total / cells as f64 - sum) / step;
-                    let s = rounded(cell[0] + share.max(0.0) * (cell[1] - cell[0]), self.length());
+                    let width = total / cells as f64 / densities[i];
+                    let s = rounded(cell[0] + share.max(0.0) * (cell[1] - cell[0]), width);
                     nodes.push(if next == 0 { part[0] } else { s });
                     next += 1;
                 }
@@ -234,19 +241,9 @@ pub(super) fn refined(meshes: &[Mesh], errors: &[Option<CellErrors>], times: f64
     meshes.iter().zip(&graded).map(spread).collect()
 }
 
-impl Mesh {
-    /// Every cell cut into `times`.
-    fn divided(&self, times: usize) -> Self {
-        let mut nodes: Vec<f64> =
-            self.nodes.windows(2).flat_map(|cell| even(cell[0], cell[1], times)).collect();
-        nodes.extend(self.nodes.last());
-        Self { nodes, fixed: self.fixed.clone() }
-    }
-}
-
-/// A place to five digits of the beam's length, which nobody wants to read more of.
-pub(super) fn rounded(s: f64, length: f64) -> f64 {
-    let digits = 5.0 - length.log10().floor();
+/// A place to a thousandth of the cells there: nobody wants to read more digits.
+fn rounded(s: f64, cell: f64) -> f64 {
+    let digits = 3.0 - cell.log10().floor();
     let decimals = digits.clamp(0.0, 300.0) as usize;
     format!("{s:.decimals$}").parse().unwrap_or(s)
 }

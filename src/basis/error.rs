@@ -8,7 +8,7 @@ use thiserror::Error;
 pub enum BasisError {
     /// The beam has no discretisation.
     #[error(
-        "it has none yet: one is chosen when the model is solved for an accuracy; give a basis to do without"
+        "no discretisation: one is chosen when the model is solved for an accuracy, and has to be given otherwise"
     )]
     Open,
     /// The beam has no usable length.

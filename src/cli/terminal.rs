@@ -324,7 +324,7 @@ fn error_text(error: &ErrorEstimate, analysis: AnalysisKind) -> String {
     };
     let mut text = match error.estimated.result.is_finite() {
         true => format!("{:.0e}{unit}", error.estimated.result),
-        false => "unknown".to_owned(),
+        false => format!("unknown: {}", error.reason.as_deref().unwrap_or("no run to compare with")),
     };
     if let Some(wanted) = error.wanted {
         let _ = write!(text, " ({:e} wanted)", wanted.result);

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::accuracy::difference::pairs;
 use crate::model::{Analysis, Model};
 use crate::output::drift;
 use crate::results::{AnalysisKind, Results, Shape, Trajectory};
@@ -50,13 +51,8 @@ impl Deviation {
         let error = match analysis {
             Analysis::Modal(_) => eigenvalues("frequencies")?,
             Analysis::Buckling(_) => eigenvalues("load factors")?,
-            Analysis::Static(settings) if settings.arc_length.is_some() => {
-                let last = |t: &Trajectory| t.parameter.len().checked_sub(1);
-                let ends = last(run).zip(last(reference)).ok_or("no record")?;
-                positions(model, run, reference, &[ends])
-            }
             Analysis::Static(_) | Analysis::Dynamic(_) => {
-                positions(model, run, reference, &common(&run.parameter, &reference.parameter)?)
+                positions(model, run, reference, &pairs(analysis, &run.parameter, &reference.parameter)?)
             }
         };
         if !error.is_finite() {
@@ -74,22 +70,6 @@ impl Deviation {
         let curvature = if has_state { curvature(&run.last, &reference.last) } else { None };
         Ok(Self { error, curvature, energy })
     }
-}
-
-/// Pairs of records at the same time or load factor; both lists ascend. At least one is required.
-fn common(run: &[f64], reference: &[f64]) -> Result<Vec<(usize, usize)>, String> {
-    let last = *reference.last().ok_or("no record")?;
-    let (mut pairs, mut i) = (Vec::new(), 0);
-    for (j, &at) in reference.iter().enumerate() {
-        while i < run.len() && run[i] < at - SAME * last.abs() {
-            i += 1;
-        }
-        if run.get(i).is_some_and(|found| (found - at).abs() <= SAME * last.abs()) {
-            pairs.push((i, j));
-        }
-    }
-    // The last records need not belong together: an event may end a motion at any time.
-    if pairs.is_empty() { Err("no record at the times or loads of the reference".into()) } else { Ok(pairs) }
 }
 
 fn positions(model: &Model, run: &Trajectory, reference: &Trajectory, pairs: &[(usize, usize)]) -> f64 {
@@ -138,6 +118,7 @@ fn curvature(run: &[Shape], reference: &[Shape]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accuracy::difference::common;
     use crate::model::{
         About, ArcLength, Buckling, Dynamic, Integrator, Modal, Place, Probe, STEP_CONTROL, Static,
     };

@@ -73,3 +73,16 @@ fn an_interrupted_search_claims_nothing() {
     let missed = error(&results).missed(AnalysisKind::Dynamic).expect("a message");
     assert!(missed.contains("nothing is known") && missed.contains("interrupted"), "{missed}");
 }
+
+/// Two motions with the same steps tell nothing of the errors of these.
+#[test]
+fn steps_that_do_not_follow_the_tolerance_are_not_judged() {
+    let rest = "effect.gravity.acceleration = [0, -9.81]\n\
+                analysis.dynamic = { duration = 0.02, output_every = 0.001, radau.tolerance = 1e-2 }";
+    let text =
+        cantilever(1e2, 1.0, rest).replace("mass_per_length", "basis.ancf.elements = 4, mass_per_length");
+    let scene = scene(&text);
+    let results = accuracy::estimate(scene.model(), scene.analysis(), Options::default()).expect("a motion");
+    assert!(error(&results).estimated.result.is_infinite());
+    assert!(error(&results).reason.as_ref().is_some_and(|reason| reason.contains("hardly fewer steps")));
+}

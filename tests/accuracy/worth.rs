@@ -88,3 +88,39 @@ fn boundary_layers_are_seen() {
     // 128 even cells, 511 unknowns, err by more than the last one.
     assert!(unknowns.iter().all(|n| *n < 400), "{unknowns:?}");
 }
+
+/// A motion that an event ends has no record but the start in common with another run of it: the
+/// ends belong together.
+#[test]
+fn motions_that_an_event_ends_are_compared_at_their_ends() {
+    let rest = "effect.gravity.acceleration = [0, -9.81]\n\
+                analysis.dynamic = { duration = 1.0, output_every = 1.0, accuracy = 1e-2, event = [{ probe = 'tip', y = -0.8, stop = true }] }";
+    let text = cantilever(1e3, 0.05, rest).replace("fix = ['x', 'y', 'angle']", "fix = ['x', 'y']");
+    let results = run(&scene(&text));
+    assert_eq!(results.states().parameter.len(), 2);
+    let estimated = error(&results).estimated.result;
+    let fine = run(&scene(&text.replace("accuracy = 1e-2", "accuracy = 1e-5")));
+    let truth = (last(&results).x - last(&fine).x).hypot(last(&results).y - last(&fine).y);
+    assert!(truth > 0.0 && truth <= 3.0 * estimated && estimated <= 1e-2, "{truth:e} {estimated:e}");
+}
+
+/// Along a path only the ends are compared: of other points nothing is claimed.
+#[test]
+fn of_points_along_a_path_nothing_is_claimed() {
+    let rest = "effect.force = [{ beam = 'arm', at = 'end', value = [0, 5] }]\n\
+                analysis.static = { accuracy = 1e-4, arc_length = { until_load = 1.0 } }";
+    let results = run(&scene(&cantilever(1e4, 1.0, rest)));
+    let (last, others) = error(&results).probes[0].samples.split_last().expect("records");
+    assert!(last.x > 0.0 && last.x <= 1e-4 && !others.is_empty());
+    assert!(others.iter().all(|sample| sample.x.is_nan()));
+}
+
+/// As many vibrations as were asked for need as many cells from the first mesh on.
+#[test]
+fn many_vibrations_are_found() {
+    let results = run(&scene(&cantilever(1e10, 1.0, "analysis.modal = { count = 60, accuracy = 1e-2 }")));
+    assert!(error(&results).met, "{:?}", error(&results).reason);
+    // The first axial vibration is higher; βL of high bending modes is (n − ½) π.
+    let exact = (59.5 * PI).powi(2) / TAU;
+    assert!((results.eigenvalues()[59] / exact - 1.0).abs() <= 1e-2, "{}", results.eigenvalues()[59] / exact);
+}
