@@ -13,6 +13,11 @@
 //! | band bordered by constraint rows within it | LU of a band in another order | [`interleaved`] |
 //! | band bordered by others, such as those of joints | sparse LU by faer | [`bordered`] |
 //!
+//! Bands of small blocks have factorisations of their own, because a Newton iteration is little
+//! else: to factorise and to solve takes faer's sparse LLᵀ, its pattern analysed once, 7 to 8 times
+//! as long for cable elements and 11 times for radial point interpolation, its sparse LU 3 to 5
+//! times, for 13 nodes as for 10,000 (`faer` 0.24, one thread, AVX2).
+//!
 //! The module `inertia` finds the inertia on the motions that constraint rows leave. The complex
 //! matrices of collocation's stages are in [`complex`], the constant mass matrix is in
 //! [`isotropic`].

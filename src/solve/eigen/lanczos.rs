@@ -9,6 +9,9 @@
 //! round-off in the rows is a larger share of the rest, and grows from vector to vector until it
 //! passes for a solution. It is therefore removed from every vector (Nour-Omid, Parlett, Ericsson,
 //! Jensen, *Mathematics of Computation* 48, 1987, 663–673).
+//!
+//! faer's Krylov–Schur iteration works in the Euclidean inner product alone, in which A⁻¹ B is not
+//! symmetric, and constraint rows leave no Cholesky factor that would make it so.
 
 use super::{EigenError, NEGLIGIBLE, Pairs, Pencil, dot};
 use crate::linear::{Factor, Matrix};
