@@ -50,7 +50,7 @@ use crate::accuracy;
 use crate::centreline::Curve;
 use crate::model::{Accuracy, Analysis, Beam, Model, Open, Place, Probe};
 use crate::run;
-use crate::scene::Scene;
+use crate::scene::{self, Scene};
 use bench::{Measuring, Runner};
 use search::{Found, Task};
 use serde::Serialize;
@@ -227,7 +227,8 @@ pub fn study(scene: &Scene, options: Options, watcher: Watcher<'_>) -> Result<St
         None => None,
         Some(trial) => {
             let lines = trials[trial].setting.toml(model);
-            let scene = scene.chosen(&lines).map_err(CostError::Lines)?;
+            let text = scene.chosen(&lines).map_err(CostError::Lines)?;
+            let scene = scene::parse(scene.name(), &text).map_err(CostError::Lines)?;
             Some(Best { trial, lines, scene })
         }
     };

@@ -21,7 +21,7 @@ pub use crate::beam::{Beam, GaussPoints, Place, Section, StrainMeasure};
 pub use crate::centreline::Centreline;
 pub use crate::law::{Law, Tabulated};
 
-use crate::assembly::Part;
+use crate::assembly::{Part, Resistance};
 use std::sync::Arc;
 
 /// A complete mechanical model.
@@ -55,6 +55,14 @@ impl Model {
     /// Whether any beam has no axial stiffness, and so keeps its length.
     pub fn is_inextensible(&self) -> bool {
         self.beams.iter().any(|beam| beam.section.axial_stiffness.is_none())
+    }
+
+    /// Whether some beam may touch an obstacle.
+    pub fn has_contact(&self) -> bool {
+        let touches = |part: &Arc<dyn Part>| {
+            part.resists().iter().any(|resistance| matches!(resistance, Resistance::Contact(_)))
+        };
+        self.parts.iter().any(touches)
     }
 
     /// The arc lengths \[m\] along a beam at which there must be a node and supports of shape

@@ -133,6 +133,11 @@ impl Scene {
         self.accuracy.or_else(|| self.open.beams.contains(&true).then(Accuracy::default))
     }
 
+    /// Whether the scene says how large errors may be.
+    pub fn names_accuracy(&self) -> bool {
+        self.accuracy.is_some()
+    }
+
     /// What is to be chosen for the accuracy.
     pub fn open(&self) -> &Open {
         &self.open

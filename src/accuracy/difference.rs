@@ -212,9 +212,9 @@ fn states(
         }
     }
     let known: Vec<usize> = pairs.iter().map(|&(_, j)| j).collect();
-    if is_path(analysis) {
-        // What other points of the path err by is not known.
-        for j in 0..fine.parameter.len() - 1 {
+    if matches!(analysis, Analysis::Static(_)) {
+        // Each run chooses load factors of its own, and near a critical one even neighbours differ.
+        for j in (0..fine.parameter.len()).filter(|j| !known.contains(j)) {
             difference.records[j] = f64::NAN;
             difference.probes.iter_mut().for_each(|probe| probe.samples[j] = unknown(&probe.samples[j]));
         }
@@ -387,4 +387,54 @@ fn modes(model: &Model, meshes: &[Mesh], coarse: &Results, fine: &Results) -> Re
 /// A maximum that keeps what is not a number.
 fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a >= b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn between_two_places_values_are_linear_and_at_a_jump_there_are_two() {
+        let (s, v) = ([0.0, 1.0, 1.0, 3.0], [1.0, 2.0, 5.0, 9.0]);
+        let at = |place, after| interpolated(&s, &v, place, after);
+        assert_eq!(at(0.25, true), Some(1.25));
+        assert_eq!(at(2.5, false), Some(8.0));
+        assert_eq!((at(1.0, false), at(1.0, true)), (Some(2.0), Some(5.0)));
+        assert_eq!((at(0.0, false), at(3.0, true)), (Some(1.0), Some(9.0)));
+        assert_eq!((at(-0.5, true), at(3.5, true)), (None, None));
+    }
+
+    /// Of the forces the largest of both kinds counts, and M over the length; of moments their own.
+    #[test]
+    fn section_forces_err_by_their_largest() {
+        let shape = |axial: [f64; 2], shear: [f64; 2], moment: [f64; 2]| Shape {
+            s: vec![0.0, 2.0],
+            axial_force: axial.into(),
+            shear_force: shear.into(),
+            bending_moment: moment.into(),
+            ..Shape::default()
+        };
+        let fine = [shape([1.0, 8.0], [0.0, -4.0], [0.0, 10.0])];
+        let error = |coarse: Shape| section_forces(&[coarse], &fine).unwrap();
+        assert_eq!(error(shape([1.0, 6.0], [0.0, -4.0], [0.0, 10.0])), 0.25);
+        assert_eq!(error(shape([1.0, 8.0], [0.0, -3.0], [0.0, 10.0])), 0.125);
+        assert_eq!(error(shape([1.0, 8.0], [0.0, -4.0], [5.0, 10.0])), 0.5);
+        assert_eq!(error(fine[0].clone()), 0.0);
+        // Moments decide about forces where these are small.
+        let bent = [shape([0.0, 0.0], [0.0, 1.0], [0.0, 20.0])];
+        let other = shape([0.0, 0.5], [0.0, 1.0], [0.0, 20.0]);
+        assert_eq!(section_forces(&[other], &bent), Some(0.05));
+        let nothing = [shape([0.0; 2], [0.0; 2], [0.0; 2])];
+        assert_eq!(section_forces(&nothing, &nothing), None);
+    }
+
+    #[test]
+    fn records_without_a_partner_take_the_larger_of_their_neighbours() {
+        let mut values = vec![0.0, 3.0, 0.0, 1.0, 0.0];
+        fill(&mut values, &[1, 3], |a, b| larger(*a, *b));
+        assert_eq!(values, [3.0, 3.0, 3.0, 1.0, 1.0]);
+        let mut none = vec![1.0, 2.0];
+        fill(&mut none, &[], |a, b| larger(*a, *b));
+        assert_eq!(none, [1.0, 2.0]);
+    }
 }

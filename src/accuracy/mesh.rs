@@ -92,6 +92,11 @@ impl Mesh {
         self.nodes.len().saturating_sub(1)
     }
 
+    /// Whether no node must be but the ends.
+    pub fn is_one_part(&self) -> bool {
+        self.fixed.len() == 2
+    }
+
     /// Length of the beam \[m\].
     pub fn length(&self) -> f64 {
         self.nodes.last().copied().unwrap_or(0.0)
@@ -125,7 +130,7 @@ impl Mesh {
         let length = self.nodes.last().copied().unwrap_or(0.0);
         let even =
             self.nodes.windows(2).all(|cell| ((cell[1] - cell[0]) * cells / length - 1.0).abs() <= SAME);
-        if even && self.fixed.len() == 2 {
+        if even && self.is_one_part() {
             Nodes::Uniform(self.nodes.len())
         } else {
             Nodes::Given(self.nodes.clone())
@@ -262,4 +267,63 @@ fn turning(curve: &Curve) -> f64 {
         (a * d - b * c).atan2(a * c + b * d).abs()
     };
     (0..SAMPLES).map(turn).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh(nodes: &[f64], fixed: &[f64]) -> Mesh {
+        Mesh { nodes: nodes.into(), fixed: fixed.into() }
+    }
+
+    #[test]
+    fn halves_and_every_second_node_are_inverse() {
+        let coarse = mesh(&[0.0, 1.0, 4.0], &[0.0, 4.0]);
+        let fine = coarse.halved();
+        assert_eq!(fine.nodes, [0.0, 0.5, 1.0, 2.5, 4.0]);
+        assert_eq!(coarse.every_second_of(&fine.nodes), coarse);
+        assert_eq!(coarse.every_second_of(&[0.0, 1.0, 2.0, 4.0]).nodes, [0.0, 2.0, 4.0]);
+    }
+
+    #[test]
+    fn even_nodes_are_said_to_be_even() {
+        assert_eq!(mesh(&[0.0, 0.5, 1.0], &[0.0, 1.0]).places(), Nodes::Uniform(3));
+        let uneven = [0.0, 0.25, 1.0];
+        assert_eq!(mesh(&uneven, &[0.0, 1.0]).places(), Nodes::Given(uneven.into()));
+        let with_a_force = mesh(&[0.0, 0.5, 1.0], &[0.0, 0.5, 1.0]);
+        assert_eq!(with_a_force.places(), Nodes::Given(with_a_force.nodes.clone()));
+    }
+
+    /// Equal cells that err alike stay equal; twice as many for errors as if there were twice as
+    /// many.
+    #[test]
+    fn cells_that_err_alike_stay_alike() {
+        let even = mesh(&[0.0, 0.25, 0.5, 0.75, 1.0], &[0.0, 1.0]);
+        let errors = CellErrors { squares: vec![3.0; 4], order: 2.0 };
+        let found = refined(std::slice::from_ref(&even), &[Some(errors)], 2.0, 100);
+        assert_eq!(found[0], even.halved());
+        assert_eq!(refined(std::slice::from_ref(&even), &[None], 2.0, 100), [even]);
+    }
+
+    /// η² = C² h⁵ in the first of four cells, and nothing elsewhere: cells are small there, and grow
+    /// from cell to cell by not much more than the factor of two between the densities.
+    #[test]
+    fn cells_go_where_errors_are() {
+        let even = mesh(&[0.0, 0.25, 0.5, 0.75, 1.0], &[0.0, 1.0]);
+        let errors = CellErrors { squares: vec![1.0, 1e-12, 1e-12, 1e-12], order: 2.0 };
+        let found = refined(&[even], &[Some(errors)], 4.0, 100).remove(0).nodes;
+        let cells: Vec<f64> = found.windows(2).map(|cell| cell[1] - cell[0]).collect();
+        let growths: Vec<f64> = cells.windows(2).map(|pair| pair[1] / pair[0]).collect();
+        assert!(cells[0] < 0.25 * cells[cells.len() - 1], "{found:?}");
+        assert!(growths.iter().all(|growth| *growth > 0.99 && *growth < 2.6), "{found:?}");
+        assert!(found.contains(&0.0) && found.contains(&1.0));
+    }
+
+    #[test]
+    fn places_are_round_numbers_of_their_cells() {
+        assert_eq!(rounded(0.123_456_7, 0.1), 0.1235);
+        assert_eq!(rounded(1.234_567_89e-5, 1e-6), 1.2346e-5);
+        assert_eq!(rounded(123.456_7, 20.0), 123.46);
+    }
 }

@@ -65,33 +65,38 @@ impl Family {
         let beam = |beam: &Beam| {
             let share = cells as f64 * cells_of(beam) as f64 / most as f64;
             let nodes = graded(beam.discretization.nodes(), (share.round() as usize).max(1));
-            match self {
-                Self::Scene => (beam.discretization.clone(), beam.gauss_points),
-                // Strings and inextensible beams do not lock: they keep all points, because a
-                // string folds where too few resist.
-                Self::Ancf(_)
-                    if beam.section.bending_stiffness.is_none() || beam.section.axial_stiffness.is_none() =>
-                {
-                    (Discretization::Ancf { nodes }, STRING_GAUSS_POINTS)
-                }
-                Self::Ancf(points) => (Discretization::Ancf { nodes }, points),
-                Self::Rpim { neighbours, shape, points } => {
-                    let kernel = match RPIM_KERNEL {
-                        Kernel::Multiquadric { q, .. } => Kernel::Multiquadric { q, shape },
-                        other => other,
-                    };
-                    let discretization = Discretization::Rpim {
-                        nodes,
-                        kernel,
-                        polynomial_terms: RPIM_POLYNOMIAL_TERMS,
-                        side_condition: RPIM_SIDE_CONDITION,
-                        neighbours,
-                    };
-                    (discretization, GaussPoints { stretch: points, bend: points, lobatto: false })
-                }
-            }
+            self.of(beam, nodes)
         };
         model.beams.iter().map(beam).collect()
+    }
+
+    /// The discretisation and the Gauss points of a beam on these nodes.
+    pub(crate) fn of(self, beam: &Beam, nodes: Nodes) -> (Discretization, GaussPoints) {
+        match self {
+            Self::Scene => (beam.discretization.clone(), beam.gauss_points),
+            // Strings and inextensible beams do not lock: they keep all points, because a string
+            // folds where too few resist.
+            Self::Ancf(_)
+                if beam.section.bending_stiffness.is_none() || beam.section.axial_stiffness.is_none() =>
+            {
+                (Discretization::Ancf { nodes }, STRING_GAUSS_POINTS)
+            }
+            Self::Ancf(points) => (Discretization::Ancf { nodes }, points),
+            Self::Rpim { neighbours, shape, points } => {
+                let kernel = match RPIM_KERNEL {
+                    Kernel::Multiquadric { q, .. } => Kernel::Multiquadric { q, shape },
+                    other => other,
+                };
+                let discretization = Discretization::Rpim {
+                    nodes,
+                    kernel,
+                    polynomial_terms: RPIM_POLYNOMIAL_TERMS,
+                    side_condition: RPIM_SIDE_CONDITION,
+                    neighbours,
+                };
+                (discretization, GaussPoints { stretch: points, bend: points, lobatto: false })
+            }
+        }
     }
 
     /// The discretisation without the parameters of RPIM other than the number of neighbours: for

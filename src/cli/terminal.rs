@@ -327,7 +327,8 @@ fn error_text(error: &ErrorEstimate, analysis: AnalysisKind) -> String {
         false => format!("unknown: {}", error.reason.as_deref().unwrap_or("no run to compare with")),
     };
     if let Some(wanted) = error.wanted {
-        let _ = write!(text, " ({:e} wanted)", wanted.result);
+        let usual = if error.usual { ", as usual" } else { "" };
+        let _ = write!(text, " ({:e} wanted{usual})", wanted.result);
         for (what, wanted, found) in [
             ("curvature", wanted.curvature, error.estimated.curvature),
             ("section forces", wanted.section_force, error.estimated.section_force),

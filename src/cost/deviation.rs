@@ -40,7 +40,7 @@ impl Deviation {
     ///
     /// # Errors
     /// In words, where they cannot be compared.
-    pub(super) fn between(
+    pub fn between(
         model: &Model,
         analysis: &Analysis,
         run: &Results,

@@ -28,3 +28,23 @@ pub fn with_error(value: f64, error: f64) -> Option<String> {
         format!("{:.decimals$}({digit})e{size}", value / 10.0_f64.powi(size))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::with_error;
+
+    #[test]
+    fn numbers_of_any_size_have_the_digits_that_are_known() {
+        let said = |value, error| with_error(value, error).unwrap();
+        assert_eq!(said(0.0, 2e-3), "0.000(2)");
+        assert_eq!(said(0.0, 2e-6), "0(2)e-6");
+        assert_eq!(said(9.999, 0.95), "10(1)");
+        assert_eq!(said(1234.5678, 0.01), "1234.57(1)");
+        assert_eq!(said(0.000_123_4, 1e-6), "0.000123(1)");
+        assert_eq!(said(0.000_012_34, 1e-7), "1.23(1)e-5");
+        assert_eq!(said(1e-9, 1e-3), "0.000(1)");
+        for [value, error] in [[1.0, 0.0], [1.0, f64::NAN], [f64::NAN, 1.0], [1.0, f64::INFINITY]] {
+            assert_eq!(with_error(value, error), None);
+        }
+    }
+}

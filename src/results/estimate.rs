@@ -8,6 +8,9 @@ use serde::Serialize;
 pub struct ErrorEstimate {
     /// The largest errors that were wanted; `None` where nobody asked for any.
     pub wanted: Option<Errors>,
+    /// Whether that is the usual accuracy, which is taken where a scene names no mesh and says
+    /// nothing of errors.
+    pub usual: bool,
     /// The largest errors of the results; infinite where nothing is known of them.
     pub estimated: Errors,
     /// Whether no error is larger than wanted.
@@ -124,4 +127,37 @@ pub struct RunForError {
     /// another one's estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn estimate(result: f64, curvature: f64) -> ErrorEstimate {
+        let errors = |result, curvature| Errors { result, curvature: Some(curvature), section_force: None };
+        ErrorEstimate {
+            wanted: Some(errors(1e-3, 1e-2)),
+            estimated: errors(result, curvature),
+            ..ErrorEstimate::default()
+        }
+    }
+
+    #[test]
+    fn what_is_missed_is_said_of_each_error() {
+        let missed = |result, curvature| estimate(result, curvature).missed(AnalysisKind::Static).unwrap();
+        let first = "the wanted accuracy of 1e-3 of a beam length is not met";
+        assert_eq!(missed(2e-3, 1e-2), format!("{first}; the results may err by 2.0e-3"));
+        assert_eq!(
+            missed(1e-3, 2e-2),
+            format!("{first}; the curvature may err by 2.0e-2 where 1e-2 is wanted")
+        );
+        assert_eq!(missed(f64::INFINITY, 1e-2), format!("{first}; nothing is known of the errors"));
+        let late =
+            ErrorEstimate { reason: Some("it swings".into()), good_until: Some(1.5), ..estimate(2e-3, 1e-2) };
+        let said = late.missed(AnalysisKind::Dynamic).unwrap();
+        assert!(said.ends_with(": it swings; good to 1e-3 until 1.5000 s"), "{said}");
+        let met = ErrorEstimate { met: true, ..estimate(2e-3, 1e-2) };
+        assert_eq!(met.missed(AnalysisKind::Static), None);
+        assert_eq!(ErrorEstimate::default().missed(AnalysisKind::Static), None);
+    }
 }

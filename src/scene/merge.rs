@@ -16,39 +16,62 @@ impl Scene {
     /// # Errors
     /// Where `lines` are not TOML, or the result is not a legal scene.
     pub fn merged(&self, lines: &str) -> Result<Self, SceneError> {
-        let document = |name: &str, text: &str| {
-            text.parse::<DocumentMut>()
-                .map_err(|error| Fault::new(error.span().unwrap_or(0..0), error.message()).at(name, text))
-        };
-        let lines = document("lines to merge", lines)?;
+        Self::read(&self.name, &self.with_lines(lines)?.to_string(), &[])
+    }
+
+    /// The text of this scene with `lines` merged and without the accuracy for which they were
+    /// chosen: what is solved as it stands.
+    ///
+    /// # Errors
+    /// Where `lines` are not TOML.
+    pub fn chosen(&self, lines: &str) -> Result<String, SceneError> {
+        let mut scene = self.with_lines(lines)?;
+        each(&mut scene, "analysis", |analysis| drop(analysis.remove("accuracy")));
+        Ok(scene.to_string())
+    }
+
+    /// This scene with everything left open that an accuracy chooses, and with this accuracy: no
+    /// beam has a basis, no motion an integrator, no equilibrium a tolerance.
+    ///
+    /// # Errors
+    /// Where the result is not a legal scene.
+    pub fn opened(&self, accuracy: f64) -> Result<Self, SceneError> {
         let mut scene = document(&self.name, &self.text)?;
-        merge(scene.as_table_mut(), lines.as_table(), &mut Vec::new());
+        each(&mut scene, "beam", |beam| drop(beam.remove("basis")));
+        each(&mut scene, "analysis", |analysis| {
+            for key in INTEGRATORS.iter().chain(&["tolerance"]) {
+                analysis.remove(key);
+            }
+            analysis.insert("accuracy", toml_edit::value(accuracy));
+        });
         Self::read(&self.name, &scene.to_string(), &[])
     }
 
-    /// This scene with `lines` merged and without the accuracy for which they were chosen: what is
-    /// solved as it stands.
-    ///
-    /// # Errors
-    /// As [`Self::merged`].
-    pub fn chosen(&self, lines: &str) -> Result<Self, SceneError> {
-        let merged = self.merged(lines)?;
-        let mut scene = merged.text.parse::<DocumentMut>().map_err(|error| {
-            Fault::new(error.span().unwrap_or(0..0), error.message()).at(&self.name, &merged.text)
-        })?;
-        if let Some(analyses) = scene.get_mut("analysis").and_then(Item::as_table_like_mut) {
-            for (_, analysis) in analyses.iter_mut() {
-                if let Some(table) = analysis.as_table_like_mut() {
-                    table.remove("accuracy");
-                }
-                // A dotted table without keys would not be written.
-                if let Item::Table(table) = analysis {
-                    table.set_dotted(false);
-                    table.set_implicit(false);
-                }
-            }
+    fn with_lines(&self, lines: &str) -> Result<DocumentMut, SceneError> {
+        let lines = document("lines to merge", lines)?;
+        let mut scene = document(&self.name, &self.text)?;
+        merge(scene.as_table_mut(), lines.as_table(), &mut Vec::new());
+        Ok(scene)
+    }
+}
+
+fn document(name: &str, text: &str) -> Result<DocumentMut, SceneError> {
+    text.parse::<DocumentMut>()
+        .map_err(|error| Fault::new(error.span().unwrap_or(0..0), error.message()).at(name, text))
+}
+
+/// Changes each of the tables in the table `key` of a scene.
+fn each(scene: &mut DocumentMut, key: &str, edit: impl Fn(&mut dyn TableLike)) {
+    let tables = scene.get_mut(key).and_then(Item::as_table_like_mut);
+    for (_, item) in tables.into_iter().flat_map(TableLike::iter_mut) {
+        if let Some(table) = item.as_table_like_mut() {
+            edit(table);
         }
-        Self::read(&self.name, &scene.to_string(), &[])
+        // A dotted table without keys would not be written.
+        if let Item::Table(table) = item {
+            table.set_dotted(false);
+            table.set_implicit(false);
+        }
     }
 }
 
@@ -131,6 +154,46 @@ mod tests {
                 assert_eq!(merged.model(), expected.model(), "{}", merged.text());
                 assert_eq!(merged.analysis(), expected.analysis(), "{}", merged.text());
                 assert!(merged.text().contains("# down"), "{}", merged.text());
+            }
+        }
+    }
+
+    #[test]
+    fn what_an_accuracy_chooses_is_left_open() {
+        let section =
+            "axial_stiffness = 1e4\nbending_stiffness = 1\nmass_per_length = 1\nstart = [0, 0]\nend = [1, 0]";
+        let beams = [
+            format!("[beam.arm]\n{section}\nbasis.ancf.elements = 4"),
+            format!("[beam.arm]\n{section}\n[beam.arm.basis.rpim]\nnodes = 5"),
+            format!("[beam]\narm = {{ {}, basis.ancf.elements = 4 }}", section.replace('\n', ", ")),
+        ];
+        let analyses = [
+            (
+                "[analysis.dynamic]\nduration = 1\n[analysis.dynamic.gauss]\nstep = 0.01\n",
+                "analysis.dynamic.duration = 1\nanalysis.dynamic.accuracy = 1e-3",
+            ),
+            (
+                "analysis.dynamic = { duration = 1, radau.step = 0.1, accuracy = 0.5 }",
+                "analysis.dynamic = { duration = 1, accuracy = 1e-3 }",
+            ),
+            (
+                "[analysis.static]\nsteps = 3\ntolerance = 1e-9",
+                "[analysis.static]\nsteps = 3\naccuracy = 1e-3",
+            ),
+            ("analysis.static.tolerance = 1e-9", "analysis.static.accuracy = 1e-3"),
+            ("[analysis]\nmodal.count = 3", "[analysis]\nmodal = { count = 3, accuracy = 1e-3 }"),
+        ];
+        for beam in &beams {
+            for (before, after) in analyses {
+                // Keys before the first table belong to the scene itself.
+                let text = |analysis: &str, beam: &str| format!("{analysis}\n{}", scene(beam, ""));
+                let opened = parse("scene", &text(before, beam)).unwrap().opened(1e-3).unwrap();
+                let open = format!("[beam.arm]\n{section}");
+                let expected = parse("expected", &text(after, &open)).unwrap();
+                assert_eq!(opened.model(), expected.model(), "{}", opened.text());
+                assert_eq!(opened.analysis(), expected.analysis(), "{}", opened.text());
+                assert_eq!(opened.open(), expected.open(), "{}", opened.text());
+                assert_eq!(opened.accuracy(), expected.accuracy(), "{}", opened.text());
             }
         }
     }

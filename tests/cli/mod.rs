@@ -1,5 +1,6 @@
 //! The program as its users meet it: commands, exit statuses, messages, files.
 
+mod accuracy;
 pub(crate) mod commands;
 mod cost;
 mod documents;

@@ -1,0 +1,168 @@
+//! What a round tells of the errors of its finer run.
+
+use super::difference::Difference;
+use super::round::{LOOSER, Round, Runner};
+use crate::model::{Accuracy, Analysis, Integrator, StepControl};
+use crate::results::Errors;
+
+/// By how much the error falls from the coarse run to the finer one at most: of equilibria and
+/// modes …
+const CONTRACTION: f64 = 15.0;
+/// … of motions …
+const CONTRACTION_OF_MOTION: f64 = 10.0;
+/// … of beams with contacts, which begin and end within cells …
+const CONTRACTION_OF_CONTACT: f64 = 6.0;
+/// … of curvatures and section forces, and of all results of a method of second order …
+const CONTRACTION_OF_CURVATURE: f64 = 4.0;
+/// … and at least, however slowly it was seen to fall.
+const LEAST_CONTRACTION: f64 = 1.5;
+/// Errors are larger by this than three coarse meshes alone tell.
+const FIRST: f64 = 1.5;
+/// Errors that fall by more than so many times the promised factor begin beyond all use.
+const TOO_FAST: f64 = 2.5;
+/// The factor that is taken, in the factor that was seen.
+pub(super) const CAUTION: f64 = 0.75;
+/// Cells must be so many times finer than those of the round before to tell how errors fall.
+const FINER: f64 = 1.5;
+
+/// A round with what is known of its errors.
+pub(super) struct Judged {
+    pub round: Round,
+    pub difference: Option<Difference>,
+    pub contractions: [f64; 2],
+    /// By how much errors are taken to be larger than the difference and the contractions tell.
+    pub caution: f64,
+    /// The largest error in units of what was wanted.
+    pub excess: f64,
+}
+
+impl Judged {
+    /// Nothing is known.
+    pub fn unknown(round: Round) -> Self {
+        Self {
+            round,
+            difference: None,
+            contractions: [LEAST_CONTRACTION; 2],
+            caution: 1.0,
+            excess: f64::INFINITY,
+        }
+    }
+}
+
+/// What a round has seen.
+pub(super) struct Seen {
+    pub cells: usize,
+    pub tolerance: f64,
+    pub error: f64,
+    /// The largest difference in units of what is wanted of it.
+    pub excess: f64,
+    /// By which factor errors were believed to fall.
+    pub fall: f64,
+}
+
+impl Seen {
+    /// By which factor errors fall if cells are halved, as they have fallen to those of a round
+    /// with so many cells, such a tolerance and such an error; as before where that is hardly
+    /// finer.
+    pub fn fall_to(&self, cells: usize, tolerance: f64, error: f64) -> f64 {
+        let cells = cells as f64 / self.cells as f64;
+        // A 16th of the tolerance goes with halved cells.
+        let finer = cells.max((self.tolerance / tolerance).powf(LOOSER.log2().recip()));
+        if finer < FINER { self.fall } else { (self.error / error).powf(finer.log2().recip()) }
+    }
+}
+
+impl Runner<'_, '_> {
+    /// The fall of errors that is believed of the first three runs, and the caution with which:
+    /// where the coarsest was of no use at all, its difference tells nothing, and little is taken.
+    pub fn first_fall(&self, seen: Option<f64>) -> (f64, f64) {
+        let unknown = (CONTRACTION_OF_CURVATURE / CAUTION, 1.0);
+        let [promised, _] = self.contractions(f64::INFINITY);
+        seen.filter(|fall| *fall <= TOO_FAST * promised).map_or(unknown, |fall| (fall, FIRST))
+    }
+
+    /// Factors by which errors fall from a coarse run to a finer one: as the methods promise, and
+    /// of the result no more than was seen.
+    pub fn contractions(&self, seen: f64) -> [f64; 2] {
+        let second = match self.analysis {
+            Analysis::Dynamic(settings) if !self.open.integrator => matches!(
+                settings.integrator,
+                Integrator::GeneralizedAlpha { step: StepControl::Fixed(_), .. }
+                    | Integrator::Gauss { stages: 1, step: StepControl::Fixed(_) }
+            ),
+            _ => false,
+        };
+        let result = match self.analysis {
+            _ if second => CONTRACTION_OF_CURVATURE,
+            Analysis::Dynamic(_) => CONTRACTION_OF_MOTION,
+            _ => CONTRACTION,
+        };
+        let result = if self.model.has_contact() { result.min(CONTRACTION_OF_CONTACT) } else { result };
+        let seen = if seen.is_nan() { result } else { CAUTION * seen };
+        [result.min(seen).max(LEAST_CONTRACTION), CONTRACTION_OF_CURVATURE]
+    }
+}
+
+impl Judged {
+    /// By what differences of the coarse run are divided to give errors of the finer one: of
+    /// positions and values, and of curvatures and forces.
+    pub fn divide(&self) -> [f64; 2] {
+        self.contractions.map(|contraction| (contraction - 1.0) / self.caution)
+    }
+
+    /// The errors of the finer run; infinite where nothing is known.
+    pub fn errors(&self) -> Errors {
+        let unknown = Errors { result: f64::INFINITY, ..Errors::default() };
+        self.difference.as_ref().map_or(unknown, |difference| scaled(difference.errors, self.divide()))
+    }
+}
+
+/// Errors from differences.
+pub(super) fn scaled(errors: Errors, [result, curvature]: [f64; 2]) -> Errors {
+    Errors {
+        result: errors.result / result,
+        curvature: errors.curvature.map(|error| error / curvature),
+        section_force: errors.section_force.map(|error| error / curvature),
+    }
+}
+
+/// The largest error in units of what was wanted.
+pub(super) fn excess(errors: Errors, wanted: Accuracy) -> f64 {
+    let of = |error: Option<f64>, wanted: Option<f64>| {
+        error.zip(wanted).map_or(0.0, |(error, wanted)| error / wanted)
+    };
+    (errors.result / wanted.result)
+        .max(of(errors.curvature, wanted.curvature))
+        .max(of(errors.section_force, wanted.section_force))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_differences_by_how_much_they_fall() {
+        let differences = Errors { result: 3.0, curvature: Some(6.0), section_force: Some(9.0) };
+        let errors = scaled(differences, [6.0, 3.0]);
+        assert_eq!(errors, Errors { result: 0.5, curvature: Some(2.0), section_force: Some(3.0) });
+    }
+
+    #[test]
+    fn the_largest_error_counts_of_those_that_were_asked_for() {
+        let errors = Errors { result: 1e-4, curvature: Some(0.5), section_force: Some(0.25) };
+        let wanted = |curvature, section_force| Accuracy { result: 1e-3, curvature, section_force };
+        assert_eq!(excess(errors, wanted(None, None)), 0.1);
+        assert_eq!(excess(errors, wanted(Some(0.25), Some(0.125))), 2.0);
+        assert_eq!(excess(errors, wanted(Some(0.25), Some(0.0625))), 4.0);
+    }
+
+    /// Four times the cells, and a 256th of the tolerance, are two halvings.
+    #[test]
+    fn a_fall_is_that_of_one_halving() {
+        let seen = Seen { cells: 8, tolerance: 256e-6, error: 1.0, excess: 1.0, fall: 7.0 };
+        assert_eq!(seen.fall_to(32, 256e-6, 1.0 / 64.0), 8.0);
+        assert_eq!(seen.fall_to(8, 1e-6, 1.0 / 64.0), 8.0);
+        assert_eq!(seen.fall_to(16, 1e-6, 1.0 / 64.0), 8.0);
+        assert_eq!(seen.fall_to(9, 200e-6, 0.1), 7.0, "hardly finer");
+    }
+}

@@ -1,0 +1,261 @@
+//! A round of a search: the same problem on meshes and with steps of two or three finenesses.
+
+use super::difference::{self, Difference, Stations};
+use super::mesh::Mesh;
+use super::setting::{Family, Setting, Solver};
+use crate::basis::Basis;
+use crate::centreline::Curve;
+use crate::model::{
+    Accuracy, Analysis, Beam, Discretization, Integrator, Model, Nodes, Open, RPIM_GAUSS_POINTS, StepControl,
+};
+use crate::results::{AnalysisKind, Results, RunForError};
+use crate::run::{Options, RunError};
+
+/// Smallest tolerance of any run.
+pub(super) const FINEST: f64 = 1e-13;
+/// Tolerance of the first finer run, in the wanted error.
+pub(super) const TOLERANCE: f64 = 3.0;
+/// Loosest tolerance of the first finer run: beyond, other things than the tolerance decide about
+/// steps.
+pub(super) const FIRST_TOLERANCE: f64 = 1e-3;
+/// Errors of motions that are wanted smaller than this need fewer nodes of a meshfree beam than
+/// cable elements, by so much that each may cost more …
+const MESHFREE: f64 = 3e-5;
+/// … of this kind: of those that `ancf cost` tries the cheapest for a falling pendulum.
+const MESHFREE_FAMILY: Family = Family::Rpim { neighbours: 1, shape: 6.0, points: RPIM_GAUSS_POINTS.bend };
+/// The tolerance of the coarse run, in that of the finer one.
+pub(super) const LOOSER: f64 = 16.0;
+/// Loosest tolerance of any run.
+const LOOSEST: f64 = 0.1;
+/// Two motions of which the finer one takes less than so many times the steps of the coarse one
+/// tell nothing of the errors of their steps.
+const MORE_STEPS: f64 = 1.2;
+/// Wanted errors down to which the usual tolerance of equilibria does …
+const USUAL_IS_ENOUGH: f64 = 1e-8;
+/// … and that of others, in the wanted error.
+const EQUILIBRIUM: f64 = 1e-2;
+
+/// What is solved, on which meshes and with which steps.
+pub(super) struct Runner<'a, 'o> {
+    pub model: &'a Model,
+    pub analysis: &'a Analysis,
+    pub open: &'a Open,
+    pub wanted: Option<Accuracy>,
+    pub options: Options<'o>,
+    /// Of the coarse runs.
+    pub meshes: Vec<Mesh>,
+    /// What open beams are made of.
+    pub families: Vec<Family>,
+    /// Of the finer runs of a motion whose integrator is open.
+    pub tolerance: f64,
+    pub runs: Vec<RunForError>,
+}
+
+/// Which of the runs of a round.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Fineness {
+    Coarsest,
+    Coarse,
+    Fine,
+}
+
+/// What a round found.
+pub(super) struct Round {
+    pub stations: Stations,
+    /// Of the finer run, stations included, as of the coarse one.
+    pub results: Results,
+    pub coarse: Option<Results>,
+    pub setting: Setting,
+    pub difference: Result<Difference, String>,
+    /// By which factor the difference has fallen, where there was a third run.
+    pub fall: Option<f64>,
+    /// Cells of the open beams.
+    pub cells: usize,
+}
+
+impl Round {
+    /// Whether the finer run of a motion takes more steps than the coarse one.
+    pub fn tells_of_steps(&self) -> bool {
+        let steps = |results: &Results| {
+            let counts = results.run().statistics;
+            (counts.steps + counts.rejected_steps) as f64
+        };
+        let moves = self.results.run().analysis == AnalysisKind::Dynamic;
+        !moves || self.coarse.as_ref().is_none_or(|coarse| steps(&self.results) >= MORE_STEPS * steps(coarse))
+    }
+}
+
+impl<'a, 'o> Runner<'a, 'o> {
+    /// With the meshes and the tolerance with which a search begins.
+    pub fn new(
+        model: &'a Model,
+        analysis: &'a Analysis,
+        open: &'a Open,
+        wanted: Option<Accuracy>,
+        options: Options<'o>,
+    ) -> Self {
+        let waves = match analysis {
+            Analysis::Modal(settings) => settings.count,
+            Analysis::Buckling(settings) => settings.count,
+            _ => 0,
+        };
+        let mut meshes = Mesh::first(model, waves);
+        for (beam, mesh) in model.beams.iter().zip(&mut meshes) {
+            if beam.discretization != Discretization::Open {
+                let curve = Curve::new(&beam.centreline);
+                let nodes = curve.ok().and_then(|curve| {
+                    let nodes = Discretization::Ancf { nodes: beam.discretization.nodes().clone() };
+                    Basis::new(&nodes, curve.length()).ok().map(|basis| basis.nodes().to_vec())
+                });
+                if let Some(nodes) = nodes {
+                    *mesh = mesh.every_second_of(&nodes);
+                }
+            }
+        }
+        let result = wanted.map_or(Accuracy::USUAL, |wanted| wanted.result);
+        let tolerance = short((TOLERANCE * result).min(FIRST_TOLERANCE));
+        let accurate = wanted.is_some_and(|wanted| wanted.result <= MESHFREE);
+        let family = |(beam, mesh): (&Beam, &Mesh)| {
+            let stiff = beam.section.axial_stiffness.is_some() && beam.section.bending_stiffness.is_some();
+            let meshfree =
+                accurate && stiff && mesh.is_one_part() && matches!(analysis, Analysis::Dynamic(_));
+            if meshfree { MESHFREE_FAMILY } else { Family::REDUCED }
+        };
+        let families = model.beams.iter().zip(&meshes).map(family).collect();
+        Self { model, analysis, open, wanted, options, meshes, families, tolerance, runs: Vec::new() }
+    }
+
+    pub fn is_open(&self, beam: usize) -> bool {
+        self.open.beams.get(beam).copied().unwrap_or(false)
+    }
+
+    /// The setting of a run on meshes and with steps of such a fineness.
+    pub fn setting(&self, mesh: Fineness, steps: Fineness) -> Setting {
+        let beams = self.model.beams.iter().zip(&self.meshes).enumerate().map(|(index, (beam, coarse))| {
+            let nodes = match mesh {
+                Fineness::Coarsest => coarse.every_second_of(&coarse.nodes).places(),
+                Fineness::Coarse => coarse.places(),
+                Fineness::Fine => coarse.halved().places(),
+            };
+            match (self.is_open(index), mesh) {
+                (true, _) => self.families[index].of(beam, nodes),
+                (false, Fineness::Fine) => (beam.discretization.clone(), beam.gauss_points),
+                (false, _) => (coarser(&beam.discretization, nodes), beam.gauss_points),
+            }
+        });
+        let solver = match self.analysis {
+            Analysis::Dynamic(settings) => {
+                let halvings = match steps {
+                    Fineness::Coarsest => 2,
+                    Fineness::Coarse => 1,
+                    Fineness::Fine => 0,
+                };
+                let integrator = match self.open.integrator {
+                    true => Integrator::usual(StepControl::Tolerance(self.tolerance)),
+                    false => settings.integrator,
+                };
+                Solver::Integrator(integrator.with_step(match integrator.step_control() {
+                    StepControl::Fixed(step) => {
+                        StepControl::Fixed((2.0_f64.powi(halvings) * step).min(settings.duration))
+                    }
+                    StepControl::Tolerance(tolerance) => {
+                        StepControl::Tolerance(short(LOOSER.powi(halvings) * tolerance).min(LOOSEST))
+                    }
+                }))
+            }
+            Analysis::Static(_) => self.static_tolerance().map_or(Solver::Scene, Solver::Tolerance),
+            _ => Solver::Scene,
+        };
+        Setting { beams: beams.collect(), solver }
+    }
+
+    /// The tolerance of equilibria where that of the solver may not do, and the scene names none.
+    pub fn static_tolerance(&self) -> Option<f64> {
+        let Analysis::Static(settings) = self.analysis else { return None };
+        let wanted = self.wanted.filter(|wanted| wanted.result < USUAL_IS_ENOUGH)?.result;
+        settings.tolerance.is_none().then(|| short((EQUILIBRIUM * wanted).max(FINEST)))
+    }
+
+    /// Solves the watched model with a setting.
+    pub fn solve(
+        &mut self,
+        stations: &Stations,
+        setting: &Setting,
+        frames: usize,
+    ) -> Result<Results, RunError> {
+        let (model, analysis) = setting.apply(&stations.watch(self.model), self.analysis);
+        let Options { start, observer, checkpoints, .. } = &mut self.options;
+        let options = Options {
+            start: *start,
+            observer: observer.as_mut().map(|observer| &mut **observer as _),
+            checkpoints: *checkpoints,
+            frames,
+        };
+        let results = model.solve_with(&analysis, options)?;
+        let run = results.run();
+        let cells: usize = setting.beams.iter().map(|(beam, _)| beam.nodes().count().saturating_sub(1)).sum();
+        self.runs.push(RunForError {
+            setting: match setting.solver {
+                Solver::Scene => format!("{cells} cells"),
+                solver => format!("{cells} cells, {solver}"),
+            },
+            degrees_of_freedom: run.degrees_of_freedom,
+            seconds: run.seconds.build + run.seconds.solve,
+            error: None,
+        });
+        Ok(results)
+    }
+
+    /// A coarse run and a finer one; in the first round one that is still coarser, too.
+    pub fn round(&mut self, first: bool) -> Result<Round, RunError> {
+        let stations = Stations::new(self.model, &self.meshes);
+        let mut pair = |fineness| self.solve(&stations, &self.setting(fineness, fineness), 0);
+        let coarsest = if first { pair(Fineness::Coarsest).ok() } else { None };
+        let coarse = pair(Fineness::Coarse);
+        let setting = self.setting(Fineness::Fine, Fineness::Fine);
+        let results = self.solve(&stations, &setting, self.options.frames)?;
+        let difference = match &coarse {
+            Ok(coarse) if coarse.run().complete => self.difference(&stations, coarse, &results),
+            Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
+            Err(error) => Err(format!("on half as many cells there is no result: {error}")),
+        };
+        let before = coarsest.as_ref().zip(coarse.as_ref().ok());
+        let before = before.and_then(|(a, b)| self.difference(&stations, a, b).ok());
+        let fall = before
+            .zip(difference.as_ref().ok())
+            .map(|(before, now)| before.errors.result / now.errors.result);
+        let of_open = |(index, mesh): (usize, &Mesh)| if self.is_open(index) { mesh.cells() } else { 0 };
+        let cells = self.meshes.iter().enumerate().map(of_open).sum();
+        Ok(Round { stations, results, coarse: coarse.ok(), setting, difference, fall, cells })
+    }
+
+    pub fn difference(
+        &self,
+        stations: &Stations,
+        coarse: &Results,
+        fine: &Results,
+    ) -> Result<Difference, String> {
+        difference::between(self.model, self.analysis, (stations, &self.meshes), coarse, fine)
+    }
+}
+
+/// Two digits, which is enough for a tolerance.
+pub(super) fn short(tolerance: f64) -> f64 {
+    format!("{tolerance:.1e}").parse().unwrap_or(tolerance)
+}
+
+/// The same kind of discretisation on fewer nodes.
+fn coarser(discretization: &Discretization, places: Nodes) -> Discretization {
+    match discretization {
+        Discretization::Rpim { kernel, polynomial_terms, side_condition, neighbours, .. } => {
+            Discretization::Rpim {
+                nodes: places,
+                kernel: *kernel,
+                polynomial_terms: *polynomial_terms,
+                side_condition: *side_condition,
+                neighbours: *neighbours,
+            }
+        }
+        _ => Discretization::Ancf { nodes: places },
+    }
+}

@@ -1,0 +1,325 @@
+//! The search for a mesh and steps that are good enough.
+
+use super::judgement::{CAUTION, Judged, Seen, excess, scaled};
+use super::mesh::{self, CellErrors, Mesh};
+use super::round::{FINEST, FIRST_TOLERANCE, Fineness, LOOSER, Round, Runner, TOLERANCE, short};
+use super::{Accurate, model_error, statement};
+use crate::model::{Accuracy, Analysis};
+use crate::results::{ErrorEstimate, Errors};
+use crate::run::RunError;
+
+/// Most rounds of two or three runs.
+const ROUNDS: usize = 8;
+/// Rounds without a mesh on which both runs come to their end.
+const FAILURES: usize = 4;
+/// Most times that the tolerance is reduced because steps do not follow it.
+const MUTE: usize = 3;
+/// Errors that did not fall below this part of what they were, in spite of a finer mesh or smaller
+/// steps, will not fall.
+const STALLED: f64 = 0.7;
+/// Rounds in succession that gain nothing before the search gives up.
+const STALLS: usize = 2;
+/// Rounds after which errors that grow with time are no more those of too coarse a mesh.
+const GROWN: usize = 3;
+/// Errors of positions, in beam lengths, beyond which two motions have nothing in common.
+const LOST: f64 = 0.2;
+/// Part of the wanted error that the next round aims at.
+const AIM: f64 = 0.5;
+/// Most times as many cells in the next round …
+const LEAP: f64 = 6.0;
+/// … and where errors have not fallen as the method promises, so that nobody can tell yet how many
+/// are needed.
+const CAREFUL_LEAP: f64 = 3.0;
+/// Most times the tolerance is changed by at once.
+const LEAP_OF_TOLERANCE: f64 = 200.0;
+/// Errors of motions go with this power of the tolerance.
+const POWER: f64 = 0.75;
+/// Most cells of all beams …
+const CELLS: usize = 4096;
+/// … or so many times those with which the search begins.
+const CELLS_MORE: usize = 16;
+/// Accuracies below this are beyond what doubles and iterations leave.
+const ROUND_OFF: f64 = 1e-12;
+/// Why errors do not fall.
+const SEVERAL: &str = "finer meshes and smaller steps do not bring the results nearer to each other: there are several solutions, or \
+                       errors grow with time";
+/// Why nothing is known of a motion whose steps the tolerance does not decide about.
+const MUTE_STEPS: &str = "with a looser tolerance the motion takes hardly fewer steps, so that the errors of its steps cannot be seen; give a \
+                          smaller tolerance, or leave the integrator out";
+/// Why nothing can be refined.
+const NAMED: &str =
+    "the scene names the basis of every beam, and with it the mesh: leave it out, or give it more nodes";
+
+/// A search under way.
+pub(super) struct Search<'a, 'o> {
+    runner: Runner<'a, 'o>,
+    /// Most cells of all beams.
+    most: usize,
+}
+
+impl<'a, 'o> Search<'a, 'o> {
+    /// A search that begins where `runner` is.
+    pub fn new(runner: Runner<'a, 'o>) -> Self {
+        let cells: usize = runner.meshes.iter().map(Mesh::cells).sum();
+        Self { most: CELLS.max(CELLS_MORE * cells), runner }
+    }
+
+    /// Refines until errors are small enough, or there is a reason why they will not be.
+    ///
+    /// # Errors
+    /// [`RunError`], of the last run, where no pair of runs came to its end.
+    pub fn run(mut self) -> Result<Accurate, RunError> {
+        let mut before: Option<Seen> = None;
+        let mut best: Option<Judged> = None;
+        let (mut rounds, mut stalls, mut failures, mut mute) = (0, 0, 0, 0);
+        loop {
+            let round = match self.runner.round(before.is_none()) {
+                Ok(round) => round,
+                // What is wrong with the model is wrong on all meshes.
+                Err(error) if error.exit_status() == 2 => return Err(error),
+                Err(error) => {
+                    failures += 1;
+                    if failures < FAILURES && self.refine_everywhere() {
+                        continue;
+                    }
+                    return match best {
+                        Some(best) => Ok(self.finished(best, Some(error.to_string()))),
+                        None => Err(error),
+                    };
+                }
+            };
+            if !round.results.run().complete {
+                // Somebody stopped it: what an earlier round found is more than a part of this one.
+                let why = Some("the search for it was interrupted".to_owned());
+                return Ok(match best {
+                    Some(mut best) => {
+                        best.round.results.run_mut().complete = false;
+                        self.finished(best, why)
+                    }
+                    None => self.finished(Judged::unknown(round), why),
+                });
+            }
+            let difference = match &round.difference {
+                Ok(difference) => difference.clone(),
+                Err(why) => {
+                    failures += 1;
+                    if failures < FAILURES && self.refine_everywhere() {
+                        continue;
+                    }
+                    let why = Some(why.clone());
+                    return Ok(self.finished(best.unwrap_or_else(|| Judged::unknown(round)), why));
+                }
+            };
+            if !self.runner.open.integrator && !round.tells_of_steps() {
+                return Ok(self.finished(Judged::unknown(round), Some(MUTE_STEPS.to_owned())));
+            }
+            rounds += 1;
+            let error = difference.errors.result;
+            let (fall, caution) = match &before {
+                None => self.runner.first_fall(round.fall),
+                Some(before) => (before.fall_to(round.cells, self.runner.tolerance, error), 1.0),
+            };
+            let now = Seen {
+                cells: round.cells,
+                tolerance: self.runner.tolerance,
+                error,
+                excess: self.runner.wanted.map_or(0.0, |wanted| excess(difference.errors, wanted)),
+                fall,
+            };
+            let contractions = self.runner.contractions(fall);
+            let mut judged =
+                Judged { round, difference: Some(difference), contractions, caution, excess: 0.0 };
+            stalls = match &before {
+                Some(before) if now.excess > STALLED * before.excess => stalls + 1,
+                _ => 0,
+            };
+            let errors = judged.errors();
+            if let Some(last) = self.runner.runs.last_mut() {
+                last.error = Some(errors.result);
+            }
+            judged.excess = self.runner.wanted.map_or(0.0, |wanted| excess(errors, wanted));
+            if judged.excess <= 1.0 && mute < MUTE && !judged.round.tells_of_steps() {
+                // Something else than the tolerance decides about steps: a smaller one will.
+                mute += 1;
+                self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(FINEST));
+                continue;
+            }
+            let Some(wanted) = self.runner.wanted.filter(|_| judged.excess > 1.0) else {
+                return Ok(self.finished(judged, None));
+            };
+            let why = if wanted.result < ROUND_OFF {
+                Some(format!("errors below {ROUND_OFF:e} are those of round-off"))
+            } else if stalls >= STALLS {
+                Some(SEVERAL.to_owned())
+            } else if let Some(growth) = self.outgrown(&judged, wanted).filter(|_| rounds >= GROWN) {
+                Some(growth)
+            } else if rounds >= ROUNDS {
+                Some(format!("{ROUNDS} rounds of finer meshes and smaller steps were not enough"))
+            } else {
+                self.improve(&judged, wanted).err()
+            };
+            before = Some(now);
+            best = Some(match best {
+                Some(mut best) if best.excess <= judged.excess => {
+                    // A finer run that differs more shows that this one's small difference was luck.
+                    let luck = judged.excess / best.excess;
+                    best.caution *= luck;
+                    best.excess *= luck;
+                    best
+                }
+                _ => judged,
+            });
+            if why.is_some()
+                && let Some(best) = best.take()
+            {
+                return Ok(self.finished(best, why));
+            }
+        }
+    }
+
+    /// Why no steps are small enough for a motion whose errors grow with time: as fast as they grew
+    /// from what is wanted to what tells nothing any more, they would have to begin below all
+    /// tolerances.
+    fn outgrown(&self, judged: &Judged, wanted: Accuracy) -> Option<String> {
+        let Analysis::Dynamic(_) = self.runner.analysis else { return None };
+        let difference = judged.difference.as_ref()?;
+        let times = &judged.round.results.states().parameter;
+        let [divide, _] = judged.divide();
+        let passes = |level: f64| {
+            let first = difference.records.iter().position(|error| error / divide > level)?;
+            times.get(first).copied()
+        };
+        let (good, lost, end) = (passes(wanted.result)?, passes(LOST)?, *times.last()?);
+        if lost <= good || wanted.result >= LOST {
+            return None;
+        }
+        // Errors grow like exp(λ t).
+        let rate = (LOST / wanted.result).ln() / (lost - good);
+        let needed = rate * (end - good);
+        let left = (self.runner.tolerance / FINEST).ln();
+        (POWER * left < needed).then(|| {
+            let twice = std::f64::consts::LN_2 / rate;
+            format!("errors of this motion double every {twice:.2} s, so that no steps are small enough for all of it")
+        })
+    }
+
+    /// Finer meshes where cells err and smaller steps where steps err, so that the next round is
+    /// good enough; why this cannot be.
+    fn improve(&mut self, judged: &Judged, wanted: Accuracy) -> Result<(), String> {
+        let Judged { round, difference, contractions, .. } = judged;
+        let (contractions, divide) = (*contractions, judged.divide());
+        let mut space = difference.clone().unwrap_or_default();
+        let mut time = None;
+        if self.runner.open.integrator
+            && round.tells_of_steps()
+            && let Some(coarse) = &round.coarse
+            // A run on the coarse mesh with the finer steps tells the errors of both apart.
+            && let Ok(between) = self.runner.solve(&round.stations, &self.runner.setting(Fineness::Coarse, Fineness::Fine), 0)
+            && let Ok(of_steps) = self.runner.difference(&round.stations, coarse, &between)
+            && let Ok(of_mesh) = self.runner.difference(&round.stations, &between, &round.results)
+        {
+            time = Some(scaled(of_steps.errors, divide).result);
+            space = of_mesh;
+        }
+        let errors = scaled(space.errors, divide);
+        let order = (contractions[0] / CAUTION).log2().clamp(1.0, 4.0);
+        let needed = |error: Option<f64>, wanted: Option<f64>, order: f64| {
+            error.zip(wanted).map_or(0.0, |(error, wanted)| (error / (AIM * wanted)).powf(order.recip()))
+        };
+        let needed = needed(Some(errors.result), Some(wanted.result), order)
+            .max(needed(errors.curvature, wanted.curvature, 2.0))
+            .max(needed(errors.section_force, wanted.section_force, 2.0));
+        let [promised, _] = self.runner.contractions(f64::INFINITY);
+        let times = needed.min(if contractions[0] < promised { CAREFUL_LEAP } else { LEAP });
+        let mut steps = false;
+        if let Some(time) = time {
+            // While the mesh is not yet what it has to be, steps need not be better than the mesh.
+            let left = if round.cells == 0 { 1.0 } else { (needed / times).max(1.0).powf(order) };
+            let ratio = time / (AIM * wanted.result * left);
+            steps = ratio > 1.0;
+            if steps || left > 1.0 {
+                let factor = ratio.powf(-POWER.recip()).clamp(LEAP_OF_TOLERANCE.recip(), LEAP_OF_TOLERANCE);
+                let most = (TOLERANCE * wanted.result * left).min(FIRST_TOLERANCE).max(self.runner.tolerance);
+                self.runner.tolerance = short((self.runner.tolerance * factor).clamp(FINEST, most));
+            }
+        }
+        if steps && (times <= 1.0 || round.cells == 0) {
+            return Ok(());
+        }
+        if round.cells == 0 {
+            return Err(NAMED.to_owned());
+        }
+        let most = self.most;
+        if 2 * round.cells >= most {
+            return Err(format!("more than {most} cells would be needed"));
+        }
+        let errors: Vec<Option<CellErrors>> = space
+            .cells
+            .iter()
+            .enumerate()
+            .map(|(index, cells)| self.runner.is_open(index).then(|| cells.clone()))
+            .collect();
+        self.runner.meshes = mesh::refined(&self.runner.meshes, &errors, times.max(1.1), most / 2);
+        Ok(())
+    }
+
+    /// Twice the cells in all open beams, and steps to match; whether there was any to refine.
+    fn refine_everywhere(&mut self) -> bool {
+        let mut any = self.runner.open.integrator;
+        for index in 0..self.runner.meshes.len() {
+            if self.runner.is_open(index) && self.runner.meshes[index].cells() < self.most / 2 {
+                self.runner.meshes[index] = self.runner.meshes[index].halved();
+                any = true;
+            }
+        }
+        self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(FINEST));
+        any
+    }
+
+    /// The results of a round with what is known of their errors.
+    fn finished(self, judged: Judged, reason: Option<String>) -> Accurate {
+        let divide = judged.divide();
+        let Judged { round, difference, .. } = judged;
+        let Round { stations, mut results, setting, .. } = round;
+        let lengths: Vec<f64> = self.runner.meshes.iter().map(Mesh::length).collect();
+        let largest = model_error::largest(stations.of_beams(results.states()), results.states());
+        let notes = model_error::notes(self.runner.model, &lengths, &largest);
+        stations.strip(&mut results);
+        let solver = self.runner.open.integrator || self.runner.static_tolerance().is_some();
+        let chosen = setting.toml_of(self.runner.model, |beam| self.runner.is_open(beam), solver);
+        let wanted = self.runner.wanted.map(|wanted| Errors {
+            result: wanted.result,
+            curvature: wanted.curvature,
+            section_force: wanted.section_force,
+        });
+        let unknown = Errors { result: f64::INFINITY, ..Errors::default() };
+        let mut estimate = ErrorEstimate {
+            wanted,
+            reason,
+            notes,
+            runs: self.runner.runs,
+            estimated: unknown,
+            ..ErrorEstimate::default()
+        };
+        if let Some(difference) = difference {
+            estimate.estimated = scaled(difference.errors, divide);
+            estimate.eigenvalues = difference.eigenvalues.iter().map(|error| error / divide[0]).collect();
+            estimate.records = difference.records.iter().map(|error| error / divide[0]).collect();
+            estimate.probes =
+                difference.probes.into_iter().map(|probe| statement::of_probe(probe, divide)).collect();
+            estimate.beams =
+                difference.beams.into_iter().map(|beam| statement::of_beam(beam, divide)).collect();
+            estimate.met = self.runner.wanted.is_none_or(|wanted| excess(estimate.estimated, wanted) <= 1.0);
+        }
+        if let Some(wanted) = self.runner.wanted
+            && !estimate.met
+        {
+            let states = results.states();
+            let first = estimate.records.iter().position(|error| *error > wanted.result);
+            estimate.good_until =
+                first.and_then(|first| states.parameter.get(first.checked_sub(1)?).copied());
+        }
+        results.run_mut().error = Some(Box::new(estimate));
+        Accurate { results, chosen }
+    }
+}
