@@ -46,6 +46,7 @@ pub fn print(suite: &Suite, names: &[String], quick: bool, out: &Path) -> Result
         bar.finish_and_clear();
         results.write(out)?;
         held &= results.claims.iter().all(|claim| claim.met != Some(false));
+        held &= results.prices.iter().all(|paid| paid.met);
         println!("{}", told(&results));
     }
     println!("{}", out.display());
@@ -68,6 +69,18 @@ fn told(results: &Results) -> String {
                 cheapest.as_ref().map_or("none is good enough".into(), setting)
             ));
         }
+    }
+    for paid in &results.prices {
+        let times = |ratio: Option<f64>, word: &str| ratio.map(|ratio| format!(", {ratio:.1} × {word}"));
+        let compared =
+            [times(paid.dearer, "dearer than the cheapest"), times(paid.faster, "faster than others")];
+        lines.push(format!(
+            "  accuracy {:e} alone: {}{}{}",
+            paid.wanted,
+            setting(&paid.alone),
+            compared.into_iter().flatten().collect::<String>(),
+            if paid.met { "" } else { ": MISSED" }
+        ));
     }
     let failed = results.left_out.iter().map(|left| format!("  left out: {}: {}", left.what, left.why));
     lines.extend(failed);

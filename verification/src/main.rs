@@ -1,6 +1,7 @@
 //! `verify`: makes the reference data of the verification cases, and reports how the solver
 //! compares with it.
 
+mod accuracy;
 mod beside;
 mod browser;
 mod cost;
@@ -8,6 +9,7 @@ mod figures;
 mod freeze;
 mod instructions;
 mod numbers;
+mod parallel;
 mod report;
 mod scaling;
 
@@ -66,6 +68,12 @@ enum Command {
         /// Problems, files of verification/work-precision; all if none is named
         problems: Vec<String>,
     },
+    /// Solve the scenes of the cases with nothing chosen but an accuracy, from 1e-2 to 1e-7, and
+    /// hold the estimated errors against the true ones; exit status 1 if too many are wrong
+    Accuracy {
+        /// Cases; all if none is named
+        cases: Vec<String>,
+    },
     /// Open the pages of runs, of a cost study and of the report in Chromium and say what is wrong
     /// with them; exit status 1 if anything is. Needs chromium and chromedriver
     Browser {
@@ -106,6 +114,7 @@ fn main() -> ExitCode {
         Command::Freeze { check, cases } => freeze::freeze(&suite, &cases, check),
         Command::Peers { cases } => beside::print(&suite, &cases),
         Command::WorkPrecision { quick, out, problems } => cost::print(&suite, &problems, quick, &out),
+        Command::Accuracy { cases } => accuracy::print(&suite, &cases),
         Command::Browser { report, prove } => browser::print(&suite, report.as_deref(), prove),
         Command::Numbers => numbers::print(&suite),
         Command::Figures { check } => figures::print(&suite, check),

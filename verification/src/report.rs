@@ -4,13 +4,14 @@
 //! | module | subject |
 //! |---|---|
 //! | `page` | the list of pages, and the one file that holds them |
-//! | `overview`, `case`, `hard`, `work`, `mutants` | a kind of page each: what its template shows, made from what was found |
+//! | `overview`, `case`, `hard`, `work`, `accuracy`, `scaling`, `instructions`, `mutants` | a kind of page each: what its template shows, made from what was found |
 //! | `check`, `figure`, `number` | parts of a case's page |
 //! | `before` | an earlier report, to compare with |
 //!
 //! A further kind of page is a module with a template that returns a [`Page`], and a line in
 //! [`pages`].
 
+mod accuracy;
 mod before;
 mod case;
 mod check;
@@ -26,20 +27,17 @@ mod work;
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use ancf_check::{Examined, Outcome, Suite, audit, examine};
 use ancf_mutants::record::Record;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use self::before::Before;
 pub use self::number::short;
 use self::overview::Made;
 use self::page::{Page, document};
-use crate::{Failure, chosen};
+use crate::{Failure, chosen, parallel};
 
 /// A case with its results.
 pub struct Entry {
@@ -199,6 +197,7 @@ fn pages(
     }
     pages.push(hard::page(entries)?);
     pages.extend(work::pages(suite, measured)?);
+    pages.push(accuracy::page(&suite.root.join(crate::accuracy::FILE))?);
     pages.push(scaling::page(&suite.root.join(crate::scaling::FILE))?);
     pages.push(instructions::page(&suite.root.join(crate::instructions::HISTORY))?);
     let record = Record::path(&suite.root);
@@ -208,31 +207,11 @@ fn pages(
 
 /// Runs cases on all cores; cases are independent of each other.
 fn run_all(suite: &Suite, names: &[String]) -> Vec<Entry> {
-    let bar = ProgressBar::new(names.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
-        bar.set_style(style);
-    }
-    let next = AtomicUsize::new(0);
-    let done = Mutex::new(Vec::new());
-    let workers = std::thread::available_parallelism().map_or(1, usize::from).min(names.len());
-    std::thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                while let Some(name) = names.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    bar.set_message(name.clone());
-                    let start = Instant::now();
-                    let examined = examine(suite, name);
-                    let entry = Entry { name: name.clone(), examined, took: start.elapsed() };
-                    done.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(entry);
-                    bar.inc(1);
-                }
-            });
-        }
-    });
-    bar.finish_and_clear();
-    let mut entries = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    entries.sort_by(|a, b| a.name.cmp(&b.name));
-    entries
+    parallel::map(names, String::clone, |name| {
+        let start = Instant::now();
+        let examined = examine(suite, name);
+        Entry { name: name.clone(), examined, took: start.elapsed() }
+    })
 }
 
 /// Day and time.

@@ -14,17 +14,21 @@
 mod claim;
 mod diagram;
 mod peer;
+mod price;
 mod problem;
 mod results;
 
 pub use claim::{Cheapest, Verdict, cheapest, on_front};
 pub use diagram::diagram;
-pub use problem::{Claim, Code, LeftOut, Method, Problem, names, problem};
+pub use price::Paid;
+pub use problem::{Claim, Code, Faster, LeftOut, Method, Price, Problem, names, problem};
 pub use results::{Norm, Point, Results, Spread};
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use ancf::accuracy;
 use ancf::results::Results as Found;
+use ancf::run::Options;
 use ancf::scene::Scene;
 use ancf_check::compare::member as compare;
 use ancf_check::execute::Run;
@@ -83,14 +87,18 @@ pub fn measure(
     let tables = tables(suite, problem)?;
     let mut left_out = problem.left_out.clone();
     let mut tasks = Vec::new();
-    for (key, method) in &problem.method {
+    let alone = problem.price.as_ref().map(|price| ("accuracy".to_owned(), price.method()));
+    for (key, method) in problem.method.iter().chain(alone.iter().map(|(key, method)| (key, method))) {
         if quick && method.slow {
             left_out.push(LeftOut { what: method.label.clone(), why: "slow; left out by --quick".into() });
             continue;
         }
         for member in members(&method.family(&problem.set)).map_err(|e| format!("[method.{key}]: {e}"))? {
             let path = suite.cases_folder().join(&problem.case).join(&member.scene);
-            let scene = Scene::load(&path, &member.set)?;
+            let mut scene = Scene::load(&path, &member.set)?;
+            if method.code == Code::Accuracy {
+                scene = scene.opened(member.fill("{accuracy}")?.parse()?)?;
+            }
             let settings = method
                 .settings
                 .iter()
@@ -139,6 +147,7 @@ pub fn measure(
         tools: made.tools,
         quick,
         norm: norm.collect(),
+        prices: problem.price.iter().flat_map(|price| price::paid(price, &points)).collect(),
         claims: problem.claim.iter().map(|claim| claim::judge(claim, &points)).collect(),
         points,
         left_out,
@@ -168,7 +177,7 @@ fn leave_out(list: &mut Vec<LeftOut>, line: &str, setting: &str, why: String) {
 /// Numbers of the settings in the order in which they run: ours and theirs in turn as long as there
 /// are both.
 fn alternating(codes: &[Code]) -> Vec<usize> {
-    let of = |ours: bool| (0..codes.len()).filter(move |&k| (codes[k] == Code::Ours) == ours);
+    let of = |ours: bool| (0..codes.len()).filter(move |&k| codes[k].is_ours() == ours);
     let (mut ours, mut theirs) = (of(true), of(false));
     let pairs = (0..codes.len()).flat_map(|_| [ours.next(), theirs.next()]);
     pairs.flatten().collect()
@@ -204,6 +213,17 @@ impl Task<'_> {
                 }
                 last
             }
+            Code::Accuracy => {
+                let mut last = Err("it was not run".to_owned());
+                for _ in 0..repeat {
+                    let clock = Instant::now();
+                    let results =
+                        accuracy::run(&self.scene, Options::default()).map_err(|e| e.to_string())?;
+                    self.seconds.push(clock.elapsed().as_secs_f64());
+                    last = Ok(results);
+                }
+                last
+            }
             Code::Exudyn => self.ask(&EXUDYN, repeat),
             Code::ScikitFem => self.ask(&SCIKIT_FEM, repeat),
         }
@@ -224,6 +244,7 @@ impl Task<'_> {
     ) -> Result<Point, String> {
         let results = self.outcome.unwrap_or_else(|| Err("it was not run".into()))?;
         let (statistics, unknowns) = (results.run().statistics, results.run().degrees_of_freedom);
+        let wanted = results.run().error.as_ref().and_then(|error| Some(error.wanted?.result));
         let run = Run {
             label: self.member.label(),
             member: self.member,
@@ -237,12 +258,13 @@ impl Task<'_> {
                 if error.is_finite() { Ok((name.clone(), error)) } else { Err(format!("{name}: no number")) }
             })
             .collect::<Result<_, String>>()?;
-        let ours = self.method.code == Code::Ours;
+        let ours = self.method.code.is_ours();
         Ok(Point {
             code: self.method.code,
             method: self.key.to_owned(),
             line: self.method.label.clone(),
             setting: run.label,
+            wanted,
             error,
             seconds: Spread::of(&self.seconds),
             build: (!self.build.is_empty()).then(|| Spread::of(&self.build)),

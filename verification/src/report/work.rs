@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use ancf_check::Suite;
-use ancf_verification::work::{self, Code, Norm, Point, Results, Verdict, diagram, on_front};
+use ancf_verification::work::{self, Norm, Paid, Point, Results, Verdict, diagram, on_front};
 use askama::Template;
 
 use super::number::short;
@@ -17,6 +17,7 @@ struct Body<'a> {
     results: &'a Results,
     diagrams: Vec<(&'a Norm, String)>,
     claims: Vec<ClaimView<'a>>,
+    prices: Vec<PriceView>,
     norms: Vec<&'a str>,
     lines: Vec<Line<'a>>,
     /// Settings that are not in the table, as others are better in every respect.
@@ -31,6 +32,12 @@ struct ClaimView<'a> {
     /// Per code its name, setting, error, time.
     sides: Vec<[String; 4]>,
     claim: &'a Verdict,
+}
+
+struct PriceView {
+    met: bool,
+    /// Texts, and whether they are numbers.
+    cells: Vec<(String, bool)>,
 }
 
 struct Line<'a> {
@@ -61,11 +68,10 @@ pub fn pages(suite: &Suite, folder: &Path) -> Result<Vec<Page>, Failure> {
             Err(error) => missing.push(error.to_string()),
         }
     }
-    let mut claims = measured.iter().flat_map(|results| &results.claims).peekable();
     let overview = Page {
         id: "what-accuracy-costs".into(),
         title: "What accuracy costs".into(),
-        pass: claims.peek().is_some().then(|| claims.all(|claim| claim.met == Some(true))),
+        pass: measured.iter().any(|r| !r.claims.is_empty()).then(|| measured.iter().all(holds)),
         listed: true,
         body: Overview {
             problems: measured.iter().map(|r| (r, r.claims.iter().map(claim).collect())).collect(),
@@ -88,6 +94,7 @@ fn page(results: &Results) -> Result<Page, Failure> {
             .map(|(key, norm)| Ok((norm, diagram(results, key)?)))
             .collect::<Result<_, Failure>>()?,
         claims: results.claims.iter().map(claim).collect(),
+        prices: results.prices.iter().map(price).collect(),
         lines: results
             .points
             .iter()
@@ -101,8 +108,7 @@ fn page(results: &Results) -> Result<Page, Failure> {
     Ok(Page {
         id: format!("cost-{}", results.name),
         title: results.title.clone(),
-        pass: (!results.claims.is_empty())
-            .then(|| results.claims.iter().all(|claim| claim.met == Some(true))),
+        pass: (!results.claims.is_empty()).then(|| holds(results)),
         listed: false,
         body: body.render()?,
     })
@@ -138,12 +144,39 @@ fn claim(claim: &Verdict) -> ClaimView<'_> {
     ClaimView { wanted: wanted(claim), found: found(claim), verdict, badge, sides: sides.into(), claim }
 }
 
+/// Whether everything that is claimed of a problem was found.
+fn holds(results: &Results) -> bool {
+    results.claims.iter().all(|claim| claim.met == Some(true)) && results.prices.iter().all(|paid| paid.met)
+}
+
+fn price(paid: &Paid) -> PriceView {
+    let none = || "–".to_owned();
+    let times = |ratio: Option<f64>| ratio.map_or_else(none, |ratio| format!("{ratio:.1} ×"));
+    let [ours, theirs] = [&paid.ours, &paid.theirs].map(|cheapest| match cheapest {
+        Some(c) => (c.setting.clone(), time(c.seconds)),
+        None => (none(), none()),
+    });
+    let cells = [
+        (short(paid.wanted), true),
+        (paid.alone.setting.clone(), false),
+        (paid.alone.error.map_or_else(none, short), true),
+        (time(paid.alone.seconds), true),
+        (ours.0, false),
+        (ours.1, true),
+        (times(paid.dearer), true),
+        (theirs.0, false),
+        (theirs.1, true),
+        (times(paid.faster), true),
+    ];
+    PriceView { met: paid.met, cells: cells.into() }
+}
+
 fn line<'a>(point: &'a Point, norms: &[&str]) -> Line<'a> {
     let error = |norm: &&str| point.error.get(*norm).map_or_else(|| "–".to_owned(), |&e| short(e));
     let seconds = point.seconds;
     Line {
         point,
-        code: if point.code == Code::Ours { "ours" } else { "other" },
+        code: if point.code.is_ours() { "ours" } else { "other" },
         errors: norms.iter().map(error).collect(),
         seconds: time(seconds.median),
         spread: if seconds.runs > 1 {
@@ -158,7 +191,7 @@ fn line<'a>(point: &'a Point, norms: &[&str]) -> Line<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ancf_verification::work::{Cheapest, LeftOut, Spread};
+    use ancf_verification::work::{Cheapest, Code, LeftOut, Spread};
 
     fn point(code: Code, error: f64, seconds: f64) -> Point {
         Point {
@@ -166,6 +199,7 @@ mod tests {
             method: "m".into(),
             line: if code == Code::Ours { "RPIM" } else { "Exudyn" }.into(),
             setting: format!("nodes = {seconds}"),
+            wanted: None,
             error: [("tip".to_owned(), error)].into(),
             seconds: Spread::of(&[seconds]),
             build: None,
@@ -211,6 +245,7 @@ mod tests {
                 ratio: Some(10.0),
                 met: Some(false),
             }],
+            prices: vec![],
             left_out: vec![LeftOut { what: "explicit".into(), why: "wrong < right".into() }],
         }
     }

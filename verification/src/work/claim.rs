@@ -65,8 +65,10 @@ pub fn judge(claim: &Claim, points: &[Point]) -> Verdict {
     let limit = claim.norm.clone().zip(claim.error);
     let borrowed = limit.as_ref().map(|(norm, error)| (norm.as_str(), *error));
     let of = |ours: bool, names: &[String]| {
-        let takes_part = |point: &&Point| {
-            if names.is_empty() { (point.code == Code::Ours) == ours } else { names.contains(&point.method) }
+        let takes_part = |point: &&Point| match ours {
+            _ if !names.is_empty() => names.contains(&point.method),
+            true => point.code == Code::Ours,
+            false => !point.code.is_ours(),
         };
         let found = cheapest(points.iter().filter(takes_part), borrowed)?;
         Some(Cheapest {
@@ -96,6 +98,7 @@ mod tests {
             method: method.into(),
             line: method.into(),
             setting: format!("{seconds} s"),
+            wanted: None,
             error: [("tip".to_owned(), error)].into(),
             seconds: Spread::of(&[seconds]),
             build: None,

@@ -7,7 +7,6 @@
 use ancf::output::plot::{Axis, Chart, GREY, Mark, PlotError, Series, colour};
 
 use super::claim::on_front;
-use super::problem::Code;
 use super::results::{Point, Results};
 
 /// Size of the drawing \[px\], and what a row of the legend adds.
@@ -31,7 +30,7 @@ pub fn diagram(results: &Results, norm: &str) -> Result<String, PlotError> {
     let mut chart = Chart::new("", Axis::log("solve time [s]"), Axis::log(label))
         .sized(SIZE[0], SIZE[1] + LEGEND_ROW * rows);
     for (number, (line, points)) in lines.iter().enumerate() {
-        let ours = points.iter().all(|point| point.code == Code::Ours);
+        let ours = points.iter().all(|point| point.code.is_ours());
         let (style, mark) = if ours { (Mark::Line, Mark::Points) } else { (Mark::Dashed, Mark::Crosses) };
         let front = places(points, norm, true);
         chart = chart.with(Series::new(*line, front, style, colour(number))).with(Series::new(

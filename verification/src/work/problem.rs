@@ -27,6 +27,13 @@
 //! slow = true                             # left out by --quick, and run once
 //! over.newton.newton = ["full", "modified"]
 //!
+//! [price]                                 # of what is chosen for an accuracy alone
+//! norm = "tip"
+//! unit = 1.8                              # an accuracy of 1 is this error: the beam's length
+//! accuracies = [1e-2, 1e-4, 1e-6]
+//! dearer = 3.0                            # than our cheapest setting that is as accurate, at most
+//! faster = { at = 1e-4, times = 5.0 }     # than the cheapest of other codes, at least
+//!
 //! [[claim]]
 //! norm = "tip"
 //! error = 1e-4                            # of either code the cheapest setting with at most this
@@ -70,6 +77,8 @@ pub struct Problem {
     /// The claims that must hold.
     #[serde(default)]
     pub claim: Vec<Claim>,
+    /// What is chosen for an accuracy alone.
+    pub price: Option<Price>,
     /// Methods that are not in the diagram though a reader may look for them.
     #[serde(default)]
     pub left_out: Vec<LeftOut>,
@@ -81,6 +90,8 @@ pub struct Problem {
 pub enum Code {
     /// This one.
     Ours,
+    /// This one, with nothing named but an accuracy.
+    Accuracy,
     /// Exudyn's ANCFCable2D.
     Exudyn,
     /// scikit-fem's Hermite elements, for small deflections.
@@ -88,12 +99,64 @@ pub enum Code {
 }
 
 impl Code {
+    /// Whether it is this one.
+    pub fn is_ours(self) -> bool {
+        matches!(self, Self::Ours | Self::Accuracy)
+    }
+
     /// Its name for the reader.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ours => "ours",
+            Self::Accuracy => "ours, an accuracy alone",
             Self::Exudyn => "Exudyn",
             Self::ScikitFem => "scikit-fem",
+        }
+    }
+}
+
+/// Runs for one accuracy after another, of which nothing else is named, and what they may cost.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Price {
+    /// The norm that an accuracy is about.
+    pub norm: String,
+    /// The error in that norm of an accuracy of one.
+    pub unit: f64,
+    /// Overrides, after those of the problem.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// The accuracies.
+    pub accuracies: Vec<f64>,
+    /// How many times dearer at most than our cheapest setting that is as accurate.
+    pub dearer: f64,
+    /// How many times faster at least than the cheapest setting of other codes.
+    pub faster: Option<Faster>,
+}
+
+/// A bound on time for one of the accuracies.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Faster {
+    /// The accuracy.
+    pub at: f64,
+    /// How many times faster.
+    pub times: f64,
+}
+
+impl Price {
+    /// As a method, of which the accuracy is the only variable.
+    pub fn method(&self) -> Method {
+        let values = self.accuracies.iter().map(|accuracy| Scalar::Number(*accuracy)).collect();
+        let axis = [("accuracy".to_owned(), values)].into();
+        Method {
+            code: Code::Accuracy,
+            label: "an accuracy alone".to_owned(),
+            scene: scene_toml(),
+            set: self.set.clone(),
+            settings: IndexMap::new(),
+            slow: false,
+            over: [("accuracy".to_owned(), axis)].into(),
         }
     }
 }
@@ -199,6 +262,9 @@ impl Problem {
                 return Err(format!("[norm.{name}] needs `oracle = \"<case>/<oracle>\"`"));
             }
         }
+        if let Some(price) = self.price.as_ref().filter(|price| !self.norm.contains_key(&price.norm)) {
+            return Err(format!("[price]: there is no [norm.{}]", price.norm));
+        }
         for (k, claim) in self.claim.iter().enumerate() {
             let at = |message: String| Err(format!("[[claim]] {}: {message}", k + 1));
             if claim.norm.is_some() != claim.error.is_some() {
@@ -207,8 +273,7 @@ impl Problem {
             if let Some(norm) = claim.norm.as_ref().filter(|norm| !self.norm.contains_key(*norm)) {
                 return at(format!("there is no [norm.{norm}]"));
             }
-            let is_ours =
-                |name: &String| self.method.get(name).is_some_and(|method| method.code == Code::Ours);
+            let is_ours = |name: &String| self.method.get(name).is_some_and(|method| method.code.is_ours());
             if let Some(name) = claim.ours.iter().find(|name| !is_ours(name)) {
                 return at(format!("`{name}` is no method of ours"));
             }
@@ -323,7 +388,7 @@ times = 2.0
                     let path = suite.cases_folder().join(&problem.case).join(&member.scene);
                     let scene = ancf::scene::Scene::load(&path, &member.set)
                         .unwrap_or_else(|e| panic!("{name}, {key}, {}: {e}", member.label()));
-                    if method.code != Code::Ours {
+                    if !method.code.is_ours() {
                         crate::peers::describe::describe(scene.model(), scene.analysis())
                             .unwrap_or_else(|e| panic!("{name}, {key}, {}: {e}", member.label()));
                     }

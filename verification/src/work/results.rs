@@ -7,6 +7,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use super::claim::Verdict;
+use super::price::Paid;
 use super::problem::{Code, LeftOut};
 use crate::Failure;
 
@@ -33,6 +34,8 @@ pub struct Results {
     pub points: Vec<Point>,
     /// The outcomes of the claims.
     pub claims: Vec<Verdict>,
+    /// What an accuracy alone costs, by accuracy.
+    pub prices: Vec<Paid>,
     /// The settings that are missing, by decision or because they failed.
     pub left_out: Vec<LeftOut>,
 }
@@ -61,6 +64,8 @@ pub struct Point {
     pub line: String,
     /// The setting in one line; empty where the method has only one.
     pub setting: String,
+    /// The accuracy for which the setting was chosen, where it was.
+    pub wanted: Option<f64>,
     /// Errors by norm.
     pub error: IndexMap<String, f64>,
     /// Times of the solution alone \[s\].

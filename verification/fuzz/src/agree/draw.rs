@@ -64,6 +64,9 @@ pub fn scene(rng: &mut Rng) -> Table {
     draw.effects();
     draw.probes();
     draw.analysis();
+    if draw.chance(0.08) {
+        draw.accuracy();
+    }
     draw.output();
     draw.scene
 }

@@ -1,6 +1,6 @@
 //! How far two outcomes are apart.
 
-use super::outcome::{Sample, Seen};
+use super::outcome::{Line, Sample, Seen};
 
 /// Differences between two outcomes of a scene, each relative to the size of the quantity.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,6 +76,19 @@ pub fn between(a: &Seen, b: &Seen, records: Records) -> Gap {
         gap.note("number of events", 1.0, 1.0);
     }
     gap
+}
+
+/// The largest difference of two last states, in lengths of the beam, or of eigenvalues, relative.
+pub fn of_last(a: &Seen, b: &Seen) -> f64 {
+    if !a.eigenvalues.is_empty() {
+        let pairs = a.eigenvalues.iter().zip(&b.eigenvalues);
+        return pairs.filter(|(f, g)| f != g).fold(0.0, |m, (f, g)| m.max((f - g).abs() / g.abs()));
+    }
+    let of = |(a, b): (&Line, &Line)| {
+        let length: f64 = b.places.windows(2).map(|pair| apart(pair[0], pair[1])).sum();
+        a.places.iter().zip(&b.places).map(|(p, q)| apart(*p, *q)).fold(0.0, f64::max) / length
+    };
+    a.beams.iter().zip(&b.beams).map(of).fold(0.0, f64::max)
 }
 
 fn last(a: &Seen, b: &Seen) -> Vec<(usize, usize)> {

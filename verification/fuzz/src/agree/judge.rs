@@ -25,6 +25,11 @@ const CONTINUED: f64 = 1e-8;
 /// Accuracy of forces and other things than positions, for which nothing is asked.
 const FORCES: f64 = 1e-5;
 
+/// The accuracy of the run that is the truth for another one, in that one's.
+const HUNDREDTH: f64 = 0.01;
+/// Errors tell something of an estimate where the truth errs by no more than this part of them.
+const TOLD: f64 = 0.2;
+
 /// A scene in natural units, with the frame in which it is run and the seed from which its other
 /// ways are drawn.
 #[derive(Clone, Debug)]
@@ -41,6 +46,9 @@ pub enum Verdict {
     NotApplicable,
     /// The runs differ by this share of the allowed difference.
     Agrees(f64),
+    /// A run for an accuracy differs from one for a hundredth of it, but not by more than ten
+    /// times what was wanted.
+    Estimated(Estimated),
     /// They differ by no more than the scene's own sensitivity explains.
     Unstable,
     /// A warning says that a result is not accurate.
@@ -51,6 +59,17 @@ pub enum Verdict {
     TooLong,
     /// They differ.
     Finding(Finding),
+}
+
+/// The errors of a run that chose its mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimated {
+    /// Largest error that was wanted.
+    pub wanted: f64,
+    /// The largest that was found.
+    pub error: f64,
+    /// That of the last state beside its estimate, where the run for a hundredth can tell it.
+    pub last: Option<[f64; 2]>,
 }
 
 /// Runs that do not agree.
@@ -77,6 +96,11 @@ pub fn judge(case: &Case, way: Way, base: &Outcome) -> Verdict {
     let mut rng = Rng::with_seed(case.seed ^ ((way as u64 + 1) << 32));
     if let Outcome::Panicked(said) = base {
         return finding(way, format!("a panic: {said}"), String::new());
+    }
+    let compares = way.is_exact() || matches!(way, Way::LoadSteps | Way::Accuracy | Way::Balance);
+    if settings::accuracy(&case.scene).is_some() && !compares {
+        // A mesh that is chosen is another one for every change.
+        return Verdict::NotApplicable;
     }
     match way {
         _ if way.is_exact() => exact(case, way, base, &mut rng),
@@ -196,12 +220,15 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
     let gap = gap::between(a, b, records);
     let chosen = motion.as_ref().and_then(|motion| motion.tolerance);
     let modes = matches!(settings::analysis(scene), "modal" | "buckling");
+    let accuracy = settings::accuracy(scene);
     let wanted = match () {
+        () if accuracy.is_some() => settings::tolerance(scene),
         () if modes => EIGENVALUES,
         () if free_end => FORCES,
         () => settings::tolerance(scene),
     };
     let (places, all) = match chosen {
+        _ if accuracy.is_some() => (ALLOWED * wanted, f64::INFINITY),
         // Round-off may change the choice of a step; its effect is bounded by the tolerance.
         Some(_) if !same => (wanted, f64::INFINITY),
         Some(_) => (0.1 * wanted, FORCES.max(wanted)),
@@ -248,6 +275,7 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
         Way::Welded => cut::cut(scene),
         Way::Basis => settings::other_basis(scene),
         Way::Continued => return continued(case, base, rng),
+        Way::Accuracy => return accurate(case, rng),
         Way::Turned | Way::Mirrored | Way::Units | Way::Balance | Way::Momentum => None,
     };
     let Some(changed) = changed else { return Verdict::NotApplicable };
@@ -318,6 +346,32 @@ fn estimated(gap: &Gap, estimate: f64, least: f64) -> Measured {
         places: true,
         what: format!("position or eigenvalue, of which the estimated error is {estimate:.2e}"),
     }
+}
+
+/// Runs a scene for an accuracy and for a hundredth of it.
+fn accurate(case: &Case, rng: &mut Rng) -> Verdict {
+    let Case { scene, frame, .. } = case;
+    let way = Way::Accuracy;
+    let wanted = [1e-2, 1e-3, 1e-4, 1e-5][rng.usize(0..4)];
+    let (open, finer) = (settings::opened(scene, wanted), settings::opened(scene, HUNDREDTH * wanted));
+    let (Some(open), Some(finer)) = (open, finer) else { return Verdict::NotApplicable };
+    let runs = [&open, &finer].map(|scene| other(scene, frame, way));
+    let [seen, finest] = match runs {
+        [Ok(seen), Ok(finest)] => [seen, finest],
+        [Err(verdict), _] | [_, Err(verdict)] => return verdict,
+    };
+    let moves = settings::motion(scene).is_some();
+    let gap = gap::between(&seen, &finest, if moves { Records::Common } else { Records::Last });
+    let allowed = ALLOWED * wanted + round_off(scene);
+    if gap.places <= allowed {
+        let error = gap::of_last(&seen, &finest);
+        let told = finest.estimated.is_some_and(|least| least <= TOLD * error);
+        let last = seen.estimated.filter(|_| told).map(|estimated| [error, estimated]);
+        return Verdict::Estimated(Estimated { wanted, error: gap.places, last });
+    }
+    let what = "a position or an eigenvalue of a run for an accuracy".to_owned();
+    let measured = Measured { value: gap.places, allowed, places: true, what };
+    decide(case, way, measured, &frame.write(&open).to_string(), rng)
 }
 
 fn continued(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {

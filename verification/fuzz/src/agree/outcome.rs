@@ -4,6 +4,8 @@
 use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
 
+use ancf::accuracy;
+use ancf::model::{Beam, Discretization};
 use ancf::restart::SavedState;
 use ancf::results::{ProbeSample, Results, Shape};
 use ancf::run::{self, Control};
@@ -17,6 +19,8 @@ use super::frame::Frame;
 const WORK: usize = 60_000;
 /// Steps after which a run is given up.
 const STEPS: usize = 4_000;
+/// Nodes that a beam is taken to have where they are chosen for an accuracy.
+const NODES_CHOSEN: usize = 40;
 
 thread_local! {
     /// The message of the last panic of this thread.
@@ -60,6 +64,9 @@ pub struct Seen {
     /// Steps, rejected steps, iterations.
     pub counts: [usize; 3],
     pub saved: Option<SavedState>,
+    /// Estimated error of positions in the last state [beam lengths], or of eigenvalues, of a run
+    /// that chose its mesh.
+    pub estimated: Option<f64>,
 }
 
 /// A sample of a probe.
@@ -120,7 +127,11 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
         Ok(scene) => scene,
         Err(error) => return Outcome::Refused(first_line(&error.to_string())),
     };
-    let nodes: usize = scene.model().beams.iter().map(|beam| beam.discretization.nodes().count()).sum();
+    let nodes = |beam: &Beam| match beam.discretization {
+        Discretization::Open => NODES_CHOSEN,
+        _ => beam.discretization.nodes().count(),
+    };
+    let nodes: usize = scene.model().beams.iter().map(nodes).sum();
     let (mut steps, mut gave_up) = (0, false);
     let observer = &mut |progress: &run::Progress| {
         steps += 1;
@@ -128,11 +139,15 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
         if gave_up { Control::Stop } else { Control::Continue }
     };
     let options = run::Options { start: saved, observer: Some(observer), ..run::Options::default() };
-    let outcome = scene.model().solve_with(scene.analysis(), options);
+    let outcome = accuracy::run(&scene, options);
     if gave_up {
         return Outcome::TooLong;
     }
     match outcome {
+        Ok(results) if results.run().error.as_ref().is_some_and(|error| !error.met) => {
+            let missed = results.run().error.as_ref().and_then(|error| error.missed(results.run().analysis));
+            Outcome::Failed(missed.unwrap_or_default())
+        }
         Ok(results) => Outcome::Solved(Box::new(see(&results, frame))),
         Err(error) if error.exit_status() == 2 => Outcome::Refused(first_line(&error.to_string())),
         Err(error) => Outcome::Failed(first_line(&error.to_string())),
@@ -177,6 +192,10 @@ fn see(results: &Results, frame: &Frame) -> Seen {
         events: t.events.iter().map(|event| event.time() / time).collect(),
         counts: [t.run.statistics.steps, t.run.statistics.rejected_steps, t.run.statistics.newton_iterations],
         saved: t.saved.clone(),
+        estimated: t.run.error.as_ref().map(|error| match error.records.last() {
+            Some(last) => *last,
+            None => error.estimated.result,
+        }),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use super::judge::Verdict;
+use super::judge::{Estimated, Verdict};
 use super::vocabulary;
 use super::ways::{WAYS, Way};
 
@@ -37,6 +37,31 @@ pub struct Report {
     pub slowest: (f64, usize),
     keys: BTreeMap<String, usize>,
     ways: [Counts; WAYS.len()],
+    estimates: Estimates,
+}
+
+/// How good the estimates of errors are.
+#[derive(Clone, Copy, Debug, Default)]
+struct Estimates {
+    /// Runs for an accuracy.
+    runs: usize,
+    /// Those that are as accurate as that.
+    kept: usize,
+    /// Those of which the error of the last state is known.
+    told: usize,
+    /// Those of them whose error is between a fifth and three times the estimate.
+    right: usize,
+}
+
+impl Estimates {
+    fn count(&mut self, found: &Estimated) {
+        self.runs += 1;
+        self.kept += usize::from(found.error <= found.wanted);
+        if let Some([error, estimated]) = found.last {
+            self.told += 1;
+            self.right += usize::from((0.2..=3.0).contains(&(error / estimated)));
+        }
+    }
 }
 
 impl Report {
@@ -48,6 +73,10 @@ impl Report {
             Verdict::Agrees(share) => {
                 counts.agree += 1;
                 counts.nearest = counts.nearest.max(*share);
+            }
+            Verdict::Estimated(found) => {
+                counts.agree += 1;
+                self.estimates.count(found);
             }
             Verdict::Unstable => counts.unstable += 1,
             Verdict::Warned => counts.warned += 1,
@@ -89,6 +118,11 @@ impl Report {
         for (key, n) in other.outcomes {
             *self.outcomes.entry(key).or_default() += n;
         }
+        let (into, from) = (&mut self.estimates, other.estimates);
+        into.runs += from.runs;
+        into.kept += from.kept;
+        into.told += from.told;
+        into.right += from.right;
         for (into, from) in self.ways.iter_mut().zip(other.ways) {
             into.agree += from.agree;
             into.unstable += from.unstable;
@@ -153,6 +187,11 @@ impl fmt::Display for Report {
                 c.nearest
             )?;
         }
+        let Estimates { runs, kept, told, right } = self.estimates;
+        writeln!(
+            f,
+            "accuracy: {kept} of {runs} as accurate as wanted; {right} of {told} errors between a fifth and three times the estimate"
+        )?;
         let rare = self.rare();
         writeln!(f, "{} keys of the schema in less than {} % of the scenes", rare.len(), 100.0 * LEAST)?;
         for (key, share) in rare {

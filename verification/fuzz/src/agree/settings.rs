@@ -89,8 +89,34 @@ pub fn with_integrator(scene: &Table, name: &str, key: &str, value: f64) -> Tabl
     scene
 }
 
+/// The scene with nothing chosen but an accuracy.
+pub fn opened(scene: &Table, accuracy: f64) -> Option<Table> {
+    let mut scene = scene.clone();
+    for (_, beam) in table(&mut scene, &["beam"])?.iter_mut() {
+        beam.as_table_mut()?.remove("basis");
+    }
+    let kind = analysis(&scene).to_owned();
+    let analysis = table(&mut scene, &["analysis", &kind])?;
+    for key in ["radau", "gauss", "generalized_alpha", "tolerance"] {
+        analysis.remove(key);
+    }
+    analysis.insert("accuracy".into(), accuracy.into());
+    Some(scene)
+}
+
+/// The largest error that is wanted of a scene that chooses its mesh, or of one that says so.
+pub fn accuracy(scene: &Table) -> Option<f64> {
+    let wanted = get(scene, &["analysis", analysis(scene), "accuracy"]);
+    let position = wanted.and_then(|wanted| wanted.as_float().or_else(|| wanted.get("position")?.as_float()));
+    let open = wanted.is_some() || beams(scene).any(|(_, beam)| !beam.contains_key("basis"));
+    open.then(|| position.unwrap_or(1e-4))
+}
+
 /// The accuracy that is asked for.
 pub fn tolerance(scene: &Table) -> f64 {
+    if let Some(accuracy) = accuracy(scene) {
+        return accuracy;
+    }
     match motion(scene) {
         // The errors of the iterations of a thousand fixed steps should add up to less.
         Some(motion) => motion.tolerance.unwrap_or_else(|| 1e-8_f64.max(1e3 * newton_tolerance(scene))),

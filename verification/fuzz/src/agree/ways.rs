@@ -22,12 +22,13 @@ pub enum Way {
     Basis,
     Welded,
     Count,
+    Accuracy,
     Balance,
     Momentum,
 }
 
 /// All of them, in the order of the report.
-pub const WAYS: [Way; 14] = [
+pub const WAYS: [Way; 15] = [
     Way::Turned,
     Way::Mirrored,
     Way::Units,
@@ -40,6 +41,7 @@ pub const WAYS: [Way; 14] = [
     Way::Basis,
     Way::Welded,
     Way::Count,
+    Way::Accuracy,
     Way::Balance,
     Way::Momentum,
 ];
@@ -60,6 +62,7 @@ impl Way {
             Self::Basis => "basis",
             Self::Welded => "welded",
             Self::Count => "count",
+            Self::Accuracy => "accuracy",
             Self::Balance => "balance",
             Self::Momentum => "momentum",
         }

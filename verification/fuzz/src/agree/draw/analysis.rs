@@ -2,6 +2,7 @@
 
 use toml::{Table, Value};
 
+use super::super::settings;
 use super::{Draw, Kind};
 
 impl Draw<'_> {
@@ -32,6 +33,36 @@ impl Draw<'_> {
         let mut analysis = Table::new();
         analysis.insert(key.into(), table.into());
         self.scene.insert("analysis".into(), analysis.into());
+    }
+
+    /// Leaves everything open that an accuracy chooses, of all beams or of some.
+    pub(super) fn accuracy(&mut self) {
+        let wanted = self.pick(&[1e-2, 1e-3, 1e-4]);
+        let Some(mut open) = settings::opened(&self.scene, wanted) else { return };
+        let kind = settings::analysis(&open).to_owned();
+        let moves = matches!(kind.as_str(), "static" | "dynamic");
+        let (some, table) = (self.chance(0.3), moves && self.chance(0.5));
+        let (curvature, forces) = (self.pick(&[0.1, 0.03]), self.pick(&[0.1, 0.03]));
+        if some && let (Some(from), Some(to)) = (self.first_basis(), settings::table(&mut open, &["beam"])) {
+            let (name, basis) = from;
+            if let Some(beam) = to.get_mut(&name).and_then(Value::as_table_mut) {
+                beam.insert("basis".into(), basis);
+            }
+        }
+        if table && let Some(analysis) = settings::table(&mut open, &["analysis", &kind]) {
+            let mut errors = Table::new();
+            errors.insert("position".into(), wanted.into());
+            errors.insert("curvature".into(), curvature.into());
+            errors.insert("section_force".into(), forces.into());
+            analysis.insert("accuracy".into(), errors.into());
+        }
+        self.scene = open;
+    }
+
+    /// The first beam's name and basis.
+    fn first_basis(&self) -> Option<(String, Value)> {
+        let (name, beam) = settings::beams(&self.scene).next()?;
+        Some((name.clone(), beam.get("basis")?.clone()))
     }
 
     fn modes(&mut self) -> Table {
