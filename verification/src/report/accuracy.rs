@@ -85,7 +85,11 @@ fn row(scene: &SceneWorth) -> Row<'_> {
                 () if run.told && !(RANGE[0]..=RANGE[1]).contains(&run.ratio()) => "beyond",
                 () => "",
             };
-            let error = if run.told { short(run.error) } else { format!("≤ {}", short(run.error)) };
+            let error = if run.told || run.error == 0.0 {
+                short(run.error)
+            } else {
+                format!("≤ {}", short(run.error))
+            };
             let said = if run.met { "" } else { ", not met" };
             [error, format!("{}{said}", short(run.estimated)), class.to_owned()]
         }
@@ -101,7 +105,7 @@ fn row(scene: &SceneWorth) -> Row<'_> {
 fn drawing(scenes: &[SceneWorth]) -> Result<String, String> {
     let axis = |label: &str| Axis::log(label).range(1e-10, 1.0);
     let mut chart = Chart::new("", axis("estimated error"), axis("true error")).sized(640, 460);
-    let line = |factor: f64| vec![[1e-10, factor * 1e-10], [1.0, factor]];
+    let line = |factor: f64| vec![[1e-9, factor * 1e-9], [0.3, factor * 0.3]];
     chart = chart
         .with(Series::dashed("a fifth of the estimate, and three times", line(RANGE[0]), GREY))
         .with(Series::dashed("", line(RANGE[1]), GREY))
@@ -114,4 +118,47 @@ fn drawing(scenes: &[SceneWorth]) -> Result<String, String> {
         chart = chart.with(Series::new(name, points, Mark::Points, colour).size(2.5).opacity(0.7));
     }
     chart.svg().map_err(|e| e.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accuracy::Truth;
+
+    fn judged(wanted: f64, estimated: f64, error: f64, told: bool) -> Result<Judged, String> {
+        Ok(Judged { wanted, met: true, estimated, error, told, degrees_of_freedom: 8 })
+    }
+
+    #[test]
+    fn the_page_shows_what_is_right_wrong_and_unknown() {
+        let scene = SceneWorth {
+            case: "tip-load".into(),
+            label: "load = 1".into(),
+            analysis: "static".into(),
+            truth: Ok(Truth { estimated: 1e-12, kept: 2, missed: vec!["one".into()] }),
+            runs: vec![
+                judged(1e-2, 2e-3, 1e-3, true),
+                judged(1e-3, 5e-4, 2e-3, true),
+                judged(1e-4, 8e-5, 1e-6, true),
+                judged(1e-5, 5e-6, 1e-13, false),
+                Err("given up".into()),
+            ],
+        };
+        let worth = Worth { date: "2026-01-02".into(), machine: "a machine".into(), scenes: vec![scene] };
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("accuracy.json");
+        std::fs::write(&file, serde_json::to_string(&worth).expect("JSON")).expect("a file");
+        let page = page(&file).expect("a page");
+        assert_eq!(page.pass, Some(false), "one run in four errs by more than it was asked to");
+        for text in ["2026-01-02", "#tip-load", "2 of 3", "fails", "beyond", "≤ 1.0e−13", "given up", "<svg"]
+        {
+            assert!(page.body.contains(text), "`{text}` is missing in {}", page.body);
+        }
+    }
+
+    #[test]
+    fn what_is_not_measured_says_how() {
+        let page = page(Path::new("nowhere")).expect("a page");
+        assert!(page.pass.is_none() && page.body.contains("-- accuracy</code>"));
+    }
 }
