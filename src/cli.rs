@@ -180,6 +180,7 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
         observer: Some(observer),
         checkpoints,
         frames: wanted.frames(),
+        ..run::Options::default()
     };
     let outcome = if arguments.error && scene.accuracy().is_none() {
         accuracy::estimate(scene.model(), scene.analysis(), options)

@@ -76,6 +76,9 @@ pub struct Checkpointing<'k> {
     pub take: &'k dyn Fn(&SavedState),
 }
 
+/// Places of each beam at which the last shape is known, unless a run asks for others.
+pub const SHAPE_POINTS: usize = 201;
+
 /// Options of a run besides the model and the analysis.
 pub struct Options<'o> {
     /// A saved state from which a motion starts; its duration counts from the time of that state.
@@ -87,15 +90,23 @@ pub struct Options<'o> {
     pub checkpoints: Option<Checkpointing<'o>>,
     /// Number of records, evenly spread, whose centrelines are kept: [`PICTURES`] by default.
     pub frames: usize,
+    /// Number of places, evenly spread, at which the last shape of each beam is known, with its
+    /// section forces: [`SHAPE_POINTS`] by default, and two at least.
+    pub shape_points: usize,
 }
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { start: None, observer: None, checkpoints: None, frames: PICTURES }
+        Self { start: None, observer: None, checkpoints: None, frames: PICTURES, shape_points: SHAPE_POINTS }
     }
 }
 
 impl Options<'_> {
+    /// How many centrelines are kept, and how many places of the last shapes are known.
+    fn detail(&self) -> [usize; 2] {
+        [self.frames, self.shape_points]
+    }
+
     /// Refuses a saved state for an analysis without motion.
     fn refuses_a_start(&self, analysis: &'static str) -> Result<(), RunError> {
         self.start.map_or(Ok(()), |_| Err(RestartError::Analysis { analysis }.into()))

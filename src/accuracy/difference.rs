@@ -205,9 +205,12 @@ fn states(
     }
     // Stations are inside the cells; where cells meet curvatures err most.
     for ((beam, a), b) in model.beams.iter().zip(&coarse.last).zip(&fine.last) {
-        for (s, value) in b.s.iter().zip(&b.curvature).filter(|_| beam.section.bending_stiffness.is_some()) {
-            largest = largest.max(value.abs());
-            let other = interpolated(&a.s, &a.curvature, *s, true);
+        if beam.section.bending_stiffness.is_none() {
+            continue;
+        }
+        largest = b.curvature.iter().fold(largest, |largest, value| largest.max(value.abs()));
+        for (s, value) in a.s.iter().zip(&a.curvature) {
+            let other = interpolated(&b.s, &b.curvature, *s, true);
             curvature = other.map_or(curvature, |other| larger(curvature, (value - other).abs()));
         }
     }
@@ -278,10 +281,10 @@ fn section_forces(coarse: &[Shape], fine: &[Shape]) -> Option<f64> {
     let error = |kind: fn(&Shape) -> &Vec<f64>| {
         let (mut largest, mut error) = (0.0_f64, 0.0_f64);
         for (a, b) in coarse.iter().zip(fine) {
-            for (k, (s, value)) in b.s.iter().zip(kind(b)).enumerate() {
-                largest = largest.max(value.abs());
-                let after = b.s.get(k + 1) != Some(s);
-                if let Some(other) = interpolated(&a.s, kind(a), *s, after) {
+            largest = kind(b).iter().fold(largest, |largest, value| largest.max(value.abs()));
+            for (k, (s, value)) in a.s.iter().zip(kind(a)).enumerate() {
+                let after = a.s.get(k + 1) != Some(s);
+                if let Some(other) = interpolated(&b.s, kind(b), *s, after) {
                     error = larger(error, (value - other).abs());
                 }
             }

@@ -51,8 +51,9 @@ pub(super) struct CellErrors {
 
 impl Mesh {
     /// Where the search begins, for every beam; with `waves` half-waves of a mode along the longest
-    /// each has a cell.
-    pub fn first(model: &Model, waves: usize) -> Vec<Self> {
+    /// each has a cell. There are `times` as many cells as where nothing is known of the error that
+    /// is wanted.
+    pub fn first(model: &Model, waves: usize, times: f64) -> Vec<Self> {
         let curves: Vec<Option<Curve>> =
             model.beams.iter().map(|beam| Curve::new(&beam.centreline).ok()).collect();
         let longest = curves.iter().flatten().map(Curve::length).fold(0.0, f64::max);
@@ -72,7 +73,7 @@ impl Mesh {
                 }
             }
             fixed.push(length);
-            let straight = (FIRST.max(waves as f64) * length / longest).ceil() as usize;
+            let straight = (times * FIRST.max(waves as f64) * length / longest).ceil() as usize;
             let turns = (turning(curve) / TURN).ceil() as usize;
             let cells = straight.max(turns).max(LEAST);
             let spread = |part: &[f64]| {

@@ -25,6 +25,13 @@ const MESHFREE: f64 = 3e-5;
 const MESHFREE_FAMILY: Family = Family::Rpim { neighbours: 1, shape: 6.0, points: RPIM_GAUSS_POINTS.bend };
 /// The tolerance of the coarse run, in that of the finer one.
 pub(super) const LOOSER: f64 = 16.0;
+/// Wanted errors of equilibria and modes down to which the search begins with the fewest cells …
+const FIRST_CELLS_DO: f64 = 1e-3;
+/// … and the power of smaller ones by which it begins with more: less than the quarter that errors
+/// of smooth solutions go with, as those of the fewest cells may be small already.
+const FIRST_CELLS_GROW: f64 = 1.0 / 6.0;
+/// Curvatures and section forces of the coarse run are compared at each so many-th place.
+const COARSER: usize = 4;
 /// Loosest tolerance of any run.
 const LOOSEST: f64 = 0.1;
 /// Two motions of which the finer one takes less than so many times the steps of the coarse one
@@ -57,6 +64,17 @@ pub(super) enum Fineness {
     Coarsest,
     Coarse,
     Fine,
+}
+
+/// What a run is made for: how much of it is sampled.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Purpose {
+    /// Positions at the stations.
+    Positions,
+    /// Curvatures and section forces, too.
+    Shapes,
+    /// All that was asked for.
+    Results,
 }
 
 /// What a round found.
@@ -99,7 +117,13 @@ impl<'a, 'o> Runner<'a, 'o> {
             Analysis::Buckling(settings) => settings.count,
             _ => 0,
         };
-        let mut meshes = Mesh::first(model, waves);
+        let result = wanted.map_or(Accuracy::USUAL, |wanted| wanted.result);
+        let times = match analysis {
+            // The first rounds of a motion explore its steps, for which few cells do.
+            Analysis::Dynamic(_) => 1.0,
+            _ => (FIRST_CELLS_DO / result).powf(FIRST_CELLS_GROW).max(1.0),
+        };
+        let mut meshes = Mesh::first(model, waves, times);
         for (beam, mesh) in model.beams.iter().zip(&mut meshes) {
             if beam.discretization != Discretization::Open {
                 let curve = Curve::new(&beam.centreline);
@@ -112,7 +136,6 @@ impl<'a, 'o> Runner<'a, 'o> {
                 }
             }
         }
-        let result = wanted.map_or(Accuracy::USUAL, |wanted| wanted.result);
         let tolerance = short((TOLERANCE * result).min(FIRST_TOLERANCE));
         let accurate = wanted.is_some_and(|wanted| wanted.result <= MESHFREE);
         let family = |(beam, mesh): (&Beam, &Mesh)| {
@@ -181,15 +204,23 @@ impl<'a, 'o> Runner<'a, 'o> {
         &mut self,
         stations: &Stations,
         setting: &Setting,
-        frames: usize,
+        purpose: Purpose,
     ) -> Result<Results, RunError> {
         let (model, analysis) = setting.apply(&stations.watch(self.model), self.analysis);
-        let Options { start, observer, checkpoints, .. } = &mut self.options;
+        let Options { start, observer, checkpoints, frames, shape_points } = &mut self.options;
+        let wanted = self.wanted.is_some_and(|w| w.curvature.is_some() || w.section_force.is_some());
+        let places_tell = wanted || matches!(self.analysis, Analysis::Modal(_) | Analysis::Buckling(_));
         let options = Options {
             start: *start,
             observer: observer.as_mut().map(|observer| &mut **observer as _),
             checkpoints: *checkpoints,
-            frames,
+            frames: if purpose == Purpose::Results { *frames } else { 0 },
+            shape_points: match purpose {
+                _ if places_tell => *shape_points,
+                Purpose::Positions => 2,
+                Purpose::Shapes => every(COARSER, *shape_points),
+                Purpose::Results => *shape_points,
+            },
         };
         let results = model.solve_with(&analysis, options)?;
         let run = results.run();
@@ -209,11 +240,11 @@ impl<'a, 'o> Runner<'a, 'o> {
     /// A coarse run and a finer one; in the first round one that is still coarser, too.
     pub fn round(&mut self, first: bool) -> Result<Round, RunError> {
         let stations = Stations::new(self.model, &self.meshes);
-        let mut pair = |fineness| self.solve(&stations, &self.setting(fineness, fineness), 0);
-        let coarsest = if first { pair(Fineness::Coarsest).ok() } else { None };
-        let coarse = pair(Fineness::Coarse);
+        let mut pair = |fineness, purpose| self.solve(&stations, &self.setting(fineness, fineness), purpose);
+        let coarsest = if first { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
+        let coarse = pair(Fineness::Coarse, Purpose::Shapes);
         let setting = self.setting(Fineness::Fine, Fineness::Fine);
-        let results = self.solve(&stations, &setting, self.options.frames)?;
+        let results = self.solve(&stations, &setting, Purpose::Results)?;
         let difference = match &coarse {
             Ok(coarse) if coarse.run().complete => self.difference(&stations, coarse, &results),
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
@@ -237,6 +268,13 @@ impl<'a, 'o> Runner<'a, 'o> {
     ) -> Result<Difference, String> {
         difference::between(self.model, self.analysis, (stations, &self.meshes), coarse, fine)
     }
+}
+
+/// Number of every `stride`-th of so many evenly spaced places, ends included; all where they do not
+/// come out even.
+fn every(stride: usize, places: usize) -> usize {
+    let spaces = places.saturating_sub(1);
+    if spaces.is_multiple_of(stride) { spaces / stride + 1 } else { places }
 }
 
 /// Two digits, which is enough for a tolerance.

@@ -2,7 +2,7 @@
 
 use super::judgement::{CAUTION, Judged, Seen, excess, scaled};
 use super::mesh::{self, CellErrors, Mesh};
-use super::round::{FINEST, FIRST_TOLERANCE, Fineness, LOOSER, Round, Runner, TOLERANCE, short};
+use super::round::{FINEST, FIRST_TOLERANCE, Fineness, LOOSER, Purpose, Round, Runner, TOLERANCE, short};
 use super::{Accurate, model_error, statement};
 use crate::model::{Accuracy, Analysis};
 use crate::results::{ErrorEstimate, Errors};
@@ -214,7 +214,7 @@ impl<'a, 'o> Search<'a, 'o> {
             && round.tells_of_steps()
             && let Some(coarse) = &round.coarse
             // A run on the coarse mesh with the finer steps tells the errors of both apart.
-            && let Ok(between) = self.runner.solve(&round.stations, &self.runner.setting(Fineness::Coarse, Fineness::Fine), 0)
+            && let Ok(between) = self.runner.solve(&round.stations, &self.runner.setting(Fineness::Coarse, Fineness::Fine), Purpose::Positions)
             && let Ok(of_steps) = self.runner.difference(&round.stations, coarse, &between)
             && let Ok(of_mesh) = self.runner.difference(&round.stations, &between, &round.results)
         {
@@ -239,7 +239,7 @@ impl<'a, 'o> Search<'a, 'o> {
             steps = ratio > 1.0;
             if steps || left > 1.0 {
                 let factor = ratio.powf(-POWER.recip()).clamp(LEAP_OF_TOLERANCE.recip(), LEAP_OF_TOLERANCE);
-                let most = (TOLERANCE * wanted.result * left).min(FIRST_TOLERANCE).max(self.runner.tolerance);
+                let most = (TOLERANCE * wanted.result * left).min(FIRST_TOLERANCE);
                 self.runner.tolerance = short((self.runner.tolerance * factor).clamp(FINEST, most));
             }
         }

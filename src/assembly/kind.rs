@@ -75,6 +75,14 @@ kinds! {
     MovingForce = "moving_force",
 }
 
+impl Kind {
+    /// Whether its energy is the same wherever a beam is moved as a rigid body, so that it acts on
+    /// no piece of it as a whole.
+    pub(crate) fn is_of_shape_alone(self) -> bool {
+        matches!(self, Self::Stretch | Self::Bend | Self::PreStrain | Self::PreCurvature)
+    }
+}
+
 impl serde::Serialize for Kind {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name())

@@ -32,7 +32,7 @@ impl Solve for Modal {
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;
         let system = System::build(model, needs(&analysis))?;
-        let sampler = Sampler::new(model, &system, options.frames)?;
+        let sampler = Sampler::new(model, &system, options.detail())?;
         stopwatch.built();
         let mut watch = Watch::new(options.observer);
         let outcome = match self.about {
@@ -53,7 +53,7 @@ impl Solve for Buckling {
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;
         let system = System::build(model, needs(&analysis))?;
-        let sampler = Sampler::new(model, &system, options.frames)?;
+        let sampler = Sampler::new(model, &system, options.detail())?;
         stopwatch.built();
         let modes = buckling::solve(&system, self.count)?;
         stopwatch.solved();

@@ -20,7 +20,7 @@ impl Solve for Dynamic {
         memory::check(model, &analysis)?;
         let mut system = System::build(model, needs(&analysis))?;
         let Beginning { start, end, motion, told } = beginning(model, self, &mut system, options.start)?;
-        let sampler = Sampler::new(model, &system, options.frames)?;
+        let sampler = Sampler::new(model, &system, options.detail())?;
         stopwatch.built();
         self.integrator.suits(model)?;
         let watches = sampler.watches(self)?;

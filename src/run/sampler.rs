@@ -23,8 +23,6 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Places nearer to each other than this, in beam lengths, are one.
 const SAME_PLACE: f64 = 1e-9;
-/// Points at which shapes are sampled.
-const SHAPE_POINTS: usize = 201;
 /// A frame of the animation takes every so many of these points.
 const FRAME_STRIDE: usize = 2;
 /// Part of the loads beyond which the round-off of internal forces prevents convergence.
@@ -144,13 +142,17 @@ fn evenly(length: f64, count: usize) -> Vec<f64> {
 }
 
 impl<'a> Sampler<'a> {
-    pub(super) fn new(model: &'a Model, system: &'a System, frames: usize) -> Result<Self, RunError> {
+    pub(super) fn new(
+        model: &'a Model,
+        system: &'a System,
+        [frames, shape_points]: [usize; 2],
+    ) -> Result<Self, RunError> {
         let view = |beam: usize, s: &[f64]| {
             let part = &system.beams()[beam];
             View::points(&part.basis, part.offset(), s).map_err(|e| BuildError::basis(&part.name, e))
         };
         let shapes = (0..system.beams().len())
-            .map(|beam| view(beam, &evenly(system.beams()[beam].basis.length(), SHAPE_POINTS)))
+            .map(|beam| view(beam, &evenly(system.beams()[beam].basis.length(), shape_points.max(2))))
             .collect::<Result<_, BuildError>>()?;
         let probes = model
             .probes
@@ -349,8 +351,8 @@ impl<'a> Sampler<'a> {
             .map(|(beam, (even, actions))| {
                 let part = &self.system.beams()[beam];
                 let (s, sides) = stations(even.s(), &actions.jumps(part.basis.length()));
-                let view = View::points(&part.basis, part.offset(), &s);
-                let mut shape = self.shape_of(beam, view.as_ref().unwrap_or(even), q);
+                let more = (s != even.s()).then(|| View::points(&part.basis, part.offset(), &s).ok()).flatten();
+                let mut shape = self.shape_of(beam, more.as_ref().unwrap_or(even), q);
                 self.cut(beam, actions, &sides, &mut shape);
                 shape
             })

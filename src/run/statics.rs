@@ -16,7 +16,7 @@ impl Solve for Static {
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;
         let system = System::build(model, needs(&analysis))?;
-        let sampler = Sampler::new(model, &system, options.frames)?;
+        let sampler = Sampler::new(model, &system, options.detail())?;
         let target = match &self.arc_length {
             None => None,
             Some(arc) => Some(Target { arc, probe: sampler.end_of_path(arc)? }),

@@ -40,10 +40,10 @@ impl System {
     pub fn actions(&self, state: Balanced<'_>) -> Vec<Actions> {
         let Balanced { parameter, q, motion, support_forces, multipliers, variables } = state;
         let mut actions = vec![Actions::default(); self.beams.len()];
-        for effect in &self.terms.internal {
+        for effect in self.terms.internal.iter().filter(|effect| !effect.kind().is_of_shape_alone()) {
             effect.add_actions(1.0, q, q, &mut actions[effect.beam()]);
         }
-        for load in &self.terms.loads {
+        for load in self.terms.loads.iter().filter(|load| !load.effect.kind().is_of_shape_alone()) {
             let factor = self.amplitude_of(load).at(parameter);
             load.effect.add_actions(factor, q, q, &mut actions[load.effect.beam()]);
         }
