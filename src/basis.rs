@@ -17,6 +17,7 @@
 
 mod ancf;
 mod arithmetic;
+mod cache;
 mod cells;
 mod discretization;
 mod double_double;
@@ -31,11 +32,13 @@ mod quadrature;
 mod rpim;
 mod table;
 
+pub use cache::BasisCache;
 pub use discretization::{Discretization, Kernel, Nodes, SideCondition};
 pub use error::BasisError;
 pub use quadrature::Quadrature;
 pub use table::{BasisTable, Cell};
 
+use cache::{Request, Tables};
 use cells::{Supports, distinct_cells};
 use interpolation::{Interpolation, Quality, Wanted};
 use rpim::{Interpolant, Precisions};
@@ -50,6 +53,9 @@ const MOST_SUPPORT: usize = 64;
 /// The shape functions of one beam.
 #[derive(Debug)]
 pub struct Basis {
+    /// Tables that were computed, where a cache keeps this basis for other runs. Those of a cable
+    /// element are not worth it.
+    tables: Option<Tables>,
     length: f64,
     nodes: Vec<f64>,
     supports: Supports,
@@ -121,7 +127,8 @@ impl Basis {
             Discretization::Ancf { .. } => {
                 let supports = Supports::new(0, nodes.len(), &breaks);
                 let (shape_of, representative) = distinct_cells(&nodes, &supports);
-                Ok(Self { length, nodes, supports, width: 4, shape_of, representative, shapes: Shapes::Ancf })
+                let shapes = Shapes::Ancf;
+                Ok(Self { tables: None, length, nodes, supports, width: 4, shape_of, representative, shapes })
             }
             Discretization::Rpim { kernel, polynomial_terms, side_condition, neighbours, .. } => {
                 let interpolation = Interpolation {
@@ -164,7 +171,8 @@ impl Basis {
             shapes.push(shape);
         }
         let shapes = Shapes::Rpim { interpolation, shapes };
-        Ok(Self { length, nodes, supports, width: 2 * widest, shape_of, representative, shapes })
+        let width = 2 * widest;
+        Ok(Self { tables: None, length, nodes, supports, width, shape_of, representative, shapes })
     }
 
     /// Length of the beam \[m\].
@@ -208,6 +216,20 @@ impl Basis {
     /// # Errors
     /// A rule or an order that does not exist.
     pub fn table(&self, rule: Quadrature, orders: &[usize]) -> Result<BasisTable, BasisError> {
+        let compute = || self.of_cells(rule, orders);
+        match &self.tables {
+            Some(tables) => tables.get(Request::Cells(rule, orders.to_vec()), compute),
+            None => compute(),
+        }
+    }
+
+    /// Keeps its tables from now on.
+    fn keep_tables(mut self) -> Self {
+        self.tables = matches!(self.shapes, Shapes::Rpim { .. }).then(Tables::default);
+        self
+    }
+
+    fn of_cells(&self, rule: Quadrature, orders: &[usize]) -> Result<BasisTable, BasisError> {
         check_orders(orders)?;
         let (xi, w) = rule.rule()?;
         let mut table = BasisTable {
@@ -248,6 +270,14 @@ impl Basis {
     /// # Errors
     /// A point that is not on the beam, or an order that does not exist.
     pub fn points(&self, s: &[f64], orders: &[usize]) -> Result<BasisTable, BasisError> {
+        let compute = || self.of_points(s, orders);
+        match &self.tables {
+            Some(tables) => tables.get(Request::Points(s.to_vec(), orders.to_vec()), compute),
+            None => compute(),
+        }
+    }
+
+    fn of_points(&self, s: &[f64], orders: &[usize]) -> Result<BasisTable, BasisError> {
         check_orders(orders)?;
         let mut table = BasisTable {
             width: self.width,

@@ -5,6 +5,8 @@
 //! writing of its results failed or was interrupted (what was computed until then is written,
 //! marked as incomplete), 2 the input is wrong.
 
+#![expect(rustdoc::invalid_html_tags, reason = "documentation of arguments is what `--help` prints")]
+
 mod cost;
 mod destination;
 mod failure;
@@ -12,17 +14,17 @@ mod interrupt;
 mod sweep;
 mod terminal;
 
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use ancf::accuracy;
-use ancf::output::OutputOptions;
-use ancf::restart::SavedState;
-use ancf::run::{self, Control, Progress};
-use ancf::scene::{self, Scene};
+use crate::accuracy;
+use crate::output::OutputOptions;
+use crate::restart::SavedState;
+use crate::run::{self, Control, Progress};
+use crate::scene::{self, Scene};
 use clap::{Args, Parser, Subcommand};
 
 use destination::Destination;
@@ -125,9 +127,17 @@ struct Overrides {
     set: Vec<String>,
 }
 
-/// Runs the program.
-pub fn main() -> ExitCode {
-    let done = match Arguments::parse().command {
+/// Runs the program with its name and arguments; returns its exit status.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let Arguments { command } = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(told) => {
+            // Help that nobody reads, as behind a pipe to `head`, is no failure.
+            let _ = told.print();
+            return u8::try_from(told.exit_code()).unwrap_or(2);
+        }
+    };
+    let done = match command {
         Command::Run(arguments) => solve(&arguments).map_err(|failure| vec![failure]),
         Command::Check(arguments) => check(&arguments),
         Command::Inspect(arguments) => inspect(&arguments).map_err(|failure| vec![failure]),
@@ -137,7 +147,7 @@ pub fn main() -> ExitCode {
     };
     let failures = done.err().unwrap_or_default();
     failures.iter().for_each(terminal::report);
-    ExitCode::from(failures.iter().map(Failure::exit_status).max().unwrap_or(0))
+    failures.iter().map(Failure::exit_status).max().unwrap_or(0)
 }
 
 /// A positive time with its unit.
@@ -169,7 +179,7 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
         if interrupted.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
     };
     let take = |state: &SavedState| {
-        if let Err(error) = ancf::output::save(destination.path(), state) {
+        if let Err(error) = crate::output::save(destination.path(), state) {
             terminal::note(&format!("{}: no checkpoint: {error}", destination.path().display()));
         }
     };
@@ -204,7 +214,7 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
     };
     terminal::warnings(results.run());
     results.states_mut().run.warnings.extend(failure.as_ref().map(Failure::to_string));
-    let summary = ancf::output::write(destination.path(), &mut results, &wanted).map_err(Failure::Output)?;
+    let summary = crate::output::write(destination.path(), &mut results, &wanted).map_err(Failure::Output)?;
     if !arguments.quiet {
         terminal::results(&results, destination.path());
     }

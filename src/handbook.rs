@@ -7,6 +7,7 @@
 //! | [`choosing`] | which discretisation and which integrator for which purpose, with what they reach |
 //! | [`hard`] | what happens when it gets hard: turns, limit points, stiff beams, obstacles |
 //! | [`studies`] | many runs of one scene, and what a digit costs |
+//! | [`python`] | the module `ancf` of Python: scenes, results as arrays, control in the loop, forces of one's own, many machines |
 //!
 //! The theory stands on the [front page](crate): the densities, the discretisations and where each
 //! is computed.
@@ -25,3 +26,6 @@ pub mod hard {}
 
 #[doc = include_str!("handbook/studies.md")]
 pub mod studies {}
+
+#[doc = include_str!("handbook/python.md")]
+pub mod python {}

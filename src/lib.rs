@@ -59,12 +59,13 @@
 //! | [`results`] | the results of an analysis | [`system`], `solve`, [`restart`] |
 //! | [`run`](mod@run) | one model, one analysis | `linear`, [`basis`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
 //! | [`output`] | files, plots, the report page | [`restart`], [`results`] |
-//! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`effect`], [`model`] |
+//! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`assembly`], [`effect`], [`model`] |
 //! | [`accuracy`] | everything that a scene leaves open chosen for an accuracy, and the errors of results | [`centreline`], [`basis`], [`model`], [`results`], [`run`](mod@run), [`scene`] |
-//! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`scene`], [`run`](mod@run), [`output`], [`accuracy`] |
+//! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`basis`], [`scene`], [`run`](mod@run), [`output`], [`accuracy`] |
 //! | [`cost`] | computing time for a given accuracy: settings of all kinds compared with a reference | [`centreline`], [`model`], [`results`], [`scene`], [`run`](mod@run), [`output`], [`accuracy`] |
+//! | `cli` | the program's commands: arguments, progress, messages | [`model`], [`results`], [`restart`], [`run`](mod@run), [`output`], [`scene`], [`accuracy`], [`sweep`], [`cost`] |
 //!
-//! `lanes`, `linear` and `solve` are internal to the crate and may change with any version;
+//! `lanes`, `linear`, `solve` and `cli` are internal to the crate and may change with any version;
 //! everything a user needs from them is available through other modules. A module imports only
 //! modules above it in the table, and only those in its row; a test compares the table with all
 //! sources.
@@ -187,6 +188,9 @@ pub mod assembly;
 pub mod basis;
 pub mod beam;
 pub mod centreline;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
 pub mod cost;
 pub mod effect;
 pub mod handbook;

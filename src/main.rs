@@ -1,7 +1,5 @@
 //! The `ancf` program: see `ancf --help`.
 
-mod cli;
-
 fn main() -> std::process::ExitCode {
-    cli::main()
+    ancf::cli::main(std::env::args_os()).into()
 }

@@ -185,6 +185,17 @@ pub fn write(
     Ok(summary)
 }
 
+/// The page that [`write()`] writes as `report.html`.
+///
+/// # Errors
+/// [`OutputError`] where the trajectory contradicts itself, or a picture cannot be drawn.
+#[cfg(feature = "report")]
+pub fn page(results: &Results) -> Result<String, OutputError> {
+    check(results)?;
+    let figures = figures::figures(results)?;
+    report::page(results, &Summary::of(results), &figures)
+}
+
 /// Writes `state.json` alone: a checkpoint of a run that is under way.
 ///
 /// # Errors

@@ -197,6 +197,14 @@ impl SavedState {
         Ok(state)
     }
 
+    /// Writes a file.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn write(&self, path: &Path) -> std::io::Result<()> {
+        std::fs::write(path, serde_json::to_vec(self)?)
+    }
+
     /// The saved checkpoint, if it belongs to the beams of `model`, and whether the motion of this
     /// `fingerprint` goes on; any other motion starts from the state alone.
     ///

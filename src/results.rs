@@ -11,7 +11,7 @@ pub use modes::{BucklingMode, CriticalLoads, ModeShape, Vibration, Vibrations};
 pub use shape::{Frame, Shape};
 pub use trajectory::{EffectSeries, Event, ProbeSample, ProbeSeries, ReactionSeries, Trajectory};
 
-pub use crate::solve::{ContactImpulse, Statistics, StepRecord};
+pub use crate::solve::{ContactImpulse, RecordedState, RecordedStates, Statistics, StepRecord};
 pub use crate::system::Energy;
 
 use serde::Serialize;

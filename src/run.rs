@@ -7,12 +7,15 @@ mod memory;
 mod modes;
 mod motion;
 mod sampler;
+mod shapes;
 mod statics;
 mod strings;
 
 pub use error::RunError;
+pub use shapes::shapes_at;
 
 use crate::assembly::Needs;
+use crate::basis::BasisCache;
 use crate::model::{Analysis, Model};
 use crate::restart::{RestartError, SavedState};
 use crate::results::{PICTURES, Results, Seconds, Statistics, Trajectory};
@@ -88,6 +91,11 @@ pub struct Options<'o> {
     pub observer: Option<Observer<'o>>,
     /// Leaves states on the way, from which a motion can go on.
     pub checkpoints: Option<Checkpointing<'o>>,
+    /// Shape functions that other runs have computed.
+    pub cache: Option<&'o BasisCache>,
+    /// Whether recorded states are kept, so that [`shapes_at`] knows shapes with section forces at
+    /// any load factor or time.
+    pub states: bool,
     /// Number of records, evenly spread, whose centrelines are kept: [`PICTURES`] by default.
     pub frames: usize,
     /// Number of places, evenly spread, at which the last shape of each beam is known, with its
@@ -97,7 +105,15 @@ pub struct Options<'o> {
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { start: None, observer: None, checkpoints: None, frames: PICTURES, shape_points: SHAPE_POINTS }
+        Self {
+            start: None,
+            observer: None,
+            checkpoints: None,
+            cache: None,
+            states: false,
+            frames: PICTURES,
+            shape_points: SHAPE_POINTS,
+        }
     }
 }
 
@@ -211,6 +227,14 @@ impl Stopwatch {
     fn finish(mut self) -> Seconds {
         self.seconds.write += self.lap();
         self.seconds
+    }
+}
+
+/// The trajectory that a computation has left, whole or partial.
+fn left(outcome: &mut Result<Trajectory, RunError>) -> Option<&mut Trajectory> {
+    match outcome {
+        Ok(trajectory) => Some(trajectory),
+        Err(error) => error.partial(),
     }
 }
 

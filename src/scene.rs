@@ -36,6 +36,7 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::de::DeTable;
 
+use crate::assembly::Part;
 use crate::model::{Accuracy, Analysis, Model, Open};
 use error::Fault;
 use overrides::Overridden;
@@ -61,6 +62,8 @@ pub struct Scene {
     accuracy: Option<Accuracy>,
     open: Open,
     output: Output,
+    /// Number of the last parts of the model, which were added.
+    added: usize,
 }
 
 /// Files asked for beyond those that are always written.
@@ -102,7 +105,14 @@ impl Scene {
     }
 
     fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, SceneError> {
-        DeTable::parse(text).map_err(|error| diagnose::syntax(&error, text).at(name, text))?;
+        if !overrides.is_empty() {
+            DeTable::parse(text).map_err(|error| diagnose::syntax(&error, text).at(name, text))?;
+        }
+        Self::overridden(name, text, overrides)
+    }
+
+    /// The scene `text`, which must be TOML where there are overrides.
+    fn overridden(name: &str, text: &str, overrides: &[String]) -> Result<Self, SceneError> {
         let overridden = Overridden::apply(name, text, overrides)?;
         let text = overridden.text();
         tables(name, text).map_err(|fault| overridden.blame(fault))
@@ -113,7 +123,7 @@ impl Scene {
     /// # Errors
     /// Where an override has no place in the scene, or the result is not legal.
     pub fn with(&self, overrides: &[String]) -> Result<Self, SceneError> {
-        Self::read(&self.name, &self.text, overrides)
+        Self::overridden(&self.name, &self.text, overrides)
     }
 
     /// The continuous problem, in SI.
@@ -141,6 +151,29 @@ impl Scene {
     /// What is to be chosen for the accuracy.
     pub fn open(&self) -> &Open {
         &self.open
+    }
+
+    /// Adds a part that scene files have no words for. It is not in the [text](Self::text), and a
+    /// scene that is made from this one by [`with`](Self::with) does not have it.
+    pub fn add(&mut self, part: impl Part) {
+        self.model.add(part);
+        self.added += 1;
+    }
+
+    /// Adds the parts that were [added](Self::add) to another scene.
+    pub fn add_parts_of(&mut self, other: &Self) {
+        let parts = &other.model.parts;
+        self.model.parts.extend_from_slice(&parts[parts.len() - other.added..]);
+        self.added += other.added;
+    }
+
+    /// The value at a dotted path, as overrides write it, or nothing where the scene has none
+    /// there; tables and lists as objects and arrays, dates as text.
+    ///
+    /// # Errors
+    /// Where that is no path.
+    pub fn value(&self, path: &str) -> Result<Option<serde_json::Value>, SceneError> {
+        overrides::value(&self.text, path).map_err(|fault| fault.at("path", path))
     }
 
     /// Which further files are asked for.
@@ -205,5 +238,14 @@ fn tables(name: &str, text: &str) -> Result<Scene, Fault> {
     let accuracy = to_analysis::accuracy(&file)?;
     let open = Open::of(&model, &analysis, !to_analysis::names_an_integrator(&file));
     let output = Output { states: file.output.states, vtu: file.output.vtu };
-    Ok(Scene { name: name.to_owned(), text: text.to_owned(), model, analysis, accuracy, open, output })
+    Ok(Scene {
+        name: name.to_owned(),
+        text: text.to_owned(),
+        model,
+        analysis,
+        accuracy,
+        open,
+        output,
+        added: 0,
+    })
 }

@@ -14,5 +14,5 @@ pub mod retraction;
 pub mod statics;
 mod work;
 
-pub use record::{ContactImpulse, Statistics, StepRecord};
+pub use record::{ContactImpulse, RecordedState, RecordedStates, Statistics, StepRecord};
 pub use work::Work;

@@ -47,6 +47,7 @@ pub use manifest::MANIFEST;
 pub use shard::Shard;
 
 use crate::accuracy;
+use crate::basis::BasisCache;
 use crate::output::{StagedFiles, Summary};
 use crate::run::{self, Control};
 use crate::scene::Scene;
@@ -71,36 +72,19 @@ pub struct SweepProgress {
 /// Called at the start and after every run, by one thread at a time.
 pub type Observer<'o> = &'o mut (dyn FnMut(&SweepProgress) -> Control + Send);
 
-/// A sweep all of whose scenes are legal.
+/// A scene and the grid of its runs, of which any process may compute any.
 #[derive(Debug)]
-pub struct Sweep {
+pub struct Runs {
     scene: Scene,
     grid: Grid,
-    manifest: Manifest,
-    pool: ThreadPool,
+    /// Shape functions that runs have in common.
+    cache: BasisCache,
 }
 
-impl Sweep {
-    /// A sweep of the scene file at `scene`, with the overrides `set` in all runs and the product
-    /// of `axes` over them, on `threads` threads (0: one per core). Reads the scene of every run.
-    ///
-    /// # Errors
-    /// [`SweepError`] where the axes make no grid, or the scene of a run is not legal (that of the
-    /// first such run).
-    pub fn new(scene: &Path, set: &[String], axes: Vec<Axis>, threads: usize) -> Result<Self, SweepError> {
-        let grid = Grid::new(axes)?;
-        let scene = Scene::load(scene, set)?;
-        let manifest = Manifest::new(&scene, set, &grid);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-        let illegal = |run: usize| Some((run, scene.with(&grid.overrides(run)).err()?));
-        let first = pool.install(|| (1..=grid.runs()).into_par_iter().find_map_first(illegal));
-        match first {
-            Some((run, source)) => match grid.lines(run).as_slice() {
-                [] => Err(source.into()),
-                lines => Err(SweepError::Row { lines: lines.join(", "), source }),
-            },
-            None => Ok(Self { scene, grid, manifest, pool }),
-        }
+impl Runs {
+    /// The runs of `scene` over `grid`.
+    pub fn new(scene: Scene, grid: Grid) -> Self {
+        Self { scene, grid, cache: BasisCache::default() }
     }
 
     /// The grid of the runs.
@@ -108,46 +92,35 @@ impl Sweep {
         &self.grid
     }
 
-    /// Computes the runs of `shard` that no journal in `directory`, which must exist, has yet.
+    /// Reads the scene of every run.
     ///
     /// # Errors
-    /// [`SweepError`] where the directory holds another sweep, a journal cannot be written, or
-    /// `observer` stopped it: then the runs in progress are finished and recorded first.
-    pub fn run(&self, directory: &Path, shard: Shard, observer: Observer<'_>) -> Result<(), SweepError> {
-        self.manifest.claim(directory)?;
-        // Opened before the journals are read: what another process of this part finished until now
-        // is among them.
-        let journal = Journal::open(directory, shard)?;
-        let finished = Finished::read(directory, self.grid.runs())?;
-        let (before, left): (Vec<usize>, Vec<usize>) =
-            shard.runs(self.grid.runs()).partition(|run| finished.has(*run));
-        let progress = SweepProgress { finished: before.len(), runs: before.len() + left.len(), unsolved: 0 };
-        drop((finished, before));
-        let stopped = observer(&progress) == Control::Stop;
-        let collector = Mutex::new(Collector { journal, progress, observer, stopped });
-        let lock = || collector.lock().unwrap_or_else(PoisonError::into_inner);
-        // A queue: runs differ in length, and a thread that is free takes the next one.
-        self.pool.install(|| {
-            left.into_iter().par_bridge().try_for_each(|run| {
-                if lock().stopped {
-                    return Ok(());
-                }
-                let record = self.record(run);
-                lock().enter(&record)
-            })
-        })?;
-        let SweepProgress { finished, runs, .. } = lock().progress;
-        if finished < runs {
-            return Err(SweepError::Interrupted { directory: directory.to_owned(), finished, runs });
+    /// [`SweepError`] of the first run whose scene is not legal.
+    pub fn check(&self) -> Result<(), SweepError> {
+        let illegal = |run: usize| Some((run, self.scene.with(&self.grid.overrides(run)).err()?));
+        match (1..=self.grid.runs()).into_par_iter().find_map_first(illegal) {
+            Some((run, source)) => match self.grid.lines(run).as_slice() {
+                [] => Err(source.into()),
+                lines => Err(SweepError::Row { lines: lines.join(", "), source }),
+            },
+            None => Ok(()),
         }
-        Ok(())
     }
 
-    /// Computes one run.
+    /// Computes a run (from 1); its line of a journal.
+    pub fn line(&self, run: usize) -> String {
+        self.record(run).line()
+    }
+
+    /// Options without centrelines, which a table does not need.
+    fn numbers_alone(&self) -> run::Options<'_> {
+        run::Options { frames: 0, cache: Some(&self.cache), ..run::Options::default() }
+    }
+
     fn record(&self, run: usize) -> Record {
         let start = Instant::now();
         let (outcome, message, results) = match self.scene.with(&self.grid.overrides(run)) {
-            Ok(scene) => match accuracy::run(&scene, numbers_alone()) {
+            Ok(scene) => match accuracy::run(&scene, self.numbers_alone()) {
                 Ok(results) => {
                     match results.run().error.as_ref().and_then(|e| e.missed(results.run().analysis)) {
                         None => (Outcome::Solved, None, Some(results)),
@@ -168,14 +141,127 @@ impl Sweep {
     }
 }
 
-/// Options without centrelines, which a table does not need.
-fn numbers_alone() -> run::Options<'static> {
-    run::Options { frames: 0, ..run::Options::default() }
+/// The journal of one part of a sweep, open for one process.
+#[derive(Debug)]
+pub struct Recorder {
+    journal: Journal,
+    /// Per run of the sweep, whether it is finished.
+    finished: Vec<bool>,
+    shard: Shard,
+}
+
+impl Recorder {
+    /// Makes `directory`, which must exist, that of the sweep of these runs, or goes on with it.
+    ///
+    /// # Errors
+    /// [`SweepError`] where it holds another sweep, or another process records the same part.
+    pub fn open(runs: &Runs, directory: &Path, shard: Shard) -> Result<Self, SweepError> {
+        Self::of(&Manifest::new(&runs.scene, &[], &runs.grid), runs.grid.runs(), directory, shard)
+    }
+
+    fn of(manifest: &Manifest, runs: usize, directory: &Path, shard: Shard) -> Result<Self, SweepError> {
+        manifest.claim(directory)?;
+        // Opened before the journals are read: what another process of this part finished until now
+        // is among them.
+        let journal = Journal::open(directory, shard)?;
+        let finished = Finished::read(directory, runs)?;
+        Ok(Self { journal, finished: (1..=runs).map(|run| finished.has(run)).collect(), shard })
+    }
+
+    /// The numbers of the runs of this part that are not finished, ascending.
+    pub fn missing(&self) -> Vec<usize> {
+        self.shard.runs(self.finished.len()).filter(|run| !self.finished[run - 1]).collect()
+    }
+
+    /// Records a [line](Runs::line); returns whether it was new, not of a run that is recorded.
+    ///
+    /// # Errors
+    /// [`SweepError::Journal`] where it is no such line, or cannot be written.
+    pub fn enter(&mut self, line: &str) -> Result<bool, SweepError> {
+        let wrong = |reason: String| SweepError::Journal {
+            path: self.journal.path().to_owned(),
+            source: std::io::Error::other(reason),
+        };
+        let run = Record::run_of(line.as_bytes()).map_err(|error| wrong(error.to_string()))?;
+        let Some(finished) = run.checked_sub(1).and_then(|at| self.finished.get_mut(at)) else {
+            return Err(wrong(format!("there is no run {run}")));
+        };
+        if line.contains('\n') {
+            return Err(wrong("expected one line, found several".to_owned()));
+        }
+        if *finished {
+            return Ok(false);
+        }
+        self.journal.append(line.to_owned())?;
+        *finished = true;
+        Ok(true)
+    }
+}
+
+/// A sweep all of whose scenes are legal.
+#[derive(Debug)]
+pub struct Sweep {
+    runs: Runs,
+    manifest: Manifest,
+    pool: ThreadPool,
+}
+
+impl Sweep {
+    /// A sweep of the scene file at `scene`, with the overrides `set` in all runs and the product
+    /// of `axes` over them, on `threads` threads (0: one per core). Reads the scene of every run.
+    ///
+    /// # Errors
+    /// [`SweepError`] where the axes make no grid, or the scene of a run is not legal (that of the
+    /// first such run).
+    pub fn new(scene: &Path, set: &[String], axes: Vec<Axis>, threads: usize) -> Result<Self, SweepError> {
+        let grid = Grid::new(axes)?;
+        let scene = Scene::load(scene, set)?;
+        let manifest = Manifest::new(&scene, set, &grid);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let runs = Runs::new(scene, grid);
+        pool.install(|| runs.check())?;
+        Ok(Self { runs, manifest, pool })
+    }
+
+    /// The grid of the runs.
+    pub fn grid(&self) -> &Grid {
+        &self.runs.grid
+    }
+
+    /// Computes the runs of `shard` that no journal in `directory`, which must exist, has yet.
+    ///
+    /// # Errors
+    /// [`SweepError`] where the directory holds another sweep, a journal cannot be written, or
+    /// `observer` stopped it: then the runs in progress are finished and recorded first.
+    pub fn run(&self, directory: &Path, shard: Shard, observer: Observer<'_>) -> Result<(), SweepError> {
+        let all = self.runs.grid.runs();
+        let recorder = Recorder::of(&self.manifest, all, directory, shard)?;
+        let (left, runs) = (recorder.missing(), shard.runs(all).count());
+        let progress = SweepProgress { finished: runs - left.len(), runs, unsolved: 0 };
+        let stopped = observer(&progress) == Control::Stop;
+        let collector = Mutex::new(Collector { recorder, progress, observer, stopped });
+        let lock = || collector.lock().unwrap_or_else(PoisonError::into_inner);
+        // A queue: runs differ in length, and a thread that is free takes the next one.
+        self.pool.install(|| {
+            left.into_iter().par_bridge().try_for_each(|run| {
+                if lock().stopped {
+                    return Ok(());
+                }
+                let record = self.runs.record(run);
+                lock().enter(&record)
+            })
+        })?;
+        let SweepProgress { finished, runs, .. } = lock().progress;
+        if finished < runs {
+            return Err(SweepError::Interrupted { directory: directory.to_owned(), finished, runs });
+        }
+        Ok(())
+    }
 }
 
 /// Collects the finished runs of all threads.
 struct Collector<'o> {
-    journal: Journal,
+    recorder: Recorder,
     progress: SweepProgress,
     observer: Observer<'o>,
     /// Whether no further run is to begin.
@@ -184,7 +270,7 @@ struct Collector<'o> {
 
 impl Collector<'_> {
     fn enter(&mut self, record: &Record) -> Result<(), SweepError> {
-        if let Err(error) = self.journal.append(record) {
+        if let Err(error) = self.recorder.enter(&record.line()) {
             self.stopped = true;
             return Err(error);
         }
@@ -228,21 +314,22 @@ pub fn merge(directory: &Path) -> Result<Merged, SweepError> {
         });
     }
     let (mut columns, mut unsolved) = (Columns::default(), Vec::new());
-    for record in finished.records() {
-        let record = record?;
-        columns.add(&record);
-        if record.outcome != Outcome::Solved {
-            unsolved.push(record.run);
-        }
-    }
+    finished.each(
+        |record| (table::names(&record), (record.outcome != Outcome::Solved).then_some(record.run)),
+        |(names, failed)| {
+            columns.add(&names);
+            unsolved.extend(failed);
+            Ok(())
+        },
+    )?;
     let table = directory.join(TABLE);
     let mut stage = StagedFiles::new(directory)?;
     stage.add(TABLE, |out| {
-        let mut rows = SweepTable::new(out, &grid, &columns)?;
-        for record in finished.records() {
-            rows.row(&record.map_err(std::io::Error::other)?)?;
-        }
-        rows.finish()
+        let (rows, mut writer) = (SweepTable::new(&grid, &columns), csv::Writer::from_writer(out));
+        writer.write_record(rows.header())?;
+        let write = |row: Vec<String>| Ok(writer.write_record(row)?);
+        finished.each(|record| rows.row(&record), write).map_err(std::io::Error::other)?;
+        writer.flush()
     })?;
     stage.commit()?;
     Ok(Merged { table, runs: grid.runs(), unsolved })

@@ -42,8 +42,10 @@ pub use measure::Measured;
 pub use reaction::Reaction;
 pub use view::{Change, Fields, View, unfold};
 
+use std::sync::Arc;
+
 use crate::assembly::{Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Terms, nodes};
-use crate::basis::Basis;
+use crate::basis::{Basis, BasisCache};
 use crate::centreline::Curve;
 use crate::effect;
 use crate::linear::Matrix;
@@ -88,6 +90,8 @@ pub struct System {
     /// Number of rigid motions that neither supports, joints nor springs resist; counted in statics
     /// only.
     rigid_motions: usize,
+    /// The same, if springs and foundations did not resist any.
+    free_motions: usize,
 }
 
 impl System {
@@ -97,6 +101,14 @@ impl System {
     /// # Errors
     /// [`BuildError`] if the model contradicts itself or its shape functions cannot be built.
     pub fn build(model: &Model, needs: Needs) -> Result<Self, BuildError> {
+        Self::build_with(model, needs, None)
+    }
+
+    /// [`Self::build`], with shape functions that `cache` has or keeps from then on.
+    ///
+    /// # Errors
+    /// As [`Self::build`].
+    pub fn build_with(model: &Model, needs: Needs, cache: Option<&BasisCache>) -> Result<Self, BuildError> {
         if model.beams.is_empty() {
             return Err(BuildError::NoBeam);
         }
@@ -107,7 +119,11 @@ impl System {
             let in_curve = |cause| BuildError::Curve { beam: beam.name.clone(), cause };
             let in_basis = |e| BuildError::basis(&beam.name, e);
             let curve = Curve::new(&beam.centreline).map_err(in_curve)?;
-            let basis = Basis::broken(&beam.discretization, curve.length(), &model.breaks(index));
+            let (length, breaks) = (curve.length(), model.breaks(index));
+            let basis = match cache {
+                Some(cache) => cache.get(&beam.discretization, length, &breaks),
+                None => Basis::broken(&beam.discretization, length, &breaks).map(Arc::new),
+            };
             let basis = basis.map_err(in_basis)?;
             let first_node = reference.len() / 4;
             for &s in basis.nodes() {
@@ -152,6 +168,7 @@ impl System {
             round_off,
             has_strings: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
             rigid_motions: 0,
+            free_motions: 0,
             lowest_vibration: lowest_vibration_scale(model, length),
         };
         let masses = model.parts.iter().filter_map(|part| part.mass()).collect();
@@ -188,7 +205,10 @@ impl System {
         system.check_room()?;
         system.check_rows(model)?;
         if !needs.motion {
-            system.rigid_motions = system.count_rigid_motions(model)?;
+            system.free_motions = system.count_free_motions(model)?;
+            let of_beams = |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Contact);
+            let resisted = !system.terms.internal.iter().all(|effect| of_beams(effect.kind()));
+            system.rigid_motions = if resisted { 0 } else { system.free_motions };
         }
         Ok(system)
     }
@@ -230,13 +250,8 @@ impl System {
         Ok(view.fields(&self.reference))
     }
 
-    /// Number of rigid motions that supports and joints leave to the beams; 0 if there are springs,
-    /// which may resist them.
-    fn count_rigid_motions(&self, model: &Model) -> Result<usize, BuildError> {
-        let of_beams = |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Contact);
-        if !self.terms.internal.iter().all(|effect| of_beams(effect.kind())) {
-            return Ok(0);
-        }
+    /// Number of rigid motions that supports and joints leave to the beams.
+    fn count_free_motions(&self, model: &Model) -> Result<usize, BuildError> {
         let supports = model.supports.iter().map(|support| support.at);
         let joints = model.joints.iter().flat_map(Joint::places);
         let starts = (0..model.beams.len()).map(|beam| Place { beam, s: 0.0 });
@@ -317,6 +332,13 @@ impl System {
     /// supports and joints leave its beams a rigid motion.
     pub fn is_floppy(&self) -> bool {
         self.has_strings || self.rigid_motions > 0
+    }
+
+    /// Number of motions without deformation that supports and joints leave, whatever springs
+    /// resist them, if all beams have a bending stiffness; `None` if there are strings. Counted in
+    /// analyses without motion only.
+    pub fn free_motions(&self) -> Option<usize> {
+        (!self.has_strings).then_some(self.free_motions)
     }
 
     /// Number of rigid motions that supports and joints leave in statics, if all beams have a

@@ -207,13 +207,15 @@ impl<'a, 'o> Runner<'a, 'o> {
         purpose: Purpose,
     ) -> Result<Results, RunError> {
         let (model, analysis) = setting.apply(&stations.watch(self.model), self.analysis);
-        let Options { start, observer, checkpoints, frames, shape_points } = &mut self.options;
+        let Options { start, observer, checkpoints, cache, states, frames, shape_points } = &mut self.options;
         let wanted = self.wanted.is_some_and(|w| w.curvature.is_some() || w.section_force.is_some());
         let places_tell = wanted || matches!(self.analysis, Analysis::Modal(_) | Analysis::Buckling(_));
         let options = Options {
             start: *start,
             observer: observer.as_mut().map(|observer| &mut **observer as _),
             checkpoints: *checkpoints,
+            cache: *cache,
+            states: *states && purpose == Purpose::Results,
             frames: if purpose == Purpose::Results { *frames } else { 0 },
             shape_points: match purpose {
                 _ if places_tell => *shape_points,

@@ -1,5 +1,7 @@
 //! A discretised beam and its position among the coordinates of a system.
 
+use std::sync::Arc;
+
 use super::BuildError;
 use crate::basis::Basis;
 
@@ -12,7 +14,7 @@ pub struct DiscretizedBeam {
     /// The beam's name.
     pub name: String,
     /// Its shape functions.
-    pub basis: Basis,
+    pub basis: Arc<Basis>,
     /// Index of its first node in the system.
     pub first_node: usize,
     /// Whether the stress-free state, as interpolated by the shape functions, is straight to

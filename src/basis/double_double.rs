@@ -218,6 +218,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
         #[test]
         fn elementary_functions_agree_with_multiprecision(x in 1e-8..1e8f64, tail in -0.5..0.5f64, q in -8.0..8.0f64, y in -40.0..40.0f64) {
             let (d, m) = (DoubleDouble, Multiprecision::new(320).unwrap());

@@ -198,6 +198,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
         #[test]
         fn doubles_pass_through_unchanged(x in prop::num::f64::NORMAL) {
             let m = Multiprecision::new(192).unwrap();

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use ancf::cost::{self, Control, Options, StudyProgress};
+use crate::cost::{self, Control, Options, StudyProgress};
 use clap::Args;
 
 use super::destination::Destination;

@@ -4,12 +4,12 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-use ancf::cost::CostError;
-use ancf::output::OutputError;
-use ancf::results::Run;
-use ancf::run::RunError;
-use ancf::scene::SceneError;
-use ancf::sweep::SweepError;
+use crate::cost::CostError;
+use crate::output::OutputError;
+use crate::results::Run;
+use crate::run::RunError;
+use crate::scene::SceneError;
+use crate::sweep::SweepError;
 use miette::Diagnostic;
 
 /// Why a command failed.
@@ -164,9 +164,9 @@ impl Diagnostic for Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ancf::linear::Singular;
-    use ancf::scene;
-    use ancf::solve::eigen::EigenError;
+    use crate::linear::Singular;
+    use crate::scene;
+    use crate::solve::eigen::EigenError;
     use std::error::Error as _;
 
     fn wrong() -> SceneError {

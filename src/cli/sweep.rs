@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
-use ancf::run::Control;
-use ancf::sweep::{self, Axis, Shard, Sweep, SweepProgress};
+use crate::run::Control;
+use crate::sweep::{self, Axis, Shard, Sweep, SweepProgress};
 use clap::Args;
 
 use super::destination::Destination;

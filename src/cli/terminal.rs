@@ -8,13 +8,13 @@ use std::io::{self, IsTerminal, Write as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ancf::cost;
-use ancf::model::Analysis;
-use ancf::output::plot::human;
-use ancf::output::with_error;
-use ancf::results::{AnalysisKind, ContactImpulse, ErrorEstimate, Event, ProbeSample, Results, Run};
-use ancf::run::Progress;
-use ancf::sweep;
+use crate::cost;
+use crate::model::Analysis;
+use crate::output::plot::human;
+use crate::output::with_error;
+use crate::results::{AnalysisKind, ContactImpulse, ErrorEstimate, Event, ProbeSample, Results, Run};
+use crate::run::Progress;
+use crate::sweep;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
@@ -385,13 +385,13 @@ fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ancf::model::{Dynamic, Integrator, STEP_CONTROL, Static};
-    use ancf::output::OutputError;
-    use ancf::results::{
+    use crate::model::{Dynamic, Integrator, STEP_CONTROL, Static};
+    use crate::output::OutputError;
+    use crate::results::{
         BucklingMode, CriticalLoads, Energy, ProbeSeries, Seconds, Statistics, Trajectory, Vibration,
         Vibrations,
     };
-    use ancf::scene::{self, SceneError};
+    use crate::scene::{self, SceneError};
     use indicatif::TermLike;
     use std::sync::{Arc, Mutex};
 

@@ -1,6 +1,6 @@
 //! States at the recorded load factors or times, seen through probes, energies and shapes.
 
-use super::{ContactImpulse, Energy, Frame, Run, Shape, StepRecord};
+use super::{ContactImpulse, Energy, Frame, RecordedStates, Run, Shape, StepRecord};
 use crate::restart::SavedState;
 use crate::system::Reaction;
 use serde::Serialize;
@@ -26,6 +26,10 @@ pub struct Trajectory {
     pub frames: Vec<Frame>,
     /// The last state of each beam, with section forces.
     pub last: Vec<Shape>,
+    /// All recorded states, where they were asked for ([`crate::Options::states`]): shapes at any
+    /// load factor or time follow from them ([`crate::run::shapes_at`]).
+    #[serde(skip)]
+    pub states: Option<RecordedStates>,
     /// One entry per attempted step.
     pub history: Vec<StepRecord>,
     /// Events of a motion, in order.

@@ -111,6 +111,15 @@ pub enum RunError {
         /// Free memory \[bytes\].
         free: f64,
     },
+    /// A shape was asked for where nothing is known.
+    #[error("{}", .reason)]
+    #[diagnostic(help("{advice}"))]
+    NoShape {
+        /// What was asked for, and what there is.
+        reason: String,
+        /// What to try.
+        advice: &'static str,
+    },
     /// The scene is legal, but this version cannot compute it.
     #[error("{what} is not available in this version")]
     #[diagnostic(help("{instead}"))]
@@ -131,6 +140,7 @@ impl RunError {
             | Self::Start(_)
             | Self::Restart(_)
             | Self::Undamped(_)
+            | Self::NoShape { .. }
             | Self::Unavailable { .. } => 2,
             Self::NoEquilibrium { .. }
             | Self::OutOfPoints { .. }

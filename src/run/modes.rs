@@ -21,6 +21,8 @@ const TO_THE_END: f64 = 1e-14;
 const FINER: [usize; 2] = [20, 200];
 /// Turn of a node before buckling up to which the linear solution is trusted \[rad\].
 const STRAIGHT: f64 = 0.1;
+/// What round-off may change a frequency by, relative to it, before a warning says so.
+const UNSURE: f64 = 1e-3;
 /// Axial strain before buckling up to which it is trusted; critical loads err by as much.
 const STRAINED: f64 = 0.05;
 impl Solve for Modal {
@@ -31,7 +33,7 @@ impl Solve for Modal {
         let analysis = Analysis::Modal(*self);
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;
-        let system = System::build(model, needs(&analysis))?;
+        let system = System::build_with(model, needs(&analysis), options.cache)?;
         let sampler = Sampler::new(model, &system, options.detail())?;
         stopwatch.built();
         let mut watch = Watch::new(options.observer);
@@ -52,7 +54,7 @@ impl Solve for Buckling {
         let analysis = Analysis::Buckling(*self);
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;
-        let system = System::build(model, needs(&analysis))?;
+        let system = System::build_with(model, needs(&analysis), options.cache)?;
         let sampler = Sampler::new(model, &system, options.detail())?;
         stopwatch.built();
         let modes = buckling::solve(&system, self.count)?;
@@ -118,6 +120,13 @@ impl Sampler<'_> {
         run.settings.push(("vibrations about".into(), about.into()));
         let modes = modal::solve(self.system, load, x, variables, count)?;
         run.statistics.factorizations += modes.factorizations;
+        if let Some((number, change)) = modes.unsure.filter(|(_, change)| *change > UNSURE) {
+            run.warnings.push(format!(
+                "round-off of the stiffness may change frequency {number} by {:.1} %: use fewer elements or nodes, or leave out an \
+                 `axial_stiffness` that is of no interest",
+                100.0 * change
+            ));
+        }
         let q = self.coordinates_of(x);
         let vibration = |(frequency, mode): (&f64, &Vec<f64>)| Vibration {
             frequency: *frequency,

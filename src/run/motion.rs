@@ -1,10 +1,10 @@
 //! Motions of a model.
 
 use super::sampler::Sampler;
-use super::{Options, RunError, Solve, Stopwatch, Watch, memory, needs, timed};
+use super::{Options, RunError, Solve, Stopwatch, Watch, left, memory, needs, timed};
 use crate::model::{Analysis, Displacement, Dynamic, Model};
 use crate::restart::{self, SavedState};
-use crate::results::{Statistics, Trajectory};
+use crate::results::{RecordedState, RecordedStates, Statistics, Trajectory};
 use crate::solve::dynamics::{self, Checkpoint, start};
 use crate::system::System;
 use std::borrow::Cow;
@@ -18,8 +18,9 @@ impl Solve for Dynamic {
         let model = if options.start.is_some() { left_where_it_is(model) } else { Cow::Borrowed(model) };
         let model = &*model;
         memory::check(model, &analysis)?;
-        let mut system = System::build(model, needs(&analysis))?;
+        let mut system = System::build_with(model, needs(&analysis), options.cache)?;
         let Beginning { start, end, motion, told } = beginning(model, self, &mut system, options.start)?;
+        let taken_up = (options.states && options.start.is_some()).then(|| start.state.q.clone());
         let sampler = Sampler::new(model, &system, options.detail())?;
         stopwatch.built();
         self.integrator.suits(model)?;
@@ -38,6 +39,7 @@ impl Solve for Dynamic {
             start,
             watches: &watches,
             reactions: model.outputs.reactions,
+            forces: options.states,
             directions: &directions,
             keep: keep.map(|keep| dynamics::Checkpointing { every: keep.every, take: &take }),
         };
@@ -48,16 +50,18 @@ impl Solve for Dynamic {
         stopwatch.solved();
         let saved = solution.checkpoint.take();
         let saved = saved.map(|checkpoint| SavedState::new(model, &system, motion.clone(), checkpoint));
+        let states = options.states.then(|| {
+            let states = solution.states.iter().cloned().zip(std::mem::take(&mut solution.forces));
+            let states = states.map(|(state, forces)| RecordedState::Moving { state, forces });
+            RecordedStates { states: states.collect(), taken_up }
+        });
         let mut outcome = match solution.stuck.clone() {
             None => Ok(sampler.dynamics(self, solution)),
             Some(stuck) => Err(sampler.lost(self, &stuck, solution)),
         };
-        let left = match &mut outcome {
-            Ok(trajectory) => Some(trajectory),
-            Err(error) => error.partial(),
-        };
-        if let Some(trajectory) = left {
+        if let Some(trajectory) = left(&mut outcome) {
             trajectory.saved = saved;
+            trajectory.states = states;
             trajectory.run.settings.extend(told.map(|told| ("continued".into(), told)));
         }
         timed(outcome, |trajectory| trajectory, &watch, stopwatch)
@@ -117,7 +121,7 @@ fn later(time: f64, duration: f64) -> f64 {
 }
 
 /// The model in which supports without a law of time do not move.
-fn left_where_it_is(model: &Model) -> Cow<'_, Model> {
+pub(super) fn left_where_it_is(model: &Model) -> Cow<'_, Model> {
     let mut model = model.clone();
     for support in model.supports.iter_mut().filter(|support| support.law.is_none()) {
         support.displacement = Displacement::default();

@@ -346,12 +346,23 @@ impl<'a> Sampler<'a> {
     /// [`Self::shape`] with section forces, from the forces that act on each beam. A point where a
     /// force or a couple acts has two rows, before and behind it.
     pub(super) fn loaded(&self, q: &[f64], actions: &[Actions]) -> Vec<Shape> {
+        self.loaded_with(q, actions, &|beam, length| actions[beam].jumps(length))
+    }
+
+    /// [`Self::loaded`], with two rows at the places that `jumps` gives for a beam and its length.
+    pub(super) fn loaded_with(
+        &self,
+        q: &[f64],
+        actions: &[Actions],
+        jumps: &dyn Fn(usize, f64) -> Vec<f64>,
+    ) -> Vec<Shape> {
         let beams = self.shapes.iter().zip(actions).enumerate();
         beams
             .map(|(beam, (even, actions))| {
                 let part = &self.system.beams()[beam];
-                let (s, sides) = stations(even.s(), &actions.jumps(part.basis.length()));
-                let more = (s != even.s()).then(|| View::points(&part.basis, part.offset(), &s).ok()).flatten();
+                let (s, sides) = stations(even.s(), &jumps(beam, part.basis.length()));
+                let more =
+                    (s != even.s()).then(|| View::points(&part.basis, part.offset(), &s).ok()).flatten();
                 let mut shape = self.shape_of(beam, more.as_ref().unwrap_or(even), q);
                 self.cut(beam, actions, &sides, &mut shape);
                 shape

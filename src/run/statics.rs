@@ -1,9 +1,9 @@
 //! Equilibria of a model.
 
 use super::sampler::Sampler;
-use super::{Options, RunError, Solve, Stopwatch, Watch, memory, needs, timed};
+use super::{Options, RunError, Solve, Stopwatch, Watch, left, memory, needs, timed};
 use crate::model::{Analysis, Model, Static};
-use crate::results::{Statistics, Trajectory};
+use crate::results::{RecordedState, RecordedStates, Statistics, Trajectory};
 use crate::solve::statics::{self, Target};
 use crate::system::System;
 
@@ -15,7 +15,7 @@ impl Solve for Static {
         let analysis = Analysis::Static(self.clone());
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;
-        let system = System::build(model, needs(&analysis))?;
+        let system = System::build_with(model, needs(&analysis), options.cache)?;
         let sampler = Sampler::new(model, &system, options.detail())?;
         let target = match &self.arc_length {
             None => None,
@@ -27,7 +27,7 @@ impl Solve for Static {
             &mut |load: f64, step: f64, statistics: &Statistics| watch.goes_on(load, 1.0, step, statistics);
         let solution = statics::solve(&system, self, target.as_ref(), report);
         stopwatch.solved();
-        let outcome = match (&solution.stuck, &self.arc_length) {
+        let mut outcome = match (&solution.stuck, &self.arc_length) {
             (Some(stuck), _) => Err(sampler.stuck(stuck, &solution)),
             (None, Some(arc)) if solution.out_of_points => Err(sampler.out_of_points(arc, &solution)),
             (None, _) => {
@@ -36,6 +36,13 @@ impl Solve for Static {
                 Ok(trajectory)
             }
         };
+        if options.states
+            && let Some(trajectory) = left(&mut outcome)
+        {
+            let states = solution.states.into_iter().zip(solution.variables);
+            let states = states.map(|((_, x), variables)| RecordedState::Equilibrium { x, variables });
+            trajectory.states = Some(RecordedStates { states: states.collect(), taken_up: None });
+        }
         timed(outcome, |trajectory| trajectory, &watch, stopwatch)
     }
 }

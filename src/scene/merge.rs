@@ -20,14 +20,21 @@ impl Scene {
     }
 
     /// The text of this scene with `lines` merged and without the accuracy for which they were
-    /// chosen: what is solved as it stands.
+    /// chosen: what is solved as it stands. Parts that were [added](Self::add) are not in it, and
+    /// its first line says so.
     ///
     /// # Errors
     /// Where `lines` are not TOML.
     pub fn chosen(&self, lines: &str) -> Result<String, SceneError> {
         let mut scene = self.with_lines(lines)?;
         each(&mut scene, "analysis", |analysis| drop(analysis.remove("accuracy")));
-        Ok(scene.to_string())
+        let text = scene.to_string();
+        match self.added {
+            0 => Ok(text),
+            parts => {
+                Ok(format!("# Without what was added to the scene by code: {parts} of its parts.\n{text}"))
+            }
+        }
     }
 
     /// This scene with everything left open that an accuracy chooses, and with this accuracy: no

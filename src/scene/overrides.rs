@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue};
 use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, Value};
 
 use super::diagnose::{choices, path_at};
@@ -41,22 +41,17 @@ impl<'a> Overridden<'a> {
     pub fn blame(&self, mut fault: Fault) -> SceneError {
         let document = DeTable::parse(self.text());
         let path = document.map(|root| path_at(root.get_ref(), &fault.span)).unwrap_or_default();
-        let setter = self.paths.iter().rposition(|set| path.starts_with(set));
-        let steps = self.texts.windows(2).zip(self.overrides).enumerate().rev();
-        for (index, (pair, option)) in steps {
+        let value_of = |mut fault: Fault, option: &str| {
+            fault.span = option.find('=').map_or(0, |at| at + 1)..option.len();
+            on_option(fault, option)
+        };
+        if let Some(setter) = self.paths.iter().rposition(|set| path.starts_with(set)) {
+            return value_of(fault, &self.overrides[setter]);
+        }
+        for (pair, option) in self.texts.windows(2).zip(self.overrides).rev() {
             let [before, after] = pair else { continue };
-            let origin = origin(before, after, &fault.span);
-            match origin {
-                Some(start) if setter != Some(index) => {
-                    let length = fault.span.len();
-                    fault.span = start..start.saturating_add(length);
-                }
-                _ => {
-                    let start = option.find('=').map_or(0, |at| at + 1);
-                    fault.span = start..option.len();
-                    return on_option(fault, option);
-                }
-            }
+            let Some(start) = origin(before, after, &fault.span) else { return value_of(fault, option) };
+            fault.span = start..start.saturating_add(fault.span.len());
         }
         fault.at(self.name, self.texts.first().map_or("", String::as_str))
     }
@@ -95,13 +90,21 @@ fn set(text: &str, option: &str) -> Result<(String, Vec<String>), Fault> {
         Fault::new(0..path.len(), format!("`{path}` is not a path of keys joined by dots")).help(USAGE)
     })?;
     let value = value.trim().parse::<Value>().unwrap_or_else(|_| Value::from(value.trim()));
-    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
-        Fault::new(0..option.len(), format!("cannot be applied to this scene: {}", error.message()))
-    })?;
     let names: Vec<String> = keys.iter().map(|key| key.get().to_owned()).collect();
-    assign(document.as_item_mut(), &names, value)
-        .map_err(|(message, help)| Fault::new(0..path.len(), message).help(help))?;
-    let text = document.to_string();
+    let text = match single_value(text, &names) {
+        Some(old) => {
+            let (before, after) = (text.get(..old.start), text.get(old.end..));
+            format!("{}{value}{}", before.unwrap_or_default(), after.unwrap_or_default())
+        }
+        None => {
+            let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
+                Fault::new(0..option.len(), format!("cannot be applied to this scene: {}", error.message()))
+            })?;
+            assign(document.as_item_mut(), &names, value)
+                .map_err(|(message, help)| Fault::new(0..path.len(), message).help(help))?;
+            document.to_string()
+        }
+    };
     // The editor should write only what can be read. If it ever does not, the option is blamed, not
     // the file.
     if let Err(error) = DeTable::parse(&text) {
@@ -110,6 +113,40 @@ fn set(text: &str, option: &str) -> Result<(String, Vec<String>), Fault> {
         );
     }
     Ok((text, names))
+}
+
+/// Where the text of a number, text or truth value stands, if the path leads to one: the usual case
+/// of many runs, in which other text in its place is all that changes.
+fn single_value(text: &str, path: &[String]) -> Option<Range<usize>> {
+    let root = DeTable::parse(text).ok()?;
+    let (first, rest) = path.split_first()?;
+    let mut value = root.get_ref().get(first.as_str())?;
+    for key in rest {
+        value = match value.get_ref() {
+            DeValue::Table(table) => table.get(key.as_str())?,
+            DeValue::Array(entries) => entries.get(key.parse::<usize>().ok()?)?,
+            _ => return None,
+        };
+    }
+    let single = !matches!(value.get_ref(), DeValue::Table(_) | DeValue::Array(_));
+    single.then(|| value.span())
+}
+
+/// The value at a path of the scene `text`, if there is one.
+pub(super) fn value(text: &str, path: &str) -> Result<Option<serde_json::Value>, Fault> {
+    let keys = Key::parse(path).map_err(|_| {
+        Fault::new(0..path.len(), format!("`{path}` is not a path of keys joined by dots"))
+            .help("such as beam.arm.basis.ancf.elements or effect.moment.0.value")
+    })?;
+    let root = toml::from_str::<serde_json::Value>(text)
+        .map_err(|error| Fault::new(0..path.len(), error.message().to_owned()))?;
+    Ok(keys
+        .iter()
+        .try_fold(&root, |value, key| match value {
+            serde_json::Value::Array(entries) => entries.get(key.get().parse::<usize>().ok()?),
+            value => value.get(key.get()),
+        })
+        .cloned())
 }
 
 /// Sets the value at `path` below `root`; adds the last key, and tables on the way, where they are

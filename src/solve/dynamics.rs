@@ -139,6 +139,8 @@ pub struct Solution {
     pub states: Vec<State>,
     /// Forces of supports and joints in each of them, where they were asked for.
     pub reactions: Vec<Vec<Reaction>>,
+    /// What all forces in each of them follow from, where that was asked for.
+    pub forces: Vec<RecordedForces>,
     /// All forces in the last state.
     pub end: Option<motion::Balance>,
     /// Attempted steps, thinned out where there are very many.
@@ -156,6 +158,27 @@ pub struct Solution {
     pub checkpoint: Option<Checkpoint>,
     /// Why the motion ended early, if it did.
     pub stuck: Option<NoStep>,
+}
+
+/// How a state between the ends of a step moves on: enough to find all forces in it later.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tendency {
+    /// Accelerations of the unknowns, followed by the scaled multipliers.
+    pub rates: Vec<f64>,
+    /// Length of the step \[s\].
+    pub step: f64,
+}
+
+/// What all forces in a recorded state follow from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum RecordedForces {
+    /// The positions alone, which are exact at the start of a motion.
+    #[default]
+    Positions,
+    /// How the state moves on.
+    Tendency(Tendency),
+    /// They are known.
+    Known(Box<motion::Balance>),
 }
 
 /// A state with all that a method carries from step to step.

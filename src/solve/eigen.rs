@@ -38,6 +38,24 @@ pub enum EigenError {
         /// Number of negative eigenvalues.
         count: usize,
     },
+    /// A frequency is smaller than the round-off of the stiffness.
+    #[error(
+        "frequency {number} cannot be told from zero: below {below:.1e} Hz the round-off of the stiffness hides everything, and supports \
+         leave only {free} motion{} that nothing resists",
+        if *.free == 1 { "" } else { "s" }
+    )]
+    #[diagnostic(help(
+        "use fewer elements or nodes, whose stiffness has less round-off, or none of axial stiffnesses that are far beyond EI/h² with the \
+         spacing h: a beam without `axial_stiffness` keeps its length"
+    ))]
+    Hidden {
+        /// Number of the frequency, from 1.
+        number: usize,
+        /// Frequencies below this are hidden \[Hz\].
+        below: f64,
+        /// Number of motions that nothing resists.
+        free: usize,
+    },
     /// Follower loads or dry friction make the tangent unsymmetric.
     #[error(
         "follower loads or dry friction make the tangent unsymmetric, and a {analysis} analysis needs a symmetric one"

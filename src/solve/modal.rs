@@ -10,7 +10,8 @@
 //! shapes are then computed from K itself, whose products are evaluated without a matrix, in the
 //! space of the vectors found (Rayleigh and Ritz). With 10 000 elements this leaves an error of at
 //! most 1e-5 in the first frequency of a clamped beam, where the matrix alone leaves 5e-2. A
-//! frequency that cannot be told from zero is set to zero.
+//! frequency that cannot be told from zero is set to zero where a motion without deformation may
+//! have it, and refused else.
 
 use super::eigen::{EigenError, Pencil, dot, largest_reciprocals, round_off};
 use crate::assembly::{InternalVariables, Workspace, nodes};
@@ -27,6 +28,9 @@ pub struct Modes {
     pub frequencies: Vec<f64>,
     /// Mode shapes φ as changes of the coordinates; φᵀ M φ = 1 kg m².
     pub shapes: Vec<Vec<f64>>,
+    /// What round-off of the stiffness may change a frequency by at most, relative to it: the
+    /// largest of these changes, with the number of its frequency, from 1.
+    pub unsure: Option<(usize, f64)>,
     /// Factorisations made.
     pub factorizations: usize,
 }
@@ -89,6 +93,7 @@ pub fn solve(
     let mut found = ritz(&pairs.vectors, &stiff, &mass)?;
     let mut modes = Modes { factorizations: 1, ..Modes::default() };
     let mut unstable = 0;
+    let mut hidden = Vec::new();
     found.truncate(count);
     for (square, mut shape) in found {
         // Round-off of K, and of the state, whose stress it may change.
@@ -97,10 +102,22 @@ pub fn solve(
         unstable += usize::from(square < -zero);
         point_up(&mut shape);
         supports.from_frames(load, &mut shape);
+        if square <= zero {
+            hidden.push(zero.sqrt() / TAU);
+        } else if zero / (2.0 * square) > modes.unsure.map_or(0.0, |(_, most)| most) {
+            modes.unsure = Some((modes.frequencies.len() + 1, zero / (2.0 * square)));
+        }
         modes.frequencies.push(if square > zero { square.sqrt() / TAU } else { 0.0 });
         modes.shapes.push(shape);
     }
-    if unstable > 0 { Err(EigenError::Unstable { count: unstable }) } else { Ok(modes) }
+    if unstable > 0 {
+        return Err(EigenError::Unstable { count: unstable });
+    }
+    // Motions without deformation have no frequency; what deforms has one, however small.
+    match system.free_motions().and_then(|free| Some((free, *hidden.get(free)?))) {
+        Some((free, below)) => Err(EigenError::Hidden { number: free + 1, below, free }),
+        None => Ok(modes),
+    }
 }
 
 /// σ in units of EI/(ρA L⁴): less than the lowest ω² of a cantilever, 12.4, and enough to stand out

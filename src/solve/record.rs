@@ -1,5 +1,7 @@
 //! Records that solvers leave: attempted steps, counts of work, impulses of contacts.
 
+use super::dynamics::{RecordedForces, State};
+use crate::assembly::InternalVariables;
 use serde::Serialize;
 
 /// One attempted step.
@@ -43,4 +45,33 @@ pub struct ContactImpulse {
     pub impulse: [f64; 2],
     /// The largest \|F\| \[N\] at three points of every step.
     pub largest_force: f64,
+}
+
+/// A recorded state with all that its section forces follow from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecordedState {
+    /// An equilibrium.
+    Equilibrium {
+        /// Coordinates and scaled multipliers.
+        x: Vec<f64>,
+        /// Internal variables of friction.
+        variables: InternalVariables,
+    },
+    /// A state of a motion.
+    Moving {
+        /// Positions, velocities and internal variables.
+        state: State,
+        /// What all forces in it follow from.
+        forces: RecordedForces,
+    },
+}
+
+/// The recorded states of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedStates {
+    /// One per record.
+    pub states: Vec<RecordedState>,
+    /// The coordinates from which a motion was taken up, in which supports without a law of time
+    /// hold it.
+    pub taken_up: Option<Vec<f64>>,
 }

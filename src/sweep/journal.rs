@@ -7,6 +7,8 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use super::{Shard, SweepError};
@@ -53,6 +55,28 @@ pub(super) struct Record {
     pub summary: Option<serde_json::Value>,
 }
 
+impl Record {
+    /// Its line, without a line end.
+    pub fn line(&self) -> String {
+        // A record always has a JSON form.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// The number of the run of a line, if it is a legal one; its summary is not built.
+    pub fn run_of(line: &[u8]) -> serde_json::Result<usize> {
+        #[derive(Deserialize)]
+        #[expect(dead_code, reason = "all of them must be there")]
+        struct Line {
+            run: usize,
+            outcome: Outcome,
+            message: Option<IgnoredAny>,
+            seconds: f64,
+            summary: Option<IgnoredAny>,
+        }
+        serde_json::from_slice::<Line>(line).map(|line| line.run)
+    }
+}
+
 /// The journals in `directory`, in the order of their names.
 pub(super) fn paths(directory: &Path) -> Result<Vec<PathBuf>, SweepError> {
     let wrong = |source: io::Error| SweepError::Journal { path: directory.to_owned(), source };
@@ -69,6 +93,7 @@ pub(super) fn paths(directory: &Path) -> Result<Vec<PathBuf>, SweepError> {
 }
 
 /// The journal of one part, open for one process.
+#[derive(Debug)]
 pub(super) struct Journal {
     path: PathBuf,
     file: File,
@@ -98,18 +123,18 @@ impl Journal {
         Ok(Self { path, file, length })
     }
 
-    /// Appends a record. The remains of a failed write are removed, so that the next record begins
-    /// a line.
-    pub fn append(&mut self, record: &Record) -> Result<(), SweepError> {
-        let write = |file: &mut File| -> io::Result<usize> {
-            let mut line = serde_json::to_vec(record)?;
-            line.push(b'\n');
-            file.write_all(&line)?;
-            Ok(line.len())
-        };
-        match write(&mut self.file) {
-            Ok(written) => {
-                self.length += written as u64;
+    /// Its file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Appends the line of a record, which has no line end yet. The remains of a failed write are
+    /// removed, so that the next record begins a line.
+    pub fn append(&mut self, mut line: String) -> Result<(), SweepError> {
+        line.push('\n');
+        match self.file.write_all(line.as_bytes()) {
+            Ok(()) => {
+                self.length += line.len() as u64;
                 Ok(())
             }
             Err(source) => {
@@ -156,8 +181,8 @@ impl Finished {
                 let mut reader = BufReader::new(File::open(&path)?);
                 let (mut line, mut start) = (Vec::new(), 0);
                 while reader.read_until(b'\n', &mut line)? > 0 {
-                    let record = serde_json::from_slice::<Record>(&line);
-                    let place = record.ok().and_then(|record| places.get_mut(record.run.checked_sub(1)?));
+                    let run = Record::run_of(&line).ok();
+                    let place = run.and_then(|run| places.get_mut(run.checked_sub(1)?));
                     if let (Some(place), true) = (place, line.ends_with(b"\n")) {
                         // A run that two processes computed has the same results in both.
                         place.get_or_insert((index, start, line.len()));
@@ -182,18 +207,33 @@ impl Finished {
         (1..=self.places.len()).filter(|run| !self.has(*run)).collect()
     }
 
-    /// The records of the finished runs, in the order of their numbers, read one by one.
-    pub fn records(&self) -> impl Iterator<Item = Result<Record, SweepError>> {
-        self.places.iter().flatten().map(|(file, start, length)| {
-            let read = || -> io::Result<Record> {
-                let mut file = &self.files[*file];
-                let mut line = vec![0; *length];
-                file.seek(SeekFrom::Start(*start))?;
-                file.read_exact(&mut line)?;
-                Ok(serde_json::from_slice(&line)?)
-            };
-            read().map_err(|source| SweepError::Journal { path: self.directory.clone(), source })
-        })
+    /// What `of` makes of the records of the finished runs, on all threads, and given to `take` in
+    /// the order of their numbers; few of them are in memory at a time.
+    pub fn each<T: Send>(
+        &self,
+        of: impl Fn(Record) -> T + Sync,
+        mut take: impl FnMut(T) -> io::Result<()>,
+    ) -> Result<(), SweepError> {
+        const AT_A_TIME: usize = 4096;
+        let read = |(file, start, length): &(usize, u64, usize)| -> io::Result<Vec<u8>> {
+            let mut file = &self.files[*file];
+            let mut line = vec![0; *length];
+            file.seek(SeekFrom::Start(*start))?;
+            file.read_exact(&mut line)?;
+            Ok(line)
+        };
+        let mut all = || -> io::Result<()> {
+            for places in self.places.chunks(AT_A_TIME) {
+                let lines: Vec<Vec<u8>> = places.iter().flatten().map(read).collect::<io::Result<_>>()?;
+                let made: Vec<T> = lines
+                    .into_par_iter()
+                    .map(|line| Ok(of(serde_json::from_slice(&line)?)))
+                    .collect::<io::Result<_>>()?;
+                made.into_iter().try_for_each(&mut take)?;
+            }
+            Ok(())
+        };
+        all().map_err(|source| SweepError::Journal { path: self.directory.clone(), source })
     }
 }
 
@@ -207,14 +247,24 @@ mod tests {
     }
 
     fn records(folder: &Path, runs: usize) -> Vec<Record> {
-        Finished::read(folder, runs).unwrap().records().collect::<Result<_, _>>().unwrap()
+        let mut all = Vec::new();
+        let take = |record| {
+            all.push(record);
+            Ok(())
+        };
+        Finished::read(folder, runs).unwrap().each(|record| record, take).unwrap();
+        all
+    }
+
+    fn line(run: usize) -> String {
+        record(run).line()
     }
 
     #[test]
     fn a_journal_cut_anywhere_keeps_its_complete_records() {
         let folder = tempfile::tempdir().unwrap();
         let mut journal = Journal::open(folder.path(), Shard::WHOLE).unwrap();
-        [2, 1, 3].into_iter().try_for_each(|run| journal.append(&record(run))).unwrap();
+        [2, 1, 3].into_iter().try_for_each(|run| journal.append(line(run))).unwrap();
         drop(journal);
         let path = folder.path().join("journal-1-of-1.jsonl");
         let whole = fs::read(&path).unwrap();
@@ -223,7 +273,7 @@ mod tests {
             let complete = whole[..length].iter().filter(|byte| **byte == b'\n').count();
             assert_eq!(records(folder.path(), 3).len(), complete);
             let mut journal = Journal::open(folder.path(), Shard::WHOLE).unwrap();
-            journal.append(&record(4)).unwrap();
+            journal.append(line(4)).unwrap();
             let found = records(folder.path(), 4);
             assert_eq!(found.len(), complete + 1);
             assert!(found.iter().all(|found| *found == record(found.run)));
@@ -233,7 +283,6 @@ mod tests {
     #[test]
     fn what_is_no_record_is_passed_over() {
         let folder = tempfile::tempdir().unwrap();
-        let line = |run| serde_json::to_string(&record(run)).unwrap();
         let text = format!("{}\nnonsense\n\0\0\0\n{}\n{}\n{}\n", line(1), line(0), line(9), line(2));
         fs::write(folder.path().join("journal-1-of-2.jsonl"), text).unwrap();
         assert_eq!(records(folder.path(), 3), [record(1), record(2)]);
@@ -258,7 +307,7 @@ mod tests {
         let size = || fs::metadata(&path).unwrap().len();
         let mut journal = Journal::open(folder.path(), Shard::WHOLE).unwrap();
         for run in [1, 2] {
-            journal.append(&record(run)).unwrap();
+            journal.append(line(run)).unwrap();
             assert_eq!(journal.length, size());
         }
         let whole = journal.length;
@@ -268,7 +317,7 @@ mod tests {
         fs::write(&path, text).unwrap();
         let mut journal = Journal::open(folder.path(), Shard::WHOLE).unwrap();
         assert_eq!((journal.length, size()), (whole, whole));
-        journal.append(&record(3)).unwrap();
+        journal.append(line(3)).unwrap();
         assert_eq!(records(folder.path(), 3), [record(1), record(2), record(3)]);
     }
 

@@ -7,25 +7,32 @@ use serde_json::Value;
 
 use crate::output::exact;
 
-/// Calls `see` with the path and the text of every value in `value` that is neither null nor made
-/// of others. A path begins with `path`, its keys are joined by dots, and entries of lists are
-/// counted from 1. Numbers that are not whole have 17 significant digits.
-pub(super) fn visit(value: &Value, path: &str, see: &mut dyn FnMut(&str, String)) {
+/// Calls `see` with the path of every value in `value` that is neither null nor made of others, and
+/// with that value. A path begins with `path`, its keys are joined by dots, and entries of lists are
+/// counted from 1.
+pub(super) fn visit(value: &Value, path: &str, see: &mut dyn FnMut(&str, &Value)) {
     let below = |key: &dyn fmt::Display| {
         if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
     };
     match value {
         Value::Null => {}
-        Value::Bool(value) => see(path, value.to_string()),
-        Value::Number(number) => match number.as_f64().filter(|_| number.is_f64()) {
-            Some(value) => see(path, exact(value)),
-            None => see(path, number.to_string()),
-        },
-        Value::String(value) => see(path, value.clone()),
+        Value::Bool(_) | Value::Number(_) | Value::String(_) => see(path, value),
         Value::Array(items) => {
             items.iter().zip(1..).for_each(|(item, number)| visit(item, &below(&number), see));
         }
         Value::Object(entries) => entries.iter().for_each(|(key, entry)| visit(entry, &below(key), see)),
+    }
+}
+
+/// The text of such a value in a table. Numbers that are not whole have 17 significant digits.
+pub(super) fn text(value: &Value) -> String {
+    match value {
+        Value::Number(number) => match number.as_f64().filter(|_| number.is_f64()) {
+            Some(value) => exact(value),
+            None => number.to_string(),
+        },
+        Value::String(text) => text.clone(),
+        value => value.to_string(),
     }
 }
 
@@ -39,7 +46,7 @@ mod tests {
         let value: Value = serde_json::from_str(text).unwrap();
         assert_eq!(serde_json::to_string(&value).unwrap(), text);
         let mut cells = Vec::new();
-        visit(&value, "", &mut |path, text| cells.push(format!("{path}={text}")));
+        visit(&value, "", &mut |path, value| cells.push(format!("{path}={}", super::text(value))));
         assert_eq!(
             cells,
             [

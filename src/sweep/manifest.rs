@@ -1,7 +1,7 @@
 //! The description of a directory's sweep, so that no other one is mixed into it.
 
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -75,8 +75,11 @@ impl Manifest {
             #[cfg(unix)]
             builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
             let mut file = builder.tempfile_in(directory)?;
-            serde_json::to_writer_pretty(&mut file, self)?;
-            file.write_all(b"\n")?;
+            let mut out = BufWriter::new(&mut file);
+            serde_json::to_writer_pretty(&mut out, self)?;
+            out.write_all(b"\n")?;
+            out.flush()?;
+            drop(out);
             Ok(file)
         };
         match write().map_err(wrong)?.persist_noclobber(&path) {

@@ -98,6 +98,7 @@ fn task(system: &System, duration: f64, integrator: Integrator) -> Task<'static>
         start,
         watches: &[],
         reactions: false,
+        forces: false,
         directions: &[],
         keep: None,
     }

@@ -191,6 +191,7 @@ fn a_restart_goes_on_bit_for_bit() {
             integrator: settings.integrator,
             start,
             reactions: false,
+            forces: false,
             directions: &[],
             watches: &[],
             keep: None,

@@ -24,6 +24,7 @@ mod pictures;
 mod records;
 mod refusals;
 mod settings;
+mod shapes;
 mod starts;
 mod studies;
 mod time;

@@ -200,3 +200,47 @@ fn critical_loads_that_linear_theory_does_not_reach_are_told() {
         assert!(warning.starts_with(&expected), "{expected}: {warning}");
     }
 }
+
+/// A frequency below the round-off of the stiffness is refused, and never zero; one that loses digits
+/// to it is told. Of a pinned beam ω₁ = π², whatever its axial stiffness.
+#[test]
+fn frequencies_that_round_off_hides_are_refused() {
+    let scene = |stiffness: &str, elements: usize, hinges: &str| {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = {stiffness}, bending_stiffness = 1, mass_per_length = 1, \
+             basis.ancf.elements = {elements} }}\n\
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y'] }}{hinges}]\nanalysis.modal.count = 2\n"
+        );
+        let scene = parse("scene.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        scene.model().solve(scene.analysis())
+    };
+    let far = ", { beam = 'arm', at = 'end', fix = ['y'] }";
+    for (stiffness, allowed, told) in [("1e8", 1e-5, false), ("1e14", 1e-2, true)] {
+        let found = match scene(stiffness, 100, far).unwrap() {
+            Results::Vibrations(found) => found,
+            other => panic!("{other:?}"),
+        };
+        near(found.frequencies()[0] * 2.0 / PI, 1.0, allowed, "the first frequency");
+        let warnings = &found.equilibrium.run.warnings;
+        assert_eq!(
+            warnings.iter().any(|warning| warning.contains("may change frequency 1")),
+            told,
+            "{warnings:?}"
+        );
+    }
+    for (hinges, expected) in [
+        (far, "frequency 1 cannot be told from zero"),
+        // It turns about its one hinge, without any frequency: that motion is not the one that is hidden.
+        ("", "frequency 2 cannot be told from zero"),
+    ] {
+        let message = scene("1e16", 100, hinges).expect_err("hidden").to_string();
+        assert!(message.contains(expected), "{message}");
+    }
+    let free = match scene("1e8", 20, "").unwrap() {
+        Results::Vibrations(found) => found.frequencies(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(free[0], 0.0);
+    // β L = 3.9266 of a hinged and free beam.
+    near(free[1] * 2.0 * PI, 15.4182, 1e-3, "the second frequency");
+}

@@ -152,3 +152,50 @@ analysis.static = {}
     assert!(seen > 2, "{seen} settings of cubic elements");
     assert!(rows("front").iter().any(|front| front == "true"));
 }
+
+/// Lines that others compute are recorded once each, whatever comes twice, and the table is that of a
+/// sweep in one process; what is no line of this sweep is refused.
+#[test]
+fn lines_of_runs_are_recorded_once() {
+    use ancf::sweep::{Axis, Grid, Lines, Recorder, Runs, Shard, SweepError, merge};
+    let scene = ancf::scene::parse("scene.toml", BAR).expect("a scene");
+    let axis = |values: &[&str]| Axis {
+        paths: vec!["effect.force.0.value.0".into()],
+        values: values.iter().map(|value| vec![(*value).to_owned()]).collect(),
+        lines: Lines::default(),
+    };
+    let runs = |values: &[&str]| Runs::new(scene.clone(), Grid::new(vec![axis(values)]).expect("a grid"));
+    let five = runs(&["0.01", "0.02", "0.03", "0.04", "0.05"]);
+    five.check().expect("legal");
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut recorder = Recorder::open(&five, folder.path(), Shard::WHOLE).expect("a journal");
+    assert_eq!(recorder.missing(), [1, 2, 3, 4, 5]);
+    assert!(recorder.enter(&five.line(4)).expect("new") && recorder.enter(&five.line(2)).expect("new"));
+    assert!(!recorder.enter(&five.line(4)).expect("known"));
+    assert_eq!(recorder.missing(), [1, 3, 5]);
+    for wrong in [
+        "",
+        "{}",
+        &five.line(4).replace("\"run\":4", "\"run\":6"),
+        &five.line(4).replace("\"run\":4", "\"run\":0"),
+    ] {
+        assert!(matches!(recorder.enter(wrong), Err(SweepError::Journal { .. })), "{wrong}");
+    }
+    assert!(matches!(merge(folder.path()), Err(SweepError::Missing { count: 3, runs: 5, .. })));
+    drop(recorder);
+    // Another process goes on; another sweep does not.
+    let other = Recorder::open(&runs(&["1"]), folder.path(), Shard::WHOLE);
+    assert!(matches!(other, Err(SweepError::Another { .. })), "{other:?}");
+    let mut recorder = Recorder::open(&five, folder.path(), Shard::WHOLE).expect("a journal");
+    for run in recorder.missing() {
+        assert!(recorder.enter(&five.line(run)).expect("new"));
+    }
+    let merged = merge(folder.path()).expect("complete");
+    assert_eq!((merged.runs, merged.unsolved.len()), (5, 0));
+    let strains = numbers(&merged.table, "probes.end.strain");
+    for (index, strain) in strains.iter().enumerate() {
+        near(*strain, 0.01 * (index as f64 + 1.0), 1e-14, "the strain is the force");
+    }
+    let illegal = runs(&["0.1", "2 m"]).check().expect_err("a length").to_string();
+    assert!(illegal.contains("effect.force.0.value.0=2 m"), "{illegal}");
+}

@@ -265,6 +265,13 @@ fn overrides_without_a_place_are_told() {
             "found 0, expected a whole number, 1 or more",
             "",
         ),
+        // What comes later moves the text about, and is not to blame.
+        (
+            &["effect.damping=[{ mass_proportional = 1 }]", "probe=[]"],
+            16,
+            "missing key `beam` in `effect.damping.0`",
+            "add `beam = …`",
+        ),
         (
             &["effect.moment.1.value=1 m"],
             23,
@@ -301,4 +308,49 @@ fn overrides_in_turn_build_on_each_other() {
         parse("scene.toml", &analysis.text().replace("steps = 3", "steps = 3 ")).expect("its own text");
     assert_eq!((same.model(), same.analysis()), (analysis.model(), analysis.analysis()));
     assert_ne!(analysis.analysis(), scene().analysis());
+}
+
+/// A value is what the scene says at its path, as its overrides write it.
+#[test]
+fn values_are_read_by_the_paths_that_set_them() {
+    let scene = scene();
+    let value = |path: &str| scene.value(path).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(value("beam.arm.end.0"), Some(serde_json::json!(1.8)));
+    assert_eq!(value("support.0.fix"), Some(serde_json::json!(["x", "y", "angle"])));
+    assert_eq!(
+        [value("beam.arm.height"), value("support.1"), value("support.x"), value("title.x")],
+        [const { None }; 4]
+    );
+    assert!(scene.value("a..b").expect_err("no path").to_string().contains("not a path"));
+}
+
+/// Parts that are added by code act, are told where the text is written for others, and go to
+/// another scene when asked to.
+#[test]
+fn parts_added_by_code_are_not_in_the_text() {
+    let open = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 2 }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]
+        probe = [{ name = 'tip', beam = 'arm', at = 'end' }]\nanalysis.static.accuracy = 1e-4\n";
+    let read = || parse("scene.toml", open).unwrap_or_else(|error| panic!("{error}"));
+    let angle = |scene: &Scene| {
+        let solved =
+            ancf::accuracy::run(scene, ancf::Options::default()).unwrap_or_else(|error| panic!("{error}"));
+        let chosen = solved.run().error.as_ref().and_then(|error| error.chosen.clone()).unwrap_or_default();
+        (solved.states().probes[0].samples.last().map_or(f64::NAN, |tip| tip.angle), chosen)
+    };
+    let mut added = read();
+    added.add(ancf::effect::Moment::new(ancf::Place::new(0, 1.0), 3.0));
+    let mut other = read();
+    other.add_parts_of(&added);
+    for scene in [&added, &other] {
+        let (turned, chosen) = angle(scene);
+        // M L/EI
+        assert!((turned - 1.5).abs() < 1e-4, "{turned}");
+        assert!(
+            chosen.starts_with("# Without what was added to the scene by code: 1 of its parts.\n"),
+            "{chosen}"
+        );
+    }
+    let (straight, chosen) = angle(&read());
+    assert!(straight.abs() < 1e-12 && !chosen.contains('#'), "{straight}, {chosen}");
 }

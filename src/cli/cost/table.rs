@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use ancf::cost::{LeftOut, Report, ReportedTrial};
-use ancf::output::plot::human;
+use crate::cost::{LeftOut, Report, ReportedTrial};
+use crate::output::plot::human;
 
 /// A setting is close to the front if no setting with at most its error takes less than this part
 /// of its time.
@@ -111,8 +111,8 @@ pub fn table(report: &Report<'_>, directory: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ancf::cost::{Deviation, Measured};
-    use ancf::results::Statistics;
+    use crate::cost::{Deviation, Measured};
+    use crate::results::Statistics;
 
     fn trial(
         discretization: &str,

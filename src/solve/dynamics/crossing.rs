@@ -135,6 +135,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
         /// Every zero is found, in order, with its direction.
         #[test]
         fn all_zeros_are_found(roots in prop::collection::vec(-0.5..1.5_f64, 1..=5), scale in prop_oneof![-3.0..-0.1, 0.1..3.0_f64]) {

@@ -1,9 +1,9 @@
 //! Forces and powers of a motion from the stages of its steps, in which the equations of motion
 //! hold.
 
-use super::State;
 use super::integrate::Driver;
 use super::motion::{Balance, Motion, StageState};
+use super::{RecordedForces, State, Tendency};
 use crate::system::Reaction;
 
 /// Lagrange's polynomials on `times`, at the time `at`.
@@ -86,25 +86,35 @@ impl<'a> Driver<'_, 'a> {
         Some(motion)
     }
 
-    /// The state `state` within the step to `new`, with all forces.
-    pub(super) fn balance_within(&mut self, new: &State, state: &State) -> Option<Balance> {
+    /// How the motion goes on at a time within the step to `new`.
+    pub(super) fn tendency_within(&mut self, new: &State, time: f64) -> Option<Tendency> {
         let stages = self.method.stages(&self.state, new);
         let times: Vec<f64> = stages.iter().map(|stage| stage.state.time).collect();
-        let shares = lagrange(&times, state.time);
+        let shares = lagrange(&times, time);
         let mut rates = vec![0.0; stages.first()?.rates.len()];
         for (share, stage) in shares.iter().zip(&stages) {
             rates.iter_mut().zip(&stage.rates).for_each(|(sum, rate)| *sum += share * rate);
         }
-        let h = new.time - self.state.time;
-        self.settled(state, rates, h)
+        Some(Tendency { rates, step: new.time - self.state.time })
+    }
+
+    /// How it goes on at the end of the last step.
+    pub(super) fn tendency_at_end(&self) -> Tendency {
+        Tendency { rates: self.method.end_rates(), step: self.last_step }
+    }
+
+    /// The state `state` within the step to `new`, with all forces.
+    pub(super) fn balance_within(&mut self, new: &State, state: &State) -> Option<Balance> {
+        let tendency = self.tendency_within(new, state.time)?;
+        self.settled(state, tendency)
     }
 
     /// All forces in the first record `first`. They are exact at the start of a motion; in one that
     /// is continued, they follow from the rates at the end of the last step.
     pub(super) fn balance_at_start(&mut self, first: &State) -> Option<Balance> {
         if self.state.time > 0.0 {
-            let (rates, h) = (self.method.end_rates(), self.last_step);
-            return self.settled(first, rates, h);
+            let tendency = self.tendency_at_end();
+            return self.settled(first, tendency);
         }
         let first = first.clone();
         self.observer()?.exact_balance(&first).ok()
@@ -112,12 +122,12 @@ impl<'a> Driver<'_, 'a> {
 
     /// All forces in the last state.
     pub(super) fn balance_at_end(&mut self) -> Option<Balance> {
-        let (state, rates, h) = (self.state.clone(), self.method.end_rates(), self.last_step);
-        self.settled(&state, rates, h)
+        let (state, tendency) = (self.state.clone(), self.tendency_at_end());
+        self.settled(&state, tendency)
     }
 
-    fn settled(&mut self, state: &State, rates: Vec<f64>, h: f64) -> Option<Balance> {
-        let balance = self.observer()?.settle(state, rates, h).ok()?;
+    fn settled(&mut self, state: &State, tendency: Tendency) -> Option<Balance> {
+        let balance = self.observer()?.settle(state, tendency).ok()?;
         let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
         (finite(&balance.state.q) && finite(&balance.state.v)).then_some(balance)
     }
@@ -127,6 +137,15 @@ impl<'a> Driver<'_, 'a> {
     /// interpolated state.
     pub(super) fn settles(&self) -> bool {
         self.task.reactions || self.system.supports().moves_in_time()
+    }
+
+    /// Keeps what all forces in a record follow from.
+    pub(super) fn keep_forces(&mut self, balance: Option<&Balance>, tendency: Option<Tendency>) {
+        self.solution.forces.push(match (balance, tendency) {
+            (Some(balance), _) => RecordedForces::Known(Box::new(balance.clone())),
+            (None, Some(tendency)) => RecordedForces::Tendency(tendency),
+            (None, None) => RecordedForces::Positions,
+        });
     }
 
     /// Keeps the forces of supports and joints in a record.

@@ -56,6 +56,9 @@ pub struct Task<'t> {
     pub start: Checkpoint,
     /// Whether forces of supports and joints are wanted.
     pub reactions: bool,
+    /// Whether records keep what their forces follow from, so that section forces in them can be
+    /// found later.
+    pub forces: bool,
     /// Events to watch for.
     pub watches: &'t [EventWatch],
     /// Points whose directions are followed from step to step, so that full turns are counted.
@@ -258,8 +261,12 @@ impl<'t, 'a> Driver<'t, 'a> {
             observer: None,
         };
         driver.set_accepted();
+        let balance = if driver.task.reactions { driver.balance_at_start(&first) } else { None };
+        if driver.task.forces {
+            let goes_on = (driver.state.time > 0.0).then(|| driver.tendency_at_end());
+            driver.keep_forces(balance.as_ref(), goes_on);
+        }
         if driver.task.reactions {
-            let balance = driver.balance_at_start(&first);
             driver.keep_reactions(balance);
         }
         driver.keep(first);
@@ -317,6 +324,10 @@ impl<'t, 'a> Driver<'t, 'a> {
         }
         if self.state.time > last + SLACK * self.step {
             self.keep(self.state.clone());
+            if self.task.forces {
+                let end = self.solution.end.clone();
+                self.keep_forces(end.as_ref(), None);
+            }
             if self.task.reactions {
                 self.keep_reactions(self.solution.end.clone());
             }

@@ -48,6 +48,10 @@ impl Driver<'_, '_> {
             if !self.keep(settled.unwrap_or(state)) {
                 return;
             }
+            if self.task.forces {
+                let tendency = self.tendency_within(new, time);
+                self.keep_forces(balance.as_ref(), tendency);
+            }
             if self.task.reactions {
                 self.keep_reactions(balance);
             }

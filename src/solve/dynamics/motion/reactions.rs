@@ -18,7 +18,7 @@
 //! the acceleration that their forces give; motions too fast to be followed receive the
 //! quasi-static force under the inertia of the rest.
 
-use super::super::State;
+use super::super::{State, Tendency};
 use super::{Acceleration, Motion, Rates};
 use crate::linear::Singular;
 use crate::system::{Balanced, Reaction};
@@ -103,12 +103,12 @@ impl Motion<'_> {
         Ok(StageState { state, rates })
     }
 
-    /// Moves into balance the state `state`, to which a step of length `h` has led with the
-    /// accelerations and multipliers `rates` of the unknowns.
+    /// Moves into balance the state `state`, to which a step has led with such a tendency.
     ///
     /// # Errors
     /// [`Singular`] where the step's matrix has no inverse.
-    pub fn settle(&mut self, state: &State, rates: Vec<f64>, h: f64) -> Result<Balance, Singular> {
+    pub fn settle(&mut self, state: &State, tendency: Tendency) -> Result<Balance, Singular> {
+        let Tendency { rates, step: h } = tendency;
         let n = self.coordinates();
         let state = self.unknowns_of(state).into_owned();
         let mut stage = StageState { state, rates };

@@ -1,0 +1,139 @@
+"""Forces by functions, beside the same ones by the scene's own words."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from typing import Any
+
+import ancf
+import numpy as np
+import pytest
+from conftest import arm, falling
+
+PULL = {"force": [{"beam": "arm", "at": "end", "value": [0.0, 2.0]}]}
+
+
+def tip(scene: ancf.Scene) -> list[float]:
+    probe = scene.run().probes["tip"]
+    return [probe.x[-1], probe.y[-1], probe.angle[-1]]
+
+
+def test_a_dead_force() -> None:
+    own = ancf.Scene(arm(effect={}))
+    own.add_force("arm", "end", lambda x, y, angle: (0.0, 2.0))
+    assert tip(own) == pytest.approx(tip(ancf.Scene(arm(effect=PULL))), abs=1e-10)
+
+
+@pytest.mark.parametrize("differentiated", [False, True])
+def test_a_spring(differentiated: bool) -> None:
+    spring = {"spring": [{"beam": "arm", "at": "end", "stiffness": 5.0, "anchor": [1.0, 1.0], "length": 1.0}]}
+    named = ancf.Scene(arm(effect={**PULL, **spring}))
+    own = ancf.Scene(arm(effect=PULL))
+
+    def force(x: float, y: float, angle: float) -> np.ndarray:
+        along = np.array([1.0 - x, 1.0 - y])
+        pull: np.ndarray = 5.0 * (1.0 - 1.0 / np.hypot(*along)) * along
+        return pull
+
+    def derivative(x: float, y: float, angle: float) -> np.ndarray:
+        along = np.array([1.0 - x, 1.0 - y])
+        length = np.hypot(*along)
+        by_place = -5.0 * ((1.0 - 1.0 / length) * np.eye(2) + np.outer(along, along) / length**3)
+        return np.column_stack((by_place, np.zeros(2)))
+
+    # A function's force grows with the load factor, and a spring's does not; at its end both are whole.
+    own.add_force("arm", 1.0, force, derivative=derivative if differentiated else None)
+    assert tip(own) == pytest.approx(tip(named), abs=1e-9)
+
+
+def test_a_couple_and_a_follower_force() -> None:
+    own = ancf.Scene(arm(effect={}))
+    own.add_force("arm", "end", lambda x, y, angle: (0.0, 0.0, 3.0))
+    assert tip(own) == pytest.approx(tip(ancf.Scene(arm())), abs=1e-9)
+    follower = {"force": [{"beam": "arm", "at": "end", "value": [0.0, 4.0], "follower": True}]}
+    own = ancf.Scene(arm(effect={}))
+    own.add_force("arm", "end", lambda x, y, angle: (-4.0 * math.sin(angle), 4.0 * math.cos(angle)))
+    assert tip(own) == pytest.approx(tip(ancf.Scene(arm(effect=follower))), abs=1e-8)
+
+
+def test_a_dashpot_resists_in_motions_alone() -> None:
+    def scene(**effect: Any) -> ancf.Scene:
+        return ancf.Scene(falling(effect={"gravity": {"acceleration": [0, -9.81]}, **effect}))
+
+    own, without = scene(), scene()
+    own.add_force("arm", "end", lambda x, y, angle, vx, vy, rate: (-3.0 * vx, -3.0 * vy), rates=True)
+    result = own.run()
+    # What the dashpot takes, ∫ 3 v² dt by the trapezoidal rule over fine records, is what the balance of energy lacks.
+    fine = scene()
+    fine["analysis.dynamic.output_every"] = 1e-3
+    fine.add_force("arm", "end", lambda x, y, angle, vx, vy, rate: (-3.0 * vx, -3.0 * vy), rates=True)
+    fine_result = fine.run()
+    probe = fine_result.probes["tip"]
+    power = 3.0 * (probe.vx**2 + probe.vy**2)
+    lost = float(((power[1:] + power[:-1]) / 2.0).sum() * 1e-3)
+    assert fine_result.energy.lost[-1] == pytest.approx(lost, rel=1e-4)
+    assert result.energy.lost[-1] == pytest.approx(lost, rel=1e-4)
+    assert without.run().energy.lost[-1] == 0.0
+
+
+def test_a_change_of_the_scene_keeps_its_functions(cantilever: ancf.Scene) -> None:
+    cantilever.add_force("arm", "end", lambda x, y, angle: (0.0, 1.0))
+    with_both = tip(cantilever)
+    cantilever["effect.moment.0.value"] = 0.0
+    assert tip(cantilever) != with_both and tip(cantilever)[1] > 0.1
+
+
+@pytest.mark.parametrize(
+    ("force", "error", "message"),
+    [
+        (lambda x, y, angle: 1 / 0, ZeroDivisionError, "division"),
+        (lambda x, y, angle: None, TypeError, "returns \\(fx, fy\\)"),
+        (lambda x, y, angle: (1.0,), ValueError, "found 1 number"),
+        (lambda x, y, angle: (1.0, float("nan")), ValueError, "no forces"),
+        (lambda x: (0.0, 0.0), TypeError, "positional argument"),
+        (lambda x, y, angle: "ab", TypeError, "returns"),
+    ],
+)
+def test_what_a_function_raises_is_raised(cantilever: ancf.Scene, force: Any, error: type[Exception], message: str) -> None:
+    cantilever.add_force("arm", "end", force)
+    with pytest.raises(error, match=message):
+        cantilever.run()
+
+
+def test_wrong_places_and_derivatives_are_refused(cantilever: ancf.Scene) -> None:
+    def nothing(x: float, y: float, angle: float) -> tuple[float, float]:
+        return 0.0, 0.0
+
+    with pytest.raises(KeyError, match="the beams are: arm"):
+        cantilever.add_force("leg", "end", nothing)
+    for place in (1.5, -0.1, "middle", float("nan")):
+        with pytest.raises(ValueError, match="an arc length from 0 to 1"):
+            cantilever.add_force("arm", place, nothing)
+    with pytest.raises(TypeError, match="functions"):
+        cantilever.add_force("arm", "end", 3)  # type: ignore[arg-type]
+    cantilever.add_force("arm", "end", nothing, derivative=lambda x, y, angle: [[1.0]])
+    with pytest.raises(ValueError, match="2 or 3 rows of 3 numbers"):
+        cantilever.run()
+
+
+def test_a_scene_with_functions_stays_in_its_process(cantilever: ancf.Scene) -> None:
+    """Its text does not say them: nothing is computed without them in silence."""
+    cantilever.add_force("arm", "end", lambda x, y, angle: (0.0, 1.0))
+    with pytest.raises(ValueError, match="cannot be sent to another process"):
+        pickle.dumps(cantilever)
+    with pytest.raises(ValueError, match="cannot be swept"):
+        ancf.sweep(cantilever, {"effect.moment.0.value": [1.0]})
+    assert cantilever == cantilever and cantilever != cantilever.copy()
+    assert "python_force" in cantilever.inspect()
+
+
+def test_what_was_chosen_says_that_functions_are_missing() -> None:
+    table = arm(analysis={"static": {"accuracy": 1e-4}})
+    del table["beam"]["arm"]["basis"]
+    scene = ancf.Scene(table)
+    assert not (scene.run().chosen or "").startswith("#")
+    scene.add_force("arm", "end", lambda x, y, angle: (0.0, 1.0))
+    result = scene.run()
+    assert result.chosen is not None and result.chosen.startswith("# Without what was added to the scene by code: 1 of its parts.")
+    assert tip(scene.chosen()) == tip(scene)

@@ -1,0 +1,70 @@
+"""Motions step by step, with control in the loop."""
+
+from __future__ import annotations
+
+import ancf
+import numpy as np
+import pytest
+from conftest import arm, falling
+
+
+def test_without_a_change_steps_are_the_motion_as_a_whole(pendulum: ancf.Scene) -> None:
+    whole = pendulum.run()
+    steps = list(pendulum.steps())
+    assert [step.time for step in steps] == pytest.approx(whole.time[1:], abs=1e-15)
+    # Records of the whole lie between the ends of its steps, and are interpolated.
+    assert [step.probes["tip"].x[-1] for step in steps] == pytest.approx(whole.probes["tip"].x[1:], abs=1e-8)
+    assert [step.time for step in pendulum.steps(0.125)] == [0.125, 0.25, 0.375, 0.5]
+
+
+def test_a_change_acts_from_then_on() -> None:
+    """A rigid free beam pushed by a force F(t) that is switched: v = ∫F/m, in steps of a constant force."""
+    table = falling(
+        support=[{"beam": "arm", "at": "start", "fix": ["y", "angle"]}],
+        effect={"force": [{"beam": "arm", "at": "start", "value": [0.0, 0.0]}]},
+    )
+    table["beam"]["arm"]["axial_stiffness"] = 1e6
+    scene, speed = ancf.Scene(table), 0.0
+    for step in scene.steps(0.05):
+        force = 2.0 if step.time < 0.3 else -1.0
+        step["effect.force.0.value"] = [force, 0.0]
+        speed = step.probes["tip"].vx[-1]
+    # 0.05 s of nothing, 0.25 s of 2 N, 0.2 s of −1 N, on 1 kg.
+    assert speed == pytest.approx(0.25 * 2.0 - 0.2 * 1.0, abs=2e-3)
+    assert scene["effect.force.0.value"] == [0.0, 0.0], "the scene itself is not changed"
+
+
+def test_control_in_the_loop_holds_a_pendulum() -> None:
+    """A motor at the hinge that is told the angle holds the beam near the horizontal, which it leaves alone."""
+    motor = {
+        "moment": [{"beam": "arm", "at": "start", "value": 0.0}],
+        "gravity": {"acceleration": [0, -9.81]},
+        "damping": [{"beam": "arm", "stiffness_proportional": "5 ms"}],
+    }
+    table = falling(effect=motor, probe=[{"name": "hinge", "beam": "arm", "at": "start"}, {"name": "tip", "beam": "arm", "at": "end"}])
+    table["beam"]["arm"].update(axial_stiffness=1e6, bending_stiffness=1e2)
+    free = ancf.Scene(table)
+    assert free.run().probes["tip"].y[-1] < -0.5
+    for step in free.steps(0.005):
+        before, angle = step.probes["hinge"].angle
+        step["effect.moment.0.value"] = 9.81 / 2 - 60.0 * angle - 4.0 * (angle - before) / 0.005
+    # What is left is the beam's own bending under its weight, ρA g L⁴/(8 EI) = 0.012 m, about which it swings.
+    assert abs(step.probes["tip"].y[-1]) < 0.02
+
+
+def test_only_motions_have_steps(cantilever: ancf.Scene, pendulum: ancf.Scene) -> None:
+    with pytest.raises(ancf.SceneError, match="only a motion has steps"):
+        cantilever.steps()
+    with pytest.raises(ValueError, match="positive"):
+        pendulum.steps(-1.0)
+    with pytest.raises(ValueError, match="positive"):
+        pendulum.steps(float("nan"))
+
+
+def test_an_open_mesh_is_chosen_first() -> None:
+    table = falling(analysis={"dynamic": {"duration": 0.1, "output_every": 0.05, "accuracy": 1e-4}})
+    del table["beam"]["arm"]["basis"]
+    scene = ancf.Scene(table)
+    steps = list(scene.steps())
+    assert steps[-1].probes["tip"].y[-1] == pytest.approx(scene.run().probes["tip"].y[-1], abs=1e-4)
+    assert np.isfinite(steps[-1].result.shape().M).all() and arm()["beam"]

@@ -1,0 +1,105 @@
+//! Shapes with section forces at any load factor or time, from the states that a run has kept.
+
+use super::near;
+use ancf::results::{Shape, Trajectory};
+use ancf::run::shapes_at;
+use ancf::scene::parse;
+use ancf::{Options, Scene};
+
+fn kept(text: &str) -> (Scene, Trajectory) {
+    let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let options = Options { states: true, ..Options::default() };
+    let solved = scene.model().solve_with(scene.analysis(), options);
+    let solved = solved.unwrap_or_else(|error| panic!("{error}\n{text}"));
+    (scene, solved.into_states())
+}
+
+fn at(scene: &Scene, trajectory: &Trajectory, parameter: f64) -> Shape {
+    let shapes = shapes_at(scene.model(), scene.analysis(), trajectory, parameter, None);
+    shapes.unwrap_or_else(|error| panic!("{error}")).swap_remove(0)
+}
+
+const ARM: &str = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 2, basis.ancf.elements = 6 }
+    probe = [{ name = 'tip', beam = 'arm', at = 'end' }]\n";
+
+/// Of a cantilever under a tip force P the cut at the clamp carries λP and λP × (tip − clamp), of a
+/// hanging one the weight below the cut; at the last record the shape is the last one. Would catch
+/// the forces of another record, loads that do not grow, and weights of the mean that are swapped.
+#[test]
+fn shapes_of_statics_carry_their_share_of_the_load() {
+    let (scene, found) = kept(&format!(
+        "{ARM}support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+        effect.force = [{{ beam = 'arm', at = 'end', value = [-0.5, 3] }}]\nanalysis.static.steps = 4\n"
+    ));
+    for (record, load) in found.parameter.iter().enumerate() {
+        let (shape, tip) = (at(&scene, &found, *load), &found.probes[0].samples[record]);
+        near(*shape.x.last().unwrap(), tip.x, 1e-14, "x of the tip");
+        near(*shape.y.last().unwrap(), tip.y, 1e-14, "y of the tip");
+        near(shape.axial_force[0], -0.5 * load, 1e-8, "N at the clamp");
+        near(shape.shear_force[0], 3.0 * load, 1e-8, "Q at the clamp");
+        near(shape.bending_moment[0], load * (3.0 * tip.x + 0.5 * tip.y), 1e-8, "M at the clamp");
+        near(*shape.bending_moment.last().unwrap(), 0.0, 1e-8, "M at the tip");
+    }
+    let [first, second] = [1, 2].map(|record| at(&scene, &found, found.parameter[record]));
+    let between = at(&scene, &found, 0.75 * found.parameter[1] + 0.25 * found.parameter[2]);
+    for i in [0, 77, 200] {
+        near(between.y[i], 0.75 * first.y[i] + 0.25 * second.y[i], 1e-13, "the mean of places");
+        let mean = 0.75 * first.bending_moment[i] + 0.25 * second.bending_moment[i];
+        near(between.bending_moment[i], mean, 1e-12, "the mean of moments");
+    }
+    assert_eq!(format!("{:?}", at(&scene, &found, 1.0)), format!("{:?}", found.last[0]));
+}
+
+/// A motion's section forces at every record: what hangs below the hinge is accelerated by them, and
+/// at the hinge they are the support's. A motion that goes on from a state knows its forces too.
+#[test]
+fn shapes_of_motions_carry_weight_and_inertia() {
+    for (integrator, allowed) in [
+        ("radau = { stages = 3, tolerance = 1e-8 }", 1e-5),
+        ("gauss = { stages = 2, step = 0.001 }", 1e-5),
+        ("generalized_alpha = { spectral_radius = 0.9, step = 0.0005 }", 1e-5),
+    ] {
+        let text = format!(
+            "{ARM}support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y'] }}]\neffect.gravity.acceleration = [0, -10]
+            analysis.dynamic = {{ duration = 0.1, output_every = 0.02, {integrator} }}\noutput.reactions = true\n"
+        );
+        let (scene, first) = kept(&text);
+        let start = first.saved.clone().expect("a state");
+        let options = Options { states: true, start: Some(&start), ..Options::default() };
+        let second = scene.model().solve_with(scene.analysis(), options).unwrap().into_states();
+        for found in [&first, &second] {
+            for (record, time) in found.parameter.iter().enumerate() {
+                let shape = at(&scene, found, *time);
+                let (sine, cosine) = shape.angle[0].sin_cos();
+                let [n, q] = [shape.axial_force[0], shape.shear_force[0]];
+                let support = &found.reactions[0].samples[record];
+                near(cosine * n - sine * q, -support.fx, allowed, "the force along x");
+                near(sine * n + cosine * q, -support.fy, allowed, "the force along y");
+                near(*shape.bending_moment.last().unwrap(), 0.0, 1e-6, "M at the free end");
+                near(shape.bending_moment[0], 0.0, 1e-6, "M at the hinge");
+            }
+            let end = found.parameter.last().unwrap();
+            let (last, asked) = (&found.last[0], at(&scene, found, *end));
+            near(asked.bending_moment[100], last.bending_moment[100], 1e-6, "M in the last state");
+        }
+    }
+}
+
+#[test]
+fn shapes_that_no_record_knows_are_refused() {
+    let text = format!(
+        "{ARM}support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+        effect.moment = [{{ beam = 'arm', at = 'end', value = 1 }}]\nanalysis.static = {{}}\n"
+    );
+    let (scene, mut found) = kept(&text);
+    let asked = |found: &Trajectory, parameter: f64| {
+        shapes_at(scene.model(), scene.analysis(), found, parameter, None).expect_err("none").to_string()
+    };
+    for outside in [-0.001, 1.001, f64::NAN, f64::INFINITY] {
+        assert!(asked(&found, outside).contains("the run reaches from 0 to 1"), "{outside}");
+    }
+    found.states = None;
+    assert!(asked(&found, 0.5).contains("the states of this run were not kept"));
+    found.parameter.clear();
+    assert!(!asked(&found, 0.5).is_empty());
+}
