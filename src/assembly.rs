@@ -51,6 +51,7 @@ mod moving;
 mod node;
 mod part;
 mod terms;
+mod weighted;
 mod winding;
 
 pub use action::{Action, Actions, Side};
@@ -70,4 +71,5 @@ pub use moving::MovingLoad;
 pub use node::{Node, nodes};
 pub use part::{Extent, Part, Resistance};
 pub use terms::{Needs, Terms, Turning};
+pub use weighted::Weighted;
 pub use winding::Winding;

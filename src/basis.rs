@@ -46,6 +46,9 @@ use rpim::{Interpolant, Precisions};
 /// Distance at which a point is taken to coincide with a node, as a fraction of the beam's length.
 const NODE_SNAP: f64 = 16.0 * f64::EPSILON;
 
+/// Part of a cell that is too short to be a piece of its own.
+const SLIVER: f64 = 1e-9;
+
 /// Largest number of nodes in a support: the work for a cell grows with its third power, and the
 /// number of digits needed in proportion to it.
 const MOST_SUPPORT: usize = 64;
@@ -221,6 +224,63 @@ impl Basis {
             Some(tables) => tables.get(Request::Cells(rule, orders.to_vec()), compute),
             None => compute(),
         }
+    }
+
+    /// As [`Self::table`], but with the points of `rule` in every piece of a cell between the arc
+    /// lengths `kinks` \[m\]: a rule is exact for smooth integrands only. Cells that no kink
+    /// divides share their rows as in [`Self::table`].
+    ///
+    /// # Errors
+    /// A rule or an order that does not exist.
+    pub fn divided_table(
+        &self,
+        rule: Quadrature,
+        orders: &[usize],
+        kinks: &[f64],
+    ) -> Result<BasisTable, BasisError> {
+        let mut table = self.table(rule, orders)?;
+        let mut inside: Vec<(usize, f64)> = Vec::new();
+        for &s in kinks.iter().filter(|s| **s > 0.0 && **s < self.length) {
+            let cell = self.nodes.partition_point(|node| *node <= s) - 1;
+            let xi = (s - self.nodes[cell]) / self.spacing(cell);
+            if xi > SLIVER && xi < 1.0 - SLIVER {
+                inside.push((cell, xi));
+            }
+        }
+        if inside.is_empty() {
+            return Ok(table);
+        }
+        inside.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        inside.dedup_by(|a, b| a.0 == b.0 && (a.1 - b.1).abs() <= SLIVER);
+        let (points, weights) = rule.rule()?;
+        let whole = std::mem::take(&mut table.cells);
+        let places = std::mem::take(&mut table.s);
+        let mut precisions = Precisions::default();
+        for (number, (cell, s)) in whole.into_iter().zip(places.chunks_exact(points.len())).enumerate() {
+            let mut ends: Vec<f64> =
+                inside.iter().filter(|(at, _)| *at == number).map(|(_, xi)| *xi).collect();
+            if ends.is_empty() {
+                table.cells.push(cell);
+                table.s.extend(s);
+                continue;
+            }
+            ends.push(1.0);
+            let h = self.spacing(number);
+            let mut from = 0.0;
+            for to in ends {
+                table.cells.push(Cell { first: cell.first, block: table.blocks() as u32 });
+                for (xi, weight) in points.iter().zip(&weights) {
+                    let xi = from + xi * (to - from);
+                    table.weights.push(h * (to - from) * weight);
+                    table.s.push(self.nodes[number] + xi * h);
+                    let start = table.rows.len();
+                    table.rows.resize(start + table.row_stride(), 0.0);
+                    self.fill(number, xi, orders, &mut table.rows[start..], &mut precisions);
+                }
+                from = to;
+            }
+        }
+        Ok(table)
     }
 
     /// Keeps its tables from now on.

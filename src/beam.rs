@@ -1,5 +1,11 @@
 //! A beam: its stress-free shape, its section, its discretisation, and points along it.
 
+mod along;
+mod section;
+
+pub use along::Along;
+pub use section::{Layer, Section};
+
 use crate::basis::{Discretization, Quadrature};
 use crate::centreline::Centreline;
 use std::fmt;
@@ -19,33 +25,6 @@ pub struct Beam {
     pub discretization: Discretization,
     /// Gauss points in every cell between neighbouring nodes, for each energy.
     pub gauss_points: GaussPoints,
-}
-
-/// Stiffnesses and mass of a section. A quantity that is `None` is not named in the scene and not
-/// simulated; a beam without an axial stiffness keeps its length.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Section {
-    /// EA \[N\].
-    pub axial_stiffness: Option<f64>,
-    /// EI \[N m²\].
-    pub bending_stiffness: Option<f64>,
-    /// ρA \[kg/m\].
-    pub mass_per_length: Option<f64>,
-}
-
-impl Section {
-    /// A section without mass, with the axial stiffness EA \[N\] and the bending stiffness EI
-    /// \[N m²\].
-    pub fn new(axial_stiffness: f64, bending_stiffness: f64) -> Self {
-        let (axial_stiffness, bending_stiffness) = (Some(axial_stiffness), Some(bending_stiffness));
-        Self { axial_stiffness, bending_stiffness, mass_per_length: None }
-    }
-
-    /// The same section with the mass per length ρA \[kg/m\].
-    #[must_use]
-    pub fn weighing(self, mass_per_length: f64) -> Self {
-        Self { mass_per_length: Some(mass_per_length), ..self }
-    }
 }
 
 /// The axial strain ε as a function of the gradient r'.

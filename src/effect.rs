@@ -7,6 +7,7 @@
 mod actuation;
 mod bend;
 mod contact;
+mod coupling;
 mod damping;
 mod direction;
 mod drag;
@@ -23,9 +24,10 @@ mod stretch;
 pub use actuation::{Actuation, PreCurvature, PreStrain};
 pub use bend::{BeamBend, Bend, curvature};
 pub use contact::{Contact, ContactIntegral, Friction, FrictionIntegral, Obstacle, Penalty};
+pub use coupling::{BeamCoupling, Coupling, CouplingDamping};
 pub use damping::{BeamDamping, BendDamping, MassDamping, StretchDamping};
 pub use direction::Direction;
-pub use drag::{Buoyancy, Drag, SteadyDrag};
+pub use drag::{Buoyancy, Drag, DragForce, SteadyDrag};
 pub use force::{DeadForce, DistributedForce, FollowerForce, Force};
 pub use foundation::Foundation;
 pub use gravity::Gravity;
@@ -39,6 +41,11 @@ pub use stretch::{BeamStretch, Engineering, Green, Strain, Stretch};
 use crate::assembly::Part;
 
 /// The parts that follow from the section of beam number `beam` alone.
-pub(crate) fn of_section(beam: usize) -> [Box<dyn Part>; 3] {
-    [Box::new(BeamStretch { beam }), Box::new(BeamBend { beam }), Box::new(BeamInertia { beam })]
+pub(crate) fn of_section(beam: usize) -> [Box<dyn Part>; 4] {
+    [
+        Box::new(BeamStretch { beam }),
+        Box::new(BeamBend { beam }),
+        Box::new(BeamCoupling { beam }),
+        Box::new(BeamInertia { beam }),
+    ]
 }

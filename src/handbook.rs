@@ -2,6 +2,7 @@
 //!
 //! | page | subject |
 //! |---|---|
+//! | [`sections`] | stiffness, mass and shape of sections, varying along a beam; layers; stresses; the shape at the start |
 //! | [`motion`] | duration, integrators, tolerances, events, going on from a state |
 //! | [`mechanisms`] | joints, supports that move, and everything else that takes part |
 //! | [`choosing`] | which discretisation and which integrator for which purpose, with what they reach |
@@ -11,6 +12,9 @@
 //!
 //! The theory stands on the [front page](crate): the densities, the discretisations and where each
 //! is computed.
+
+#[doc = include_str!("handbook/sections.md")]
+pub mod sections {}
 
 #[doc = include_str!("handbook/motion.md")]
 pub mod motion {}

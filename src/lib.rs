@@ -83,7 +83,8 @@
 //! | ε, Green | ½ (r'·r' − 1) | – |
 //! | ε, engineering | \|r'\| − 1 | – |
 //! | κ | (r' × r'')/\|r'\|² | 1/m |
-//! | U | ½∫ EA (ε − ε₀)² ds + ½∫ EI (κ − κ₀)² ds | J |
+//! | U | ½∫ EA (ε − ε₀)² ds + ½∫ EI (κ − κ₀)² ds + ∫ EB (ε − ε₀)(κ − κ₀) ds | J |
+//! | EB | −∫ E y dA, where the centreline is not the neutral line ([`beam::Section`]) | N m |
 //! | R | dissipation function: forces ∂R/∂q̇ | W |
 //! | T | ½∫ ρA ṙ·ṙ ds | J |
 //! | M on the section at s | δW = M δθ, θ = atan2(y', x') | N m |
@@ -110,6 +111,7 @@
 //! |---|---|---|
 //! | `[[joint]]` `hinge`, `weld`, `slider` | [`system::joint`] | constraint rows between two points |
 //! | `move` of a `[[support]]`, `in_time` of a load | [`law::Law`] | ramps, steps, sines, polynomials, tables, spin-up |
+//! | `section` of a beam, `table`, `polynomial`, `pieces` of its properties | [`beam::Section`], [`beam::Along`] | EA(s), EI(s), EB(s), ρA(s), ρI(s) |
 //! | `[[effect.damping]]` | [`effect::BeamDamping`] | −α ρA ṙ; EA (ε + η ε̇), EI (κ + η κ̇) |
 //! | `[[effect.spring]]`, `[[effect.torsion_spring]]` | [`effect::Spring`], [`effect::TorsionSpring`] | ½ k (ℓ − ℓ₀)², ½ k (θ − θ₀)², dashpots beside them |
 //! | `[[effect.point_mass]]`, `[[effect.rotary_inertia]]` | [`effect::PointMass`], [`effect::SectionInertia`] | ½ m ṙ·ṙ + ½ J θ̇² |

@@ -7,17 +7,19 @@ mod accuracy;
 mod analysis;
 mod defaults;
 pub mod freedom;
+mod initial_shape;
 mod joint;
 mod velocity;
 
 pub use accuracy::{Accuracy, Open};
 pub use analysis::*;
 pub use defaults::*;
+pub use initial_shape::InitialShape;
 pub use joint::Joint;
 pub use velocity::{InitialVelocity, Profile};
 
 pub use crate::basis::{Discretization, Kernel, Nodes, SideCondition};
-pub use crate::beam::{Beam, GaussPoints, Place, Section, StrainMeasure};
+pub use crate::beam::{Along, Beam, GaussPoints, Layer, Place, Section, StrainMeasure};
 pub use crate::centreline::Centreline;
 pub use crate::law::{Law, Tabulated};
 
@@ -38,6 +40,8 @@ pub struct Model {
     /// Everything that takes part besides the beams' own elasticity and inertia: loads, damping,
     /// springs, masses, contacts, ….
     pub parts: Vec<Arc<dyn Part>>,
+    /// Shapes in which beams are at the start, where these are not the stress-free ones.
+    pub initial_shapes: Vec<InitialShape>,
     /// Velocities of the beams at the start of a motion; a beam without an entry is at rest.
     pub initial_velocities: Vec<InitialVelocity>,
     /// Points whose motion is recorded.
@@ -66,16 +70,18 @@ impl Model {
     }
 
     /// The arc lengths \[m\] along a beam at which there must be a node and supports of shape
-    /// functions must end: at joints, and where a support or a part transmits a couple, since the
-    /// curvature jumps there. A concentrated force makes only the slope of the curvature jump,
+    /// functions must end: at joints, where a support or a part transmits a couple, and where the
+    /// section jumps, since the curvature or the strain jumps there. A concentrated force makes only the slope of the curvature jump,
     /// which matters little: nine nodes that do not meet it have an error of 3e-6 of the length.
     pub fn breaks(&self, beam: usize) -> Vec<f64> {
         let supports = self.supports.iter().filter(|support| support.fix.rotation != FixedRotation::Free);
         let supports = supports.map(|support| support.at);
         let joints = self.joints.iter().flat_map(Joint::places);
         let parts = self.parts.iter().filter_map(|part| part.couple());
-        let places = supports.chain(joints).chain(parts);
-        places.filter(|at| at.beam == beam).map(|at| at.s).collect()
+        let jumps = self.parts.iter().flat_map(|part| part.jumps());
+        let places = supports.chain(joints).chain(parts).chain(jumps);
+        let jumps = self.beams[beam].section.jumps();
+        places.filter(|at| at.beam == beam).map(|at| at.s).chain(jumps).collect()
     }
 }
 
@@ -86,6 +92,8 @@ pub struct Outputs {
     pub reactions: bool,
     /// Energy and resultant force of every effect.
     pub effects: bool,
+    /// Section forces and stresses, at the probes and along the beams.
+    pub section_forces: bool,
 }
 
 /// Fixes quantities at a point of a beam, or prescribes their motion.

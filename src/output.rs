@@ -70,7 +70,7 @@ impl OutputOptions {
 
 /// Names that a run may leave; those that this run does not write are removed when it replaces an
 /// older one, so that a directory never mixes two runs.
-const NAMES: [&str; 27] = [
+const NAMES: [&str; 30] = [
     "chosen.toml",
     "reactions.csv",
     "effects.csv",
@@ -79,6 +79,7 @@ const NAMES: [&str; 27] = [
     "probes.csv",
     "energy.csv",
     "shape.csv",
+    "layers.csv",
     "frequencies.csv",
     "load_factors.csv",
     "modes.csv",
@@ -90,6 +91,8 @@ const NAMES: [&str; 27] = [
     "curvature.svg",
     "error.svg",
     "strain.svg",
+    "stress.svg",
+    "sections.svg",
     "position.svg",
     "angle.svg",
     "velocity.svg",
@@ -132,6 +135,9 @@ pub fn write(
         stage.add("effects.csv", |out| tables::effects(t, out))?;
     }
     stage.add("shape.csv", |out| tables::shape(t, out))?;
+    if t.last.iter().any(|shape| shape.stress.len() > 1) {
+        stage.add("layers.csv", |out| tables::layers(t, out))?;
+    }
     if let Some(saved) = &t.saved {
         stage.add("state.json", |out| Ok(serde_json::to_writer(out, saved)?))?;
     }
@@ -227,6 +233,9 @@ fn check(results: &Results) -> Result<(), OutputError> {
         let forces = [&shape.axial_force, &shape.shear_force, &shape.bending_moment];
         for values in values.into_iter().chain(forces.into_iter().filter(|forces| !forces.is_empty())) {
             fits(&|| format!("values along beam `{}`", shape.beam), shape.s.len(), values.len())?;
+        }
+        for values in shape.stress.iter().flat_map(|layer| [&layer.bottom, &layer.top]) {
+            fits(&|| format!("stresses along beam `{}`", shape.beam), shape.s.len(), values.len())?;
         }
     }
     for mode in results.mode_shapes().into_iter().flatten() {

@@ -12,7 +12,7 @@
 //!
 //! A checksum tells whether the file is as it was written.
 
-use crate::model::{Beam, Integrator, Model};
+use crate::model::{Along, Beam, Integrator, Model};
 use crate::solve::dynamics::{Checkpoint, State};
 use crate::system::System;
 use serde::{Deserialize, Serialize};
@@ -53,11 +53,25 @@ struct SavedBeam {
     centreline: String,
     discretization: String,
     /// EA \[N\] and EI \[N m²\].
-    stiffness: [Option<f64>; 2],
+    stiffness: [Option<SavedQuantity>; 2],
     /// ρA \[kg/m\].
-    mass: Option<f64>,
+    mass: Option<SavedQuantity>,
     /// Arc lengths \[m\].
     nodes: Vec<f64>,
+}
+
+/// A quantity of a beam: a number, or a description of how it varies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+enum SavedQuantity {
+    Constant(f64),
+    Varying(String),
+}
+
+impl From<&Along> for SavedQuantity {
+    fn from(along: &Along) -> Self {
+        along.constant().map_or_else(|| Self::Varying(along.to_string()), Self::Constant)
+    }
 }
 
 /// Why a saved state cannot be used.
@@ -128,8 +142,9 @@ fn layout(model: &Model, system: &System) -> Vec<SavedBeam> {
             name: name.clone(),
             centreline: format!("{centreline:?}"),
             discretization: format!("{discretization:?}"),
-            stiffness: [section.axial_stiffness, section.bending_stiffness],
-            mass: section.mass_per_length,
+            stiffness: [&section.axial_stiffness, &section.bending_stiffness]
+                .map(|quantity| quantity.as_ref().map(SavedQuantity::from)),
+            mass: section.mass_per_length.as_ref().map(SavedQuantity::from),
             nodes: part.basis.nodes().to_vec(),
         }
     });
@@ -223,7 +238,7 @@ impl SavedState {
         }
         for (here, there) in here.iter().zip(there) {
             let name = &here.name;
-            let masses = here.mass.zip(there.mass);
+            let masses = here.mass.as_ref().zip(there.mass.as_ref());
             if *name != there.name {
                 return mismatch(format!("its beam `{}` is called `{name}` in the scene", there.name));
             }

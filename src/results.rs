@@ -8,11 +8,14 @@ mod trajectory;
 
 pub use estimate::{BeamErrors, ErrorEstimate, Errors, ProbeErrors, RunForError};
 pub use modes::{BucklingMode, CriticalLoads, ModeShape, Vibration, Vibrations};
-pub use shape::{Frame, Shape};
-pub use trajectory::{EffectSeries, Event, ProbeSample, ProbeSeries, ReactionSeries, Trajectory};
+pub use shape::{Frame, LargestStress, LayerStress, Shape};
+pub use trajectory::{
+    BeamSections, EffectSeries, Event, ProbeSample, ProbeSeries, ReactionSeries, SectionForces,
+    SectionSeries, Trajectory,
+};
 
 pub use crate::solve::{ContactImpulse, RecordedState, RecordedStates, Statistics, StepRecord};
-pub use crate::system::Energy;
+pub use crate::system::{Energy, Reaction};
 
 use serde::Serialize;
 

@@ -7,6 +7,7 @@ mod memory;
 mod modes;
 mod motion;
 mod sampler;
+mod sections;
 mod shapes;
 mod statics;
 mod strings;

@@ -50,7 +50,7 @@ use crate::centreline::Curve;
 use crate::effect;
 use crate::linear::Matrix;
 use crate::model::freedom::Freedom;
-use crate::model::{Centreline, Discretization, Joint, Model, Place};
+use crate::model::{Along, Centreline, Discretization, Joint, Model, Place};
 use constraints::Constraint;
 use polar::Polar;
 use reaction::Source;
@@ -82,6 +82,8 @@ pub struct System {
     /// the axial force.
     lengths: Vec<inextensible::Row>,
     reference: Vec<f64>,
+    /// The state in which an analysis begins, where it is not the stress-free one.
+    start: Option<Vec<f64>>,
     length: f64,
     stiffness: f64,
     round_off: f64,
@@ -135,20 +137,22 @@ impl System {
                 Discretization::Rpim { polynomial_terms, .. } => polynomial_terms >= 2,
             };
             let straight = linear && matches!(beam.centreline, Centreline::Line { .. });
-            let section = &beam.section;
-            let per_length = section.bending_stiffness.map_or(0.0, |ei| ei / curve.length().powi(2));
-            stiffness = stiffness.max(section.axial_stiffness.unwrap_or(per_length));
+            let largest = |quantity: &Option<Along>| quantity.as_ref().map(|along| along.bounds(length)[1]);
+            let axial = largest(&beam.section.axial_stiffness);
+            let bending = largest(&beam.section.bending_stiffness);
+            stiffness = stiffness.max(axial.or(bending.map(|ei| ei / length.powi(2))).unwrap_or(0.0));
             // A position is stored with the round-off ε L. A cubic element turns this into a force
             // with its stiffness EA/h, or 12 EI/h³ across.
             let spacing = basis.nodes().windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
-            let axial = section.axial_stiffness.unwrap_or(0.0);
-            let bending = 12.0 * section.bending_stiffness.unwrap_or(0.0) / spacing.powi(2);
-            round_off = round_off.max(f64::EPSILON * axial.max(bending) * curve.length() / spacing);
+            let across = 12.0 * bending.unwrap_or(0.0) / spacing.powi(2);
+            round_off = round_off.max(f64::EPSILON * axial.unwrap_or(0.0).max(across) * length / spacing);
             beams.push(DiscretizedBeam { name: beam.name.clone(), basis, first_node, straight });
         }
         let nodes = reference.len() / 4;
         let blocks = beams.iter().map(|b| b.basis.width() / 2).max().unwrap_or(1);
         let length = beams.iter().map(|b| b.basis.length()).fold(0.0, f64::max);
+        let start = start(model, &beams, &reference)?;
+        let lowest_vibration = lowest_vibration_scale(model, &beams, length);
         let mut system = Self {
             beams,
             nodes,
@@ -163,13 +167,14 @@ impl System {
             sources: Vec::new(),
             lengths: Vec::new(),
             reference,
+            start,
             length,
             stiffness,
             round_off,
             has_strings: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
             rigid_motions: 0,
             free_motions: 0,
-            lowest_vibration: lowest_vibration_scale(model, length),
+            lowest_vibration,
         };
         let masses = model.parts.iter().filter_map(|part| part.mass()).collect();
         let mut assembly = Assembly::new(&model.beams, &system.beams, &system.reference, masses, needs);
@@ -198,15 +203,18 @@ impl System {
             // Chains have no stiffness; the scale of their forces is their load.
             let load = system.norm(&system.constant_load);
             system.stiffness = if load > 0.0 { load } else { 1.0 };
-            let lightest = model.beams.iter().filter_map(|beam| beam.section.mass_per_length);
-            let mass = length * lightest.fold(f64::INFINITY, f64::min);
+            let masses = model.beams.iter().zip(&system.beams).filter_map(|(beam, part)| {
+                Some(beam.section.mass_per_length.as_ref()?.mean(part.basis.length()))
+            });
+            let mass = length * masses.fold(f64::INFINITY, f64::min);
             system.lowest_vibration = CHAIN * system.stiffness / (mass * length);
         }
         system.check_room()?;
         system.check_rows(model)?;
         if !needs.motion {
             system.free_motions = system.count_free_motions(model)?;
-            let of_beams = |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Contact);
+            let of_beams =
+                |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Coupling | Kind::Contact);
             let resisted = !system.terms.internal.iter().all(|effect| of_beams(effect.kind()));
             system.rigid_motions = if resisted { 0 } else { system.free_motions };
         }
@@ -238,7 +246,7 @@ impl System {
         Ok((part, part.arc_length(what, at.s)?))
     }
 
-    /// The gradient of the stress-free shape at a place.
+    /// The gradient at a place at the start.
     fn gradient_of(&self, at: Place) -> Result<[f64; 2], BuildError> {
         Ok(self.fields_of(at)?.gradient)
     }
@@ -247,7 +255,7 @@ impl System {
         let (part, s) = self.part("a joint", at)?;
         let view =
             View::point(&part.basis, part.offset(), s).map_err(|e| BuildError::basis(&part.name, e))?;
-        Ok(view.fields(&self.reference))
+        Ok(view.fields(self.start()))
     }
 
     /// Number of rigid motions that supports and joints leave to the beams.
@@ -293,6 +301,16 @@ impl System {
     /// Coordinates of the stress-free state.
     pub fn reference(&self) -> &[f64] {
         &self.reference
+    }
+
+    /// Coordinates of the state in which an analysis begins.
+    pub fn start(&self) -> &[f64] {
+        self.start.as_deref().unwrap_or(&self.reference)
+    }
+
+    /// Whether an analysis begins in another state than the stress-free one.
+    pub fn starts_bent(&self) -> bool {
+        self.start.is_some()
     }
 
     /// Length of the longest beam \[m\]: the scale of positions.
@@ -396,12 +414,37 @@ impl System {
     }
 }
 
-fn lowest_vibration_scale(model: &Model, length: f64) -> f64 {
-    let sections = model.beams.iter().map(|beam| beam.section);
-    sections.fold(0.0, |scale: f64, section| {
-        let mass = section.mass_per_length.unwrap_or(f64::INFINITY);
-        let bending = section.bending_stiffness.unwrap_or(0.0) / length.powi(2);
-        let axial = 1e-9 * section.axial_stiffness.unwrap_or(0.0);
+/// The coordinates in which an analysis begins, where some beam has an initial shape.
+fn start(
+    model: &Model,
+    beams: &[DiscretizedBeam],
+    reference: &[f64],
+) -> Result<Option<Vec<f64>>, BuildError> {
+    if model.initial_shapes.is_empty() {
+        return Ok(None);
+    }
+    let mut start = reference.to_vec();
+    for shape in &model.initial_shapes {
+        let (count, beam) = (beams.len(), shape.beam);
+        let part = beams.get(beam).ok_or(BuildError::NoSuchBeam { what: "an initial shape", beam, count })?;
+        let curve = Curve::new(&shape.centreline)
+            .map_err(|cause| BuildError::Curve { beam: part.name.clone(), cause })?;
+        let stretch = curve.length() / part.basis.length();
+        let nodes = start[4 * part.first_node..].chunks_exact_mut(4);
+        for (node, s) in nodes.zip(part.basis.nodes()) {
+            let ([x, y], tangent) = (curve.position(stretch * s), curve.tangent(stretch * s));
+            node.copy_from_slice(&[x, y, stretch * tangent[0], stretch * tangent[1]]);
+        }
+    }
+    Ok(Some(start))
+}
+
+fn lowest_vibration_scale(model: &Model, beams: &[DiscretizedBeam], length: f64) -> f64 {
+    model.beams.iter().zip(beams).fold(0.0, |scale: f64, (beam, part)| {
+        let mean = |quantity: &Option<Along>| quantity.as_ref().map(|along| along.mean(part.basis.length()));
+        let mass = mean(&beam.section.mass_per_length).unwrap_or(f64::INFINITY);
+        let bending = mean(&beam.section.bending_stiffness).unwrap_or(0.0) / length.powi(2);
+        let axial = 1e-9 * mean(&beam.section.axial_stiffness).unwrap_or(0.0);
         scale.max(bending.max(axial) / (mass * length.powi(2)))
     })
 }

@@ -25,13 +25,16 @@ pub(super) fn notes(model: &Model, lengths: &[f64], largest: &[[f64; 2]]) -> Vec
                  the model may err by as much"
             ));
         }
-        let (Some(stretch), Some(bend)) = (beam.section.axial_stiffness, beam.section.bending_stiffness)
-        else {
+        let section = &beam.section;
+        let (Some(stretch), Some(bend)) = (&section.axial_stiffness, &section.bending_stiffness) else {
             continue;
         };
+        let (stretch, bend) = (stretch.mean(*length), bend.mean(*length));
         // Of a rectangle: EI/EA = h²/12.
         let radius = (bend / stretch).sqrt();
-        let thickness = 12.0_f64.sqrt() * radius;
+        let middle = 0.5 * length;
+        let thickness =
+            section.faces(middle, middle).map_or(12.0_f64.sqrt() * radius, |[low, high]| high - low);
         if thickness * curvature > BENDING {
             notes.push(format!(
                 "beam `{name}` bends to a radius of {:.1} of its thickness, as its stiffnesses tell it; a beam is thin against its radius",

@@ -1,8 +1,8 @@
 //! The assembly of parts into the terms of the equations.
 
 use super::{
-    ActingLoad, Amplitude, BuildError, ContactEffect, Density, DiscretizedBeam, Dissipation, Extent,
-    FrictionEffect, Integral, Kind, MovingLoad, Needs, Rayleigh, Terms, Turning, Winding,
+    ActingLoad, Amplitude, BuildError, ContactEffect, Damping, Density, DiscretizedBeam, Dissipation, Effect,
+    Extent, FrictionEffect, Integral, Kind, MovingLoad, Needs, Rayleigh, Terms, Turning, Weighted, Winding,
 };
 use crate::basis::{Basis, BasisTable, Quadrature};
 use crate::beam::{Beam, Place};
@@ -86,8 +86,8 @@ impl<'a> Assembly<'a> {
         extent: Extent,
         density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
     ) -> Result<(), BuildError> {
-        let effect = self.integral(kind, extent, D::ORDERS, density)?;
-        self.terms.internal.push(Box::new(effect));
+        let effect = self.effect(kind, &extent, density)?;
+        self.terms.internal.push(effect);
         Ok(())
     }
 
@@ -106,10 +106,8 @@ impl<'a> Assembly<'a> {
         if law.is_some() && !self.needs.motion {
             return Err(BuildError::NoTime { what: "a load" });
         }
-        let effect = self.integral(kind, extent, D::ORDERS, density)?;
-        self.terms
-            .loads
-            .push(ActingLoad { effect: Box::new(effect), amplitude: law.cloned().map(Amplitude::Law) });
+        let effect = self.effect(kind, &extent, density)?;
+        self.terms.loads.push(ActingLoad { effect, amplitude: law.cloned().map(Amplitude::Law) });
         Ok(())
     }
 
@@ -125,8 +123,8 @@ impl<'a> Assembly<'a> {
         density: D,
     ) -> Result<(), BuildError> {
         if self.needs.inertia {
-            let effect = self.integral(kind, extent, D::ORDERS, |_| density)?;
-            self.terms.inertia.push(Box::new(effect));
+            let effect = self.effect(kind, &extent, |_| density)?;
+            self.terms.inertia.push(effect);
         } else if !matches!(kind, Kind::Inertia | Kind::PointMass) {
             // Masses are not reported as left out, because they still act by their weight.
             self.terms.left_out.push((kind, extent.beam()));
@@ -152,8 +150,8 @@ impl<'a> Assembly<'a> {
         E: Dissipation<M> + 'static,
     {
         if self.needs.inertia {
-            let momentum = Box::new(self.integral(kind, extent, D::ORDERS, |_| Rayleigh(momentum))?);
-            let rate = Box::new(self.integral(kind, extent, E::ORDERS, |_| Rayleigh(rate))?);
+            let momentum = self.dissipative(kind, &extent, |_| momentum)?;
+            let rate = self.dissipative(kind, &extent, |_| rate)?;
             self.terms.turning.push(Turning { momentum, rate });
         }
         Ok(())
@@ -171,8 +169,8 @@ impl<'a> Assembly<'a> {
         density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
     ) -> Result<(), BuildError> {
         if self.needs.motion {
-            let effect = self.integral(kind, extent, D::ORDERS, |fields| Rayleigh(density(fields)))?;
-            self.terms.damping.push(Box::new(effect));
+            let effect = self.dissipative(kind, &extent, density)?;
+            self.terms.damping.push(effect);
         } else {
             self.terms.left_out.push((kind, extent.beam()));
         }
@@ -203,8 +201,8 @@ impl<'a> Assembly<'a> {
         stiffness: f64,
         direction: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
     ) -> Result<(), BuildError> {
-        let direction = self.integral(kind, Extent::Point(at), D::ORDERS, direction)?;
-        self.terms.windings.push(Winding::new(Box::new(direction), stiffness, self.terms.windings.len()));
+        let direction = self.effect(kind, &Extent::Point(at), direction)?;
+        self.terms.windings.push(Winding::new(direction, stiffness, self.terms.windings.len()));
         Ok(())
     }
 
@@ -220,26 +218,66 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    fn integral<D, const M: usize>(
+    /// The sum of a density over its extent.
+    fn effect<D: Density<M> + 'static, const M: usize>(
         &self,
         kind: Kind,
-        extent: Extent,
-        orders: [usize; M],
+        extent: &Extent,
         density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
-    ) -> Result<Integral<D, M>, BuildError>
-    where
-        D: Density<M>,
-    {
+    ) -> Result<Box<dyn Effect>, BuildError> {
+        let (table, offset) = self.table(kind, extent, &D::ORDERS)?;
+        let density = density(reference_fields::<M>(&table, offset, self.reference));
+        Ok(match extent.factors(&table) {
+            None => Box::new(Integral::new(kind, extent.beam(), offset, table, density)),
+            Some(factors) => {
+                let density = Weighted::new(density, factors);
+                Box::new(Integral::new(kind, extent.beam(), offset, table, density))
+            }
+        })
+    }
+
+    /// The sum of a dissipation function over its extent.
+    fn dissipative<D: Dissipation<M> + 'static, const M: usize>(
+        &self,
+        kind: Kind,
+        extent: &Extent,
+        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<Box<dyn Damping>, BuildError> {
+        let (table, offset) = self.table(kind, extent, &D::ORDERS)?;
+        let density = density(reference_fields::<M>(&table, offset, self.reference));
+        Ok(match extent.factors(&table) {
+            None => Box::new(Integral::new(kind, extent.beam(), offset, table, Rayleigh(density))),
+            Some(factors) => {
+                let density = Rayleigh(Weighted::new(density, factors));
+                Box::new(Integral::new(kind, extent.beam(), offset, table, density))
+            }
+        })
+    }
+
+    /// The shape functions at the points of an extent, and the index of its beam's first
+    /// coefficient.
+    fn table(
+        &self,
+        kind: Kind,
+        extent: &Extent,
+        orders: &[usize],
+    ) -> Result<(BasisTable, usize), BuildError> {
         let index = extent.beam();
         let beam = self.beam(kind.name(), index)?;
         let part = &self.discretized[index];
         let table = match extent {
-            Extent::Beam(_, rule) => part.basis.table(rule, &orders),
-            Extent::Point(place) => part.basis.points(&[part.arc_length(kind.name(), place.s)?], &orders),
+            Extent::Beam(_, rule) => part.basis.table(*rule, orders),
+            Extent::Weighted(_, rule, factor) => {
+                part.basis.divided_table(*rule, orders, &factor.kinks()).map(|mut table| {
+                    let factors = extent.factors(&table).unwrap_or_default();
+                    table.keep_cells(|cell| factors[cell].iter().any(|factor| *factor != 0.0));
+                    table
+                })
+            }
+            Extent::Point(place) => part.basis.points(&[part.arc_length(kind.name(), place.s)?], orders),
         };
         let table = table.map_err(|e| BuildError::basis(&beam.name, e))?;
-        let fields = reference_fields::<M>(&table, part.offset(), self.reference);
-        Ok(Integral::new(kind, index, part.offset(), table, density(fields)))
+        Ok((table, part.offset()))
     }
 
     /// The shape functions of a beam.

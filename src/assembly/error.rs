@@ -45,6 +45,15 @@ pub enum BuildError {
         /// The item that needs it.
         needed_by: &'static str,
     },
+    /// A coupled section damps strain and curvature by different times.
+    #[error(
+        "beam `{beam}`: its section couples strain and curvature, and they are damped by different times"
+    )]
+    #[diagnostic(help("give `stiffness_proportional`, which damps both alike, or `mass_proportional`"))]
+    CoupledDamping {
+        /// The beam's name.
+        beam: String,
+    },
     /// Two supports fix the same coordinate.
     #[error("two supports hold the {what} of beam `{beam}` at s = {s} m")]
     #[diagnostic(help("join them into one support"))]

@@ -33,6 +33,8 @@ kinds! {
     Inextensibility = "inextensibility",
     /// Bending strain energy.
     Bend = "bend",
+    /// Energy by which stretch and bending of a section are coupled.
+    Coupling = "coupling",
     /// Kinetic energy of the centreline.
     Inertia = "inertia",
     /// Weight.
@@ -79,7 +81,7 @@ impl Kind {
     /// Whether its energy is the same wherever a beam is moved as a rigid body, so that it acts on
     /// no piece of it as a whole.
     pub(crate) fn is_of_shape_alone(self) -> bool {
-        matches!(self, Self::Stretch | Self::Bend | Self::PreStrain | Self::PreCurvature)
+        matches!(self, Self::Stretch | Self::Bend | Self::Coupling | Self::PreStrain | Self::PreCurvature)
     }
 }
 

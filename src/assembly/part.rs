@@ -1,11 +1,12 @@
 //! The parts of a model and their extents.
 
 use super::{Assembly, BuildError};
-use crate::basis::Quadrature;
-use crate::beam::Place;
+use crate::basis::{BasisTable, Quadrature};
+use crate::beam::{Along, Place};
 use crate::law::Law;
 use std::any::Any;
 use std::fmt;
+use std::sync::Arc;
 
 /// Anything that takes part in the mechanics besides supports and joints: elasticity, inertia,
 /// loads, springs, contacts. It is [`Any`], so that code that reads a model can recognise the kinds
@@ -19,8 +20,13 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
 
     /// The strain and the curvature \[1/m\] that an actuation imposes on beam `beam`, and their law
     /// of time.
-    fn actuation(&self, _beam: usize) -> Option<(f64, f64, Option<&Law>)> {
+    fn actuation(&self, _beam: usize) -> Option<([&Along; 2], Option<&Law>)> {
         None
+    }
+
+    /// Places where the curvature of a beam jumps for another reason than a couple.
+    fn jumps(&self) -> Vec<Place> {
+        Vec::new()
     }
 
     /// The outline of an obstacle on the ground, as a line for pictures; `size` is the size of the
@@ -70,19 +76,58 @@ impl PartialEq for dyn Part {
 }
 
 /// The region over which a density is summed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Extent {
     /// Over a whole beam, by a quadrature rule in every cell.
     Beam(usize, Quadrature),
+    /// Over a whole beam, times a factor that varies along it; where the factor is not smooth,
+    /// cells are divided.
+    Weighted(usize, Quadrature, Arc<Along>),
     /// At one point, with weight 1.
     Point(Place),
 }
 
 impl Extent {
+    /// A density with the coefficient `quantity` over a whole beam: the coefficient to give to the
+    /// density, and the extent over which to sum it. A quantity that varies is a factor of the
+    /// extent, and one that does not costs nothing.
+    pub fn along(beam: usize, rule: Quadrature, quantity: &Along) -> (f64, Self) {
+        match quantity.constant() {
+            Some(value) => (value, Self::Beam(beam, rule)),
+            None => (1.0, Self::Weighted(beam, rule, Arc::new(quantity.clone()))),
+        }
+    }
+
+    /// The factor at each point of its table, where there is one.
+    pub(super) fn factors(&self, table: &BasisTable) -> Option<Vec<f64>> {
+        let Self::Weighted(_, _, factor) = self else { return None };
+        let cells = table.s.chunks(table.points_per_cell);
+        let factors = cells.flat_map(|places| {
+            let middle = places.iter().sum::<f64>() / places.len() as f64;
+            places.iter().map(move |s| factor.at(*s, middle))
+        });
+        Some(factors.collect())
+    }
+
+    /// As [`Self::along`] for a density with two coefficients that adds up from both: one sum for
+    /// constant coefficients, else one for each that is not zero.
+    pub fn pairs_along(beam: usize, rule: Quadrature, pair: &[Along; 2]) -> Vec<(Self, [f64; 2])> {
+        if let [Some(first), Some(second)] = pair.each_ref().map(Along::constant) {
+            return vec![(Self::Beam(beam, rule), [first, second])];
+        }
+        let of_one = |index: usize| {
+            let (value, extent) = Self::along(beam, rule, &pair[index]);
+            let mut both = [0.0; 2];
+            both[index] = value;
+            (extent, both)
+        };
+        (0..2).filter(|index| !pair[*index].is_zero()).map(of_one).collect()
+    }
+
     /// Index of the beam.
-    pub fn beam(self) -> usize {
+    pub fn beam(&self) -> usize {
         match self {
-            Self::Beam(beam, _) => beam,
+            Self::Beam(beam, _) | Self::Weighted(beam, ..) => *beam,
             Self::Point(place) => place.beam,
         }
     }

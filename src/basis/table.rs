@@ -52,6 +52,16 @@ impl BasisTable {
         )
     }
 
+    /// Keeps those cells for which `wanted` is true; it is given the range of a cell's points among
+    /// all points.
+    pub fn keep_cells(&mut self, wanted: impl Fn(std::ops::Range<usize>) -> bool) {
+        let points = self.points_per_cell;
+        let kept: Vec<usize> =
+            (0..self.cells.len()).filter(|cell| wanted(cell * points..(cell + 1) * points)).collect();
+        self.s = kept.iter().flat_map(|cell| &self.s[cell * points..(cell + 1) * points]).copied().collect();
+        self.cells = kept.iter().map(|cell| self.cells[*cell]).collect();
+    }
+
     /// Groups cells for computation four at a time. The first list holds the first cell of each
     /// four consecutive cells that share one block and start each one node after the cell before;
     /// the second list holds the remaining cells.

@@ -8,7 +8,8 @@
 
 use super::{Engineering, Green, Strain, bend};
 use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
-use crate::beam::StrainMeasure;
+use crate::basis::Quadrature;
+use crate::beam::{Along, Place, Section, StrainMeasure};
 use crate::lanes;
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
@@ -19,9 +20,9 @@ pub struct Actuation {
     /// Index of the beam.
     pub beam: usize,
     /// ε₀, without unit.
-    pub strain: Option<f64>,
+    pub strain: Option<Along>,
     /// κ₀ \[1/m\].
-    pub curvature: Option<f64>,
+    pub curvature: Option<Along>,
     /// In a motion, the law of time that both follow; without one they act in full from the start.
     pub law: Option<Law>,
 }
@@ -30,33 +31,64 @@ impl Part for Actuation {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("pre-strain", self.beam)?;
         let lacks = |quantity| BuildError::missing(beam, quantity, "pre-strain");
-        if let Some(strain) = self.strain {
-            let force = strain * beam.section.axial_stiffness.ok_or_else(|| lacks("axial stiffness"))?;
-            let extent = Extent::Beam(self.beam, beam.gauss_points.stretch_rule());
-            let law = self.law.as_ref();
-            match beam.strain {
-                StrainMeasure::Green => {
-                    assembly.load(Kind::PreStrain, extent, law, |_| PreStrain::<Green>::new(force))
-                }
-                StrainMeasure::Engineering => {
-                    assembly.load(Kind::PreStrain, extent, law, |_| PreStrain::<Engineering>::new(force))
-                }
-            }?;
+        let Section { axial_stiffness, bending_stiffness, coupling, .. } = &beam.section;
+        let product = |value: &Option<Along>, stiffness: &Option<Along>, name: &'static str| match value {
+            None => Ok(None),
+            Some(value) => {
+                stiffness.as_ref().map(|along| Some(along.product(value))).ok_or_else(|| lacks(name))
+            }
+        };
+        let coupled =
+            |value: &Option<Along>| coupling.as_ref().zip(value.as_ref()).map(|(b, v)| b.product(v));
+        let (stretch, bend) = (beam.gauss_points.stretch_rule(), beam.gauss_points.bend_rule());
+        if let Some(force) = product(&self.strain, axial_stiffness, "axial stiffness")? {
+            self.add_pre_strain(assembly, Kind::PreStrain, (beam.strain, stretch), &force)?;
         }
-        if let Some(curvature) = self.curvature {
-            let moment =
-                curvature * beam.section.bending_stiffness.ok_or_else(|| lacks("bending stiffness"))?;
-            let extent = Extent::Beam(self.beam, beam.gauss_points.bend_rule());
+        // What the section couples belongs to bending: −EB κ₀ ε and −EB ε₀ κ.
+        if let Some(force) = coupled(&self.curvature) {
+            self.add_pre_strain(assembly, Kind::PreCurvature, (beam.strain, stretch), &force)?;
+        }
+        let moments =
+            [product(&self.curvature, bending_stiffness, "bending stiffness")?, coupled(&self.strain)];
+        for moment in moments.into_iter().flatten() {
+            let (moment, extent) = Extent::along(self.beam, bend, &moment);
             assembly.load(Kind::PreCurvature, extent, self.law.as_ref(), |_| PreCurvature { moment })?;
         }
         Ok(())
     }
 
-    fn actuation(&self, beam: usize) -> Option<(f64, f64, Option<&Law>)> {
-        let own = (self.strain.unwrap_or(0.0), self.curvature.unwrap_or(0.0), self.law.as_ref());
-        (beam == self.beam).then_some(own)
+    fn actuation(&self, beam: usize) -> Option<([&Along; 2], Option<&Law>)> {
+        let own = [&self.strain, &self.curvature].map(|value| value.as_ref().unwrap_or(&NOTHING));
+        (beam == self.beam).then_some((own, self.law.as_ref()))
+    }
+
+    fn jumps(&self) -> Vec<Place> {
+        let quantities = [&self.strain, &self.curvature].into_iter().flatten();
+        quantities.flat_map(Along::jumps).map(|s| Place::new(self.beam, s)).collect()
     }
 }
+
+impl Actuation {
+    /// Adds −∫ N₀ ε ds.
+    fn add_pre_strain(
+        &self,
+        assembly: &mut Assembly<'_>,
+        kind: Kind,
+        (measure, rule): (StrainMeasure, Quadrature),
+        force: &Along,
+    ) -> Result<(), BuildError> {
+        let ((force, extent), law) = (Extent::along(self.beam, rule, force), self.law.as_ref());
+        match measure {
+            StrainMeasure::Green => assembly.load(kind, extent, law, |_| PreStrain::<Green>::new(force)),
+            StrainMeasure::Engineering => {
+                assembly.load(kind, extent, law, |_| PreStrain::<Engineering>::new(force))
+            }
+        }
+    }
+}
+
+/// What an actuation imposes that does not name it.
+static NOTHING: Along = Along::Constant(0.0);
 
 /// The load of a pre-strain: W = −N₀ ε with N₀ = EA ε₀ \[N\].
 #[derive(Clone, Debug)]

@@ -14,10 +14,10 @@ pub struct BeamBend {
 impl Part for BeamBend {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("bending", self.beam)?;
-        let Some(stiffness) = beam.section.bending_stiffness else { return Ok(()) };
+        let Some(stiffness) = &beam.section.bending_stiffness else { return Ok(()) };
         // Only a curved beam needs to store its reference curvatures.
         let straight = assembly.discretized(self.beam).straight;
-        let extent = Extent::Beam(self.beam, beam.gauss_points.bend_rule());
+        let (stiffness, extent) = Extent::along(self.beam, beam.gauss_points.bend_rule(), stiffness);
         assembly.elastic(Kind::Bend, extent, |z| Bend::new(stiffness, if straight { &[] } else { &z }))
     }
 }

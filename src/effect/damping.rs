@@ -4,9 +4,9 @@
 //! the same η for strain and curvature, is η K q̇. Together they are Rayleigh damping, by which a
 //! mode of frequency ω has the damping ratio ζ = ½ (α/ω + η ω).
 
-use super::{Engineering, Green, Strain, bend};
+use super::{CouplingDamping, Engineering, Green, Strain, bend};
 use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
-use crate::beam::StrainMeasure;
+use crate::beam::{Along, StrainMeasure};
 use nalgebra::{Matrix2, Vector2};
 
 /// Damping proportional to mass: R = ½ c ṙ·ṙ with c = α ρA \[N s/m²\].
@@ -100,16 +100,16 @@ impl Dissipation<2> for BendDamping {
 }
 
 /// Damping of one beam.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct BeamDamping {
     /// Index of the beam.
     pub beam: usize,
     /// α \[1/s\] of the force per length −α ρA ṙ.
-    pub mass_proportional: Option<f64>,
+    pub mass_proportional: Option<Along>,
     /// η \[s\] of the axial force EA (ε + η ε̇).
-    pub strain: Option<f64>,
+    pub strain: Option<Along>,
     /// η \[s\] of the bending moment EI (κ + η κ̇).
-    pub curvature: Option<f64>,
+    pub curvature: Option<Along>,
 }
 
 impl Part for BeamDamping {
@@ -118,26 +118,55 @@ impl Part for BeamDamping {
         let lacks =
             |quantity| BuildError::Missing { beam: beam.name.clone(), quantity, needed_by: "damping" };
         let points = beam.gauss_points;
-        if let Some(alpha) = self.mass_proportional {
-            let mass = beam.section.mass_per_length.ok_or_else(|| lacks("mass per length"))?;
-            let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
-            assembly.damping(Kind::Damping, extent, |_| MassDamping { coefficient: alpha * mass })?;
+        if let Some(alpha) = &self.mass_proportional {
+            let mass = beam.section.mass_per_length.as_ref().ok_or_else(|| lacks("mass per length"))?;
+            let rule = assembly.mass_rule(self.beam);
+            let (coefficient, extent) = Extent::along(self.beam, rule, &mass.product(alpha));
+            assembly.damping(Kind::Damping, extent, |_| MassDamping { coefficient })?;
         }
-        if let Some(eta) = self.strain {
-            let stiffness = beam.section.axial_stiffness.ok_or_else(|| lacks("axial stiffness"))?;
-            let extent = Extent::Beam(self.beam, points.stretch_rule());
+        if let Some(eta) = &self.strain {
+            let stiffness =
+                beam.section.uncoupled_axial_stiffness().ok_or_else(|| lacks("axial stiffness"))?;
+            let viscosity = stiffness.product(eta);
+            let (viscosity, extent) = Extent::along(self.beam, points.stretch_rule(), &viscosity);
             match beam.strain {
                 StrainMeasure::Green => {
-                    assembly.damping(Kind::Damping, extent, |_| StretchDamping::<Green>::new(eta * stiffness))
+                    assembly.damping(Kind::Damping, extent, |_| StretchDamping::<Green>::new(viscosity))
                 }
-                StrainMeasure::Engineering => assembly
-                    .damping(Kind::Damping, extent, |_| StretchDamping::<Engineering>::new(eta * stiffness)),
+                StrainMeasure::Engineering => {
+                    assembly.damping(Kind::Damping, extent, |_| StretchDamping::<Engineering>::new(viscosity))
+                }
             }?;
         }
-        if let Some(eta) = self.curvature {
-            let stiffness = beam.section.bending_stiffness.ok_or_else(|| lacks("bending stiffness"))?;
-            let extent = Extent::Beam(self.beam, points.bend_rule());
-            assembly.damping(Kind::Damping, extent, |_| BendDamping { coefficient: eta * stiffness })?;
+        if let Some(coupling) = &beam.section.coupling {
+            if self.strain != self.curvature {
+                return Err(BuildError::CoupledDamping { beam: beam.name.clone() });
+            }
+            if let (Some(eta), Some(bending)) = (&self.strain, &beam.section.bending_stiffness) {
+                let square = coupling.product(coupling).over(bending).product(eta);
+                let (square, squares) = Extent::along(self.beam, points.bend_rule(), &square);
+                let (viscosity, extent) =
+                    Extent::along(self.beam, points.bend_rule(), &coupling.product(eta));
+                match beam.strain {
+                    StrainMeasure::Green => {
+                        assembly.damping(Kind::Damping, squares, |_| StretchDamping::<Green>::new(square))?;
+                        assembly.damping(Kind::Damping, extent, |_| CouplingDamping::<Green>::new(viscosity))
+                    }
+                    StrainMeasure::Engineering => {
+                        let along = |_| StretchDamping::<Engineering>::new(square);
+                        assembly.damping(Kind::Damping, squares, along)?;
+                        let coupled = |_| CouplingDamping::<Engineering>::new(viscosity);
+                        assembly.damping(Kind::Damping, extent, coupled)
+                    }
+                }?;
+            }
+        }
+        if let Some(eta) = &self.curvature {
+            let stiffness =
+                beam.section.bending_stiffness.as_ref().ok_or_else(|| lacks("bending stiffness"))?;
+            let viscosity = stiffness.product(eta);
+            let (coefficient, extent) = Extent::along(self.beam, points.bend_rule(), &viscosity);
+            assembly.damping(Kind::Damping, extent, |_| BendDamping { coefficient })?;
         }
         Ok(())
     }

@@ -2,20 +2,22 @@
 
 use super::DeadForce;
 use crate::assembly::{Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part};
+use crate::basis::Quadrature;
+use crate::beam::Along;
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
 /// Drag per length on a section that moves with the velocity u relative to the fluid, split along
 /// and across the beam: f = −Σ_d (c_d + C_d |u_d|) u_d. The first term is viscous, the second is
 /// Morison's with C = ½ ρ C_D D. The dissipation function is R = Σ_d (½ c_d u_d² + ⅓ C_d |u_d|³).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Drag {
     /// Index of the beam.
     pub beam: usize,
     /// Along and across the beam: c \[N s/m²\].
-    pub viscous: [f64; 2],
+    pub viscous: [Along; 2],
     /// Along and across the beam: C \[N s²/m³\].
-    pub quadratic: [f64; 2],
+    pub quadratic: [Along; 2],
     /// Velocity of the fluid \[m/s\].
     pub flow: [f64; 2],
 }
@@ -23,17 +25,48 @@ pub struct Drag {
 impl Part for Drag {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         assembly.beam("drag", self.beam)?;
-        let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
         let (needs, flows) = (assembly.needs(), self.flow != [0.0; 2]);
-        if flows && !needs.motion {
-            assembly.load(Kind::Drag, extent, None, |_| SteadyDrag(*self))?;
+        for (extent, force) in self.forces(assembly.mass_rule(self.beam)) {
+            if flows && !needs.motion {
+                assembly.load(Kind::Drag, extent.clone(), None, |_| SteadyDrag(force))?;
+            }
+            // In an equilibrium, drag consists of the steady flow alone.
+            if !flows || needs.motion || needs.inertia {
+                assembly.damping(Kind::Drag, extent, |_| force)?;
+            }
         }
-        // In an equilibrium, drag consists of the steady flow alone.
-        if flows && !needs.motion && !needs.inertia {
-            return Ok(());
-        }
-        assembly.damping(Kind::Drag, extent, |_| *self)
+        Ok(())
     }
+}
+
+impl Drag {
+    /// One density for constant coefficients, else one for each that is not zero.
+    fn forces(&self, rule: Quadrature) -> Vec<(Extent, DragForce)> {
+        let constant = |pair: &[Along; 2]| match pair.each_ref().map(Along::constant) {
+            [Some(along), Some(across)] => Some([along, across]),
+            _ => None,
+        };
+        let still = DragForce { flow: self.flow, ..DragForce::default() };
+        if let (Some(viscous), Some(quadratic)) = (constant(&self.viscous), constant(&self.quadratic)) {
+            return vec![(Extent::Beam(self.beam, rule), DragForce { viscous, quadratic, ..still })];
+        }
+        let viscous = Extent::pairs_along(self.beam, rule, &self.viscous).into_iter();
+        let quadratic = Extent::pairs_along(self.beam, rule, &self.quadratic).into_iter();
+        let viscous = viscous.map(|(extent, viscous)| (extent, DragForce { viscous, ..still }));
+        let quadratic = quadratic.map(|(extent, quadratic)| (extent, DragForce { quadratic, ..still }));
+        viscous.chain(quadratic).collect()
+    }
+}
+
+/// The density of a [`Drag`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DragForce {
+    /// Along and across the beam: c \[N s/m²\].
+    pub viscous: [f64; 2],
+    /// Along and across the beam: C \[N s²/m³\].
+    pub quadratic: [f64; 2],
+    /// Velocity of the fluid \[m/s\].
+    pub flow: [f64; 2],
 }
 
 /// The drag of a steady flow on a beam at rest. It is a load that depends on the beam's direction.
@@ -45,7 +78,7 @@ impl Part for Drag {
 /// ∂²W/∂r∂r' = Σ_d (φ_d' (u·a_d') a_d + φ_d a_d') ⊗ n/|r'|,   t' = n,   n' = −t
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct SteadyDrag(pub Drag);
+pub struct SteadyDrag(pub DragForce);
 
 impl Density<2> for SteadyDrag {
     const ORDERS: [usize; 2] = [0, 1];
@@ -82,7 +115,7 @@ impl Density<2> for SteadyDrag {
     }
 }
 
-impl Dissipation<2> for Drag {
+impl Dissipation<2> for DragForce {
     const ORDERS: [usize; 2] = [0, 1];
 
     #[inline(always)]
@@ -113,7 +146,7 @@ pub struct Buoyancy {
     /// Index of the beam.
     pub beam: usize,
     /// m \[kg/m\].
-    pub displaced: f64,
+    pub displaced: Along,
     /// g \[m/s²\].
     pub acceleration: [f64; 2],
     /// In a motion, the law of time that g follows; without one it acts in full from the start.
@@ -123,8 +156,8 @@ pub struct Buoyancy {
 impl Part for Buoyancy {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         assembly.beam("buoyancy", self.beam)?;
-        let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
-        let force = self.acceleration.map(|g| -self.displaced * g);
+        let (displaced, extent) = Extent::along(self.beam, assembly.mass_rule(self.beam), &self.displaced);
+        let force = self.acceleration.map(|g| -displaced * g);
         assembly.load(Kind::Buoyancy, extent, self.law.as_ref(), |z: Vec<[Vector2<f64>; 1]>| {
             DeadForce::new(force, z.into_iter().map(|[r]| r).collect())
         })

@@ -2,7 +2,7 @@
 //! beam).
 
 use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
-use crate::beam::Place;
+use crate::beam::{Along, Place};
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
@@ -42,13 +42,13 @@ impl Part for Force {
     }
 }
 
-/// A force per reference length \[N/m\] along a whole beam.
+/// A force per reference length \[N/m\] along a beam.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DistributedForce {
     /// Index of the beam.
     pub beam: usize,
     /// Components, as for [`Force`].
-    pub value: [f64; 2],
+    pub value: [Along; 2],
     /// Whether the force turns with the section.
     pub follower: bool,
     /// In a motion, the law of time that the load's factor follows; without one the load acts in
@@ -58,22 +58,26 @@ pub struct DistributedForce {
 
 impl DistributedForce {
     /// A force of fixed direction \[N/m\].
-    pub fn new(beam: usize, value: [f64; 2]) -> Self {
-        Self { beam, value, follower: false, law: None }
+    pub fn new(beam: usize, value: [impl Into<Along>; 2]) -> Self {
+        Self { beam, value: value.map(Into::into), follower: false, law: None }
     }
 
     /// A force that turns with the sections \[N/m\].
-    pub fn following(beam: usize, value: [f64; 2]) -> Self {
-        Self { beam, value, follower: true, law: None }
+    pub fn following(beam: usize, value: [impl Into<Along>; 2]) -> Self {
+        Self { follower: true, ..Self::new(beam, value) }
     }
 }
 
 impl Part for DistributedForce {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         assembly.beam("a distributed force", self.beam)?;
-        let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
-        let law = self.law.as_ref();
-        add_force(assembly, Kind::DistributedForce, extent, self.value, self.follower, law)
+        let (rule, law) = (assembly.mass_rule(self.beam), self.law.as_ref());
+        let mut add =
+            |extent, value| add_force(assembly, Kind::DistributedForce, extent, value, self.follower, law);
+        for (extent, value) in Extent::pairs_along(self.beam, rule, &self.value) {
+            add(extent, value)?;
+        }
+        Ok(())
     }
 }
 

@@ -25,14 +25,15 @@ impl Part for Gravity {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beams = assembly.beams();
         let weights = beams.iter().enumerate().filter_map(|(index, beam)| {
-            Some((Extent::Beam(index, assembly.mass_rule(index)), beam.section.mass_per_length?))
+            let mass = beam.section.mass_per_length.as_ref()?;
+            Some(Extent::along(index, assembly.mass_rule(index), mass))
         });
-        let points = assembly.masses().iter().map(|(at, mass)| (Extent::Point(*at), *mass));
-        let weights: Vec<(Extent, f64)> = weights.chain(points).collect();
+        let points = assembly.masses().iter().map(|(at, mass)| (*mass, Extent::Point(*at)));
+        let weights: Vec<(f64, Extent)> = weights.chain(points).collect();
         if let (true, Some(first)) = (weights.is_empty(), beams.first()) {
             return Err(BuildError::missing(first, "mass per length", "gravity"));
         }
-        weights.into_iter().try_for_each(|(extent, mass)| {
+        weights.into_iter().try_for_each(|(mass, extent)| {
             let force = self.acceleration.map(|g| mass * g);
             add_dead_force(assembly, Kind::Gravity, extent, force, self.law.as_ref())
         })

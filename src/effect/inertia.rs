@@ -17,8 +17,8 @@ impl Part for BeamInertia {
         }
         let beam = assembly.beam("inertia", self.beam)?;
         let lacks = || BuildError::missing(beam, "mass per length", "inertia");
-        let mass_per_length = beam.section.mass_per_length.ok_or_else(lacks)?;
-        let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
+        let mass = beam.section.mass_per_length.as_ref().ok_or_else(lacks)?;
+        let (mass_per_length, extent) = Extent::along(self.beam, assembly.mass_rule(self.beam), mass);
         assembly.inertia(Kind::Inertia, extent, Inertia { mass_per_length })
     }
 }

@@ -15,7 +15,7 @@
 use super::Inertia;
 use super::direction;
 use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
-use crate::beam::Place;
+use crate::beam::{Along, Place};
 
 /// A mass at a point: T = ½ m ṙ·ṙ + ½ J θ̇².
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ impl Part for PointMass {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let extent = Extent::Point(self.at);
         if let Some(mass) = self.mass {
-            assembly.inertia(Kind::PointMass, extent, Inertia { mass_per_length: mass })?;
+            assembly.inertia(Kind::PointMass, extent.clone(), Inertia { mass_per_length: mass })?;
         }
         if let Some(inertia) = self.rotary_inertia {
             let momentum = RotaryInertia { inertia };
@@ -55,19 +55,20 @@ impl Part for PointMass {
 }
 
 /// The rotary inertia of a beam's sections, T = ½ ρI ∫ θ̇² ds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SectionInertia {
     /// Index of the beam.
     pub beam: usize,
     /// ρI \[kg m\].
-    pub per_length: f64,
+    pub per_length: Along,
 }
 
 impl Part for SectionInertia {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         assembly.beam("rotary inertia", self.beam)?;
-        let extent = Extent::Beam(self.beam, assembly.mass_rule(self.beam));
-        let momentum = RotaryInertia { inertia: self.per_length };
+        let rule = assembly.mass_rule(self.beam);
+        let (inertia, extent) = Extent::along(self.beam, rule, &self.per_length);
+        let momentum = RotaryInertia { inertia };
         assembly.turning_inertia(Kind::RotaryInertia, extent, momentum.clone(), Gyration(momentum))
     }
 }

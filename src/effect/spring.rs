@@ -29,14 +29,16 @@ impl Part for Spring {
         let extent = Extent::Point(self.at);
         if let Some(stiffness) = self.stiffness {
             match self.anchor {
-                None => assembly.elastic(Kind::Spring, extent, |z: Vec<[Vector2<f64>; 1]>| {
+                None => assembly.elastic(Kind::Spring, extent.clone(), |z: Vec<[Vector2<f64>; 1]>| {
                     GroundSpring::new([stiffness; 2], z.into_iter().map(|[r]| r).collect())
                 }),
-                Some(anchor) => assembly.elastic(Kind::Spring, extent, |z: Vec<[Vector2<f64>; 1]>| {
-                    let anchor = Vector2::from(anchor);
-                    let there = z.first().map_or(0.0, |[r]| (r - anchor).norm());
-                    Strut { stiffness, anchor, length: self.length.unwrap_or(there) }
-                }),
+                Some(anchor) => {
+                    assembly.elastic(Kind::Spring, extent.clone(), |z: Vec<[Vector2<f64>; 1]>| {
+                        let anchor = Vector2::from(anchor);
+                        let there = z.first().map_or(0.0, |[r]| (r - anchor).norm());
+                        Strut { stiffness, anchor, length: self.length.unwrap_or(there) }
+                    })
+                }
             }?;
         }
         if let Some(coefficient) = self.damping {
@@ -73,7 +75,7 @@ impl Part for TorsionSpring {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let extent = Extent::Point(self.at);
         if let Some(stiffness) = self.stiffness {
-            assembly.elastic(Kind::TorsionSpring, extent, |z: Vec<[Vector2<f64>; 1]>| {
+            assembly.elastic(Kind::TorsionSpring, extent.clone(), |z: Vec<[Vector2<f64>; 1]>| {
                 let reference = z.first().map_or(Vector2::x(), |[r]| *r);
                 Torsion { stiffness, reference }
             })?;

@@ -15,13 +15,13 @@ pub struct BeamStretch {
 impl Part for BeamStretch {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("stretch", self.beam)?;
-        let Some(stiffness) = beam.section.axial_stiffness else { return Ok(()) };
+        let Some(stiffness) = beam.section.uncoupled_axial_stiffness() else { return Ok(()) };
         // Only a curved beam needs to store its reference strains.
         let straight = assembly.discretized(self.beam).straight;
         let gradients = |z: Vec<[Vector2<f64>; 1]>| -> Vec<_> {
             if straight { Vec::new() } else { z.into_iter().map(|[r]| r).collect() }
         };
-        let extent = Extent::Beam(self.beam, beam.gauss_points.stretch_rule());
+        let (stiffness, extent) = Extent::along(self.beam, beam.gauss_points.stretch_rule(), &stiffness);
         match beam.strain {
             StrainMeasure::Green => {
                 assembly.elastic(Kind::Stretch, extent, |z| Stretch::<Green>::new(stiffness, &gradients(z)))

@@ -3,7 +3,7 @@
 use super::error::OutputError;
 use super::mode::displaced;
 use super::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, PlotError, Series, colour, grid, human};
-use crate::results::{AnalysisKind, BeamErrors, ProbeSample, Results, Shape, Trajectory};
+use crate::results::{AnalysisKind, BeamErrors, ProbeSample, Results, SectionForces, Shape, Trajectory};
 
 /// A drawn plot with the words below it.
 pub(super) struct Figure {
@@ -52,10 +52,12 @@ pub(super) fn figures(results: &Results) -> Result<Vec<Figure>, OutputError> {
     let t = results.states();
     let mut sketches = vec![modes(results), shape(t)];
     sketches.extend(along(t));
+    sketches.push(stress(t));
     sketches.push(error(t));
     sketches.push(position(t));
     sketches.push(angle(t));
     sketches.push(velocity(t));
+    sketches.push(section_forces(t));
     sketches.push(energy(t));
     sketches.push(convergence(t));
     sketches.push(steps(t));
@@ -144,11 +146,28 @@ fn shape(t: &Trajectory) -> Option<Sketch> {
         chart = chart.with(Series::line(label, centreline(beam), colour_of_beam(i)).size(2.2));
     }
     for (i, beam) in t.last.iter().enumerate() {
+        for face in surfaces(beam) {
+            chart = chart.with(Series::line("", face, colour_of_beam(i)).size(0.9));
+        }
+    }
+    for (i, beam) in t.last.iter().enumerate() {
         let label = if i == 0 { "nodes" } else { "" };
         let radius = if beam.nodes.len() > 60 { 1.8 } else { 3.2 };
         chart = chart.with(Series::points(label, beam.nodes.clone(), colour_of_beam(i)).size(radius));
     }
     Some(Sketch::one("shape", format!("Shape {}, in true proportion.", moment(t)), chart))
+}
+
+/// The outer faces of a beam whose section tells its shape.
+fn surfaces(beam: &Shape) -> Vec<Vec<[f64; 2]>> {
+    let face = |side: usize| {
+        let places = beam.x.iter().zip(&beam.y).zip(&beam.angle).zip(&beam.faces);
+        let off = |(((x, y), angle), faces): (((&f64, &f64), &f64), &[f64; 2])| {
+            [x - faces[side] * angle.sin(), y + faces[side] * angle.cos()]
+        };
+        places.map(off).collect()
+    };
+    if beam.faces.is_empty() { Vec::new() } else { vec![face(0), face(1)] }
 }
 
 /// The colour of a beam; it is never that of the states on the way.
@@ -187,6 +206,74 @@ fn along(t: &Trajectory) -> [Option<Sketch>; 2] {
         sketch("curvature", "Curvature", curvature, " 1/m", |b| &b.curvature, Some(|e| &e.curvature)),
         sketch("strain", "Axial strain", strain, "", |b| &b.strain, None),
     ]
+}
+
+/// What the sections at the probes carry, over the parameter.
+fn section_forces(t: &Trajectory) -> Option<Sketch> {
+    if t.parameter.len() < 2 || t.sections.is_empty() {
+        return None;
+    }
+    type Quantity = fn(&SectionForces) -> Option<f64>;
+    let chart = |axis: &str, quantities: &[(&str, Quantity)]| {
+        let mut chart = Chart::new("", parameter_axis(t), Axis::linear(axis)).sized(SMALL.0, SMALL.1);
+        for (i, series) in t.sections.iter().enumerate() {
+            for (mark, (name, value)) in [Mark::Line, Mark::Dashed].into_iter().zip(quantities) {
+                let known: Option<Vec<f64>> = series.samples.iter().map(value).collect();
+                let Some(values) = known else { continue };
+                let (label, points) =
+                    (format!("{} {name}", series.name), over_parameter(t, values.into_iter()));
+                let line = match mark {
+                    Mark::Dashed => Series::dashed(label, points, colour(i)),
+                    _ => Series::line(label, points, colour(i)),
+                };
+                chart = chart.with(line);
+            }
+        }
+        chart
+    };
+    let mut charts = vec![
+        chart("force [N]", &[("N", |f| Some(f.axial_force)), ("Q", |f| Some(f.shear_force))]),
+        chart("bending moment [N m]", &[("M", |f| Some(f.bending_moment))]),
+    ];
+    if t.sections.iter().flat_map(|series| &series.samples).any(|forces| forces.stress_top.is_some()) {
+        charts.push(chart("stress [Pa]", &[("top", |f| f.stress_top), ("bottom", |f| f.stress_bottom)]));
+    }
+    let caption = "Axial force N, shear force Q and bending moment M of the sections at the probes; stresses on their faces where they are known.";
+    Some(Sketch { name: "sections", caption: caption.into(), charts })
+}
+
+/// Stresses on the outer faces along the arc length.
+fn stress(t: &Trajectory) -> Option<Sketch> {
+    let largest = t.last.iter().filter_map(Shape::largest_stress);
+    let largest = largest.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))?;
+    let axis = Axis::linear("stress σ [Pa]");
+    let mut chart = Chart::new("", Axis::linear("arc length s [m]"), axis).sized(SMALL.0, SMALL.1);
+    for (i, beam) in t.last.iter().enumerate() {
+        let Some([bottom, top]) = beam.face_stresses() else { continue };
+        let name = |face: &str| {
+            if t.last.len() > 1 { format!("{}, {face}", beam.beam) } else { face.to_owned() }
+        };
+        let line = |values: &[f64]| beam.s.iter().zip(values).map(|(&s, &v)| [s, v]).collect();
+        chart = chart.with(Series::line(name("top"), line(top), colour_of_beam(i))).with(Series::dashed(
+            name("bottom"),
+            line(bottom),
+            colour_of_beam(i),
+        ));
+    }
+    let layer = if t.last.iter().any(|shape| shape.stress.len() > 1) {
+        format!(", layer {}", largest.layer)
+    } else {
+        String::new()
+    };
+    let caption = format!(
+        "Stress {} on the faces to the left (top) and to the right (bottom) of the centreline; the largest is {} Pa, at s = {} m of {}{layer}, {}.",
+        moment(t),
+        human(largest.value, 5),
+        human(largest.s, 4),
+        largest.beam,
+        largest.face
+    );
+    Some(Sketch::one("stress", caption, chart))
 }
 
 /// The larger of the values at the places before and behind `s`.

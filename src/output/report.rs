@@ -94,7 +94,7 @@ fn probes(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
     let length = t.run.undeformed.iter().filter_map(|b| b.s.last()).fold(0.0_f64, |m, l| m.max(*l));
     // One digit is enough for round-off.
     let number = |(v, scale): (f64, f64)| human(v, if v.abs() < 1e-12 * scale { 1 } else { 7 });
-    let row = |(name, ProbeSummary { sample: s, error }): &(String, ProbeSummary)| {
+    let row = |(name, ProbeSummary { sample: s, error, .. }): &(String, ProbeSummary)| {
         let known = |value: f64, scale: f64, of: fn(&ProbeSample) -> f64| {
             error.and_then(|error| with_error(value, of(&error))).unwrap_or_else(|| number((value, scale)))
         };

@@ -3,7 +3,8 @@
 use serde::{Serialize, Serializer};
 
 use crate::results::{
-    AnalysisKind, Energy, ErrorEstimate, Event, ProbeSample, Results, RunForError, Seconds, Statistics,
+    AnalysisKind, Energy, ErrorEstimate, Event, LargestStress, ProbeSample, Reaction, Results, RunForError,
+    Seconds, SectionForces, Shape, Statistics,
 };
 
 /// The contents of `summary.json`; keys and their order are those of the fields.
@@ -27,6 +28,12 @@ pub struct Summary {
     /// Estimated errors of the results, where they are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorSummary>,
+    /// Per support and joint, its forces in the last state, where they were asked for.
+    #[serde(serialize_with = "as_map", skip_serializing_if = "Vec::is_empty")]
+    pub reactions: Vec<(String, Reaction)>,
+    /// The largest stress in the last state of each beam whose section tells its shape.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub stress: Vec<LargestStress>,
     /// Energies of the last record; `null` where there is none (modal, buckling).
     pub energy: Option<EnergySummary>,
     /// Events of a motion, in order; left out where none was asked for or none happened.
@@ -59,6 +66,9 @@ pub struct ProbeSummary {
     /// The last sample.
     #[serde(flatten)]
     pub sample: ProbeSample,
+    /// What the section at the probe carries, where it was asked for.
+    #[serde(flatten)]
+    pub section: Option<SectionForces>,
     /// The estimated error of each quantity, in its unit; of x and y the distance from the right
     /// place.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -154,9 +164,11 @@ impl Summary {
     pub fn of(results: &Results) -> Self {
         let (trajectory, run) = (results.states(), results.run());
         let error = run.error.as_deref();
-        let last_sample = |p: &crate::results::ProbeSeries| {
+        let last_sample = |(i, p): (usize, &crate::results::ProbeSeries)| {
+            let section = trajectory.sections.get(i).and_then(|series| series.samples.last()).copied();
             let of_probe = error.and_then(|error| error.last_of(&p.name)).copied();
-            p.samples.last().map(|sample| (p.name.clone(), ProbeSummary { sample: *sample, error: of_probe }))
+            let summary = |sample: &ProbeSample| ProbeSummary { sample: *sample, section, error: of_probe };
+            p.samples.last().map(|sample| (p.name.clone(), summary(sample)))
         };
         let absolute = |kind: AnalysisKind| {
             let error = error.filter(|_| run.analysis == kind)?;
@@ -171,7 +183,13 @@ impl Summary {
             degrees_of_freedom: run.degrees_of_freedom,
             last: trajectory.parameter.last().copied(),
             error: error.map(ErrorSummary::of),
-            probes: trajectory.probes.iter().filter_map(last_sample).collect(),
+            probes: trajectory.probes.iter().enumerate().filter_map(last_sample).collect(),
+            reactions: trajectory
+                .reactions
+                .iter()
+                .filter_map(|r| Some((r.name.clone(), *r.samples.last()?)))
+                .collect(),
+            stress: trajectory.last.iter().filter_map(Shape::largest_stress).collect(),
             energy: trajectory.energy.last().map(|last| EnergySummary {
                 stretch: last.stretch,
                 bend: last.bend,
@@ -216,6 +234,6 @@ pub(crate) fn drift(energy: &[Energy]) -> Option<f64> {
     (kinetic > 0.0).then(|| change / kinetic)
 }
 
-fn as_map<S: Serializer>(probes: &[(String, ProbeSummary)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(probes.iter().map(|(name, sample)| (name, sample)))
+fn as_map<T: Serialize, S: Serializer>(named: &[(String, T)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(named.iter().map(|(name, value)| (name, value)))
 }

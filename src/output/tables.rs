@@ -4,7 +4,9 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-use crate::results::{AnalysisKind, Frame, ModeShape, ProbeErrors, ProbeSample, Trajectory};
+use crate::results::{
+    AnalysisKind, BeamSections, Frame, ModeShape, ProbeErrors, ProbeSample, SectionForces, Trajectory,
+};
 
 /// Name of the first column, by which the records are ordered.
 pub(super) fn parameter_name(analysis: AnalysisKind) -> &'static str {
@@ -65,16 +67,30 @@ pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     if moving {
         quantities.extend(["vx", "vy"]);
     }
+    let stressed = t.sections.iter().flat_map(|series| &series.samples).any(|s| s.stress_top.is_some());
+    if !t.sections.is_empty() {
+        quantities.extend(["axial_force", "shear_force", "bending_moment"]);
+    }
+    if stressed {
+        quantities.extend(["stress_bottom", "stress_top"]);
+    }
     let errors = t.run.error.as_ref().map(|error| &error.probes[..]).unwrap_or_default();
     if !errors.is_empty() {
         quantities.push("error");
     }
     let mut header = words(&[parameter_name(t.run.analysis)]);
     header.extend(t.probes.iter().flat_map(|p| quantities.iter().map(move |q| format!("{}.{q}", p.name))));
-    let values = |sample: &ProbeSample, error: Option<&ProbeErrors>, i: usize| {
+    let values = |sample: &ProbeSample, probe: usize, error: Option<&ProbeErrors>, i: usize| {
         let mut values = vec![sample.x, sample.y, sample.angle, sample.curvature, sample.strain];
         if moving {
             values.extend([sample.vx.unwrap_or(f64::NAN), sample.vy.unwrap_or(f64::NAN)]);
+        }
+        if let Some(series) = t.sections.get(probe) {
+            let forces = series.samples.get(i).unwrap_or(&SectionForces::UNKNOWN);
+            values.extend([forces.axial_force, forces.shear_force, forces.bending_moment]);
+            if stressed {
+                values.extend([forces.stress_bottom, forces.stress_top].map(|s| s.unwrap_or(f64::NAN)));
+            }
         }
         values.extend(error.map(|error| error.samples.get(i).map_or(f64::NAN, |error| error.x)));
         values
@@ -82,8 +98,8 @@ pub(super) fn probes(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let mut table = CsvTable::new(out, &header)?;
     for (i, &parameter) in t.parameter.iter().enumerate() {
         let samples =
-            t.probes.iter().enumerate().filter_map(|(k, p)| Some((p.samples.get(i)?, errors.get(k))));
-        let values = samples.flat_map(|(sample, error)| values(sample, error, i));
+            t.probes.iter().enumerate().filter_map(|(k, p)| Some((p.samples.get(i)?, k, errors.get(k))));
+        let values = samples.flat_map(|(sample, k, error)| values(sample, k, error, i));
         table.row(&[], std::iter::once(parameter).chain(values))?;
     }
     table.finish()
@@ -143,7 +159,7 @@ pub(super) fn effects(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
 
 /// One row for each arc length, which is the first of the columns; every row begins with the same
 /// words.
-fn rows(table: &mut CsvTable<'_>, words: &[&str], columns: &[&Vec<f64>]) -> io::Result<()> {
+fn rows(table: &mut CsvTable<'_>, words: &[&str], columns: &[&[f64]]) -> io::Result<()> {
     let count = columns.first().map_or(0, |s| s.len());
     (0..count).try_for_each(|i| {
         table.row(words, columns.iter().map(|column| column.get(i).copied().unwrap_or(f64::NAN)))
@@ -151,9 +167,10 @@ fn rows(table: &mut CsvTable<'_>, words: &[&str], columns: &[&Vec<f64>]) -> io::
 }
 
 /// `shape.csv`: the last state,
-/// `beam, s, x, y, angle, strain, curvature, axial_force, shear_force, bending_moment`.
+/// `beam, s, x, y, angle, strain, curvature, axial_force, shear_force, bending_moment`, and
+/// `stress_bottom, stress_top` where the shape of a section is known.
 pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let header = [
+    let mut header = vec![
         "beam",
         "s",
         "x",
@@ -165,11 +182,32 @@ pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
         "shear_force",
         "bending_moment",
     ];
+    let stressed = t.last.iter().any(|shape| !shape.stress.is_empty());
+    if stressed {
+        header.extend(["stress_bottom", "stress_top"]);
+    }
     let mut table = CsvTable::new(out, &words(&header))?;
     for shape in &t.last {
         let state = [&shape.s, &shape.x, &shape.y, &shape.angle, &shape.strain, &shape.curvature];
         let forces = [&shape.axial_force, &shape.shear_force, &shape.bending_moment];
-        rows(&mut table, &[&shape.beam], &[&state[..], &forces].concat())?;
+        let mut columns: Vec<&[f64]> = state.into_iter().chain(forces).map(Vec::as_slice).collect();
+        if stressed {
+            columns.extend(shape.face_stresses().unwrap_or_default());
+        }
+        rows(&mut table, &[&shape.beam], &columns)?;
+    }
+    table.finish()
+}
+
+/// `layers.csv`: stresses [Pa] in the last state of beams with several layers;
+/// `beam, layer, s, stress_bottom, stress_top`.
+pub(super) fn layers(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
+    let mut table = CsvTable::new(out, &words(&["beam", "layer", "s", "stress_bottom", "stress_top"]))?;
+    for shape in t.last.iter().filter(|shape| shape.stress.len() > 1) {
+        for (layer, number) in shape.stress.iter().zip(1..) {
+            let number = format!("{number}");
+            rows(&mut table, &[&shape.beam, &number], &[&shape.s, &layer.bottom, &layer.top])?;
+        }
     }
     table.finish()
 }
@@ -181,7 +219,8 @@ pub(super) fn modes(modes: &[&[ModeShape]], out: &mut dyn Write) -> io::Result<(
     let mut table = CsvTable::new(out, &words(&header))?;
     for (i, mode) in modes.iter().enumerate() {
         for beam in *mode {
-            let columns = [&beam.s, &beam.x, &beam.y, &beam.angle, &beam.strain, &beam.curvature];
+            let columns =
+                [&beam.s, &beam.x, &beam.y, &beam.angle, &beam.strain, &beam.curvature].map(Vec::as_slice);
             rows(&mut table, &[&(i + 1).to_string(), &beam.beam], &columns)?;
         }
     }
@@ -197,9 +236,13 @@ pub(super) fn eigenvalues(name: &str, values: &[f64], out: &mut dyn Write) -> io
     table.finish()
 }
 
-/// `states.csv`: every beam at every recorded frame; the parameter, `beam, s, x, y`.
+/// `states.csv`: every beam at every recorded frame; the parameter, `beam, s, x, y`. Where section
+/// forces were asked for, what the sections carry follows.
 pub(super) fn states(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let header = [parameter_name(t.run.analysis), "beam", "s", "x", "y"];
+    let header = vec![parameter_name(t.run.analysis), "beam", "s", "x", "y"];
+    if !t.along.is_empty() {
+        return sections(t, header, out);
+    }
     let mut table = CsvTable::new(out, &words(&header))?;
     for frame in &t.frames {
         let parameter = exact(frame.parameter);
@@ -207,6 +250,56 @@ pub(super) fn states(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
             let name = t.run.undeformed.get(beam).map_or("", |shape| &shape.beam);
             for (s, [x, y]) in frame_arc_lengths(t, frame, beam).into_iter().zip(points) {
                 table.row(&[&parameter, name], [s, *x, *y])?;
+            }
+        }
+    }
+    table.finish()
+}
+
+/// The columns of a beam with what its sections carry: name in tables, name with unit in files for
+/// ParaView, values. Stresses and velocities are there where they are known.
+pub(super) fn section_columns(beam: &BeamSections) -> Vec<(&'static str, &'static str, Vec<f64>)> {
+    let shape = &beam.shape;
+    let mut columns: Vec<(&str, &str, Vec<f64>)> = vec![
+        ("angle", "angle [rad]", shape.angle.clone()),
+        ("strain", "axial strain", shape.strain.clone()),
+        ("curvature", "curvature [1/m]", shape.curvature.clone()),
+        ("axial_force", "axial force [N]", shape.axial_force.clone()),
+        ("shear_force", "shear force [N]", shape.shear_force.clone()),
+        ("bending_moment", "bending moment [N m]", shape.bending_moment.clone()),
+    ];
+    if !beam.velocity.is_empty() {
+        let axis = |axis: usize| beam.velocity.iter().map(|v| v[axis]).collect();
+        columns.extend([("vx", "velocity x [m/s]", axis(0)), ("vy", "velocity y [m/s]", axis(1))]);
+    }
+    if let Some([bottom, top]) = shape.face_stresses() {
+        columns.push(("stress_bottom", "stress bottom [Pa]", bottom.to_vec()));
+        columns.push(("stress_top", "stress top [Pa]", top.to_vec()));
+    }
+    columns
+}
+
+/// `states.csv` with what the sections carry.
+fn sections(t: &Trajectory, mut header: Vec<&str>, out: &mut dyn Write) -> io::Result<()> {
+    let mut names: Vec<&str> = Vec::new();
+    for (name, ..) in t.along.iter().flatten().flat_map(section_columns) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    header.extend(&names);
+    let mut table = CsvTable::new(out, &words(&header))?;
+    for (frame, beams) in t.frames.iter().zip(&t.along) {
+        let parameter = exact(frame.parameter);
+        for beam in beams {
+            let (shape, columns) = (&beam.shape, section_columns(beam));
+            for i in 0..shape.s.len() {
+                let of = |name: &&str| {
+                    let column = columns.iter().find(|(other, ..)| other == name);
+                    column.and_then(|(_, _, values)| values.get(i)).copied().unwrap_or(f64::NAN)
+                };
+                let place = [shape.s[i], shape.x[i], shape.y[i]];
+                table.row(&[&parameter, &shape.beam], place.into_iter().chain(names.iter().map(of)))?;
             }
         }
     }

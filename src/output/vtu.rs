@@ -4,8 +4,8 @@
 
 use std::fmt::Write as _;
 
-use super::tables::frame_arc_lengths;
-use crate::results::{Shape, Trajectory};
+use super::tables::{frame_arc_lengths, section_columns};
+use crate::results::{BeamSections, Shape, Trajectory};
 
 /// Type number of a polyline in the format.
 const POLY_LINE: u8 = 4;
@@ -45,12 +45,27 @@ pub(super) fn series(t: &Trajectory) -> Vec<(String, String)> {
             }
             s.values.extend(arc);
         }
-        files.push((name, grid(&frame.beams, &[s, displacement])));
+        let mut fields = vec![s, displacement];
+        fields.extend(t.along.get(i).into_iter().flat_map(|beams| sections(beams)));
+        files.push((name, grid(&frame.beams, &fields)));
     }
     index.push_str("</Collection>\n</VTKFile>\n");
     files.push(("vtu/last.vtu".into(), last(&t.last)));
     files.push(("states.pvd".into(), index));
     files
+}
+
+/// What the sections of all beams carry, field by field; those that some beam does not know are left
+/// out by [`grid`].
+fn sections(beams: &[BeamSections]) -> Vec<PointData> {
+    let mut fields: Vec<PointData> = Vec::new();
+    for (_, name, values) in beams.iter().flat_map(section_columns) {
+        match fields.iter_mut().find(|field| field.name == name) {
+            Some(field) => field.values.extend(values),
+            None => fields.push(PointData { name, components: 1, values }),
+        }
+    }
+    fields
 }
 
 /// The last state with everything that is known along the beams.
@@ -62,12 +77,23 @@ fn last(shapes: &[Shape]) -> String {
         components: 1,
         values: shapes.iter().flat_map(|shape| values(shape).iter().copied()).collect(),
     };
-    let fields = [
+    let mut fields = vec![
         field("arc length [m]", |b| &b.s),
         field("angle [rad]", |b| &b.angle),
         field("axial strain", |b| &b.strain),
         field("curvature [1/m]", |b| &b.curvature),
+        field("axial force [N]", |b| &b.axial_force),
+        field("shear force [N]", |b| &b.shear_force),
+        field("bending moment [N m]", |b| &b.bending_moment),
     ];
+    for (name, face) in [("stress bottom [Pa]", 0), ("stress top [Pa]", 1)] {
+        // Known of all beams or left out: VTK reads no text for "not a number".
+        let of_beams: Option<Vec<&[f64]>> =
+            shapes.iter().map(|shape| shape.face_stresses().map(|faces| faces[face])).collect();
+        if let Some(values) = of_beams {
+            fields.push(PointData { name, components: 1, values: values.concat() });
+        }
+    }
     grid(&beams, &fields)
 }
 

@@ -2,6 +2,51 @@
 
 use serde::Serialize;
 
+/// Stresses [Pa] in one layer of a beam's section, which is the whole section where that has no
+/// others. Between the faces they are linear.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct LayerStress {
+    /// On its face on the right, seen along the beam, at the arc lengths of the [`Shape`].
+    pub bottom: Vec<f64>,
+    /// On its face on the left.
+    pub top: Vec<f64>,
+}
+
+/// The largest stress, by magnitude, along a beam.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LargestStress {
+    /// The stress [Pa], positive in tension.
+    pub value: f64,
+    /// Name of the beam.
+    pub beam: String,
+    /// Arc length \[m\].
+    pub s: f64,
+    /// Number of the layer, from 1.
+    pub layer: usize,
+    /// `bottom` or `top`.
+    pub face: &'static str,
+}
+
+impl Shape {
+    /// Stresses [Pa] on the outer faces: those of the first layer's face on the right, and of the
+    /// last layer's face on the left.
+    pub fn face_stresses(&self) -> Option<[&[f64]; 2]> {
+        Some([&self.stress.first()?.bottom, &self.stress.last()?.top])
+    }
+
+    /// The largest stress along the beam, where stresses are known.
+    pub fn largest_stress(&self) -> Option<LargestStress> {
+        let layers = self.stress.iter().zip(1..);
+        let faces = layers
+            .flat_map(|(layer, number)| [(number, "bottom", &layer.bottom), (number, "top", &layer.top)]);
+        let all = faces.flat_map(|(layer, face, values)| {
+            values.iter().zip(&self.s).map(move |(value, s)| (*value, *s, layer, face))
+        });
+        let (value, s, layer, face) = all.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
+        Some(LargestStress { value, beam: self.beam.clone(), s, layer, face })
+    }
+}
+
 /// The centrelines of all beams at one record.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Frame {
@@ -36,6 +81,14 @@ pub struct Shape {
     pub shear_force: Vec<f64>,
     /// M \[N m\], of the sign of EI κ.
     pub bending_moment: Vec<f64>,
+    /// Stresses [Pa] in the layers of the section; empty where the scene does not tell its shape and
+    /// its modulus, and given for the last state alone.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub stress: Vec<LayerStress>,
+    /// Distances of the outer faces from the centreline \[m\], to the right (negative) and to the left;
+    /// empty where the scene does not tell the shape of the section.
+    #[serde(skip)]
+    pub faces: Vec<[f64; 2]>,
     /// Positions of the nodes \[m\].
     pub nodes: Vec<[f64; 2]>,
 }

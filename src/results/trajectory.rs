@@ -17,6 +17,9 @@ pub struct Trajectory {
     pub probes: Vec<ProbeSeries>,
     /// One entry per entry of `parameter`.
     pub energy: Vec<Energy>,
+    /// Per probe, what its section carries, where it was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sections: Vec<SectionSeries>,
     /// Forces of supports and joints, where they were asked for.
     pub reactions: Vec<ReactionSeries>,
     /// Energies and forces of effects, where they were asked for.
@@ -24,6 +27,9 @@ pub struct Trajectory {
     /// Centrelines at the records, or, where these are more than [`crate::Options::frames`], at
     /// about so many of them, evenly spread.
     pub frames: Vec<Frame>,
+    /// Per frame and beam what the sections carry, where it was asked for.
+    #[serde(skip)]
+    pub along: Vec<Vec<BeamSections>>,
     /// The last state of each beam, with section forces.
     pub last: Vec<Shape>,
     /// All recorded states, where they were asked for ([`crate::Options::states`]): shapes at any
@@ -68,6 +74,53 @@ pub struct ProbeSample {
     /// Velocity along y \[m/s\]; dynamics only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vy: Option<f64>,
+}
+
+/// What the section at a probe carries.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct SectionSeries {
+    /// The probe's name.
+    pub name: String,
+    /// One sample per record: behind the probe, and at the beam's end before it.
+    pub samples: Vec<SectionForces>,
+}
+
+/// What a section carries.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SectionForces {
+    /// N \[N\], positive in tension.
+    pub axial_force: f64,
+    /// Q \[N\], along the normal on the side of the cut that looks to the beam's end.
+    pub shear_force: f64,
+    /// M \[N m\], of the sign of EI κ.
+    pub bending_moment: f64,
+    /// Stress [Pa] on the face to the right of the centreline, where the shape of the section and its
+    /// modulus are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stress_bottom: Option<f64>,
+    /// Stress [Pa] on the face to the left.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stress_top: Option<f64>,
+}
+
+impl SectionForces {
+    /// Of a state in which it is not known what acts on the beams.
+    pub const UNKNOWN: Self = Self {
+        axial_force: f64::NAN,
+        shear_force: f64::NAN,
+        bending_moment: f64::NAN,
+        stress_bottom: None,
+        stress_top: None,
+    };
+}
+
+/// A beam with what its sections carry, at the places of a frame.
+#[derive(Clone, Debug, Default)]
+pub struct BeamSections {
+    /// Its shape with section forces and stresses.
+    pub shape: Shape,
+    /// Velocities \[m/s\]; empty without a motion.
+    pub velocity: Vec<[f64; 2]>,
 }
 
 /// Forces of a support or joint on its beam; of a joint on its second point.

@@ -18,7 +18,7 @@
 use crate::assembly::BuildError;
 use crate::basis::BasisTable;
 use crate::effect::curvature;
-use crate::model::{GaussPoints, Model, StrainMeasure};
+use crate::model::{Along, GaussPoints, Model, StrainMeasure};
 use crate::results::Shape;
 use crate::system::{Fields, System};
 use nalgebra::Vector2;
@@ -47,8 +47,10 @@ struct LockingBeam {
     points: GaussPoints,
     cable: bool,
     measure: StrainMeasure,
-    /// EA \[N\] and EI \[N m²\].
-    stiffness: [f64; 2],
+    /// EA \[N\].
+    axial_stiffness: Along,
+    /// EI \[N m²\]; `None` for a string.
+    bending_stiffness: Option<Along>,
     offset: usize,
     /// r' at the points for stretching, r' and r'' at those for bending.
     tables: [BasisTable; 2],
@@ -64,13 +66,12 @@ impl Locking {
         let mut beams = Vec::new();
         for (beam, part) in model.beams.iter().zip(system.beams()) {
             let points = beam.gauss_points;
-            let Some(axial) = beam.section.axial_stiffness else { continue };
+            let Some(axial_stiffness) = beam.section.axial_stiffness.clone() else { continue };
             // Stretch is resisted at no more points than a cell can follow.
             let follows = points.stretch <= if points.lobatto { 3 } else { 2 };
             if beam.section.bending_stiffness.is_some() && follows {
                 continue;
             }
-            let bending = beam.section.bending_stiffness.unwrap_or_default();
             let table = |rule, orders: &[usize]| {
                 part.basis.table(rule, orders).map_err(|e| BuildError::basis(&part.name, e))
             };
@@ -80,7 +81,8 @@ impl Locking {
                 points,
                 cable: matches!(beam.discretization, crate::model::Discretization::Ancf { .. }),
                 measure: beam.strain,
-                stiffness: [axial, bending],
+                axial_stiffness,
+                bending_stiffness: beam.section.bending_stiffness.clone(),
                 offset: part.offset(),
                 tables,
                 reference: [Vec::new(), Vec::new()],
@@ -103,15 +105,20 @@ impl Locking {
     /// energy matters against the work `scale` of the loads \[J\]. `shapes` holds the section
     /// forces.
     pub fn jammed(&self, shapes: &[Shape], scale: f64) -> impl Iterator<Item = String> {
-        let strings = self.beams.iter().filter(|beam| beam.stiffness[1] == 0.0);
+        let strings = self.beams.iter().filter(|beam| beam.bending_stiffness.is_none());
         strings.filter_map(move |beam| {
             let shape = shapes.iter().find(|shape| shape.beam == beam.name)?;
             let stretch = beam.seen.last()?[1];
             let pieces = shape.s.windows(2).zip(shape.axial_force.windows(2));
-            let squares = pieces.map(|(s, n)| 0.5 * (s[1] - s[0]) * (n[0] * n[0] + n[1] * n[1]));
-            let balanced = 0.5 * squares.sum::<f64>() / beam.stiffness[0];
-            let length = shape.s.last()?;
-            let least = 0.5 * beam.stiffness[0] * length * LEAST_STRAIN * LEAST_STRAIN;
+            let energies = pieces.map(|(s, n)| {
+                let middle = 0.5 * (s[0] + s[1]);
+                let stiffness = beam.axial_stiffness.at(middle, middle);
+                0.25 * (s[1] - s[0]) * (n[0] * n[0] + n[1] * n[1]) / stiffness
+            });
+            let balanced = energies.sum::<f64>();
+            let length = *shape.s.last()?;
+            let stiffness = beam.axial_stiffness.mean(length);
+            let least = 0.5 * stiffness * length * LEAST_STRAIN * LEAST_STRAIN;
             (stretch > JAMMED * balanced && stretch > least.max(TOLERATED * scale)).then(|| {
                 format!(
                     "string `{}` holds itself: its stretch takes {stretch:.1e} J, and its section forces account for {balanced:.1e} J, so that \
@@ -168,10 +175,15 @@ impl LockingBeam {
         };
         let strains = changes(self.strains(q), &self.reference[0]);
         let curvatures = changes(self.curvatures(q), &self.reference[1]);
-        let [ea, ei] = self.stiffness;
         let mut energies = [0.0; 3];
-        for (cell, kappa) in of_bend.cells.iter().zip(curvatures.chunks_exact(of_bend.points_per_cell)) {
+        // The stiffnesses of a cell are taken in its middle.
+        let bending = |middle: f64| self.bending_stiffness.as_ref().map_or(0.0, |ei| ei.at(middle, middle));
+        let points = of_bend.points_per_cell;
+        let cells =
+            of_bend.cells.iter().zip(curvatures.chunks_exact(points)).zip(of_bend.s.chunks_exact(points));
+        for ((cell, kappa), s) in cells {
             let (weights, _) = of_bend.block(*cell);
+            let ei = bending(s.iter().sum::<f64>() / points as f64);
             energies[0] +=
                 0.5 * ei * weights.iter().zip(kappa).map(|(w, kappa)| w * kappa * kappa).sum::<f64>();
         }
@@ -185,6 +197,7 @@ impl LockingBeam {
             let (centre, mean) = (sum(&|i| s[i]) / length, sum(&|i| strain[i]) / length);
             let spread = sum(&|i| (s[i] - centre).powi(2));
             let slope = sum(&|i| (s[i] - centre) * (strain[i] - mean)) / spread;
+            let ea = self.axial_stiffness.at(centre, centre);
             energies[1] += 0.5 * ea * sum(&|i| strain[i].powi(2));
             energies[2] += 0.5 * ea * sum(&|i| (strain[i] - mean - slope * (s[i] - centre)).powi(2));
         }
@@ -192,9 +205,7 @@ impl LockingBeam {
     }
 
     fn warning(&self) -> Option<String> {
-        if self.stiffness[1] == 0.0 {
-            return None;
-        }
+        self.bending_stiffness.as_ref()?;
         let most = self.seen.iter().fold(0.0_f64, |most, [bend, ..]| most.max(*bend));
         let bent = self.seen.iter().filter(|[bend, ..]| *bend > STRAIGHT * most);
         let relevant = bent.filter(|[bend, stretch, locked]| *locked > IRRELEVANT * (bend + stretch));
@@ -231,7 +242,8 @@ mod tests {
                 points: GaussPoints { stretch: 5, bend: 3, lobatto: false },
                 cable: true,
                 measure: StrainMeasure::Engineering,
-                stiffness: [3e4, 0.0],
+                axial_stiffness: Along::Constant(3e4),
+                bending_stiffness: None,
                 offset: 0,
                 tables: [BasisTable::default(), BasisTable::default()],
                 reference: [Vec::new(), Vec::new()],

@@ -1,6 +1,7 @@
 //! Motions of a model.
 
 use super::sampler::Sampler;
+use super::shapes::acting;
 use super::{Options, RunError, Solve, Stopwatch, Watch, left, memory, needs, timed};
 use crate::model::{Analysis, Displacement, Dynamic, Model};
 use crate::restart::{self, SavedState};
@@ -39,7 +40,7 @@ impl Solve for Dynamic {
             start,
             watches: &watches,
             reactions: model.outputs.reactions,
-            forces: options.states,
+            forces: options.states || model.outputs.section_forces,
             directions: &directions,
             keep: keep.map(|keep| dynamics::Checkpointing { every: keep.every, take: &take }),
         };
@@ -50,7 +51,7 @@ impl Solve for Dynamic {
         stopwatch.solved();
         let saved = solution.checkpoint.take();
         let saved = saved.map(|checkpoint| SavedState::new(model, &system, motion.clone(), checkpoint));
-        let states = options.states.then(|| {
+        let kept = (options.states || model.outputs.section_forces).then(|| {
             let states = solution.states.iter().cloned().zip(std::mem::take(&mut solution.forces));
             let states = states.map(|(state, forces)| RecordedState::Moving { state, forces });
             RecordedStates { states: states.collect(), taken_up }
@@ -61,7 +62,15 @@ impl Solve for Dynamic {
         };
         if let Some(trajectory) = left(&mut outcome) {
             trajectory.saved = saved;
-            trajectory.states = states;
+            if let Some(kept) = kept.as_ref().filter(|_| model.outputs.section_forces) {
+                let acted = kept.states.iter().filter_map(|kept| {
+                    let RecordedState::Moving { state, .. } = kept else { return None };
+                    let actions = acting(&system, state.time, kept).map(|(_, actions)| actions);
+                    Some((&state.q[..], Some(&state.v[..]), actions))
+                });
+                sampler.record_sections(trajectory, acted);
+            }
+            trajectory.states = kept.filter(|_| options.states);
             trajectory.run.settings.extend(told.map(|told| ("continued".into(), told)));
         }
         timed(outcome, |trajectory| trajectory, &watch, stopwatch)

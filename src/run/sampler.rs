@@ -9,8 +9,8 @@ use crate::linear::Singular;
 use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
 use crate::restart::SavedState;
 use crate::results::{
-    AnalysisKind, EffectSeries, Energy, Event, Frame, ModeShape, ProbeSample, ProbeSeries, ReactionSeries,
-    Run, Shape, Trajectory,
+    AnalysisKind, EffectSeries, Energy, Event, Frame, LayerStress, ModeShape, ProbeSample, ProbeSeries,
+    ReactionSeries, Run, Shape, Trajectory,
 };
 use crate::solve::Work;
 use crate::solve::dynamics;
@@ -360,7 +360,12 @@ impl<'a> Sampler<'a> {
         beams
             .map(|(beam, (even, actions))| {
                 let part = &self.system.beams()[beam];
-                let (s, sides) = stations(even.s(), &jumps(beam, part.basis.length()));
+                let length = part.basis.length();
+                let mut jumps = jumps(beam, length);
+                jumps.extend(self.model.beams[beam].section.jumps());
+                jumps.sort_by(f64::total_cmp);
+                jumps.dedup_by(|a, b| (*a - *b).abs() <= SAME_PLACE * length);
+                let (s, sides) = stations(even.s(), &jumps);
                 let more =
                     (s != even.s()).then(|| View::points(&part.basis, part.offset(), &s).ok()).flatten();
                 let mut shape = self.shape_of(beam, more.as_ref().unwrap_or(even), q);
@@ -370,9 +375,40 @@ impl<'a> Sampler<'a> {
             .collect()
     }
 
+    /// One beam at the arc lengths `s` \[m\], with section forces on the given sides of the cuts.
+    pub(super) fn cut_shape(
+        &self,
+        beam: usize,
+        s: &[f64],
+        sides: &[Side],
+        q: &[f64],
+        actions: &Actions,
+    ) -> Shape {
+        let part = &self.system.beams()[beam];
+        let view = View::points(&part.basis, part.offset(), s);
+        let mut shape = view.map_or_else(|_| Shape::default(), |view| self.shape_of(beam, &view, q));
+        if shape.s.len() == sides.len() {
+            self.cut(beam, actions, sides, &mut shape);
+        }
+        shape
+    }
+
+    /// Beam and arc length \[m\] of each probe.
+    pub(super) fn probe_places(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.probes.iter().map(|probe| (probe.beam, probe.view.s()[0]))
+    }
+
+    /// The arc lengths \[m\] of a frame's points on a beam, and their velocities \[m/s\].
+    pub(super) fn frame_places(&self, beam: usize, v: Option<&[f64]>) -> (Vec<f64>, Vec<[f64; 2]>) {
+        let view = &self.shapes[beam];
+        let s = view.s().iter().copied().step_by(FRAME_STRIDE).collect();
+        (s, v.map_or_else(Vec::new, |v| view.positions(FRAME_STRIDE, v).collect()))
+    }
+
     /// Adds the section forces; a string has only N.
     fn cut(&self, beam: usize, actions: &Actions, sides: &[Side], shape: &mut Shape) {
-        let bends = self.model.beams[beam].section.bending_stiffness.is_some();
+        let section = &self.model.beams[beam].section;
+        let bends = section.bending_stiffness.is_some();
         let length = self.system.beams()[beam].basis.length();
         for (i, side) in sides.iter().enumerate() {
             let before = actions.until(shape.s[i], *side, length);
@@ -381,6 +417,18 @@ impl<'a> Sampler<'a> {
             shape.axial_force.push(force.x * cosine + force.y * sine);
             shape.shear_force.push(if bends { force.y * cosine - force.x * sine } else { 0.0 });
             shape.bending_moment.push(if bends { r.perp(&before.force) - before.moment } else { 0.0 });
+            let inside = shape.s[i] + if *side == Side::Left { -SAME_PLACE } else { SAME_PLACE } * length;
+            shape.faces.extend(section.faces(shape.s[i], inside));
+            let forces = [shape.axial_force[i], shape.bending_moment[i]];
+            for (layer, [bottom, top]) in
+                section.stresses(shape.s[i], inside, forces).into_iter().flatten().enumerate()
+            {
+                if layer == shape.stress.len() {
+                    shape.stress.push(LayerStress::default());
+                }
+                shape.stress[layer].bottom.push(bottom);
+                shape.stress[layer].top.push(top);
+            }
         }
     }
 

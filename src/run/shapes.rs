@@ -100,7 +100,11 @@ pub fn shapes_at(
 }
 
 /// The coordinates of a recorded state, and what acts on each beam in it.
-fn acting(system: &System, parameter: f64, state: &RecordedState) -> Option<(Vec<f64>, Vec<Actions>)> {
+pub(super) fn acting(
+    system: &System,
+    parameter: f64,
+    state: &RecordedState,
+) -> Option<(Vec<f64>, Vec<Actions>)> {
     match state {
         RecordedState::Equilibrium { x, variables } => {
             let actions = system.static_actions(parameter, x, variables);
@@ -143,6 +147,10 @@ fn blend(shape: &mut Shape, next: &Shape, share: f64) {
     mix(&mut shape.axial_force, &next.axial_force);
     mix(&mut shape.shear_force, &next.shear_force);
     mix(&mut shape.bending_moment, &next.bending_moment);
+    for (layer, next) in shape.stress.iter_mut().zip(&next.stress) {
+        mix(&mut layer.bottom, &next.bottom);
+        mix(&mut layer.top, &next.top);
+    }
     for (node, next) in shape.nodes.iter_mut().zip(&next.nodes) {
         node.iter_mut().zip(next).for_each(|(x, next)| *x += share * (next - *x));
     }

@@ -36,12 +36,20 @@ impl Solve for Static {
                 Ok(trajectory)
             }
         };
-        if options.states
-            && let Some(trajectory) = left(&mut outcome)
-        {
-            let states = solution.states.into_iter().zip(solution.variables);
-            let states = states.map(|((_, x), variables)| RecordedState::Equilibrium { x, variables });
-            trajectory.states = Some(RecordedStates { states: states.collect(), taken_up: None });
+        if let Some(trajectory) = left(&mut outcome) {
+            if model.outputs.section_forces {
+                let states = solution.states.iter().zip(&solution.variables);
+                let acted = states.map(|((load, x), variables)| {
+                    let actions = system.static_actions(*load, x, variables);
+                    (sampler.coordinates_of(x), None, Some(actions))
+                });
+                sampler.record_sections(trajectory, acted);
+            }
+            if options.states {
+                let states = solution.states.into_iter().zip(solution.variables);
+                let states = states.map(|((_, x), variables)| RecordedState::Equilibrium { x, variables });
+                trajectory.states = Some(RecordedStates { states: states.collect(), taken_up: None });
+            }
         }
         timed(outcome, |trajectory| trajectory, &watch, stopwatch)
     }

@@ -6,13 +6,17 @@
 
 use std::collections::BTreeMap;
 
+mod along;
 mod analysis;
 mod law;
 mod part;
+mod section;
 
+pub use along::*;
 pub use analysis::*;
 pub use law::*;
 pub use part::*;
+pub use section::*;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -73,28 +77,57 @@ pub struct BeamTable {
     /// A smooth curve through these points, in order.
     #[schemars(length(min = 2))]
     pub points: Option<Located<Vec<Located<Vector<Length>>>>>,
+    /// Where the beam is at the start of the analysis, if not in its stress-free shape.
+    pub initial_shape: Option<Located<InitialShapeTable>>,
+    /// The shape of the sections; in place of `area` and `second_moment`.
+    pub section: Option<Located<SectionTable>>,
     /// Young's modulus E.
-    pub youngs_modulus: Option<Located<Quantity<Stress, Positive>>>,
+    pub youngs_modulus: Option<Located<AlongBeam<Stress, Positive>>>,
     /// Area A of the section.
-    pub area: Option<Located<Quantity<Area, Positive>>>,
+    pub area: Option<Located<AlongBeam<Area, Positive>>>,
     /// Second moment of area I of the section.
-    pub second_moment: Option<Located<Quantity<SecondMoment, Positive>>>,
+    pub second_moment: Option<Located<AlongBeam<SecondMoment, Positive>>>,
     /// Density ρ.
-    pub density: Option<Located<Quantity<Density, Positive>>>,
+    pub density: Option<Located<AlongBeam<Density, Positive>>>,
     /// Axial stiffness EA, in place of `youngs_modulus` and `area`. A beam without any keeps its
     /// length.
-    pub axial_stiffness: Option<Located<Quantity<Force, Positive>>>,
+    pub axial_stiffness: Option<Located<AlongBeam<Force, Positive>>>,
     /// Bending stiffness EI, in place of `youngs_modulus` and `second_moment`. A beam without any
     /// is a string.
-    pub bending_stiffness: Option<Located<Quantity<BendingStiffness, Positive>>>,
+    pub bending_stiffness: Option<Located<AlongBeam<BendingStiffness, Positive>>>,
     /// Mass per length ρA, in place of `density` and `area`.
-    pub mass_per_length: Option<Located<Quantity<MassPerLength, Positive>>>,
+    pub mass_per_length: Option<Located<AlongBeam<MassPerLength, Positive>>>,
     /// How the axial strain is measured.
     #[serde(default)]
     pub strain: StrainName,
     /// How the beam is discretised: exactly one of the kinds; chosen for the accuracy of the
     /// analysis when left out.
     pub basis: Option<Located<BasisTable>>,
+}
+
+/// A shape in which a beam begins: exactly one of the kinds. The beam's points are spread over it in
+/// proportion to their arc lengths.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
+pub struct InitialShapeTable {
+    /// From one point to another, straight.
+    pub line: Option<Located<LineTable>>,
+    /// Part of a circle.
+    pub arc: Option<Located<ArcTable>>,
+    /// A smooth curve through these points, in order.
+    #[schemars(length(min = 2))]
+    pub points: Option<Located<Vec<Located<Vector<Length>>>>>,
+}
+
+/// A straight line.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineTable {
+    /// Where the beam's start is.
+    pub start: Vector<Length>,
+    /// Where its end is.
+    pub end: Vector<Length>,
 }
 
 /// Axial strain as a function of the gradient r'.
@@ -316,7 +349,7 @@ pub struct EffectTable {
     pub force: Vec<ForceTable>,
     /// Concentrated moments.
     pub moment: Vec<MomentTable>,
-    /// Forces per length along whole beams.
+    /// Forces per length along beams.
     pub distributed_force: Vec<DistributedForceTable>,
     /// Weight of every beam and mass.
     pub gravity: Option<Located<GravityTable>>,
@@ -379,14 +412,18 @@ pub struct MomentTable {
     pub in_time: Option<Located<LawTable>>,
 }
 
-/// A force per reference length along a whole beam.
+/// A force per reference length along a beam.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DistributedForceTable {
     /// Name of the beam.
     pub beam: Located<String>,
     /// Components, as for a concentrated force.
-    pub value: Vector<ForcePerLength>,
+    pub value: AlongVector<ForcePerLength>,
+    /// Arc length from which on it acts; the beam's start when left out.
+    pub from: Option<Located<At>>,
+    /// Arc length up to which it acts; the beam's end when left out.
+    pub to: Option<Located<At>>,
     /// Turns with the section.
     #[serde(default)]
     pub follower: bool,
@@ -476,4 +513,7 @@ pub struct OutputTable {
     pub reactions: bool,
     /// `effects.csv`: energy and resultant force of every effect at every record.
     pub effects: bool,
+    /// Section forces and stresses at every record: of the probes in `probes.csv`, and along the
+    /// beams in `states.csv` and the VTU series.
+    pub section_forces: bool,
 }

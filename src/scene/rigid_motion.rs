@@ -2,7 +2,7 @@
 
 use crate::effect::{DistributedForce, Force, Gravity};
 use crate::model::freedom::{Freedom, Motion};
-use crate::model::{FixedRotation, Joint, Law, Model, Place};
+use crate::model::{Along, FixedRotation, Joint, Law, Model, Place};
 use std::any::Any;
 
 use super::error::Fault;
@@ -160,12 +160,12 @@ fn acted_upon(model: &Model, built: &[Built]) -> Vec<Place> {
             places.extend((fixed(force.follower, &force.law) && acts(&force.value)).then_some(force.at));
         }
         if let Some(force) = part.downcast_ref::<DistributedForce>() {
-            let acts = fixed(force.follower, &force.law) && acts(&force.value);
+            let acts = fixed(force.follower, &force.law) && !force.value.iter().all(Along::is_zero);
             places.extend(acts.then(|| ends(force.beam)).into_iter().flatten());
         }
     }
     if weighs {
-        let heavy = |beam: &usize| model.beams[*beam].section.mass_per_length.is_some_and(|mass| mass > 0.0);
+        let heavy = |beam: &usize| model.beams[*beam].section.mass_per_length.is_some();
         places.extend((0..model.beams.len()).filter(heavy).flat_map(ends));
         places.extend(model.parts.iter().filter_map(|part| part.mass()).map(|(place, _)| place));
     }

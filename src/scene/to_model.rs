@@ -4,17 +4,21 @@ use std::ops::Range;
 
 use crate::centreline::Curve;
 use crate::model::{
-    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, Law, Modal, Model, Outputs, Probe,
-    Section, Static, StrainMeasure, Support,
+    About, Analysis, Beam, Centreline, Displacement, Fixed, FixedRotation, InitialShape, Law, Modal, Model,
+    Outputs, Probe, Static, StrainMeasure, Support,
 };
 
 use super::error::Fault;
-use super::file::{BeamTable, FixName, MoveTable, SceneTable, StrainName, SupportTable};
+use super::file::{
+    ArcTable, BeamTable, FixName, InitialShapeTable, MoveTable, OutputTable, SceneTable, StrainName,
+    SupportTable,
+};
 use super::place::{Built, place};
+use super::quantity::Length;
 use super::rigid_motion::Resisting;
 use super::to_basis::{self, Size};
-use super::value::Located;
-use super::{rigid_motion, to_analysis, to_law, to_parts, to_velocity};
+use super::value::{Located, Vector};
+use super::{rigid_motion, to_analysis, to_law, to_parts, to_section, to_velocity};
 
 /// Converts and checks everything.
 pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
@@ -27,7 +31,8 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
         ));
     }
 
-    let outputs = Outputs { reactions: file.output.reactions, effects: file.output.effects };
+    let OutputTable { reactions, effects, section_forces, .. } = file.output;
+    let outputs = Outputs { reactions, effects, section_forces };
     let mut model = Model { title: file.title.clone(), outputs, ..Model::default() };
     let mut built = Vec::with_capacity(tables.len());
     let mut size = Size::default();
@@ -37,6 +42,10 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
         size.memory += needs.memory;
         if let Some(basis) = &table.basis {
             to_basis::check_size(size, basis)?;
+        }
+        if let Some(shape) = &table.initial_shape {
+            let centreline = initial_shape(name.get(), shape, curve.length())?;
+            model.initial_shapes.push(InitialShape { beam: model.beams.len(), centreline });
         }
         model.beams.push(beam);
         built.push(Built { name: name.clone(), curve });
@@ -72,7 +81,7 @@ fn beam(name: &Located<String>, table: &BeamTable) -> Result<(Beam, Curve, Size)
             "ends and neighbouring points must differ, points must not double back, and an arc needs an angle",
         )
     })?;
-    let section = section(label, table)?;
+    let section = to_section::section(label, table, curve.length())?;
     let locks = section.bending_stiffness.is_some() && section.axial_stiffness.is_some();
     let (discretization, gauss_points, size) =
         to_basis::discretization(label, table.basis.as_ref(), curve.length(), locks)?;
@@ -88,6 +97,10 @@ fn beam(name: &Located<String>, table: &BeamTable) -> Result<(Beam, Curve, Size)
         gauss_points,
     };
     Ok((beam, curve, size))
+}
+
+fn arc_of(arc: &ArcTable) -> Centreline {
+    Centreline::Arc { center: arc.center.si, radius: arc.radius.si, from: arc.from.si, to: arc.to.si }
 }
 
 fn centreline(name: &Located<String>, table: &BeamTable) -> Result<(Centreline, Range<usize>), Fault> {
@@ -107,12 +120,7 @@ fn centreline(name: &Located<String>, table: &BeamTable) -> Result<(Centreline, 
         (Some(start), Some(end), None, None) => {
             Ok((Centreline::Line { start: start.get().si, end: end.get().si }, end.span()))
         }
-        (None, None, Some(arc), None) => {
-            let a = arc.get();
-            let arc_line =
-                Centreline::Arc { center: a.center.si, radius: a.radius.si, from: a.from.si, to: a.to.si };
-            Ok((arc_line, arc.span()))
-        }
+        (None, None, Some(arc), None) => Ok((arc_of(arc.get()), arc.span())),
         (None, None, None, Some(points)) => {
             Ok((Centreline::Points(points.get().iter().map(|p| p.get().si).collect()), points.span()))
         }
@@ -132,57 +140,47 @@ fn centreline(name: &Located<String>, table: &BeamTable) -> Result<(Centreline, 
     }
 }
 
-fn section(beam: &str, table: &BeamTable) -> Result<Section, Fault> {
-    let e = table.youngs_modulus.as_ref().map(|v| (v.get().si, v.span()));
-    let area = table.area.as_ref().map(|v| (v.get().si, v.span()));
-    let inertia = table.second_moment.as_ref().map(|v| (v.get().si, v.span()));
-    let density = table.density.as_ref().map(|v| (v.get().si, v.span()));
-    let ea = table.axial_stiffness.as_ref().map(|v| (v.get().si, v.span()));
-    let ei = table.bending_stiffness.as_ref().map(|v| (v.get().si, v.span()));
-    let mass = table.mass_per_length.as_ref().map(|v| (v.get().si, v.span()));
-    if let (Some((_, span)), None, None) = (&e, &area, &ea) {
-        // A beam without axial stiffness keeps its length, but with an elastic modulus its area was
-        // forgotten.
-        let message = format!("beam `{beam}` has a `youngs_modulus` but no `area`: is it to stretch?");
-        return Err(Fault::new(span.clone(), message).help(
-            "give `area`, or `axial_stiffness`; or, for a beam that keeps its length, `bending_stiffness` in place of \
-             `youngs_modulus` and `second_moment`",
-        ));
-    }
-    type Given<'a> = &'a Option<(f64, Range<usize>)>;
-    let either = |direct: Given<'_>, a: Given<'_>, b: Given<'_>, key: &str, product: [&str; 2]| {
-        let value = match (direct, a, b) {
-            (Some((_, span)), Some(_), Some(_)) => {
-                let [a, b] = product;
-                return Err(Fault::new(
-                    span.clone(),
-                    format!("beam `{beam}` has `{key}` twice: by itself, and as `{a}` times `{b}`"),
-                )
-                .help(format!("keep `{key}`, or `{a}` and `{b}`")));
-            }
-            (Some((value, span)), ..) => Some((*value, span)),
-            (None, Some((a, span)), Some((b, _))) => Some((a * b, span)),
-            _ => None,
-        };
-        match value {
-            Some((value, span)) if !value.is_normal() => {
-                Err(Fault::new(span.clone(), format!("beam `{beam}`: {key} = {value} is no usable number"))
-                    .help("it must be a positive number between 1e-300 and 1e300"))
-            }
-            other => Ok(other.map(|(value, _)| value)),
+/// Stretch of a beam in its initial shape beyond which a mistake is more likely.
+const STRETCH: f64 = 0.5;
+
+/// The shape in which the beam `label`, which is `length` \[m\] long, begins.
+fn initial_shape(
+    label: &str,
+    located: &Located<InitialShapeTable>,
+    length: f64,
+) -> Result<Centreline, Fault> {
+    let points = |points: &Located<Vec<Located<Vector<Length>>>>| {
+        Centreline::Points(points.get().iter().map(|point| point.get().si).collect())
+    };
+    let centreline = match located.get() {
+        InitialShapeTable { line: Some(line), arc: None, points: None } => {
+            Centreline::Line { start: line.get().start.si, end: line.get().end.si }
+        }
+        InitialShapeTable { line: None, arc: Some(arc), points: None } => arc_of(arc.get()),
+        InitialShapeTable { line: None, arc: None, points: Some(given) } => points(given),
+        _ => {
+            return Err(Fault::new(located.span(), format!("beam `{label}` needs exactly one initial shape")).help(
+                "give one of `initial_shape.line = { start = [0, 0], end = [1, 0] }`, `initial_shape.arc = { center = [0, 0], radius = 1, \
+                 from = 0, to = \"90 deg\" }`, `initial_shape.points = [[0, 0], [1, 0.2], [2, 0]]`",
+            ));
         }
     };
-    Ok(Section {
-        axial_stiffness: either(&ea, &e, &area, "axial_stiffness", ["youngs_modulus", "area"])?,
-        bending_stiffness: either(
-            &ei,
-            &e,
-            &inertia,
-            "bending_stiffness",
-            ["youngs_modulus", "second_moment"],
-        )?,
-        mass_per_length: either(&mass, &density, &area, "mass_per_length", ["density", "area"])?,
-    })
+    let curve = Curve::new(&centreline).map_err(|reason| {
+        Fault::new(located.span(), format!("beam `{label}` cannot begin in this shape: {reason}"))
+            .help("ends and neighbouring points must differ, points must not double back, and an arc needs an angle")
+    })?;
+    let stretch = curve.length() / length - 1.0;
+    if stretch.abs() > STRETCH {
+        return Err(Fault::new(
+            located.span(),
+            format!(
+                "the initial shape of beam `{label}` is {} m long, and the beam {length} m: its points would be strained by {stretch:.2}",
+                curve.length()
+            ),
+        )
+        .help("give a shape of about the beam's length"));
+    }
+    Ok(centreline)
 }
 
 /// Refuses a scene in which a beam lacks a property that the analysis or an effect needs.
@@ -198,6 +196,19 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
         _ if file.effect.gravity.is_some() => Some("gravity"),
         _ => None,
     };
+    let straight_from = match analysis {
+        Analysis::Buckling(_) => Some("a buckling analysis"),
+        Analysis::Static(Static { arc_length: Some(_), .. }) => Some("a path by arc length"),
+        Analysis::Modal(Modal { about: About::Reference, .. }) => {
+            Some("a modal analysis about the reference")
+        }
+        _ => None,
+    };
+    let bent = file.beam.values().find_map(|table| table.initial_shape.as_ref());
+    if let (Some(kind), Some(shape)) = (straight_from, bent) {
+        return Err(Fault::new(shape.span(), format!("{kind} starts from the stress-free shape, and not from another one"))
+            .help("leave `initial_shape` out, or use `[analysis.static]`, `[analysis.dynamic]`, or `analysis.modal.about = \"equilibrium\"`"));
+    }
     for (beam, built) in model.beams.iter().zip(built) {
         let lacks = |what: &str, who: &str, key: &str, product: [&str; 2]| {
             let [a, b] = product;
@@ -207,7 +218,7 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
             )
             .help(format!("give `{key}`, or `{a}` and `{b}`")))
         };
-        if let (None, Some(who)) = (beam.section.mass_per_length, mass) {
+        if let (None, Some(who)) = (&beam.section.mass_per_length, mass) {
             lacks("mass", who, "mass_per_length", ["density", "area"])?;
         }
         let bedded = file.effect.foundation.iter().any(|table| table.beam.get() == &beam.name);
@@ -216,7 +227,7 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
             Analysis::Static(Static { arc_length: Some(_), .. }) => Some("a path by arc length"),
             _ => None,
         };
-        if let (None, Some(kind), false) = (beam.section.bending_stiffness, unloaded, bedded) {
+        if let (None, Some(kind), false) = (&beam.section.bending_stiffness, unloaded, bedded) {
             return Err(Fault::new(
                 built.name.span(),
                 format!(

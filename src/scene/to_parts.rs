@@ -6,11 +6,12 @@ use crate::effect::{
     Actuation, BeamDamping, Buoyancy, Contact, DistributedForce, Drag, Force, Foundation, Friction, Gravity,
     Moment, MovingForce, Obstacle, PointMass, SectionInertia, Spring, TorsionSpring,
 };
-use crate::model::{Joint, Model};
+use crate::model::{Along, Beam, Joint, Model};
 
 use super::error::Fault;
 use super::file::{ContactTable, FrictionTable, GravityTable, JointName, JointTable, PointTable, SceneTable};
 use super::place::{Built, beam_index, place};
+use super::to_along::{Stretch, along};
 use super::to_law;
 use super::value::Located;
 
@@ -32,9 +33,10 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
         parts.push(Arc::new(Moment { at, value: t.value.si, law }));
     }
     for t in &effects.distributed_force {
+        let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
         parts.push(Arc::new(DistributedForce {
-            beam: beam_index(&t.beam, built)?,
-            value: t.value.si,
+            beam: stretch.beam,
+            value: stretch.vector(&t.value, "value")?,
             follower: t.follower,
             law: t.in_time.as_ref().map(to_law::law).transpose()?,
         }));
@@ -53,12 +55,13 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
             )
             .help("keep `stiffness_proportional`, or the other two"));
         }
-        let both = both.map(|eta| eta.get().si);
+        let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
+        let both = stretch.optional(&t.stiffness_proportional, "stiffness_proportional")?;
         let part = BeamDamping {
-            beam: beam_index(&t.beam, built)?,
-            mass_proportional: t.mass_proportional.map(|alpha| alpha.si),
-            strain: t.strain.map(|eta| eta.si).or(both),
-            curvature: t.curvature.map(|eta| eta.si).or(both),
+            beam: stretch.beam,
+            mass_proportional: stretch.optional(&t.mass_proportional, "mass_proportional")?,
+            strain: stretch.optional(&t.strain, "strain")?.or_else(|| both.clone()),
+            curvature: stretch.optional(&t.curvature, "curvature")?.or(both),
         };
         let nothing = part == BeamDamping { beam: part.beam, ..BeamDamping::default() };
         needs(
@@ -120,16 +123,26 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
         }));
     }
     for t in &effects.rotary_inertia {
-        let (beam, per_length) = (beam_index(&t.beam, built)?, t.per_length.si);
+        let beam = beam_index(&t.beam, built)?;
+        let per_length = match &t.per_length {
+            Some(value) => Some(along(value, "per_length", built[beam].curve.length())?),
+            None => model.beams[beam].section.rotary_inertia.clone(),
+        };
+        let per_length = per_length.ok_or_else(|| {
+            Fault::new(t.beam.span(), format!("the rotary inertia of beam `{}` is not known", t.beam.get()))
+                .help("give `per_length`, or the beam a `section` with `density`")
+        })?;
         parts.push(Arc::new(SectionInertia { beam, per_length }));
     }
     for t in &effects.foundation {
-        let stiffness = t.stiffness.get().si;
-        if stiffness.iter().any(|k| *k < 0.0) || stiffness == [0.0; 2] {
+        let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
+        let stiffness = stretch.vector(t.stiffness.get(), "stiffness")?;
+        let length = built[stretch.beam].curve.length();
+        if stiffness.iter().any(|k| k.bounds(length)[0] < 0.0) || stiffness.iter().all(Along::is_zero) {
             return Err(Fault::new(t.stiffness.span(), "a foundation needs a positive stiffness")
                 .help("such as `stiffness = [0.0, \"2 kN/m^2\"]` for a beam along x"));
         }
-        parts.push(Arc::new(Foundation { beam: beam_index(&t.beam, built)?, stiffness }));
+        parts.push(Arc::new(Foundation { beam: stretch.beam, stiffness }));
     }
     for t in &effects.actuation {
         needs(
@@ -138,21 +151,30 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
             "this actuation",
             "`strain`, `curvature`",
         )?;
+        let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
         parts.push(Arc::new(Actuation {
-            beam: beam_index(&t.beam, built)?,
-            strain: t.strain.map(|strain| strain.si),
-            curvature: t.curvature.map(|curvature| curvature.si),
+            beam: stretch.beam,
+            strain: stretch.optional(&t.strain, "strain")?,
+            curvature: stretch.optional(&t.curvature, "curvature")?,
             law: t.in_time.as_ref().map(to_law::law).transpose()?,
         }));
     }
     for t in &effects.drag {
+        let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
+        let zero = || Along::Constant(0.0);
         let drag = Drag {
-            beam: beam_index(&t.beam, built)?,
-            viscous: [t.viscous_tangential, t.viscous_normal].map(|c| c.map_or(0.0, |c| c.si)),
-            quadratic: [t.tangential, t.normal].map(|c| c.map_or(0.0, |c| c.si)),
+            beam: stretch.beam,
+            viscous: [
+                stretch.optional(&t.viscous_tangential, "viscous_tangential")?.unwrap_or_else(zero),
+                stretch.optional(&t.viscous_normal, "viscous_normal")?.unwrap_or_else(zero),
+            ],
+            quadratic: [
+                stretch.optional(&t.tangential, "tangential")?.unwrap_or_else(zero),
+                stretch.optional(&t.normal, "normal")?.unwrap_or_else(zero),
+            ],
             flow: t.flow.map_or([0.0; 2], |flow| flow.si),
         };
-        let something = drag.viscous != [0.0; 2] || drag.quadratic != [0.0; 2];
+        let something = drag.viscous.iter().chain(&drag.quadratic).any(|c| !c.is_zero());
         needs(
             something,
             &t.beam,
@@ -168,8 +190,9 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
         };
         let GravityTable { acceleration, in_time } = gravity.get();
         let law = in_time.as_ref().map(to_law::law).transpose()?;
-        let (beam, displaced) = (beam_index(&t.beam, built)?, t.displaced_mass_per_length.si);
-        parts.push(Arc::new(Buoyancy { beam, displaced, acceleration: acceleration.si, law }));
+        let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
+        let displaced = stretch.quantity(&t.displaced_mass_per_length, "displaced_mass_per_length")?;
+        parts.push(Arc::new(Buoyancy { beam: stretch.beam, displaced, acceleration: acceleration.si, law }));
     }
     for t in &effects.moving_force {
         let (beam, speed) = (beam_index(&t.beam, built)?, t.speed.get().si);
@@ -181,7 +204,7 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
         parts.push(Arc::new(MovingForce { beam, value: t.value.si, start, speed }));
     }
     for t in &effects.contact {
-        parts.push(Arc::new(contact(t, built)?));
+        parts.push(Arc::new(contact(t, built, &model.beams)?));
     }
     for table in &file.joint {
         model.joints.push(joint(table.get(), built)?);
@@ -197,7 +220,34 @@ fn needs(something: bool, at: &Located<String>, what: &str, keys: &str) -> Resul
     Err(Fault::new(at.span(), format!("{what} does nothing")).help(format!("give one or more of {keys}")))
 }
 
-fn contact(t: &ContactTable, built: &[Built]) -> Result<Contact, Fault> {
+/// Distance of the surface of a beam from its centreline \[m\], as its section tells it; zero where it
+/// does not.
+fn half_thickness(name: &Located<String>, beam: &Beam) -> Result<f64, Fault> {
+    let layers = &beam.section.layers;
+    if layers.is_empty() {
+        return Ok(0.0);
+    }
+    let constant =
+        layers.iter().flat_map(|layer| [&layer.bottom, &layer.top]).all(|y| y.constant().is_some());
+    match beam.section.faces(0.0, 0.0).filter(|[low, high]| constant && (low + high).abs() <= 1e-9 * (high - low)) {
+        Some([_, high]) => Ok(high),
+        None => Err(Fault::new(
+            name.span(),
+            format!(
+                "the surfaces of beam `{}` are not everywhere equally far from its centreline, and this contact does not say what touches",
+                name.get()
+            ),
+        )
+        .help("give the contact a `half_thickness`")),
+    }
+}
+
+fn contact(t: &ContactTable, built: &[Built], beams: &[Beam]) -> Result<Contact, Fault> {
+    let beam = beam_index(&t.beam, built)?;
+    let half_thickness = match t.half_thickness {
+        Some(given) => given.si,
+        None => half_thickness(&t.beam, &beams[beam])?,
+    };
     let mut obstacles = Vec::new();
     if let Some(c) = &t.circle {
         obstacles.push(Obstacle::Circle { center: c.center.si, radius: c.radius.si, inside: c.inside });
@@ -224,10 +274,10 @@ fn contact(t: &ContactTable, built: &[Built]) -> Result<Contact, Fault> {
         ));
     };
     Ok(Contact {
-        beam: beam_index(&t.beam, built)?,
+        beam,
         obstacle,
         stiffness: t.stiffness.si,
-        half_thickness: t.half_thickness.map_or(0.0, |h| h.si),
+        half_thickness,
         friction: t.friction.as_ref().map(|f| friction(f, t.stiffness.si)).transpose()?,
     })
 }

@@ -190,9 +190,16 @@ pub struct Vector<M> {
 }
 
 impl<M: Measure> Vector<M> {
-    fn expected() -> String {
+    /// `two components [x, y] in m, such as [0.0, "1.8 m"]`.
+    pub fn expected() -> String {
         let unit = if M::SI.is_empty() { String::new() } else { format!(" in {}", M::SI) };
         format!("two components [x, y]{unit}, such as [0.0, \"{}\"]", M::EXAMPLE)
+    }
+
+    /// The message about `count` components.
+    pub fn wrong_count(count: usize) -> String {
+        let plural = if count == 1 { "" } else { "s" };
+        format!("found {count} component{plural}, expected {}", Self::expected())
     }
 }
 
@@ -217,11 +224,7 @@ impl<'de, M: Measure> Deserialize<'de> for Vector<M> {
                     count += 1;
                 }
                 if count != 2 {
-                    return Err(serde::de::Error::custom(format!(
-                        "found {count} component{}, expected {}",
-                        if count == 1 { "" } else { "s" },
-                        Vector::<M>::expected()
-                    )));
+                    return Err(serde::de::Error::custom(Vector::<M>::wrong_count(count)));
                 }
                 Ok(Vector { si, kind: PhantomData })
             }

@@ -42,7 +42,7 @@ impl<'a> Equilibrium<'a> {
             border: Vec::new(),
             workspace: Workspace::default(),
             prescribed_rate: vec![0.0; n],
-            accepted: AcceptedState { q: system.reference().to_vec(), ..AcceptedState::default() },
+            accepted: AcceptedState { q: system.start().to_vec(), ..AcceptedState::default() },
             statistics: Statistics::default(),
         }
     }
@@ -88,7 +88,7 @@ impl<'a> Equilibrium<'a> {
 
     /// The stress-free state with zero multipliers.
     pub fn start(&self) -> Vec<f64> {
-        let mut x = self.system.reference().to_vec();
+        let mut x = self.system.start().to_vec();
         x.resize(self.unknowns(), 0.0);
         x
     }

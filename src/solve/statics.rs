@@ -162,7 +162,9 @@ pub fn solve(
     let mut solution = Solution::default();
     let newton = newton_settings(settings);
     let outcome = match target {
-        None if system.is_floppy() => relaxed(&mut equilibrium, settings, newton, &mut solution, observe),
+        None if system.is_floppy() || system.starts_bent() => {
+            relaxed(&mut equilibrium, settings, newton, &mut solution, observe)
+        }
         None => along_load(&mut equilibrium, settings, newton, &mut solution, observe),
         Some(target) => along_arc(&mut equilibrium, target, newton, &mut solution, observe),
     };
@@ -230,6 +232,13 @@ fn relaxed(
 ) -> Result<(), NoStep> {
     let mut x = equilibrium.start();
     let mut work = Work::default();
+    if equilibrium.system().starts_bent() {
+        // The shape is a given one, and not yet an equilibrium.
+        let at = equilibrium.system().place_of(0);
+        let settled = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default());
+        settled.map_err(|failure| NoStep { load: 0.0, step: 0.0, failure, at })?;
+        equilibrium.set_accepted(&x);
+    }
     solution.record(equilibrium, 0.0, &x, work);
     let parts = settings.steps.unwrap_or(1).max(1);
     let mut before = 0;

@@ -4,68 +4,81 @@
 //! is
 //!
 //! ```text
-//! ½ ∫ EA (ε − ε₀)² ds = ½ ∫ EA ε² ds − Σ a_i ∫ EA ε₀ᵢ ε ds + ½ EA L ε₀²
+//! ½ ∫ EA (ε − ε₀)² ds = ½ ∫ EA ε² ds − Σ a_i ∫ EA ε₀ᵢ ε ds + ½ Σ a_i a_j ∫ EA ε₀ᵢ ε₀ⱼ ds
 //! ```
 //!
-//! and likewise for bending. The first term is the energy of the beam without actuation, and the
+//! and likewise for bending; what a section couples is counted with bending. The first term is the energy of the beam without actuation, and the
 //! terms of the sum are the potentials by which actuation acts on the motion. When an amplitude
 //! changes, the actuator supplies the power −∫ N ε̇₀ ds − ∫ M κ̇₀ ds.
 
 use super::System;
-use crate::assembly::Amplitude;
-use crate::assembly::Kind;
-use crate::model::Model;
+use crate::assembly::{Amplitude, DiscretizedBeam, Kind};
+use crate::model::{Along, Beam, Model};
 
-/// The strains, or the curvatures, that actuations impose on a beam.
+/// The actuations of a beam.
 #[derive(Debug)]
 pub(super) struct Actuated {
     beam: usize,
-    kind: Kind,
-    /// EA L or EI L.
-    stiffness: f64,
-    /// ε₀ᵢ or κ₀ᵢ with its amplitude; `None` stands for the amplitude of all loads without a law.
-    own: Vec<(f64, Option<Amplitude>)>,
+    /// a_i; `None` stands for the amplitude of all loads without a law.
+    amplitudes: Vec<Option<Amplitude>>,
+    /// ∫ EA ε₀ᵢ ε₀ⱼ ds, and ∫ (EI κ₀ᵢ κ₀ⱼ + EB ε₀ᵢ κ₀ⱼ + EB κ₀ᵢ ε₀ⱼ) ds \[J\], of row i and column j.
+    own: [Vec<Vec<f64>>; 2],
 }
 
 /// Collects the actuations of the model's parts by beam.
 pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
-    let mut all = Vec::new();
-    for (index, (beam, part)) in model.beams.iter().zip(&system.beams).enumerate() {
+    let of_beam = |(index, (beam, part)): (usize, (&Beam, &DiscretizedBeam))| {
         let parts: Vec<_> = model.parts.iter().filter_map(|part| part.actuation(index)).collect();
-        let law = |law: Option<&crate::law::Law>| law.cloned().map(Amplitude::Law);
-        let strains = parts.iter().map(|(strain, _, l)| (*strain, law(*l)));
-        let curvatures = parts.iter().map(|(_, curvature, l)| (*curvature, law(*l)));
-        for (kind, stiffness, own) in [
-            (Kind::PreStrain, beam.section.axial_stiffness, strains.collect::<Vec<_>>()),
-            (Kind::PreCurvature, beam.section.bending_stiffness, curvatures.collect()),
-        ] {
-            if own.iter().any(|(value, _)| *value != 0.0) {
-                let stiffness = stiffness.unwrap_or(0.0) * part.basis.length();
-                all.push(Actuated { beam: index, kind, stiffness, own });
-            }
-        }
-    }
-    all
+        let length = part.basis.length();
+        let integral = |stiffness: &Option<Along>, first: &Along, second: &Along| {
+            let product = stiffness.as_ref().map(|along| along.product(first).product(second));
+            product.map_or(0.0, |along| along.mean(length) * length)
+        };
+        let section = &beam.section;
+        let stretch = |i: usize, j: usize| {
+            let ([first, _], [second, _]) = (parts[i].0, parts[j].0);
+            integral(&section.axial_stiffness, first, second)
+        };
+        let bend = |i: usize, j: usize| {
+            let ([e, k], [f, l]) = (parts[i].0, parts[j].0);
+            integral(&section.bending_stiffness, k, l)
+                + integral(&section.coupling, e, l)
+                + integral(&section.coupling, k, f)
+        };
+        let rows = |entry: &dyn Fn(usize, usize) -> f64| {
+            (0..parts.len()).map(|i| (0..parts.len()).map(|j| entry(i, j)).collect()).collect()
+        };
+        let amplitudes = parts.iter().map(|(_, law)| law.cloned().map(Amplitude::Law)).collect();
+        (!parts.is_empty()).then(|| Actuated { beam: index, amplitudes, own: [rows(&stretch), rows(&bend)] })
+    };
+    model.beams.iter().zip(&system.beams).enumerate().filter_map(of_beam).collect()
 }
 
 impl System {
-    /// ε₀ or κ₀, and its derivative with respect to the amplitude of all loads without a law.
-    fn own(&self, actuated: &Actuated, parameter: f64) -> (f64, f64) {
-        actuated.own.iter().fold((0.0, 0.0), |(sum, rate), (value, law)| match law {
-            Some(law) => (sum + law.at(parameter) * value, rate),
-            None => (sum + self.amplitude.at(parameter) * value, rate + value),
-        })
+    /// ½ Σ a_i a_j G_ij of one of the matrices of [`Actuated::own`], and its derivative with respect
+    /// to the amplitude of all loads without a law.
+    fn square(&self, actuated: &Actuated, part: usize, parameter: f64) -> (f64, f64) {
+        let amplitude = |law: &Option<Amplitude>| match law {
+            Some(law) => (law.at(parameter), 0.0),
+            None => (self.amplitude.at(parameter), 1.0),
+        };
+        let amplitudes: Vec<(f64, f64)> = actuated.amplitudes.iter().map(amplitude).collect();
+        let mut sums = (0.0, 0.0);
+        for ((a, rate), row) in amplitudes.iter().zip(&actuated.own[part]) {
+            let other: f64 = amplitudes.iter().zip(row).map(|((b, _), entry)| b * entry).sum();
+            sums.0 += 0.5 * a * other;
+            sums.1 += rate * other;
+        }
+        sums
     }
 
-    /// −∫ EA ε₀ᵢ ε ds or −∫ EI κ₀ᵢ κ ds, relative to the stress-free shape: the sum over actuations
-    /// with a law of time, times their amplitudes, and the sum over those without a law, without
-    /// their amplitude.
-    fn coupling(&self, actuated: &Actuated, parameter: f64, q: &[f64]) -> [f64; 2] {
-        let of = self
-            .terms
-            .loads
-            .iter()
-            .filter(|load| load.effect.kind() == actuated.kind && load.effect.beam() == actuated.beam);
+    /// −∫ EA ε₀ᵢ ε ds (part 0) or −∫ EI κ₀ᵢ κ ds (part 1), relative to the stress-free shape: the sum
+    /// over actuations with a law of time, times their amplitudes, and the sum over those without a
+    /// law, without their amplitude.
+    fn potential_of(&self, actuated: &Actuated, part: usize, parameter: f64, q: &[f64]) -> [f64; 2] {
+        let kind = [Kind::PreStrain, Kind::PreCurvature][part];
+        let loads = self.terms.loads.iter();
+        let of = loads.filter(|load| load.effect.kind() == kind && load.effect.beam() == actuated.beam);
         of.fold([0.0; 2], |[by_law, others], load| {
             let energy = load.effect.energy(q) - load.effect.energy(&self.reference);
             match &load.amplitude {
@@ -80,12 +93,13 @@ impl System {
     pub(super) fn actuation_energy(&self, parameter: f64, q: &[f64]) -> ([f64; 2], f64) {
         let (mut energy, mut put_in) = ([0.0; 2], 0.0);
         for actuated in &self.actuated {
-            let square = |parameter: f64| 0.5 * actuated.stiffness * self.own(actuated, parameter).0.powi(2);
-            let [by_law, others] = self.coupling(actuated, parameter, q);
-            energy[usize::from(actuated.kind == Kind::PreCurvature)] +=
-                by_law + self.amplitude.at(parameter) * others + square(parameter);
-            if self.amplitude == Amplitude::Full {
-                put_in += by_law + square(parameter) - square(0.0);
+            for (part, energy) in energy.iter_mut().enumerate() {
+                let [by_law, others] = self.potential_of(actuated, part, parameter, q);
+                let square = self.square(actuated, part, parameter).0;
+                *energy += by_law + self.amplitude.at(parameter) * others + square;
+                if self.amplitude == Amplitude::Full {
+                    put_in += by_law + square - self.square(actuated, part, 0.0).0;
+                }
             }
         }
         (energy, put_in)
@@ -100,10 +114,8 @@ impl System {
     /// deform at all. Where beams follow their actuators, these terms cancel others of the same
     /// size.
     pub fn actuators_size(&self, load: f64) -> f64 {
-        let size = |actuated: &Actuated| {
-            let (own, rate) = self.own(actuated, load);
-            (actuated.stiffness * own * rate).abs()
-        };
+        let size =
+            |actuated: &Actuated| (0..2).map(|part| self.square(actuated, part, load).1.abs()).sum::<f64>();
         self.actuated.iter().map(size).sum()
     }
 
@@ -111,8 +123,9 @@ impl System {
     /// ds in the state `q`.
     pub fn actuators_rate(&self, load: f64, q: &[f64]) -> f64 {
         let rate = |actuated: &Actuated| {
-            let (own, rate) = self.own(actuated, load);
-            self.coupling(actuated, load, q)[1] + actuated.stiffness * own * rate
+            let of =
+                |part| self.potential_of(actuated, part, load, q)[1] + self.square(actuated, part, load).1;
+            of(0) + of(1)
         };
         self.actuated.iter().map(rate).sum()
     }

@@ -57,7 +57,7 @@ pub(super) fn fix(
             _ => {}
         }
         let in_basis = |e| BuildError::basis(&part.name, e);
-        let fields = View::point(&part.basis, part.offset(), s).map_err(in_basis)?.fields(&system.reference);
+        let fields = View::point(&part.basis, part.offset(), s).map_err(in_basis)?.fields(system.start());
         let (position, gradient) = (fields.position, fields.gradient);
         let course = |start: f64, change: f64| Prescribed { start, change, law: support.law.clone() };
         let angle = course(gradient[1].atan2(gradient[0]), support.displacement.angle);

@@ -181,8 +181,7 @@ impl fmt::Display for Inventory {
             )?;
             if !beam.breaks.is_empty() {
                 let places: Vec<String> = beam.breaks.iter().map(|s| format!("{s:.6}")).collect();
-                let at =
-                    "nodes put, and shape functions ended, where something holds, joins or turns it: s =";
+                let at = "nodes put, and shape functions ended, where something holds, joins or turns it, or its section jumps: s =";
                 writeln!(f, "beam {:<16} {at} {} m", beam.name, places.join(", "))?;
             }
         }

@@ -45,7 +45,7 @@ const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 fn coincide(system: &System, first: Place, second: Place) -> Result<[Constraint; 2], BuildError> {
     let rows = AXES.map(|[x, y]| row(system, 0, &[(first, [-x, -y]), (second, [x, y])]));
     let rows = transpose(rows)?;
-    // The value of the row at zero coordinates is the negative distance in the stress-free shape.
+    // The value of the row at zero coordinates is the negative distance at the start.
     let [x, y] = rows.each_ref().map(|row| -row.value(0.0, &vec![0.0; system.coordinates()]));
     let gap = x.hypot(y);
     if gap > APART * system.length() {
@@ -74,8 +74,7 @@ fn transpose<T, E>(results: [Result<T, E>; 2]) -> Result<[T; 2], E> {
     Ok([a?, b?])
 }
 
-/// The row Σ n·r⁽ᵒ⁾ over the given places, where the sum keeps the value that it has in the
-/// stress-free shape.
+/// The row Σ n·r⁽ᵒ⁾ over the given places, where the sum keeps the value that it has at the start.
 fn row(system: &System, order: usize, terms: &[(Place, [f64; 2])]) -> Result<Constraint, BuildError> {
     let mut parts = Vec::with_capacity(terms.len());
     for (place, normal) in terms {
@@ -84,7 +83,7 @@ fn row(system: &System, order: usize, terms: &[(Place, [f64; 2])]) -> Result<Con
     }
     let normals = parts.iter().map(|(.., normal)| *normal).collect();
     let mut row = Constraint::joint(parts.iter().map(|(table, offset, _)| (table, *offset)), order, normals);
-    row.add_to_sum(row.value(0.0, system.reference()));
+    row.add_to_sum(row.value(0.0, system.start()));
     Ok(row)
 }
 

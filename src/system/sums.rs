@@ -245,7 +245,9 @@ impl System {
         let ([stretch, bend], work) = self.actuation_energy(parameter, q);
         Energy {
             stretch: sum(&self.terms.internal, Kind::Stretch, q) + stretch,
-            bend: sum(&self.terms.internal, Kind::Bend, q) + bend,
+            bend: sum(&self.terms.internal, Kind::Bend, q)
+                + sum(&self.terms.internal, Kind::Coupling, q)
+                + bend,
             stored: self.stored_energy(q),
             kinetic: velocity.map_or(0.0, |v| {
                 let turning = self.turning_energies(q, v).map(|(.., energy)| energy);
@@ -260,7 +262,8 @@ impl System {
     /// Energy \[J\] of all internal effects but stretch and bend: springs, foundations and
     /// contacts.
     fn stored_energy(&self, q: &[f64]) -> f64 {
-        let others = self.terms.internal.iter().filter(|e| !matches!(e.kind(), Kind::Stretch | Kind::Bend));
+        let of_section = |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Coupling);
+        let others = self.terms.internal.iter().filter(|e| !of_section(e.kind()));
         others.map(|e| e.energy(q)).sum()
     }
 }

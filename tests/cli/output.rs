@@ -26,6 +26,7 @@ fn line(beam: &str, slope: f64) -> Shape {
         bending_moment: s.iter().map(|s| -0.7 * s).collect(),
         nodes: vec![[0.0, 0.0], [1.8, 1.8 * slope]],
         s,
+        ..Shape::default()
     }
 }
 

@@ -57,7 +57,7 @@ fn loads() -> impl Strategy<Value = Vec<Arc<dyn Part>>> {
     let moment =
         (-2.0 * PI..2.0 * PI).prop_map(move |value| -> Arc<dyn Part> { Arc::new(Moment::new(tip, value)) });
     let distributed = (size(40.0), any::<bool>()).prop_map(|(value, follower)| -> Arc<dyn Part> {
-        Arc::new(DistributedForce { beam: 0, value, follower, law: None })
+        Arc::new(DistributedForce { beam: 0, value: value.map(Into::into), follower, law: None })
     });
     prop::collection::vec(prop_oneof![force, moment, distributed], 1..4)
 }
@@ -78,9 +78,10 @@ fn cantilever() -> impl Strategy<Value = Model> {
                 name: "beam".into(),
                 centreline,
                 section: Section {
-                    axial_stiffness: Some(10.0_f64.powf(slenderness)),
-                    bending_stiffness: Some(1.0),
+                    axial_stiffness: Some((10.0_f64.powf(slenderness)).into()),
+                    bending_stiffness: Some(1.0.into()),
                     mass_per_length: None,
+                    ..Default::default()
                 },
                 strain: if green { StrainMeasure::Green } else { StrainMeasure::Engineering },
                 discretization,
@@ -99,7 +100,12 @@ fn resolved_cantilever() -> impl Strategy<Value = Model> {
     cantilever().prop_map(|mut model| {
         let beam = &mut model.beams[0];
         let stiffest = stiffest(&beam.discretization);
-        beam.section.axial_stiffness = beam.section.axial_stiffness.map(|ea| ea.min(stiffest));
+        beam.section.axial_stiffness = beam
+            .section
+            .axial_stiffness
+            .as_ref()
+            .and_then(ancf::model::Along::constant)
+            .map(|ea| ea.min(stiffest).into());
         model
     })
 }

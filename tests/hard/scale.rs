@@ -50,9 +50,10 @@ fn beam(units: Units, discretization: &Discretization, centreline: Centreline) -
         name: "beam".into(),
         centreline,
         section: Section {
-            axial_stiffness: Some(1e4 * units.force),
-            bending_stiffness: Some(2.0 * units.force * units.length.powi(2)),
-            mass_per_length: Some(0.7 * units.force * (units.time / units.length).powi(2)),
+            axial_stiffness: Some((1e4 * units.force).into()),
+            bending_stiffness: Some((2.0 * units.force * units.length.powi(2)).into()),
+            mass_per_length: Some((0.7 * units.force * (units.time / units.length).powi(2)).into()),
+            ..Default::default()
         },
         strain: StrainMeasure::Engineering,
         discretization: discretization.clone(),
@@ -72,7 +73,7 @@ fn cantilever(units: Units, discretization: &Discretization) -> Model {
             Arc::new(Moment::new(tip, 0.8 * force * length)),
             Arc::new(DistributedForce {
                 beam: 0,
-                value: [0.0, 0.4 * force / length],
+                value: [0.0, 0.4 * force / length].map(Into::into),
                 follower: false,
                 law: None,
             }),

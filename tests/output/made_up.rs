@@ -25,6 +25,7 @@ pub(super) fn beam(name: &str, length: f64, points: &[[f64; 2]]) -> Shape {
         bending_moment: along(0.7),
         nodes: vec![points[0], points[points.len() - 1]],
         s,
+        ..Shape::default()
     }
 }
 

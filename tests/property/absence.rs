@@ -114,10 +114,32 @@ fn a_beam_stretches_or_keeps_its_length() {
 }
 
 #[test]
+fn stretch_and_bending_are_coupled_where_layers_differ() {
+    let layer = |modulus: f64| format!("{{ youngs_modulus = {modulus}, width = 1, height = 0.1 }}");
+    let beam = |layers: [f64; 2]| {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], basis.ancf.elements = 4, section.layers = [{}] }}\n\
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\nanalysis.static = {{}}\n",
+            layers.map(layer).join(", ")
+        );
+        bytes(&inventory(&parse("arm.toml", &text).expect("a scene"))).into_keys().collect::<Vec<_>>()
+    };
+    assert_eq!(beam([1.0, 2.0]), [Kind::Stretch, Kind::Bend, Kind::Coupling]);
+    assert_eq!(beam([1.5, 1.5]), [Kind::Stretch, Kind::Bend]);
+}
+
+#[test]
 fn every_kind_is_tested_here() {
     let tested: Vec<Kind> = blocks().into_iter().flat_map(|(_, kinds)| kinds).collect();
     // What comes with every beam, with another block, or needs a companion.
-    let others = [Kind::Stretch, Kind::Inextensibility, Kind::Inertia, Kind::PreCurvature, Kind::Buoyancy];
+    let others = [
+        Kind::Stretch,
+        Kind::Inextensibility,
+        Kind::Coupling,
+        Kind::Inertia,
+        Kind::PreCurvature,
+        Kind::Buoyancy,
+    ];
     for kind in Kind::ALL {
         assert!(tested.contains(kind) || others.contains(kind), "{}", kind.name());
     }

@@ -10,7 +10,8 @@ use std::sync::Arc;
 /// An actuated cantilever without loads takes the arc of its own curvature, and is free of stress.
 #[test]
 fn an_actuated_beam_takes_its_own_shape() {
-    let actuation = Actuation { beam: 0, strain: Some(0.02), curvature: Some(1.5), law: None };
+    let actuation =
+        Actuation { beam: 0, strain: Some((0.02).into()), curvature: Some((1.5).into()), law: None };
     let trajectory = still(&one(vec![support(0.0, FixedRotation::Angle)], vec![Arc::new(actuation)]));
     let last = trajectory.probes[0].samples.last().expect("a record");
     // κ counts per reference length: the arc has the angle κ L and the length 1.02 L.
@@ -108,7 +109,7 @@ fn what_does_not_fit_is_refused_with_its_place() {
         damping: None,
     };
     refused(&one(vec![support(0.0, FixedRotation::Angle)], vec![Arc::new(spring)]), "s = 7 m");
-    let damping = BeamDamping { beam: 3, mass_proportional: Some(1.0), ..BeamDamping::default() };
+    let damping = BeamDamping { beam: 3, mass_proportional: Some((1.0).into()), ..BeamDamping::default() };
     refused(&one(vec![support(0.0, FixedRotation::Angle)], vec![Arc::new(damping)]), "beam number 3");
 }
 

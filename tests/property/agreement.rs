@@ -111,10 +111,11 @@ impl Problem {
                 name: "beam".into(),
                 centreline: Centreline::Line { start: [0.0; 2], end: self.rotate([length, 0.0]) },
                 section: Section {
-                    axial_stiffness: Some(self.slenderness * unit),
-                    bending_stiffness: Some(bending),
+                    axial_stiffness: Some((self.slenderness * unit).into()),
+                    bending_stiffness: Some(bending.into()),
                     // Frequencies of the order of 1/s.
-                    mass_per_length: Some(bending / length.powi(4)),
+                    mass_per_length: Some((bending / length.powi(4)).into()),
+                    ..Default::default()
                 },
                 strain: self.strain,
                 discretization,
@@ -131,7 +132,7 @@ impl Problem {
                 Arc::new(Moment::new(tip, self.moment * bending / length)),
                 Arc::new(DistributedForce {
                     beam: 0,
-                    value: scaled(self.distributed, unit / length),
+                    value: scaled(self.distributed, unit / length).map(Into::into),
                     follower: false,
                     law: None,
                 }),

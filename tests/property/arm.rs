@@ -16,9 +16,10 @@ pub fn beam(name: &str, start: [f64; 2], end: [f64; 2], discretization: Discreti
         name: name.into(),
         centreline: Centreline::Line { start, end },
         section: Section {
-            axial_stiffness: Some(2e3),
-            bending_stiffness: Some(0.5),
-            mass_per_length: Some(0.4),
+            axial_stiffness: Some(2e3.into()),
+            bending_stiffness: Some(0.5.into()),
+            mass_per_length: Some(0.4.into()),
+            ..Default::default()
         },
         strain: StrainMeasure::Engineering,
         discretization,
@@ -40,7 +41,7 @@ pub fn one(supports: Vec<Support>, parts: Vec<Arc<dyn Part>>) -> Model {
         supports,
         parts,
         probes: tip(0, LENGTH),
-        outputs: Outputs { reactions: true, effects: true },
+        outputs: Outputs { reactions: true, effects: true, section_forces: false },
         ..Model::default()
     }
 }

@@ -45,7 +45,12 @@ fn touching(discretization: Discretization, contact: Contact) -> System {
     let beam = Beam {
         name: "beam".into(),
         centreline: Centreline::Line { start: [0.0, 0.0], end: [1.0, 0.0] },
-        section: Section { axial_stiffness: Some(1e-9), bending_stiffness: None, mass_per_length: None },
+        section: Section {
+            axial_stiffness: Some((1e-9).into()),
+            bending_stiffness: None,
+            mass_per_length: None,
+            ..Default::default()
+        },
         strain: StrainMeasure::Engineering,
         discretization,
         gauss_points: GaussPoints { stretch: 3, bend: 2, lobatto: false },

@@ -60,8 +60,8 @@ fn elastic<T: DualNum<Primitive = f64, InnerDual = f64>>(
         |n: usize, orders: &[usize]| basis.table(Quadrature::Gauss(n), orders).expect("a legal table");
     let (first, both) = (table(beam.gauss_points.stretch, &[1]), table(beam.gauss_points.bend, &[1, 2]));
     let reference = DVector::from_column_slice(reference);
-    let ea = beam.section.axial_stiffness.unwrap_or(0.0);
-    let ei = beam.section.bending_stiffness.unwrap_or(0.0);
+    let ea = beam.section.axial_stiffness.as_ref().and_then(ancf::model::Along::constant).unwrap_or(0.0);
+    let ei = beam.section.bending_stiffness.as_ref().and_then(ancf::model::Along::constant).unwrap_or(0.0);
     let mut energy = T::from_re(0.0);
     for ((weight, z), (_, z0)) in fields(&first, q).into_iter().zip(fields(&first, &reference)) {
         let e = strain(beam.strain, &z[0]) - strain(beam.strain, &z0[0]);
@@ -141,7 +141,7 @@ fn load_forces<T: DualNum<Primitive = f64, InnerDual = f64>>(
 
 fn with_load(beam: &Beam, load: Arc<dyn Part>) -> System {
     let elastic_free = Beam {
-        section: ancf::model::Section { mass_per_length: Some(1.3), ..Default::default() },
+        section: ancf::model::Section { mass_per_length: Some(1.3.into()), ..Default::default() },
         ..beam.clone()
     };
     let model = Model { beams: vec![elastic_free], supports: vec![], parts: vec![load], ..Model::default() };
@@ -226,7 +226,7 @@ proptest! {
         let points = beam.gauss_points.stretch.max(4);
         let rows = basis.table(Quadrature::Gauss(points), &[1]).expect("a legal table");
         let start = fields(&rows, &DVector::from_column_slice(system.reference()));
-        let load = Arc::new(DistributedForce { beam: 0, value: [fx, fy], follower: true, law: None });
+        let load = Arc::new(DistributedForce { beam: 0, value: [fx, fy].map(Into::into), follower: true, law: None });
         check_load(&beam, load, &noise, &[0, 1], None, |point, z| {
             let turned = turned([fx, fy], start[point].1[0], &z[1]);
             vec![turned, [DualVec::from_re(0.0), DualVec::from_re(0.0)]]
@@ -239,7 +239,7 @@ proptest! {
         let constant = move |scale: f64| vec![[fx, fy].map(|f: f64| DualVec::<f64, Dyn>::from_re(-f * scale))];
         let force = Arc::new(Force::new(Place { beam: 0, s }, [fx, fy]));
         check_load(&beam, force, &noise, &[0], Some(s), |_, _| constant(1.0));
-        let distributed = Arc::new(DistributedForce { beam: 0, value: [fx, fy], follower: false, law: None });
+        let distributed = Arc::new(DistributedForce { beam: 0, value: [fx, fy].map(Into::into), follower: false, law: None });
         check_load(&beam, distributed, &noise, &[0], None, |_, _| constant(1.0));
         let gravity = Arc::new(Gravity::new([fx, fy]));
         check_load(&beam, gravity, &noise, &[0], None, |_, _| constant(1.3));

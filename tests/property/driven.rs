@@ -22,11 +22,16 @@ fn driven(rotation: FixedRotation, duration: f64) -> Model {
     let parts: Vec<Arc<dyn Part>> = vec![
         Arc::new(BeamDamping {
             beam: 0,
-            mass_proportional: Some(0.5),
-            strain: Some(2e-4),
-            curvature: Some(2e-3),
+            mass_proportional: Some((0.5).into()),
+            strain: Some((2e-4).into()),
+            curvature: Some((2e-3).into()),
         }),
-        Arc::new(Drag { beam: 0, viscous: [0.1, 0.1], quadratic: [0.0, 0.2], flow: [0.3, 0.0] }),
+        Arc::new(Drag {
+            beam: 0,
+            viscous: [0.1, 0.1].map(Into::into),
+            quadratic: [0.0, 0.2].map(Into::into),
+            flow: [0.3, 0.0],
+        }),
         Arc::new(PointMass { at, mass: Some(0.1), rotary_inertia: Some(1e-3) }),
         Arc::new(Spring {
             at,
@@ -36,12 +41,12 @@ fn driven(rotation: FixedRotation, duration: f64) -> Model {
             damping: Some(0.1),
         }),
         Arc::new(TorsionSpring { at, stiffness: Some(0.1), damping: Some(0.01) }),
-        Arc::new(SectionInertia { beam: 0, per_length: 1e-4 }),
-        Arc::new(Foundation { beam: 0, stiffness: [0.5, 2.0] }),
+        Arc::new(SectionInertia { beam: 0, per_length: 1e-4.into() }),
+        Arc::new(Foundation { beam: 0, stiffness: [0.5, 2.0].map(Into::into) }),
         Arc::new(Actuation {
             beam: 0,
-            strain: Some(1e-3),
-            curvature: Some(0.3),
+            strain: Some((1e-3).into()),
+            curvature: Some((0.3).into()),
             law: Some(Law::Polynomial(vec![0.0, 2.0, -1.0])),
         }),
     ];
@@ -119,8 +124,12 @@ fn damping_hides_no_gain() {
 #[test]
 fn mass_damping_slows_free_flight() {
     let alpha = 3.0;
-    let damping =
-        BeamDamping { beam: 0, mass_proportional: Some(alpha), strain: Some(1e-3), curvature: Some(1e-2) };
+    let damping = BeamDamping {
+        beam: 0,
+        mass_proportional: Some((alpha).into()),
+        strain: Some((1e-3).into()),
+        curvature: Some((1e-2).into()),
+    };
     let mut model = one(vec![], vec![Arc::new(damping)]);
     model.initial_velocities =
         vec![InitialVelocity { translation: [2.0, 1.0], ..InitialVelocity::default() }];
@@ -143,7 +152,11 @@ fn a_hub_of_constant_speed_keeps_a_rigid_rotation_in_its_equilibrium() {
     };
     let mut model = one(
         vec![hub],
-        vec![Arc::new(BeamDamping { strain: Some(0.02), curvature: Some(0.4), ..BeamDamping::default() })],
+        vec![Arc::new(BeamDamping {
+            strain: Some((0.02).into()),
+            curvature: Some((0.4).into()),
+            ..BeamDamping::default()
+        })],
     );
     model.initial_velocities = vec![InitialVelocity { rotation: speed, ..InitialVelocity::default() }];
     let trajectory = moved(&model, 6.0, gauss(2e-3));

@@ -46,9 +46,10 @@ fn model(discretization: Discretization, supports: Vec<Support>) -> Model {
             name: "arm".into(),
             centreline: Centreline::Line { start: [0.0, 0.0], end: [LENGTH, 0.0] },
             section: Section {
-                axial_stiffness: Some(2e3),
-                bending_stiffness: Some(0.5),
-                mass_per_length: Some(0.4),
+                axial_stiffness: Some(2e3.into()),
+                bending_stiffness: Some(0.5.into()),
+                mass_per_length: Some(0.4.into()),
+                ..Default::default()
             },
             strain: StrainMeasure::Engineering,
             discretization,

@@ -43,13 +43,14 @@ pub fn centreline() -> impl Strategy<Value = Centreline> {
 pub fn beam() -> impl Strategy<Value = Beam> {
     let strain = prop_oneof![Just(StrainMeasure::Green), Just(StrainMeasure::Engineering)];
     (discretization(), centreline(), strain, 10.0..1e4, 0.1..10.0).prop_map(
-        |(discretization, centreline, strain, axial, bending)| Beam {
+        |(discretization, centreline, strain, axial, bending): (_, _, _, f64, f64)| Beam {
             name: "beam".into(),
             centreline,
             section: Section {
-                axial_stiffness: Some(axial),
-                bending_stiffness: Some(bending),
-                mass_per_length: Some(1.3),
+                axial_stiffness: Some(axial.into()),
+                bending_stiffness: Some(bending.into()),
+                mass_per_length: Some(1.3.into()),
+                ..Default::default()
             },
             strain,
             discretization,

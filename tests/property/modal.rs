@@ -40,9 +40,10 @@ fn beam(discretization: Discretization, angle: f64) -> Beam {
         name: "beam".into(),
         centreline: Centreline::Line { start: [0.2, 0.1], end: [0.2 + LENGTH * c, 0.1 + LENGTH * s] },
         section: Section {
-            axial_stiffness: Some(1e5),
-            bending_stiffness: Some(2.0),
-            mass_per_length: Some(0.7),
+            axial_stiffness: Some(1e5.into()),
+            bending_stiffness: Some(2.0.into()),
+            mass_per_length: Some(0.7.into()),
+            ..Default::default()
         },
         strain: StrainMeasure::Engineering,
         discretization,

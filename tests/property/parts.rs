@@ -2,7 +2,7 @@
 
 use ancf::assembly::{Density, Dissipation};
 use ancf::effect::{
-    BendDamping, Dashpot, Drag, Engineering, Green, GroundSpring, Gyration, Inertia, Obstacle, Penalty,
+    BendDamping, Dashpot, DragForce, Engineering, Green, GroundSpring, Gyration, Inertia, Obstacle, Penalty,
     PreCurvature, PreStrain, RotaryInertia, StretchDamping, Strut, Torsion, TorsionDashpot,
 };
 use nalgebra::{DVector, Dyn, Vector2};
@@ -201,7 +201,7 @@ proptest! {
         rates(&TorsionDashpot { coefficient: 0.6 }, [g], [w], |v| {
             square(cross(&g_dual, &v[0]) / g.norm_squared()) * 0.3
         });
-        let drag = Drag { beam: 0, viscous: [0.2, 0.5], quadratic: [0.1, 3.0], flow: [0.4, -0.3] };
+        let drag = DragForce { viscous: [0.2, 0.5], quadratic: [0.1, 3.0], flow: [0.4, -0.3] };
         rates(&drag, [r, g], [v, w], |rate| {
             let u = minus(&rate[0], [0.4, -0.3]);
             let along = dot(&g_dual, &u) / g.norm();

@@ -31,8 +31,12 @@ fn a_slack_cable_hangs_as_a_catenary() {
     let (radius, half) = (1.0_f64, 1.0_f64);
     let mut cable = beam("cable", [0.0; 2], [1.0, 0.0], ancf(24));
     cable.centreline = Centreline::Arc { center: [0.0, 0.0], radius, from: -2.0, to: -2.0 + 2.0 * half };
-    cable.section =
-        Section { axial_stiffness: Some(1e6), bending_stiffness: None, mass_per_length: Some(0.4) };
+    cable.section = Section {
+        axial_stiffness: Some(1e6.into()),
+        bending_stiffness: None,
+        mass_per_length: Some(0.4.into()),
+        ..Default::default()
+    };
     let length = 2.0 * half * radius;
     let ends = [0.0, length].map(|s| support(s, FixedRotation::Free));
     let mut model = one(ends.to_vec(), vec![]);
@@ -103,8 +107,12 @@ fn a_folded_string_is_named() {
         let mut model =
             one(vec![support(0.0, FixedRotation::Free), support(1.0, FixedRotation::Free)], vec![]);
         model.beams = vec![beam("cable", [0.0; 2], [1.0, 0.0], ancf(16))];
-        model.beams[0].section =
-            Section { axial_stiffness: Some(100.0), bending_stiffness: None, mass_per_length: Some(1.0) };
+        model.beams[0].section = Section {
+            axial_stiffness: Some(100.0.into()),
+            bending_stiffness: None,
+            mass_per_length: Some(1.0.into()),
+            ..Default::default()
+        };
         model.supports[1].displacement = Displacement { x: -0.4, ..Displacement::default() };
         model.parts = vec![Arc::new(Gravity::new([0.0, -9.81]))];
         model.probes = tip(0, 0.5);

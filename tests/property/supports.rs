@@ -21,9 +21,10 @@ fn model(discretization: Discretization, angle: f64, supports: Vec<Support>) -> 
             name: "beam".into(),
             centreline: Centreline::Line { start: [0.5, -0.3], end: [0.5 + LENGTH * c, -0.3 + LENGTH * s] },
             section: Section {
-                axial_stiffness: Some(2e3),
-                bending_stiffness: Some(1.0),
+                axial_stiffness: Some(2e3.into()),
+                bending_stiffness: Some(1.0.into()),
                 mass_per_length: None,
+                ..Default::default()
             },
             strain: StrainMeasure::Engineering,
             discretization,
@@ -120,7 +121,7 @@ proptest! {
 #[test]
 fn a_bifurcation_is_reported_with_its_load() {
     let mut column = model(Discretization::Ancf { nodes: Nodes::Uniform(9) }, 0.0, vec![clamp()]);
-    column.beams[0].section.axial_stiffness = Some(1e6);
+    column.beams[0].section.axial_stiffness = Some(1e6.into());
     let critical = std::f64::consts::PI.powi(2) / (4.0 * LENGTH * LENGTH);
     column.parts = vec![Arc::new(Force::new(Place { beam: 0, s: LENGTH }, [-2.0 * critical, 0.0]))];
     let system = System::build(&column, Needs { inertia: false, motion: false }).expect("a legal model");
@@ -145,9 +146,10 @@ fn stability_between_constraint_rows_does_not_depend_on_units() {
         let mut column = model(Discretization::Ancf { nodes: Nodes::Uniform(10) }, 0.0, vec![]);
         column.beams[0].centreline = Centreline::Line { start: [0.0, 0.0], end: [length, 0.0] };
         column.beams[0].section = Section {
-            axial_stiffness: Some(1e6),
-            bending_stiffness: Some(metre * metre),
+            axial_stiffness: Some(1e6.into()),
+            bending_stiffness: Some((metre * metre).into()),
             mass_per_length: None,
+            ..Default::default()
         };
         let pin = |s: f64, x: bool| Support {
             at: Place { beam: 0, s },

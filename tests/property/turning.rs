@@ -53,9 +53,10 @@ fn ancf_beam(nodes: Nodes) -> Beam {
         name: "beam".into(),
         centreline: Centreline::Line { start: [0.0, 0.0], end: [1.0, 0.0] },
         section: ancf::model::Section {
-            axial_stiffness: Some(1e4),
-            bending_stiffness: Some(1.0),
+            axial_stiffness: Some(1e4.into()),
+            bending_stiffness: Some(1.0.into()),
             mass_per_length: None,
+            ..Default::default()
         },
         strain: ancf::model::StrainMeasure::Engineering,
         discretization: Discretization::Ancf { nodes },

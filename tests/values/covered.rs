@@ -125,7 +125,7 @@ fn paths(value: &serde_json::Value, path: &str, into: &mut BTreeSet<String>) {
         // What a kind of analysis has none of.
         serde_json::Value::Null => {}
         _ => {
-            into.insert(path.replace("probes.end.", "probes."));
+            into.insert(path.replace("probes.end.", "probes.").replace("reactions.support1.", "reactions."));
         }
     }
 }
@@ -138,7 +138,7 @@ fn every_column_of_every_file_has_a_value_test() {
         support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]
         effect.force = [{ beam = 'arm', at = 'end', value = [-1e-3, 0] }]
         probe = [{ name = 'end', beam = 'arm', at = 'end' }]
-        output = { states = true, vtu = true, reactions = true, effects = true }\n";
+        output = { states = true, vtu = true, reactions = true, effects = true, section_forces = true }\n";
     let moving = "effect.gravity.acceleration = [0, -9.81]
         effect.contact = [{ beam = 'arm', half_plane = { point = [0, 0], normal = [0, 1] }, stiffness = 1e4 }]
         effect.damping = [{ beam = 'arm', mass_proportional = 0.2 }]
@@ -159,6 +159,15 @@ fn every_column_of_every_file_has_a_value_test() {
         Written::of(&format!("{open}analysis.dynamic = {{ duration = 0.1, accuracy = 1e-2 }}\n")),
         Written::of(&format!("{open}analysis.modal.count = 2\n")),
         Written::of(&format!("{open}analysis.buckling.count = 2\n")),
+        Written::of(
+            &held
+                .replace(
+                    "axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1",
+                    "section.layers = [{ youngs_modulus = 1e6, density = 1, width = 0.1, height = 0.01 }, \
+             { youngs_modulus = 2e6, density = 1, width = 0.1, height = 0.01 }]",
+                )
+                .replace("output =", "analysis.static = {}\n        output ="),
+        ),
         // Missed, and short.
         Written::of(&format!("{short}analysis.static = {{ steps = 2, accuracy = 1e-12 }}\n")),
     ];
@@ -170,6 +179,7 @@ fn every_column_of_every_file_has_a_value_test() {
             "reactions.csv",
             "effects.csv",
             "shape.csv",
+            "layers.csv",
             "states.csv",
             "modes.csv",
             "frequencies.csv",
@@ -196,7 +206,7 @@ fn every_column_of_every_file_has_a_value_test() {
             }
         }
     }
-    assert_eq!(names.len(), 11, "{:?}", names.keys());
+    assert_eq!(names.len(), 12, "{:?}", names.keys());
     for (file, names) in names {
         is_listed(file, names.into_iter());
     }

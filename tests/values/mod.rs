@@ -7,6 +7,7 @@
 //! test looks at what; [`covered`] holds them against the schema and the headers.
 
 mod actuators;
+mod bent;
 mod bounds;
 mod covered;
 mod effects;
@@ -23,9 +24,11 @@ mod obstacles;
 mod pictures;
 mod records;
 mod refusals;
+mod sections;
 mod settings;
 mod shapes;
 mod starts;
+mod stretches;
 mod studies;
 mod time;
 mod units;

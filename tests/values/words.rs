@@ -85,7 +85,7 @@ fn units_are_told_by_their_dimension_or_what_is_wrong() {
     for unit in ["N m^2", " N  m^2", "N·m²", "kg m^3 s^-2", "(kg m^3)/(s^2)", "kg m^3/s/s", "kg*m**3/s²"] {
         let scene =
             parse("scene.toml", &arm("1e4", &format!("\"2 {unit}\""))).unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(scene.model().beams[0].section.bending_stiffness, Some(2.0), "{unit}");
+        assert_eq!(scene.model().beams[0].section.bending_stiffness, Some(2.0.into()), "{unit}");
     }
 }
 
@@ -105,7 +105,7 @@ fn numbers_before_units_are_read_in_every_spelling() {
         ("007 N", 7.0),
     ] {
         let scene = parse("scene.toml", &arm(&format!("\"{text}\""), "2")).unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(scene.model().beams[0].section.axial_stiffness, Some(value), "{text}");
+        assert_eq!(scene.model().beams[0].section.axial_stiffness, Some(value.into()), "{text}");
     }
     let no_number = "it does not begin with a decimal number";
     for (text, told) in [

@@ -39,9 +39,10 @@ fn cantilever(discretization: Discretization, gauss_points: GaussPoints, angle: 
             name: "cantilever".into(),
             centreline: Centreline::Line { start: [0.0, 0.0], end: [LENGTH, 0.0] },
             section: Section {
-                axial_stiffness: Some(68.95e9 * 2.5e-4),
-                bending_stiffness: Some(EI),
+                axial_stiffness: Some((68.95e9 * 2.5e-4).into()),
+                bending_stiffness: Some(EI.into()),
                 mass_per_length: None,
+                ..Default::default()
             },
             strain: StrainMeasure::Engineering,
             discretization,

@@ -61,7 +61,9 @@ class Columns(Mapping[str, Array]):
 
 class Probe(Columns):
     """What a probe sees at every record: `x`, `y` [m], `angle` [rad], `curvature` [1/m], `strain`,
-    and in motions `vx`, `vy` [m/s]."""
+    and in motions `vx`, `vy` [m/s]. With `output.section_forces` also what the section carries:
+    `axial_force`, `shear_force` [N], `bending_moment` [N m], and `stress_bottom`, `stress_top` [Pa]
+    where they are known."""
 
     def __init__(self, name: str, columns: Mapping[str, bytearray], error: Mapping[str, bytearray] | None) -> None:
         super().__init__(columns)
@@ -124,6 +126,20 @@ class Shape:
     """Bending moment [N m], of the sign of EI κ."""
     nodes: Array
     """Positions of the nodes [m], one row each."""
+    layers: Array | None = None
+    """Stresses [Pa] of each layer of the section at each place, on its faces to the right and to the
+    left of the centreline: an array of layers, places and these two. None where the scene does not
+    tell the shape of the section and its modulus."""
+
+    @property
+    def stress(self) -> Array:
+        """Stresses [Pa] on the outer faces to the right and to the left of the centreline, a row for
+        each place.
+
+        Raises ValueError where the scene does not tell the shape of the section and its modulus."""
+        if self.layers is None:
+            raise ValueError(f"the stress in `{self.beam}` is not known: give the beam `youngs_modulus` and a `section`")
+        return np.column_stack((self.layers[0, :, 0], self.layers[-1, :, 1]))
 
     @property
     def r(self) -> Array:
@@ -384,5 +400,7 @@ def _shapes(columns: list[dict[str, Any]]) -> dict[str, Shape]:
     for one in columns:
         arrays = _arrays(one)
         arrays["nodes"] = arrays["nodes"].reshape(-1, 2)
+        if "stress" in arrays:
+            arrays["layers"] = arrays.pop("stress").reshape(-1, len(arrays["s"]), 2)
         shapes[arrays["beam"]] = Shape(**arrays)
     return shapes

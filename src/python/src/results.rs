@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ancf::basis::BasisCache;
 use ancf::output::{self, OutputOptions, Summary};
-use ancf::results::{AnalysisKind, ModeShape, ProbeSample, Shape};
+use ancf::results::{AnalysisKind, ModeShape, ProbeSample, SectionForces, Shape};
 use ancf::run::shapes_at;
 use ancf::{Analysis, Results as Solved};
 use pyo3::prelude::*;
@@ -49,6 +49,10 @@ fn of_shape<'py>(py: Python<'py>, shape: &Shape) -> PyResult<Bound<'py, PyDict>>
         ("M", &shape.bending_moment),
     ] {
         columns.set_item(name, doubles(py, values.iter().copied()))?;
+    }
+    if !shape.stress.is_empty() {
+        let of_layers = shape.stress.iter().flat_map(|layer| layer.bottom.iter().zip(&layer.top));
+        columns.set_item("stress", doubles(py, of_layers.flat_map(|(bottom, top)| [*bottom, *top])))?;
     }
     columns.set_item("nodes", doubles(py, shape.nodes.iter().flatten().copied()))?;
     Ok(columns)
@@ -119,8 +123,21 @@ impl Results {
 
     /// What probe number `index` sees.
     fn probe<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
-        let probe = self.solved.states().probes.get(index);
-        of_samples(py, probe.map_or(&[], |probe| &probe.samples))
+        let states = self.solved.states();
+        let columns = of_samples(py, states.probes.get(index).map_or(&[], |probe| &probe.samples))?;
+        if let Some(series) = states.sections.get(index) {
+            let set = |name: &str, of: fn(&SectionForces) -> f64| {
+                columns.set_item(name, doubles(py, series.samples.iter().map(of)))
+            };
+            set("axial_force", |forces| forces.axial_force)?;
+            set("shear_force", |forces| forces.shear_force)?;
+            set("bending_moment", |forces| forces.bending_moment)?;
+            if series.samples.iter().any(|forces| forces.stress_top.is_some()) {
+                set("stress_bottom", |forces| forces.stress_bottom.unwrap_or(f64::NAN))?;
+                set("stress_top", |forces| forces.stress_top.unwrap_or(f64::NAN))?;
+            }
+        }
+        Ok(columns)
     }
 
     /// The estimated errors of what it sees, where they are known.

@@ -49,6 +49,31 @@ def test_numbers_are_those_of_the_command_line(pendulum: ancf.Scene, tmp_path: P
     assert (tmp_path / "saved/report.html").is_file()
 
 
+def test_stresses_are_those_of_the_files(tmp_path: Path) -> None:
+    def arm(section: str) -> str:
+        return f"""
+            support = [{{ beam = "arm", at = "start", fix = ["x", "y", "angle"] }}]
+            effect.force = [{{ beam = "arm", at = "end", value = [1, -2] }}]
+            beam.arm = {{ start = [0, 0], end = [1, 0], basis.ancf.elements = 4, {section} }}
+            analysis.static.steps = 2
+        """
+
+    layers = "{ youngs_modulus = 1e9, width = 0.02, height = 0.01 }, { youngs_modulus = 3e9, width = 0.02, height = 0.02 }"
+    text = arm(f"section.layers = [{layers}]")
+    result = ancf.Scene.parse(text).run()
+    result.save(tmp_path)
+    shape, last = result.shape(), read(tmp_path / "shape.csv")
+    assert np.array_equal(shape.stress, np.column_stack((last["stress_bottom"], last["stress_top"])))
+    assert shape.layers is not None and shape.layers.shape == (2, len(shape.s), 2)
+    # Bonded layers have the strain of their common face: stresses as their moduli.
+    assert np.allclose(3 * shape.layers[0, :, 1], shape.layers[1, :, 0])
+    half = result.shape(t=0.5)
+    assert half.stress[0] == pytest.approx(0.5 * shape.stress[0], rel=0.02)
+    plain = ancf.Scene.parse(arm("axial_stiffness = 1e4, bending_stiffness = 1")).run()
+    with pytest.raises(ValueError, match="the stress in `arm` is not known"):
+        _ = plain.shape().stress
+
+
 def test_shapes_between_records_blend_their_neighbours(pendulum: ancf.Scene) -> None:
     result = pendulum.run()
     at = [result.shape("arm", t=t) for t in (0.2, 0.22, 0.25)]

@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::LawTable;
+use super::{AlongBeam, AlongVector, LawTable};
 use crate::scene::quantity::{
     Angle, Curvature, DragCoefficient, Force, ForcePerLength, Frequency, Length, Mass, MassPerLength, Moment,
     Positive, Quantity, Ratio, RotaryInertia, RotaryInertiaPerLength, Stress, Time, TorsionalDamping,
@@ -19,13 +19,17 @@ pub struct DampingTable {
     /// Name of the beam.
     pub beam: Located<String>,
     /// α of the force per length −α ρA ṙ.
-    pub mass_proportional: Option<Quantity<Frequency, Positive>>,
+    pub mass_proportional: Option<Located<AlongBeam<Frequency, Positive>>>,
     /// η of N = EA (ε + η ε̇) and M = EI (κ + η κ̇), in place of `strain` and `curvature`.
-    pub stiffness_proportional: Option<Located<Quantity<Time, Positive>>>,
+    pub stiffness_proportional: Option<Located<AlongBeam<Time, Positive>>>,
     /// η of N = EA (ε + η ε̇).
-    pub strain: Option<Quantity<Time, Positive>>,
+    pub strain: Option<Located<AlongBeam<Time, Positive>>>,
     /// η of M = EI (κ + η κ̇).
-    pub curvature: Option<Quantity<Time, Positive>>,
+    pub curvature: Option<Located<AlongBeam<Time, Positive>>>,
+    /// Arc length from which on it acts; the beam's start when left out.
+    pub from: Option<Located<At>>,
+    /// Arc length up to which it acts; the beam's end when left out.
+    pub to: Option<Located<At>>,
 }
 
 /// A spring and dashpot from a point to the ground; `stiffness`, `damping` or both.
@@ -83,8 +87,8 @@ pub struct PointMassTable {
 pub struct SectionInertiaTable {
     /// Name of the beam.
     pub beam: Located<String>,
-    /// ρI.
-    pub per_length: Quantity<RotaryInertiaPerLength, Positive>,
+    /// ρI; that of the beam's `section` and `density` when left out.
+    pub per_length: Option<Located<AlongBeam<RotaryInertiaPerLength, Positive>>>,
 }
 
 /// An elastic foundation along a beam.
@@ -94,7 +98,11 @@ pub struct FoundationTable {
     /// Name of the beam.
     pub beam: Located<String>,
     /// Force per length and displacement along x and y.
-    pub stiffness: Located<Vector<Stress>>,
+    pub stiffness: Located<AlongVector<Stress>>,
+    /// Arc length from which on it acts; the beam's start when left out.
+    pub from: Option<Located<At>>,
+    /// Arc length up to which it acts; the beam's end when left out.
+    pub to: Option<Located<At>>,
 }
 
 /// A strain or curvature that the beam would take by itself.
@@ -104,9 +112,13 @@ pub struct ActuationTable {
     /// Name of the beam.
     pub beam: Located<String>,
     /// ε₀.
-    pub strain: Option<Quantity<Ratio>>,
+    pub strain: Option<Located<AlongBeam<Ratio>>>,
     /// κ₀.
-    pub curvature: Option<Quantity<Curvature>>,
+    pub curvature: Option<Located<AlongBeam<Curvature>>>,
+    /// Arc length from which on it acts; the beam's start when left out.
+    pub from: Option<Located<At>>,
+    /// Arc length up to which it acts; the beam's end when left out.
+    pub to: Option<Located<At>>,
     /// In a motion: the law of time that multiplies both.
     pub in_time: Option<Located<LawTable>>,
 }
@@ -118,15 +130,19 @@ pub struct DragTable {
     /// Name of the beam.
     pub beam: Located<String>,
     /// ½ ρ C_D D across the beam.
-    pub normal: Option<Quantity<DragCoefficient, Positive>>,
+    pub normal: Option<Located<AlongBeam<DragCoefficient, Positive>>>,
     /// The same along the beam.
-    pub tangential: Option<Quantity<DragCoefficient, Positive>>,
+    pub tangential: Option<Located<AlongBeam<DragCoefficient, Positive>>>,
     /// Viscous force per length and velocity across the beam.
-    pub viscous_normal: Option<Quantity<ViscousDamping, Positive>>,
+    pub viscous_normal: Option<Located<AlongBeam<ViscousDamping, Positive>>>,
     /// The same along the beam.
-    pub viscous_tangential: Option<Quantity<ViscousDamping, Positive>>,
+    pub viscous_tangential: Option<Located<AlongBeam<ViscousDamping, Positive>>>,
     /// Velocity of the fluid. In statics its force is a load, which grows with the load factor.
     pub flow: Option<Vector<Velocity>>,
+    /// Arc length from which on it acts; the beam's start when left out.
+    pub from: Option<Located<At>>,
+    /// Arc length up to which it acts; the beam's end when left out.
+    pub to: Option<Located<At>>,
 }
 
 /// Lift of a beam in a heavy fluid; needs gravity.
@@ -136,7 +152,11 @@ pub struct BuoyancyTable {
     /// Name of the beam.
     pub beam: Located<String>,
     /// Mass of the fluid that a length of the beam displaces.
-    pub displaced_mass_per_length: Quantity<MassPerLength, Positive>,
+    pub displaced_mass_per_length: Located<AlongBeam<MassPerLength, Positive>>,
+    /// Arc length from which on it acts; the beam's start when left out.
+    pub from: Option<Located<At>>,
+    /// Arc length up to which it acts; the beam's end when left out.
+    pub to: Option<Located<At>>,
 }
 
 /// A dead force that travels along a beam.
@@ -169,7 +189,8 @@ pub struct ContactTable {
     pub rectangle: Option<BoxTable>,
     /// Force per length of beam and penetration.
     pub stiffness: Quantity<Stress, Positive>,
-    /// Distance of the beam's surface from its centreline; zero when left out.
+    /// Distance of the beam's surface from its centreline; that of its `section` when left out, and
+    /// zero without one.
     pub half_thickness: Option<Quantity<Length, Positive>>,
     /// Dry friction.
     pub friction: Option<FrictionTable>,

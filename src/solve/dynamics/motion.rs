@@ -135,8 +135,8 @@ impl<'a> Motion<'a> {
     pub fn new(system: &'a System) -> Result<Self, Singular> {
         let n = system.coordinates();
         let mass = Inertia::new(system.mass_matrix());
-        let border = system.border_in_motion(0.0, system.reference());
-        let [free_mass, eliminated] = free_mass(system, 0.0, system.reference(), &mass);
+        let border = system.border_in_motion(0.0, system.start());
+        let [free_mass, eliminated] = free_mass(system, 0.0, system.start(), &mass);
         let mass_factor = Factor::definite(&eliminated, &border)?;
         let carries = system.carries();
         let carried = if carries { n } else { 0 };
@@ -153,7 +153,7 @@ impl<'a> Motion<'a> {
             workspace: Workspace::default(),
             force: vec![0.0; n],
             side_by_side: [0; 2].map(|_| vec![0.0; n]),
-            accepted: AcceptedState { q: system.reference().to_vec(), ..AcceptedState::default() },
+            accepted: AcceptedState { q: system.start().to_vec(), ..AcceptedState::default() },
             scratch: vec![0.0; if system.is_damped() { n } else { 0 }],
             multipliers: vec![0.0; system.multipliers()],
             carried: [0; 3].map(|_| vec![0.0; carried]),

@@ -95,13 +95,13 @@ fn jump(system: &System, at: usize, time: f64, change: f64) -> StartError {
     StartError::Jump { beam: system.beams()[beam].name.clone(), s, time, change }
 }
 
-/// The stress-free state with the given velocities.
+/// The state in which the model begins, with the given velocities.
 ///
 /// # Errors
 /// [`StartError::Held`] where supports do not allow them, [`StartError::Jump`] where a support
 /// starts elsewhere.
 pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Checkpoint, StartError> {
-    from_state(system, State::at_rest(system.reference()), velocities)
+    from_state(system, State::at_rest(system.start()), velocities)
 }
 
 /// A state with the given velocities added to its own. The kinetic energy that supports add by

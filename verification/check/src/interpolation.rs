@@ -6,7 +6,7 @@
 
 use ancf::basis::{Basis, BasisTable, Quadrature};
 use ancf::centreline::Curve;
-use ancf::model::{Beam, StrainMeasure};
+use ancf::model::{Along, Beam, StrainMeasure};
 
 /// Even places at which the curve is recorded, ends included.
 const PLACES: usize = 201;
@@ -53,22 +53,24 @@ pub fn interpolate(beam: &Beam) -> Result<Interpolation, String> {
     let coefficients: Vec<[f64; 2]> =
         basis.nodes().iter().flat_map(|&s| [exact.position(s), exact.tangent(s)]).collect();
 
-    let energy = |stiffness: Option<f64>, points: usize, density: &dyn Fn(f64, f64) -> f64| match stiffness {
+    let energy = |stiffness: &Option<Along>, points: usize, density: &dyn Fn(f64, f64) -> f64| match stiffness
+    {
         None => Ok(None),
         Some(stiffness) => {
             let table = basis.table(Quadrature::Gauss(points), &[1, 2]).map_err(|e| e.to_string())?;
-            let mut sum = 0.0;
+            let (mut sum, mut places) = (0.0, table.s.iter());
             each_point(&table, &coefficients, |weight, r| {
                 let (strain, curvature) = strain_and_curvature(beam.strain, r[0], r[1]);
-                sum += weight * density(strain, curvature);
+                let stiffness = places.next().map_or(f64::NAN, |s| stiffness.at(*s, *s));
+                sum += weight * stiffness * density(strain, curvature);
             });
-            Ok::<_, String>(Some(0.5 * stiffness * sum))
+            Ok::<_, String>(Some(0.5 * sum))
         }
     };
     let section = &beam.section;
-    let stretch = energy(section.axial_stiffness, beam.gauss_points.stretch, &|strain, _| strain * strain)?;
+    let stretch = energy(&section.axial_stiffness, beam.gauss_points.stretch, &|strain, _| strain * strain)?;
     let bend =
-        energy(section.bending_stiffness, beam.gauss_points.bend, &|_, curvature| curvature * curvature)?;
+        energy(&section.bending_stiffness, beam.gauss_points.bend, &|_, curvature| curvature * curvature)?;
 
     let s: Vec<f64> = (0..PLACES).map(|i| exact.length() * i as f64 / (PLACES - 1) as f64).collect();
     let table = basis.points(&s, &[0, 1, 2]).map_err(|e| e.to_string())?;

@@ -7,7 +7,7 @@
 //! | `reaction.<name>.x` (`y`, `moment`) | forces of a support or joint, where `output.reactions` asks for them | time or load factor |
 //! | `energy.drift` | max abs(total − initial) / max kinetic | – |
 //! | `parameter` | load factor or time \[s\] itself | time or load factor |
-//! | `shape.x` (`s`, `y`, `angle`, `strain`, `curvature`, `axial_force`, `shear_force`, `bending_moment`), `shape.<beam>.x` | the last state | s \[m\] |
+//! | `shape.x` (`s`, `y`, `angle`, `strain`, `curvature`, `axial_force`, `shear_force`, `bending_moment`, `stress_bottom`, `stress_top`), `shape.<beam>.x` | the last state | s \[m\] |
 //! | `frequency.<k>`, `load-factor.<k>` | k-th from 1, \[Hz\] or – | – |
 //! | `statistics.<name>` | counts, as in `summary.json`; `most_iterations` of an accepted step | – |
 //! | `interpolated.stretch` (`bend`) | ½∫EA ε² ds, ½∫EI κ² ds of exact nodal values \[J\] | – |
@@ -19,6 +19,9 @@ use ancf::system::Reaction;
 
 use crate::case::Pick;
 use crate::interpolation::Interpolation;
+
+/// What is said where stresses are not known.
+const UNSTRESSED: &str = "the section of this beam does not tell its shape";
 
 /// The results of a run.
 #[derive(Clone, Debug)]
@@ -215,9 +218,11 @@ fn shape(shape: &Shape, field: &str) -> std::result::Result<Values, String> {
         "axial_force" => &shape.axial_force,
         "shear_force" => &shape.shear_force,
         "bending_moment" => &shape.bending_moment,
+        "stress_bottom" => &shape.stress.first().ok_or(UNSTRESSED)?.bottom,
+        "stress_top" => &shape.stress.last().ok_or(UNSTRESSED)?.top,
         _ => {
             return Err(
-                "a shape has s, x, y, angle, strain, curvature, axial_force, shear_force, bending_moment"
+                "a shape has s, x, y, angle, strain, curvature, axial_force, shear_force, bending_moment, stress_bottom, stress_top"
                     .to_owned(),
             );
         }

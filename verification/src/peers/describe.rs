@@ -9,8 +9,8 @@ use ancf::basis::Basis;
 use ancf::centreline::Curve;
 use ancf::effect::{self, BeamDamping, Gravity};
 use ancf::model::{
-    About, Analysis, Beam, Centreline, Discretization, FixedRotation, Integrator, Law, Modal, Model, Place,
-    StepControl, StrainMeasure,
+    About, Along, Analysis, Beam, Centreline, Discretization, FixedRotation, Integrator, Law, Modal, Model,
+    Place, StepControl, StrainMeasure,
 };
 use serde::Serialize;
 
@@ -199,8 +199,12 @@ fn add_damping(beams: &mut [Cable], damping: &BeamDamping) -> Result<(), String>
         return Err(none("damping in proportion to mass"));
     }
     let beam = beams.get_mut(damping.beam).ok_or_else(|| none("the damping of no beam"))?;
-    beam.axial_damping += damping.strain.unwrap_or(0.0) * beam.axial_stiffness;
-    beam.bending_damping += damping.curvature.unwrap_or(0.0) * beam.bending_stiffness;
+    let constant = |quantity: &Option<Along>| match quantity {
+        None => Ok(0.0),
+        Some(along) => along.constant().ok_or_else(|| none("damping that varies along a beam")),
+    };
+    beam.axial_damping += constant(&damping.strain)? * beam.axial_stiffness;
+    beam.bending_damping += constant(&damping.curvature)? * beam.bending_stiffness;
     Ok(())
 }
 
@@ -229,6 +233,10 @@ fn cable(beam: &Beam, basis: &Basis) -> Result<Cable, String> {
     if beam.gauss_points.lobatto || ![[5, 3], [4, 2]].contains(&points) {
         return Err(of_beam(&format!("the Gauss points {}/{} (only 5/3 and 4/2)", points[0], points[1])));
     }
+    let constant = |quantity: &Option<Along>| match quantity {
+        None => Ok(0.0),
+        Some(along) => along.constant().ok_or_else(|| of_beam("a section that varies along it")),
+    };
     let length = basis.length();
     let tangent = [(end[0] - start[0]) / length, (end[1] - start[1]) / length];
     Ok(Cable {
@@ -236,9 +244,9 @@ fn cable(beam: &Beam, basis: &Basis) -> Result<Cable, String> {
         tangent,
         velocities: vec![[0.0; 4]; basis.nodes().len()],
         lengths: basis.nodes().windows(2).map(|ends| ends[1] - ends[0]).collect(),
-        axial_stiffness: beam.section.axial_stiffness.unwrap_or(0.0),
-        bending_stiffness: beam.section.bending_stiffness.unwrap_or(0.0),
-        mass_per_length: beam.section.mass_per_length.unwrap_or(0.0),
+        axial_stiffness: constant(&beam.section.axial_stiffness)?,
+        bending_stiffness: constant(&beam.section.bending_stiffness)?,
+        mass_per_length: constant(&beam.section.mass_per_length)?,
         axial_damping: 0.0,
         bending_damping: 0.0,
         gauss_points: points,

@@ -1,0 +1,341 @@
+//! Quantities that vary along a beam.
+
+use std::fmt;
+
+/// Depth to which a polynomial is divided in search of its bounds: pieces of 10⁻⁶ of the beam.
+const DIVISIONS: usize = 20;
+/// Width of the bounds of a polynomial, relative to its largest value, at which the search ends.
+const TIGHT: f64 = 1e-9;
+
+/// A quantity as a function of the arc length s \[m\].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Along {
+    /// The same everywhere.
+    Constant(f64),
+    /// Linear between the values at rising arc lengths, and constant beyond the first and the last.
+    Table {
+        /// Arc lengths \[m\].
+        s: Vec<f64>,
+        /// The value at each of them.
+        value: Vec<f64>,
+    },
+    /// Σ cᵢ sⁱ.
+    Polynomial(Vec<f64>),
+    /// Constant by pieces: each value holds up to an arc length of its own, the last one to the end
+    /// of the beam.
+    Pieces {
+        /// Arc lengths \[m\] at which pieces end, rising; the end of the last one is not listed.
+        until: Vec<f64>,
+        /// The values, one more than ends.
+        value: Vec<f64>,
+    },
+    /// A product of quantities.
+    Product(Vec<Along>),
+    /// A sum of quantities.
+    Sum(Vec<Along>),
+    /// A quantity divided by another one, which is nowhere zero.
+    Quotient(Box<[Along; 2]>),
+    /// A quantity on a stretch of the beam, and zero elsewhere.
+    Within {
+        /// Arc length \[m\] at which the stretch begins.
+        from: f64,
+        /// Arc length \[m\] at which it ends.
+        to: f64,
+        /// The quantity there.
+        quantity: Box<Along>,
+    },
+}
+
+impl Along {
+    /// Its value at `s`; where it jumps there, the value on the side of `inside`.
+    pub fn at(&self, s: f64, inside: f64) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Table { s: places, value } => {
+                let right = places.partition_point(|place| *place <= s).clamp(1, places.len() - 1);
+                let (from, to) = (places[right - 1], places[right]);
+                let part = ((s - from) / (to - from)).clamp(0.0, 1.0);
+                value[right - 1] + part * (value[right] - value[right - 1])
+            }
+            Self::Polynomial(terms) => terms.iter().rev().fold(0.0, |sum, term| sum * s + term),
+            Self::Pieces { until, value } => value[until.partition_point(|end| *end < inside)],
+            Self::Product(factors) => factors.iter().map(|factor| factor.at(s, inside)).product(),
+            Self::Sum(terms) => terms.iter().map(|term| term.at(s, inside)).sum(),
+            Self::Quotient(pair) => pair[0].at(s, inside) / pair[1].at(s, inside),
+            Self::Within { from, to, quantity } => {
+                if (*from..=*to).contains(&inside) {
+                    quantity.at(s, inside)
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+
+    /// The value, where it is the same everywhere.
+    pub fn constant(&self) -> Option<f64> {
+        match self {
+            Self::Constant(value) => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// It between two arc lengths \[m\], and zero elsewhere.
+    #[must_use]
+    pub fn within(self, [from, to]: [f64; 2]) -> Self {
+        Self::Within { from, to, quantity: Box::new(self) }
+    }
+
+    /// Whether it is zero everywhere.
+    pub fn is_zero(&self) -> bool {
+        self.constant() == Some(0.0)
+    }
+
+    /// The product with a number.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        self.product(&Self::Constant(factor))
+    }
+
+    /// The product with another quantity.
+    #[must_use]
+    pub fn product(&self, other: &Self) -> Self {
+        match (self, other) {
+            (Self::Constant(a), Self::Constant(b)) => Self::Constant(a * b),
+            (a, b) => Self::Product(vec![a.clone(), b.clone()]),
+        }
+    }
+
+    /// The sum with another quantity.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        match (self, other) {
+            (Self::Constant(a), Self::Constant(b)) => Self::Constant(a + b),
+            (a, b) => Self::Sum(vec![a.clone(), b.clone()]),
+        }
+    }
+
+    /// It divided by another quantity, which is nowhere zero.
+    #[must_use]
+    pub fn over(&self, other: &Self) -> Self {
+        match (self, other) {
+            (Self::Constant(a), Self::Constant(b)) => Self::Constant(a / b),
+            (a, b) => Self::Quotient(Box::new([a.clone(), b.clone()])),
+        }
+    }
+
+    /// The quantities of which it is composed.
+    fn operands(&self) -> &[Self] {
+        match self {
+            Self::Product(all) | Self::Sum(all) => all,
+            Self::Quotient(pair) => pair.as_slice(),
+            Self::Within { quantity, .. } => std::slice::from_ref(quantity),
+            _ => &[],
+        }
+    }
+
+    /// Arc lengths \[m\] at which it jumps.
+    pub fn jumps(&self) -> Vec<f64> {
+        match self {
+            Self::Pieces { until, .. } => until.clone(),
+            Self::Within { from, to, quantity } => {
+                let inner = quantity.jumps().into_iter().filter(|s| (*from..=*to).contains(s));
+                [*from, *to].into_iter().chain(inner).collect()
+            }
+            composed => composed.operands().iter().flat_map(Self::jumps).collect(),
+        }
+    }
+
+    /// Arc lengths \[m\] at which it is not smooth: it jumps, or its slope does.
+    pub fn kinks(&self) -> Vec<f64> {
+        match self {
+            Self::Table { s, .. } => s.clone(),
+            Self::Pieces { until, .. } => until.clone(),
+            Self::Within { from, to, quantity } => {
+                let inner = quantity.kinks().into_iter().filter(|s| (*from..=*to).contains(s));
+                [*from, *to].into_iter().chain(inner).collect()
+            }
+            composed => composed.operands().iter().flat_map(Self::kinks).collect(),
+        }
+    }
+
+    /// Bounds of its values on a beam of length `length` \[m\]; those of products and sums are the
+    /// products, quotients and sums of bounds.
+    pub fn bounds(&self, length: f64) -> [f64; 2] {
+        let hull = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+        };
+        let product = |a: [f64; 2], b: [f64; 2]| hull(&mut a.iter().flat_map(|a| b.map(|b| a * b)));
+        match self {
+            Self::Constant(value) => [*value; 2],
+            Self::Table { value, .. } | Self::Pieces { value, .. } => hull(&mut value.iter().copied()),
+            Self::Polynomial(terms) => polynomial_bounds(&bernstein(terms, length), DIVISIONS),
+            Self::Product(factors) => {
+                factors.iter().fold([1.0; 2], |bounds, factor| product(bounds, factor.bounds(length)))
+            }
+            Self::Quotient(pair) => product(pair[0].bounds(length), pair[1].bounds(length).map(f64::recip)),
+            Self::Sum(terms) => terms.iter().fold([0.0; 2], |[low, high], term| {
+                let [a, b] = term.bounds(length);
+                [low + a, high + b]
+            }),
+            Self::Within { quantity, .. } => {
+                let [low, high] = quantity.bounds(length);
+                [low.min(0.0), high.max(0.0)]
+            }
+        }
+    }
+
+    /// Its mean over a beam of length `length` \[m\], exact for polynomials and products of degree 9
+    /// at most.
+    pub fn mean(&self, length: f64) -> f64 {
+        if let Some(value) = self.constant() {
+            return value;
+        }
+        let mut ends: Vec<f64> = self.kinks().into_iter().filter(|s| *s > 0.0 && *s < length).collect();
+        ends.extend([0.0, length]);
+        ends.sort_by(f64::total_cmp);
+        let pieces = ends.windows(2).map(|ends| {
+            let (from, h) = (ends[0], ends[1] - ends[0]);
+            let middle = from + 0.5 * h;
+            GAUSS.iter().map(|(x, w)| 0.5 * h * w * self.at(middle + 0.5 * h * x, middle)).sum::<f64>()
+        });
+        pieces.sum::<f64>() / length
+    }
+}
+
+/// Gauss' rule of five points on [−1, 1].
+const GAUSS: [(f64, f64); 5] = [
+    (0.0, 0.568_888_888_888_888_9),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+];
+
+impl From<f64> for Along {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+impl fmt::Display for Along {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Constant(value) => write!(f, "{value}"),
+            Self::Table { s, value } => write!(f, "table(s = {s:?}, value = {value:?})"),
+            Self::Polynomial(terms) => write!(f, "polynomial({terms:?})"),
+            Self::Pieces { until, value } => write!(f, "pieces(until = {until:?}, value = {value:?})"),
+            Self::Product(factors) => write_joined(f, factors, " * "),
+            Self::Sum(terms) => write_joined(f, terms, " + "),
+            Self::Quotient(pair) => write_joined(f, pair.as_slice(), " / "),
+            Self::Within { from, to, quantity } => write!(f, "({quantity}) from {from} to {to}"),
+        }
+    }
+}
+
+fn write_joined(f: &mut fmt::Formatter<'_>, all: &[Along], sign: &str) -> fmt::Result {
+    for (index, one) in all.iter().enumerate() {
+        write!(f, "{}({one})", if index == 0 { "" } else { sign })?;
+    }
+    Ok(())
+}
+
+/// Bernstein coefficients of Σ cᵢ sⁱ on [0, `length`]: bⱼ = Σ_{i ≤ j} C(j, i)/C(n, i) cᵢ Lⁱ.
+fn bernstein(terms: &[f64], length: f64) -> Vec<f64> {
+    let degree = terms.len().saturating_sub(1);
+    let choose = |n: usize, k: usize| (0..k).fold(1.0, |c, i| c * (n - i) as f64 / (i + 1) as f64);
+    (0..=degree)
+        .map(|j| {
+            let scaled = terms.iter().enumerate().take(j + 1);
+            scaled.map(|(i, c)| choose(j, i) / choose(degree, i) * c * length.powi(i as i32)).sum()
+        })
+        .collect()
+}
+
+/// Bounds of a polynomial with these Bernstein coefficients, which enclose its values. The piece
+/// is halved until they are tight.
+fn polynomial_bounds(b: &[f64], divisions: usize) -> [f64; 2] {
+    let hull =
+        |low: f64, high: f64, b: &[f64]| b.iter().fold([low, high], |[l, h], b| [l.min(*b), h.max(*b)]);
+    let [low, high] = hull(f64::INFINITY, f64::NEG_INFINITY, b);
+    let (first, last) = (b[0], b[b.len() - 1]);
+    let reached = low == first.min(last) && high == first.max(last);
+    if divisions == 0 || reached || high - low <= TIGHT * high.abs().max(low.abs()) {
+        return [low, high];
+    }
+    // De Casteljau's construction at the middle.
+    let (mut row, mut left, mut right) = (b.to_vec(), vec![first], vec![last]);
+    while row.len() > 1 {
+        row = row.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+        left.push(row[0]);
+        right.push(row[row.len() - 1]);
+    }
+    right.reverse();
+    let ([a, b], [c, d]) =
+        (polynomial_bounds(&left, divisions - 1), polynomial_bounds(&right, divisions - 1));
+    [a.min(c), b.max(d)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Along {
+        Along::Table { s: vec![0.0, 1.0, 3.0], value: vec![2.0, 4.0, 1.0] }
+    }
+
+    fn pieces() -> Along {
+        Along::Pieces { until: vec![1.0], value: vec![5.0, 7.0] }
+    }
+
+    #[test]
+    fn values_between_places_and_on_either_side_of_a_jump() {
+        let values = [0.0, 0.5, 1.0, 2.0, 3.0, 3.5].map(|s| table().at(s, s));
+        assert_eq!(values, [2.0, 3.0, 4.0, 2.5, 1.0, 1.0]);
+        assert_eq!([0.9, 1.1].map(|inside| pieces().at(1.0, inside)), [5.0, 7.0]);
+        assert_eq!(Along::Polynomial(vec![1.0, 0.0, 3.0]).at(2.0, 2.0), 13.0);
+        let product = table().product(&pieces());
+        assert_eq!([0.9, 1.1].map(|inside| product.at(1.0, inside)), [20.0, 28.0]);
+        assert_eq!(table().plus(&Along::Constant(1.0)).at(2.0, 2.0), 3.5);
+        assert_eq!(Along::Constant(3.0).times(2.0).constant(), Some(6.0));
+        assert_eq!(table().times(2.0).at(0.5, 0.5), 6.0);
+    }
+
+    /// 3 between 1 and 2, on a beam of 4 m.
+    #[test]
+    fn a_stretch_ends_where_it_is_told_to() {
+        let stretch = Along::Constant(3.0).within([1.0, 2.0]);
+        let values = [(0.5, 0.5), (1.0, 0.9), (1.0, 1.1), (2.0, 1.9), (2.0, 2.1)];
+        assert_eq!(values.map(|(s, inside)| stretch.at(s, inside)), [0.0, 0.0, 3.0, 3.0, 0.0]);
+        assert_eq!((stretch.jumps(), stretch.bounds(4.0)), (vec![1.0, 2.0], [0.0, 3.0]));
+        assert!((stretch.mean(4.0) - 0.75).abs() < 1e-15);
+        assert_eq!(table().within([0.5, 2.0]).kinks(), [0.5, 2.0, 1.0]);
+    }
+
+    #[test]
+    fn jumps_are_kinks_and_kinks_are_not_jumps() {
+        assert_eq!((table().jumps(), table().kinks()), (vec![], vec![0.0, 1.0, 3.0]));
+        assert_eq!((pieces().jumps(), pieces().kinks()), (vec![1.0], vec![1.0]));
+        let product = table().product(&pieces());
+        assert_eq!((product.jumps(), product.kinks()), (vec![1.0], vec![0.0, 1.0, 3.0, 1.0]));
+    }
+
+    /// (s − 1)² + 0.01 on [0, 3] lies between 0.01 and 4.01; its end values are 1.01 and 4.01.
+    #[test]
+    fn bounds_enclose_the_inside_of_a_polynomial() {
+        let [low, high] = Along::Polynomial(vec![1.01, -2.0, 1.0]).bounds(3.0);
+        assert!((low - 0.01).abs() < 1e-8 && (high - 4.01).abs() < 1e-12, "{low} {high}");
+        assert_eq!(table().times(-2.0).bounds(3.0), [-8.0, -2.0]);
+        assert_eq!(table().plus(&pieces()).bounds(3.0), [6.0, 11.0]);
+    }
+
+    /// ∫ of the table is 3 + 5, that of table times pieces 15 + 35; s⁴ times s⁵ has the mean L⁹/10.
+    #[test]
+    fn means_are_exact() {
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * b, "{a} {b}");
+        close(table().mean(3.0), 8.0 / 3.0);
+        close(table().product(&pieces()).mean(3.0), 50.0 / 3.0);
+        let power = |n: usize| Along::Polynomial([vec![0.0; n], vec![1.0]].concat());
+        close(power(4).product(&power(5)).mean(2.0), 51.2);
+    }
+}

@@ -1,0 +1,139 @@
+//! Beams that begin in another shape than the stress-free one.
+
+use super::{Written, near};
+use ancf::scene::parse;
+use std::f64::consts::{PI, TAU};
+
+/// A straight rod of 2π m is bent into a ring of 1 m whose ends are clamped to each other's place:
+/// M = EI/R everywhere, no force, and an energy of ½ EI/R² · 2π R.
+#[test]
+fn a_rod_is_bent_into_a_ring() {
+    for basis in ["ancf.elements = 24", "rpim.nodes = 25"] {
+        let found = Written::of(&format!(
+            "beam.rod = {{ start = [0, 0], end = [{TAU}, 0], axial_stiffness = 1e5, bending_stiffness = 3, basis.{basis}, \
+             initial_shape.arc = {{ center = [0, 1], radius = 1, from = '-90 deg', to = '270 deg' }} }}
+            support = [{{ beam = 'rod', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'rod', at = 'end', fix = ['x', 'y', 'angle'] }}]
+            probe = [{{ name = 'top', beam = 'rod', at = {PI} }}]
+            output.reactions = true\nanalysis.static = {{}}\n"
+        ));
+        found.ends("probes.csv", &[("top.x", 0.0), ("top.y", 2.0), ("top.curvature", 1.0)], 1e-2);
+        near(found.last("probes.csv", "top.angle").abs(), PI, 1e-3, "top.angle");
+        found.ends("energy.csv", &[("bend", 3.0 * PI), ("stretch", 0.0), ("total", 3.0 * PI)], 1e-3);
+        let reaction = |name: &str| found.last("reactions.csv", name);
+        near(reaction("support1.moment"), -3.0, 2e-3, "support1.moment");
+        near(reaction("support2.moment"), 3.0, 2e-3, "support2.moment");
+        near(reaction("support1.fx").hypot(reaction("support1.fy")), 0.0, 1e-2, "force");
+    }
+}
+
+/// A quarter of a circle is pressed flat: M = −EI/R; then a force at its middle is added by load
+/// steps, from that equilibrium on.
+#[test]
+fn an_arc_is_laid_on_a_line() {
+    let quarter = 0.5 * PI;
+    let text = |load: &str| {
+        format!(
+            "beam.arm = {{ arc = {{ center = [0, 1], radius = 1, from = '-90 deg', to = 0 }}, axial_stiffness = 1e5, bending_stiffness = 2, \
+             basis.ancf.elements = 16, initial_shape.line = {{ start = [0, 0], end = [{quarter}, 0] }} }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'arm', at = 'end', fix = ['x', 'y', 'angle'] }}]
+            probe = [{{ name = 'middle', beam = 'arm', at = {} }}]\n{load}
+            output.reactions = true\nanalysis.static.steps = 4\n",
+            0.5 * quarter
+        )
+    };
+    let flat = Written::of(&text(""));
+    flat.ends(
+        "probes.csv",
+        &[("middle.x", 0.5 * quarter), ("middle.y", 0.0), ("middle.curvature", 0.0)],
+        1e-6,
+    );
+    near(flat.last("reactions.csv", "support1.moment"), 2.0, 1e-3, "support1.moment");
+    flat.ends("energy.csv", &[("bend", quarter)], 1e-3);
+    // F L³/(192 EI) of a beam with both ends clamped, F small.
+    let pressed =
+        Written::of(&text("effect.force = [{ beam = 'arm', at = 0.7853981633974483, value = [0, -1e-3] }]"));
+    near(pressed.last("probes.csv", "middle.y"), -1e-3 * quarter.powi(3) / 384.0, 1e-8, "middle.y");
+    assert_eq!(pressed.column("probes.csv", "load").len(), 5);
+}
+
+/// A bent free rod is let go: it begins at rest with ½ EI κ² L, and keeps that energy.
+#[test]
+fn a_bent_rod_is_let_go() {
+    let found = Written::of(
+        "beam.rod = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 2, mass_per_length = 1, basis.ancf.elements = 8, \
+         initial_shape.arc = { center = [0, 2], radius = 2, from = '-90 deg', to = -1.0707963267948966 } }
+        probe = [{ name = 'end', beam = 'rod', at = 'end' }]
+        analysis.dynamic = { duration = 0.2, output_every = 0.05, radau.tolerance = 1e-7 }\n",
+    );
+    let (bend, total) = (found.column("energy.csv", "bend"), found.column("energy.csv", "total"));
+    near(bend[0], 0.5 * 2.0 * 0.25, 1e-4, "bend");
+    assert!(bend.iter().any(|bend| *bend < 0.9 * 0.25), "{bend:?}");
+    for total in total {
+        near(total, bend[0], 2e-3, "total");
+    }
+    let start = [found.column("probes.csv", "end.x")[0], found.column("probes.csv", "end.y")[0]];
+    near(start[0], 2.0 * 0.5_f64.sin(), 1e-12, "end.x");
+    near(start[1], 2.0 - 2.0 * 0.5_f64.cos(), 1e-12, "end.y");
+    near(found.column("probes.csv", "end.vx")[0], 0.0, 1e-15, "end.vx");
+}
+
+/// A bow: a straight limb bent so far that a string fits its ends. String and limb are joined where
+/// they are at the start; the string carries the thrust N, the limb N and the moment N y.
+#[test]
+fn a_bow_is_braced() {
+    let found = Written::of(
+        "beam.limb = { start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 10, basis.ancf.elements = 20, \
+         initial_shape.points = [[0.02, 0], [0.25, 0.1], [0.5, 0.14], [0.75, 0.1], [0.98, 0]] }
+        beam.string = { start = [0, -1], end = [0.9, -1], axial_stiffness = 1e6, basis.ancf.elements = 4, \
+         initial_shape.line = { start = [0.02, 0], end = [0.98, 0] } }
+        joint = [{ type = 'hinge', first = { beam = 'limb', at = 'start' }, second = { beam = 'string', at = 'start' } },
+                 { type = 'hinge', first = { beam = 'limb', at = 'end' }, second = { beam = 'string', at = 'end' } }]
+        support = [{ beam = 'limb', at = 'start', fix = ['x', 'y'] }, { beam = 'limb', at = 'end', fix = ['y'] }]
+        probe = [{ name = 'middle', beam = 'limb', at = 0.5 }]
+        output = { section_forces = true }
+        analysis.static = {}\n",
+    );
+    let rows = |beam: &str, name: &str| -> Vec<f64> {
+        let beams = found.words("shape.csv", "beam");
+        let values = found.column("shape.csv", name);
+        beams.iter().zip(values).filter(|(b, _)| *b == beam).map(|(_, value)| value).collect()
+    };
+    let (tension, thrust) = (rows("string", "axial_force"), rows("limb", "axial_force"));
+    let middle = thrust.len() / 2;
+    // A little more than Euler's load π² EI/L² of the limb, which is bent far.
+    assert!((98.0..125.0).contains(&tension[100]), "{}", tension[100]);
+    near(thrust[middle] / tension[100], -1.0, 1e-3, "thrust");
+    let rise = rows("limb", "y")[middle] - rows("string", "y")[100];
+    near(rows("limb", "bending_moment")[middle] / (-tension[100] * rise), 1.0, 1e-3, "moment");
+    // The string is 0.9 m long, and hardly stretched.
+    near(rows("limb", "x")[thrust.len() - 1] - rows("limb", "x")[0], 0.9, 1e-3, "chord");
+}
+
+#[test]
+fn initial_shapes_that_cannot_be_are_refused() {
+    let scene = |shape: &str, analysis: &str| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 2, mass_per_length = 1, basis.ancf.elements = 4, \
+             initial_shape = {shape} }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\nanalysis.{analysis}\n"
+        )
+    };
+    let line = "{ line = { start = [0, 0], end = [0, 1] } }";
+    for (shape, analysis, said) in [
+        ("{}", "static = {}", "needs exactly one initial shape"),
+        (
+            "{ line = { start = [0, 0], end = [1, 1] }, points = [[0, 0], [1, 0]] }",
+            "static = {}",
+            "needs exactly one",
+        ),
+        ("{ line = { start = [0, 0], end = [0, 0] } }", "static = {}", "cannot begin in this shape"),
+        ("{ line = { start = [0, 0], end = [2, 0] } }", "static = {}", "is 2 m long, and the beam 1 m"),
+        (line, "buckling.count = 1", "a buckling analysis starts from the stress-free shape"),
+        (line, "modal.count = 1", "a modal analysis about the reference starts from"),
+        (line, "static.arc_length = { until_load = 2 }", "a path by arc length starts from"),
+    ] {
+        let error = parse("arm.toml", &scene(shape, analysis)).expect_err(said).to_string();
+        assert!(error.contains(said) && error.contains("arm.toml:1:"), "{error}");
+    }
+    assert!(parse("arm.toml", &scene(line, "modal = { count = 1, about = 'equilibrium' }")).is_ok());
+}
