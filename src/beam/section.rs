@@ -34,7 +34,7 @@ pub struct Section {
 /// A layer of a section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// E [Pa], where it is known.
+    /// E \[Pa\], where it is known.
     pub youngs_modulus: Option<Along>,
     /// Offset of the face on the right \[m\].
     pub bottom: Along,
@@ -92,7 +92,7 @@ impl Section {
         self.layers.iter().map(faces).reduce(|[low, high], [bottom, top]| [low.min(bottom), high.max(top)])
     }
 
-    /// Stresses [Pa] on the right and the left face of every layer at `s`, from the axial force
+    /// Stresses \[Pa\] on the right and the left face of every layer at `s`, from the axial force
     /// \[N\] and the bending moment \[N m\]: σ = E (ε − y κ), where ε and κ are those elastic strains
     /// that N and M cause. `None` where the section does not tell its shape or its modulus.
     pub fn stresses(&self, s: f64, inside: f64, [force, moment]: [f64; 2]) -> Option<Vec<[f64; 2]>> {

@@ -199,7 +199,7 @@ pub(super) fn shape(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     table.finish()
 }
 
-/// `layers.csv`: stresses [Pa] in the last state of beams with several layers;
+/// `layers.csv`: stresses \[Pa\] in the last state of beams with several layers;
 /// `beam, layer, s, stress_bottom, stress_top`.
 pub(super) fn layers(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let mut table = CsvTable::new(out, &words(&["beam", "layer", "s", "stress_bottom", "stress_top"]))?;

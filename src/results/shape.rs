@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// Stresses [Pa] in one layer of a beam's section, which is the whole section where that has no
+/// Stresses \[Pa\] in one layer of a beam's section, which is the whole section where that has no
 /// others. Between the faces they are linear.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct LayerStress {
@@ -15,7 +15,7 @@ pub struct LayerStress {
 /// The largest stress, by magnitude, along a beam.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LargestStress {
-    /// The stress [Pa], positive in tension.
+    /// The stress \[Pa\], positive in tension.
     pub value: f64,
     /// Name of the beam.
     pub beam: String,
@@ -28,7 +28,7 @@ pub struct LargestStress {
 }
 
 impl Shape {
-    /// Stresses [Pa] on the outer faces: those of the first layer's face on the right, and of the
+    /// Stresses \[Pa\] on the outer faces: those of the first layer's face on the right, and of the
     /// last layer's face on the left.
     pub fn face_stresses(&self) -> Option<[&[f64]; 2]> {
         Some([&self.stress.first()?.bottom, &self.stress.last()?.top])
@@ -81,7 +81,7 @@ pub struct Shape {
     pub shear_force: Vec<f64>,
     /// M \[N m\], of the sign of EI κ.
     pub bending_moment: Vec<f64>,
-    /// Stresses [Pa] in the layers of the section; empty where the scene does not tell its shape and
+    /// Stresses \[Pa\] in the layers of the section; empty where the scene does not tell its shape and
     /// its modulus, and given for the last state alone.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub stress: Vec<LayerStress>,

@@ -94,11 +94,11 @@ pub struct SectionForces {
     pub shear_force: f64,
     /// M \[N m\], of the sign of EI κ.
     pub bending_moment: f64,
-    /// Stress [Pa] on the face to the right of the centreline, where the shape of the section and its
+    /// Stress \[Pa\] on the face to the right of the centreline, where the shape of the section and its
     /// modulus are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stress_bottom: Option<f64>,
-    /// Stress [Pa] on the face to the left.
+    /// Stress \[Pa\] on the face to the left.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stress_top: Option<f64>,
 }

@@ -63,15 +63,15 @@ fn column(folder: &Path, file: &str, name: &str) -> Vec<f64> {
 /// and fields under another's name.
 #[test]
 fn vtk_reads_what_the_tables_say() {
-    let trajectory = "[beam.arm]\nstart = [1, 2]\nend = [2, 2]\naxial_stiffness = 1e4\nbending_stiffness = 1.0\nmass_per_length = 1.0\n\
+    let trajectory = "[beam.arm]\nstart = [1, 2]\nend = [2, 2]\nyoungs_modulus = 1e8\nsection.circle = { diameter = 0.02 }\nmass_per_length = 1.0\n\
         basis.ancf.elements = 4\n\
-        [beam.rod]\nstart = [2, 2]\nend = [2.3, 1.6]\naxial_stiffness = 1e4\nbending_stiffness = 1.0\nmass_per_length = 1.0\n\
+        [beam.rod]\nstart = [2, 2]\nend = [2.3, 1.6]\nyoungs_modulus = 1e8\nsection.rectangle = { width = 0.01, height = 0.01 }\nmass_per_length = 1.0\n\
         basis.ancf.elements = 2\n\
         [[support]]\nbeam = \"arm\"\nat = \"start\"\nfix = [\"x\", \"y\"]\n\
         [[joint]]\ntype = \"hinge\"\nfirst = { beam = \"arm\", at = \"end\" }\nsecond = { beam = \"rod\", at = \"start\" }\n\
         [[effect.force]]\nbeam = \"arm\"\nat = 0.301\nvalue = [0, -1]\n\
         [effect.gravity]\nacceleration = [1, -9.81]\n\
-        [output]\nvtu = true\nstates = true\n\
+        [output]\nvtu = true\nstates = true\nsection_forces = true\n\
         [analysis.dynamic]\nduration = 0.5\noutput_every = 0.125\nradau.tolerance = 1e-6\n";
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
@@ -106,6 +106,23 @@ fn vtk_reads_what_the_tables_say() {
             assert_eq!(moved[k][2], 0.0);
         }
     }
+    for (name, column_name) in [
+        ("angle [rad]", "angle"),
+        ("axial strain", "strain"),
+        ("curvature [1/m]", "curvature"),
+        ("axial force [N]", "axial_force"),
+        ("shear force [N]", "shear_force"),
+        ("bending moment [N m]", "bending_moment"),
+        ("velocity x [m/s]", "vx"),
+        ("velocity y [m/s]", "vy"),
+        ("stress bottom [Pa]", "stress_bottom"),
+        ("stress top [Pa]", "stress_top"),
+    ] {
+        let all = column(folder, "states.csv", column_name);
+        for (i, grid) in answer.grids[..5].iter().enumerate() {
+            assert_eq!(grid.values::<f64>(name), all[202 * i..202 * (i + 1)], "frame {i}, {name}");
+        }
+    }
     let far = answer.grids[4].values::<[f64; 3]>("displacement [m]")[201];
     assert!(far[0] < -0.1 && far[1] < -0.5, "it has fallen, and swung to the left: {far:?}");
 
@@ -123,6 +140,11 @@ fn vtk_reads_what_the_tables_say() {
         ("angle [rad]", angle),
         ("axial strain", strain),
         ("curvature [1/m]", curvature),
+        ("axial force [N]", column(folder, "shape.csv", "axial_force")),
+        ("shear force [N]", column(folder, "shape.csv", "shear_force")),
+        ("bending moment [N m]", column(folder, "shape.csv", "bending_moment")),
+        ("stress bottom [Pa]", column(folder, "shape.csv", "stress_bottom")),
+        ("stress top [Pa]", column(folder, "shape.csv", "stress_top")),
     ] {
         assert_eq!(last.values::<f64>(name), values, "{name}");
     }

@@ -30,7 +30,7 @@ pub fn worst(scene: &Table, seen: &Seen) -> Option<(f64, String)> {
     }
     for ((name, table), beam) in settings::beams(scene).zip(&seen.beams) {
         // A string has no Q and no M, whatever holds its direction.
-        if !["bending_stiffness", "second_moment"].iter().any(|key| table.contains_key(*key)) {
+        if !["bending_stiffness", "second_moment", "section"].iter().any(|key| table.contains_key(*key)) {
             continue;
         }
         for (end, index) in [("start", 0), ("end", beam.forces.len().saturating_sub(1))] {

@@ -35,6 +35,16 @@ pub fn cut(scene: &Table) -> Option<Table> {
             (length * before as f64 / cells as f64, counts)
         }
     };
+    // What varies along the beam, or acts on a stretch of it, is not cut.
+    let quantities = beam.iter().filter(|(key, _)| !matches!(key.as_str(), "arc" | "basis" | "section"));
+    let varies = quantities.into_iter().any(|(_, value)| value.is_table());
+    let layered = beam.get("section").is_some_and(|section| section.to_string().contains("table"));
+    let effects = scene.get("effect").and_then(Value::as_table);
+    let on_a_stretch = |item: &Value| item.get("from").is_some() || item.get("to").is_some();
+    let mut items = effects.into_iter().flatten().filter_map(|(_, list)| list.as_array()).flatten();
+    if varies || layered || items.any(on_a_stretch) {
+        return None;
+    }
     let other = format!("{name}2");
     let mut scene = scene.clone();
     // Velocities along the arc length are given for the whole beam and are not cut.

@@ -145,6 +145,26 @@ impl Draw<'_> {
         (beam, table)
     }
 
+    /// Lets what acts along a whole beam act on a stretch of it, sometimes.
+    fn perhaps_stretch(&mut self, table: &mut Table) {
+        let name = table.get("beam").and_then(Value::as_str);
+        let Some(length) = self.beams.iter().find(|beam| Some(&*beam.name) == name).map(|beam| beam.length)
+        else {
+            return;
+        };
+        if !self.chance(0.15) {
+            return;
+        }
+        let (from, to) = (self.even(0.05, 0.45), self.even(0.55, 0.95));
+        let ends = self.rng.u8(0..3);
+        if ends != 1 {
+            table.insert("from".into(), (length * from).into());
+        }
+        if ends != 0 {
+            table.insert("to".into(), (length * to).into());
+        }
+    }
+
     /// A table that names a point of a beam; its arc length.
     fn of_point(&mut self) -> (usize, f64, Table) {
         let (beam, mut table) = self.of_beam();
@@ -197,7 +217,9 @@ impl Draw<'_> {
 
     fn output(&mut self) {
         let mut output = Table::new();
-        for (key, share) in [("reactions", 1.0), ("effects", 1.0), ("states", 0.05), ("vtu", 0.05)] {
+        for (key, share) in
+            [("reactions", 1.0), ("effects", 1.0), ("states", 0.05), ("vtu", 0.05), ("section_forces", 0.05)]
+        {
             if self.chance(share) {
                 output.insert(key.into(), true.into());
             }

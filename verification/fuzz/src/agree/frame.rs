@@ -95,6 +95,12 @@ impl Frame {
         if path == "support" {
             self.fixed(table);
         }
+        // Layers are listed from the right face to the left one, which a mirror exchanges.
+        if let (true, Some(Value::Array(layers))) =
+            (self.mirrored && path == "beam.*.section", table.get_mut("layers"))
+        {
+            layers.reverse();
+        }
         for (key, value) in table.iter_mut() {
             let below = match path {
                 "" => key.clone(),
@@ -140,8 +146,31 @@ impl Frame {
                     self.quantity(Nature::Scalar([0, 0, -power]), c);
                 }
             }
+            (Nature::Scalar(_) | Nature::Turning(_), Value::Table(table)) => self.along(nature, table),
             (nature, Value::Array(items)) => items.iter_mut().for_each(|item| self.quantity(nature, item)),
             _ => {}
+        }
+    }
+
+    /// Converts a quantity that varies along a beam. Coefficients of 1, s, s², … have a dimension
+    /// each.
+    fn along(&self, nature: Nature, table: &mut Table) {
+        let length = Nature::Scalar([1, 0, 0]);
+        for (kind, value) in table.iter_mut() {
+            if let ("polynomial", Value::Array(coefficients)) = (kind.as_str(), &mut *value) {
+                for (power, c) in (0..).zip(coefficients) {
+                    let lower = |[d, m, t]: Dimension| [d - power, m, t];
+                    let of_power = match nature {
+                        Nature::Scalar(d) => Nature::Scalar(lower(d)),
+                        Nature::Turning(d) => Nature::Turning(lower(d)),
+                        other => other,
+                    };
+                    self.quantity(of_power, c);
+                }
+            }
+            for (key, list) in value.as_table_mut().into_iter().flatten() {
+                self.quantity(if key == "value" { nature } else { length }, list);
+            }
         }
     }
 

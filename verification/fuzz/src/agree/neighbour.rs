@@ -35,7 +35,8 @@ pub fn near(scene: &Table, share: f64, rng: &mut Rng) -> Table {
     }
     if let Some(Value::Table(beams)) = near.get_mut("beam") {
         for (_, beam) in beams.iter_mut() {
-            for key in ["bending_stiffness", "axial_stiffness", "second_moment", "mass_per_length"] {
+            for key in ["bending_stiffness", "axial_stiffness", "second_moment", "mass_per_length", "section"]
+            {
                 if let Some(value) = beam.get_mut(key) {
                     shake(key, value, share, rng);
                 }
@@ -47,7 +48,7 @@ pub fn near(scene: &Table, share: f64, rng: &mut Rng) -> Table {
 
 fn shake(key: &str, value: &mut Value, share: f64, rng: &mut Rng) {
     // Points must stay on the beams, and the beams where they are at the start.
-    if matches!(key, "at" | "s" | "start" | "times" | "about" | "polynomial") {
+    if matches!(key, "at" | "s" | "start" | "times" | "about" | "polynomial" | "until" | "from" | "to") {
         return;
     }
     let mut by = |size: f64| share * size * (0.5 + 0.5 * rng.f64()) * if rng.bool() { 1.0 } else { -1.0 };

@@ -62,6 +62,10 @@ pub fn nature(path: &str) -> Option<Nature> {
         "beam.*.axial_stiffness" => Scalar(FORCE),
         "beam.*.bending_stiffness" => Scalar([3, 1, -2]),
         "beam.*.mass_per_length" => Scalar(MASS_PER_LENGTH),
+        "beam.*.section.layers.youngs_modulus" => Scalar(STRESS),
+        "beam.*.section.layers.density" => Scalar([-3, 1, 0]),
+        "beam.*.section.layers.offset" => Turning(LENGTH),
+        _ if path.starts_with("beam.*.section.") && path.split('.').count() == 5 => Scalar(LENGTH),
         "support.move.angle" => Turning(NUMBER),
         "support.move.spin_up.speed" | "initial_velocity.rotation" => Turning(RATE),
         "support.move.spin_up.duration" => Scalar(TIME),
@@ -93,6 +97,7 @@ pub fn nature(path: &str) -> Option<Nature> {
         "effect.foundation.stiffness" | "effect.contact.stiffness" | "effect.contact.friction.stiffness" => {
             Scalar(STRESS)
         }
+        "effect.actuation.strain" => Scalar(NUMBER),
         "effect.actuation.curvature" => Turning([-1, 0, 0]),
         "effect.drag.normal" | "effect.drag.tangential" => Scalar([-2, 1, 0]),
         "effect.drag.viscous_normal" | "effect.drag.viscous_tangential" => Scalar([-1, 1, -1]),
@@ -102,6 +107,9 @@ pub fn nature(path: &str) -> Option<Nature> {
         "analysis.dynamic.duration" | "analysis.dynamic.output_every" => Scalar(TIME),
         _ if path.starts_with("analysis.dynamic.") && path.ends_with(".step") => Scalar(TIME),
         _ if path.ends_with(".at") => Scalar(LENGTH),
+        _ if path.starts_with("effect.") && (path.ends_with(".from") || path.ends_with(".to")) => {
+            Scalar(LENGTH)
+        }
         _ => return None,
     })
 }

@@ -243,5 +243,5 @@ pub fn other_basis(scene: &Table) -> Option<Table> {
 
 /// Whether a beam resists bending, and is no string.
 pub fn bends(beam: &Table) -> bool {
-    ["bending_stiffness", "second_moment"].iter().any(|key| beam.contains_key(*key))
+    ["bending_stiffness", "second_moment", "section"].iter().any(|key| beam.contains_key(*key))
 }

@@ -13,7 +13,7 @@ use super::ways::Way;
 const TRIES: usize = 100;
 
 /// Keys of a beam's stiffness and mass.
-const SECTION: [&str; 7] = [
+const SECTION: [&str; 8] = [
     "axial_stiffness",
     "bending_stiffness",
     "mass_per_length",
@@ -21,6 +21,7 @@ const SECTION: [&str; 7] = [
     "area",
     "second_moment",
     "density",
+    "section",
 ];
 
 /// The smallest scene found, and what it is a finding of.

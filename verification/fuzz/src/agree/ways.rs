@@ -151,8 +151,9 @@ pub fn tighter(scene: &Table) -> Option<Table> {
 pub fn integrator(scene: &Table, rng: &mut Rng) -> Option<Table> {
     let motion = settings::motion(scene)?;
     let tolerance = motion.tolerance?;
-    let inextensible = settings::beams(scene)
-        .any(|(_, beam)| !beam.contains_key("axial_stiffness") && !beam.contains_key("youngs_modulus"));
+    let inextensible = settings::beams(scene).any(|(_, beam)| {
+        !["axial_stiffness", "youngs_modulus", "section"].iter().any(|key| beam.contains_key(*key))
+    });
     let mut others = vec!["radau"];
     if !inextensible {
         others.push("gauss");

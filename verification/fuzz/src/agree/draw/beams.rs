@@ -50,7 +50,9 @@ impl Draw<'_> {
         let bends = like.as_ref().map_or_else(
             // No path by arc length leads away from a string without a load.
             || axial.is_none() || self.kind == Kind::ArcLength || !self.chance(0.08),
-            |like| like.contains_key("bending_stiffness") || like.contains_key("second_moment"),
+            |like| {
+                ["bending_stiffness", "second_moment", "section"].iter().any(|key| like.contains_key(*key))
+            },
         );
         let mut table = geometry;
         if let Some(like) = like {
@@ -58,6 +60,9 @@ impl Draw<'_> {
                 .into_iter()
                 .filter(|(key, _)| !matches!(key.as_str(), "start" | "end" | "arc" | "points"));
             table.extend(same);
+            let ratio = length / self.beams[0].length;
+            let quantities = table.iter_mut().filter(|(key, _)| !matches!(key.as_str(), "arc" | "basis"));
+            quantities.into_iter().for_each(|(_, value)| scale_places(value, ratio));
             if let Some(Value::Table(basis)) = table.get_mut("basis") {
                 for (_, kind) in basis.iter_mut() {
                     scale_nodes(kind, length);
@@ -65,6 +70,7 @@ impl Draw<'_> {
             }
         } else {
             self.section(&mut table, axial, bends);
+            self.variation(&mut table, length);
             let basis = self.basis(length, count);
             table.insert("basis".into(), basis.into());
         }
@@ -170,6 +176,11 @@ impl Draw<'_> {
         if self.chance(0.4) {
             table.insert("strain".into(), self.pick(&["green", "engineering"]).into());
         }
+        if let Some(axial) = axial.filter(|axial| bends && *axial >= 100.0)
+            && self.chance(0.12)
+        {
+            return self.shape(table, [axial, bending, mass]);
+        }
         let mut put = |key: &str, value: f64| {
             table.insert(key.into(), value.into());
         };
@@ -194,6 +205,127 @@ impl Draw<'_> {
                 put("mass_per_length", mass);
             }
         }
+    }
+
+    /// A shape of the section with about this EA, EI and ρA.
+    fn shape(&mut self, table: &mut Table, [axial, bending, mass]: [f64; 3]) {
+        let square = bending / axial;
+        let mut put = |key: &str, value: Value| table.insert(key.into(), value);
+        let of = |pairs: &[(&str, f64)]| -> Table {
+            pairs.iter().map(|(key, value)| ((*key).to_owned(), Value::from(*value))).collect()
+        };
+        // EI/EA is h²/12 of a rectangle, d²/16 of a circle, (d² + b²)/16 of a tube with the bore b.
+        let (kind, shape, area): (&str, Value, f64) = match self.rng.u8(0..5) {
+            0 => {
+                let height = (12.0 * square).sqrt();
+                let width = height * self.log(0.5, 5.0);
+                ("rectangle", of(&[("width", width), ("height", height)]).into(), width * height)
+            }
+            1 => {
+                let diameter = 4.0 * square.sqrt();
+                ("circle", of(&[("diameter", diameter)]).into(), 0.25 * PI * diameter * diameter)
+            }
+            2 => {
+                let diameter = (16.0 * square / 1.36).sqrt();
+                let tube = of(&[("diameter", diameter), ("wall", 0.2 * diameter)]);
+                ("tube", tube.into(), 0.25 * PI * 0.64 * diameter * diameter)
+            }
+            _ => {
+                let height = (12.0 * square).sqrt();
+                let (lower, off) = (height * self.even(0.2, 0.8), height * self.even(-0.3, 0.3));
+                let (modulus, density) = (axial / (height * height), mass / (height * height));
+                let stiffer = self.log(0.3, 3.0);
+                let offsets = self.chance(0.4);
+                let layer = |factor: f64, thick: f64, middle: f64| {
+                    let mut layer = of(&[("width", height), ("height", thick)]);
+                    layer.insert("youngs_modulus".into(), (factor * modulus).into());
+                    layer.insert("density".into(), density.into());
+                    if offsets {
+                        layer.insert("offset".into(), (middle + off).into());
+                    }
+                    Value::from(layer)
+                };
+                let upper = height - lower;
+                let layers = vec![layer(1.0, lower, -0.5 * upper), layer(stiffer, upper, 0.5 * lower)];
+                ("layers", Value::Array(layers), 0.0)
+            }
+        };
+        if area > 0.0 {
+            put("youngs_modulus", (axial / area).into());
+            put("density", (mass / area).into());
+        }
+        let mut section = Table::new();
+        section.insert(kind.into(), shape);
+        put("section", section.into());
+    }
+
+    /// Lets some of the beam's quantities vary along it.
+    fn variation(&mut self, table: &mut Table, length: f64) {
+        if !self.chance(0.12) {
+            return;
+        }
+        let keys = [
+            "axial_stiffness",
+            "bending_stiffness",
+            "mass_per_length",
+            "youngs_modulus",
+            "area",
+            "second_moment",
+            "density",
+        ];
+        for key in keys {
+            if let Some(value) = table.get_mut(key)
+                && self.chance(0.6)
+            {
+                self.vary(value, length);
+            }
+        }
+        if let Some(Value::Table(section)) = table.get_mut("section") {
+            for (_, shape) in section.iter_mut() {
+                let shapes = match shape {
+                    Value::Array(layers) => layers.iter_mut().collect(),
+                    one => vec![one],
+                };
+                for shape in shapes.into_iter().filter_map(Value::as_table_mut) {
+                    for (_, value) in shape.iter_mut().filter(|(key, _)| *key != "offset") {
+                        if self.chance(0.4) {
+                            self.vary(value, length);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Makes a number one that varies along a beam, by a factor of two at most.
+    fn vary(&mut self, value: &mut Value, length: f64) {
+        let Value::Float(v) = *value else { return };
+        let numbers = |list: &[f64]| Value::Array(list.iter().copied().map(Value::Float).collect());
+        let mut varying = Table::new();
+        let mut factor = || v * self.even(0.75, 1.3);
+        let (a, b, c) = (factor(), factor(), factor());
+        let middle = round(length * self.even(0.2, 0.8), 6);
+        match self.rng.u8(0..3) {
+            0 => {
+                let mut places = Table::new();
+                places.insert("s".into(), numbers(&[0.0, middle, length]));
+                places.insert("value".into(), numbers(&[a, b, c]));
+                varying.insert("table".into(), places.into());
+            }
+            1 => {
+                varying.insert(
+                    "polynomial".into(),
+                    numbers(&[a, 0.3 * (b - v) / length, 0.3 * (c - v) / length.powi(2)]),
+                );
+            }
+            _ => {
+                let mut pieces = Table::new();
+                pieces.insert("until".into(), numbers(&[middle]));
+                pieces.insert("value".into(), numbers(&[a, b]));
+                varying.insert("pieces".into(), pieces.into());
+            }
+        }
+        *value = varying.into();
     }
 
     fn basis(&mut self, length: f64, count: usize) -> Table {
@@ -274,6 +406,31 @@ impl Draw<'_> {
 }
 
 /// Given nodes of one beam on a beam of another length.
+/// Stretches what varies along a beam to one that is longer by `ratio`.
+fn scale_places(value: &mut Value, ratio: f64) {
+    match value {
+        Value::Table(table) => {
+            for (key, below) in table.iter_mut() {
+                let power = match key.as_str() {
+                    "s" | "until" => |_: i32| 1,
+                    "polynomial" => |term: i32| -term,
+                    _ => {
+                        scale_places(below, ratio);
+                        continue;
+                    }
+                };
+                for (term, number) in (0..).zip(below.as_array_mut().into_iter().flatten()) {
+                    if let Value::Float(number) = number {
+                        *number *= ratio.powi(power(term));
+                    }
+                }
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(|item| scale_places(item, ratio)),
+        _ => {}
+    }
+}
+
 fn scale_nodes(kind: &mut Value, length: f64) {
     let Some(Value::Array(places)) = kind.get_mut("nodes") else { return };
     let old = places.last().and_then(Value::as_float).unwrap_or(1.0);

@@ -86,6 +86,7 @@ impl Draw<'_> {
             table.insert("value".into(), self.vector(0.1 * size, 20.0 * size));
             self.perhaps_follower(&mut table);
             self.perhaps_in_time(&mut table, 0.4);
+            self.perhaps_stretch(&mut table);
             self.push(&["effect", "distributed_force"], table);
         }
     }
@@ -105,6 +106,7 @@ impl Draw<'_> {
         if self.chance(0.2) {
             let (_, mut table) = self.of_beam();
             table.insert("displaced_mass_per_length".into(), self.log(0.1, 1.5).into());
+            self.perhaps_stretch(&mut table);
             self.push(&["effect", "buoyancy"], table);
         }
     }
@@ -130,6 +132,7 @@ impl Draw<'_> {
             }
             _ => {}
         }
+        self.perhaps_stretch(&mut table);
         self.push(&["effect", "damping"], table);
     }
 
@@ -188,6 +191,7 @@ impl Draw<'_> {
             let k = self.log(1.0, 1000.0);
             let both = if self.chance(0.6) { [k, k] } else { [0.0, k] };
             table.insert("stiffness".into(), list(both));
+            self.perhaps_stretch(&mut table);
             self.push(&["effect", "foundation"], table);
         }
     }
@@ -209,6 +213,7 @@ impl Draw<'_> {
             table.insert("curvature".into(), self.signed(1e-2, 5.0).into());
         }
         self.perhaps_in_time(&mut table, 0.5);
+        self.perhaps_stretch(&mut table);
         self.push(&["effect", "actuation"], table);
     }
 
@@ -228,6 +233,7 @@ impl Draw<'_> {
         if !self.is_motion() || self.chance(0.5) {
             table.insert("flow".into(), self.vector(0.1, 2.0));
         }
+        self.perhaps_stretch(&mut table);
         self.push(&["effect", "drag"], table);
     }
 
