@@ -57,7 +57,7 @@ mod winding;
 pub use action::{Action, Actions, Side};
 pub use assemble::Assembly;
 pub use contact::{ContactEffect, CubicStates, FrictionEffect};
-pub use density::{Density, Gradient, Hessian};
+pub use density::{CompiledFor, Density, Gradient, Hessian};
 pub use discretized::DiscretizedBeam;
 pub use dissipation::{Damping, Dissipation, Rayleigh};
 pub use effect::{Earlier, Effect};

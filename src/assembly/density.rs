@@ -9,6 +9,17 @@ pub type Gradient<const M: usize> = [Vector2<f64>; M];
 /// Second derivatives of a density: block (m, n) is ∂²W/∂z_m∂z_n.
 pub type Hessian<const M: usize> = [[Matrix2<f64>; M]; M];
 
+/// Tables for which a sum is compiled apart, which makes it faster and the program larger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CompiledFor {
+    /// All common numbers of shape functions and of points.
+    CommonTables,
+    /// Cable elements with two or three points.
+    CableElements,
+    /// None: one loop serves all.
+    None,
+}
+
 /// A quantity per unit of arc length that depends on `M` local fields.
 pub trait Density<const M: usize>: Send + Sync {
     /// The local fields, as derivative orders of r in rising order: `[1, 2]` for (r', r'').
@@ -23,6 +34,9 @@ pub trait Density<const M: usize>: Send + Sync {
 
     /// Whether the force has the potential W; if not, its work is accumulated along the motion.
     const CONSERVATIVE: bool = true;
+
+    /// For which tables its sums are compiled apart.
+    const COMPILED_FOR: CompiledFor = CompiledFor::CommonTables;
 
     /// W at quadrature point number `point` \[J/m\]; zero for a density without an energy.
     fn energy(&self, point: usize, z: &Gradient<M>) -> f64;

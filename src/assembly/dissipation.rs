@@ -14,13 +14,16 @@
 //! is smaller than D/h, with h the step, by a factor of the rotation within that step, and would
 //! make the matrix unsymmetric.
 
-use super::{Actions, Density, Gradient, Hessian, Integral, Kind, Workspace};
+use super::{Actions, CompiledFor, Density, Gradient, Hessian, Integral, Kind, Workspace};
 use crate::linear::Matrix;
 
 /// A dissipation function per unit of arc length that depends on `M` local fields and their rates.
 pub trait Dissipation<const M: usize>: Send + Sync {
     /// The local fields, as derivative orders of r in rising order.
     const ORDERS: [usize; M];
+
+    /// As [`Density::COMPILED_FOR`].
+    const COMPILED_FOR: CompiledFor = CompiledFor::CommonTables;
 
     /// ∂R/∂ż at quadrature point number `point`.
     fn force(&self, point: usize, z: &Gradient<M>, rate: &Gradient<M>) -> Gradient<M>;
@@ -65,6 +68,7 @@ pub struct Rayleigh<D>(pub D);
 impl<D: Dissipation<M>, const M: usize> Density<M> for Rayleigh<D> {
     const ORDERS: [usize; M] = D::ORDERS;
     const CONSERVATIVE: bool = false;
+    const COMPILED_FOR: CompiledFor = D::COMPILED_FOR;
 
     fn energy(&self, _: usize, _: &Gradient<M>) -> f64 {
         0.0

@@ -26,7 +26,7 @@
 mod force;
 mod tangent;
 
-use super::{Action, Actions, Density, Earlier, Effect, Gradient, Hessian, Kind};
+use super::{Action, Actions, CompiledFor, Density, Earlier, Effect, Gradient, Hessian, Kind};
 use crate::basis::BasisTable;
 use crate::lanes::fma;
 use crate::lanes::{self, Lanes, Pair};
@@ -66,20 +66,30 @@ const POINTS_BY_FOURS: std::ops::RangeInclusive<usize> = 2..=5;
 macro_rules! with_width {
     ($self:ident . $method:ident ( $($argument:expr),* )) => {
         match $self.table.width {
-            4 => $self.$method::<4>($($argument),*),
-            8 => $self.$method::<8>($($argument),*),
-            12 => $self.$method::<12>($($argument),*),
+            4 if Self::CABLES => $self.$method::<4>($($argument),*),
+            8 if Self::COMMON => $self.$method::<8>($($argument),*),
+            12 if Self::COMMON => $self.$method::<12>($($argument),*),
             _ => $self.$method::<0>($($argument),*),
         }
     };
 }
 
 impl<D: Density<M>, const M: usize> Integral<D, M> {
+    /// Whether the loops for all common tables exist.
+    pub(super) const COMMON: bool = matches!(D::COMPILED_FOR, CompiledFor::CommonTables);
+    /// Whether those for cable elements do.
+    const CABLES: bool = !matches!(D::COMPILED_FOR, CompiledFor::None);
+
     /// `offset` is the beam's first coefficient (two per node) in the system; `table` must hold the
     /// rows [`Density::ORDERS`].
     pub fn new(kind: Kind, beam: usize, offset: usize, table: BasisTable, density: D) -> Self {
         debug_assert_eq!(table.orders, D::ORDERS);
-        let (fours, singles) = if D::BY_FOURS && POINTS_BY_FOURS.contains(&table.points_per_cell) {
+        let compiled = if Self::COMMON {
+            POINTS_BY_FOURS.contains(&table.points_per_cell)
+        } else {
+            Self::CABLES && table.width == 4 && matches!(table.points_per_cell, 2 | 3)
+        };
+        let (fours, singles) = if D::BY_FOURS && compiled {
             table.by_fours()
         } else {
             (Vec::new(), (0..table.cells.len() as u32).collect())
@@ -169,12 +179,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         f: &mut [f64],
         force: impl Fn(usize, &Gradient<M>, &Gradient<M>) -> Gradient<M>,
     ) {
-        match self.table.width {
-            4 => self.force_of_pairs_within::<4>(q, v, f, force),
-            8 => self.force_of_pairs_within::<8>(q, v, f, force),
-            12 => self.force_of_pairs_within::<12>(q, v, f, force),
-            _ => self.force_of_pairs_within::<0>(q, v, f, force),
-        }
+        with_width!(self.force_of_pairs_within(q, v, f, force));
     }
 
     fn force_of_pairs_within<const W: usize>(
@@ -408,19 +413,20 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
 
     fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]) {
         match self.table.width {
-            4 => self.force_within::<4>(factor, q, f),
-            8 => self.force_within::<8>(factor, q, f),
-            12 => self.force_within::<12>(factor, q, f),
+            4 if Self::CABLES => self.force_within::<4>(factor, q, f),
+            8 if Self::COMMON => self.force_within::<8>(factor, q, f),
+            12 if Self::COMMON => self.force_within::<12>(factor, q, f),
             _ => self.force_any(factor, q, f),
         }
     }
 
     fn add_forces(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
-        let by_fours = self.table.points_per_cell <= *POINTS_BY_FOURS.end();
+        let points = self.table.points_per_cell;
+        let by_fours = points <= *POINTS_BY_FOURS.end() && (Self::COMMON || matches!(points, 2 | 3));
         match self.table.width {
-            4 if by_fours => self.forces_in_lanes::<4>(factors, q, f),
-            8 if by_fours => self.forces_in_lanes::<8>(factors, q, f),
-            12 if by_fours => self.forces_in_lanes::<12>(factors, q, f),
+            4 if Self::CABLES && by_fours => self.forces_in_lanes::<4>(factors, q, f),
+            8 if Self::COMMON && by_fours => self.forces_in_lanes::<8>(factors, q, f),
+            12 if Self::COMMON && by_fours => self.forces_in_lanes::<12>(factors, q, f),
             _ => {
                 let factors = factors.to_array();
                 lanes::one_by_one(q, f, scratch, |lane, q, f| self.add_force(factors[lane], q, f));
@@ -441,9 +447,9 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
             return self.add_force(factor, q, f);
         }
         match self.table.width {
-            4 => self.tangent_within::<4>(factor, q, earlier, f, k, workspace),
-            8 => self.tangent_within::<8>(factor, q, earlier, f, k, workspace),
-            12 => self.tangent_within::<12>(factor, q, earlier, f, k, workspace),
+            4 if Self::CABLES => self.tangent_within::<4>(factor, q, earlier, f, k, workspace),
+            8 if Self::COMMON => self.tangent_within::<8>(factor, q, earlier, f, k, workspace),
+            12 if Self::COMMON => self.tangent_within::<12>(factor, q, earlier, f, k, workspace),
             _ => self.tangent_any(factor, q, earlier, f, k, workspace),
         }
     }

@@ -1,6 +1,6 @@
 //! A density times a factor that varies along the beam.
 
-use super::{Density, Dissipation, Gradient, Hessian};
+use super::{CompiledFor, Density, Dissipation, Gradient, Hessian};
 use crate::lanes::{Lanes, Pair, Points, Square};
 
 /// A density, or a dissipation function, and its factor at each quadrature point.
@@ -23,6 +23,9 @@ impl<D: Density<M>, const M: usize> Density<M> for Weighted<D> {
     const HAS_TANGENT: bool = D::HAS_TANGENT;
     const CONSERVATIVE: bool = D::CONSERVATIVE;
     const BY_FOURS: bool = D::BY_FOURS;
+    // Stretch and bending, in which time is spent, are those that are summed by fours.
+    const COMPILED_FOR: CompiledFor =
+        if D::BY_FOURS { CompiledFor::CableElements } else { CompiledFor::None };
 
     #[inline(always)]
     fn energy(&self, point: usize, z: &Gradient<M>) -> f64 {
@@ -67,6 +70,7 @@ impl<D: Density<M>, const M: usize> Density<M> for Weighted<D> {
 
 impl<D: Dissipation<M>, const M: usize> Dissipation<M> for Weighted<D> {
     const ORDERS: [usize; M] = D::ORDERS;
+    const COMPILED_FOR: CompiledFor = CompiledFor::None;
 
     #[inline(always)]
     fn force(&self, point: usize, z: &Gradient<M>, rate: &Gradient<M>) -> Gradient<M> {

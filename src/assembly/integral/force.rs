@@ -16,8 +16,8 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             match self.table.points_per_cell {
                 2 => self.forces_of_fours::<W, 2>(factor, q, f),
                 3 => self.forces_of_fours::<W, 3>(factor, q, f),
-                4 => self.forces_of_fours::<W, 4>(factor, q, f),
-                5 => self.forces_of_fours::<W, 5>(factor, q, f),
+                4 if Self::COMMON => self.forces_of_fours::<W, 4>(factor, q, f),
+                5 if Self::COMMON => self.forces_of_fours::<W, 5>(factor, q, f),
                 _ => {}
             }
         }
@@ -91,11 +91,12 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     /// The forces of all cells in four states, one per lane.
     pub(super) fn forces_in_lanes<const W: usize>(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes]) {
         match self.table.points_per_cell {
-            1 => self.forces_in_lanes_of::<W, 1>(factors, q, f),
             2 => self.forces_in_lanes_of::<W, 2>(factors, q, f),
             3 => self.forces_in_lanes_of::<W, 3>(factors, q, f),
-            4 => self.forces_in_lanes_of::<W, 4>(factors, q, f),
-            _ => self.forces_in_lanes_of::<W, 5>(factors, q, f),
+            1 if Self::COMMON => self.forces_in_lanes_of::<W, 1>(factors, q, f),
+            4 if Self::COMMON => self.forces_in_lanes_of::<W, 4>(factors, q, f),
+            5 if Self::COMMON => self.forces_in_lanes_of::<W, 5>(factors, q, f),
+            points => unreachable!("no sum over {points} points is compiled"),
         }
     }
 

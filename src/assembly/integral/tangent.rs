@@ -42,8 +42,8 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         match self.table.points_per_cell {
             2 => self.tangents_of_fours::<W, 2>(factor, q, earlier, f, k, workspace),
             3 => self.tangents_of_fours::<W, 3>(factor, q, earlier, f, k, workspace),
-            4 => self.tangents_of_fours::<W, 4>(factor, q, earlier, f, k, workspace),
-            5 => self.tangents_of_fours::<W, 5>(factor, q, earlier, f, k, workspace),
+            4 if Self::COMMON => self.tangents_of_fours::<W, 4>(factor, q, earlier, f, k, workspace),
+            5 if Self::COMMON => self.tangents_of_fours::<W, 5>(factor, q, earlier, f, k, workspace),
             _ => {}
         }
         for &cell in &self.singles {
