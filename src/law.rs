@@ -46,6 +46,10 @@ pub enum Law {
         /// T \[s\].
         duration: f64,
     },
+    /// The sum of laws.
+    Sum(Vec<Law>),
+    /// The product of laws.
+    Product(Vec<Law>),
 }
 
 /// The points of a law, and how it is interpolated between them.
@@ -115,6 +119,8 @@ impl Tabulated {
 /// Largest phase angle \[rad\] of a harmonic within a step for which Gauss' rule integrates it to
 /// round-off.
 const SLOW: f64 = 1.5;
+/// Most parts in which a product of fast laws is integrated.
+const MOST_PARTS: f64 = 1e6;
 /// ∫₀¹ f dx and ∫₀¹ (1 − x) f dx; exact for polynomials up to degree 10.
 fn quadrature(time: impl Fn(f64) -> f64, f: impl Fn(f64) -> f64) -> [f64; 2] {
     GAUSS_6.iter().fold([0.0; 2], |[mean, moment], (x, weight)| {
@@ -162,19 +168,45 @@ impl Law {
                 ]
             }
             Self::SpinUp { speed, duration } => [speed * (t - 0.5 * duration), *speed, 0.0],
+            Self::Sum(laws) => laws.iter().fold([0.0; 3], |[v, d, s], law| {
+                let [value, rate, second] = law.at(t);
+                [v + value, d + rate, s + second]
+            }),
+            Self::Product(laws) => laws.iter().fold([1.0, 0.0, 0.0], |[v, d, s], law| {
+                let [value, rate, second] = law.at(t);
+                [v * value, d * value + v * rate, s * value + 2.0 * d * rate + v * second]
+            }),
         }
     }
 
-    /// The time at which the value itself jumps, and the height of the jump.
-    pub fn jump(&self) -> Option<(f64, f64)> {
+    /// The times at which the value itself jumps, and the heights of the jumps.
+    pub fn jumps(&self) -> Vec<(f64, f64)> {
         match self {
-            Self::Step { start } => Some((*start, 1.0)),
+            Self::Step { start } => vec![(*start, 1.0)],
+            Self::Sum(laws) | Self::Product(laws) => {
+                let mut times: Vec<f64> = laws.iter().flat_map(Self::jumps).map(|(time, _)| time).collect();
+                times.sort_by(f64::total_cmp);
+                times.dedup();
+                let height = |time: f64| self.at(time)[0] - self.at(time.next_down())[0];
+                times.into_iter().map(|time| (time, height(time))).collect()
+            }
             Self::Ramp { .. }
             | Self::SmoothRamp { .. }
             | Self::Harmonic { .. }
             | Self::Polynomial(_)
             | Self::Table(_)
-            | Self::SpinUp { .. } => None,
+            | Self::SpinUp { .. } => Vec::new(),
+        }
+    }
+
+    /// An upper bound of the rate of its phase \[rad/s\]: the frequencies of the factors of a product
+    /// add up.
+    fn fastest(&self) -> f64 {
+        match self {
+            Self::Harmonic { frequency, .. } => frequency.abs(),
+            Self::Sum(laws) => laws.iter().map(Self::fastest).fold(0.0, f64::max),
+            Self::Product(laws) => laws.iter().map(Self::fastest).sum(),
+            _ => 0.0,
         }
     }
 
@@ -212,6 +244,21 @@ impl Law {
                     [mean + term, moment + term / f64::from(k + 1)]
                 })
             }
+            Self::Sum(laws) => laws.iter().fold([0.0; 2], |[mean, moment], law| {
+                let [a, b] = law.moments(start, end);
+                [mean + a, moment + b]
+            }),
+            Self::Product(_) => {
+                // In parts in which no harmonic is fast.
+                let parts = (self.fastest() * h.abs() / SLOW).ceil().clamp(1.0, MOST_PARTS);
+                let share = 1.0 / parts;
+                (0..parts as usize).fold([0.0; 2], |[mean, moment], part| {
+                    let from = part as f64 * share;
+                    let [a, b] = quadrature(|x| h.mul_add(share.mul_add(x, from), start), |t| self.at(t)[0]);
+                    // ∫ (1 − x) f over the part, with 1 − x = (1 − from − share) + share (1 − ξ).
+                    [mean + share * a, moment + share * ((1.0 - from - share) * a + share * b)]
+                })
+            }
             _ => quadrature(|x| h.mul_add(x, start), |t| self.at(t)[0]),
         }
     }
@@ -227,6 +274,12 @@ impl Law {
             Self::Harmonic { .. } | Self::Polynomial(_) => Vec::new(),
             Self::Table(table) => table.times.clone(),
             Self::SpinUp { duration, .. } => vec![*duration],
+            Self::Sum(laws) | Self::Product(laws) => {
+                let mut kinks: Vec<f64> = laws.iter().flat_map(Self::kinks).collect();
+                kinks.sort_by(f64::total_cmp);
+                kinks.dedup();
+                kinks
+            }
         }
     }
 }
@@ -248,6 +301,12 @@ mod tests {
             table(false),
             table(true),
             Law::SpinUp { speed: 6.0, duration: 1.5 },
+            Law::Sum(vec![Law::Step { start: 0.4 }, Law::Polynomial(vec![0.5, -1.0]), table(true)]),
+            Law::Product(vec![
+                Law::Step { start: 0.4 },
+                Law::Ramp { start: 0.3, duration: 1.2 },
+                Law::Harmonic { frequency: 3.0, phase: 0.3 },
+            ]),
         ]
     }
 
@@ -284,7 +343,8 @@ mod tests {
         for law in laws() {
             for kink in law.kinks() {
                 let jump = law.at(kink)[0] - law.at(kink - 1e-12)[0];
-                let said = law.jump().filter(|(time, _)| *time == kink).map_or(0.0, |(_, height)| height);
+                let jumps = law.jumps();
+                let said = jumps.iter().find(|(time, _)| *time == kink).map_or(0.0, |(_, height)| *height);
                 assert!((jump - said).abs() < 1e-9, "{law:?} jumps by {jump} at {kink}");
             }
         }
@@ -293,7 +353,11 @@ mod tests {
     #[test]
     fn moments_are_integrals_however_fast_the_law() {
         let fast = [1e-3, 1.0, 30.0, 4e3].map(|frequency| Law::Harmonic { frequency, phase: 0.7 });
-        for law in laws().into_iter().chain(fast) {
+        let beat = Law::Product(vec![
+            Law::Harmonic { frequency: 300.0, phase: 0.7 },
+            Law::Harmonic { frequency: 280.0, phase: 0.1 },
+        ]);
+        for law in laws().into_iter().chain(fast).chain([beat]) {
             for (start, end) in [(0.1, 0.3), (0.31, 0.38), (0.71, 1.4), (2.1, 2.9)] {
                 let n = 400_000;
                 let sums = (0..n).fold([0.0; 2], |[mean, moment], i| {

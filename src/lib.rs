@@ -110,7 +110,7 @@
 //! | scene | part | formula |
 //! |---|---|---|
 //! | `[[joint]]` `hinge`, `weld`, `slider` | [`system::joint`] | constraint rows between two points |
-//! | `move` of a `[[support]]`, `in_time` of a load | [`law::Law`] | ramps, steps, sines, polynomials, tables, spin-up |
+//! | `move` of a `[[support]]`, `in_time` of a load | [`law::Law`] | ramps, steps, sines, polynomials, tables, spin-up, their sums and products |
 //! | `section` of a beam, `table`, `polynomial`, `pieces` of its properties | [`beam::Section`], [`beam::Along`] | EA(s), EI(s), EB(s), ρA(s), ρI(s) |
 //! | `[[effect.damping]]` | [`effect::BeamDamping`] | −α ρA ṙ; EA (ε + η ε̇), EI (κ + η κ̇) |
 //! | `[[effect.spring]]`, `[[effect.torsion_spring]]` | [`effect::Spring`], [`effect::TorsionSpring`] | ½ k (ℓ − ℓ₀)², ½ k (θ − θ₀)², dashpots beside them |

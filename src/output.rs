@@ -70,7 +70,7 @@ impl OutputOptions {
 
 /// Names that a run may leave; those that this run does not write are removed when it replaces an
 /// older one, so that a directory never mixes two runs.
-const NAMES: [&str; 30] = [
+const NAMES: [&str; 32] = [
     "chosen.toml",
     "reactions.csv",
     "effects.csv",
@@ -92,7 +92,9 @@ const NAMES: [&str; 30] = [
     "error.svg",
     "strain.svg",
     "stress.svg",
-    "sections.svg",
+    "forces.svg",
+    "moments.svg",
+    "stresses.svg",
     "position.svg",
     "angle.svg",
     "velocity.svg",

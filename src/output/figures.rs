@@ -57,7 +57,7 @@ pub(super) fn figures(results: &Results) -> Result<Vec<Figure>, OutputError> {
     sketches.push(position(t));
     sketches.push(angle(t));
     sketches.push(velocity(t));
-    sketches.push(section_forces(t));
+    sketches.extend(section_forces(t));
     sketches.push(energy(t));
     sketches.push(convergence(t));
     sketches.push(steps(t));
@@ -209,37 +209,49 @@ fn along(t: &Trajectory) -> [Option<Sketch>; 2] {
 }
 
 /// What the sections at the probes carry, over the parameter.
-fn section_forces(t: &Trajectory) -> Option<Sketch> {
-    if t.parameter.len() < 2 || t.sections.is_empty() {
-        return None;
-    }
+fn section_forces(t: &Trajectory) -> [Option<Sketch>; 3] {
     type Quantity = fn(&SectionForces) -> Option<f64>;
-    let chart = |axis: &str, quantities: &[(&str, Quantity)]| {
+    let sketch = |name, caption: &str, axis: &str, quantities: &[(&str, Quantity)]| {
+        if t.parameter.len() < 2 || t.sections.is_empty() {
+            return None;
+        }
         let mut chart = Chart::new("", parameter_axis(t), Axis::linear(axis)).sized(SMALL.0, SMALL.1);
+        let mut known = false;
         for (i, series) in t.sections.iter().enumerate() {
-            for (mark, (name, value)) in [Mark::Line, Mark::Dashed].into_iter().zip(quantities) {
-                let known: Option<Vec<f64>> = series.samples.iter().map(value).collect();
-                let Some(values) = known else { continue };
-                let (label, points) =
-                    (format!("{} {name}", series.name), over_parameter(t, values.into_iter()));
-                let line = match mark {
-                    Mark::Dashed => Series::dashed(label, points, colour(i)),
-                    _ => Series::line(label, points, colour(i)),
-                };
-                chart = chart.with(line);
+            for (dashed, (name, value)) in [false, true].into_iter().zip(quantities) {
+                let values: Option<Vec<f64>> = series.samples.iter().map(value).collect();
+                let Some(values) = values else { continue };
+                let label = format!("{} {name}", series.name);
+                let points = over_parameter(t, values.into_iter());
+                chart = chart.with(match dashed {
+                    true => Series::dashed(label, points, colour(i)),
+                    false => Series::line(label, points, colour(i)),
+                });
+                known = true;
             }
         }
-        chart
+        known.then(|| Sketch::one(name, caption, chart))
     };
-    let mut charts = vec![
-        chart("force [N]", &[("N", |f| Some(f.axial_force)), ("Q", |f| Some(f.shear_force))]),
-        chart("bending moment [N m]", &[("M", |f| Some(f.bending_moment))]),
-    ];
-    if t.sections.iter().flat_map(|series| &series.samples).any(|forces| forces.stress_top.is_some()) {
-        charts.push(chart("stress [Pa]", &[("top", |f| f.stress_top), ("bottom", |f| f.stress_bottom)]));
-    }
-    let caption = "Axial force N, shear force Q and bending moment M of the sections at the probes; stresses on their faces where they are known.";
-    Some(Sketch { name: "sections", caption: caption.into(), charts })
+    [
+        sketch(
+            "forces",
+            "Axial force N and shear force Q of the sections at the probes.",
+            "force [N]",
+            &[("N", |f| Some(f.axial_force)), ("Q", |f| Some(f.shear_force))],
+        ),
+        sketch(
+            "moments",
+            "Bending moment of the sections at the probes.",
+            "bending moment [N m]",
+            &[("M", |f| Some(f.bending_moment))],
+        ),
+        sketch(
+            "stresses",
+            "Stresses on the faces of the sections at the probes.",
+            "stress [Pa]",
+            &[("top", |f| f.stress_top), ("bottom", |f| f.stress_bottom)],
+        ),
+    ]
 }
 
 /// Stresses on the outer faces along the arc length.

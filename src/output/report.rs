@@ -8,7 +8,9 @@ use super::figures::Figure;
 use super::motion::Motion;
 use super::plot::human;
 use super::summary::{ProbeSummary, Summary};
-use crate::results::{AnalysisKind, ProbeSample, Results, Trajectory};
+use crate::results::{
+    AnalysisKind, LargestStress, ProbeSample, Reaction, Results, SectionForces, Trajectory,
+};
 
 #[derive(Template)]
 #[template(path = "report.html", config = "src/output/askama.toml")]
@@ -58,10 +60,17 @@ pub(super) fn page(results: &Results, summary: &Summary, figures: &[Figure]) -> 
         style: include_str!("templates/report.css"),
         player: include_str!("templates/player.js"),
         warnings: &t.run.warnings,
-        results: [eigenvalues(results), probes(t, summary), energy(t, summary)]
-            .into_iter()
-            .flatten()
-            .collect(),
+        results: [
+            eigenvalues(results),
+            probes(t, summary),
+            sections(t, summary),
+            stresses(t, summary),
+            reactions(t, summary),
+            energy(t, summary),
+        ]
+        .into_iter()
+        .flatten()
+        .collect(),
         settings: &t.run.settings,
         counts: counts(t, summary),
         motion,
@@ -113,6 +122,63 @@ fn probes(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
         header,
         rows: summary.probes.iter().map(row).collect(),
     })
+}
+
+fn strings(words: &[&str]) -> Vec<String> {
+    words.iter().copied().map(String::from).collect()
+}
+
+/// What the sections at the probes carry.
+fn sections(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
+    let known = summary.probes.iter().filter_map(|(name, probe)| Some((name, probe.section?)));
+    let known: Vec<_> = known.collect();
+    let stressed = known.iter().any(|(_, section)| section.stress_top.is_some());
+    let mut header = strings(&["section at", "N [N]", "Q [N]", "M [N m]"]);
+    if stressed {
+        header.extend(strings(&["σ bottom [Pa]", "σ top [Pa]"]));
+    }
+    let row = |(name, section): &(&String, SectionForces)| {
+        let mut row = vec![(*name).clone()];
+        let forces = [section.axial_force, section.shear_force, section.bending_moment];
+        row.extend(forces.map(|force| human(force, 7)));
+        if stressed {
+            let stresses = [section.stress_bottom, section.stress_top];
+            row.extend(stresses.map(|stress| stress.map_or("–".into(), |stress| human(stress, 5))));
+        }
+        row
+    };
+    let rows: Vec<_> = known.iter().map(row).collect();
+    let caption = format!("Sections at the probes{}", last(t));
+    (!rows.is_empty()).then_some(NumberTable { caption, header, rows })
+}
+
+/// The largest stress in each beam.
+fn stresses(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
+    let row = |stress: &LargestStress| {
+        vec![
+            stress.beam.clone(),
+            human(stress.value, 5),
+            human(stress.s, 6),
+            format!("{}", stress.layer),
+            stress.face.to_owned(),
+        ]
+    };
+    let rows: Vec<_> = summary.stress.iter().map(row).collect();
+    let header = strings(&["largest stress in", "σ [Pa]", "s [m]", "layer", "face"]);
+    let caption = format!("Largest stresses{}", last(t));
+    (!rows.is_empty()).then_some(NumberTable { caption, header, rows })
+}
+
+/// Forces of supports and joints.
+fn reactions(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
+    let row = |(name, force): &(String, Reaction)| {
+        let values = [force.fx, force.fy, force.moment].map(|value| human(value, 7));
+        std::iter::once(name.clone()).chain(values).collect()
+    };
+    let rows: Vec<_> = summary.reactions.iter().map(row).collect();
+    let header = strings(&["reaction of", "fx [N]", "fy [N]", "moment [N m]"]);
+    let caption = format!("Reactions{}", last(t));
+    (!rows.is_empty()).then_some(NumberTable { caption, header, rows })
 }
 
 fn energy(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {

@@ -7,11 +7,11 @@ use super::file::{LawTable, RampTable};
 use super::value::Located;
 
 const ONE: &str = "give one of `ramp = { duration = \"1 s\" }`, `smooth_ramp = { … }`, `step = { start = \"1 s\" }`, \
-                   `harmonic = { frequency = \"2 Hz\" }`, `polynomial = [0, 1]`, `table = { times = [0, 1], values = [0, 1] }`";
+                   `harmonic = { frequency = \"2 Hz\" }`, `polynomial = [0, 1]`, `table = { times = [0, 1], values = [0, 1] }`, `sum = [{ … }, { … }]`, `product = [{ … }, { … }]`";
 
 /// The law of a table `in_time`.
 pub(super) fn law(located: &Located<LawTable>) -> Result<Law, Fault> {
-    let LawTable { ramp, smooth_ramp, step, harmonic, polynomial, table } = located.get();
+    let LawTable { ramp, smooth_ramp, step, harmonic, polynomial, table, sum, product } = located.get();
     let times = |ramp: &RampTable| (ramp.start.map_or(0.0, |start| start.si), ramp.duration.si);
     let mut laws = Vec::new();
     if let Some(ramp) = ramp {
@@ -45,6 +45,14 @@ pub(super) fn law(located: &Located<LawTable>) -> Result<Law, Fault> {
             .help("such as `table = { times = [0.0, \"1 s\", 2.5], values = [0.0, 1.0, 0.5] }`")
         })?;
         laws.push(Law::Table(table));
+    }
+    for (several, of) in [(sum, Law::Sum as fn(Vec<Law>) -> Law), (product, Law::Product)] {
+        if let Some(several) = several {
+            if several.is_empty() {
+                return Err(Fault::new(located.span(), "a sum or a product of no law").help(ONE));
+            }
+            laws.push(of(several.iter().map(law).collect::<Result<_, _>>()?));
+        }
     }
     match (laws.pop(), laws.is_empty()) {
         (Some(law), true) => Ok(law),

@@ -93,10 +93,13 @@ const NAMED: &[(&str, f64, [i16; 4], bool)] = &[
     ("deg",  std::f64::consts::PI / 180.0, [0, 0, 0, 1], false),
     ("°",    std::f64::consts::PI / 180.0, [0, 0, 0, 1], false),
     ("turn", std::f64::consts::TAU, [0, 0, 0, 1], false),
+    ("rev",  std::f64::consts::TAU, [0, 0, 0, 1], false),
+    ("rpm",  std::f64::consts::TAU / 60.0, [0, 0, -1, 1], false),
     ("in",   0.0254,              [1, 0, 0, 0],   false),
     ("ft",   0.3048,              [1, 0, 0, 0],   false),
     ("lb",   0.453_592_37,        [0, 1, 0, 0],   false),
     ("lbf",  4.448_221_615_260_5, [1, 1, -2, 0],  false),
+    ("kgf",  9.806_65,            [1, 1, -2, 0],  false),
     ("psi",  6_894.757_293_168_361, [-1, 1, -2, 0], false),
 ];
 

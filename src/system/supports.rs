@@ -13,6 +13,7 @@
 
 use super::prescribed::Prescribed;
 use crate::lanes::Real;
+use crate::law::Law;
 use crate::linear::Matrix;
 
 /// The quantities that are fixed in a pair of coordinates.
@@ -302,11 +303,13 @@ impl Supports {
     /// (m, or rad).
     pub fn jumps(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         self.pairs.iter().flat_map(|restrained| {
-            let jump = |course: &Prescribed| {
-                let (time, height) = course.law.as_ref()?.jump()?;
-                course.moves().then_some((2 * restrained.pair, time, height * course.change))
+            let jumps = |course: &'_ Prescribed| {
+                let law = course.law.as_ref().filter(|_| course.moves());
+                let (pair, change) = (2 * restrained.pair, course.change);
+                let jumps = law.map_or_else(Vec::new, Law::jumps).into_iter();
+                jumps.map(move |(time, height)| (pair, time, height * change))
             };
-            restrained.prescribed().filter_map(jump)
+            restrained.prescribed().flat_map(jumps)
         })
     }
 

@@ -208,6 +208,22 @@ fn an_actuated_laminate_takes_its_strain_and_curvature() {
     }
 }
 
+/// A column of EI = (1 + s/4)² on hinges: with z = 1 + s/4 its shape is √z sin(β ln z), β = nπ/ln 1.25,
+/// under P = (β² + ¼)/16.
+#[test]
+fn a_tapered_column_buckles_as_euler_said() {
+    let found = Written::of(
+        "beam.column = { start = [0, 0], end = [0, 1], axial_stiffness = 1e8, bending_stiffness = { polynomial = [1, 0.5, 0.0625] }, basis.rpim.nodes = 15 }
+        support = [{ beam = 'column', at = 'start', fix = ['x', 'y'] }, { beam = 'column', at = 'end', fix = ['x'] }]
+        effect.force = [{ beam = 'column', at = 'end', value = [0, -1] }]
+        analysis.buckling.count = 2\n",
+    );
+    for (n, load) in (1..).zip(found.column("load_factors.csv", "load_factor")) {
+        let beta = f64::from(n) * PI / 1.25_f64.ln();
+        near(load / ((beta * beta + 0.25) / 16.0), 1.0, 1e-7, "load_factor");
+    }
+}
+
 /// A probe at 0.3 m of a cantilever of 1 m under (5, −2) N: N = 5, Q = −2, M = −2 · 0.7 at full load,
 /// in proportion before; the stresses on its faces are N/A ± 6 M/(b h²). The summary has the forces
 /// of the support.

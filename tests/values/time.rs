@@ -5,7 +5,7 @@ use super::{ROD, SECOND, Written, near};
 use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
 /// Each law with ∫₀¹ f dt and ∫₀¹ (1 − t) f dt, by hand.
-fn laws() -> [(&'static str, [f64; 2]); 9] {
+fn laws() -> [(&'static str, [f64; 2]); 11] {
     // From 0.2 s for 0.5 s: half of that, and 0.3 s more at 1.
     let after = 0.25 * 0.3 + 0.5 * 0.3 * 0.3;
     let (w, phase) = (TAU * 0.7, 40.0 * PI / 180.0);
@@ -28,6 +28,12 @@ fn laws() -> [(&'static str, [f64; 2]); 9] {
         // The natural spline has the second derivatives 0, −100, 0 there, and so 2 · 0.3³ · 100/24
         // more below it.
         ("table = { times = [0.2, 0.5, 0.8], values = [1, 3, -1], smooth = true }", [1.125, 0.7825]),
+        ("sum = [{ polynomial = [1, 2] }, { step = { start = 0.5 } }]", [2.5, 0.5 + 1.0 / 3.0 + 0.125]),
+        // t sin(π t/2), with w = π/2.
+        (
+            "product = [{ polynomial = [0, 1] }, { harmonic = { frequency = 0.25 } }]",
+            [4.0 / (PI * PI), 16.0 / (PI * PI * PI) - 4.0 / (PI * PI)],
+        ),
     ]
 }
 

@@ -75,10 +75,13 @@ fn units_have_their_defined_factors() {
         ("deg", "N m^2 deg rad^-1", degree),
         ("°", "N m^2 ° rad^-1", degree),
         ("turn", "N m^2 turn rad^-1", 360.0 * degree),
+        ("rev", "N m^2 rev rad^-1", 360.0 * degree),
+        ("rpm", "N m^2 s rpm rad^-1", 6.0 * degree),
         ("in", "N in^2", inch * inch),
         ("ft", "N ft^2", foot * foot),
         ("lb", "lb m^3 s^-2", pound),
         ("lbf", "lbf in^2", pound * gravity * inch * inch),
+        ("kgf", "kgf m^2", gravity),
         ("psi", "psi in^4", pound * gravity * inch * inch),
     ];
     for (name, unit, factor) in tried {

@@ -24,6 +24,12 @@ pub struct LawTable {
     pub polynomial: Option<Vec<Quantity<Ratio>>>,
     /// Through given points.
     pub table: Option<Located<PointsTable>>,
+    /// The sum of laws.
+    #[schemars(length(min = 1))]
+    pub sum: Option<Vec<Located<LawTable>>>,
+    /// The product of laws.
+    #[schemars(length(min = 1))]
+    pub product: Option<Vec<Located<LawTable>>>,
 }
 
 /// When a ramp begins and how long it takes.

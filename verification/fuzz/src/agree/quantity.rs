@@ -41,6 +41,7 @@ const MASS_PER_LENGTH: Dimension = [-1, 1, 0];
 pub fn nature(path: &str) -> Option<Nature> {
     use Nature::{Point, Polar, Polynomial, Scalar, Turning, Vector};
     if let Some((_, law)) = path.split_once(".in_time.") {
+        let law = law.trim_start_matches("sum.").trim_start_matches("product.");
         return Some(match law {
             "ramp.start" | "ramp.duration" | "smooth_ramp.start" | "smooth_ramp.duration" | "step.start" => {
                 Scalar(TIME)

@@ -19,7 +19,9 @@ fn visit(root: &Json, schema: &Json, path: &str, keys: &mut BTreeSet<String>) {
         let definition = root.pointer(name.trim_start_matches('#'));
         // A law is described where the first load has one.
         let path = if name.ends_with("LawTable") { "law" } else { path };
-        if let Some(definition) = definition {
+        // Sums and products of laws consist of laws.
+        let known = path == "law" && keys.contains("law.ramp");
+        if let Some(definition) = definition.filter(|_| !known) {
             visit(root, definition, path, keys);
         }
     }

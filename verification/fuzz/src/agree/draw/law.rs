@@ -10,6 +10,11 @@ impl Draw<'_> {
     pub(super) fn law(&mut self, smooth: bool) -> Table {
         let duration = self.duration;
         let mut law = Table::new();
+        if self.chance(0.12) {
+            let laws = vec![Value::from(self.law(smooth)), Value::from(self.law(smooth))];
+            law.insert(self.pick(&["sum", "product"]).into(), Value::Array(laws));
+            return law;
+        }
         let mut inner = Table::new();
         let kind = match self.rng.u8(0..12) {
             0..2 => "ramp",
