@@ -33,7 +33,7 @@ mod statement;
 
 use crate::model::{Accuracy, Analysis, Model, Open};
 use crate::results::Results;
-use crate::run::{Options, RunError};
+use crate::run::{Options, RunError, StagesRun, solve_stages};
 use crate::scene::Scene;
 use round::{Fineness, Runner};
 use search::Search;
@@ -48,11 +48,19 @@ pub struct Accurate {
 }
 
 /// Solves a scene: with everything chosen that it leaves open where it asks for an accuracy, and
-/// else as it stands.
+/// else as it stands. Of a scene with stages these are the results of the last one; see
+/// [`solve_stages`] for all.
 ///
 /// # Errors
 /// As [`solve`].
 pub fn run(scene: &Scene, options: Options<'_>) -> Result<Results, RunError> {
+    if !scene.stages().is_empty() {
+        let StagesRun { mut results, failure } = solve_stages(scene.stages(), options);
+        return match (failure, results.pop()) {
+            (None, Some(last)) => Ok(last),
+            (failure, _) => Err(failure.unwrap_or(RunError::Stages)),
+        };
+    }
     let Some(wanted) = scene.accuracy() else {
         return scene.model().solve_with(scene.analysis(), options);
     };

@@ -22,8 +22,10 @@ use std::time::Duration;
 
 use crate::accuracy;
 use crate::output::OutputOptions;
+use crate::model::Stage;
 use crate::restart::SavedState;
-use crate::run::{self, Control, Progress};
+use crate::results::Results;
+use crate::run::{self, Control, Progress, RunError, StagesRun};
 use crate::scene::{self, Scene};
 use clap::{Args, Parser, Subcommand};
 
@@ -161,6 +163,10 @@ fn load(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
 
 fn solve(arguments: &RunArguments) -> Result<(), Failure> {
     let mut scene = load(&arguments.scene, &arguments.overrides)?;
+    let in_stages = !scene.stages().is_empty();
+    if in_stages && (arguments.accuracy.is_some() || arguments.error) {
+        return Err(Failure::run(scene.name(), RunError::Stages));
+    }
     if let Some(error) = &arguments.accuracy {
         let analysis = scene.analysis().kind();
         let wanted = [format!("analysis.{analysis}.accuracy={error}")];
@@ -192,6 +198,11 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
         frames: wanted.frames(),
         ..run::Options::default()
     };
+    if in_stages {
+        let run = run::solve_stages(scene.stages(), options);
+        progress.clear();
+        return finish_stages(arguments, &scene, run, &wanted, destination);
+    }
     let outcome = if arguments.error && scene.accuracy().is_none() {
         accuracy::estimate(scene.model(), scene.analysis(), options)
     } else {
@@ -225,6 +236,52 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
     failure.map_or(Ok(()), Err)
 }
 
+/// Writes and tells what was computed of a scene with stages.
+fn finish_stages(
+    arguments: &RunArguments,
+    scene: &Scene,
+    run: StagesRun,
+    wanted: &OutputOptions,
+    destination: Destination,
+) -> Result<(), Failure> {
+    let StagesRun { mut results, failure } = run;
+    let interrupted = results.last().is_some_and(|results| !results.run().complete) && failure.is_none();
+    let failure = match failure {
+        Some(error) => Some(Failure::run(scene.name(), error)),
+        None if interrupted => {
+            let (scene, results) = (scene.name().to_owned(), destination.path().to_owned());
+            Some(Failure::Interrupted { scene, results })
+        }
+        None => None,
+    };
+    if results.is_empty() {
+        return failure.map_or(Ok(()), Err);
+    }
+    let names = scene.stages().iter().map(|stage| stage.name.as_str());
+    for (name, results) in names.clone().zip(&results) {
+        terminal::stage_warnings(name, results.run());
+    }
+    if let (Some(failure), Some(last)) = (&failure, results.last_mut()) {
+        last.run_mut().warnings.push(failure.to_string());
+    }
+    let mut stages: Vec<(&str, Results)> = names.zip(results).collect();
+    let summary =
+        crate::output::write_stages(destination.path(), &mut stages, wanted, failure.is_none())
+            .map_err(Failure::Output)?;
+    if !arguments.quiet {
+        for (name, results) in &stages {
+            terminal::note(&format!("stage {name}"));
+            terminal::results(results, &destination.path().join(name));
+        }
+        terminal::note(&format!("all stages  {}", destination.path().join("report.html").display()));
+    }
+    destination.keep();
+    if arguments.json {
+        print_json(&summary)?;
+    }
+    failure.map_or(Ok(()), Err)
+}
+
 fn default_directory(scene: &Path) -> PathBuf {
     Path::new("out").join(scene.file_stem().unwrap_or(scene.as_os_str()))
 }
@@ -236,8 +293,14 @@ fn check(arguments: &CheckArguments) -> Result<(), Vec<Failure>> {
         let checked = load(path, &arguments.overrides).and_then(|scene| {
             // Some faults, such as shape functions that cannot be solved for, show only when they
             // are built.
-            let (model, analysis) = accuracy::first(&scene);
-            run::inspect(&model, &analysis).map_err(|error| Failure::run(scene.name(), error))
+            let checked = match scene.stages() {
+                [] => {
+                    let (model, analysis) = accuracy::first(&scene);
+                    run::inspect(&model, &analysis).map(drop)
+                }
+                stages => run::check_stages(stages),
+            };
+            checked.map_err(|error| Failure::run(scene.name(), error))
         });
         match checked {
             Ok(_) if arguments.quiet => {}
@@ -252,6 +315,19 @@ fn inspect(arguments: &InspectArguments) -> Result<(), Failure> {
     let scene = load(&arguments.scene, &arguments.overrides)?;
     let look = if arguments.measure { run::measure } else { run::inspect };
     let (model, analysis) = accuracy::first(&scene);
+    if !scene.stages().is_empty() {
+        let mut all = serde_json::Map::new();
+        for (index, Stage { name, .. }) in scene.stages().iter().enumerate() {
+            let (model, analysis) = run::model_of_stage(scene.stages(), index);
+            let inventory = look(&model, analysis).map_err(|error| Failure::run(scene.name(), error))?;
+            if arguments.json {
+                all.insert(name.clone(), serde_json::json!(inventory));
+            } else {
+                print(&format!("stage {name}\n{inventory}"))?;
+            }
+        }
+        return if arguments.json { print_json(&all) } else { Ok(()) };
+    }
     let inventory = look(&model, &analysis).map_err(|error| Failure::run(scene.name(), error))?;
     if arguments.json { print_json(&inventory) } else { print(&inventory.to_string()) }
 }

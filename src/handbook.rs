@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`sections`] | stiffness, mass and shape of sections, varying along a beam; layers; stresses; the shape at the start |
 //! | [`motion`] | duration, integrators, tolerances, events, going on from a state |
+//! | [`stages`] | analyses one after the other: what comes, what goes, prestress, assembly |
 //! | [`mechanisms`] | joints, supports that move, and everything else that takes part |
 //! | [`choosing`] | which discretisation and which integrator for which purpose, with what they reach |
 //! | [`hard`] | what happens when it gets hard: turns, limit points, stiff beams, obstacles |
@@ -18,6 +19,9 @@ pub mod sections {}
 
 #[doc = include_str!("handbook/motion.md")]
 pub mod motion {}
+
+#[doc = include_str!("handbook/stages.md")]
+pub mod stages {}
 
 #[doc = include_str!("handbook/mechanisms.md")]
 pub mod mechanisms {}

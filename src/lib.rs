@@ -55,9 +55,9 @@
 //! | [`model`] | the continuous problem: beams, supports, joints, parts, probes, analyses | [`centreline`], [`basis`], [`law`], [`beam`], [`assembly`] |
 //! | [`system`] | coordinates, supports, joints, sums over effects, inventory | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`] |
 //! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `linear`, [`assembly`], `numeric`, [`model`], [`system`] |
-//! | [`restart`] | a saved state from which a motion can be continued | [`model`], [`system`], `solve` |
+//! | [`restart`] | a saved state from which another analysis can go on | [`assembly`], [`model`], [`system`], `solve` |
 //! | [`results`] | the results of an analysis | [`system`], `solve`, [`restart`] |
-//! | [`run`](mod@run) | one model, one analysis | `linear`, [`basis`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
+//! | [`run`](mod@run) | one model, one analysis; or several one after the other | `linear`, [`basis`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
 //! | [`output`] | files, plots, the report page | [`restart`], [`results`] |
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`assembly`], [`effect`], [`model`] |
 //! | [`accuracy`] | everything that a scene leaves open chosen for an accuracy, and the errors of results | [`centreline`], [`basis`], [`model`], [`results`], [`run`](mod@run), [`scene`] |

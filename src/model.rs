@@ -9,6 +9,7 @@ mod defaults;
 pub mod freedom;
 mod initial_shape;
 mod joint;
+mod stage;
 mod velocity;
 
 pub use accuracy::{Accuracy, Open};
@@ -16,6 +17,7 @@ pub use analysis::*;
 pub use defaults::*;
 pub use initial_shape::InitialShape;
 pub use joint::Joint;
+pub use stage::Stage;
 pub use velocity::{InitialVelocity, Profile};
 
 pub use crate::basis::{Discretization, Kernel, Nodes, SideCondition};
@@ -48,12 +50,25 @@ pub struct Model {
     pub probes: Vec<Probe>,
     /// Further quantities to compute at every record.
     pub outputs: Outputs,
+    /// Where an analysis starts from a state that another one has left: what has acted in it
+    /// already, as indices of [parts](Self::parts). In statics their loads act in full from the
+    /// beginning, where all others grow with the load factor. Joints may be open in the state.
+    pub standing: Option<Vec<usize>>,
+    /// Places at which there is a node although nothing in the model asks for one: where other
+    /// stages of the same scene need it.
+    pub nodes_at: Vec<Place>,
 }
 
 impl Model {
     /// Adds a part to the model.
     pub fn add(&mut self, part: impl Part) {
         self.parts.push(Arc::new(part));
+    }
+
+    /// Whether part number `part` has acted already in the state from which a static analysis
+    /// starts.
+    pub fn stands(&self, part: usize) -> bool {
+        self.standing.as_ref().is_some_and(|standing| standing.contains(&part))
     }
 
     /// Whether any beam has no axial stiffness, and so keeps its length.
@@ -79,7 +94,8 @@ impl Model {
         let joints = self.joints.iter().flat_map(Joint::places);
         let parts = self.parts.iter().filter_map(|part| part.couple());
         let jumps = self.parts.iter().flat_map(|part| part.jumps());
-        let places = supports.chain(joints).chain(parts).chain(jumps);
+        let further = self.nodes_at.iter().copied();
+        let places = supports.chain(joints).chain(parts).chain(jumps).chain(further);
         let jumps = self.beams[beam].section.jumps();
         places.filter(|at| at.beam == beam).map(|at| at.s).chain(jumps).collect()
     }

@@ -44,7 +44,9 @@ use std::time::Instant;
 pub use digits::with_error;
 pub use error::OutputError;
 pub(crate) use summary::drift;
-pub use summary::{EnergySummary, ErrorSummary, ProbeSummary, Summary, WantedError};
+pub use summary::{
+    EnergySummary, ErrorSummary, ProbeSummary, StageSummary, StagesSummary, Summary, WantedError,
+};
 
 use crate::restart::SavedState;
 use crate::results::{PICTURES, Results};
@@ -124,7 +126,7 @@ pub fn write(
     #[cfg(feature = "report")]
     let figures = figures::figures(results)?;
     #[cfg(feature = "report")]
-    let page = report::page(results, &Summary::of(results), &figures)?;
+    let page = report::page(results, &Summary::of(results), figures.clone())?;
     let mut stage = StagedFiles::new(directory)?;
     if !t.parameter.is_empty() {
         stage.add("probes.csv", |out| tables::probes(t, out))?;
@@ -176,6 +178,13 @@ pub fn write(
     results.states_mut().run.seconds.write += start.elapsed().as_secs_f64();
     let summary = Summary::of(results);
     stage.add("summary.json", |out| out.write_all(summary.to_json()?.as_bytes()))?;
+    replace(directory, stage, if options.vtu { frames } else { 0 })?;
+    Ok(summary)
+}
+
+/// Gives the files their names and removes those of an older run, of which `frames` of the VTU series
+/// have been replaced.
+fn replace(directory: &Path, stage: StagedFiles, frames: usize) -> Result<(), OutputError> {
     // Only beside a summary are these names surely those of an older run.
     let replaces = directory.join("summary.json").is_file();
     let older: Vec<&str> = NAMES.into_iter().filter(|name| replaces && !stage.contains(name)).collect();
@@ -186,10 +195,41 @@ pub fn write(
     }
     if replaces {
         // Frames are numbered without gaps.
-        let first = if options.vtu { frames } else { 0 };
-        let _ = (first..).try_for_each(|i| fs::remove_file(directory.join(vtu::frame_name(i))));
+        let _ = (frames..).try_for_each(|i| fs::remove_file(directory.join(vtu::frame_name(i))));
         let _ = fs::remove_dir(directory.join("vtu"));
     }
+    Ok(())
+}
+
+/// Writes the results of stages, each into a folder of its own name in `directory`, and one page and
+/// one summary of all into `directory` itself. `complete` tells whether these are all stages.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_stages(
+    directory: &Path,
+    stages: &mut [(&str, Results)],
+    options: &OutputOptions,
+    complete: bool,
+) -> Result<StagesSummary, OutputError> {
+    stages.iter().try_for_each(|(_, results)| check(results))?;
+    #[cfg(feature = "report")]
+    let page = report::page_of_stages(stages, complete)?;
+    let mut summaries = Vec::with_capacity(stages.len());
+    for (name, results) in stages.iter_mut() {
+        let summary = write(&directory.join(*name), results, options)?;
+        summaries.push(StageSummary { name: (*name).to_owned(), summary });
+    }
+    let mut staged = StagedFiles::new(directory)?;
+    #[cfg(feature = "report")]
+    staged.add("report.html", |out| out.write_all(page.as_bytes()))?;
+    let summary = StagesSummary::new(summaries, complete);
+    let text = serde_json::to_vec_pretty(&summary).map_err(|source| OutputError::Write {
+        path: directory.join("summary.json"),
+        source: source.into(),
+    })?;
+    staged.add("summary.json", |out| out.write_all(&text))?;
+    replace(directory, staged, 0)?;
     Ok(summary)
 }
 
@@ -201,7 +241,7 @@ pub fn write(
 pub fn page(results: &Results) -> Result<String, OutputError> {
     check(results)?;
     let figures = figures::figures(results)?;
-    report::page(results, &Summary::of(results), &figures)
+    report::page(results, &Summary::of(results), figures)
 }
 
 /// Writes `state.json` alone: a checkpoint of a run that is under way.

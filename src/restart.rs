@@ -1,4 +1,4 @@
-//! A state saved by one run, from which a motion may start.
+//! A state saved by one run, from which another may start.
 //!
 //! A motion of the same model by the same integrator goes on bit for bit as if it had not been
 //! interrupted: the file holds the integrator's data that are carried from step to step, in decimal
@@ -6,13 +6,16 @@
 //! these data are saved as they were before this step, which is then taken once more in full;
 //! results that the run has reported already are not reported again.
 //!
-//! Another scene may start from the state too, with other loads, supports or another integrator,
-//! and a motion may start at rest in the equilibrium that a static run found. Its beams must be the
-//! same: in name, centreline, discretisation, nodes, stiffness and, where both have one, mass.
+//! Another scene may start from the state too, with other loads, supports or another integrator: a
+//! motion at rest in the equilibrium that a static run found, or a static run anywhere. Its beams
+//! must be the same: in name, centreline, discretisation, nodes, stiffness and, where both have
+//! one, mass. The state knows what acted and held in it. In a static run these parts go on to act
+//! in full, while what is new grows with the load factor and what has gone fades.
 //!
 //! A checksum tells whether the file is as it was written.
 
-use crate::model::{Along, Beam, Integrator, Model};
+use crate::assembly::InternalVariables;
+use crate::model::{Along, Beam, Displacement, Integrator, Model};
 use crate::solve::dynamics::{Checkpoint, State};
 use crate::system::System;
 use serde::{Deserialize, Serialize};
@@ -20,7 +23,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 /// Version of the format.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// A state with the beams to which it belongs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -41,6 +44,11 @@ struct Saved {
     motion: String,
     /// Beam and arc length of each angle of the states.
     directions: Vec<(usize, f64)>,
+    /// Checksums of the parts that acted and of the supports that held.
+    acted: Vec<String>,
+    held: Vec<String>,
+    /// Per friction and per torsion spring, the number of its part among those that acted.
+    history_of: [Vec<usize>; 2],
     /// The state, and the integrator's data.
     checkpoint: Checkpoint,
 }
@@ -125,9 +133,12 @@ pub enum RestartError {
         /// What differs.
         what: String,
     },
-    /// The analysis is not a motion.
-    #[error("a {analysis} analysis does not start from a saved state")]
-    #[diagnostic(help("only [analysis.dynamic] does"))]
+    /// The analysis starts from the stress-free state.
+    #[error("a {analysis} starts from the stress-free state, and from no other")]
+    #[diagnostic(help(
+        "[analysis.static] and [analysis.dynamic] start from a state that another run has left, and so does [analysis.modal] \
+         with `about = \"equilibrium\"`"
+    ))]
     Analysis {
         /// The analysis.
         analysis: &'static str,
@@ -165,6 +176,42 @@ pub(crate) fn fingerprint(model: &Model, integrator: Integrator) -> String {
     sha256(format!("{beams:?} {supports:?} {joints:?} {parts:?} {integrator:?}").as_bytes())
 }
 
+fn checksums<T: std::fmt::Debug>(all: &[T]) -> Vec<String> {
+    all.iter().map(|one| sha256(format!("{one:?}").as_bytes())).collect()
+}
+
+/// Per entry of `now`, the index of the same entry of `before`, each of which is found once.
+fn matches(before: &[String], now: &[String]) -> Vec<Option<usize>> {
+    let mut left: Vec<Option<&String>> = before.iter().map(Some).collect();
+    let find = |one: &String| {
+        let found = left.iter().position(|other| *other == Some(one))?;
+        left[found] = None;
+        Some(found)
+    };
+    now.iter().map(find).collect()
+}
+
+/// The internal variables by the parts that have them now.
+fn moved(
+    variables: &InternalVariables,
+    before: &[Vec<usize>; 2],
+    now: [&[usize]; 2],
+    same: &[Option<usize>],
+) -> InternalVariables {
+    // A part may have several: the n-th of a part is the n-th of the same part before.
+    let index = |kind: usize, i: usize| {
+        let part = now[kind][i];
+        let nth = now[kind][..i].iter().filter(|other| **other == part).count();
+        let there = same.get(part).copied().flatten()?;
+        before[kind].iter().enumerate().filter(|(_, other)| **other == there).nth(nth).map(|(j, _)| j)
+    };
+    let contact = |i: usize| index(0, i).and_then(|j| variables.contacts.get(j).cloned()).unwrap_or_default();
+    let angle = |i: usize| index(1, i).and_then(|j| variables.angles.get(j).copied()).unwrap_or(0.0);
+    let contacts: Vec<_> = (0..now[0].len()).map(contact).collect();
+    let angles: Vec<f64> = (0..now[1].len()).map(angle).collect();
+    InternalVariables { contacts, angles, ..variables.clone() }
+}
+
 impl Saved {
     fn sha256(&self) -> String {
         // A state without a JSON form cannot be written to a file either.
@@ -175,13 +222,39 @@ impl Saved {
 impl SavedState {
     /// `motion` is the [`fingerprint`] of the motion, empty where there was none.
     pub(crate) fn new(model: &Model, system: &System, motion: String, checkpoint: Checkpoint) -> Self {
-        let saved = Saved { beams: layout(model, system), motion, directions: directions(model), checkpoint };
+        let saved = Saved {
+            beams: layout(model, system),
+            motion,
+            directions: directions(model),
+            acted: checksums(&model.parts),
+            held: checksums(&model.supports),
+            history_of: system.history_of().map(<[usize]>::to_vec),
+            checkpoint,
+        };
         Self { format: FORMAT, sha256: saved.sha256(), saved }
     }
 
     /// Its time \[s\].
     pub fn time(&self) -> f64 {
         self.saved.checkpoint.reached().time
+    }
+
+    /// The model as a run goes on with it from this state: what acted already stands, and supports
+    /// that held already hold the beams where they are.
+    pub(crate) fn gone_on(&self, model: &Model) -> Model {
+        let found = |before: &[String], now: &[String]| {
+            let same = matches(before, now).into_iter().enumerate();
+            same.filter_map(|(i, there)| there.map(|_| i)).collect::<Vec<_>>()
+        };
+        let mut model = model.clone();
+        model.standing = Some(found(&self.saved.acted, &checksums(&model.parts)));
+        for i in found(&self.saved.held, &checksums(&model.supports)) {
+            let support = &mut model.supports[i];
+            if support.law.is_none() {
+                support.displacement = Displacement::default();
+            }
+        }
+        model
     }
 
     /// Whether it is an equilibrium that a static run found.
@@ -276,7 +349,10 @@ impl SavedState {
             return mismatch("its coordinates or velocities are incomplete".into());
         }
         if self.saved.motion != fingerprint {
-            return Ok((Checkpoint { state: state.clone(), ..Checkpoint::default() }, false));
+            let same = matches(&self.saved.acted, &checksums(&model.parts));
+            let variables = moved(&state.variables, &self.saved.history_of, system.history_of(), &same);
+            let state = State { variables, ..state.clone() };
+            return Ok((Checkpoint { state, ..Checkpoint::default() }, false));
         }
         let Checkpoint { method, memory, step, last_ratio, origin: (origin, _), .. } = &checkpoint;
         let positive = |v: f64| v.is_finite() && v > 0.0;

@@ -14,7 +14,7 @@ pub use trajectory::{
     SectionSeries, Trajectory,
 };
 
-pub use crate::solve::{ContactImpulse, RecordedState, RecordedStates, Statistics, StepRecord};
+pub use crate::solve::{ContactImpulse, RecordedState, RecordedStates, Statistics, StepRecord, TakenUp};
 pub use crate::system::{Energy, Reaction};
 
 use serde::Serialize;

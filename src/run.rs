@@ -9,11 +9,14 @@ mod motion;
 mod sampler;
 mod sections;
 mod shapes;
+mod stages;
+mod start;
 mod statics;
 mod strings;
 
 pub use error::RunError;
 pub use shapes::shapes_at;
+pub use stages::{StagesRun, check_stages, model_of_stage, solve_stages};
 
 use crate::assembly::Needs;
 use crate::basis::BasisCache;
@@ -85,8 +88,9 @@ pub const SHAPE_POINTS: usize = 201;
 
 /// Options of a run besides the model and the analysis.
 pub struct Options<'o> {
-    /// A saved state from which a motion starts; its duration counts from the time of that state.
-    /// Supports without a law of time fix a beam where it is in the state.
+    /// A saved state from which the analysis starts; the duration of a motion counts from the time
+    /// of that state. Supports without a law of time hold a beam where it is in the state, and those
+    /// that are new move it from there.
     pub start: Option<&'o SavedState>,
     /// Called after every step.
     pub observer: Option<Observer<'o>>,
@@ -118,13 +122,19 @@ impl Default for Options<'_> {
     }
 }
 
-impl Options<'_> {
+impl<'o> Options<'o> {
+    /// The same options, without an observer.
+    fn copied(&self) -> Self {
+        let Self { start, observer: _, checkpoints, cache, states, frames, shape_points } = *self;
+        Self { start, observer: None, checkpoints, cache, states, frames, shape_points }
+    }
+
     /// How many centrelines are kept, and how many places of the last shapes are known.
     fn detail(&self) -> [usize; 2] {
         [self.frames, self.shape_points]
     }
 
-    /// Refuses a saved state for an analysis without motion.
+    /// Refuses a saved state for an analysis that starts from the stress-free one.
     fn refuses_a_start(&self, analysis: &'static str) -> Result<(), RunError> {
         self.start.map_or(Ok(()), |_| Err(RestartError::Analysis { analysis }.into()))
     }
@@ -170,6 +180,7 @@ impl Solve for Analysis {
             Self::Dynamic(dynamic) => dynamic.solve(model, options).map(Results::Trajectory),
             Self::Modal(modal) => modal.solve(model, options).map(Results::Vibrations),
             Self::Buckling(buckling) => buckling.solve(model, options).map(Results::CriticalLoads),
+            Self::Stages => Err(RunError::Stages),
         }
     }
 }

@@ -28,18 +28,20 @@ mod to_law;
 mod to_model;
 mod to_parts;
 mod to_section;
+mod to_stages;
 mod to_velocity;
 mod unit;
 mod value;
 
 use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
 use serde::Deserialize;
 use toml::de::DeTable;
 
 use crate::assembly::Part;
-use crate::model::{Accuracy, Analysis, Model, Open};
+use crate::model::{Accuracy, Analysis, Model, Open, Stage};
 use error::Fault;
 use overrides::Overridden;
 
@@ -61,6 +63,7 @@ pub struct Scene {
     text: String,
     model: Model,
     analysis: Analysis,
+    stages: Vec<Stage>,
     accuracy: Option<Accuracy>,
     open: Open,
     output: Output,
@@ -128,12 +131,17 @@ impl Scene {
         Self::overridden(&self.name, &self.text, overrides)
     }
 
-    /// The continuous problem, in SI.
+    /// The analyses that are done one after the other; none where the scene has a single one.
+    pub fn stages(&self) -> &[Stage] {
+        &self.stages
+    }
+
+    /// The continuous problem, in SI; that of the first stage where there are stages.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// What is to be computed.
+    /// What is to be computed; [`Analysis::Stages`] where there are [stages](Self::stages).
     pub fn analysis(&self) -> &Analysis {
         &self.analysis
     }
@@ -158,14 +166,18 @@ impl Scene {
     /// Adds a part that scene files have no words for. It is not in the [text](Self::text), and a
     /// scene that is made from this one by [`with`](Self::with) does not have it.
     pub fn add(&mut self, part: impl Part) {
-        self.model.add(part);
+        let part: Arc<dyn Part> = Arc::new(part);
+        self.stages.iter_mut().for_each(|stage| stage.model.parts.push(Arc::clone(&part)));
+        self.model.parts.push(part);
         self.added += 1;
     }
 
     /// Adds the parts that were [added](Self::add) to another scene.
     pub fn add_parts_of(&mut self, other: &Self) {
         let parts = &other.model.parts;
-        self.model.parts.extend_from_slice(&parts[parts.len() - other.added..]);
+        let added = &parts[parts.len() - other.added..];
+        self.model.parts.extend_from_slice(added);
+        self.stages.iter_mut().for_each(|stage| stage.model.parts.extend_from_slice(added));
         self.added += other.added;
     }
 
@@ -236,7 +248,16 @@ fn tables(name: &str, text: &str) -> Result<Scene, Fault> {
     let root = DeTable::parse(text).map_err(|error| diagnose::syntax(&error, text))?;
     let file = file::SceneTable::deserialize(toml::Deserializer::from(root.clone()))
         .map_err(|error| diagnose::data(&error, root.get_ref()))?;
-    let (model, analysis) = to_model::convert(&file)?;
+    let mut stages = Vec::new();
+    for (index, (name, file)) in to_stages::stages(&file)?.iter().enumerate() {
+        let (model, analysis) = to_model::convert(file, index > 0)?;
+        stages.push(Stage { name: name.clone(), model, analysis });
+    }
+    to_stages::finish(&file, &mut stages)?;
+    let (model, analysis) = match stages.first() {
+        None => to_model::convert(&file, false)?,
+        Some(first) => (first.model.clone(), Analysis::Stages),
+    };
     let accuracy = to_analysis::accuracy(&file)?;
     let open = Open::of(&model, &analysis, !to_analysis::names_an_integrator(&file));
     let output = Output { states: file.output.states, vtu: file.output.vtu };
@@ -245,6 +266,7 @@ fn tables(name: &str, text: &str) -> Result<Scene, Fault> {
         text: text.to_owned(),
         model,
         analysis,
+        stages,
         accuracy,
         open,
         output,

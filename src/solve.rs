@@ -10,9 +10,10 @@ pub mod newton;
 pub mod path;
 mod record;
 pub mod relax;
+pub mod resume;
 pub mod retraction;
 pub mod statics;
 mod work;
 
-pub use record::{ContactImpulse, RecordedState, RecordedStates, Statistics, StepRecord};
+pub use record::{ContactImpulse, RecordedState, RecordedStates, Statistics, StepRecord, TakenUp};
 pub use work::Work;

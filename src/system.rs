@@ -21,6 +21,7 @@ mod cut;
 mod energy;
 mod fix;
 mod history;
+mod imbalance;
 pub mod inextensible;
 mod inventory;
 pub mod joint;
@@ -52,6 +53,7 @@ use crate::linear::Matrix;
 use crate::model::freedom::Freedom;
 use crate::model::{Along, Centreline, Discretization, Joint, Model, Place};
 use constraints::Constraint;
+use imbalance::Start;
 use polar::Polar;
 use reaction::Source;
 use supports::Supports;
@@ -83,7 +85,9 @@ pub struct System {
     lengths: Vec<inextensible::Row>,
     reference: Vec<f64>,
     /// The state in which an analysis begins, where it is not the stress-free one.
-    start: Option<Vec<f64>>,
+    start: Option<Start>,
+    /// Per friction and per torsion spring: the number of its part in the model.
+    history_of: [Vec<usize>; 2],
     length: f64,
     stiffness: f64,
     round_off: f64,
@@ -167,7 +171,8 @@ impl System {
             sources: Vec::new(),
             lengths: Vec::new(),
             reference,
-            start,
+            start: start.map(Start::given),
+            history_of: [Vec::new(), Vec::new()],
             length,
             stiffness,
             round_off,
@@ -181,7 +186,14 @@ impl System {
         for beam in 0..model.beams.len() {
             effect::of_section(beam).iter().try_for_each(|part| part.add_to(&mut assembly))?;
         }
-        model.parts.iter().try_for_each(|part| part.add_to(&mut assembly))?;
+        for (number, part) in model.parts.iter().enumerate() {
+            let standing = !needs.motion && model.stands(number);
+            assembly.set_amplitude(standing.then_some(Amplitude::Full));
+            part.add_to(&mut assembly)?;
+            for (of, count) in system.history_of.iter_mut().zip(assembly.histories()) {
+                of.resize(count, number);
+            }
+        }
         system.terms = assembly.finish();
         system.actuated = actuation::actuated(model, &system);
         system.constant_load = vec![0.0; system.coordinates()];
@@ -191,7 +203,7 @@ impl System {
         (system.supports, system.constraints, system.sources) = fix::fix(&system, &model.supports, needs)?;
         for joint in &model.joints {
             let first = system.constraints.len();
-            let rows = joint::rows(&system, *joint)?;
+            let rows = joint::rows(&system, *joint, model.standing.is_some())?;
             system.constraints.extend(rows);
             system.sources.push(Source::Rows(first..system.constraints.len()));
         }
@@ -305,12 +317,18 @@ impl System {
 
     /// Coordinates of the state in which an analysis begins.
     pub fn start(&self) -> &[f64] {
-        self.start.as_deref().unwrap_or(&self.reference)
+        self.start.as_ref().map_or(&self.reference, |start| &start.q)
     }
 
-    /// Whether an analysis begins in another state than the stress-free one.
+    /// Whether an analysis begins in a given shape, which is no equilibrium yet.
     pub fn starts_bent(&self) -> bool {
-        self.start.is_some()
+        self.start.as_ref().is_some_and(|start| !start.taken_up)
+    }
+
+    /// Per friction and per torsion spring, in the order of the internal variables: the number of
+    /// its part in the model.
+    pub fn history_of(&self) -> [&[usize]; 2] {
+        self.history_of.each_ref().map(|of| &of[..])
     }
 
     /// Length of the longest beam \[m\]: the scale of positions.

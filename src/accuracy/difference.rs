@@ -96,7 +96,7 @@ pub(super) fn between(
 ) -> Result<Difference, String> {
     match analysis {
         Analysis::Modal(_) | Analysis::Buckling(_) => modes(model, meshes, coarse, fine),
-        Analysis::Static(_) | Analysis::Dynamic(_) => {
+        Analysis::Static(_) | Analysis::Dynamic(_) | Analysis::Stages => {
             states(model, analysis, (stations, meshes), coarse.states(), fine.states())
         }
     }

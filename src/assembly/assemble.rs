@@ -17,6 +17,8 @@ pub struct Assembly<'a> {
     reference: &'a [f64],
     masses: Vec<(Place, f64)>,
     needs: Needs,
+    /// Amplitude of loads without a law; `None` for that of the system.
+    amplitude: Option<Amplitude>,
     terms: Terms,
 }
 
@@ -31,12 +33,23 @@ impl<'a> Assembly<'a> {
         masses: Vec<(Place, f64)>,
         needs: Needs,
     ) -> Self {
-        Self { beams, discretized, reference, masses, needs, terms: Terms::default() }
+        Self { beams, discretized, reference, masses, needs, amplitude: None, terms: Terms::default() }
     }
 
     /// The terms that the parts have added.
     pub fn finish(self) -> Terms {
         self.terms
+    }
+
+    /// Gives the loads without a law that are added from now on an amplitude of their own, or that
+    /// of all such loads.
+    pub fn set_amplitude(&mut self, amplitude: Option<Amplitude>) {
+        self.amplitude = amplitude;
+    }
+
+    /// How many frictions and windings there are so far, which are numbered in this order.
+    pub(crate) fn histories(&self) -> [usize; 2] {
+        [self.terms.friction.len(), self.terms.windings.len()]
     }
 
     /// All beams.
@@ -107,7 +120,8 @@ impl<'a> Assembly<'a> {
             return Err(BuildError::NoTime { what: "a load" });
         }
         let effect = self.effect(kind, &extent, density)?;
-        self.terms.loads.push(ActingLoad { effect, amplitude: law.cloned().map(Amplitude::Law) });
+        let amplitude = law.cloned().map(Amplitude::Law).or_else(|| self.amplitude.clone());
+        self.terms.loads.push(ActingLoad { effect, amplitude });
         Ok(())
     }
 

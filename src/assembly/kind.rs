@@ -75,9 +75,16 @@ kinds! {
     Friction = "friction",
     /// Force that travels along a beam.
     MovingForce = "moving_force",
+    /// What the state in which statics begins leaves unbalanced, and what fades as the loads grow.
+    Imbalance = "imbalance",
 }
 
 impl Kind {
+    /// Whether it is the elasticity of a beam's sections.
+    pub(crate) fn is_of_section(self) -> bool {
+        matches!(self, Self::Stretch | Self::Bend | Self::Coupling)
+    }
+
     /// Whether its energy is the same wherever a beam is moved as a rigid body, so that it acts on
     /// no piece of it as a whole.
     pub(crate) fn is_of_shape_alone(self) -> bool {

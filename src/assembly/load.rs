@@ -10,6 +10,8 @@ pub enum Amplitude {
     Proportional,
     /// One, at all times.
     Full,
+    /// One less the load factor.
+    Fading,
     /// A law of time.
     Law(Law),
 }
@@ -20,7 +22,17 @@ impl Amplitude {
         match self {
             Self::Proportional => parameter,
             Self::Full => 1.0,
+            Self::Fading => 1.0 - parameter,
             Self::Law(law) => law.at(parameter)[0],
+        }
+    }
+
+    /// Its derivative with respect to the load factor, which laws of time do not depend on.
+    pub fn rate(&self) -> f64 {
+        match self {
+            Self::Proportional => 1.0,
+            Self::Fading => -1.0,
+            Self::Full | Self::Law(_) => 0.0,
         }
     }
 }
@@ -42,6 +54,6 @@ impl ActingLoad {
     /// Whether its work is the difference of a potential. For a load that follows a law of time it
     /// is not.
     pub fn has_potential(&self) -> bool {
-        self.amplitude.is_none() && self.effect.is_conservative()
+        matches!(self.amplitude, None | Some(Amplitude::Full)) && self.effect.is_conservative()
     }
 }

@@ -211,6 +211,13 @@ pub fn warnings(run: &Run) {
     }
 }
 
+/// Prints the warnings of a stage.
+pub fn stage_warnings(stage: &str, run: &Run) {
+    for warning in &run.warnings {
+        note(&format!("warning: stage `{stage}`: {warning}"));
+    }
+}
+
 /// Prints the table at the end of a run.
 pub fn results(results: &Results, directory: &Path) {
     note(&table(results, directory));

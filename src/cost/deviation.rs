@@ -51,7 +51,7 @@ impl Deviation {
         let error = match analysis {
             Analysis::Modal(_) => eigenvalues("frequencies")?,
             Analysis::Buckling(_) => eigenvalues("load factors")?,
-            Analysis::Static(_) | Analysis::Dynamic(_) => {
+            Analysis::Static(_) | Analysis::Dynamic(_) | Analysis::Stages => {
                 positions(model, run, reference, &pairs(analysis, &run.parameter, &reference.parameter)?)
             }
         };
@@ -64,7 +64,7 @@ impl Deviation {
                 error.is_finite().then_some(error)
             }),
             Analysis::Dynamic(_) => drift(&run.energy),
-            Analysis::Modal(_) | Analysis::Buckling(_) => None,
+            Analysis::Modal(_) | Analysis::Buckling(_) | Analysis::Stages => None,
         };
         let has_state = matches!(analysis, Analysis::Static(_) | Analysis::Dynamic(_));
         let curvature = if has_state { curvature(&run.last, &reference.last) } else { None };

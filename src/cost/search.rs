@@ -216,7 +216,7 @@ fn dominated_by(trials: &[Trial], index: usize, least: f64) -> Option<usize> {
 fn other_solvers(task: &Task<'_>, mean_step: f64) -> Vec<Vec<Solver>> {
     match task.analysis {
         Analysis::Static(_) => vec![vec![Solver::Tolerance(tolerance(0.1 * task.target))]],
-        Analysis::Buckling(_) | Analysis::Modal(_) => vec![],
+        Analysis::Buckling(_) | Analysis::Modal(_) | Analysis::Stages => vec![],
         Analysis::Dynamic(settings) => {
             let by_tolerance = |method: &dyn Fn(StepControl) -> Integrator, parts: &[f64]| {
                 let solver = |part: &f64| {

@@ -14,6 +14,8 @@ pub enum Analysis {
     Buckling(Buckling),
     /// Natural frequencies and mode shapes.
     Modal(Modal),
+    /// Analyses one after the other, each with a model of its own ([`Stage`](super::Stage)).
+    Stages,
 }
 
 impl Analysis {
@@ -24,6 +26,7 @@ impl Analysis {
             Self::Dynamic(_) => "dynamic",
             Self::Buckling(_) => "buckling",
             Self::Modal(_) => "modal",
+            Self::Stages => "stages",
         }
     }
 }

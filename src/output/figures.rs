@@ -6,6 +6,7 @@ use super::plot::{Axis, Chart, Colour, GREY, Mark, PALETTE, PlotError, Series, c
 use crate::results::{AnalysisKind, BeamErrors, ProbeSample, Results, SectionForces, Shape, Trajectory};
 
 /// A drawn plot with the words below it.
+#[derive(Clone)]
 pub(super) struct Figure {
     /// File name without extension.
     pub(super) name: &'static str,

@@ -4,6 +4,7 @@
 use serde::Serialize;
 
 use super::mode::{Displaced, displaced};
+use super::plot::human;
 use super::tables::parameter_name;
 use crate::results::{AnalysisKind, Results, Shape};
 
@@ -34,6 +35,8 @@ pub(super) struct Motion {
     size: [i32; 2],
     /// Load factor, time, frequency of each frame.
     parameter: Vec<f64>,
+    /// What to write below each frame, where the frames are those of several analyses; else empty.
+    labels: Vec<String>,
     /// Borders of obstacles.
     ground: Lines,
     rest: Lines,
@@ -41,6 +44,16 @@ pub(super) struct Motion {
 }
 
 type Polyline = Vec<[f64; 2]>;
+
+/// Name and unit of the parameter of frames.
+fn parameter_words(analysis: AnalysisKind) -> (&'static str, &'static str) {
+    match analysis {
+        AnalysisKind::Static => ("load factor", ""),
+        AnalysisKind::Buckling => ("load factor of mode", ""),
+        AnalysisKind::Modal => ("frequency of mode", "Hz"),
+        AnalysisKind::Dynamic => (parameter_name(analysis), "s"),
+    }
+}
 
 fn polyline(shape: &Shape) -> Polyline {
     thinned(&shape.x.iter().zip(&shape.y).map(|(&x, &y)| [x, y]).collect::<Vec<_>>())
@@ -57,26 +70,42 @@ fn every<T: Clone>(all: &[T], stride: usize) -> Vec<T> {
 }
 
 impl Motion {
-    /// The frames of a trajectory, or the mode shapes; `None` where nothing moves.
-    pub(super) fn of(results: &Results) -> Option<Self> {
-        let t = results.states();
-        let vibration = matches!(t.run.analysis, AnalysisKind::Modal | AnalysisKind::Buckling);
+    /// The frames of a trajectory, or the mode shapes; of several stages, by name, all frames but
+    /// those of vibrations, one after the other. `None` where nothing moves.
+    pub(super) fn of(stages: &[(&str, &Results)]) -> Option<Self> {
+        let (_, first) = stages.first()?;
+        let t = first.states();
+        let vibrates =
+            |results: &Results| matches!(results.run().analysis, AnalysisKind::Modal | AnalysisKind::Buckling);
+        let vibration = stages.len() == 1 && vibrates(first);
         let rest = if vibration { &t.last } else { &t.run.undeformed };
         let rest: Vec<Polyline> = rest.iter().map(polyline).collect();
-        let (parameter, frames): (Vec<f64>, Vec<Vec<Polyline>>) = if vibration {
+        let (mut parameter, mut frames, mut labels) = (Vec::new(), Vec::<Vec<Polyline>>::new(), Vec::new());
+        if vibration {
             let line = |beam: &Displaced| thinned(&beam.line);
             let frame = |mode| displaced(&t.last, mode).iter().map(line).collect();
-            (results.eigenvalues(), results.mode_shapes().into_iter().map(frame).collect())
+            parameter = first.eigenvalues();
+            frames.extend(first.mode_shapes().into_iter().map(frame));
         } else {
-            let coordinates: usize = t.frames.iter().flat_map(|f| &f.beams).map(|b| 2 * b.len()).sum();
+            let moving: Vec<_> = stages.iter().filter(|(_, results)| !vibrates(results)).collect();
+            let all = moving.iter().flat_map(|(_, results)| &results.states().frames);
+            let coordinates: usize = all.clone().flat_map(|f| &f.beams).map(|b| 2 * b.len()).sum();
             // First fewer frames, as long as a hundred stay; then fewer points.
             let fewer = coordinates.div_ceil(COORDINATES).max(1);
-            let frame_stride = fewer.min((t.frames.len() / 100).max(1));
+            let frame_stride = fewer.min((all.count() / 100).max(1));
             let point_stride = fewer.div_ceil(frame_stride);
-            let kept = every(&t.frames, frame_stride);
-            let lines = |beams: &[Polyline]| beams.iter().map(|b| every(b, point_stride)).collect();
-            (kept.iter().map(|f| f.parameter).collect(), kept.iter().map(|f| lines(&f.beams)).collect())
-        };
+            for (stage, results) in moving {
+                let t = results.states();
+                let (name, unit) = parameter_words(t.run.analysis);
+                for frame in every(&t.frames, frame_stride) {
+                    parameter.push(frame.parameter);
+                    frames.push(frame.beams.iter().map(|b| every(b, point_stride)).collect());
+                    if stages.len() > 1 {
+                        labels.push(format!("{stage}: {name} {} {unit}", human(frame.parameter, 5)));
+                    }
+                }
+            }
+        }
         if frames.is_empty() {
             return None;
         }
@@ -95,7 +124,13 @@ impl Motion {
         let margin = GROUND * longest(extent(low, high));
         let (nearest, farthest) = (low.map(|c| c - margin), high.map(|c| c + margin));
         let near = |p: &&[f64; 2]| (0..2).all(|axis| (nearest[axis]..=farthest[axis]).contains(&p[axis]));
-        for point in t.run.outlines.iter().flatten().filter(near) {
+        let mut outlines: Vec<Polyline> = Vec::new();
+        for line in stages.iter().flat_map(|(_, results)| &results.run().outlines) {
+            if !outlines.contains(line) {
+                outlines.push(line.clone());
+            }
+        }
+        for point in outlines.iter().flatten().filter(near) {
             for axis in 0..2 {
                 low[axis] = low[axis].min(point[axis]);
                 high[axis] = high[axis].max(point[axis]);
@@ -119,24 +154,17 @@ impl Motion {
                 .map(|line| line.iter().flat_map(|p| p.iter().enumerate().map(number)).collect())
                 .collect()
         };
+        let (name, unit) = parameter_words(t.run.analysis);
         Some(Self {
             vibration,
-            name: match t.run.analysis {
-                AnalysisKind::Static => "load factor",
-                AnalysisKind::Buckling => "load factor of mode",
-                AnalysisKind::Modal => "frequency of mode",
-                AnalysisKind::Dynamic => parameter_name(t.run.analysis),
-            },
-            unit: match t.run.analysis {
-                AnalysisKind::Dynamic => "s",
-                AnalysisKind::Modal => "Hz",
-                AnalysisKind::Static | AnalysisKind::Buckling => "",
-            },
+            name,
+            unit,
             origin,
             cell,
             size,
             parameter,
-            ground: cells(&t.run.outlines),
+            labels,
+            ground: cells(&outlines),
             rest: cells(&rest),
             frames: frames.iter().map(cells).collect(),
         })

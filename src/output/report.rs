@@ -4,7 +4,7 @@ use askama::Template;
 
 use super::digits::with_error;
 use super::error::OutputError;
-use super::figures::Figure;
+use super::figures::{self, Figure};
 use super::motion::Motion;
 use super::plot::human;
 use super::summary::{ProbeSummary, Summary};
@@ -20,14 +20,75 @@ struct Page<'a> {
     complete: bool,
     style: &'static str,
     player: &'static str,
-    warnings: &'a [String],
+    warnings: Vec<String>,
+    /// JSON, free of `<`; empty where nothing moves.
+    motion: String,
+    /// One for each stage, or the only one.
+    parts: Vec<Analysed<'a>>,
+    version: &'a str,
+}
+
+/// What there is to show of one analysis.
+struct Analysed<'a> {
+    /// Empty where it is the only one.
+    stage: &'a str,
+    /// Its folder, as an address.
+    folder: String,
+    subtitle: String,
     results: Vec<NumberTable>,
     settings: &'a [(String, String)],
     counts: Vec<(&'static str, String)>,
-    /// JSON, free of `<`; empty where nothing moves.
-    motion: String,
-    figures: &'a [Figure],
-    version: &'a str,
+    figures: Vec<Figure>,
+}
+
+impl<'a> Analysed<'a> {
+    fn new(
+        stage: &'a str,
+        results: &'a Results,
+        summary: &Summary,
+        figures: Vec<Figure>,
+    ) -> Self {
+        let t = results.states();
+        Self {
+            stage,
+            folder: address(stage),
+            subtitle: subtitle(t),
+            results: [
+                eigenvalues(results),
+                probes(t, summary),
+                sections(t, summary),
+                stresses(t, summary),
+                reactions(t, summary),
+                energy(t, summary),
+            ]
+            .into_iter()
+            .flatten()
+            .collect(),
+            settings: &t.run.settings,
+            counts: counts(t, summary),
+            figures,
+        }
+    }
+}
+
+/// A folder's name as a relative address: what is not a letter, a digit or one of `-_.` is encoded.
+fn address(folder: &str) -> String {
+    let plain = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'_' | b'.');
+    folder.bytes().map(|b| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect()
+}
+
+fn kind(t: &Trajectory) -> &'static str {
+    match t.run.analysis {
+        AnalysisKind::Static => "Equilibrium",
+        AnalysisKind::Dynamic => "Motion",
+        AnalysisKind::Modal => "Natural vibrations",
+        AnalysisKind::Buckling => "Critical loads",
+    }
+}
+
+fn subtitle(t: &Trajectory) -> String {
+    let count = t.run.degrees_of_freedom;
+    format!("{} · {count} degree{} of freedom", kind(t), if count == 1 { "" } else { "s" })
 }
 
 /// A table of numbers.
@@ -37,46 +98,59 @@ struct NumberTable {
     rows: Vec<Vec<String>>,
 }
 
-/// The page.
-pub(super) fn page(results: &Results, summary: &Summary, figures: &[Figure]) -> Result<String, OutputError> {
+/// The page of one analysis.
+pub(super) fn page(results: &Results, summary: &Summary, figures: Vec<Figure>) -> Result<String, OutputError> {
     let t = results.states();
-    let kind = match t.run.analysis {
-        AnalysisKind::Static => "Equilibrium",
-        AnalysisKind::Dynamic => "Motion",
-        AnalysisKind::Modal => "Natural vibrations",
-        AnalysisKind::Buckling => "Critical loads",
-    };
-    let title = if t.run.title.trim().is_empty() { kind } else { &t.run.title };
-    // The data are numbers and fixed words: they always have a JSON form.
-    let motion = Motion::of(results).and_then(|motion| motion.to_json().ok()).unwrap_or_default();
-    let page = Page {
+    let parts = vec![Analysed::new("", results, summary, figures)];
+    let title = if t.run.title.trim().is_empty() { kind(t) } else { &t.run.title };
+    render(Page {
         title,
-        subtitle: format!(
-            "{kind} · {} degree{} of freedom",
-            t.run.degrees_of_freedom,
-            if t.run.degrees_of_freedom == 1 { "" } else { "s" }
-        ),
+        subtitle: subtitle(t),
         complete: t.run.complete,
-        style: include_str!("templates/report.css"),
-        player: include_str!("templates/player.js"),
-        warnings: &t.run.warnings,
-        results: [
-            eigenvalues(results),
-            probes(t, summary),
-            sections(t, summary),
-            stresses(t, summary),
-            reactions(t, summary),
-            energy(t, summary),
-        ]
-        .into_iter()
-        .flatten()
-        .collect(),
-        settings: &t.run.settings,
-        counts: counts(t, summary),
-        motion,
-        figures,
+        style: STYLE,
+        player: PLAYER,
+        warnings: t.run.warnings.clone(),
+        motion: movie(&[("", results)]),
+        parts,
         version: &summary.version,
-    };
+    })
+}
+
+/// The page of all stages; `complete` tells whether there are no more.
+pub(super) fn page_of_stages(stages: &[(&str, Results)], complete: bool) -> Result<String, OutputError> {
+    let (mut parts, mut warnings) = (Vec::new(), Vec::new());
+    let mut version = String::new();
+    for (stage, results) in stages {
+        let summary = Summary::of(results);
+        parts.push(Analysed::new(stage, results, &summary, figures::figures(results)?));
+        let of_stage = |warning: &String| format!("stage {stage}: {warning}");
+        warnings.extend(results.run().warnings.iter().map(of_stage));
+        version = summary.version;
+    }
+    let title = stages.first().map_or("", |(_, results)| results.run().title.trim());
+    let borrowed: Vec<(&str, &Results)> = stages.iter().map(|(stage, results)| (*stage, results)).collect();
+    render(Page {
+        title: if title.is_empty() { "Stages" } else { title },
+        subtitle: stages.iter().map(|(stage, _)| *stage).collect::<Vec<_>>().join(" → "),
+        complete: complete && stages.iter().all(|(_, results)| results.run().complete),
+        style: STYLE,
+        player: PLAYER,
+        warnings,
+        motion: movie(&borrowed),
+        parts,
+        version: &version,
+    })
+}
+
+const STYLE: &str = include_str!("templates/report.css");
+const PLAYER: &str = include_str!("templates/player.js");
+
+/// The data are numbers and names: they always have a JSON form.
+fn movie(stages: &[(&str, &Results)]) -> String {
+    Motion::of(stages).and_then(|motion| motion.to_json().ok()).unwrap_or_default()
+}
+
+fn render(page: Page<'_>) -> Result<String, OutputError> {
     page.render().map_err(|source| OutputError::Report { source })
 }
 

@@ -60,6 +60,38 @@ pub struct Summary {
     pub seconds: Seconds,
 }
 
+/// The contents of `summary.json` of a scene with stages.
+#[derive(Clone, Debug, Serialize)]
+pub struct StagesSummary {
+    /// The scene's title.
+    pub title: String,
+    /// Version of this library.
+    pub version: String,
+    /// Whether every stage reached its end.
+    pub complete: bool,
+    /// The stages that were computed, in their order.
+    pub stages: Vec<StageSummary>,
+}
+
+/// The summary of a stage.
+#[derive(Clone, Debug, Serialize)]
+pub struct StageSummary {
+    /// Its name, which is that of its folder.
+    pub name: String,
+    /// What `summary.json` in its folder says.
+    #[serde(flatten)]
+    pub summary: Summary,
+}
+
+impl StagesSummary {
+    pub(super) fn new(stages: Vec<StageSummary>, complete: bool) -> Self {
+        let title = stages.first().map_or_else(String::new, |stage| stage.summary.title.clone());
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        let complete = complete && stages.iter().all(|stage| stage.summary.complete);
+        Self { title, version, complete, stages }
+    }
+}
+
 /// What a probe saw at the last record.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ProbeSummary {

@@ -111,6 +111,26 @@ pub enum RunError {
         /// Free memory \[bytes\].
         free: f64,
     },
+    /// Something that is done with one analysis was asked of several.
+    #[error("this scene has stages, and this takes one analysis")]
+    #[diagnostic(help("`ancf run` and `run::solve_stages` do its analyses one after the other"))]
+    Stages,
+    /// A stage failed.
+    #[error("stage `{stage}`: {cause}")]
+    #[diagnostic(forward(cause))]
+    InStage {
+        /// Its name.
+        stage: String,
+        /// Why.
+        cause: Box<RunError>,
+    },
+    /// A static stage ended at another load factor than 1, and another one comes after it.
+    #[error("stage `{stage}` ends at a load factor other than 1, from which no further stage can start")]
+    #[diagnostic(help("let its path by arc length end with `until_load = 1`, or let it be the last stage"))]
+    OpenEnd {
+        /// Its name.
+        stage: String,
+    },
     /// A shape was asked for where nothing is known.
     #[error("{}", .reason)]
     #[diagnostic(help("{advice}"))]
@@ -135,7 +155,10 @@ impl RunError {
     /// 2 where the input is at fault, 1 where the computation failed.
     pub fn exit_status(&self) -> u8 {
         match self {
+            Self::InStage { cause, .. } => cause.exit_status(),
             Self::System(_)
+            | Self::Stages
+            | Self::OpenEnd { .. }
             | Self::NoSuchProbe { .. }
             | Self::Start(_)
             | Self::Restart(_)
@@ -162,6 +185,7 @@ impl RunError {
             Self::NoEquilibrium { partial, .. }
             | Self::OutOfPoints { partial, .. }
             | Self::NoStep { partial, .. } => Some(partial),
+            Self::InStage { cause, .. } => cause.partial(),
             _ => None,
         }
     }

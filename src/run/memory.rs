@@ -17,6 +17,9 @@ const MODEST: f64 = 1e6;
 /// # Errors
 /// [`RunError::Memory`] where less is free than is needed.
 pub(super) fn check(model: &Model, analysis: &Analysis) -> Result<(), RunError> {
+    if *analysis == Analysis::Stages {
+        return Err(RunError::Stages);
+    }
     let needed = needed(model, analysis);
     if needed <= MODEST {
         return Ok(());
@@ -41,6 +44,7 @@ fn needed(model: &Model, analysis: &Analysis) -> f64 {
         Analysis::Modal(Modal { count, about }) => {
             (if *about == About::Equilibrium { 5.0 } else { 4.0 }, 4.0 * *count as f64 * state)
         }
+        Analysis::Stages => (0.0, 0.0),
         Analysis::Dynamic(settings) => (4.0, 2.0 * settings.duration / settings.output_every * state),
     };
     let tables: f64 = model.beams.iter().map(|beam| table(beam) + matrices * tangent(beam)).sum();

@@ -1,6 +1,7 @@
 //! Vibrations and critical loads of a model.
 
 use super::sampler::Sampler;
+use super::start::Start;
 use super::{Options, RunError, Solve, Stopwatch, Watch, memory, needs, timed};
 use crate::assembly::{InternalVariables, nodes};
 use crate::model::{About, Analysis, Buckling, Modal, Model, Static};
@@ -29,12 +30,15 @@ impl Solve for Modal {
     type Results = Vibrations;
 
     fn solve(&self, model: &Model, options: Options<'_>) -> Result<Vibrations, RunError> {
-        options.refuses_a_start("modal")?;
+        if self.about == About::Reference {
+            options.refuses_a_start("modal analysis about the reference")?;
+        }
         let analysis = Analysis::Modal(*self);
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;
-        let system = System::build_with(model, needs(&analysis), options.cache)?;
-        let sampler = Sampler::new(model, &system, options.detail())?;
+        let start = Start::new(model, &analysis, &options)?;
+        let mut sampler = Sampler::new(&start.model, &start.system, options.detail())?;
+        sampler.angles = start.angles();
         stopwatch.built();
         let mut watch = Watch::new(options.observer);
         let outcome = match self.about {
@@ -50,7 +54,7 @@ impl Solve for Buckling {
     type Results = CriticalLoads;
 
     fn solve(&self, model: &Model, options: Options<'_>) -> Result<CriticalLoads, RunError> {
-        options.refuses_a_start("buckling")?;
+        options.refuses_a_start("buckling analysis")?;
         let analysis = Analysis::Buckling(*self);
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;

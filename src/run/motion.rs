@@ -3,12 +3,13 @@
 use super::sampler::Sampler;
 use super::shapes::acting;
 use super::{Options, RunError, Solve, Stopwatch, Watch, left, memory, needs, timed};
-use crate::model::{Analysis, Displacement, Dynamic, Model};
+use crate::model::{Analysis, Dynamic, Model};
 use crate::restart::{self, SavedState};
-use crate::results::{RecordedState, RecordedStates, Statistics, Trajectory};
+use crate::results::{RecordedState, RecordedStates, Statistics, TakenUp, Trajectory};
 use crate::solve::dynamics::{self, Checkpoint, start};
 use crate::system::System;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 impl Solve for Dynamic {
     type Results = Trajectory;
@@ -16,12 +17,17 @@ impl Solve for Dynamic {
     fn solve(&self, model: &Model, options: Options<'_>) -> Result<Trajectory, RunError> {
         let mut stopwatch = Stopwatch::start();
         let analysis = Analysis::Dynamic(self.clone());
-        let model = if options.start.is_some() { left_where_it_is(model) } else { Cow::Borrowed(model) };
+        let asked = model;
+        let model = options.start.map_or(Cow::Borrowed(model), |saved| Cow::Owned(saved.gone_on(model)));
         let model = &*model;
         memory::check(model, &analysis)?;
         let mut system = System::build_with(model, needs(&analysis), options.cache)?;
         let Beginning { start, end, motion, told } = beginning(model, self, &mut system, options.start)?;
-        let taken_up = (options.states && options.start.is_some()).then(|| start.state.q.clone());
+        let taken_up = (options.states && options.start.is_some()).then(|| TakenUp {
+            model: Arc::new(model.clone()),
+            q: start.state.q.clone(),
+            variables: start.state.variables.clone(),
+        });
         let sampler = Sampler::new(model, &system, options.detail())?;
         stopwatch.built();
         self.integrator.suits(model)?;
@@ -30,7 +36,7 @@ impl Solve for Dynamic {
         let keep = options.checkpoints;
         let take = |checkpoint| {
             if let Some(keep) = keep {
-                (keep.take)(&SavedState::new(model, &system, motion.clone(), checkpoint));
+                (keep.take)(&SavedState::new(asked, &system, motion.clone(), checkpoint));
             }
         };
         let task = dynamics::Task {
@@ -50,7 +56,7 @@ impl Solve for Dynamic {
         let mut solution = dynamics::solve(&system, &task, report);
         stopwatch.solved();
         let saved = solution.checkpoint.take();
-        let saved = saved.map(|checkpoint| SavedState::new(model, &system, motion.clone(), checkpoint));
+        let saved = saved.map(|checkpoint| SavedState::new(asked, &system, motion.clone(), checkpoint));
         let kept = (options.states || model.outputs.section_forces).then(|| {
             let states = solution.states.iter().cloned().zip(std::mem::take(&mut solution.forces));
             let states = states.map(|(state, forces)| RecordedState::Moving { state, forces });
@@ -127,13 +133,4 @@ fn beginning(
 fn later(time: f64, duration: f64) -> f64 {
     let sum = time + duration;
     if time == 0.0 { sum } else { format!("{sum:.14e}").parse().unwrap_or(sum) }
-}
-
-/// The model in which supports without a law of time do not move.
-pub(super) fn left_where_it_is(model: &Model) -> Cow<'_, Model> {
-    let mut model = model.clone();
-    for support in model.supports.iter_mut().filter(|support| support.law.is_none()) {
-        support.displacement = Displacement::default();
-    }
-    Cow::Owned(model)
 }

@@ -51,6 +51,9 @@ pub(super) struct Sampler<'a> {
     locking: Locking,
     /// How many frames are kept.
     frames: usize,
+    /// Directions at the probes in the state from which statics starts, with full turns included;
+    /// empty or not finite where they are not known.
+    pub(super) angles: Vec<f64>,
 }
 
 /// A probe with the shape functions at its point.
@@ -170,7 +173,7 @@ impl<'a> Sampler<'a> {
             })
             .collect::<Result<_, BuildError>>()?;
         let locking = Locking::new(model, system)?;
-        Ok(Self { model, system, shapes, probes, locking, frames })
+        Ok(Self { model, system, shapes, probes, locking, frames, angles: Vec::new() })
     }
 
     /// The probe at which a path is to end, as (view, axis, value).
@@ -488,7 +491,10 @@ impl<'a> Sampler<'a> {
         {
             let fields = view.fields(q);
             let angle = match history {
-                History::Angles(angles) => angles.get(probe).copied().unwrap_or_else(|| fields.angle()),
+                History::Angles(angles) => {
+                    let known = angles.get(probe).copied().filter(|angle| angle.is_finite());
+                    known.unwrap_or_else(|| fields.angle())
+                }
                 History::Before(before) => {
                     let part = &self.system.beams()[*beam];
                     let turned = before.map_or(0.0, |before| angle::turn(part, view.s()[0], before, q));
@@ -524,7 +530,8 @@ impl<'a> Sampler<'a> {
             }
             let before = i.checked_sub(1).map(|i| self.coordinates_of(&solution.states[i].1));
             let energy = Energy { work: work.value, ..self.system.energy(*load, q, None).with(variables) };
-            self.record(&mut trajectory, *load, (History::Before(before), q), (None, variables), energy);
+            let history = if i == 0 { History::Angles(&self.angles) } else { History::Before(before) };
+            self.record(&mut trajectory, *load, (history, q), (None, variables), energy);
             if is_among(i, count, self.frames) {
                 trajectory.frames.push(self.frame(*load, q));
             }
@@ -575,13 +582,21 @@ impl<'a> Sampler<'a> {
     }
 
     /// The last state, if it is the equilibrium under the full loads.
-    pub(super) fn equilibrium(&self, solution: &Solution, seen: &Trajectory) -> Option<SavedState> {
+    /// `asked` is the model before it went on from another state, and `time` that of this state.
+    pub(super) fn equilibrium(
+        &self,
+        solution: &Solution,
+        seen: &Trajectory,
+        asked: &Model,
+        time: f64,
+    ) -> Option<SavedState> {
         let (_, x) = solution.states.last().filter(|(load, _)| *load == 1.0)?;
         let mut state = dynamics::State::at_rest(self.coordinates_of(x));
+        state.time = time;
         state.variables = solution.variables.last().cloned().unwrap_or_default();
         state.angles = seen.probes.iter().filter_map(|p| p.samples.last()).map(|s| s.angle).collect();
         let checkpoint = dynamics::Checkpoint { state, ..dynamics::Checkpoint::default() };
-        Some(SavedState::new(self.model, self.system, String::new(), checkpoint))
+        Some(SavedState::new(asked, self.system, String::new(), checkpoint))
     }
 
     /// The points whose directions are watched: those of the probes.

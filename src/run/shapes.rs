@@ -1,8 +1,7 @@
 //! Shapes, with section forces, at any load factor or time of a run that has kept its states.
 
-use super::motion::left_where_it_is;
 use super::sampler::Sampler;
-use super::{Options, RunError, needs};
+use super::{Options, RunError, needs, start};
 use crate::assembly::Actions;
 use crate::basis::BasisCache;
 use crate::model::{Analysis, Model};
@@ -10,7 +9,6 @@ use crate::results::{RecordedState, Shape, Trajectory};
 use crate::solve::dynamics::RecordedForces;
 use crate::solve::dynamics::motion::Motion;
 use crate::system::System;
-use std::borrow::Cow;
 
 /// Distance of a parameter from a record, relative to the last one, that is round-off.
 const SAME: f64 = 1e-12;
@@ -60,15 +58,11 @@ pub fn shapes_at(
     let width = known[after] - known[before];
     let share = if width == 0.0 { 1.0 } else { ((parameter - known[before]) / width).clamp(0.0, 1.0) };
 
-    let model = match kept.taken_up {
-        Some(_) => left_where_it_is(model),
-        None => Cow::Borrowed(model),
+    let (model, system) = match &kept.taken_up {
+        Some(taken_up) => (&*taken_up.model, start::again(taken_up, analysis, cache)?),
+        None => (model, System::build_with(model, needs(analysis), cache)?),
     };
-    let mut system = System::build_with(&model, needs(analysis), cache)?;
-    if let Some(start) = &kept.taken_up {
-        system.freeze(start);
-    }
-    let sampler = Sampler::new(&model, &system, Options::default().detail())?;
+    let sampler = Sampler::new(model, &system, Options::default().detail())?;
     let of = |record: usize| {
         let none = || no_shape("the state of this record was not kept", KEEP_STATES);
         let state = kept.states.get(record).ok_or_else(none)?;

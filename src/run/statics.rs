@@ -1,22 +1,23 @@
 //! Equilibria of a model.
 
 use super::sampler::Sampler;
-use super::{Options, RunError, Solve, Stopwatch, Watch, left, memory, needs, timed};
+use super::start::{Start, told};
+use super::{Options, RunError, Solve, Stopwatch, Watch, left, memory, timed};
 use crate::model::{Analysis, Model, Static};
 use crate::results::{RecordedState, RecordedStates, Statistics, Trajectory};
 use crate::solve::statics::{self, Target};
-use crate::system::System;
 
 impl Solve for Static {
     type Results = Trajectory;
 
     fn solve(&self, model: &Model, options: Options<'_>) -> Result<Trajectory, RunError> {
-        options.refuses_a_start("static")?;
         let analysis = Analysis::Static(self.clone());
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;
-        let system = System::build_with(model, needs(&analysis), options.cache)?;
-        let sampler = Sampler::new(model, &system, options.detail())?;
+        let start = Start::new(model, &analysis, &options)?;
+        let (asked, model, system) = (model, &*start.model, &start.system);
+        let mut sampler = Sampler::new(model, system, options.detail())?;
+        sampler.angles = start.angles();
         let target = match &self.arc_length {
             None => None,
             Some(arc) => Some(Target { arc, probe: sampler.end_of_path(arc)? }),
@@ -25,14 +26,15 @@ impl Solve for Static {
         let mut watch = Watch { open: self.arc_length.is_some(), ..Watch::new(options.observer) };
         let report =
             &mut |load: f64, step: f64, statistics: &Statistics| watch.goes_on(load, 1.0, step, statistics);
-        let solution = statics::solve(&system, self, target.as_ref(), report);
+        let solution = statics::solve(system, self, target.as_ref(), report);
         stopwatch.solved();
         let mut outcome = match (&solution.stuck, &self.arc_length) {
             (Some(stuck), _) => Err(sampler.stuck(stuck, &solution)),
             (None, Some(arc)) if solution.out_of_points => Err(sampler.out_of_points(arc, &solution)),
             (None, _) => {
                 let mut trajectory = sampler.statics(&solution);
-                trajectory.saved = sampler.equilibrium(&solution, &trajectory);
+                trajectory.saved = sampler.equilibrium(&solution, &trajectory, asked, start.time());
+                trajectory.run.settings.extend(options.start.map(told));
                 Ok(trajectory)
             }
         };
@@ -48,7 +50,7 @@ impl Solve for Static {
             if options.states {
                 let states = solution.states.into_iter().zip(solution.variables);
                 let states = states.map(|((_, x), variables)| RecordedState::Equilibrium { x, variables });
-                trajectory.states = Some(RecordedStates { states: states.collect(), taken_up: None });
+                trajectory.states = Some(RecordedStates { states: states.collect(), taken_up: start.taken_up() });
             }
         }
         timed(outcome, |trajectory| trajectory, &watch, stopwatch)

@@ -11,12 +11,14 @@ mod analysis;
 mod law;
 mod part;
 mod section;
+mod stage;
 
 pub use along::*;
 pub use analysis::*;
 pub use law::*;
 pub use part::*;
 pub use section::*;
+pub use stage::*;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -31,7 +33,7 @@ use super::value::{At, Count, Located, NodeList, Vector};
 /// text carries a unit, such as "1.8 m". What is not named is not simulated.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(title = "Scene of ancf")]
+#[schemars(title = "Scene of ancf", extend("oneOf" = [{ "required": ["analysis"] }, { "required": ["stage"] }]))]
 pub struct SceneTable {
     /// One line that says what this is.
     #[serde(default)]
@@ -55,8 +57,11 @@ pub struct SceneTable {
     /// Points to watch.
     #[serde(default)]
     pub probe: Vec<ProbeTable>,
-    /// What to compute: exactly one kind.
-    pub analysis: Located<AnalysisTable>,
+    /// What to compute: exactly one kind; or else stages.
+    pub analysis: Option<Located<AnalysisTable>>,
+    /// Analyses in their order, each of which starts where the one before it ended.
+    #[serde(default)]
+    pub stage: Vec<StageTable>,
     /// Files beyond those that are always written.
     #[serde(default)]
     pub output: OutputTable,
@@ -309,6 +314,10 @@ pub struct SupportTable {
     /// By how much held quantities move: until the load is full, or by a law of time.
     #[serde(rename = "move")]
     pub displacement: Option<Located<MoveTable>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// What a support can hold.
@@ -392,6 +401,10 @@ pub struct ForceTable {
     pub follower: bool,
     /// In a motion: the law of time that multiplies it.
     pub in_time: Option<Located<LawTable>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// A concentrated moment.
@@ -410,6 +423,10 @@ pub struct MomentTable {
     pub follower: bool,
     /// In a motion: the law of time that multiplies it.
     pub in_time: Option<Located<LawTable>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// A force per reference length along a beam.
@@ -429,6 +446,10 @@ pub struct DistributedForceTable {
     pub follower: bool,
     /// In a motion: the law of time that multiplies it.
     pub in_time: Option<Located<LawTable>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// Weight of every beam.
@@ -439,6 +460,10 @@ pub struct GravityTable {
     pub acceleration: Vector<Acceleration>,
     /// In a motion: the law of time that multiplies it.
     pub in_time: Option<Located<LawTable>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// A point that is watched.

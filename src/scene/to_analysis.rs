@@ -27,7 +27,9 @@ pub const DYNAMIC_RECORDS: f64 = 200.0;
 
 /// The errors that the results may have; `None` where the scene does not say.
 pub(super) fn accuracy(file: &SceneTable) -> Result<Option<Accuracy>, Fault> {
-    let AnalysisTable { statics, dynamic, buckling, modal } = file.analysis.get();
+    let Some(AnalysisTable { statics, dynamic, buckling, modal }) = file.analysis.as_ref().map(Located::get) else {
+        return Ok(None);
+    };
     let value = statics.as_ref().and_then(|table| table.accuracy.as_ref());
     let value = value.or_else(|| dynamic.as_ref().and_then(|table| table.get().accuracy.as_ref()));
     if let Some(value) = value {
@@ -63,15 +65,35 @@ fn too_large(span: Range<usize>, error: f64) -> Fault {
 
 /// Whether a motion names its integrator.
 pub(super) fn names_an_integrator(file: &SceneTable) -> bool {
-    file.analysis.get().dynamic.as_ref().is_some_and(|table| {
+    let dynamic = file.analysis.as_ref().and_then(|analysis| analysis.get().dynamic.as_ref());
+    dynamic.is_some_and(|table| {
         let DynamicTable { generalized_alpha, gauss, radau, .. } = table.get();
         generalized_alpha.is_some() || gauss.is_some() || radau.is_some()
     })
 }
 
-/// The one analysis of the scene.
-pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<Analysis, Fault> {
-    let table = file.analysis.get();
+/// The one analysis of the scene; where it is that of a stage, `goes_on` tells whether one came
+/// before.
+pub(super) fn analysis(
+    file: &SceneTable,
+    model: &Model,
+    size: Size,
+    goes_on: bool,
+) -> Result<Analysis, Fault> {
+    let Some(located) = &file.analysis else {
+        return Err(Fault::new(0..0, "missing key `analysis` in the scene").help(ADD));
+    };
+    let table = located.get();
+    if let (true, Some(_)) = (goes_on, &table.buckling) {
+        return Err(Fault::new(
+            located.span(),
+            "a buckling analysis starts from the stress-free state, and not from the stage before it",
+        )
+        .help(
+            "let it be the first stage, or follow the loads of this stage by `arc_length` in a static analysis, which tells where the \
+             equilibrium becomes unstable",
+        ));
+    }
     match (&table.statics, &table.dynamic, &table.buckling, &table.modal) {
         (Some(table), None, None, None) => Ok(Analysis::Static(statics(table, model, size)?)),
         (None, Some(table), None, None) => Ok(Analysis::Dynamic(dynamic(table, model, size)?)),
@@ -80,17 +102,31 @@ pub(super) fn analysis(file: &SceneTable, model: &Model, size: Size) -> Result<A
         }
         (None, None, None, Some(table)) => Ok(Analysis::Modal(Modal {
             count: modes(&table.count, model, size)?,
-            about: match table.about {
-                AboutName::Reference => About::Reference,
-                AboutName::Equilibrium => About::Equilibrium,
+            about: match &table.about {
+                None if goes_on => About::Equilibrium,
+                None => About::Reference,
+                Some(about) => match about.get() {
+                    AboutName::Equilibrium => About::Equilibrium,
+                    AboutName::Reference if goes_on => {
+                        return Err(Fault::new(
+                            about.span(),
+                            "vibrations about the reference do not start from the stage before them",
+                        )
+                        .help("leave `about` out: those about the equilibrium of this stage are found"));
+                    }
+                    AboutName::Reference => About::Reference,
+                },
             },
         })),
         (None, None, None, None) => {
-            Err(Fault::new(file.analysis.span(), "`analysis` is empty").help(ANALYSES))
+            Err(Fault::new(located.span(), "`analysis` is empty").help(ANALYSES))
         }
-        _ => Err(Fault::new(file.analysis.span(), "the scene has more than one analysis").help(ANALYSES)),
+        _ => Err(Fault::new(located.span(), "the scene has more than one analysis").help(ANALYSES)),
     }
 }
+
+const ADD: &str =
+    "add one of `[analysis.static]`, `[analysis.dynamic]`, `[analysis.buckling]`, `[analysis.modal]`; or `[[stage]]`s, each with a `name` and one of these as its `analysis`";
 
 const ANALYSES: &str = "give exactly one of `[analysis.static]`, `[analysis.dynamic]`, `[analysis.buckling]`, `[analysis.modal]`";
 

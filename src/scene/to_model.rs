@@ -20,8 +20,9 @@ use super::to_basis::{self, Size};
 use super::value::{Located, Vector};
 use super::{rigid_motion, to_analysis, to_law, to_parts, to_section, to_velocity};
 
-/// Converts and checks everything.
-pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
+/// Converts and checks everything; `goes_on` tells whether the analysis starts from a state that
+/// another stage has left.
+pub(super) fn convert(file: &SceneTable, goes_on: bool) -> Result<(Model, Analysis), Fault> {
     // Restores the order of the file: the reader returns tables sorted by name.
     let mut tables: Vec<_> = file.beam.iter().collect();
     tables.sort_by_key(|(name, _)| name.span().start);
@@ -57,15 +58,15 @@ pub(super) fn convert(file: &SceneTable) -> Result<(Model, Analysis), Fault> {
     to_parts::parts(file, &built, &mut model)?;
     to_velocity::initial_velocities(file, &built, &mut model)?;
     probes(file, &built, &mut model)?;
-    let analysis = to_analysis::analysis(file, &model, size)?;
-    check_needs(file, &model, &built, &analysis)?;
+    let analysis = to_analysis::analysis(file, &model, size, goes_on)?;
+    check_needs(file, &model, &built, &analysis, goes_on)?;
     let resisting = match &analysis {
         Analysis::Static(Static { arc_length: Some(_), .. }) | Analysis::Buckling(_) => {
-            Some(Resisting::Nothing)
+            Some(if goes_on { Resisting::Weight } else { Resisting::Nothing })
         }
         Analysis::Static(_) => Some(Resisting::Weight),
         Analysis::Modal(Modal { about, .. }) => (*about == About::Equilibrium).then_some(Resisting::Weight),
-        Analysis::Dynamic(_) => None,
+        Analysis::Dynamic(_) | Analysis::Stages => None,
     };
     if let Some(resisting) = resisting {
         rigid_motion::check_rigid_motions(&model, &built, resisting)?;
@@ -184,12 +185,18 @@ fn initial_shape(
 }
 
 /// Refuses a scene in which a beam lacks a property that the analysis or an effect needs.
-fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Analysis) -> Result<(), Fault> {
+fn check_needs(
+    file: &SceneTable,
+    model: &Model,
+    built: &[Built],
+    analysis: &Analysis,
+    goes_on: bool,
+) -> Result<(), Fault> {
     let kind = match analysis {
         Analysis::Static(_) => "a static analysis",
         Analysis::Buckling(_) => "a buckling analysis",
         Analysis::Modal(_) => "a modal analysis",
-        Analysis::Dynamic(_) => "a dynamic analysis",
+        Analysis::Dynamic(_) | Analysis::Stages => "a dynamic analysis",
     };
     let mass = match analysis {
         Analysis::Modal(_) | Analysis::Dynamic(_) => Some(kind),
@@ -197,6 +204,7 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
         _ => None,
     };
     let straight_from = match analysis {
+        _ if goes_on => None,
         Analysis::Buckling(_) => Some("a buckling analysis"),
         Analysis::Static(Static { arc_length: Some(_), .. }) => Some("a path by arc length"),
         Analysis::Modal(Modal { about: About::Reference, .. }) => {
@@ -223,6 +231,7 @@ fn check_needs(file: &SceneTable, model: &Model, built: &[Built], analysis: &Ana
         }
         let bedded = file.effect.foundation.iter().any(|table| table.beam.get() == &beam.name);
         let unloaded = match analysis {
+            _ if goes_on => None,
             Analysis::Buckling(_) => Some("a buckling analysis"),
             Analysis::Static(Static { arc_length: Some(_), .. }) => Some("a path by arc length"),
             _ => None,

@@ -42,7 +42,7 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
         }));
     }
     if let Some(gravity) = &effects.gravity {
-        let GravityTable { acceleration, in_time } = gravity.get();
+        let GravityTable { acceleration, in_time, .. } = gravity.get();
         let law = in_time.as_ref().map(to_law::law).transpose()?;
         parts.push(Arc::new(Gravity { acceleration: acceleration.si, law }));
     }
@@ -188,7 +188,7 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
             return Err(Fault::new(t.beam.span(), "there is no buoyancy without gravity")
                 .help("add `[effect.gravity]` with `acceleration = [0.0, -9.81]`"));
         };
-        let GravityTable { acceleration, in_time } = gravity.get();
+        let GravityTable { acceleration, in_time, .. } = gravity.get();
         let law = in_time.as_ref().map(to_law::law).transpose()?;
         let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
         let displaced = stretch.quantity(&t.displaced_mass_per_length, "displaced_mass_per_length")?;

@@ -42,7 +42,7 @@ impl<'a> Equilibrium<'a> {
             border: Vec::new(),
             workspace: Workspace::default(),
             prescribed_rate: vec![0.0; n],
-            accepted: AcceptedState { q: system.start().to_vec(), ..AcceptedState::default() },
+            accepted: AcceptedState { q: system.start().to_vec(), variables: system.start_history().1 },
             statistics: Statistics::default(),
         }
     }
@@ -86,9 +86,10 @@ impl<'a> Equilibrium<'a> {
         self.system.coordinates() + self.system.multipliers()
     }
 
-    /// The stress-free state with zero multipliers.
+    /// The state in which an analysis begins; multipliers that are not known are zero.
     pub fn start(&self) -> Vec<f64> {
         let mut x = self.system.start().to_vec();
+        x.extend(self.system.start_history().0);
         x.resize(self.unknowns(), 0.0);
         x
     }

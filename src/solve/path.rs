@@ -90,6 +90,8 @@ const BY_SMALL_STEPS: f64 = 0.5;
 /// A corrector that turns no node by more than this, and by less than was predicted, stays on its
 /// side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
+/// Turns of the corrector below this are round-off \[rad\].
+const STILL: f64 = 1e-10;
 /// A step without a count of unstable directions is also checked between its ends, if it turns no
 /// node by more than this \[rad\]: a beam that is bent more keeps to its side of a bifurcation.
 const STRAIGHT: f64 = 0.1;
@@ -138,16 +140,28 @@ pub struct Path<'e, 'a> {
 }
 
 impl<'e, 'a> Path<'e, 'a> {
-    /// Starts at the stress-free state; `step` is the first step to try.
+    /// Starts in the state `x` at load factor 0; `step` is the first step to try. A state that another
+    /// analysis has left is an equilibrium to the tolerance of that analysis only, and made one to
+    /// that of this path.
     pub fn new(
         equilibrium: &'e mut Equilibrium<'a>,
         parameter: Parameter,
         settings: Settings,
         step: f64,
+        mut x: Vec<f64>,
     ) -> Result<Self, NoStep> {
-        let mut x = equilibrium.start();
         let n = equilibrium.system().coordinates();
         equilibrium.system().supports().impose(0.0, &mut x[..n]);
+        if equilibrium.system().is_taken_up() {
+            let (mut exact, still) = (x.clone(), vec![0.0; x.len()]);
+            let from = Earlier { q: &x, increment: &still };
+            let mut equations = AtLoad::new(equilibrium, 0.0);
+            let found = newton::solve(&mut equations, &mut exact, from, &settings, &mut Iterations::default());
+            let change: Vec<f64> = exact.iter().zip(&x).map(|(exact, x)| exact - x).collect();
+            if found.is_ok() && equilibrium.size(&change) < SURE_TURN {
+                x = exact;
+            }
+        }
         let start = Point { parameter: 0.0, load: 0.0, x, unstable: None, negative: None, rate: Vec::new() };
         Ok(Self {
             equilibrium,
@@ -240,7 +254,7 @@ impl<'e, 'a> Path<'e, 'a> {
                         self.judge_again(&mut point);
                     }
                     let doubtful = self.loses_stability(&point)
-                        || turn > SURE_TURN.min(self.predicted_turn(step))
+                        || turn > SURE_TURN.min(self.predicted_turn(step)).max(STILL)
                             && self.turns_back(&point, &predicted_state)
                         || self.crosses_twice(&point);
                     if doubtful && step > BELIEVED_STEP {
@@ -685,7 +699,8 @@ mod tests {
         let model = Model { beams: vec![beam], supports, ..Model::default() };
         let system = System::build(&model, Needs::default()).unwrap();
         let mut equilibrium = Equilibrium::new(&system);
-        let path = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 1.0).unwrap();
+        let x = equilibrium.start();
+        let path = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 1.0, x).unwrap();
         let still = path.last().x.clone();
         assert_eq!(path.worst(&still, &still), (0, 0.0));
         let mut moved = still.clone();

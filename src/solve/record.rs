@@ -2,7 +2,9 @@
 
 use super::dynamics::{RecordedForces, State};
 use crate::assembly::InternalVariables;
+use crate::model::Model;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// One attempted step.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -71,7 +73,17 @@ pub enum RecordedState {
 pub struct RecordedStates {
     /// One per record.
     pub states: Vec<RecordedState>,
-    /// The coordinates from which a motion was taken up, in which supports without a law of time
-    /// hold it.
-    pub taken_up: Option<Vec<f64>>,
+    /// The state from which the run started, where another one has left it.
+    pub taken_up: Option<TakenUp>,
+}
+
+/// A state from which a run started.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TakenUp {
+    /// The model that went on from it.
+    pub model: Arc<Model>,
+    /// Its coordinates, in which supports without a law of time hold the beams.
+    pub q: Vec<f64>,
+    /// Its internal variables.
+    pub variables: InternalVariables,
 }

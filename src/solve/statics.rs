@@ -161,16 +161,43 @@ pub fn solve(
     let mut equilibrium = Equilibrium::new(system);
     let mut solution = Solution::default();
     let newton = newton_settings(settings);
-    let outcome = match target {
-        None if system.is_floppy() || system.starts_bent() => {
-            relaxed(&mut equilibrium, settings, newton, &mut solution, observe)
+    let outcome = settled(&mut equilibrium, newton).and_then(|x| match target {
+        None if system.is_floppy() && !is_steady(&mut equilibrium, &x) => {
+            relaxed(&mut equilibrium, x, settings, newton, &mut solution, observe)
         }
-        None => along_load(&mut equilibrium, settings, newton, &mut solution, observe),
-        Some(target) => along_arc(&mut equilibrium, target, newton, &mut solution, observe),
-    };
+        None => along_load(&mut equilibrium, x, settings, newton, &mut solution, observe),
+        Some(target) => along_arc(&mut equilibrium, x, target, newton, &mut solution, observe),
+    });
     solution.statistics = equilibrium.statistics;
     solution.stuck = outcome.err();
     solution
+}
+
+/// The state at load factor 0: where a given shape, or one in which springs are stretched, comes to
+/// rest.
+fn settled(equilibrium: &mut Equilibrium<'_>, newton: Settings) -> Result<Vec<f64>, NoStep> {
+    let mut x = equilibrium.start();
+    let system = equilibrium.system();
+    let stressed = || !system.is_taken_up() && !system.is_floppy() && system.is_prestressed();
+    if system.starts_bent() || stressed() {
+        let rest = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default());
+        let at = system.place_of(0);
+        rest.map_err(|failure| NoStep { load: 0.0, step: 0.0, failure, at })?;
+        equilibrium.set_accepted(&x);
+    }
+    Ok(x)
+}
+
+/// Whether the analysis does not begin in the stress-free state but in a stable equilibrium, from
+/// which a path of load steps leads on even where the stress-free structure is floppy.
+fn is_steady(equilibrium: &mut Equilibrium<'_>, x: &[f64]) -> bool {
+    let system = equilibrium.system();
+    if !(system.is_taken_up() || system.starts_bent()) {
+        return false;
+    }
+    let (mut residual, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    let linearized = equilibrium.linearize(0.0, x, None, &mut residual, &mut rate);
+    linearized.is_ok() && equilibrium.unstable_directions().is_none_or(|count| count == 0)
 }
 
 fn newton_settings(settings: &Static) -> Settings {
@@ -184,12 +211,13 @@ fn newton_settings(settings: &Static) -> Settings {
 
 fn along_load(
     equilibrium: &mut Equilibrium<'_>,
+    x: Vec<f64>,
     settings: &Static,
     newton: Settings,
     solution: &mut Solution,
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
-    let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0)?;
+    let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0, x)?;
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let parts = settings.steps.unwrap_or(1).max(1);
@@ -225,20 +253,13 @@ fn along_load(
 /// The equilibria at the parts of the load, each relaxed from the one before.
 fn relaxed(
     equilibrium: &mut Equilibrium<'_>,
+    mut x: Vec<f64>,
     settings: &Static,
     newton: Settings,
     solution: &mut Solution,
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
-    let mut x = equilibrium.start();
     let mut work = Work::default();
-    if equilibrium.system().starts_bent() {
-        // The shape is a given one, and not yet an equilibrium.
-        let at = equilibrium.system().place_of(0);
-        let settled = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default());
-        settled.map_err(|failure| NoStep { load: 0.0, step: 0.0, failure, at })?;
-        equilibrium.set_accepted(&x);
-    }
     solution.record(equilibrium, 0.0, &x, work);
     let parts = settings.steps.unwrap_or(1).max(1);
     let mut before = 0;
@@ -336,6 +357,7 @@ fn notice(path: &mut Path<'_, '_>, events: &mut Vec<StabilityChange>) {
 
 fn along_arc(
     equilibrium: &mut Equilibrium<'_>,
+    x: Vec<f64>,
     target: &Target<'_>,
     newton: Settings,
     solution: &mut Solution,
@@ -343,7 +365,7 @@ fn along_arc(
 ) -> Result<(), NoStep> {
     let system = equilibrium.system();
     let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
-    let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05))?;
+    let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05), x)?;
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let mut outcome = Ok(());

@@ -117,7 +117,8 @@ mod tests {
         let model = Model { beams: vec![beam], supports, ..Model::default() };
         let system = System::build(&model, Needs::default()).unwrap();
         let mut equilibrium = Equilibrium::new(&system);
-        let mut path = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 1.0).unwrap();
+        let x = equilibrium.start();
+        let mut path = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 1.0, x).unwrap();
         let mut work = Work::default();
         work.add_piece(&mut path, [(0.0, 0.0), (3.0, 9.0), (6.0, 36.0)], HALVINGS);
         assert_eq!((work.value, work.error), (72.0, 36.0));

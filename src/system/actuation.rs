@@ -28,7 +28,14 @@ pub(super) struct Actuated {
 /// Collects the actuations of the model's parts by beam.
 pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
     let of_beam = |(index, (beam, part)): (usize, (&Beam, &DiscretizedBeam))| {
-        let parts: Vec<_> = model.parts.iter().filter_map(|part| part.actuation(index)).collect();
+        let numbered = model.parts.iter().enumerate();
+        let parts: Vec<_> = numbered
+            .filter_map(|(number, part)| {
+                let (actuation, law) = part.actuation(index)?;
+                let standing = model.stands(number).then_some(Amplitude::Full);
+                Some((actuation, law.cloned().map(Amplitude::Law).or(standing)))
+            })
+            .collect();
         let length = part.basis.length();
         let integral = |stiffness: &Option<Along>, first: &Along, second: &Along| {
             let product = stiffness.as_ref().map(|along| along.product(first).product(second));
@@ -48,7 +55,7 @@ pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
         let rows = |entry: &dyn Fn(usize, usize) -> f64| {
             (0..parts.len()).map(|i| (0..parts.len()).map(|j| entry(i, j)).collect()).collect()
         };
-        let amplitudes = parts.iter().map(|(_, law)| law.cloned().map(Amplitude::Law)).collect();
+        let amplitudes = parts.iter().map(|(_, amplitude)| amplitude.clone()).collect();
         (!parts.is_empty()).then(|| Actuated { beam: index, amplitudes, own: [rows(&stretch), rows(&bend)] })
     };
     model.beams.iter().zip(&system.beams).enumerate().filter_map(of_beam).collect()

@@ -87,13 +87,16 @@ pub struct Constraint {
     /// is not an external action on the beam.
     places: Vec<f64>,
     row: Row,
+    /// g at load factor 0, from which it closes in proportion to the load factor: zero unless the
+    /// state in which statics begins misses the row.
+    open: f64,
 }
 
 impl Constraint {
     /// A row at one point. `table` holds the point with the single row of shape functions that
     /// `row` needs (order 0 for a position, 1 otherwise); `offset` is the beam's first coefficient.
     pub fn new(table: &BasisTable, offset: usize, row: Row) -> Self {
-        Self { fields: vec![Field::new(table, offset)], places: vec![table.s[0]], row }
+        Self { fields: vec![Field::new(table, offset)], places: vec![table.s[0]], row, open: 0.0 }
     }
 
     /// Keeps the length of the gradient as in the state `reference`, weighted over several points.
@@ -103,8 +106,8 @@ impl Constraint {
         let field = |&(first, shape, _): &(usize, &[f64], f64)| Field { first, shape: shape.to_vec() };
         let fields = points.iter().map(field).collect();
         let weights = points.iter().map(|(.., weight)| *weight).collect();
-        let mut row = Self { fields, places: Vec::new(), row: Row::Length { weights, value: 0.0 } };
-        let sum = row.value(0.0, reference);
+        let mut row = Self { fields, places: Vec::new(), row: Row::Length { weights, value: 0.0 }, open: 0.0 };
+        let sum = row.value_of_row(0.0, reference);
         if let Row::Length { value, .. } = &mut row.row {
             *value = sum;
         }
@@ -119,7 +122,7 @@ impl Constraint {
         normals: Vec<[f64; 2]>,
     ) -> Self {
         let (fields, places) = points.map(|(table, offset)| (Field::new(table, offset), table.s[0])).unzip();
-        Self { fields, places, row: Row::Joint { order, normals, value: 0.0 } }
+        Self { fields, places, row: Row::Joint { order, normals, value: 0.0 }, open: 0.0 }
     }
 
     /// Keeps `angle` from the direction of the first of two gradients to that of the second. Each
@@ -127,7 +130,7 @@ impl Constraint {
     pub fn angle(points: [(&BasisTable, usize); 2], angle: f64) -> Self {
         let (fields, places) =
             points.into_iter().map(|(table, offset)| (Field::new(table, offset), table.s[0])).unzip();
-        Self { fields, places, row: Row::Angle(angle) }
+        Self { fields, places, row: Row::Angle(angle), open: 0.0 }
     }
 
     /// For a support that fixes a component of a position: the axis, and the distance of that
@@ -266,6 +269,16 @@ impl Constraint {
 
     /// The constraint g(q, λ).
     pub fn value(&self, load: f64, q: &[f64]) -> f64 {
+        let value = self.value_of_row(load, q);
+        if self.open == 0.0 { value } else { value - (1.0 - load) * self.open }
+    }
+
+    /// Lets the row be open in the state `q` at load factor 0.
+    pub fn begin_open(&mut self, q: &[f64]) {
+        self.open = self.value_of_row(0.0, q);
+    }
+
+    fn value_of_row(&self, load: f64, q: &[f64]) -> f64 {
         if let (Row::Angle(angle), [a, b]) = (&self.row, &self.fields[..]) {
             let ([ax, ay], [bx, by]) = (a.at(q), b.at(q));
             let (sine, cosine) = angle.sin_cos();
@@ -281,13 +294,14 @@ impl Constraint {
 
     /// ∂g/∂λ in the state `q`.
     pub fn rate(&self, load: f64, q: &[f64]) -> f64 {
-        match &self.row {
+        let closing = match &self.row {
             Row::Joint { .. } | Row::Length { .. } | Row::Angle(_) => 0.0,
             _ => {
                 let (_, _, n, c) = self.normal(load);
                 self.combine(|_| n, q) - c
             }
-        }
+        };
+        if self.open == 0.0 { closing } else { closing + self.open }
     }
 
     /// The normal of the last field, and, for a row of gradients, the field r' itself.

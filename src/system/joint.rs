@@ -23,13 +23,13 @@ use crate::model::{Joint, Place};
 /// Largest distance of two points that coincide, in beam lengths.
 const APART: f64 = 1e-9;
 
-/// The constraint rows of a joint.
-pub(super) fn rows(system: &System, joint: Joint) -> Result<Vec<Constraint>, BuildError> {
+/// The constraint rows of a joint; `open` tells whether its points may be apart at the start.
+pub(super) fn rows(system: &System, joint: Joint, open: bool) -> Result<Vec<Constraint>, BuildError> {
     let mut rows = Vec::new();
     match joint {
-        Joint::Hinge { first, second } => rows.extend(coincide(system, first, second)?),
+        Joint::Hinge { first, second } => rows.extend(coincide(system, open, first, second)?),
         Joint::Weld { first, second } => {
-            rows.extend(coincide(system, first, second)?);
+            rows.extend(coincide(system, open, first, second)?);
             rows.push(keep_angle(system, first, second)?);
         }
         Joint::Slider { at, along: [x, y] } => {
@@ -42,13 +42,13 @@ pub(super) fn rows(system: &System, joint: Joint) -> Result<Vec<Constraint>, Bui
 
 const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
-fn coincide(system: &System, first: Place, second: Place) -> Result<[Constraint; 2], BuildError> {
+fn coincide(system: &System, open: bool, first: Place, second: Place) -> Result<[Constraint; 2], BuildError> {
     let rows = AXES.map(|[x, y]| row(system, 0, &[(first, [-x, -y]), (second, [x, y])]));
     let rows = transpose(rows)?;
     // The value of the row at zero coordinates is the negative distance at the start.
     let [x, y] = rows.each_ref().map(|row| -row.value(0.0, &vec![0.0; system.coordinates()]));
     let gap = x.hypot(y);
-    if gap > APART * system.length() {
+    if gap > APART * system.length() && !open {
         let name = |place: Place| system.beams()[place.beam].name.clone();
         return Err(BuildError::Apart {
             first: name(first),

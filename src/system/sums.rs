@@ -40,8 +40,11 @@ impl System {
     /// `f += factor · ∂f/∂λ`, for loads that are proportional to the load factor λ.
     pub fn add_load_rate(&self, factor: f64, q: &[f64], f: &mut [f64]) {
         self.add_constant_load(factor, f);
-        for (effect, one) in self.varying_loads(1.0) {
-            effect.add_force(factor * one, q, f);
+        for load in self.terms.loads.iter().filter(|load| !load.is_summed()) {
+            let rate = self.amplitude_of(load).rate();
+            if rate != 0.0 {
+                load.effect.add_force(factor * rate, q, f);
+            }
         }
     }
 
@@ -241,7 +244,9 @@ impl System {
         };
         let actuates = |load: &ActingLoad| matches!(load.effect.kind(), Kind::PreStrain | Kind::PreCurvature);
         let with_potential = self.terms.loads.iter().filter(|load| load.has_potential() && !actuates(load));
-        let potential = with_potential.map(|load| load.effect.energy(q)).sum::<f64>();
+        let (standing, growing): (Vec<_>, Vec<_>) = with_potential.partition(|load| load.amplitude.is_some());
+        let [standing, potential] =
+            [standing, growing].map(|loads| loads.iter().map(|load| load.effect.energy(q)).sum::<f64>());
         let ([stretch, bend], work) = self.actuation_energy(parameter, q);
         Energy {
             stretch: sum(&self.terms.internal, Kind::Stretch, q) + stretch,
@@ -253,7 +258,7 @@ impl System {
                 let turning = self.turning_energies(q, v).map(|(.., energy)| energy);
                 self.terms.inertia.iter().map(|e| e.energy(v)).chain(turning).sum()
             }),
-            potential: self.amplitude.at(parameter) * potential,
+            potential: self.amplitude.at(parameter) * potential + standing,
             work,
             lost: 0.0,
         }

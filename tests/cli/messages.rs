@@ -180,6 +180,43 @@ const CASES: &[(&str, &str, &str)] = &[
     ("vibrations about nothing", "[analysis.static]", "[analysis.modal]\ncount = 3\nabout = \"equilbrium\""),
     ("two analyses", "[analysis.static]", "[analysis.static]\n[analysis.modal]\ncount = 3"),
     (
+        "stages beside an analysis",
+        "[[probe]]",
+        "[[stage]]\nname = \"a\"\nanalysis.static = {}\n[[probe]]",
+    ),
+    (
+        "unknown stage",
+        "[analysis.static]",
+        "[[effect.moment]]\nbeam = \"arm\"\nat = 1\nvalue = 1\nuntil = \"drew\"\n[[stage]]\nname = \"draw\"\nanalysis.static = {}",
+    ),
+    ("a stage without stages", "value = [0.0, \"-5 N\"]", "value = [0.0, \"-5 N\"]\nstage = \"draw\""),
+    (
+        "gone before it comes",
+        "[analysis.static]",
+        "[[effect.moment]]\nbeam = \"arm\"\nat = 1\nvalue = 1\nstage = \"b\"\nuntil = \"b\"\n[[stage]]\nname = \"a\"\nanalysis.static = {}\n[[stage]]\nname = \"b\"\nanalysis.static = {}",
+    ),
+    (
+        "two stages of one name",
+        "[analysis.static]",
+        "[[stage]]\nname = \"a\"\nanalysis.static = {}\n[[stage]]\nname = \"A\"\nanalysis.static = {}",
+    ),
+    ("a stage that names no folder", "[analysis.static]", "[[stage]]\nname = \"../a\"\nanalysis.static = {}"),
+    (
+        "a stage that buckles",
+        "[analysis.static]",
+        "[[stage]]\nname = \"a\"\nanalysis.static = {}\n[[stage]]\nname = \"b\"\nanalysis.buckling.count = 1",
+    ),
+    (
+        "vibrations not about the stage before",
+        "[analysis.static]",
+        "[[stage]]\nname = \"a\"\nanalysis.static = {}\n[[stage]]\nname = \"b\"\nanalysis.modal = { count = 1, about = \"reference\" }",
+    ),
+    (
+        "a stage with an accuracy",
+        "[analysis.static]",
+        "[[stage]]\nname = \"a\"\nanalysis.static.accuracy = 1e-3",
+    ),
+    (
         "two probes of one name",
         "[analysis.static]",
         "[[probe]]\nname = \"tip\"\nbeam = \"arm\"\nat = 1\n[analysis.static]",

@@ -32,19 +32,21 @@ fn a_motion_goes_on_from_a_saved_state_as_if_it_had_not_stopped() {
 fn a_saved_state_that_does_not_fit_is_refused() {
     let folder = folder(&PENDULUM.replace("\"2.5 s\"", "0.02"));
     fs::write(folder.path().join("static.toml"), ROLL_UP).expect("a folder");
+    let buckling = PENDULUM.split("[analysis").next().expect("a scene").to_owned() + "[analysis.buckling]\ncount = 1\n";
+    fs::write(folder.path().join("buckling.toml"), buckling).expect("a folder");
     fs::write(folder.path().join("broken.json"), "{").expect("a folder");
     assert_eq!(status(&ancf(folder.path(), &["run", "scene.toml", "-o", "out"])), 0);
     let state = fs::read_to_string(folder.path().join("out/state.json")).expect("a state");
     let (digit, other) = if state.contains("0.2") { ("0.2", "0.3") } else { ("0.1", "0.4") };
     fs::write(folder.path().join("altered.json"), state.replacen(digit, other, 1)).expect("a folder");
-    fs::write(folder.path().join("old.json"), state.replacen("\"format\":3", "\"format\":2", 1))
+    fs::write(folder.path().join("old.json"), state.replacen("\"format\":4", "\"format\":2", 1))
         .expect("a folder");
     let from = ["--from", "out/state.json"];
     for (arguments, part) in [
         (&["scene.toml", "--from", "none.json"][..], "none.json"),
         (&["scene.toml", "--from", "broken.json"], "not a saved state"),
         (&["scene.toml", "--from", "altered.json"], "not as it was written"),
-        (&["scene.toml", "--from", "old.json"], "has format 2, and this version reads format 3"),
+        (&["scene.toml", "--from", "old.json"], "has format 2, and this version reads format 4"),
         (
             &[&["scene.toml", "--set", "beam.arm.second_moment=\"0.131 cm^4\""], &from[..]].concat(),
             "beam `arm` had another section",
@@ -54,7 +56,8 @@ fn a_saved_state_that_does_not_fit_is_refused() {
             &[&["scene.toml", "--set", "beam.arm.basis.rpim.nodes=9"], &from[..]].concat(),
             "beam `arm` had 14 nodes",
         ),
-        (&[&["static.toml"], &from[..]].concat(), "static analysis does not start from a saved state"),
+        (&[&["static.toml"], &from[..]].concat(), "the saved state does not fit this scene"),
+        (&[&["buckling.toml"], &from[..]].concat(), "buckling analysis starts from the stress-free state"),
     ] {
         let output = ancf(folder.path(), &[&["run"], arguments].concat());
         assert_eq!(status(&output), 2, "{}", stderr(&output));

@@ -43,7 +43,8 @@ fn steps_grow_and_leave_no_sliver() {
         (0.1, 0.3, &[0.1, 0.35, 0.65, 0.825, 1.0]),
     ] {
         let mut equilibrium = Equilibrium::new(&system);
-        let start = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), first);
+        let x = equilibrium.start();
+        let start = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), first, x);
         let mut path = start.expect("a start");
         assert_eq!((path.last().load, path.next_step()), (0.0, first));
         assert!(path.last_two().is_none());
@@ -81,7 +82,8 @@ fn steps_grow_and_leave_no_sliver() {
 fn states_between_and_ends_are_found() {
     let system = bar();
     let mut equilibrium = Equilibrium::new(&system);
-    let mut path = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 0.4).expect("a start");
+    let x = equilibrium.start();
+    let mut path = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 0.4, x).expect("a start");
     assert!(path.between(0.1).is_none(), "one point has nothing between");
     path.advance(1.0).expect("a step");
     path.advance(1.0).expect("a step");
@@ -138,7 +140,8 @@ fn no_step_turns_a_node_by_more_than_it_may() {
             arm(turn, more)
         };
         let mut equilibrium = Equilibrium::new(&system);
-        let start = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 1.0);
+        let x = equilibrium.start();
+        let start = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 1.0, x);
         let mut path = start.expect("a start");
         path.advance(1.0).expect("a step");
         let first = path.history[0].step;

@@ -27,6 +27,7 @@ mod refusals;
 mod sections;
 mod settings;
 mod shapes;
+mod stages;
 mod starts;
 mod stretches;
 mod studies;

@@ -8,7 +8,8 @@
   const count = motion.frames.length, last = count - 1;
   const margin = 26;
   // A motion is shown at its own speed where a person can follow it, a load path in four seconds.
-  const duration = motion.name === "time" ? Math.min(Math.max(motion.parameter[last] - motion.parameter[0], 2), 20) : 4;
+  const byTime = motion.name === "time" && motion.labels.length === 0;
+  const duration = byTime ? Math.min(Math.max(motion.parameter[last] - motion.parameter[0], 2), 20) : motion.labels.length > 0 ? 8 : 4;
   let frame = motion.vibration ? 0 : last, phase = 0.25, started = null;
   let scale = 1, height = 1, width = 1;
 
@@ -71,7 +72,7 @@
     slider.value = frame;
     const value = motion.parameter[frame];
     const shown = value === null ? "" : Number(value.toPrecision(5)).toString().replace("-", "−");
-    output.textContent = motion.name + (motion.vibration ? " " + (frame + 1) : "") + ": " + shown + " " + motion.unit;
+    output.textContent = motion.labels[frame] || motion.name + (motion.vibration ? " " + (frame + 1) : "") + ": " + shown + " " + motion.unit;
   }
 
   function tick(now) {
@@ -84,7 +85,7 @@
       const first = motion.parameter[0], span = motion.parameter[last] - first;
       const until = first + Math.min(seconds / duration, 1) * span;
       // By the parameter where it grows, by number along a path that turns back.
-      frame = motion.name === "time" ? Math.max(0, motion.parameter.findLastIndex((p) => p <= until))
+      frame = byTime ? Math.max(0, motion.parameter.findLastIndex((p) => p <= until))
         : Math.min(Math.floor((seconds / duration) * count), last);
       if (seconds >= duration) { frame = last; stop(); }
     }
@@ -96,7 +97,7 @@
     if (frame === last && !motion.vibration) frame = 0;
     let done = last > 0 ? frame / last : 0;
     const span = motion.parameter[last] - motion.parameter[0];
-    if (motion.name === "time" && span > 0) done = (motion.parameter[frame] - motion.parameter[0]) / span;
+    if (byTime && span > 0) done = (motion.parameter[frame] - motion.parameter[0]) / span;
     started = performance.now() - 1000 * (motion.vibration ? 2 * (phase - 0.25) : done * duration);
     button.textContent = "❚❚ pause";
     requestAnimationFrame(tick);

@@ -71,7 +71,11 @@ pub fn solve(py: Python<'_>, scene: &ancf::Scene, forces: &[PythonForce], run: R
     let Run { estimate, start, duration, shapes, pictures, tick, on_step, cache } = run;
     let failed = Failed::default();
     let scene = load::with_forces(py, scene, forces, &failed);
-    let mut analysis = scene.analysis().clone();
+    // The results of a scene with stages are those of the last one.
+    let mut analysis = scene.stages().last().map_or_else(|| scene.analysis(), |stage| &stage.analysis).clone();
+    if !scene.stages().is_empty() && (duration.is_some() || estimate) {
+        return Err(PyValueError::new_err("this scene has stages, and this takes one analysis"));
+    }
     match (&mut analysis, duration) {
         (_, None) => {}
         (Analysis::Dynamic(motion), Some(time)) => (motion.duration, motion.output_every) = (time, time),

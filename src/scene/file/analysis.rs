@@ -183,20 +183,19 @@ pub struct ModesTable {
 pub struct ModalTable {
     /// How many; motions that nothing resists count too, with 0 Hz.
     pub count: Located<Count<1>>,
-    /// The state about which the beams vibrate.
-    #[serde(default)]
-    pub about: AboutName,
+    /// The state about which the beams vibrate; the reference when left out, and the equilibrium in a
+    /// stage after others.
+    pub about: Option<Located<AboutName>>,
     /// Largest relative error of the frequencies, for which the mesh is chosen where the scene names
     /// none.
     pub accuracy: Option<Located<Quantity<Ratio, Positive>>>,
 }
 
 /// The state about which vibrations are small.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum AboutName {
     /// The stress-free one, without loads.
-    #[default]
     Reference,
     /// The equilibrium under all loads and prescribed displacements, found first.
     Equilibrium,

@@ -30,6 +30,10 @@ pub struct DampingTable {
     pub from: Option<Located<At>>,
     /// Arc length up to which it acts; the beam's end when left out.
     pub to: Option<Located<At>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// A spring and dashpot from a point to the ground; `stiffness`, `damping` or both.
@@ -50,6 +54,10 @@ pub struct SpringTable {
     pub stiffness: Option<Quantity<ForcePerLength, Positive>>,
     /// Force per velocity.
     pub damping: Option<Quantity<TranslationalDamping, Positive>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// A torsional spring and dashpot on the direction of r' at a point; `stiffness`, `damping` or
@@ -65,6 +73,10 @@ pub struct TorsionSpringTable {
     pub stiffness: Option<Quantity<Moment, Positive>>,
     /// Moment per radian a second.
     pub damping: Option<Quantity<TorsionalDamping, Positive>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// A mass at a point; `mass`, `rotary_inertia` or both.
@@ -79,6 +91,10 @@ pub struct PointMassTable {
     pub mass: Option<Quantity<Mass, Positive>>,
     /// Moment of inertia, which turns with the section.
     pub rotary_inertia: Option<Quantity<RotaryInertia, Positive>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// The rotary inertia of a beam's sections.
@@ -89,6 +105,10 @@ pub struct SectionInertiaTable {
     pub beam: Located<String>,
     /// ρI; that of the beam's `section` and `density` when left out.
     pub per_length: Option<Located<AlongBeam<RotaryInertiaPerLength, Positive>>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// An elastic foundation along a beam.
@@ -103,6 +123,10 @@ pub struct FoundationTable {
     pub from: Option<Located<At>>,
     /// Arc length up to which it acts; the beam's end when left out.
     pub to: Option<Located<At>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// A strain or curvature that the beam would take by itself.
@@ -121,6 +145,10 @@ pub struct ActuationTable {
     pub to: Option<Located<At>>,
     /// In a motion: the law of time that multiplies both.
     pub in_time: Option<Located<LawTable>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// Resistance of a fluid, by the velocity along and across the beam.
@@ -143,6 +171,10 @@ pub struct DragTable {
     pub from: Option<Located<At>>,
     /// Arc length up to which it acts; the beam's end when left out.
     pub to: Option<Located<At>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// Lift of a beam in a heavy fluid; needs gravity.
@@ -157,6 +189,10 @@ pub struct BuoyancyTable {
     pub from: Option<Located<At>>,
     /// Arc length up to which it acts; the beam's end when left out.
     pub to: Option<Located<At>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// A dead force that travels along a beam.
@@ -171,6 +207,10 @@ pub struct MovingForceTable {
     pub speed: Located<Quantity<Velocity>>,
     /// Arc length at time zero, also off the beam; its start when left out.
     pub start: Option<Quantity<Length>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// Contact of a beam with one obstacle of the ground: `circle`, `half_plane` or `box`.
@@ -194,6 +234,10 @@ pub struct ContactTable {
     pub half_thickness: Option<Quantity<Length, Positive>>,
     /// Dry friction.
     pub friction: Option<FrictionTable>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// A circle.
@@ -258,6 +302,10 @@ pub struct JointTable {
     pub second: Option<PointTable>,
     /// Direction of a slider's line.
     pub along: Option<Located<Vector<Ratio>>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
 }
 
 /// The kinds of joints.

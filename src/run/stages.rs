@@ -1,0 +1,89 @@
+//! Analyses one after the other, each from where the one before it ended.
+
+use super::{Control, Options, Progress, RunError, inspect};
+use crate::model::{Analysis, Displacement, Model, Stage};
+use crate::restart::SavedState;
+use crate::results::Results;
+
+/// What is computed of a scene with stages.
+#[derive(Debug)]
+pub struct StagesRun {
+    /// The results of the stages, in their order: of all, or up to the one that failed or was
+    /// stopped, with what is known of it.
+    pub results: Vec<Results>,
+    /// Why there are no more.
+    pub failure: Option<RunError>,
+}
+
+/// The model of a stage as it is built: joints of a stage that goes on may be open when it starts.
+pub fn model_of_stage(stages: &[Stage], index: usize) -> (Model, &Analysis) {
+    let Stage { model, analysis, .. } = &stages[index];
+    let mut model = model.clone();
+    if index > 0 {
+        model.standing = Some(Vec::new());
+        // Supports that move by no law hold a motion where it is.
+        let moves = matches!(analysis, Analysis::Dynamic(_));
+        for support in model.supports.iter_mut().filter(|support| moves && support.law.is_none()) {
+            if stages[..index].iter().any(|before| before.model.supports.contains(support)) {
+                support.displacement = Displacement::default();
+            }
+        }
+    }
+    (model, analysis)
+}
+
+/// Builds the equations of every stage, and solves nothing.
+///
+/// # Errors
+/// [`RunError::InStage`] where a stage contradicts itself.
+pub fn check_stages(stages: &[Stage]) -> Result<(), RunError> {
+    for (index, Stage { name, .. }) in stages.iter().enumerate() {
+        let (model, analysis) = model_of_stage(stages, index);
+        inspect(&model, analysis)
+            .map_err(|cause| RunError::InStage { stage: name.clone(), cause: Box::new(cause) })?;
+    }
+    Ok(())
+}
+
+/// Solves `stages`, the first from the start that `options` give. The others start where the one
+/// before them ended: motions at rest after statics, and with its velocities after a motion. In
+/// statics what is new grows with the load factor, and what has gone fades. Vibrations leave the
+/// state as it was.
+pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
+    let mut run = StagesRun { results: Vec::with_capacity(stages.len()), failure: None };
+    let mut reached: Option<SavedState> = None;
+    let mut observer = options.observer.take();
+    for (index, Stage { name, model, analysis }) in stages.iter().enumerate() {
+        let mut watch = |now: &Progress| observer.as_mut().map_or(Control::Continue, |observer| observer(now));
+        let here = Options {
+            start: reached.as_ref().or(options.start),
+            observer: Some(&mut watch),
+            ..options.copied()
+        };
+        match model.solve_with(analysis, here) {
+            Ok(results) => {
+                let complete = results.run().complete;
+                let saved = results.states().saved.clone();
+                run.results.push(results);
+                if !complete {
+                    break;
+                }
+                let moves_on = matches!(analysis, Analysis::Static(_) | Analysis::Dynamic(_));
+                match saved {
+                    None if moves_on && index + 1 < stages.len() => {
+                        run.failure = Some(RunError::OpenEnd { stage: name.clone() });
+                        break;
+                    }
+                    None => {}
+                    saved => reached = saved,
+                }
+            }
+            Err(mut error) => {
+                run.results.extend(error.take_partial());
+                run.failure = Some(RunError::InStage { stage: name.clone(), cause: Box::new(error) });
+                break;
+            }
+        }
+    }
+    run
+}

@@ -1,0 +1,126 @@
+//! Stages of a scene → one table of a scene for each, with what takes part in it.
+
+use super::diagnose::choices;
+use super::error::Fault;
+use super::file::{During, SceneTable, StageTable};
+use super::value::Located;
+use super::to_analysis;
+use crate::model::{Discretization, Place, Stage};
+use std::cmp::Ordering;
+
+/// Longest name of a stage \[bytes\]: it names a folder.
+const LONGEST_NAME: usize = 100;
+
+/// The name of each stage, and the scene as it is in that stage. None where the scene has no
+/// stages.
+pub(super) fn stages(file: &SceneTable) -> Result<Vec<(String, SceneTable)>, Fault> {
+    let given = &file.stage;
+    if let (Some(first), Some(analysis)) = (given.first(), &file.analysis) {
+        return Err(Fault::new(analysis.span(), "a scene with stages has no analysis beside them")
+            .help(format!("move it into a stage, such as `{}`: every stage has an analysis of its own", first.name.get())));
+    }
+    for (index, stage) in given.iter().enumerate() {
+        check_name(stage, &given[..index])?;
+    }
+    let position = |name: &Located<String>| {
+        given.iter().position(|stage| stage.name.get() == name.get()).ok_or_else(|| unknown(name, given))
+    };
+    let mut checked = Ok(());
+    file.clone().retain(&mut |during| {
+        if checked.is_ok() {
+            checked = check(during, &position);
+        }
+        true
+    });
+    checked?;
+    let moves = |stage: &StageTable| stage.analysis.get().dynamic.is_some();
+    let first_motion = given.iter().position(moves).unwrap_or(0);
+    let scene = |(index, stage): (usize, &StageTable)| {
+        let mut scene = file.clone();
+        scene.stage.clear();
+        scene.analysis = Some(stage.analysis.clone());
+        scene.retain(&mut |During { stage, until }| {
+            let begins = stage.and_then(|name| position(name).ok()).unwrap_or(0);
+            let ends = until.and_then(|name| position(name).ok()).unwrap_or(given.len());
+            (begins..ends).contains(&index)
+        });
+        if index != first_motion {
+            // A motion that goes on has velocities of its own.
+            scene.initial_velocity.clear();
+        }
+        (stage.name.get().clone(), scene)
+    };
+    Ok(given.iter().enumerate().map(scene).collect())
+}
+
+/// Refuses stages that leave something open, and makes all of them have the same nodes.
+pub(super) fn finish(file: &SceneTable, stages: &mut [Stage]) -> Result<(), Fault> {
+    for (stage, Stage { model, .. }) in file.stage.iter().zip(&*stages) {
+        let open = model.beams.iter().find(|beam| beam.discretization == Discretization::Open);
+        if let Some(beam) = open {
+            let name = file.beam.keys().find(|name| name.get() == &beam.name);
+            return Err(Fault::new(
+                name.map_or(stage.name.span(), Located::span),
+                format!("beam `{}` has no basis, which a scene with stages must name", beam.name),
+            )
+            .help("give `basis.ancf.elements` or `basis.rpim.nodes`: a mesh is chosen for one analysis only"));
+        }
+        let alone = SceneTable { analysis: Some(stage.analysis.clone()), ..file.clone() };
+        if to_analysis::accuracy(&alone)?.is_some() {
+            return Err(Fault::new(stage.analysis.span(), "the analysis of a stage takes no `accuracy`")
+                .help("name the mesh, and the `tolerance` or `step`: they are chosen for one analysis only"));
+        }
+    }
+    let mut nodes: Vec<Place> = Vec::new();
+    for Stage { model, .. } in &*stages {
+        for beam in 0..model.beams.len() {
+            nodes.extend(model.breaks(beam).into_iter().map(|s| Place { beam, s }));
+        }
+    }
+    nodes.sort_by(|a, b| (a.beam, a.s).partial_cmp(&(b.beam, b.s)).unwrap_or(Ordering::Equal));
+    nodes.dedup();
+    stages.iter_mut().for_each(|stage| stage.model.nodes_at.clone_from(&nodes));
+    Ok(())
+}
+
+fn check_name(stage: &StageTable, before: &[StageTable]) -> Result<(), Fault> {
+    let name = stage.name.get();
+    let legal = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | ' ' | '.' | '+');
+    let starts_well = name.starts_with(char::is_alphanumeric);
+    let ends_well = name.ends_with(|c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '+'));
+    if name.len() > LONGEST_NAME || !starts_well || !ends_well || !name.chars().all(legal) {
+        return Err(Fault::new(stage.name.span(), format!("{name:?} cannot name a stage"))
+            .help("its folder has the same name: use letters, digits, `-`, `_`, `+`, and `.` or spaces within"));
+    }
+    // File systems that do not tell capitals from small letters have one folder for both.
+    let lower = name.to_lowercase();
+    if before.iter().any(|other| other.name.get().to_lowercase() == lower) {
+        return Err(Fault::new(stage.name.span(), format!("there are two stages named `{name}`"))
+            .help("every stage needs a name of its own, in other letters"));
+    }
+    Ok(())
+}
+
+fn check(
+    During { stage, until }: During<'_>,
+    position: &dyn Fn(&Located<String>) -> Result<usize, Fault>,
+) -> Result<(), Fault> {
+    let begins = stage.map(position).transpose()?.unwrap_or(0);
+    match until.map(|name| Ok((name, position(name)?))).transpose()? {
+        Some((name, ends)) if ends <= begins => Err(Fault::new(
+            name.span(),
+            format!("this is gone from stage `{}` on, and has not come before", name.get()),
+        )
+        .help("name a stage after that of `stage`, or leave `until` out: it then stays to the end")),
+        _ => Ok(()),
+    }
+}
+
+fn unknown(name: &Located<String>, given: &[StageTable]) -> Fault {
+    let fault = Fault::new(name.span(), format!("there is no stage `{}`", name.get()));
+    if given.is_empty() {
+        return fault.help("this scene has one analysis; stages are `[[stage]]` with a `name` and an `analysis` each");
+    }
+    let names: Vec<String> = given.iter().map(|stage| stage.name.get().clone()).collect();
+    fault.help(choices("stages of this scene", name.get(), &names))
+}

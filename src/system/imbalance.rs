@@ -1,0 +1,173 @@
+//! Forces that the state in which statics begins leaves unbalanced.
+//!
+//! Where an analysis starts from a state that other supports, joints or effects have held, the
+//! forces of what has left, R₀ = f(q₀) + B₀ᵀ μ₀, keep it where it is. They act on as −(1 − λ) R₀,
+//! dead forces at the nodes that fade as the load factor grows, so that the path leads from that
+//! state to the equilibrium of what is there now.
+
+use super::System;
+use crate::assembly::{
+    Action, Actions, ActingLoad, Amplitude, Earlier, Effect, InternalVariables, Kind, Workspace,
+};
+use crate::linear::Matrix;
+use nalgebra::Vector2;
+use std::ops::Range;
+
+/// Forces above this many round-offs of the internal forces count.
+const STRESSED: f64 = 100.0;
+
+/// The state in which an analysis begins.
+pub(super) struct Start {
+    /// Its coordinates.
+    pub q: Vec<f64>,
+    /// Its scaled multipliers; empty where they are not known.
+    pub multipliers: Vec<f64>,
+    /// Its internal variables.
+    pub variables: InternalVariables,
+    /// Whether another analysis has left it, and not the scene given it.
+    pub taken_up: bool,
+}
+
+impl Start {
+    /// A shape that a scene gives.
+    pub fn given(q: Vec<f64>) -> Self {
+        Self { q, multipliers: Vec::new(), variables: InternalVariables::default(), taken_up: false }
+    }
+}
+
+/// −R₀ on the nodes of one beam.
+struct Imbalance {
+    beam: usize,
+    /// Arc lengths of the nodes \[m\].
+    nodes: Vec<f64>,
+    /// The coordinates of the beam.
+    range: Range<usize>,
+    /// −R₀ on these.
+    force: Vec<f64>,
+}
+
+impl Effect for Imbalance {
+    fn kind(&self) -> Kind {
+        Kind::Imbalance
+    }
+
+    fn beam(&self) -> usize {
+        self.beam
+    }
+
+    fn is_symmetric(&self) -> bool {
+        true
+    }
+
+    fn is_constant(&self) -> bool {
+        true
+    }
+
+    fn is_conservative(&self) -> bool {
+        false
+    }
+
+    fn energy(&self, q: &[f64]) -> f64 {
+        self.force.iter().zip(&q[self.range.clone()]).map(|(f, q)| f * q).sum()
+    }
+
+    fn add_force(&self, factor: f64, _: &[f64], f: &mut [f64]) {
+        f[self.range.clone()].iter_mut().zip(&self.force).for_each(|(f, force)| *f += factor * force);
+    }
+
+    fn add_force_and_tangent(
+        &self,
+        factor: f64,
+        q: &[f64],
+        _: Option<Earlier<'_>>,
+        f: &mut [f64],
+        _: &mut Matrix,
+        _: &mut Workspace,
+    ) {
+        self.add_force(factor, q, f);
+    }
+
+    fn add_tangent_product(&self, _: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
+
+    fn add_actions(&self, factor: f64, q: &[f64], _: &[f64], sum: &mut Actions) {
+        let states = q[self.range.clone()].as_chunks::<4>().0;
+        for ((s, [x, y, dx, dy]), [fx, fy, gx, gy]) in
+            self.nodes.iter().zip(states).zip(self.force.as_chunks::<4>().0)
+        {
+            let mut action = Action::at(Vector2::new(*x, *y), Vector2::new(*fx, *fy));
+            action += Action::couple(dx * gy - dy * gx);
+            sum.add_point(*s, action * -factor);
+        }
+    }
+
+    fn size(&self) -> (usize, usize) {
+        (0, size_of_val(&self.force[..]))
+    }
+}
+
+impl System {
+    /// Begins in the state `q` with the internal `variables`: supports that follow no law hold the
+    /// beams where they are in it, and rows that it misses close in proportion to the load factor.
+    pub fn begin_in(&mut self, q: &[f64], variables: &InternalVariables) {
+        self.freeze(q);
+        self.constraints.iter_mut().for_each(|row| row.begin_open(q));
+        let (q, variables) = (q.to_vec(), variables.clone());
+        self.start = Some(Start { q, multipliers: Vec::new(), variables, taken_up: true });
+    }
+
+    /// Begins with these scaled multipliers, and lets −`unbalanced` act on all nodes and fade.
+    pub fn leave_unbalanced(&mut self, multipliers: &[f64], unbalanced: Option<&[f64]>) {
+        if let Some(start) = &mut self.start {
+            start.multipliers = multipliers.to_vec();
+        }
+        let Some(unbalanced) = unbalanced else { return };
+        for (beam, part) in self.beams.iter().enumerate() {
+            let nodes = part.basis.nodes().to_vec();
+            let range = 4 * part.first_node..4 * (part.first_node + nodes.len());
+            let force: Vec<f64> = unbalanced[range.clone()].iter().map(|force| -force).collect();
+            if force.iter().any(|force| *force != 0.0) {
+                let effect = Box::new(Imbalance { beam, nodes, range, force });
+                self.terms.loads.push(ActingLoad { effect, amplitude: Some(Amplitude::Fading) });
+            }
+        }
+    }
+
+    /// Whether springs, foundations or contacts act in the state in which an analysis begins, without
+    /// any load.
+    pub fn is_prestressed(&self) -> bool {
+        let mut others = self.terms.internal.iter().filter(|effect| !effect.kind().is_of_section()).peekable();
+        if others.peek().is_none() {
+            return false;
+        }
+        let mut force = vec![0.0; self.coordinates()];
+        others.for_each(|effect| effect.add_force(1.0, self.start(), &mut force));
+        self.supports.to_frames(0.0, &mut force);
+        self.norm(&force) > STRESSED * self.round_off
+    }
+
+    /// Whether an analysis begins in a state that another one has left.
+    pub fn is_taken_up(&self) -> bool {
+        self.start.as_ref().is_some_and(|start| start.taken_up)
+    }
+
+    /// The scaled multipliers and the internal variables with which an analysis begins.
+    pub fn start_history(&self) -> (&[f64], InternalVariables) {
+        let of = |start: &'_ Start| start.variables.clone();
+        let multipliers = self.start.as_ref().map_or(&[][..], |start| &start.multipliers);
+        (multipliers, self.start.as_ref().map(of).unwrap_or_default())
+    }
+
+    /// The forces R = f(q) + Bᵀ μ in statics at load factor 0 that no support takes up, in fixed
+    /// axes; `x` holds the coordinates and the scaled multipliers, and `variables` are the internal
+    /// variables.
+    pub fn unbalanced(&self, x: &[f64], variables: &InternalVariables) -> Vec<f64> {
+        let (q, multipliers) = x.split_at(self.coordinates());
+        let mut force = vec![0.0; q.len()];
+        self.force(0.0, q, &mut force);
+        self.add_known_history(variables, q, &mut force);
+        self.add_constraint_forces(0.0, q, multipliers, &mut force);
+        self.supports.to_frames(0.0, &mut force);
+        self.supports.from_frames(0.0, &mut force);
+        force
+    }
+}

@@ -1,0 +1,295 @@
+//! Stages: analyses that start where the one before them ended, and what comes and goes between
+//! them.
+
+use super::{Written, near};
+use ancf::output::{OutputOptions, write};
+use ancf::results::Results;
+use ancf::run::{Options, solve_stages};
+use ancf::scene::{Scene, parse};
+use std::f64::consts::PI;
+
+fn scene(text: &str) -> Scene {
+    parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// The results of all stages.
+fn solved(text: &str) -> Vec<Results> {
+    let run = solve_stages(scene(text).stages(), Options::default());
+    assert!(run.failure.is_none(), "{}\n{text}", run.failure.map(|error| error.to_string()).unwrap_or_default());
+    run.results
+}
+
+/// The files of each stage.
+fn stages(text: &str) -> Vec<Written> {
+    let files = |mut results: Results| {
+        let folder = tempfile::tempdir().expect("a folder");
+        write(folder.path(), &mut results, &OutputOptions::default()).expect("files");
+        Written(folder)
+    };
+    solved(text).into_iter().map(files).collect()
+}
+
+const ARM: &str = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 2, mass_per_length = 0.5, \
+     basis.ancf.elements = 8 }
+    beam.leg = { start = [1, 0], end = [1, -0.5], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 0.3, basis.rpim.nodes = 5 }
+    probe = [{ name = 'tip', beam = 'arm', at = 'end' }, { name = 'knee', beam = 'leg', at = 'start' }]
+    output = { reactions = true, section_forces = true }\n";
+const HELD: &str = "{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'leg', at = 'end', fix = ['x', 'y', 'angle'] }";
+const WEIGHT: &str = "gravity.acceleration = [0, -9.81]\n";
+const LOAD: &str = "distributed_force = [{ beam = 'arm', value = [0, -2] }, { beam = 'leg', value = [1, 0] }]\n";
+
+/// A scene with more supports, joints and effects, and this analysis.
+fn with(supports: &str, joints: &str, effects: &str, analysis: &str) -> String {
+    format!("{ARM}support = [{HELD}{supports}]\njoint = [{joints}]\n{analysis}\n[effect]\n{effects}")
+}
+
+const THREE: &str = "stage = [{ name = 'one', analysis.static = {} }, { name = 'two', analysis.static = { steps = 2 } }, { name = 'three', analysis.static = {} }]";
+
+/// What a table is without stages, and what it is in the second stage only.
+fn in_second(table: &str) -> [String; 2] {
+    let staged = table.trim_end().trim_end_matches('}').to_owned() + ", stage = 'two', until = 'three' }";
+    [table.to_owned(), staged]
+}
+
+fn states_agree(first: &Results, second: &Results, within: f64, what: &str) {
+    for (a, b) in first.states().probes.iter().zip(&second.states().probes) {
+        let (Some(a), Some(b)) = (a.samples.last(), b.samples.last()) else { panic!("{what}: no sample") };
+        for (a, b) in [(a.x, b.x), (a.y, b.y), (a.angle, b.angle), (a.curvature, b.curvature)] {
+            near(a, b, within, what);
+        }
+    }
+    let forces = |results: &Results| {
+        let shape = &results.states().last[0];
+        [shape.axial_force[40], shape.shear_force[40], shape.bending_moment[40]]
+    };
+    for (a, b) in forces(first).into_iter().zip(forces(second)) {
+        near(a, b, 1e3 * within, what);
+    }
+}
+
+/// Whatever comes in the second of three static stages leads to the equilibrium that a single
+/// analysis with it finds, and when it goes, back to the one without it.
+#[test]
+fn what_comes_and_goes_leads_to_the_same_equilibria() {
+    let lists = [
+        ("force", "{ beam = 'arm', at = 'end', value = [1, -0.7], follower = true }"),
+        ("moment", "{ beam = 'arm', at = 0.5, value = 1.5 }"),
+        ("spring", "{ beam = 'arm', at = 0.75, stiffness = 40 }"),
+        ("spring", "{ beam = 'arm', at = 0.75, anchor = [0.75, 1], length = 0.9, stiffness = 40 }"),
+        ("torsion_spring", "{ beam = 'arm', at = 0.5, stiffness = 7 }"),
+        ("foundation", "{ beam = 'arm', stiffness = [3, 30] }"),
+        ("actuation", "{ beam = 'arm', strain = 1e-4, curvature = 0.8 }"),
+        ("drag", "{ beam = 'leg', normal = 2, flow = [1.5, 0] }"),
+        ("buoyancy", "{ beam = 'arm', displaced_mass_per_length = 0.9 }"),
+        ("point_mass", "{ beam = 'arm', at = 0.5, mass = 0.2 }"),
+        ("contact", "{ beam = 'arm', half_plane = { point = [0, -0.05], normal = [0, 1] }, stiffness = 1e4 }"),
+    ];
+    let mut scenes = Vec::new();
+    for (kind, table) in lists {
+        let [plain, staged] = in_second(table);
+        let of = |table: String| {
+            move |analysis: &str| with("", "", &format!("{WEIGHT}{kind} = [{table}]\n{LOAD}"), analysis)
+        };
+        scenes.push((kind, of(plain)(ALONE), of(staged)(THREE)));
+    }
+    let [plain, staged] = in_second("{ beam = 'arm', value = [0, -3.5], from = 0.2 }");
+    let own = |table: String| with("", "", &format!("{WEIGHT}{}", LOAD.replace("}]", &format!("}}, {table}]"))), "");
+    scenes.push(("distributed_force", own(plain).replace("\n[effect]", &format!("{ALONE}\n[effect]")), own(staged).replace("\n[effect]", &format!("{THREE}\n[effect]"))));
+    let without = with("", "", &format!("{WEIGHT}{LOAD}"), ALONE);
+    let [plain, staged] = in_second("{ beam = 'arm', at = 'end', fix = ['y'], move.y = 0.1 }");
+    // A support that comes later moves the beam from where it is then.
+    let tip = solved_alone(&without).states().probes[0].samples.last().expect("a sample").y;
+    let plain = plain.replace("move.y = 0.1", &format!("move.y = {}", 0.1 + tip));
+    let support = |table: &str, analysis: &str| with(&format!(", {table}"), "", &format!("{WEIGHT}{LOAD}"), analysis);
+    scenes.push(("support", support(&plain, ALONE), support(&staged, THREE)));
+    let [plain, staged] =
+        in_second("{ type = 'weld', first = { beam = 'arm', at = 'end' }, second = { beam = 'leg', at = 'start' } }");
+    let joint = |table: &str, analysis: &str| with("", table, &format!("{WEIGHT}{LOAD}"), analysis);
+    scenes.push(("joint", joint(&plain, ALONE), joint(&staged, THREE)));
+
+    let without = solved_alone(&without);
+    for (kind, plain, staged) in scenes {
+        let [one, two, three]: [Results; 3] = solved(&staged).try_into().expect("three stages");
+        states_agree(&one, &without, 1e-8, kind);
+        states_agree(&two, &solved_alone(&plain), 1e-7, kind);
+        states_agree(&three, &without, 1e-7, kind);
+        // The second begins where the first one ended.
+        let start = two.states().probes[0].samples[0];
+        let end = one.states().probes[0].samples.last().expect("a sample");
+        near(start.x, end.x, 1e-9, kind);
+        near(start.y, end.y, 1e-9, kind);
+    }
+    // Gravity alone.
+    let [_, staged] = in_second("{ acceleration = [0, -9.81] }");
+    let found = solved(&with("", "", &format!("gravity = {staged}\n{LOAD}"), THREE));
+    states_agree(&found[1], &without, 1e-7, "gravity");
+    states_agree(&found[2], &solved_alone(&with("", "", LOAD, ALONE)), 1e-7, "gravity");
+}
+
+const ALONE: &str = "analysis.static = {}";
+
+fn solved_alone(text: &str) -> Results {
+    ancf::accuracy::run(&scene(text), Options::default()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Motions in stages are those of three scenes, each of which goes on from the state that the one
+/// before it has saved: what damps, resists, turns or travels acts in the second one only.
+#[test]
+fn motions_go_on_with_what_is_there() {
+    for (kind, table) in [
+        ("damping", "{ beam = 'arm', mass_proportional = 3 }"),
+        ("rotary_inertia", "{ beam = 'arm', per_length = 2e-3 }"),
+        ("moving_force", "{ beam = 'arm', value = [0, -3], speed = 4 }"),
+        ("point_mass", "{ beam = 'arm', at = 'end', mass = 0.2 }"),
+    ] {
+        let motion = "analysis.dynamic = { duration = 0.05, output_every = 0.01, radau.tolerance = 1e-6 }";
+        let three = ["one", "two", "three"].map(|name| format!("{{ name = '{name}', {motion} }}")).join(", ");
+        let text = |table: &str, analysis: &str| {
+            with("", "", &format!("{WEIGHT}{kind} = [{table}]\n"), analysis)
+        };
+        let [plain, staged] = in_second(table);
+        let staged = solved(&text(&staged, &format!("stage = [{three}]")));
+        let (with, without) = (scene(&text(&plain, motion)), scene(&text("", motion)));
+        let mut saved = None;
+        for (stage, scene) in [&without, &with, &without].into_iter().enumerate() {
+            let options = Options { start: saved.as_ref(), ..Options::default() };
+            let by_hand = scene.model().solve_with(scene.analysis(), options).expect("a motion").into_states();
+            let of_stage = staged[stage].states();
+            assert_eq!(by_hand.parameter, of_stage.parameter, "{kind} {stage}");
+            let same = by_hand.probes[0].samples == of_stage.probes[0].samples;
+            assert!(same, "{kind} {stage}");
+            saved = by_hand.saved;
+        }
+        assert_eq!(staged[2].states().parameter.last(), Some(&0.15));
+        let quiet = solved(&text("", &format!("stage = [{three}]")));
+        assert_ne!(quiet[1].states().probes[0].samples, staged[1].states().probes[0].samples, "{kind}");
+    }
+}
+
+/// In a static stage new loads grow in proportion to the load factor while the old ones stay, and
+/// what has gone fades: a cantilever of EI = 1 N m² and 1 m under a small force F has the tip at F/3.
+#[test]
+fn new_loads_grow_and_old_ones_stay() {
+    let text = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = 4 }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.force = [{ beam = 'arm', at = 'end', value = [0, 3e-5] },
+            { beam = 'arm', at = 'end', value = [0, 6e-5], stage = 'more' }, { beam = 'arm', at = 'end', value = [0, 9e-5], until = 'less' }]
+        probe = [{ name = 'tip', beam = 'arm', at = 'end' }]
+        output = { reactions = true, section_forces = true }
+        stage = [{ name = 'first', analysis.static.steps = 2 }, { name = 'more', analysis.static.steps = 4 }, { name = 'less', analysis.static.steps = 2 }]";
+    let [first, more, less]: [Written; 3] = stages(text).try_into().unwrap_or_else(|_| panic!("three stages"));
+    let is = |written: &Written, tips: &[f64]| {
+        for (column, factor) in [("tip.y", 1.0), ("tip.axial_force", 0.0), ("tip.bending_moment", 0.0)] {
+            let found = written.column("probes.csv", column);
+            assert_eq!(found.len(), tips.len());
+            for (found, expected) in found.iter().zip(tips) {
+                near(*found, factor * 1e-5 * expected, 1e-12, column);
+            }
+        }
+        // The clamp carries all forces, those that fade included.
+        for (column, factor) in [("support1.fy", -3.0), ("support1.moment", -3.0)] {
+            for (found, expected) in written.column("reactions.csv", column).iter().zip(tips) {
+                near(*found, factor * 1e-5 * expected, 1e-10, column);
+            }
+        }
+    };
+    is(&first, &[0.0, 2.0, 4.0]);
+    is(&more, &[4.0, 4.5, 5.0, 5.5, 6.0]);
+    is(&less, &[6.0, 4.5, 3.0]);
+    assert_eq!(more.column("probes.csv", "load"), [0.0, 0.25, 0.5, 0.75, 1.0]);
+}
+
+/// A support that goes leaves its force behind, which fades: half-way a propped cantilever under the
+/// load q hangs by half of 5/384 … of what is taken away. Its prop carries 3/8 q L, and without it
+/// the tip is at q L⁴/8 EI.
+#[test]
+fn the_force_of_a_support_that_goes_fades() {
+    let text = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = 8 }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'arm', at = 'end', fix = ['y'], until = 'free' }]
+        effect.distributed_force = [{ beam = 'arm', value = [0, -8e-5] }]
+        probe = [{ name = 'tip', beam = 'arm', at = 'end' }]
+        output.reactions = true
+        stage = [{ name = 'propped', analysis.static = {} }, { name = 'free', analysis.static.steps = 2 }]";
+    let found = stages(text);
+    near(found[0].last("reactions.csv", "support2.fy"), 3e-5, 1e-11, "the prop");
+    let tips = found[1].column("probes.csv", "tip.y");
+    for (tip, expected) in tips.iter().zip([0.0, -0.5e-5, -1e-5]) {
+        near(*tip, expected, 1e-12, "tip.y");
+    }
+    let clamp = found[1].column("reactions.csv", "support1.fy");
+    for (force, expected) in clamp.iter().zip([5e-5, 6.5e-5, 8e-5]) {
+        near(*force, expected, 1e-11, "support1.fy");
+    }
+}
+
+/// A cantilever that a force has bent is let go and swings: w(t) = Σ w_k cos ω_k t with
+/// ω_k = β_k² and, for a tip force F, w_k = 4 F/β_k⁴ at the tip (EI = ρA = L = 1).
+#[test]
+fn a_bent_cantilever_that_is_let_go_swings_by_its_modes() {
+    let text = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, \
+         basis.ancf.elements = 12 }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.force = [{ beam = 'arm', at = 'end', value = [0, 3e-4], until = 'swing' }]
+        probe = [{ name = 'tip', beam = 'arm', at = 'end' }]
+        stage = [{ name = 'bend', analysis.static = {} }, \
+            { name = 'swing', analysis.dynamic = { duration = 1.6, output_every = 0.1, radau.tolerance = 1e-7 } }]";
+    let found = stages(text);
+    let swing = found[1].column("probes.csv", "tip.y");
+    // β of cos β cosh β = −1, by bisection.
+    let root = |k: usize| {
+        let (mut low, mut high) = (PI * (k as f64), PI * (k as f64 + 1.0));
+        let f = |b: f64| b.cos() + 1.0 / b.cosh();
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if (f(low) < 0.0) == (f(middle) < 0.0) { low = middle } else { high = middle }
+        }
+        low
+    };
+    let betas: Vec<f64> = (0..8).map(root).collect();
+    for (i, found) in swing.iter().enumerate() {
+        let t = 0.1 * i as f64;
+        let modes = betas.iter().map(|b| 4.0 * 3e-4 / b.powi(4) * (b * b * t).cos());
+        near(*found, modes.sum(), 2e-7, "tip.y");
+    }
+}
+
+/// A string under tension has the frequencies n/2L √(T/ρA): prestress first, then the vibrations
+/// about it.
+#[test]
+fn vibrations_are_those_about_the_stage_before() {
+    let text = "beam.string = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, mass_per_length = 0.01, basis.ancf.elements = 20 }
+        support = [{ beam = 'string', at = 'start', fix = ['x', 'y'] }, { beam = 'string', at = 'end', fix = ['x', 'y'], move.x = 0.01 }]
+        stage = [{ name = 'tune', analysis.static = {} }, { name = 'sound', analysis.modal.count = 3 }]";
+    let found = stages(text);
+    let frequencies = found[1].column("frequencies.csv", "frequency");
+    for (n, found) in (1..).zip(frequencies) {
+        // T = EA ε, and ρA of the stretched string over its length of 1.01 m.
+        let speed = (100.0_f64 * 1.01 / 0.01).sqrt();
+        near(found, f64::from(n) / (2.0 * 1.01) * speed, 2e-3 * f64::from(n), "a frequency");
+    }
+}
+
+/// With friction the order matters: pressed first and then pushed, a rod sticks; pushed first and
+/// then pressed, it has moved already.
+#[test]
+fn with_friction_the_order_of_stages_decides() {
+    let text = |push: &str, press: &str| {
+        format!(
+            "beam.rod = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 50, basis.ancf.elements = 4 }}
+            effect.contact = [{{ beam = 'rod', half_plane = {{ point = [0, 0], normal = [0, 1] }}, stiffness = 1e5, \
+                friction = {{ coefficient = 0.5, stiffness = 1e5 }} }}]
+            effect.spring = [{{ beam = 'rod', at = 0.5, anchor = [0.5, 5], length = 5, stiffness = 1e-3 }}, \
+                {{ beam = 'rod', at = 'start', anchor = [-1, 0], stiffness = 40 }}]
+            effect.distributed_force = [{{ beam = 'rod', value = [0, -10] }}, \
+                {{ beam = 'rod', value = [0, -90], stage = '{press}' }}, {{ beam = 'rod', value = [20, 0], stage = '{push}' }}]
+            probe = [{{ name = 'end', beam = 'rod', at = 'end' }}]
+            stage = [{{ name = 'lay', analysis.static = {{}} }}, {{ name = 'first', analysis.static.steps = 8 }}, \
+                {{ name = 'second', analysis.static.steps = 8 }}]"
+        )
+    };
+    let moved = |text: &str| stages(text)[2].last("probes.csv", "end.x") - 1.0;
+    let (sticks, slid) = (moved(&text("second", "first")), moved(&text("first", "second")));
+    assert!(sticks.abs() < 1e-3, "{sticks}");
+    // 20 N less friction of 5 N on a spring of 40 N/m.
+    near(slid, 15.0 / 40.0, 1e-2, "the way");
+}
