@@ -21,8 +21,8 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use crate::accuracy;
-use crate::output::OutputOptions;
 use crate::model::Stage;
+use crate::output::OutputOptions;
 use crate::restart::SavedState;
 use crate::results::Results;
 use crate::run::{self, Control, Progress, RunError, StagesRun};
@@ -265,9 +265,8 @@ fn finish_stages(
         last.run_mut().warnings.push(failure.to_string());
     }
     let mut stages: Vec<(&str, Results)> = names.zip(results).collect();
-    let summary =
-        crate::output::write_stages(destination.path(), &mut stages, wanted, failure.is_none())
-            .map_err(Failure::Output)?;
+    let summary = crate::output::write_stages(destination.path(), &mut stages, wanted, failure.is_none())
+        .map_err(Failure::Output)?;
     if !arguments.quiet {
         for (name, results) in &stages {
             terminal::note(&format!("stage {name}"));

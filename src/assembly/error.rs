@@ -80,7 +80,9 @@ pub enum BuildError {
     },
     /// An item follows a law of time in an analysis without time.
     #[error("{what} follows a law of time, which this analysis does not have")]
-    #[diagnostic(help("leave `in_time` out, or use [analysis.dynamic]; in a scene with stages let it begin with a motion, by `stage = \"…\"`"))]
+    #[diagnostic(help(
+        "leave `in_time` out, or use [analysis.dynamic]; in a scene with stages let it begin with a motion, by `stage = \"…\"`"
+    ))]
     NoTime {
         /// The item that follows a law.
         what: &'static str,

@@ -7,7 +7,7 @@ macro_rules! kinds {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Kind {
             $($(#[$doc])* $variant,)*
-            /// An effect defined by another crate.
+            /// An effect that no scene has a word for, such as one of another crate.
             Other(&'static str),
         }
 
@@ -69,22 +69,17 @@ kinds! {
     Drag = "drag",
     /// Lift by a displaced fluid.
     Buoyancy = "buoyancy",
+    /// Attraction by an electrode.
+    Electrostatic = "electrostatic",
     /// Contact with an obstacle.
     Contact = "contact",
     /// Friction in a contact.
     Friction = "friction",
     /// Force that travels along a beam.
     MovingForce = "moving_force",
-    /// What the state in which statics begins leaves unbalanced, and what fades as the loads grow.
-    Imbalance = "imbalance",
 }
 
 impl Kind {
-    /// Whether it is the elasticity of a beam's sections.
-    pub(crate) fn is_of_section(self) -> bool {
-        matches!(self, Self::Stretch | Self::Bend | Self::Coupling)
-    }
-
     /// Whether its energy is the same wherever a beam is moved as a rigid body, so that it acts on
     /// no piece of it as a whole.
     pub(crate) fn is_of_shape_alone(self) -> bool {

@@ -75,8 +75,9 @@ impl Motion {
     pub(super) fn of(stages: &[(&str, &Results)]) -> Option<Self> {
         let (_, first) = stages.first()?;
         let t = first.states();
-        let vibrates =
-            |results: &Results| matches!(results.run().analysis, AnalysisKind::Modal | AnalysisKind::Buckling);
+        let vibrates = |results: &Results| {
+            matches!(results.run().analysis, AnalysisKind::Modal | AnalysisKind::Buckling)
+        };
         let vibration = stages.len() == 1 && vibrates(first);
         let rest = if vibration { &t.last } else { &t.run.undeformed };
         let rest: Vec<Polyline> = rest.iter().map(polyline).collect();

@@ -42,12 +42,7 @@ struct Analysed<'a> {
 }
 
 impl<'a> Analysed<'a> {
-    fn new(
-        stage: &'a str,
-        results: &'a Results,
-        summary: &Summary,
-        figures: Vec<Figure>,
-    ) -> Self {
+    fn new(stage: &'a str, results: &'a Results, summary: &Summary, figures: Vec<Figure>) -> Self {
         let t = results.states();
         Self {
             stage,
@@ -99,7 +94,11 @@ struct NumberTable {
 }
 
 /// The page of one analysis.
-pub(super) fn page(results: &Results, summary: &Summary, figures: Vec<Figure>) -> Result<String, OutputError> {
+pub(super) fn page(
+    results: &Results,
+    summary: &Summary,
+    figures: Vec<Figure>,
+) -> Result<String, OutputError> {
     let t = results.states();
     let parts = vec![Analysed::new("", results, summary, figures)];
     let title = if t.run.title.trim().is_empty() { kind(t) } else { &t.run.title };

@@ -54,7 +54,8 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
     let mut reached: Option<SavedState> = None;
     let mut observer = options.observer.take();
     for (index, Stage { name, model, analysis }) in stages.iter().enumerate() {
-        let mut watch = |now: &Progress| observer.as_mut().map_or(Control::Continue, |observer| observer(now));
+        let mut watch =
+            |now: &Progress| observer.as_mut().map_or(Control::Continue, |observer| observer(now));
         let here = Options {
             start: reached.as_ref().or(options.start),
             observer: Some(&mut watch),

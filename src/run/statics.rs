@@ -50,7 +50,8 @@ impl Solve for Static {
             if options.states {
                 let states = solution.states.into_iter().zip(solution.variables);
                 let states = states.map(|((_, x), variables)| RecordedState::Equilibrium { x, variables });
-                trajectory.states = Some(RecordedStates { states: states.collect(), taken_up: start.taken_up() });
+                trajectory.states =
+                    Some(RecordedStates { states: states.collect(), taken_up: start.taken_up() });
             }
         }
         timed(outcome, |trajectory| trajectory, &watch, stopwatch)

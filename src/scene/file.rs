@@ -380,6 +380,8 @@ pub struct EffectTable {
     pub drag: Vec<DragTable>,
     /// Lift by a displaced fluid.
     pub buoyancy: Vec<BuoyancyTable>,
+    /// Attractions by electrodes.
+    pub electrostatic: Vec<ElectrostaticTable>,
     /// Forces that travel along beams.
     pub moving_force: Vec<MovingForceTable>,
     /// Contacts with obstacles.

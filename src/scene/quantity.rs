@@ -66,7 +66,7 @@ measures! {
     /// Velocity \[m/s\].
     Velocity: "velocity", "m/s", "2 m/s", Dimension::new(1, 0, -1);
     /// Angular velocity \[rad/s\].
-    AngularVelocity: "angular velocity", "rad/s", "90 deg/s", Dimension { metre: 0, kilogram: 0, second: -1, radian: 1 };
+    AngularVelocity: "angular velocity", "rad/s", "90 deg/s", Dimension { metre: 0, kilogram: 0, second: -1, radian: 1, ampere: 0 };
     /// Cycles per second \[Hz\].
     Frequency: "frequency", "Hz", "2 Hz", Dimension::new(0, 0, -1);
     /// Curvature \[1/m\].
@@ -85,6 +85,10 @@ measures! {
     ViscousDamping: "force per length and velocity", "N s/m^2", "2 N s/m^2", Dimension::new(-1, 1, -1);
     /// Force per length and squared velocity \[N s²/m³\].
     DragCoefficient: "force per length and squared velocity", "N s^2/m^3", "6 N s^2/m^3", Dimension::new(-2, 1, 0);
+    /// Electric potential \[V\].
+    Voltage: "voltage", "V", "30 V", Dimension { metre: 2, kilogram: 1, second: -3, radian: 0, ampere: -1 };
+    /// Permittivity \[F/m\].
+    Permittivity: "permittivity", "F/m", "8.854 pF/m", Dimension { metre: -3, kilogram: -1, second: 4, radian: 0, ampere: 2 };
     /// A pure number.
     Ratio: "number", "", "0.5", Dimension::new(0, 0, 0);
 }

@@ -48,6 +48,14 @@ impl Stretch {
         Ok(Self { beam, length, ends: (ends != [0.0, length]).then_some(ends) })
     }
 
+    /// 1 on this stretch, and 0 elsewhere.
+    pub(super) fn indicator(&self) -> Along {
+        match self.ends {
+            Some(ends) => Along::Constant(1.0).within(ends),
+            None => Along::Constant(1.0),
+        }
+    }
+
     /// The quantity `key` on this stretch.
     pub(super) fn quantity<M: Measure, R: Range>(
         &self,

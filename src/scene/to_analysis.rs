@@ -27,7 +27,8 @@ pub const DYNAMIC_RECORDS: f64 = 200.0;
 
 /// The errors that the results may have; `None` where the scene does not say.
 pub(super) fn accuracy(file: &SceneTable) -> Result<Option<Accuracy>, Fault> {
-    let Some(AnalysisTable { statics, dynamic, buckling, modal }) = file.analysis.as_ref().map(Located::get) else {
+    let Some(AnalysisTable { statics, dynamic, buckling, modal }) = file.analysis.as_ref().map(Located::get)
+    else {
         return Ok(None);
     };
     let value = statics.as_ref().and_then(|table| table.accuracy.as_ref());
@@ -118,15 +119,12 @@ pub(super) fn analysis(
                 },
             },
         })),
-        (None, None, None, None) => {
-            Err(Fault::new(located.span(), "`analysis` is empty").help(ANALYSES))
-        }
+        (None, None, None, None) => Err(Fault::new(located.span(), "`analysis` is empty").help(ANALYSES)),
         _ => Err(Fault::new(located.span(), "the scene has more than one analysis").help(ANALYSES)),
     }
 }
 
-const ADD: &str =
-    "add one of `[analysis.static]`, `[analysis.dynamic]`, `[analysis.buckling]`, `[analysis.modal]`; or `[[stage]]`s, each with a `name` and one of these as its `analysis`";
+const ADD: &str = "add one of `[analysis.static]`, `[analysis.dynamic]`, `[analysis.buckling]`, `[analysis.modal]`; or `[[stage]]`s, each with a `name` and one of these as its `analysis`";
 
 const ANALYSES: &str = "give exactly one of `[analysis.static]`, `[analysis.dynamic]`, `[analysis.buckling]`, `[analysis.modal]`";
 

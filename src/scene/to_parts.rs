@@ -2,14 +2,18 @@
 
 use std::sync::Arc;
 
+use crate::centreline::Curve;
 use crate::effect::{
-    Actuation, BeamDamping, Buoyancy, Contact, DistributedForce, Drag, Force, Foundation, Friction, Gravity,
-    Moment, MovingForce, Obstacle, PointMass, SectionInertia, Spring, TorsionSpring,
+    Actuation, BeamDamping, Buoyancy, Contact, DistributedForce, Drag, Electrostatic, Force, Foundation,
+    Friction, Gravity, Moment, MovingForce, Obstacle, PointMass, SectionInertia, Spring, TorsionSpring,
 };
-use crate::model::{Along, Beam, Joint, Model};
+use crate::model::{Along, Beam, InitialShape, Joint, Model};
 
 use super::error::Fault;
-use super::file::{ContactTable, FrictionTable, GravityTable, JointName, JointTable, PointTable, SceneTable};
+use super::file::{
+    ContactTable, ElectrostaticTable, FrictionTable, GravityTable, HalfPlaneTable, JointName, JointTable,
+    PointTable, SceneTable,
+};
 use super::place::{Built, beam_index, place};
 use super::to_along::{Stretch, along};
 use super::to_law;
@@ -194,6 +198,9 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
         let displaced = stretch.quantity(&t.displaced_mass_per_length, "displaced_mass_per_length")?;
         parts.push(Arc::new(Buoyancy { beam: stretch.beam, displaced, acceleration: acceleration.si, law }));
     }
+    for t in &effects.electrostatic {
+        parts.push(Arc::new(electrostatic(t, built, &model.beams, &model.initial_shapes)?));
+    }
     for t in &effects.moving_force {
         let (beam, speed) = (beam_index(&t.beam, built)?, t.speed.get().si);
         if speed == 0.0 {
@@ -279,6 +286,57 @@ fn contact(t: &ContactTable, built: &[Built], beams: &[Beam]) -> Result<Contact,
         stiffness: t.stiffness.si,
         half_thickness,
         friction: t.friction.as_ref().map(|f| friction(f, t.stiffness.si)).transpose()?,
+    })
+}
+
+/// Places along a beam at which its distance from an electrode is checked.
+const CHECKED: usize = 200;
+
+fn electrostatic(
+    t: &ElectrostaticTable,
+    built: &[Built],
+    beams: &[Beam],
+    initial_shapes: &[InitialShape],
+) -> Result<Electrostatic, Fault> {
+    let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
+    let HalfPlaneTable { point, normal } = &t.electrode;
+    let direction = unit(&normal.get().si).ok_or_else(|| {
+        Fault::new(normal.span(), "a normal of no length")
+            .help("such as `normal = [0.0, 1.0]`, towards the beam")
+    })?;
+    let half_thickness = match t.half_thickness {
+        Some(given) => given.si,
+        None => half_thickness(&t.beam, &beams[stretch.beam])?,
+    };
+    let facing = stretch.indicator();
+    let shape = initial_shapes.iter().find(|shape| shape.beam == stretch.beam);
+    let shape = shape.and_then(|shape| Curve::new(&shape.centreline).ok());
+    let (curve, length) =
+        (shape.as_ref().unwrap_or(&built[stretch.beam].curve), built[stretch.beam].curve.length());
+    for i in 0..=CHECKED {
+        let share = i as f64 / CHECKED as f64;
+        let ([x, y], [px, py]) = (curve.position(share * curve.length()), point.si);
+        let gap = direction[0] * (x - px) + direction[1] * (y - py) - half_thickness;
+        let s = share * length;
+        if gap <= 0.0 && facing.at(s, s) != 0.0 {
+            return Err(Fault::new(
+                normal.span(),
+                format!("the surface of beam `{}` begins {} m behind the electrode at s = {s} m", t.beam.get(), -gap),
+            )
+            .help("`normal` points from the electrode towards the beam, and `point` lies on the electrode's surface; the beam's half thickness counts"));
+        }
+    }
+    Ok(Electrostatic {
+        beam: stretch.beam,
+        voltage: t.voltage.si,
+        point: point.si,
+        normal: direction,
+        width: t.width.si,
+        facing,
+        fringe: t.fringe.map_or(0.0, |fringe| fringe.si),
+        half_thickness,
+        permittivity: t.permittivity.map_or(Electrostatic::VACUUM, |permittivity| permittivity.si),
+        law: t.in_time.as_ref().map(to_law::law).transpose()?,
     })
 }
 

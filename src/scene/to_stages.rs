@@ -3,8 +3,8 @@
 use super::diagnose::choices;
 use super::error::Fault;
 use super::file::{During, SceneTable, StageTable};
-use super::value::Located;
 use super::to_analysis;
+use super::value::Located;
 use crate::model::{Discretization, Place, Stage};
 use std::cmp::Ordering;
 
@@ -16,8 +16,12 @@ const LONGEST_NAME: usize = 100;
 pub(super) fn stages(file: &SceneTable) -> Result<Vec<(String, SceneTable)>, Fault> {
     let given = &file.stage;
     if let (Some(first), Some(analysis)) = (given.first(), &file.analysis) {
-        return Err(Fault::new(analysis.span(), "a scene with stages has no analysis beside them")
-            .help(format!("move it into a stage, such as `{}`: every stage has an analysis of its own", first.name.get())));
+        return Err(Fault::new(analysis.span(), "a scene with stages has no analysis beside them").help(
+            format!(
+                "move it into a stage, such as `{}`: every stage has an analysis of its own",
+                first.name.get()
+            ),
+        ));
     }
     for (index, stage) in given.iter().enumerate() {
         check_name(stage, &given[..index])?;
@@ -63,12 +67,16 @@ pub(super) fn finish(file: &SceneTable, stages: &mut [Stage]) -> Result<(), Faul
                 name.map_or(stage.name.span(), Located::span),
                 format!("beam `{}` has no basis, which a scene with stages must name", beam.name),
             )
-            .help("give `basis.ancf.elements` or `basis.rpim.nodes`: a mesh is chosen for one analysis only"));
+            .help(
+                "give `basis.ancf.elements` or `basis.rpim.nodes`: a mesh is chosen for one analysis only",
+            ));
         }
         let alone = SceneTable { analysis: Some(stage.analysis.clone()), ..file.clone() };
         if to_analysis::accuracy(&alone)?.is_some() {
             return Err(Fault::new(stage.analysis.span(), "the analysis of a stage takes no `accuracy`")
-                .help("name the mesh, and the `tolerance` or `step`: they are chosen for one analysis only"));
+                .help(
+                    "name the mesh, and the `tolerance` or `step`: they are chosen for one analysis only",
+                ));
         }
     }
     let mut nodes: Vec<Place> = Vec::new();
@@ -89,8 +97,9 @@ fn check_name(stage: &StageTable, before: &[StageTable]) -> Result<(), Fault> {
     let starts_well = name.starts_with(char::is_alphanumeric);
     let ends_well = name.ends_with(|c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '+'));
     if name.len() > LONGEST_NAME || !starts_well || !ends_well || !name.chars().all(legal) {
-        return Err(Fault::new(stage.name.span(), format!("{name:?} cannot name a stage"))
-            .help("its folder has the same name: use letters, digits, `-`, `_`, `+`, and `.` or spaces within"));
+        return Err(Fault::new(stage.name.span(), format!("{name:?} cannot name a stage")).help(
+            "its folder has the same name: use letters, digits, `-`, `_`, `+`, and `.` or spaces within",
+        ));
     }
     // File systems that do not tell capitals from small letters have one folder for both.
     let lower = name.to_lowercase();
@@ -119,7 +128,9 @@ fn check(
 fn unknown(name: &Located<String>, given: &[StageTable]) -> Fault {
     let fault = Fault::new(name.span(), format!("there is no stage `{}`", name.get()));
     if given.is_empty() {
-        return fault.help("this scene has one analysis; stages are `[[stage]]` with a `name` and an `analysis` each");
+        return fault.help(
+            "this scene has one analysis; stages are `[[stage]]` with a `name` and an `analysis` each",
+        );
     }
     let names: Vec<String> = given.iter().map(|stage| stage.name.get().clone()).collect();
     fault.help(choices("stages of this scene", name.get(), &names))

@@ -7,7 +7,7 @@
 
 use std::fmt;
 
-/// Exponents of metre, kilogram, second and radian. Angles count as a dimension of their own, so
+/// Exponents of metre, kilogram, second, radian and ampere. Angles count as a dimension of their own, so
 /// that `"3 m"` is no angle and `"90 deg"` no ratio.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dimension {
@@ -19,16 +19,18 @@ pub struct Dimension {
     pub second: i16,
     /// Exponent of the radian.
     pub radian: i16,
+    /// Exponent of the ampere.
+    pub ampere: i16,
 }
 
 impl Dimension {
     /// m^`metre` kg^`kilogram` s^`second`.
     pub const fn new(metre: i16, kilogram: i16, second: i16) -> Self {
-        Self { metre, kilogram, second, radian: 0 }
+        Self { metre, kilogram, second, radian: 0, ampere: 0 }
     }
 
     /// The dimension of an angle.
-    pub const ANGLE: Self = Self { metre: 0, kilogram: 0, second: 0, radian: 1 };
+    pub const ANGLE: Self = Self { metre: 0, kilogram: 0, second: 0, radian: 1, ampere: 0 };
 
     fn combine(self, other: Self, times: i16) -> Option<Self> {
         let sum = |a: i16, b: i16| b.checked_mul(times).and_then(|b| a.checked_add(b));
@@ -37,6 +39,7 @@ impl Dimension {
             kilogram: sum(self.kilogram, other.kilogram)?,
             second: sum(self.second, other.second)?,
             radian: sum(self.radian, other.radian)?,
+            ampere: sum(self.ampere, other.ampere)?,
         })
     }
 }
@@ -45,9 +48,13 @@ impl fmt::Display for Dimension {
     /// In base units: `kg m^-3`; `1` for a pure number.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut first = true;
-        for (name, power) in
-            [("kg", self.kilogram), ("m", self.metre), ("s", self.second), ("rad", self.radian)]
-        {
+        for (name, power) in [
+            ("kg", self.kilogram),
+            ("m", self.metre),
+            ("s", self.second),
+            ("rad", self.radian),
+            ("A", self.ampere),
+        ] {
             if power == 0 {
                 continue;
             }
@@ -73,34 +80,37 @@ pub struct Unit {
     pub dimension: Dimension,
 }
 
-/// Named units: name, factor to SI, metre, kilogram, second, radian, whether SI prefixes apply.
+/// Named units: name, factor to SI, metre, kilogram, second, radian, ampere, whether SI prefixes apply.
 /// An exact name wins over prefix and name: `min` is a minute, `ft` a foot, `Pa` a pascal.
 #[rustfmt::skip]
-const NAMED: &[(&str, f64, [i16; 4], bool)] = &[
-    ("m",    1.0,                 [1, 0, 0, 0],   true),
-    ("g",    1e-3,                [0, 1, 0, 0],   true),
-    ("s",    1.0,                 [0, 0, 1, 0],   true),
-    ("rad",  1.0,                 [0, 0, 0, 1],   true),
-    ("N",    1.0,                 [1, 1, -2, 0],  true),
-    ("Pa",   1.0,                 [-1, 1, -2, 0], true),
-    ("J",    1.0,                 [2, 1, -2, 0],  true),
-    ("W",    1.0,                 [2, 1, -3, 0],  true),
-    ("Hz",   1.0,                 [0, 0, -1, 0],  true),
-    ("bar",  1e5,                 [-1, 1, -2, 0], true),
-    ("t",    1e3,                 [0, 1, 0, 0],   false),
-    ("min",  60.0,                [0, 0, 1, 0],   false),
-    ("h",    3600.0,              [0, 0, 1, 0],   false),
-    ("deg",  std::f64::consts::PI / 180.0, [0, 0, 0, 1], false),
-    ("°",    std::f64::consts::PI / 180.0, [0, 0, 0, 1], false),
-    ("turn", std::f64::consts::TAU, [0, 0, 0, 1], false),
-    ("rev",  std::f64::consts::TAU, [0, 0, 0, 1], false),
-    ("rpm",  std::f64::consts::TAU / 60.0, [0, 0, -1, 1], false),
-    ("in",   0.0254,              [1, 0, 0, 0],   false),
-    ("ft",   0.3048,              [1, 0, 0, 0],   false),
-    ("lb",   0.453_592_37,        [0, 1, 0, 0],   false),
-    ("lbf",  4.448_221_615_260_5, [1, 1, -2, 0],  false),
-    ("kgf",  9.806_65,            [1, 1, -2, 0],  false),
-    ("psi",  6_894.757_293_168_361, [-1, 1, -2, 0], false),
+const NAMED: &[(&str, f64, [i16; 5], bool)] = &[
+    ("m",    1.0,                 [1, 0, 0, 0, 0],   true),
+    ("g",    1e-3,                [0, 1, 0, 0, 0],   true),
+    ("s",    1.0,                 [0, 0, 1, 0, 0],   true),
+    ("rad",  1.0,                 [0, 0, 0, 1, 0],   true),
+    ("N",    1.0,                 [1, 1, -2, 0, 0],  true),
+    ("Pa",   1.0,                 [-1, 1, -2, 0, 0], true),
+    ("J",    1.0,                 [2, 1, -2, 0, 0],  true),
+    ("W",    1.0,                 [2, 1, -3, 0, 0],  true),
+    ("Hz",   1.0,                 [0, 0, -1, 0, 0],  true),
+    ("A",    1.0,                 [0, 0, 0, 0, 1],   true),
+    ("V",    1.0,                 [2, 1, -3, 0, -1], true),
+    ("F",    1.0,                 [-2, -1, 4, 0, 2], true),
+    ("bar",  1e5,                 [-1, 1, -2, 0, 0], true),
+    ("t",    1e3,                 [0, 1, 0, 0, 0],   false),
+    ("min",  60.0,                [0, 0, 1, 0, 0],   false),
+    ("h",    3600.0,              [0, 0, 1, 0, 0],   false),
+    ("deg",  std::f64::consts::PI / 180.0, [0, 0, 0, 1, 0], false),
+    ("°",    std::f64::consts::PI / 180.0, [0, 0, 0, 1, 0], false),
+    ("turn", std::f64::consts::TAU, [0, 0, 0, 1, 0], false),
+    ("rev",  std::f64::consts::TAU, [0, 0, 0, 1, 0], false),
+    ("rpm",  std::f64::consts::TAU / 60.0, [0, 0, -1, 1, 0], false),
+    ("in",   0.0254,              [1, 0, 0, 0, 0],   false),
+    ("ft",   0.3048,              [1, 0, 0, 0, 0],   false),
+    ("lb",   0.453_592_37,        [0, 1, 0, 0, 0],   false),
+    ("lbf",  4.448_221_615_260_5, [1, 1, -2, 0, 0],  false),
+    ("kgf",  9.806_65,            [1, 1, -2, 0, 0],  false),
+    ("psi",  6_894.757_293_168_361, [-1, 1, -2, 0, 0], false),
 ];
 
 /// SI prefixes.
@@ -332,7 +342,7 @@ fn superscript(c: char) -> Option<char> {
         .find_map(|pair| (pair.first() == Some(&c)).then(|| pair.get(1).copied())?)
 }
 
-fn lookup(name: &str) -> Option<(f64, [i16; 4], bool)> {
+fn lookup(name: &str) -> Option<(f64, [i16; 5], bool)> {
     NAMED
         .iter()
         .find(|(known, ..)| *known == name)
@@ -340,9 +350,9 @@ fn lookup(name: &str) -> Option<(f64, [i16; 4], bool)> {
 }
 
 fn named_alone(name: &str) -> Option<Unit> {
-    let unit = |factor, [metre, kilogram, second, radian]: [i16; 4]| Unit {
+    let unit = |factor, [metre, kilogram, second, radian, ampere]: [i16; 5]| Unit {
         factor,
-        dimension: Dimension { metre, kilogram, second, radian },
+        dimension: Dimension { metre, kilogram, second, radian, ampere },
     };
     if let Some((factor, powers, _)) = lookup(name) {
         return Some(unit(factor, powers));

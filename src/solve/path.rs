@@ -156,7 +156,8 @@ impl<'e, 'a> Path<'e, 'a> {
             let (mut exact, still) = (x.clone(), vec![0.0; x.len()]);
             let from = Earlier { q: &x, increment: &still };
             let mut equations = AtLoad::new(equilibrium, 0.0);
-            let found = newton::solve(&mut equations, &mut exact, from, &settings, &mut Iterations::default());
+            let found =
+                newton::solve(&mut equations, &mut exact, from, &settings, &mut Iterations::default());
             let change: Vec<f64> = exact.iter().zip(&x).map(|(exact, x)| exact - x).collect();
             if found.is_ok() && equilibrium.size(&change) < SURE_TURN {
                 x = exact;

@@ -106,7 +106,8 @@ impl Constraint {
         let field = |&(first, shape, _): &(usize, &[f64], f64)| Field { first, shape: shape.to_vec() };
         let fields = points.iter().map(field).collect();
         let weights = points.iter().map(|(.., weight)| *weight).collect();
-        let mut row = Self { fields, places: Vec::new(), row: Row::Length { weights, value: 0.0 }, open: 0.0 };
+        let mut row =
+            Self { fields, places: Vec::new(), row: Row::Length { weights, value: 0.0 }, open: 0.0 };
         let sum = row.value_of_row(0.0, reference);
         if let Row::Length { value, .. } = &mut row.row {
             *value = sum;

@@ -7,7 +7,7 @@
 
 use super::System;
 use crate::assembly::{
-    Action, Actions, ActingLoad, Amplitude, Earlier, Effect, InternalVariables, Kind, Workspace,
+    ActingLoad, Action, Actions, Amplitude, Earlier, Effect, InternalVariables, Kind, Workspace,
 };
 use crate::linear::Matrix;
 use nalgebra::Vector2;
@@ -48,7 +48,7 @@ struct Imbalance {
 
 impl Effect for Imbalance {
     fn kind(&self) -> Kind {
-        Kind::Imbalance
+        Kind::Other("imbalance")
     }
 
     fn beam(&self) -> usize {
@@ -132,15 +132,15 @@ impl System {
         }
     }
 
-    /// Whether springs, foundations or contacts act in the state in which an analysis begins, without
-    /// any load.
+    /// Whether springs act in the state in which an analysis begins, without any load.
     pub fn is_prestressed(&self) -> bool {
-        let mut others = self.terms.internal.iter().filter(|effect| !effect.kind().is_of_section()).peekable();
-        if others.peek().is_none() {
+        let mut springs =
+            self.terms.internal.iter().filter(|effect| effect.kind() == Kind::Spring).peekable();
+        if springs.peek().is_none() {
             return false;
         }
         let mut force = vec![0.0; self.coordinates()];
-        others.for_each(|effect| effect.add_force(1.0, self.start(), &mut force));
+        springs.for_each(|effect| effect.add_force(1.0, self.start(), &mut force));
         self.supports.to_frames(0.0, &mut force);
         self.norm(&force) > STRESSED * self.round_off
     }

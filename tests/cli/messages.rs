@@ -179,11 +179,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("free to slide", "[\"x\", \"y\", \"angle\"]", "[\"y\", \"angle\"]"),
     ("vibrations about nothing", "[analysis.static]", "[analysis.modal]\ncount = 3\nabout = \"equilbrium\""),
     ("two analyses", "[analysis.static]", "[analysis.static]\n[analysis.modal]\ncount = 3"),
-    (
-        "stages beside an analysis",
-        "[[probe]]",
-        "[[stage]]\nname = \"a\"\nanalysis.static = {}\n[[probe]]",
-    ),
+    ("stages beside an analysis", "[[probe]]", "[[stage]]\nname = \"a\"\nanalysis.static = {}\n[[probe]]"),
     (
         "unknown stage",
         "[analysis.static]",

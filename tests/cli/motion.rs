@@ -32,8 +32,9 @@ fn a_motion_goes_on_from_a_saved_state_as_if_it_had_not_stopped() {
 fn a_saved_state_that_does_not_fit_is_refused() {
     let folder = folder(&PENDULUM.replace("\"2.5 s\"", "0.02"));
     fs::write(folder.path().join("static.toml"), ROLL_UP).expect("a folder");
-    let buckling = PENDULUM.split("[analysis").next().expect("a scene").to_owned() + "[analysis.buckling]\ncount = 1\n";
-    fs::write(folder.path().join("buckling.toml"), buckling).expect("a folder");
+    let modal =
+        PENDULUM.split("[analysis").next().expect("a scene").to_owned() + "[analysis.modal]\ncount = 1\n";
+    fs::write(folder.path().join("modal.toml"), modal).expect("a folder");
     fs::write(folder.path().join("broken.json"), "{").expect("a folder");
     assert_eq!(status(&ancf(folder.path(), &["run", "scene.toml", "-o", "out"])), 0);
     let state = fs::read_to_string(folder.path().join("out/state.json")).expect("a state");
@@ -57,7 +58,7 @@ fn a_saved_state_that_does_not_fit_is_refused() {
             "beam `arm` had 14 nodes",
         ),
         (&[&["static.toml"], &from[..]].concat(), "the saved state does not fit this scene"),
-        (&[&["buckling.toml"], &from[..]].concat(), "buckling analysis starts from the stress-free state"),
+        (&[&["modal.toml"], &from[..]].concat(), "a modal analysis about the reference starts from"),
     ] {
         let output = ancf(folder.path(), &[&["run"], arguments].concat());
         assert_eq!(status(&output), 2, "{}", stderr(&output));

@@ -83,7 +83,8 @@ fn states_between_and_ends_are_found() {
     let system = bar();
     let mut equilibrium = Equilibrium::new(&system);
     let x = equilibrium.start();
-    let mut path = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 0.4, x).expect("a start");
+    let mut path =
+        Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 0.4, x).expect("a start");
     assert!(path.between(0.1).is_none(), "one point has nothing between");
     path.advance(1.0).expect("a step");
     path.advance(1.0).expect("a step");

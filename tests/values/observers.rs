@@ -156,13 +156,20 @@ fn a_motion_that_goes_on_is_told_from_where_and_to_when() {
     );
     let alone = watched(&dynamic("0.1", gauss), |_| false).0;
     assert!(alone.run().settings.iter().all(|(name, _)| name != "continued"));
+    for (saved, from) in [(&first, "the end of a motion"), (&still, "a static equilibrium")] {
+        let equilibrium = go_on(&format!("{ARM}analysis.static = {{}}\n"), saved).expect("an equilibrium");
+        let told = equilibrium.run.settings.iter().find(|(name, _)| name == "starts from");
+        assert_eq!(told.map(|(_, from)| from.as_str()), Some(from));
+    }
     for (analysis, name) in [
-        ("analysis.static = {}\n", "static"),
-        ("analysis.buckling.count = 1\n", "buckling"),
-        ("analysis.modal.count = 1\n", "modal"),
+        ("analysis.buckling.count = 1\n", "buckling analysis"),
+        ("analysis.modal.count = 1\n", "modal analysis about the reference"),
     ] {
-        let error = go_on(&format!("{ARM}{analysis}"), &first).expect_err("no motion");
-        assert_eq!(error.to_string(), format!("a {name} analysis does not start from a saved state"));
+        let error = go_on(&format!("{ARM}{analysis}"), &first).expect_err("from the reference");
+        assert_eq!(
+            error.to_string(),
+            format!("a {name} starts from the stress-free state, and from no other")
+        );
         assert_eq!(error.exit_status(), 2);
     }
 }

@@ -15,7 +15,11 @@ fn scene(text: &str) -> Scene {
 /// The results of all stages.
 fn solved(text: &str) -> Vec<Results> {
     let run = solve_stages(scene(text).stages(), Options::default());
-    assert!(run.failure.is_none(), "{}\n{text}", run.failure.map(|error| error.to_string()).unwrap_or_default());
+    assert!(
+        run.failure.is_none(),
+        "{}\n{text}",
+        run.failure.map(|error| error.to_string()).unwrap_or_default()
+    );
     run.results
 }
 
@@ -36,7 +40,8 @@ const ARM: &str = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 
     output = { reactions = true, section_forces = true }\n";
 const HELD: &str = "{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'leg', at = 'end', fix = ['x', 'y', 'angle'] }";
 const WEIGHT: &str = "gravity.acceleration = [0, -9.81]\n";
-const LOAD: &str = "distributed_force = [{ beam = 'arm', value = [0, -2] }, { beam = 'leg', value = [1, 0] }]\n";
+const LOAD: &str =
+    "distributed_force = [{ beam = 'arm', value = [0, -2] }, { beam = 'leg', value = [1, 0] }]\n";
 
 /// A scene with more supports, joints and effects, and this analysis.
 fn with(supports: &str, joints: &str, effects: &str, analysis: &str) -> String {
@@ -82,7 +87,10 @@ fn what_comes_and_goes_leads_to_the_same_equilibria() {
         ("drag", "{ beam = 'leg', normal = 2, flow = [1.5, 0] }"),
         ("buoyancy", "{ beam = 'arm', displaced_mass_per_length = 0.9 }"),
         ("point_mass", "{ beam = 'arm', at = 0.5, mass = 0.2 }"),
-        ("contact", "{ beam = 'arm', half_plane = { point = [0, -0.05], normal = [0, 1] }, stiffness = 1e4 }"),
+        (
+            "contact",
+            "{ beam = 'arm', half_plane = { point = [0, -0.05], normal = [0, 1] }, stiffness = 1e4 }",
+        ),
     ];
     let mut scenes = Vec::new();
     for (kind, table) in lists {
@@ -93,17 +101,25 @@ fn what_comes_and_goes_leads_to_the_same_equilibria() {
         scenes.push((kind, of(plain)(ALONE), of(staged)(THREE)));
     }
     let [plain, staged] = in_second("{ beam = 'arm', value = [0, -3.5], from = 0.2 }");
-    let own = |table: String| with("", "", &format!("{WEIGHT}{}", LOAD.replace("}]", &format!("}}, {table}]"))), "");
-    scenes.push(("distributed_force", own(plain).replace("\n[effect]", &format!("{ALONE}\n[effect]")), own(staged).replace("\n[effect]", &format!("{THREE}\n[effect]"))));
+    let own = |table: String| {
+        with("", "", &format!("{WEIGHT}{}", LOAD.replace("}]", &format!("}}, {table}]"))), "")
+    };
+    scenes.push((
+        "distributed_force",
+        own(plain).replace("\n[effect]", &format!("{ALONE}\n[effect]")),
+        own(staged).replace("\n[effect]", &format!("{THREE}\n[effect]")),
+    ));
     let without = with("", "", &format!("{WEIGHT}{LOAD}"), ALONE);
     let [plain, staged] = in_second("{ beam = 'arm', at = 'end', fix = ['y'], move.y = 0.1 }");
     // A support that comes later moves the beam from where it is then.
     let tip = solved_alone(&without).states().probes[0].samples.last().expect("a sample").y;
     let plain = plain.replace("move.y = 0.1", &format!("move.y = {}", 0.1 + tip));
-    let support = |table: &str, analysis: &str| with(&format!(", {table}"), "", &format!("{WEIGHT}{LOAD}"), analysis);
+    let support =
+        |table: &str, analysis: &str| with(&format!(", {table}"), "", &format!("{WEIGHT}{LOAD}"), analysis);
     scenes.push(("support", support(&plain, ALONE), support(&staged, THREE)));
-    let [plain, staged] =
-        in_second("{ type = 'weld', first = { beam = 'arm', at = 'end' }, second = { beam = 'leg', at = 'start' } }");
+    let [plain, staged] = in_second(
+        "{ type = 'weld', first = { beam = 'arm', at = 'end' }, second = { beam = 'leg', at = 'start' } }",
+    );
     let joint = |table: &str, analysis: &str| with("", table, &format!("{WEIGHT}{LOAD}"), analysis);
     scenes.push(("joint", joint(&plain, ALONE), joint(&staged, THREE)));
 
@@ -144,16 +160,16 @@ fn motions_go_on_with_what_is_there() {
     ] {
         let motion = "analysis.dynamic = { duration = 0.05, output_every = 0.01, radau.tolerance = 1e-6 }";
         let three = ["one", "two", "three"].map(|name| format!("{{ name = '{name}', {motion} }}")).join(", ");
-        let text = |table: &str, analysis: &str| {
-            with("", "", &format!("{WEIGHT}{kind} = [{table}]\n"), analysis)
-        };
+        let text =
+            |table: &str, analysis: &str| with("", "", &format!("{WEIGHT}{kind} = [{table}]\n"), analysis);
         let [plain, staged] = in_second(table);
         let staged = solved(&text(&staged, &format!("stage = [{three}]")));
         let (with, without) = (scene(&text(&plain, motion)), scene(&text("", motion)));
         let mut saved = None;
         for (stage, scene) in [&without, &with, &without].into_iter().enumerate() {
             let options = Options { start: saved.as_ref(), ..Options::default() };
-            let by_hand = scene.model().solve_with(scene.analysis(), options).expect("a motion").into_states();
+            let by_hand =
+                scene.model().solve_with(scene.analysis(), options).expect("a motion").into_states();
             let of_stage = staged[stage].states();
             assert_eq!(by_hand.parameter, of_stage.parameter, "{kind} {stage}");
             let same = by_hand.probes[0].samples == of_stage.probes[0].samples;
@@ -177,14 +193,13 @@ fn new_loads_grow_and_old_ones_stay() {
         probe = [{ name = 'tip', beam = 'arm', at = 'end' }]
         output = { reactions = true, section_forces = true }
         stage = [{ name = 'first', analysis.static.steps = 2 }, { name = 'more', analysis.static.steps = 4 }, { name = 'less', analysis.static.steps = 2 }]";
-    let [first, more, less]: [Written; 3] = stages(text).try_into().unwrap_or_else(|_| panic!("three stages"));
+    let [first, more, less]: [Written; 3] =
+        stages(text).try_into().unwrap_or_else(|_| panic!("three stages"));
     let is = |written: &Written, tips: &[f64]| {
-        for (column, factor) in [("tip.y", 1.0), ("tip.axial_force", 0.0), ("tip.bending_moment", 0.0)] {
-            let found = written.column("probes.csv", column);
-            assert_eq!(found.len(), tips.len());
-            for (found, expected) in found.iter().zip(tips) {
-                near(*found, factor * 1e-5 * expected, 1e-12, column);
-            }
+        let found = written.column("probes.csv", "tip.y");
+        assert_eq!(found.len(), tips.len());
+        for (found, expected) in found.iter().zip(tips) {
+            near(*found, 1e-5 * expected, 1e-12, "tip.y");
         }
         // The clamp carries all forces, those that fade included.
         for (column, factor) in [("support1.fy", -3.0), ("support1.moment", -3.0)] {
@@ -267,6 +282,78 @@ fn vibrations_are_those_about_the_stage_before() {
         let speed = (100.0_f64 * 1.01 / 0.01).sqrt();
         near(found, f64::from(n) / (2.0 * 1.01) * speed, 2e-3 * f64::from(n), "a frequency");
     }
+}
+
+/// What a hand does on a bow is the energy that the bow gains, and what the bow loses the arrow and
+/// the bow itself have as kinetic energy.
+#[test]
+fn a_bow_gives_back_what_the_hand_has_put_in() {
+    let page = include_str!("../../src/handbook/stages.md");
+    let text = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a scene");
+    let text = text.replace("analysis.static.steps = 8", "analysis.static.steps = 40");
+    let names: Vec<String> = scene(&text).stages().iter().map(|stage| stage.name.clone()).collect();
+    assert_eq!(names, ["rest", "brace", "draw", "tones", "loose"]);
+    let found = stages(&text);
+    let [brace, draw, loose] = [1, 2, 4].map(|stage| &found[stage]);
+    let (drawn, braced) = (draw.last("energy.csv", "total"), brace.last("energy.csv", "total"));
+    near(draw.column("energy.csv", "total")[0], braced, 1e-6, "total");
+    let pull = draw.column("reactions.csv", "support3.fx");
+    let work: f64 = pull.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) * (-0.4 / 40.0)).sum();
+    near(work, drawn - braced, 1e-2 * work, "work");
+    near(draw.last("probes.csv", "nock.x"), -0.55, 1e-12, "nock.x");
+    for total in loose.column("energy.csv", "total") {
+        near(total, drawn, 1e-4 * drawn, "total");
+    }
+    let speed = loose.last("probes.csv", "nock.vx");
+    assert!(0.5 * 0.012 * speed * speed > 0.5 * loose.last("energy.csv", "kinetic"), "{speed}");
+}
+
+/// In two files a state says what acted in it: what both scenes have stays, what is new grows.
+#[test]
+fn statics_goes_on_from_the_state_of_another_scene() {
+    let force = |value: &str| format!("force = [{{ beam = 'arm', at = 'end', value = [0, {value}] }}]\n");
+    let of = |effects: &str, steps: usize| {
+        scene(&with("", "", &format!("{WEIGHT}{effects}"), &format!("analysis.static.steps = {steps}")))
+    };
+    let (first, second) = (of(&force("-0.5"), 1), of(&force("0.9"), 2));
+    let before = first.model().solve(first.analysis()).expect("an equilibrium").into_states();
+    let options = Options { start: before.saved.as_ref(), ..Options::default() };
+    let going_on = second.model().solve_with(second.analysis(), options).expect("an equilibrium");
+    let alone = |value: &str| of(&force(value), 1).model().solve(first.analysis()).expect("an equilibrium");
+    states_agree(&going_on, &alone("0.9"), 1e-8, "the end");
+    // −0.5 N fades while 0.9 N grows: 0.2 N half-way.
+    let (half, tip) = (&going_on.states().probes[0].samples[1], alone("0.2"));
+    let tip = tip.states().probes[0].samples.last().expect("a sample").y;
+    near(half.y, tip, 1e-8, "half-way");
+}
+
+/// Stages need nodes of all stages in each, a basis by name, and say in which of them something went
+/// wrong.
+#[test]
+fn stages_share_their_nodes_and_name_themselves_in_errors() {
+    let [_, joint] = in_second(
+        "{ type = 'weld', first = { beam = 'arm', at = 0.6180339887 }, second = { beam = 'leg', at = 'start' } }",
+    );
+    let text = with("", &joint, &format!("{WEIGHT}{LOAD}"), THREE);
+    for stage in scene(&text).stages() {
+        assert!(stage.model.breaks(0).contains(&0.6180339887), "{}", stage.name);
+    }
+    let open = text.replace(", \n     basis.ancf.elements = 8", "").replace("basis.ancf.elements = 8", "");
+    let refused = parse("scene.toml", &open.replace("mass_per_length = 0.5,  }", "mass_per_length = 0.5 }"));
+    assert!(
+        refused
+            .expect_err("no basis")
+            .to_string()
+            .contains("has no basis, which a scene with stages must name")
+    );
+    let timed = text.replace("stiffness = 2,", "stiffness = 2,").replace(
+        "distributed_force = [{ beam = 'arm', value = [0, -2] }",
+        "distributed_force = [{ beam = 'arm', value = [0, -2], in_time.step.start = 1, stage = 'three' }",
+    );
+    let run = solve_stages(scene(&timed).stages(), Options::default());
+    let failure = run.failure.expect("a law without time").to_string();
+    assert!(failure.starts_with("stage `three`: a load follows a law of time"), "{failure}");
+    assert_eq!(run.results.len(), 2);
 }
 
 /// With friction the order matters: pressed first and then pushed, a rod sticks; pushed first and

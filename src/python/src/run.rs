@@ -72,7 +72,8 @@ pub fn solve(py: Python<'_>, scene: &ancf::Scene, forces: &[PythonForce], run: R
     let failed = Failed::default();
     let scene = load::with_forces(py, scene, forces, &failed);
     // The results of a scene with stages are those of the last one.
-    let mut analysis = scene.stages().last().map_or_else(|| scene.analysis(), |stage| &stage.analysis).clone();
+    let mut analysis =
+        scene.stages().last().map_or_else(|| scene.analysis(), |stage| &stage.analysis).clone();
     if !scene.stages().is_empty() && (duration.is_some() || estimate) {
         return Err(PyValueError::new_err("this scene has stages, and this takes one analysis"));
     }

@@ -7,8 +7,8 @@ use serde::Deserialize;
 use super::{AlongBeam, AlongVector, LawTable};
 use crate::scene::quantity::{
     Angle, Curvature, DragCoefficient, Force, ForcePerLength, Frequency, Length, Mass, MassPerLength, Moment,
-    Positive, Quantity, Ratio, RotaryInertia, RotaryInertiaPerLength, Stress, Time, TorsionalDamping,
-    TranslationalDamping, Velocity, ViscousDamping,
+    Permittivity, Positive, Quantity, Ratio, RotaryInertia, RotaryInertiaPerLength, Stress, Time,
+    TorsionalDamping, TranslationalDamping, Velocity, ViscousDamping, Voltage,
 };
 use crate::scene::value::{At, Located, Vector};
 
@@ -189,6 +189,38 @@ pub struct BuoyancyTable {
     pub from: Option<Located<At>>,
     /// Arc length up to which it acts; the beam's end when left out.
     pub to: Option<Located<At>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
+}
+
+/// Attraction by a flat electrode, as between parallel plates: ½ ε w V²/g² (1 + β g/w) per length.
+/// In statics its force, the square of the voltage, grows with the load factor.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ElectrostaticTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Voltage V between the beam and the electrode.
+    pub voltage: Quantity<Voltage, Positive>,
+    /// The electrode's surface, from which the gap g is measured.
+    pub electrode: HalfPlaneTable,
+    /// Width w of the plates, across the plane.
+    pub width: Quantity<Length, Positive>,
+    /// β of the field beyond the edges: 0.65 for plates far wider than the gap; none when left out.
+    pub fringe: Option<Quantity<Ratio, Positive>>,
+    /// Distance of the beam's surface from its centreline; that of its `section` when left out, and
+    /// zero without one.
+    pub half_thickness: Option<Quantity<Length, Positive>>,
+    /// ε of what is in the gap; that of the vacuum when left out.
+    pub permittivity: Option<Quantity<Permittivity, Positive>>,
+    /// Arc length from which on the electrode faces the beam; the beam's start when left out.
+    pub from: Option<Located<At>>,
+    /// Arc length up to which it does; the beam's end when left out.
+    pub to: Option<Located<At>>,
+    /// In a motion: the law of time that multiplies the voltage.
+    pub in_time: Option<Located<LawTable>>,
     /// Stage from whose start on it takes part; the first when left out.
     pub stage: Option<Located<String>>,
     /// Stage from whose start on it takes part no more; it stays to the end when left out.

@@ -63,6 +63,7 @@ staged!(
     ActuationTable,
     DragTable,
     BuoyancyTable,
+    ElectrostaticTable,
     MovingForceTable,
     ContactTable,
 );
@@ -87,6 +88,7 @@ impl SceneTable {
             actuation,
             drag,
             buoyancy,
+            electrostatic,
             moving_force,
             contact,
         } = &mut self.effect;
@@ -103,6 +105,7 @@ impl SceneTable {
         actuation.retain(|table| keep(table.during()));
         drag.retain(|table| keep(table.during()));
         buoyancy.retain(|table| keep(table.during()));
+        electrostatic.retain(|table| keep(table.during()));
         moving_force.retain(|table| keep(table.during()));
         contact.retain(|table| keep(table.during()));
     }
