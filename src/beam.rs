@@ -1,9 +1,11 @@
 //! A beam: its stress-free shape, its section, its discretisation, and points along it.
 
 mod along;
+mod elastic;
 mod section;
 
 pub use along::Along;
+pub use elastic::{Elastic, NotElastic};
 pub use section::{Layer, Section};
 
 use crate::basis::{Discretization, Quadrature};

@@ -21,7 +21,7 @@ pub use stage::Stage;
 pub use velocity::{InitialVelocity, Profile};
 
 pub use crate::basis::{Discretization, Kernel, Nodes, SideCondition};
-pub use crate::beam::{Along, Beam, GaussPoints, Layer, Place, Section, StrainMeasure};
+pub use crate::beam::{Along, Beam, Elastic, GaussPoints, Layer, Place, Section, StrainMeasure};
 pub use crate::centreline::Centreline;
 pub use crate::law::{Law, Tabulated};
 

@@ -153,8 +153,14 @@ fn layout(model: &Model, system: &System) -> Vec<SavedBeam> {
             name: name.clone(),
             centreline: format!("{centreline:?}"),
             discretization: format!("{discretization:?}"),
-            stiffness: [&section.axial_stiffness, &section.bending_stiffness]
-                .map(|quantity| quantity.as_ref().map(SavedQuantity::from)),
+            stiffness: [
+                (&section.axial_stiffness, &section.axial_law),
+                (&section.bending_stiffness, &section.bending_law),
+            ]
+            .map(|(quantity, law)| match law {
+                Some(law) => Some(SavedQuantity::Varying(format!("{law:?}"))),
+                None => quantity.as_ref().map(SavedQuantity::from),
+            }),
             mass: section.mass_per_length.as_ref().map(SavedQuantity::from),
             nodes: part.basis.nodes().to_vec(),
         }

@@ -1,7 +1,8 @@
 //! The sections of a beam: what they resist, what they weigh, and how strain and stress are
 //! distributed over them.
 
-use super::Along;
+use super::{Along, Elastic};
+use std::sync::Arc;
 
 /// Stiffnesses and mass of the sections along a beam. A quantity that is `None` is not named in the
 /// scene and not simulated; a beam without an axial stiffness keeps its length.
@@ -18,6 +19,10 @@ pub struct Section {
     pub axial_stiffness: Option<Along>,
     /// EI \[N m²\].
     pub bending_stiffness: Option<Along>,
+    /// N of the axial strain, where it is not EA ε; EA is then the largest slope.
+    pub axial_law: Option<Arc<Elastic>>,
+    /// M of the curvature, where it is not EI κ; EI is then the largest slope.
+    pub bending_law: Option<Arc<Elastic>>,
     /// EB \[N m\], where the centreline is not the neutral line of bending; it needs both
     /// stiffnesses.
     pub coupling: Option<Along>,
@@ -57,6 +62,11 @@ impl Section {
     #[must_use]
     pub fn weighing(self, mass_per_length: impl Into<Along>) -> Self {
         Self { mass_per_length: Some(mass_per_length.into()), ..self }
+    }
+
+    /// Whether strain and curvature are proportional to axial force and bending moment.
+    pub fn is_linear(&self) -> bool {
+        self.axial_law.is_none() && self.bending_law.is_none()
     }
 
     /// The stiffnesses and the mass that are given.

@@ -31,6 +31,9 @@ impl Part for Actuation {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("pre-strain", self.beam)?;
         let lacks = |quantity| BuildError::missing(beam, quantity, "pre-strain");
+        if !beam.section.is_linear() {
+            return Err(lacks("stiffness that is a number"));
+        }
         let Section { axial_stiffness, bending_stiffness, coupling, .. } = &beam.section;
         let product = |value: &Option<Along>, stiffness: &Option<Along>, name: &'static str| match value {
             None => Ok(None),

@@ -1,8 +1,10 @@
 //! Bending strain energy ½ EI κ².
 
+use super::BendByLaw;
 use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
 use crate::lanes::{self, Lanes, Pair, Points, Real, Square, cross, dot, outer};
 use nalgebra::{Matrix2, Vector2};
+use std::sync::Arc;
 
 /// The resistance of a beam to bending; a section without bending stiffness has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +16,11 @@ pub struct BeamBend {
 impl Part for BeamBend {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("bending", self.beam)?;
+        if let Some(law) = &beam.section.bending_law {
+            let extent = Extent::Beam(self.beam, beam.gauss_points.bend_rule());
+            let law = Arc::clone(law);
+            return assembly.elastic(Kind::Bend, extent, |z: Vec<[Vector2<f64>; 2]>| BendByLaw::new(law, &z));
+        }
         let Some(stiffness) = &beam.section.bending_stiffness else { return Ok(()) };
         // Only a curved beam needs to store its reference curvatures.
         let straight = assembly.discretized(self.beam).straight;

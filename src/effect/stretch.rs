@@ -1,9 +1,11 @@
 //! Axial strain energy ½ EA ε².
 
+use super::StretchByLaw;
 use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
 use crate::beam::StrainMeasure;
 use crate::lanes::{self, Lanes, Pair, Points, Real, Square, dot, outer};
 use nalgebra::Vector2;
+use std::sync::Arc;
 
 /// The resistance of a beam to stretch; a section without axial stiffness has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +17,18 @@ pub struct BeamStretch {
 impl Part for BeamStretch {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("stretch", self.beam)?;
+        if let Some(law) = &beam.section.axial_law {
+            let extent = Extent::Beam(self.beam, beam.gauss_points.stretch_rule());
+            let fields = |z: Vec<[Vector2<f64>; 1]>| z.into_iter().map(|[r]| r);
+            let law = Arc::clone(law);
+            return match beam.strain {
+                StrainMeasure::Green => {
+                    assembly.elastic(Kind::Stretch, extent, |z| StretchByLaw::<Green>::new(law, fields(z)))
+                }
+                StrainMeasure::Engineering => assembly
+                    .elastic(Kind::Stretch, extent, |z| StretchByLaw::<Engineering>::new(law, fields(z))),
+            };
+        }
         let Some(stiffness) = beam.section.uncoupled_axial_stiffness() else { return Ok(()) };
         // Only a curved beam needs to store its reference strains.
         let straight = assembly.discretized(self.beam).straight;

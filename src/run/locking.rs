@@ -67,6 +67,10 @@ impl Locking {
         for (beam, part) in model.beams.iter().zip(system.beams()) {
             let points = beam.gauss_points;
             let Some(axial_stiffness) = beam.section.axial_stiffness.clone() else { continue };
+            // What it compares are energies of linear springs.
+            if !beam.section.is_linear() {
+                continue;
+            }
             // Stretch is resisted at no more points than a cell can follow.
             let follows = points.stretch <= if points.lobatto { 3 } else { 2 };
             if beam.section.bending_stiffness.is_some() && follows {

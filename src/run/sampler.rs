@@ -2,6 +2,7 @@
 
 use super::RunError;
 use super::angle;
+use super::laws::Reach;
 use super::locking::Locking;
 use super::strings;
 use crate::assembly::{Actions, BuildError, InternalVariables, Side, nodes};
@@ -522,6 +523,7 @@ impl<'a> Sampler<'a> {
         let mut trajectory = self.empty(analysis);
         let count = solution.states.len();
         let mut locking = self.locking.clone();
+        let mut reach = Reach::new(self.model);
         let states = solution.states.iter().zip(&solution.variables).zip(&solution.work);
         for (i, (((load, x), variables), work)) in states.enumerate() {
             let q = self.coordinates_of(x);
@@ -537,6 +539,9 @@ impl<'a> Sampler<'a> {
             }
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
+                if reach.watches() {
+                    reach.see(&self.shape(q), &trajectory.run.undeformed);
+                }
             }
         }
         if let (Some((load, x)), Some(variables)) = (solution.states.last(), solution.variables.last()) {
@@ -549,6 +554,7 @@ impl<'a> Sampler<'a> {
         let work = trajectory.energy.last().map_or(0.0, |energy| energy.potential.abs());
         trajectory.run.warnings.extend(locking.jammed(&trajectory.last, work));
         trajectory.run.warnings.extend(locking.warnings());
+        trajectory.run.warnings.extend(reach.warnings());
         trajectory.history = solution.history.clone();
         trajectory.run.statistics = solution.statistics;
         if let Some(UnstableMechanism { load, unstable, free }) = solution.pressed {
@@ -712,6 +718,7 @@ impl<'a> Sampler<'a> {
         trajectory.run.settings.push(("integrator".into(), settings.integrator.to_string()));
         let count = solution.states.len();
         let mut locking = self.locking.clone();
+        let mut reach = Reach::new(self.model);
         for reactions in &solution.reactions {
             self.record_reactions(&mut trajectory, reactions);
         }
@@ -731,6 +738,9 @@ impl<'a> Sampler<'a> {
             }
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
+                if reach.watches() {
+                    reach.see(&self.shape(q), &trajectory.run.undeformed);
+                }
             }
         }
         let least = LEAST_ENERGY * self.system.stiffness() * self.system.length();
@@ -760,6 +770,7 @@ impl<'a> Sampler<'a> {
             ));
         }
         trajectory.run.warnings.extend(locking.warnings());
+        trajectory.run.warnings.extend(reach.warnings());
         let divided = solution.statistics.rejected_steps;
         if divided > 0 && matches!(settings.integrator.step_control(), StepControl::Fixed(_)) {
             let smallest = solution.history.iter().map(|r| r.step).fold(f64::INFINITY, f64::min);

@@ -100,6 +100,11 @@ pub struct BeamTable {
     /// Bending stiffness EI, in place of `youngs_modulus` and `second_moment`. A beam without any
     /// is a string.
     pub bending_stiffness: Option<Located<AlongBeam<BendingStiffness, Positive>>>,
+    /// Axial force against axial strain, in place of an axial stiffness; no force falls, and that at
+    /// no strain is zero. Damping by stiffness takes the largest slope.
+    pub axial_law: Option<Located<AxialLawTable>>,
+    /// Bending moment against curvature, in place of a bending stiffness, likewise.
+    pub bending_law: Option<Located<BendingLawTable>>,
     /// Mass per length ρA, in place of `density` and `area`.
     pub mass_per_length: Option<Located<AlongBeam<MassPerLength, Positive>>>,
     /// How the axial strain is measured.

@@ -2,11 +2,14 @@
 
 use std::f64::consts::PI;
 use std::ops::Range;
+use std::sync::Arc;
 
-use crate::model::{Along, Layer, Section};
+use crate::beam::NotElastic;
+use crate::model::{Along, Elastic, Layer, Section};
 
 use super::error::Fault;
-use super::file::{BeamTable, LayerTable, SectionTable};
+use super::file::{AxialLawTable, BeamTable, BendingLawTable, LayerTable, SectionTable};
+use super::quantity::{Measure, Quantity};
 use super::to_along::along;
 use super::value::Located;
 
@@ -28,6 +31,92 @@ type Given = Option<(Along, Range<usize>)>;
 
 /// The section of the beam `label`, which is `length` \[m\] long.
 pub(super) fn section(label: &str, table: &BeamTable, length: f64) -> Result<Section, Fault> {
+    let mut section = linear_section(label, table, length)?;
+    if let Some(law) = &table.axial_law {
+        let AxialLawTable { strain, force } = law.get();
+        let law = elastic(label, law, ("axial_law", "strain", "force"), (strain, force))?;
+        refuse_beside(label, table, "axial_law", ("axial_stiffness", &section.axial_stiffness))?;
+        section.axial_stiffness = Some(Along::Constant(law.stiffness()));
+        section.axial_law = Some(Arc::new(law));
+    }
+    if let Some(law) = &table.bending_law {
+        let BendingLawTable { curvature, moment } = law.get();
+        let law = elastic(label, law, ("bending_law", "curvature", "moment"), (curvature, moment))?;
+        refuse_beside(label, table, "bending_law", ("bending_stiffness", &section.bending_stiffness))?;
+        section.bending_stiffness = Some(Along::Constant(law.stiffness()));
+        section.bending_law = Some(Arc::new(law));
+    }
+    Ok(section)
+}
+
+/// Refuses a law beside a stiffness, or beside sections whose shape asks for one.
+fn refuse_beside(
+    label: &str,
+    table: &BeamTable,
+    law: &str,
+    (key, stiffness): (&str, &Option<Along>),
+) -> Result<(), Fault> {
+    let span = match law {
+        "axial_law" => table.axial_law.as_ref().map(Located::span),
+        _ => table.bending_law.as_ref().map(Located::span),
+    };
+    let span = span.unwrap_or(0..0);
+    if stiffness.is_some() {
+        return Err(twice(label, law, &format!("by `{key}`, or what it follows from"), span));
+    }
+    if table.section.is_some() {
+        return Err(Fault::new(span, format!("beam `{label}` has `{law}` and a `section`, whose stresses are linear"))
+            .help("give `mass_per_length` and, where it matters, `half_thickness` of contacts in place of `section`"));
+    }
+    Ok(())
+}
+
+/// The elastic law of a table with the keys `strain` and `force`.
+fn elastic<T, A: Measure, B: Measure>(
+    label: &str,
+    table: &Located<T>,
+    (law, strain, force): (&str, &str, &str),
+    (strains, forces): (&[Located<Quantity<A>>], &[Located<Quantity<B>>]),
+) -> Result<Elastic, Fault> {
+    let of_strains: Vec<f64> = strains.iter().map(|value| value.get().si).collect();
+    let of_forces: Vec<f64> = forces.iter().map(|value| value.get().si).collect();
+    let fault = |span: Range<usize>, what: String| {
+        Fault::new(span, format!("`{law}` of beam `{label}`: {what}")).help(format!(
+            "such as `{law} = {{ {strain} = [-0.01, 0.0, 0.02], {force} = [0.0, 0.0, 800.0] }}`: rising, without falling {force}s, zero at zero"
+        ))
+    };
+    Elastic::new(of_strains.clone(), of_forces.clone()).map_err(|reason| match reason {
+        NotElastic::Lengths => fault(
+            table.span(),
+            format!(
+                "it needs two points or more, and found {} of `{strain}` and {} of `{force}`",
+                of_strains.len(),
+                of_forces.len()
+            ),
+        ),
+        NotElastic::Strain(i) => fault(
+            strains[i].span(),
+            format!("{} is not larger than the {strain} before it, {}", of_strains[i], of_strains[i - 1]),
+        ),
+        NotElastic::Force(i) => fault(
+            forces[i].span(),
+            format!(
+                "{} is smaller than the {force} before it, {}: what softens so has no energy to hold it",
+                of_forces[i],
+                of_forces[i - 1]
+            ),
+        ),
+        NotElastic::AtZero(at_zero) => fault(
+            table.span(),
+            format!("the {force} is {at_zero} where the {strain} is zero, and must be zero there"),
+        ),
+        NotElastic::Flat => {
+            fault(table.span(), format!("the {force} is the same everywhere, and resists nothing"))
+        }
+    })
+}
+
+fn linear_section(label: &str, table: &BeamTable, length: f64) -> Result<Section, Fault> {
     if let Some(section) = &table.section
         && let Some(layers) = &section.get().layers
     {
@@ -98,6 +187,7 @@ pub(super) fn section(label: &str, table: &BeamTable, length: f64) -> Result<Sec
         mass_per_length: either(mass, "mass_per_length", with_density, (&area, "area"))?,
         rotary_inertia: density.zip(second_moment).map(|((a, _), (b, _))| a.product(&b)),
         layers: layers.into_iter().collect(),
+        ..Section::default()
     })
 }
 
@@ -273,5 +363,6 @@ fn of_layers(
         mass_per_length: usable("mass_per_length", sum(&inertia[0]))?,
         rotary_inertia: sum(&inertia[1]),
         layers: made,
+        ..Section::default()
     })
 }

@@ -36,5 +36,5 @@ fn printed_scenes_run_as_printed() {
             }
         }
     }
-    assert_eq!(count, 7, "one scene in README, one each on motion, mechanisms and stages, three on sections");
+    assert_eq!(count, 8, "one scene in README, one each on motion, mechanisms and stages, four on sections");
 }

@@ -42,6 +42,10 @@ fn blocks() -> Vec<(&'static str, Vec<Kind>)> {
         ("[[effect.foundation]]\nbeam = 'arm'\nstiffness = [0.0, 1.0]", vec![Kind::Foundation]),
         ("[[effect.actuation]]\nbeam = 'arm'\nstrain = 1e-3", vec![Kind::PreStrain]),
         ("[[effect.drag]]\nbeam = 'arm'\nnormal = 1.0", vec![Kind::Drag]),
+        (
+            "[[effect.electrostatic]]\nbeam = 'arm'\nvoltage = 1\nwidth = 1\nelectrode = { point = [0, -1], normal = [0, 1] }",
+            vec![Kind::Electrostatic],
+        ),
         ("[[effect.moving_force]]\nbeam = 'arm'\nvalue = [0.0, 1.0]\nspeed = 2.0", vec![Kind::MovingForce]),
         (
             "[[effect.contact]]\nbeam = 'arm'\nstiffness = 1e3\ncircle = { center = [0.5, -1.0], radius = 0.5 }\n\

@@ -85,6 +85,10 @@ fn what_comes_and_goes_leads_to_the_same_equilibria() {
         ("foundation", "{ beam = 'arm', stiffness = [3, 30] }"),
         ("actuation", "{ beam = 'arm', strain = 1e-4, curvature = 0.8 }"),
         ("drag", "{ beam = 'leg', normal = 2, flow = [1.5, 0] }"),
+        (
+            "electrostatic",
+            "{ beam = 'arm', voltage = 400, width = 0.5, permittivity = 1e-6, electrode = { point = [0, -0.8], normal = [0, 1] } }",
+        ),
         ("buoyancy", "{ beam = 'arm', displaced_mass_per_length = 0.9 }"),
         ("point_mass", "{ beam = 'arm', at = 0.5, mass = 0.2 }"),
         (

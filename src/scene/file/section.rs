@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::AlongBeam;
-use crate::scene::quantity::{Density, Length, Positive, Stress};
+use crate::scene::quantity::{Curvature, Density, Force, Length, Moment, Positive, Quantity, Ratio, Stress};
 use crate::scene::value::Located;
 
 /// The shape of a beam's sections: exactly one of the kinds. Stiffnesses follow with the beam's
@@ -67,4 +67,28 @@ pub struct LayerTable {
     /// Distance of its middle from the centreline, to the left seen along the beam. Where no layer
     /// has one, layers lie on each other, and the centreline is in the middle of all.
     pub offset: Option<Located<AlongBeam<Length>>>,
+}
+
+/// Axial force as a piecewise linear function of the axial strain; straight on beyond its ends.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AxialLawTable {
+    /// Rising.
+    #[schemars(length(min = 2))]
+    pub strain: Vec<Located<Quantity<Ratio>>>,
+    /// As many, none smaller than the one before.
+    #[schemars(length(min = 2))]
+    pub force: Vec<Located<Quantity<Force>>>,
+}
+
+/// Bending moment as a piecewise linear function of the curvature; straight on beyond its ends.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BendingLawTable {
+    /// Rising.
+    #[schemars(length(min = 2))]
+    pub curvature: Vec<Located<Quantity<Curvature>>>,
+    /// As many, none smaller than the one before.
+    #[schemars(length(min = 2))]
+    pub moment: Vec<Located<Quantity<Moment>>>,
 }

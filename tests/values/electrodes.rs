@@ -1,0 +1,95 @@
+//! Attraction by electrodes.
+
+use super::{Written, near};
+use ancf::effect::Electrostatic;
+use ancf::scene::parse;
+
+/// A stiff plate of 1 mm on a spring at its middle, 10 µm above an electrode: the spring carries
+/// k x = ½ ε w L V²/(g − x)² (1 + β (g − x)/w).
+fn plate(more: &str, electrode: &str, analysis: &str) -> String {
+    format!(
+        "beam.plate = {{ start = [0, 0], end = ['1 mm', 0], axial_stiffness = '10 N', bending_stiffness = 1e-6, \
+         mass_per_length = 1e-6, basis.ancf.elements = 4 }}
+        {more}
+        effect.electrostatic = [{{ beam = 'plate', voltage = '10 V', width = '100 µm', electrode = {{ point = [0, '-10 µm'], normal = [0, 2] }}{electrode} }}]
+        probe = [{{ name = 'middle', beam = 'plate', at = '0.5 mm' }}]
+        {analysis}\n"
+    )
+}
+
+const HELD: &str = "support = [{ beam = 'plate', at = 'start', fix = ['x', 'angle'] }]
+    effect.spring = [{ beam = 'plate', at = '0.5 mm', stiffness = '0.5 N/m' }]";
+
+const GAP: f64 = 1e-5;
+
+/// The force at the distance `gap` under the square of the voltage that is `factor` times that of
+/// 10 V.
+fn force(factor: f64, gap: f64, length: f64, fringe: f64) -> f64 {
+    0.5 * 8.8541878128e-12 * 1e-4 * length * 100.0 * factor / (gap * gap) * (1.0 + fringe * gap / 1e-4)
+}
+
+/// The path through pull-in, which is at a third of the gap without the field beyond the edges.
+#[test]
+fn a_plate_on_a_spring_is_pulled_in() {
+    for (electrode, length, fringe) in
+        [("", 1e-3, 0.0), (", fringe = 0.65", 1e-3, 0.65), (", from = '0.2 mm', to = '0.8 mm'", 6e-4, 0.0)]
+    {
+        let path = "analysis.static.arc_length = { until_probe = { probe = 'middle', y = '-7 µm' }, max_step = 0.01 }";
+        let found = Written::of(&plate(HELD, electrode, path));
+        let (loads, ys) = (found.column("probes.csv", "load"), found.column("probes.csv", "middle.y"));
+        assert!(loads.len() > 20, "{loads:?}");
+        for (load, y) in loads.iter().zip(&ys) {
+            near(force(*load, GAP + y, length, fringe), -0.5 * y, 1e-4 * 0.5 * GAP, electrode);
+        }
+        let largest = loads.iter().copied().fold(0.0, f64::max);
+        if fringe == 0.0 {
+            let pull_in = 8.0 * 0.5 * GAP.powi(3) / (27.0 * 2.0 * force(1.0, 1.0, length, 0.0));
+            near(largest, pull_in, 1e-2 * pull_in, "pull-in");
+            near(Electrostatic::VACUUM, 8.8541878128e-12, 1e-21, "ε");
+        }
+        // The potential of the plates.
+        let energy = found.last("energy.csv", "potential");
+        let gap = GAP + ys.last().expect("a record");
+        let (a, load) = (force(1.0, 1.0, length, 0.0), *loads.last().expect("a record"));
+        let potential = -a * (1.0 / gap - 1.0 / GAP) + a * fringe / 1e-4 * (gap / GAP).ln();
+        near(energy, load * potential, 2e-4 * (load * potential).abs(), "potential");
+    }
+}
+
+/// In a motion the law multiplies the voltage, so that half of it makes a quarter of the force; a
+/// free plate falls by ½ f/m t². Permittivity and half thickness are those of the scene.
+#[test]
+fn a_free_plate_is_attracted_by_the_square_of_the_voltage() {
+    let motion = "analysis.dynamic = { duration = '1 us', output_every = '1 us' }";
+    let law = ", half_thickness = '2 µm', permittivity = '17.7083756256 pF/m', in_time.polynomial = [0.5]";
+    let found = Written::of(&plate("", law, motion));
+    let acceleration = 2.0 * force(0.25, 8e-6, 1e-3, 0.0) / (1e-6 * 1e-3);
+    near(found.last("probes.csv", "middle.y"), -0.5 * acceleration * 1e-12, 1e-3 * acceleration * 1e-12, "y");
+    // What the plates lose is what the plate moves with.
+    let at = |column: &str| found.last("energy.csv", column);
+    near(at("kinetic"), at("work"), 1e-3 * at("kinetic"), "energy");
+}
+
+/// The tip of a switch lowers its own frequency: ω² = (k − 2 k x/(g − x))/m of a plate on a spring.
+#[test]
+fn an_electrode_softens_a_spring() {
+    let scene = plate(HELD, "", "analysis.modal = { count = 1, about = 'equilibrium' }");
+    let found = Written::of(&scene.replace("'10 V'", "'3 V'"));
+    let x = -found.last("probes.csv", "middle.y");
+    near(force(0.09, GAP - x, 1e-3, 0.0), 0.5 * x, 1e-9, "equilibrium");
+    let omega = ((0.5 - 2.0 * 0.5 * x / (GAP - x)) / 1e-9_f64).sqrt();
+    near(found.last("frequencies.csv", "frequency") * std::f64::consts::TAU, omega, 2e-3 * omega, "ω");
+}
+
+#[test]
+fn an_electrode_has_a_side() {
+    let wrong = plate(HELD, "", "analysis.static = {}").replace("normal = [0, 2]", "normal = [0, -2]");
+    let said = parse("scene.toml", &wrong).expect_err("behind the electrode").to_string();
+    assert!(said.contains("begins") && said.contains("behind the electrode at s = 0 m"), "{said}");
+    let thick = plate(HELD, ", half_thickness = '10 µm'", "analysis.static = {}");
+    assert!(parse("scene.toml", &thick).is_err());
+    let pulled = plate(HELD, "", "analysis.static = {}").replace("'10 V'", "'60 V'");
+    let scene = parse("scene.toml", &pulled).expect("a scene");
+    let failed = scene.model().solve(scene.analysis()).expect_err("pulled in");
+    assert!(failed.to_string().contains("no equilibrium beyond load factor"), "{failed}");
+}

@@ -1,0 +1,157 @@
+//! Elastic laws that are tables: force against strain, moment against curvature.
+
+use super::{Written, near};
+use ancf::scene::parse;
+use std::f64::consts::PI;
+
+const ROPE: &str = "{ strain = [-0.05, 0, 0.02, 0.06], force = ['0 N', '0 N', '40 N', '200 N'] }";
+
+fn pulled(basis: &str, strain: &str, law: &str, force: f64) -> Written {
+    Written::of(&format!(
+        "beam.bar = {{ start = [0, 0], end = [2, 0], axial_law = {law}, bending_stiffness = 1, strain = '{strain}', basis.{basis} }}
+        support = [{{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }}]
+        effect.force = [{{ beam = 'bar', at = 'end', value = [{force}, 0] }}]
+        probe = [{{ name = 'end', beam = 'bar', at = 'end' }}]
+        analysis.static = {{}}\n"
+    ))
+}
+
+/// A bar is as long as its law says, on each piece of it, and stores the area below the law.
+#[test]
+fn a_bar_follows_its_law() {
+    for basis in ["ancf.elements = 3", "rpim.nodes = 4"] {
+        let law = "{ strain = [-0.1, 0, 0.02, 0.06], force = [-300, 0, 40, 200] }";
+        for (force, strain, energy) in [
+            (20.0, 0.01, 0.1),
+            (40.0, 0.02, 0.4),
+            (120.0, 0.04, 0.4 + 0.02 * 80.0),
+            (-150.0, -0.05, 0.5 * 150.0 * 0.05),
+        ] {
+            let found = pulled(basis, "engineering", law, force);
+            near(found.last("probes.csv", "end.x"), 2.0 * (1.0 + strain), 1e-9, "end.x");
+            near(found.last("energy.csv", "stretch"), 2.0 * energy, 1e-9, "stretch");
+        }
+        // Green's strain: N is the derivative by ε, and the force is N |r'|.
+        let found = pulled(basis, "green", law, 20.0);
+        let x = 0.5 * found.last("probes.csv", "end.x");
+        near(2000.0 * 0.5 * (x * x - 1.0) * x, 20.0, 1e-8, "Green's force");
+    }
+}
+
+/// A beam under a couple at its end is a circle of the curvature at which its law has that moment.
+#[test]
+fn a_beam_bends_by_its_law() {
+    let text = |moment: f64, arc: bool| {
+        let shape = if arc {
+            "arc = { center = [0, 2], radius = 2, from = '-90 deg', to = '-61.3521127 deg' }"
+        } else {
+            "start = [0, 0], end = [1, 0]"
+        };
+        format!(
+            "beam.arm = {{ {shape}, axial_stiffness = 1e4, basis.ancf.elements = 12, \
+             bending_law = {{ curvature = [-1, 1, 3], moment = ['-2 N m', 2, 3] }} }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+            effect.moment = [{{ beam = 'arm', at = 'end', value = {moment} }}]
+            probe = [{{ name = 'end', beam = 'arm', at = 'end' }}]
+            analysis.static = {{}}\n"
+        )
+    };
+    for (moment, curvature, energy) in [(1.0, 0.5, 0.25), (2.5, 2.0, 1.0 + 2.25), (-1.0, -0.5, 0.25)] {
+        let found = Written::of(&text(moment, false));
+        near(found.last("probes.csv", "end.angle"), curvature, 1e-4, "angle");
+        near(found.last("energy.csv", "bend"), energy, 2e-4, "bend");
+        // Of a curved beam the change of the curvature counts.
+        let arc = Written::of(&text(moment, true));
+        near(arc.last("probes.csv", "end.angle"), 0.5 + curvature, 2e-4, "angle of the arc");
+    }
+}
+
+/// A rope that takes no compression: between two holders nearer than its length it hangs slack, in
+/// a catenary, and where they are pulled apart it has the force of its law.
+#[test]
+fn a_rope_takes_no_compression() {
+    let text = |apart: f64, weight: f64| {
+        format!(
+            "beam.rope = {{ start = [0, 0], end = [2, 0], axial_law = {ROPE}, mass_per_length = {weight}, basis.ancf.elements = 40 }}
+            support = [{{ beam = 'rope', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'rope', at = 'end', fix = ['x', 'y'], move.x = {apart} }}]
+            effect.gravity.acceleration = [0, -10]
+            probe = [{{ name = 'middle', beam = 'rope', at = 1 }}]
+            output.reactions = true
+            analysis.static = {{}}\n"
+        )
+    };
+    let taut = Written::of(&text(0.08, 1e-4));
+    near(taut.last("reactions.csv", "support2.fx"), 120.0, 1e-2, "force of the law");
+    // The sag of a catenary of 2 m between holders 1.8 m apart: sinh(u)/u = 2/1.8.
+    let slack = Written::of(&text(-0.2, 0.01));
+    let (mut low, mut high) = (0.1_f64, 3.0_f64);
+    for _ in 0..100 {
+        let u = 0.5 * (low + high);
+        if u.sinh() / u < 2.0 / 1.8 { low = u } else { high = u }
+    }
+    let sag = 0.9 / low * (low.cosh() - 1.0);
+    near(slack.last("probes.csv", "middle.y"), -sag, 2e-3, "sag");
+    // Half the weight hangs at each end, and the pull is that of the catenary, w a.
+    near(slack.last("reactions.csv", "support2.fy"), 0.1, 1e-4, "half of the weight");
+    near(slack.last("reactions.csv", "support2.fx"), 0.1 * 0.9 / low, 2e-3, "the pull");
+}
+
+/// Small vibrations have the slope of the law at the equilibrium: ω = π/2L √(k/ρA) along a bar that
+/// is held at one end, with k = 4000 N under 120 N.
+#[test]
+fn vibrations_have_the_slope_of_the_law() {
+    let text = "beam.bar = { start = [0, 0], end = [1, 0], axial_law = { strain = [0, 0.02, 0.06], force = [0, 40, 200] }, bending_stiffness = 1e6, \
+         mass_per_length = 1, basis.ancf.elements = 8 }
+        support = [{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.force = [{ beam = 'bar', at = 'end', value = [120, 0] }]
+        analysis.modal = { count = 1, about = 'equilibrium' }\n";
+    let found = Written::of(text).last("frequencies.csv", "frequency");
+    near(found * 2.0 * PI, 0.5 * PI * 4000.0_f64.sqrt(), 0.05, "ω");
+}
+
+#[test]
+fn a_law_that_is_left_is_told() {
+    let said = |force: f64| {
+        let found = pulled("ancf.elements = 2", "engineering", ROPE, force);
+        let summary = std::fs::read_to_string(found.path("summary.json")).expect("a summary");
+        let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+        summary["warnings"].to_string()
+    };
+    assert!(said(280.0).contains("the axial strain of beam `bar` reaches 0.0800"), "{}", said(280.0));
+    assert_eq!(said(100.0), "[]");
+}
+
+#[test]
+fn what_is_no_elastic_law_is_refused_with_its_place() {
+    let refused = |keys: &str| {
+        let text = format!(
+            "beam.bar = {{ start = [0, 0], end = [1, 0], bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 2, {keys} }}
+            support = [{{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }}]\nanalysis.static = {{}}\n"
+        );
+        parse("rope.toml", &text).expect_err("no law").to_string()
+    };
+    for (keys, part) in [
+        (
+            "axial_law = { strain = [0, 1, 0.5], force = [0, 1, 2] }",
+            "0.5 is not larger than the strain before it, 1",
+        ),
+        ("axial_law = { strain = [0, 1, 2], force = [0, 2, 1] }", "1 is smaller than the force before it, 2"),
+        ("axial_law = { strain = [0, 1], force = [1, 2] }", "the force is 1 where the strain is zero"),
+        ("axial_law = { strain = [0, 1], force = [0, 0] }", "resists nothing"),
+        ("axial_law = { strain = [0, 1], force = [0] }", "found 2 of `strain` and 1 of `force`"),
+        (
+            "axial_stiffness = 1, axial_law = { strain = [0, 1], force = [0, 1] }",
+            "twice: by itself, and by `axial_stiffness`",
+        ),
+        ("axial_stiffness = 1, bending_law = { curvature = [0, 1], moment = [0, 1] }", "`bending_law` twice"),
+    ] {
+        let said = refused(keys);
+        assert!(said.contains(part) && said.contains("rope.toml:1:"), "{said}");
+    }
+    let actuated = "beam.bar = { start = [0, 0], end = [1, 0], axial_law = { strain = [0, 1], force = [0, 1] }, bending_stiffness = 1, basis.ancf.elements = 2 }
+        support = [{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.actuation = [{ beam = 'bar', curvature = 1 }]\nanalysis.static = {}\n";
+    let scene = parse("scene.toml", actuated).expect("a scene");
+    let said = scene.model().solve(scene.analysis()).expect_err("not linear").to_string();
+    assert!(said.contains("stiffness that is a number"), "{said}");
+}
