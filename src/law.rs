@@ -1,5 +1,9 @@
 //! Laws of time: the factor of a load, or the motion of a support, as a function of time.
 
+mod expression;
+
+pub use expression::Expression;
+
 use crate::numeric::{End, GAUSS_6, rates};
 use std::f64::consts::PI;
 
@@ -50,6 +54,8 @@ pub enum Law {
     Sum(Vec<Law>),
     /// The product of laws.
     Product(Vec<Law>),
+    /// An expression in t.
+    Expression(Box<Expression>),
 }
 
 /// The points of a law, and how it is interpolated between them.
@@ -119,6 +125,10 @@ impl Tabulated {
 /// Largest phase angle \[rad\] of a harmonic within a step for which Gauss' rule integrates it to
 /// round-off.
 const SLOW: f64 = 1.5;
+/// Change of the moments of an expression by twice as many parts that counts as none.
+const SETTLED: f64 = 1e-11;
+/// Change of a value at a kink that counts as a jump.
+const JUMP: f64 = 1e-12;
 /// Most parts in which a product of fast laws is integrated.
 const MOST_PARTS: f64 = 1e6;
 /// ∫₀¹ f dx and ∫₀¹ (1 − x) f dx; exact for polynomials up to degree 10.
@@ -168,6 +178,7 @@ impl Law {
                 ]
             }
             Self::SpinUp { speed, duration } => [speed * (t - 0.5 * duration), *speed, 0.0],
+            Self::Expression(expression) => expression.at(t),
             Self::Sum(laws) => laws.iter().fold([0.0; 3], |[v, d, s], law| {
                 let [value, rate, second] = law.at(t);
                 [v + value, d + rate, s + second]
@@ -183,12 +194,18 @@ impl Law {
     pub fn jumps(&self) -> Vec<(f64, f64)> {
         match self {
             Self::Step { start } => vec![(*start, 1.0)],
+            Self::Expression(expression) => {
+                let height = |time: f64| self.at(time)[0] - self.at(time.next_down())[0];
+                let heights = expression.kinks().iter().map(|time| (*time, height(*time)));
+                heights.filter(|(_, height)| height.abs() > JUMP).collect()
+            }
             Self::Sum(laws) | Self::Product(laws) => {
                 let mut times: Vec<f64> = laws.iter().flat_map(Self::jumps).map(|(time, _)| time).collect();
                 times.sort_by(f64::total_cmp);
                 times.dedup();
                 let height = |time: f64| self.at(time)[0] - self.at(time.next_down())[0];
-                times.into_iter().map(|time| (time, height(time))).collect()
+                let heights = times.into_iter().map(|time| (time, height(time)));
+                heights.filter(|(_, height)| height.abs() > JUMP).collect()
             }
             Self::Ramp { .. }
             | Self::SmoothRamp { .. }
@@ -196,6 +213,15 @@ impl Law {
             | Self::Polynomial(_)
             | Self::Table(_)
             | Self::SpinUp { .. } => Vec::new(),
+        }
+    }
+
+    /// Whether an expression is part of it.
+    fn is_written(&self) -> bool {
+        match self {
+            Self::Expression(_) => true,
+            Self::Sum(laws) | Self::Product(laws) => laws.iter().any(Self::is_written),
+            _ => false,
         }
     }
 
@@ -250,17 +276,42 @@ impl Law {
             }),
             Self::Product(_) => {
                 // In parts in which no harmonic is fast.
+                if self.is_written() {
+                    return self.in_parts(start, h);
+                }
                 let parts = (self.fastest() * h.abs() / SLOW).ceil().clamp(1.0, MOST_PARTS);
-                let share = 1.0 / parts;
-                (0..parts as usize).fold([0.0; 2], |[mean, moment], part| {
-                    let from = part as f64 * share;
-                    let [a, b] = quadrature(|x| h.mul_add(share.mul_add(x, from), start), |t| self.at(t)[0]);
-                    // ∫ (1 − x) f over the part, with 1 − x = (1 − from − share) + share (1 − ξ).
-                    [mean + share * a, moment + share * ((1.0 - from - share) * a + share * b)]
-                })
+                self.in_equal_parts(start, h, parts as usize)
             }
+            Self::Expression(_) => self.in_parts(start, h),
             _ => quadrature(|x| h.mul_add(x, start), |t| self.at(t)[0]),
         }
+    }
+
+    /// [`Self::moments`] of a law of which nobody knows how fast it is: in parts, twice as many until
+    /// that changes nothing.
+    fn in_parts(&self, start: f64, h: f64) -> [f64; 2] {
+        let mut before = self.in_equal_parts(start, h, 1);
+        let mut parts = 2;
+        loop {
+            let sums = self.in_equal_parts(start, h, parts);
+            let change = (sums[0] - before[0]).abs().max((sums[1] - before[1]).abs());
+            let size = sums[0].abs().max(sums[1].abs()).max(1.0);
+            // A law that is not a number anywhere is none in its sums either.
+            if change.is_nan() || change <= SETTLED * size || parts as f64 >= MOST_PARTS {
+                return sums;
+            }
+            (before, parts) = (sums, 2 * parts);
+        }
+    }
+
+    fn in_equal_parts(&self, start: f64, h: f64, parts: usize) -> [f64; 2] {
+        let share = 1.0 / parts as f64;
+        (0..parts).fold([0.0; 2], |[mean, moment], part| {
+            let from = part as f64 * share;
+            let [a, b] = quadrature(|x| h.mul_add(share.mul_add(x, from), start), |t| self.at(t)[0]);
+            // ∫ (1 − x) f over the part, with 1 − x = (1 − from − share) + share (1 − ξ).
+            [mean + share * a, moment + share * ((1.0 - from - share) * a + share * b)]
+        })
     }
 
     /// Times at which the value or a low derivative of it jumps: steps of an integrator should end
@@ -274,6 +325,7 @@ impl Law {
             Self::Harmonic { .. } | Self::Polynomial(_) => Vec::new(),
             Self::Table(table) => table.times.clone(),
             Self::SpinUp { duration, .. } => vec![*duration],
+            Self::Expression(expression) => expression.kinks().to_vec(),
             Self::Sum(laws) | Self::Product(laws) => {
                 let mut kinks: Vec<f64> = laws.iter().flat_map(Self::kinks).collect();
                 kinks.sort_by(f64::total_cmp);

@@ -21,9 +21,9 @@ pub use stage::Stage;
 pub use velocity::{InitialVelocity, Profile};
 
 pub use crate::basis::{Discretization, Kernel, Nodes, SideCondition};
-pub use crate::beam::{Along, Beam, Elastic, GaussPoints, Layer, Place, Section, StrainMeasure};
+pub use crate::beam::{Along, Beam, Elastic, GaussPoints, Layer, NotElastic, Place, Section, StrainMeasure};
 pub use crate::centreline::Centreline;
-pub use crate::law::{Law, Tabulated};
+pub use crate::law::{Expression, Law, Tabulated};
 
 use crate::assembly::{Part, Resistance};
 use std::sync::Arc;

@@ -1,17 +1,18 @@
 //! Tables of laws → [`Law`].
 
-use crate::model::{Law, Tabulated};
+use crate::model::{Expression, Law, Tabulated};
 
 use super::error::Fault;
-use super::file::{LawTable, RampTable};
+use super::file::{ExpressionTable, KinkedTable, LawTable, RampTable};
 use super::value::Located;
 
 const ONE: &str = "give one of `ramp = { duration = \"1 s\" }`, `smooth_ramp = { … }`, `step = { start = \"1 s\" }`, \
-                   `harmonic = { frequency = \"2 Hz\" }`, `polynomial = [0, 1]`, `table = { times = [0, 1], values = [0, 1] }`, `sum = [{ … }, { … }]`, `product = [{ … }, { … }]`";
+                   `harmonic = { frequency = \"2 Hz\" }`, `polynomial = [0, 1]`, `table = { times = [0, 1], values = [0, 1] }`, `sum = [{ … }, { … }]`, `product = [{ … }, { … }]`, `expression = \"sin(2*pi*t)\"`";
 
 /// The law of a table `in_time`.
 pub(super) fn law(located: &Located<LawTable>) -> Result<Law, Fault> {
-    let LawTable { ramp, smooth_ramp, step, harmonic, polynomial, table, sum, product } = located.get();
+    let LawTable { ramp, smooth_ramp, step, harmonic, polynomial, table, sum, product, expression } =
+        located.get();
     let times = |ramp: &RampTable| (ramp.start.map_or(0.0, |start| start.si), ramp.duration.si);
     let mut laws = Vec::new();
     if let Some(ramp) = ramp {
@@ -53,6 +54,17 @@ pub(super) fn law(located: &Located<LawTable>) -> Result<Law, Fault> {
             }
             laws.push(of(several.iter().map(law).collect::<Result<_, _>>()?));
         }
+    }
+    if let Some(expression) = expression {
+        let (text, kinks) = match expression.get() {
+            ExpressionTable::Smooth(text) => (text, Vec::new()),
+            ExpressionTable::Kinked(KinkedTable { of, kinks }) => (of, kinks.iter().map(|t| t.si).collect()),
+        };
+        let law = Expression::new(text, kinks).map_err(|reason| {
+            Fault::new(expression.span(), format!("this expression cannot be read: {reason}"))
+                .help("such as `expression = \"sin(2*pi*t)*(1-exp(-t/0.5))\"`, with t in seconds")
+        })?;
+        laws.push(Law::Expression(Box::new(law)));
     }
     match (laws.pop(), laws.is_empty()) {
         (Some(law), true) => Ok(law),

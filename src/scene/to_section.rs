@@ -4,8 +4,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::beam::NotElastic;
-use crate::model::{Along, Elastic, Layer, Section};
+use crate::model::{Along, Elastic, Layer, NotElastic, Section};
 
 use super::error::Fault;
 use super::file::{AxialLawTable, BeamTable, BendingLawTable, LayerTable, SectionTable};
@@ -71,12 +70,15 @@ fn refuse_beside(
     Ok(())
 }
 
+/// Coordinates of the points of a table.
+type Points<'a, M> = &'a [Located<Quantity<M>>];
+
 /// The elastic law of a table with the keys `strain` and `force`.
 fn elastic<T, A: Measure, B: Measure>(
     label: &str,
     table: &Located<T>,
     (law, strain, force): (&str, &str, &str),
-    (strains, forces): (&[Located<Quantity<A>>], &[Located<Quantity<B>>]),
+    (strains, forces): (Points<'_, A>, Points<'_, B>),
 ) -> Result<Elastic, Fault> {
     let of_strains: Vec<f64> = strains.iter().map(|value| value.get().si).collect();
     let of_forces: Vec<f64> = forces.iter().map(|value| value.get().si).collect();

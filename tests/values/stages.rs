@@ -350,7 +350,7 @@ fn stages_share_their_nodes_and_name_themselves_in_errors() {
             .to_string()
             .contains("has no basis, which a scene with stages must name")
     );
-    let timed = text.replace("stiffness = 2,", "stiffness = 2,").replace(
+    let timed = text.replace(
         "distributed_force = [{ beam = 'arm', value = [0, -2] }",
         "distributed_force = [{ beam = 'arm', value = [0, -2], in_time.step.start = 1, stage = 'three' }",
     );

@@ -266,3 +266,51 @@ fn angles_count_turns_counter_clockwise() {
     let angles = found.column("probes.csv", "middle.angle");
     near(angles[1], 3.0 * FRAC_PI_6, 1e-3, "after a tenth of a second");
 }
+
+/// A load that is written as an expression acts as the same load in other words, and an expression
+/// has its kinks where it says: the motion of a point that is moved by it.
+#[test]
+fn expressions_are_the_functions_that_they_spell() {
+    let text = |law: &str| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 3 }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'], move = {{ y = 0.1, in_time = {{ {law} }} }} }}]
+            effect.force = [{{ beam = 'arm', at = 'end', value = [0, 0.3], in_time = {{ {law} }} }}]
+            probe = [{{ name = 'start', beam = 'arm', at = 'start' }}, {{ name = 'end', beam = 'arm', at = 'end' }}]
+            analysis.dynamic = {{ duration = 1, output_every = 0.1, radau.tolerance = 1e-8 }}\n"
+        )
+    };
+    let same = [
+        ("expression = 'sin(2*pi*t)*(1-exp(-t/0.5))'", None),
+        ("expression = '-t^2*(3 - 2*t)'", Some("polynomial = [0, 0, -3, 2]")),
+        (
+            "product = [{ expression = '2' }, { harmonic.frequency = 0.5 }]",
+            Some("sum = [{ expression = 'sin(pi*t)' }, { harmonic.frequency = 0.5 }]"),
+        ),
+        (
+            "product = [{ step.start = 0.45 }, { expression = { of = '(t-0.45)^2', kinks = ['450 ms'] } }]",
+            Some("product = [{ step.start = 0.45 }, { polynomial = [0.2025, -0.9, 1] }]"),
+        ),
+    ];
+    for (law, other) in same {
+        let found = Written::of(&text(law));
+        if let Some(other) = other {
+            let other = Written::of(&text(other));
+            for (a, b) in found.column("probes.csv", "end.y").iter().zip(other.column("probes.csv", "end.y"))
+            {
+                near(*a, b, 1e-9, law);
+            }
+            continue;
+        }
+        for (t, y) in found.column("probes.csv", "time").iter().zip(found.column("probes.csv", "start.y")) {
+            near(y, 0.1 * (std::f64::consts::TAU * t).sin() * (1.0 - (-t / 0.5).exp()), 1e-14, law);
+        }
+    }
+    let refused =
+        ancf::scene::parse("law.toml", &text("expression = 'sin(2*pi*t'")).expect_err("no expression");
+    assert!(
+        refused.to_string().contains("a bracket is not closed")
+            && refused.to_string().contains("law.toml:2:"),
+        "{refused}"
+    );
+}

@@ -30,6 +30,28 @@ pub struct LawTable {
     /// The product of laws.
     #[schemars(length(min = 1))]
     pub product: Option<Vec<Located<LawTable>>>,
+    /// An expression in the time t, such as "sin(2*pi*t)*(1-exp(-t/0.5))".
+    pub expression: Option<Located<ExpressionTable>>,
+}
+
+/// An expression in the time t in seconds, with pi, tau, e, + − * / ^ and smooth functions.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum ExpressionTable {
+    /// The expression, smooth at all times.
+    Smooth(String),
+    /// The expression, and where it is not smooth.
+    Kinked(KinkedTable),
+}
+
+/// An expression that is not smooth at some times.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct KinkedTable {
+    /// The expression.
+    pub of: String,
+    /// Times at which its value or its slope jumps.
+    pub kinks: Vec<Quantity<Time>>,
 }
 
 /// When a ramp begins and how long it takes.
