@@ -54,6 +54,9 @@ pub struct Model {
     /// already, as indices of [parts](Self::parts). In statics their loads act in full from the
     /// beginning, where all others grow with the load factor. Joints may be open in the state.
     pub standing: Option<Vec<usize>>,
+    /// The numbers by which results name the supports and the joints, where these are not 1, 2, 3, …:
+    /// those of the scene, of which a stage may have fewer.
+    pub numbers: [Vec<usize>; 2],
     /// Places at which there is a node although nothing in the model asks for one: where other
     /// stages of the same scene need it.
     pub nodes_at: Vec<Place>,

@@ -136,6 +136,16 @@ impl Scene {
         &self.stages
     }
 
+    /// This scene without the stages after the one called `name`; `None` where there is no such
+    /// stage.
+    #[must_use]
+    pub fn through(&self, name: &str) -> Option<Self> {
+        let last = self.stages.iter().position(|stage| stage.name == name)?;
+        let mut scene = self.clone();
+        scene.stages.truncate(last + 1);
+        Some(scene)
+    }
+
     /// The continuous problem, in SI; that of the first stage where there are stages.
     pub fn model(&self) -> &Model {
         &self.model
@@ -249,9 +259,10 @@ fn tables(name: &str, text: &str) -> Result<Scene, Fault> {
     let file = file::SceneTable::deserialize(toml::Deserializer::from(root.clone()))
         .map_err(|error| diagnose::data(&error, root.get_ref()))?;
     let mut stages = Vec::new();
-    for (index, (name, file)) in to_stages::stages(&file)?.iter().enumerate() {
-        let (model, analysis) = to_model::convert(file, index > 0)?;
-        stages.push(Stage { name: name.clone(), model, analysis });
+    for (index, stage) in to_stages::stages(&file)?.into_iter().enumerate() {
+        let (model, analysis) = to_model::convert(&stage.scene, index > 0)?;
+        let model = Model { numbers: stage.numbers, ..model };
+        stages.push(Stage { name: stage.name, model, analysis });
     }
     to_stages::finish(&file, &mut stages)?;
     let (model, analysis) = match stages.first() {

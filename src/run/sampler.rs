@@ -439,8 +439,11 @@ impl<'a> Sampler<'a> {
     /// Adds one record of forces of supports and joints.
     fn record_reactions(&self, trajectory: &mut Trajectory, reactions: &[Reaction]) {
         if trajectory.reactions.is_empty() {
-            let supports = (1..=self.model.supports.len()).map(|i| format!("support{i}"));
-            let joints = (1..=self.model.joints.len()).map(|i| format!("joint{i}"));
+            let [of_supports, of_joints] = &self.model.numbers;
+            let number = |numbers: &[usize], i: usize| numbers.get(i).copied().unwrap_or(i + 1);
+            let supports = 0..self.model.supports.len();
+            let supports = supports.map(|i| format!("support{}", number(of_supports, i)));
+            let joints = (0..self.model.joints.len()).map(|i| format!("joint{}", number(of_joints, i)));
             trajectory.reactions =
                 supports.chain(joints).map(|name| ReactionSeries { name, samples: Vec::new() }).collect();
         }

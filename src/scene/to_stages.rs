@@ -2,7 +2,7 @@
 
 use super::diagnose::choices;
 use super::error::Fault;
-use super::file::{During, SceneTable, StageTable};
+use super::file::{During, SceneTable, StageTable, Staged};
 use super::to_analysis;
 use super::value::Located;
 use crate::model::{Discretization, Place, Stage};
@@ -11,9 +11,17 @@ use std::cmp::Ordering;
 /// Longest name of a stage \[bytes\]: it names a folder.
 const LONGEST_NAME: usize = 100;
 
-/// The name of each stage, and the scene as it is in that stage. None where the scene has no
-/// stages.
-pub(super) fn stages(file: &SceneTable) -> Result<Vec<(String, SceneTable)>, Fault> {
+/// A stage of a scene.
+pub(super) struct StageScene {
+    pub(super) name: String,
+    /// The scene as it is in that stage.
+    pub(super) scene: SceneTable,
+    /// The numbers of its supports and joints among those of the whole scene.
+    pub(super) numbers: [Vec<usize>; 2],
+}
+
+/// The stages, none where the scene has a single analysis.
+pub(super) fn stages(file: &SceneTable) -> Result<Vec<StageScene>, Fault> {
     let given = &file.stage;
     if let (Some(first), Some(analysis)) = (given.first(), &file.analysis) {
         return Err(Fault::new(analysis.span(), "a scene with stages has no analysis beside them").help(
@@ -40,21 +48,31 @@ pub(super) fn stages(file: &SceneTable) -> Result<Vec<(String, SceneTable)>, Fau
     let moves = |stage: &StageTable| stage.analysis.get().dynamic.is_some();
     let first_motion = given.iter().position(moves).unwrap_or(0);
     let scene = |(index, stage): (usize, &StageTable)| {
-        let mut scene = file.clone();
-        scene.stage.clear();
-        scene.analysis = Some(stage.analysis.clone());
-        scene.retain(&mut |During { stage, until }| {
+        let takes_part = |During { stage, until }: During<'_>| {
             let begins = stage.and_then(|name| position(name).ok()).unwrap_or(0);
             let ends = until.and_then(|name| position(name).ok()).unwrap_or(given.len());
             (begins..ends).contains(&index)
-        });
+        };
+        let numbers = [
+            numbers(file.support.iter().map(|table| takes_part(table.during()))),
+            numbers(file.joint.iter().map(|table| takes_part(table.during()))),
+        ];
+        let mut scene = file.clone();
+        scene.stage.clear();
+        scene.analysis = Some(stage.analysis.clone());
+        scene.retain(&mut |during| takes_part(during));
         if index != first_motion {
             // A motion that goes on has velocities of its own.
             scene.initial_velocity.clear();
         }
-        (stage.name.get().clone(), scene)
+        StageScene { name: stage.name.get().clone(), scene, numbers }
     };
     Ok(given.iter().enumerate().map(scene).collect())
+}
+
+/// The numbers, from 1, of those that take part.
+fn numbers(take_part: impl Iterator<Item = bool>) -> Vec<usize> {
+    (1..).zip(take_part).filter(|(_, takes_part)| *takes_part).map(|(number, _)| number).collect()
 }
 
 /// Refuses stages that leave something open, and makes all of them have the same nodes.

@@ -301,7 +301,7 @@ fn a_bow_gives_back_what_the_hand_has_put_in() {
     let [brace, draw, loose] = [1, 2, 4].map(|stage| &found[stage]);
     let (drawn, braced) = (draw.last("energy.csv", "total"), brace.last("energy.csv", "total"));
     near(draw.column("energy.csv", "total")[0], braced, 1e-6, "total");
-    let pull = draw.column("reactions.csv", "support3.fx");
+    let pull = draw.column("reactions.csv", "support5.fx");
     let work: f64 = pull.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) * (-0.4 / 40.0)).sum();
     near(work, drawn - braced, 1e-2 * work, "work");
     near(draw.last("probes.csv", "nock.x"), -0.55, 1e-12, "nock.x");

@@ -59,6 +59,8 @@ class Scene:
     @property
     def name(self) -> str: ...
     @property
+    def stages(self) -> list[str]: ...
+    @property
     def analysis(self) -> str: ...
     @property
     def beams(self) -> list[tuple[str, float]]: ...
@@ -74,6 +76,7 @@ class Scene:
         *,
         estimate: bool,
         start: State | None,
+        stage: str | None,
         duration: float | None,
         shapes: bool,
         pictures: bool,

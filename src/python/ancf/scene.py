@@ -124,8 +124,13 @@ class Scene:
         return self._scene.name
 
     @property
+    def stages(self) -> list[str]:
+        """The names of the stages; none of a scene with one analysis."""
+        return self._scene.stages
+
+    @property
     def analysis(self) -> str:
-        """`static`, `dynamic`, `modal` or `buckling`."""
+        """`static`, `dynamic`, `modal` or `buckling`; `stages` of a scene that has several."""
         return self._scene.analysis
 
     @property
@@ -175,6 +180,7 @@ class Scene:
         accuracy: float | None = None,
         estimate: bool = False,
         start: Result | _ancf.State | str | os.PathLike[str] | None = None,
+        stage: str | None = None,
         progress: bool = False,
         on_step: Callable[[Progress], object] | None = None,
         shapes: bool = True,
@@ -184,7 +190,8 @@ class Scene:
 
         `accuracy` is the largest error in place of the scene's, and chooses what the scene leaves
         open; `estimate` gives the errors of a scene that names its mesh and steps. `start` is a
-        result, a `State` or a `state.json` from which a motion starts. `progress` shows on standard
+        result, a `State` or a `state.json` from which the analysis starts. Of a scene with stages the
+        results are those of `stage`, or of the last one. `progress` shows on standard
         error how far it is; `on_step` is called with a `Progress` after every step and ends the
         run by returning `False`.
 
@@ -197,7 +204,7 @@ class Scene:
         scene = self._scene
         if accuracy is not None:
             scene = scene.with_overrides(_overrides({f"analysis.{scene.analysis}.accuracy": accuracy}))
-        return self._run(scene, estimate=estimate, start=start, progress=progress, on_step=on_step, shapes=shapes, pictures=pictures)
+        return self._run(scene, estimate=estimate, start=start, stage=stage, progress=progress, on_step=on_step, shapes=shapes, pictures=pictures)
 
     @staticmethod
     def _run(
@@ -205,6 +212,7 @@ class Scene:
         *,
         estimate: bool = False,
         start: Result | _ancf.State | str | os.PathLike[str] | None = None,
+        stage: str | None = None,
         duration: float | None = None,
         progress: bool = False,
         on_step: Callable[[Progress], object] | None = None,
@@ -217,6 +225,7 @@ class Scene:
             results = scene.run(
                 estimate=estimate,
                 start=_state(start),
+                stage=stage,
                 duration=duration,
                 shapes=shapes,
                 pictures=pictures,

@@ -225,7 +225,10 @@ impl Results {
                     chosen.add_parts_of(scene);
                     shapes_at(chosen.model(), chosen.analysis(), states, at, Some(cache))
                 }
-                None => shapes_at(scene.model(), analysis, states, at, Some(cache)),
+                None => {
+                    let model = scene.stages().last().map_or_else(|| scene.model(), |stage| &stage.model);
+                    shapes_at(model, analysis, states, at, Some(cache))
+                }
             }
         });
         let shapes = shapes.map_err(|error| errors::of_run(py, scene.name(), error))?;

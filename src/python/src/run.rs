@@ -8,7 +8,7 @@ use ancf::basis::BasisCache;
 use ancf::restart::SavedState;
 use ancf::run::{Control, Options, Progress, RunError};
 use ancf::{Analysis, Results as Solved, accuracy};
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::errors;
@@ -24,6 +24,8 @@ pub struct Run {
     pub estimate: bool,
     /// Where a motion begins.
     pub start: Option<Arc<SavedState>>,
+    /// The stage whose results are wanted; the last where there is none.
+    pub stage: Option<String>,
     /// How long a motion lasts and the time between its records, in place of the scene's.
     pub duration: Option<f64>,
     /// Whether the states are kept from which shapes are made.
@@ -68,10 +70,16 @@ impl State {
 
 /// Solves a scene.
 pub fn solve(py: Python<'_>, scene: &ancf::Scene, forces: &[PythonForce], run: Run) -> PyResult<Results> {
-    let Run { estimate, start, duration, shapes, pictures, tick, on_step, cache } = run;
+    let Run { estimate, start, stage, duration, shapes, pictures, tick, on_step, cache } = run;
     let failed = Failed::default();
-    let scene = load::with_forces(py, scene, forces, &failed);
-    // The results of a scene with stages are those of the last one.
+    let mut scene = load::with_forces(py, scene, forces, &failed);
+    if let Some(name) = stage {
+        scene = scene.through(&name).ok_or_else(|| {
+            let known: Vec<&str> = scene.stages().iter().map(|stage| stage.name.as_str()).collect();
+            PyKeyError::new_err(format!("there is no stage `{name}`; the stages are: {}", known.join(", ")))
+        })?;
+    }
+    // The results are those of the last stage.
     let mut analysis =
         scene.stages().last().map_or_else(|| scene.analysis(), |stage| &stage.analysis).clone();
     if !scene.stages().is_empty() && (duration.is_some() || estimate) {

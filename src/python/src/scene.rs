@@ -102,7 +102,13 @@ impl Scene {
         self.scene.name()
     }
 
-    /// `static`, `dynamic`, `modal` or `buckling`.
+    /// The names of the stages; none of a scene with one analysis.
+    #[getter]
+    fn stages(&self) -> Vec<String> {
+        self.scene.stages().iter().map(|stage| stage.name.clone()).collect()
+    }
+
+    /// `static`, `dynamic`, `modal`, `buckling` or `stages`.
     #[getter]
     fn analysis(&self) -> &'static str {
         self.scene.analysis().kind()
@@ -139,6 +145,16 @@ impl Scene {
 
     /// What would be built.
     fn inspect(&self, py: Python<'_>) -> PyResult<String> {
+        if !self.scene.stages().is_empty() {
+            let scene = load::with_forces(py, &self.scene, &self.forces, &Failed::default());
+            let of = |index: usize| {
+                let (model, analysis) = ancf::run::model_of_stage(scene.stages(), index);
+                let inventory = ancf::run::inspect(&model, analysis)
+                    .map_err(|error| errors::of_run(py, self.scene.name(), error))?;
+                Ok(format!("stage {}\n{inventory}", scene.stages()[index].name))
+            };
+            return Ok((0..scene.stages().len()).map(of).collect::<PyResult<Vec<_>>>()?.join("\n"));
+        }
         let (model, analysis) =
             ancf::accuracy::first(&load::with_forces(py, &self.scene, &self.forces, &Failed::default()));
         let inventory = py.detach(|| ancf::run::inspect(&model, &analysis));
@@ -148,13 +164,14 @@ impl Scene {
 
     /// Solves it. `tick` is called every tenth of a second, `on_step` after every step, with
     /// (parameter, target, step, Newton iterations); where one returns `False` the run ends there.
-    #[pyo3(signature = (*, estimate, start, duration, shapes, pictures, tick, on_step))]
+    #[pyo3(signature = (*, estimate, start, stage, duration, shapes, pictures, tick, on_step))]
     #[expect(clippy::too_many_arguments, reason = "keywords, given by Python's half alone")]
     fn run(
         &self,
         py: Python<'_>,
         estimate: bool,
         start: Option<PyRef<'_, State>>,
+        stage: Option<String>,
         duration: Option<f64>,
         shapes: bool,
         pictures: bool,
@@ -167,7 +184,7 @@ impl Scene {
             py,
             &self.scene,
             &self.forces,
-            Run { estimate, start, duration, shapes, pictures, tick, on_step, cache },
+            Run { estimate, start, stage, duration, shapes, pictures, tick, on_step, cache },
         )
     }
 }

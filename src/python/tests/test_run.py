@@ -281,3 +281,28 @@ def test_ten_thousand_runs_leak_nothing(cantilever: ancf.Scene) -> None:
     before = used()
     runs(10_000)
     assert used() - before < 4e6, "bytes more after ten thousand runs"
+
+
+def test_stages_go_on_from_each_other() -> None:
+    table = arm(
+        effect={"force": [{"beam": "arm", "at": "end", "value": [0, 3e-3], "until": "swing"}]},
+        stage=[
+            {"name": "bend", "analysis": {"static": {}}},
+            {"name": "swing", "analysis": {"dynamic": {"duration": 0.2, "output_every": 0.05}}},
+        ],
+    )
+    del table["analysis"]
+    scene = ancf.Scene(table)
+    assert (scene.analysis, scene.stages) == ("stages", ["bend", "swing"])
+    assert "stage bend" in scene.inspect() and "stage swing" in scene.inspect()
+    bent, swung = scene.run(stage="bend"), scene.run()
+    assert bent.probes["tip"].y[-1] == pytest.approx(1e-3, rel=1e-4)
+    assert swung.probes["tip"].y[0] == pytest.approx(bent.probes["tip"].y[-1], abs=1e-12)
+    assert swung.time[-1] == pytest.approx(0.2)
+    ends = [swung.shape(beam="arm", t=0.0), bent.shape(beam="arm", t=1.0)]
+    assert np.allclose(ends[0].curvature, ends[1].curvature, atol=1e-12)
+    assert ends[1].M[0] == pytest.approx(3e-3, rel=1e-3)
+    with pytest.raises(KeyError, match="there is no stage `draw`; the stages are: bend, swing"):
+        scene.run(stage="draw")
+    with pytest.raises(ValueError, match="takes one analysis"):
+        scene.run(estimate=True)

@@ -38,7 +38,7 @@ pub enum StartError {
         "a joint or a support holds beam `{beam}` near s = {s:.6} m, where the saved state misses it by {miss:.3e} beam lengths, or rad"
     )]
     #[diagnostic(help(
-        "the joints of a motion that starts from a saved state must be closed in it: begin with the joints that it had"
+        "the joints of a motion that starts from a saved state must be closed in it: begin with the joints that it had, or close them in statics before, which brings what is apart together"
     ))]
     Open {
         /// Name of the beam.
