@@ -1,10 +1,6 @@
 //! Laws of time: the factor of a load, or the motion of a support, as a function of time.
 
-mod expression;
-
-pub use expression::Expression;
-
-use crate::numeric::{End, GAUSS_6, rates};
+use crate::numeric::{End, Formula, GAUSS_6, rates};
 use std::f64::consts::PI;
 
 /// A number as a function of time.
@@ -56,6 +52,29 @@ pub enum Law {
     Product(Vec<Law>),
     /// An expression in t.
     Expression(Box<Expression>),
+}
+
+/// An expression in the time t \[s\], with its first two derivatives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expression {
+    terms: [Formula; 3],
+    /// Times at which it is not smooth, rising \[s\].
+    kinks: Vec<f64>,
+}
+
+impl Expression {
+    /// Reads `text`, a formula of t; `kinks` are the times at which it is not smooth \[s\].
+    ///
+    /// # Errors
+    /// What was found and what is legal, in one sentence.
+    pub fn new(text: &str, mut kinks: Vec<f64>) -> Result<Self, String> {
+        kinks.sort_by(f64::total_cmp);
+        kinks.dedup();
+        let value = Formula::new(text, &["t"])?;
+        let first = value.derivative(0)?;
+        let second = first.derivative(0)?;
+        Ok(Self { terms: [value, first, second], kinks })
+    }
 }
 
 /// The points of a law, and how it is interpolated between them.
@@ -178,7 +197,7 @@ impl Law {
                 ]
             }
             Self::SpinUp { speed, duration } => [speed * (t - 0.5 * duration), *speed, 0.0],
-            Self::Expression(expression) => expression.at(t),
+            Self::Expression(expression) => expression.terms.each_ref().map(|term| term.at(&[t])),
             Self::Sum(laws) => laws.iter().fold([0.0; 3], |[v, d, s], law| {
                 let [value, rate, second] = law.at(t);
                 [v + value, d + rate, s + second]
@@ -196,7 +215,7 @@ impl Law {
             Self::Step { start } => vec![(*start, 1.0)],
             Self::Expression(expression) => {
                 let height = |time: f64| self.at(time)[0] - self.at(time.next_down())[0];
-                let heights = expression.kinks().iter().map(|time| (*time, height(*time)));
+                let heights = expression.kinks.iter().map(|time| (*time, height(*time)));
                 heights.filter(|(_, height)| height.abs() > JUMP).collect()
             }
             Self::Sum(laws) | Self::Product(laws) => {
@@ -325,7 +344,7 @@ impl Law {
             Self::Harmonic { .. } | Self::Polynomial(_) => Vec::new(),
             Self::Table(table) => table.times.clone(),
             Self::SpinUp { duration, .. } => vec![*duration],
-            Self::Expression(expression) => expression.kinks().to_vec(),
+            Self::Expression(expression) => expression.kinks.clone(),
             Self::Sum(laws) | Self::Product(laws) => {
                 let mut kinks: Vec<f64> = laws.iter().flat_map(Self::kinks).collect();
                 kinks.sort_by(f64::total_cmp);

@@ -1,7 +1,10 @@
-//! Small numerical tools that do not depend on beams: Gauss rules with few points, cubic splines.
+//! Small numerical tools that do not depend on beams: Gauss rules with few points, cubic splines,
+//! formulas.
 
+mod formula;
 mod gauss;
 mod spline;
 
+pub use formula::Formula;
 pub use gauss::{GAUSS_2, GAUSS_3, GAUSS_6, GAUSS_10};
 pub use spline::{End, rates};

@@ -71,6 +71,8 @@ kinds! {
     Buoyancy = "buoyancy",
     /// Attraction by an electrode.
     Electrostatic = "electrostatic",
+    /// Force that depends on the place.
+    ForceField = "force_field",
     /// Contact with an obstacle.
     Contact = "contact",
     /// Friction in a contact.

@@ -387,6 +387,8 @@ pub struct EffectTable {
     pub buoyancy: Vec<BuoyancyTable>,
     /// Attractions by electrodes.
     pub electrostatic: Vec<ElectrostaticTable>,
+    /// Forces that depend on the place.
+    pub force_field: Vec<ForceFieldTable>,
     /// Forces that travel along beams.
     pub moving_force: Vec<MovingForceTable>,
     /// Contacts with obstacles.

@@ -4,15 +4,16 @@ use std::sync::Arc;
 
 use crate::centreline::Curve;
 use crate::effect::{
-    Actuation, BeamDamping, Buoyancy, Contact, DistributedForce, Drag, Electrostatic, Force, Foundation,
-    Friction, Gravity, Moment, MovingForce, Obstacle, PointMass, SectionInertia, Spring, TorsionSpring,
+    Actuation, BeamDamping, Buoyancy, Contact, DistributedForce, Drag, Electrostatic, Field, Force,
+    ForceField, Foundation, Friction, Gravity, Moment, MovingForce, Obstacle, PointMass, SectionInertia,
+    Spring, TorsionSpring,
 };
 use crate::model::{Along, Beam, InitialShape, Joint, Model};
 
 use super::error::Fault;
 use super::file::{
-    ContactTable, ElectrostaticTable, FrictionTable, GravityTable, HalfPlaneTable, JointName, JointTable,
-    PointTable, SceneTable,
+    ContactTable, ElectrostaticTable, ForceFieldTable, FrictionTable, GravityTable, HalfPlaneTable,
+    JointName, JointTable, PointTable, SceneTable,
 };
 use super::place::{Built, beam_index, place};
 use super::to_along::{Stretch, along};
@@ -201,6 +202,9 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
     for t in &effects.electrostatic {
         parts.push(Arc::new(electrostatic(t, built, &model.beams, &model.initial_shapes)?));
     }
+    for t in &effects.force_field {
+        parts.push(Arc::new(force_field(t, built)?));
+    }
     for t in &effects.moving_force {
         let (beam, speed) = (beam_index(&t.beam, built)?, t.speed.get().si);
         if speed == 0.0 {
@@ -287,6 +291,32 @@ fn contact(t: &ContactTable, built: &[Built], beams: &[Beam]) -> Result<Contact,
         half_thickness,
         friction: t.friction.as_ref().map(|f| friction(f, t.stiffness.si)).transpose()?,
     })
+}
+
+fn force_field(t: &ForceFieldTable, built: &[Built]) -> Result<ForceField, Fault> {
+    let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
+    let wrong = |span: std::ops::Range<usize>, reason: String| {
+        Fault::new(span, format!("this formula cannot be read: {reason}"))
+            .help("such as `potential = \"50*(y-0.2)^2\"`, or `value = [\"-3*y\", \"3*x\"]`, with x and y in metres")
+    };
+    let field = match (&t.potential, &t.value) {
+        (Some(potential), None) => {
+            Field::of_potential(potential.get()).map_err(|reason| wrong(potential.span(), reason))?
+        }
+        (None, Some([x, y])) => {
+            // Each by itself first, so that a fault is told at its place.
+            for one in [x, y] {
+                Field::of_components([one.get(), "0"]).map_err(|reason| wrong(one.span(), reason))?;
+            }
+            Field::of_components([x.get(), y.get()]).map_err(|reason| wrong(x.span(), reason))?
+        }
+        _ => {
+            return Err(Fault::new(t.beam.span(), "a force field needs exactly one of `potential`, `value`")
+                .help("such as `potential = \"50*(y-0.2)^2\"`, or `value = [\"-3*y\", \"3*x\"]`"));
+        }
+    };
+    let law = t.in_time.as_ref().map(to_law::law).transpose()?;
+    Ok(ForceField { beam: stretch.beam, field, acting: stretch.indicator(), law })
 }
 
 /// Places along a beam at which its distance from an electrode is checked.

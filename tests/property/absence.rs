@@ -46,6 +46,7 @@ fn blocks() -> Vec<(&'static str, Vec<Kind>)> {
             "[[effect.electrostatic]]\nbeam = 'arm'\nvoltage = 1\nwidth = 1\nelectrode = { point = [0, -1], normal = [0, 1] }",
             vec![Kind::Electrostatic],
         ),
+        ("[[effect.force_field]]\nbeam = 'arm'\npotential = '0.5*y^2'", vec![Kind::ForceField]),
         ("[[effect.moving_force]]\nbeam = 'arm'\nvalue = [0.0, 1.0]\nspeed = 2.0", vec![Kind::MovingForce]),
         (
             "[[effect.contact]]\nbeam = 'arm'\nstiffness = 1e3\ncircle = { center = [0.5, -1.0], radius = 0.5 }\n\

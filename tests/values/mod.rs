@@ -15,6 +15,7 @@ mod electrodes;
 mod energies;
 mod fault_parts;
 mod faults;
+mod fields;
 mod files;
 mod folds;
 mod laws;

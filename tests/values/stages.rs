@@ -89,6 +89,7 @@ fn what_comes_and_goes_leads_to_the_same_equilibria() {
             "electrostatic",
             "{ beam = 'arm', voltage = 400, width = 0.5, permittivity = 1e-6, electrode = { point = [0, -0.8], normal = [0, 1] } }",
         ),
+        ("force_field", "{ beam = 'leg', value = ['-y', '3*(x-1)'] }"),
         ("buoyancy", "{ beam = 'arm', displaced_mass_per_length = 0.9 }"),
         ("point_mass", "{ beam = 'arm', at = 0.5, mass = 0.2 }"),
         (

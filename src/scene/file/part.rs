@@ -227,6 +227,30 @@ pub struct ElectrostaticTable {
     pub until: Option<Located<String>>,
 }
 
+/// A force per length that depends on the place, by formulas of x and y in metres: `potential` or
+/// `value`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["potential"] }, { "required": ["value"] }]))]
+pub struct ForceFieldTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// U in J/m, such as "50*(y-0.2)^2"; the force is −∇U.
+    pub potential: Option<Located<String>>,
+    /// Fx and Fy in N/m, such as ["-3*y", "3*x"], which need not have a potential.
+    pub value: Option<[Located<String>; 2]>,
+    /// Arc length from which on it acts; the beam's start when left out.
+    pub from: Option<Located<At>>,
+    /// Arc length up to which it acts; the beam's end when left out.
+    pub to: Option<Located<At>>,
+    /// In a motion: the law of time that multiplies it.
+    pub in_time: Option<Located<LawTable>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
+}
+
 /// A dead force that travels along a beam.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -64,6 +64,7 @@ staged!(
     DragTable,
     BuoyancyTable,
     ElectrostaticTable,
+    ForceFieldTable,
     MovingForceTable,
     ContactTable,
 );
@@ -89,6 +90,7 @@ impl SceneTable {
             drag,
             buoyancy,
             electrostatic,
+            force_field,
             moving_force,
             contact,
         } = &mut self.effect;
@@ -106,6 +108,7 @@ impl SceneTable {
         drag.retain(|table| keep(table.during()));
         buoyancy.retain(|table| keep(table.during()));
         electrostatic.retain(|table| keep(table.during()));
+        force_field.retain(|table| keep(table.during()));
         moving_force.retain(|table| keep(table.during()));
         contact.retain(|table| keep(table.during()));
     }

@@ -1,4 +1,4 @@
-//! Laws of time that are written as an expression, such as `sin(2*pi*t)*(1-exp(-t/0.5))`.
+//! Formulas of given variables, such as `sin(2*pi*t)*(1-exp(-t/0.5))`, and their derivatives.
 //!
 //! The crate `exmex` parses and differentiates. Before it sees a text, numbers are written out, and
 //! what it would read in another way than mathematicians do is brought into a form that has one
@@ -7,14 +7,12 @@
 use exmex::{Differentiate, Express, FlatEx};
 use std::fmt;
 
-/// An expression in the time t \[s\], with its first two derivatives.
+/// A formula of some variables.
 #[derive(Clone)]
-pub struct Expression {
+pub struct Formula {
     text: String,
-    /// Times at which it is not smooth, rising \[s\].
-    kinks: Vec<f64>,
-    /// The value and its derivatives.
-    terms: [FlatEx<f64>; 3],
+    variables: &'static [&'static str],
+    parsed: FlatEx<f64>,
 }
 
 /// Functions that may be used: all are smooth where they are defined.
@@ -26,53 +24,44 @@ const FUNCTIONS: [&str; 17] = [
 /// Constants, and their names in `exmex`.
 const CONSTANTS: [(&str, &str); 5] = [("pi", "π"), ("π", "π"), ("tau", "τ"), ("τ", "τ"), ("e", "e")];
 
-impl Expression {
-    /// Reads `text`, an expression in `t`; `kinks` are the times at which it is not smooth \[s\].
+impl Formula {
+    /// Reads `text`, a formula of `variables`, which are in alphabetical order.
     ///
     /// # Errors
     /// What was found and what is legal, in one sentence.
-    pub fn new(text: &str, mut kinks: Vec<f64>) -> Result<Self, String> {
-        let normal = normal(text)?;
-        let parsed: FlatEx<f64> = exmex::parse(&normal).map_err(|_| "it is no expression".to_owned())?;
-        kinks.sort_by(f64::total_cmp);
-        kinks.dedup();
-        let terms = match parsed.var_names() {
-            [] => {
-                let zero = || exmex::parse("0").map_err(|error| error.to_string());
-                [parsed, zero()?, zero()?]
-            }
-            _ => {
-                let derivative = |of: &FlatEx<f64>| {
-                    of.clone().partial(0).map_err(|_| "it cannot be differentiated".to_owned())
-                };
-                let first = derivative(&parsed)?;
-                let second = derivative(&first)?;
-                [parsed, first, second]
-            }
-        };
-        Ok(Self { text: text.to_owned(), kinks, terms })
+    pub fn new(text: &str, variables: &'static [&'static str]) -> Result<Self, String> {
+        let normal = normal(text, variables)?;
+        // Every variable takes part, so that values belong to all of them in this order.
+        let all: String = variables.iter().map(|name| format!("+0*{name}")).collect();
+        let parsed = exmex::parse(&format!("({normal}){all}")).map_err(|_| "it is no formula".to_owned())?;
+        Ok(Self { text: text.to_owned(), variables, parsed })
     }
 
-    /// Value and first two derivatives at the time `t` \[s\]; not a number where it has none.
-    pub fn at(&self, t: f64) -> [f64; 3] {
-        self.terms.each_ref().map(|term| term.eval_relaxed(&[t]).unwrap_or(f64::NAN))
+    /// The derivative by variable number `variable`.
+    ///
+    /// # Errors
+    /// In one sentence, where there is none.
+    pub fn derivative(&self, variable: usize) -> Result<Self, String> {
+        let parsed = self.parsed.clone().partial(variable);
+        let parsed = parsed.map_err(|_| "it cannot be differentiated".to_owned())?;
+        Ok(Self { text: format!("∂{}({})", self.variables[variable], self.text), parsed, ..self.clone() })
     }
 
-    /// Times at which it is not smooth \[s\].
-    pub fn kinks(&self) -> &[f64] {
-        &self.kinks
+    /// Its value where the variables have these values; not a number where it has none.
+    pub fn at(&self, values: &[f64]) -> f64 {
+        self.parsed.eval_relaxed(values).unwrap_or(f64::NAN)
     }
 }
 
-impl fmt::Debug for Expression {
+impl fmt::Debug for Formula {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Expression").field("text", &self.text).field("kinks", &self.kinks).finish()
+        f.debug_tuple("Formula").field(&self.text).finish()
     }
 }
 
-impl PartialEq for Expression {
+impl PartialEq for Formula {
     fn eq(&self, other: &Self) -> bool {
-        (&self.text, &self.kinks) == (&other.text, &other.kinks)
+        (&self.text, self.variables) == (&other.text, other.variables)
     }
 }
 
@@ -83,14 +72,14 @@ enum Before {
     Open,
     /// An operator.
     Operator(char),
-    /// A number, t, a constant, or a closing bracket.
+    /// A number, a variable, a constant, or a closing bracket.
     Value,
     /// A function.
     Function,
 }
 
-/// The expression as `exmex` reads it in the meaning that it has.
-fn normal(text: &str) -> Result<String, String> {
+/// The formula as `exmex` reads it in the meaning that it has.
+fn normal(text: &str, variables: &[&str]) -> Result<String, String> {
     let mut out = String::new();
     let mut before = Before::Open;
     // Per open bracket, whether what is raised to a power there has one already.
@@ -124,8 +113,8 @@ fn normal(text: &str) -> Result<String, String> {
             }
             let constant = CONSTANTS.iter().find(|(name, _)| *name == word);
             before = match constant {
-                _ if word == "t" => {
-                    out.push('t');
+                _ if variables.contains(&word) => {
+                    out.push_str(word);
                     Before::Value
                 }
                 Some((_, name)) => {
@@ -136,7 +125,7 @@ fn normal(text: &str) -> Result<String, String> {
                     out.push_str(word);
                     Before::Function
                 }
-                None => return Err(unknown(word)),
+                None => return Err(unknown(word, variables)),
             };
             rest = &rest[end..];
             continue;
@@ -212,13 +201,13 @@ fn number_end(text: &str) -> usize {
     end
 }
 
-fn unknown(word: &str) -> String {
+fn unknown(word: &str, variables: &[&str]) -> String {
     let advice = match word {
         "log" => "`ln`, `log2` or `log10` says which logarithm is meant".to_owned(),
         "abs" | "min" | "max" | "floor" | "ceil" | "round" | "sign" | "signum" | "mod" => {
             "what has corners is a `table`, a `ramp` or a `step`, which `sum` and `product` combine with others".to_owned()
         }
-        _ => format!("it knows the time t, pi, tau, e, and {}", FUNCTIONS.join(", ")),
+        _ => format!("it knows {}, pi, tau, e, and {}", variables.join(", "), FUNCTIONS.join(", ")),
     };
     format!("it cannot contain `{word}`: {advice}")
 }
@@ -228,8 +217,18 @@ mod tests {
     use super::*;
     use std::f64::consts::{E, PI, TAU};
 
+    fn formula(text: &str) -> Result<Formula, String> {
+        Formula::new(text, &["t"])
+    }
+
     fn at(text: &str, t: f64) -> [f64; 3] {
-        Expression::new(text, Vec::new()).unwrap_or_else(|error| panic!("{text}: {error}")).at(t)
+        let read = || {
+            let value = formula(text)?;
+            let first = value.derivative(0)?;
+            let second = first.derivative(0)?;
+            Ok([value, first, second].map(|formula| formula.at(&[t])))
+        };
+        read().unwrap_or_else(|error: String| panic!("{text}: {error}"))
     }
 
     /// Would catch an expression that is read in another way than it is written.
@@ -258,7 +257,7 @@ mod tests {
         ];
         for (text, expected) in all {
             if text == "2 - -t" {
-                assert!(Expression::new(text, Vec::new()).is_err());
+                assert!(formula(text).is_err());
                 continue;
             }
             for t in [0.3, 1.7, 2.9] {
@@ -278,6 +277,24 @@ mod tests {
         }
         assert_eq!(at("3", 1.0), [3.0, 0.0, 0.0]);
         assert_eq!(at("0*t", 1.0), [0.0, 0.0, 0.0]);
+    }
+
+    /// Values belong to variables by their order, whether or not all of them take part.
+    #[test]
+    fn several_variables() {
+        let of = |text: &str| Formula::new(text, &["x", "y"]).expect("a formula");
+        let field = of("y^2 - 3*x*y");
+        assert_eq!(field.at(&[2.0, 5.0]), -5.0);
+        let [by_x, by_y] = [0, 1].map(|i| field.derivative(i).expect("smooth"));
+        assert_eq!((by_x.at(&[2.0, 5.0]), by_y.at(&[2.0, 5.0])), (-15.0, 4.0));
+        assert_eq!(by_x.derivative(1).expect("smooth").at(&[2.0, 5.0]), -3.0);
+        let of_y = of("2*y");
+        assert_eq!((of_y.at(&[7.0, 3.0]), of_y.derivative(0).expect("smooth").at(&[7.0, 3.0])), (6.0, 0.0));
+        assert_eq!(
+            (of("4").at(&[7.0, 3.0]), of("4").derivative(1).expect("smooth").at(&[7.0, 3.0])),
+            (4.0, 0.0)
+        );
+        assert!(Formula::new("t", &["x", "y"]).is_err());
     }
 
     #[test]
@@ -302,7 +319,7 @@ mod tests {
             ("max(t, 1)", "what has corners"),
             ("1.2.3", "follows a value"),
         ] {
-            let said = Expression::new(text, Vec::new()).expect_err(text);
+            let said = formula(text).expect_err(text);
             assert!(said.contains(part), "{text}: {said}");
         }
     }
