@@ -178,27 +178,59 @@ pub fn write(
     results.states_mut().run.seconds.write += start.elapsed().as_secs_f64();
     let summary = Summary::of(results);
     stage.add("summary.json", |out| out.write_all(summary.to_json()?.as_bytes()))?;
-    replace(directory, stage, if options.vtu { frames } else { 0 })?;
+    replace(directory, stage, if options.vtu { frames } else { 0 }, &[])?;
     Ok(summary)
 }
 
 /// Gives the files their names and removes those of an older run, of which `frames` of the VTU series
-/// have been replaced.
-fn replace(directory: &Path, stage: StagedFiles, frames: usize) -> Result<(), OutputError> {
+/// have been replaced, and the folders of its stages that are not among `stages`.
+fn replace(directory: &Path, staged: StagedFiles, frames: usize, stages: &[&str]) -> Result<(), OutputError> {
     // Only beside a summary are these names surely those of an older run.
     let replaces = directory.join("summary.json").is_file();
-    let older: Vec<&str> = NAMES.into_iter().filter(|name| replaces && !stage.contains(name)).collect();
-    stage.commit()?;
-    for name in older {
+    let older: Vec<&str> = NAMES.into_iter().filter(|name| replaces && !staged.contains(name)).collect();
+    let gone = stages_of(directory).into_iter().filter(|name| !stages.contains(&name.as_str()));
+    let gone: Vec<String> = gone.collect();
+    staged.commit()?;
+    if replaces {
+        remove(directory, &older, frames);
+    }
+    for name in gone {
+        let folder = directory.join(name);
+        if folder.join("summary.json").is_file() {
+            remove(&folder, &NAMES, 0);
+            // Files of others stay, and so does then their folder.
+            let _ = fs::remove_dir(folder);
+        }
+    }
+    Ok(())
+}
+
+/// Removes these files, and frames of a VTU series from number `frames` on.
+fn remove(directory: &Path, names: &[&str], frames: usize) {
+    for name in names {
         // Missing, most often. A file that cannot be removed does not make the new ones wrong.
         let _ = fs::remove_file(directory.join(name));
     }
-    if replaces {
-        // Frames are numbered without gaps.
-        let _ = (frames..).try_for_each(|i| fs::remove_file(directory.join(vtu::frame_name(i))));
-        let _ = fs::remove_dir(directory.join("vtu"));
+    // Frames are numbered without gaps.
+    let _ = (frames..).try_for_each(|i| fs::remove_file(directory.join(vtu::frame_name(i))));
+    let _ = fs::remove_dir(directory.join("vtu"));
+}
+
+/// The stages of which the summary in `directory` tells; none where it is that of one analysis.
+fn stages_of(directory: &Path) -> Vec<String> {
+    #[derive(serde::Deserialize)]
+    struct Named {
+        name: String,
     }
-    Ok(())
+    #[derive(serde::Deserialize)]
+    struct Stages {
+        stages: Vec<Named>,
+    }
+    let text = fs::read_to_string(directory.join("summary.json")).unwrap_or_default();
+    let names = serde_json::from_str(&text).map_or_else(|_| Vec::new(), |Stages { stages }| stages);
+    // A name that is more than that of a folder here is none of ours.
+    let is_ours = |name: &String| Path::new(name).file_name().is_some_and(|file| file == name.as_str());
+    names.into_iter().map(|stage| stage.name).filter(is_ours).collect()
 }
 
 /// Writes the results of stages, each into a folder of its own name in `directory`, and one page and
@@ -229,7 +261,8 @@ pub fn write_stages(
         source: source.into(),
     })?;
     staged.add("summary.json", |out| out.write_all(&text))?;
-    replace(directory, staged, 0)?;
+    let names: Vec<&str> = stages.iter().map(|(name, _)| *name).collect();
+    replace(directory, staged, 0, &names)?;
     Ok(summary)
 }
 

@@ -1,7 +1,7 @@
 //! Which files of an older run go, and what is refused before any file is written.
 
 use super::made_up::{buckling, path, rise, vibrations};
-use ancf::output::{OutputError, OutputOptions, write};
+use ancf::output::{OutputError, OutputOptions, write, write_stages};
 use ancf::results::{ModeShape, Results, Trajectory};
 use std::fs;
 use std::path::Path;
@@ -125,4 +125,28 @@ fn lists_that_do_not_fit_are_refused() {
     write(&results, &mut trajectory.into(), &IN_FULL).expect("written");
     let text = fs::read_to_string(results.join("shape.csv")).expect("a file");
     assert!(text.lines().skip(1).all(|line| line.ends_with(",NaN,NaN,NaN")), "{text}");
+}
+
+/// A stage that a later run does not have leaves no folder, but files of others in it stay.
+#[test]
+fn folders_are_those_of_the_last_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |stages: &[&'static str]| {
+        let mut results: Vec<(&str, Results)> = stages.iter().map(|name| (*name, rise(2).into())).collect();
+        write_stages(folder.path(), &mut results, &IN_FULL, true).expect("written");
+    };
+    run(&["brace", "draw", "loose"]);
+    assert_eq!(names(folder.path()), ["brace", "draw", "loose", "report.html", "summary.json"]);
+    fs::write(folder.path().join("draw/notes.txt"), "mine").expect("written");
+    fs::create_dir(folder.path().join("photos")).expect("made");
+    run(&["brace", "let go"]);
+    assert_eq!(names(folder.path()), ["brace", "draw", "let go", "photos", "report.html", "summary.json"]);
+    assert_eq!(names(&folder.path().join("draw")), ["notes.txt"]);
+    assert!(names(&folder.path().join("brace")).contains(&"vtu".to_owned()));
+    // One analysis in place of stages, and the other way round.
+    write(folder.path(), &mut rise(2).into(), &OutputOptions::default()).expect("written");
+    let left = names(folder.path());
+    assert!(!left.contains(&"brace".to_owned()) && left.contains(&"probes.csv".to_owned()), "{left:?}");
+    run(&["brace"]);
+    assert_eq!(names(folder.path()), ["brace", "draw", "photos", "report.html", "summary.json"]);
 }
