@@ -21,7 +21,6 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use crate::accuracy;
-use crate::model::Stage;
 use crate::output::OutputOptions;
 use crate::restart::SavedState;
 use crate::results::Results;
@@ -214,10 +213,7 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
             let failure = Failure::inaccurate(scene.name(), results.run());
             (results, failure)
         }
-        Ok(partial) => {
-            let (scene, results) = (scene.name().to_owned(), destination.path().to_owned());
-            (partial, Some(Failure::Interrupted { scene, results }))
-        }
+        Ok(partial) => (partial, Some(Failure::interrupted(&scene, destination.path()))),
         Err(mut error) => match error.take_partial() {
             Some(partial) => (partial, Some(Failure::run(scene.name(), error))),
             None => return Err(Failure::run(scene.name(), error)),
@@ -248,11 +244,7 @@ fn finish_stages(
     let interrupted = results.last().is_some_and(|results| !results.run().complete) && failure.is_none();
     let failure = match failure {
         Some(error) => Some(Failure::run(scene.name(), error)),
-        None if interrupted => {
-            let (scene, results) = (scene.name().to_owned(), destination.path().to_owned());
-            Some(Failure::Interrupted { scene, results })
-        }
-        None => None,
+        None => interrupted.then(|| Failure::interrupted(scene, destination.path())),
     };
     if results.is_empty() {
         return failure.map_or(Ok(()), Err);
@@ -297,7 +289,7 @@ fn check(arguments: &CheckArguments) -> Result<(), Vec<Failure>> {
                     let (model, analysis) = accuracy::first(&scene);
                     run::inspect(&model, &analysis).map(drop)
                 }
-                stages => run::check_stages(stages),
+                stages => run::inspect_stages(stages, run::inspect).map(drop),
             };
             checked.map_err(|error| Failure::run(scene.name(), error))
         });
@@ -313,20 +305,19 @@ fn check(arguments: &CheckArguments) -> Result<(), Vec<Failure>> {
 fn inspect(arguments: &InspectArguments) -> Result<(), Failure> {
     let scene = load(&arguments.scene, &arguments.overrides)?;
     let look = if arguments.measure { run::measure } else { run::inspect };
-    let (model, analysis) = accuracy::first(&scene);
     if !scene.stages().is_empty() {
-        let mut all = serde_json::Map::new();
-        for (index, Stage { name, .. }) in scene.stages().iter().enumerate() {
-            let (model, analysis) = run::model_of_stage(scene.stages(), index);
-            let inventory = look(&model, analysis).map_err(|error| Failure::run(scene.name(), error))?;
-            if arguments.json {
-                all.insert(name.clone(), serde_json::json!(inventory));
-            } else {
-                print(&format!("stage {name}\n{inventory}"))?;
-            }
-        }
-        return if arguments.json { print_json(&all) } else { Ok(()) };
+        let inventories =
+            run::inspect_stages(scene.stages(), look).map_err(|error| Failure::run(scene.name(), error))?;
+        return if arguments.json {
+            let named = inventories
+                .into_iter()
+                .map(|(name, inventory)| (name.to_owned(), serde_json::json!(inventory)));
+            print_json(&named.collect::<serde_json::Map<_, _>>())
+        } else {
+            inventories.iter().try_for_each(|(name, inventory)| print(&format!("stage {name}\n{inventory}")))
+        };
     }
+    let (model, analysis) = accuracy::first(&scene);
     let inventory = look(&model, &analysis).map_err(|error| Failure::run(scene.name(), error))?;
     if arguments.json { print_json(&inventory) } else { print(&inventory.to_string()) }
 }

@@ -75,6 +75,19 @@ impl Expression {
         let second = first.derivative(0)?;
         Ok(Self { terms: [value, first, second], kinks })
     }
+
+    /// The value and its first two derivatives at `t`. At a kink a formula may have none, so that
+    /// within [`BESIDE`] of one they follow from those at that distance, on the side of `t`.
+    fn at(&self, t: f64) -> [f64; 3] {
+        let near = |kink: &&f64| (t - **kink).abs() < BESIDE * kink.abs().max(EARLIEST);
+        let Some(kink) = self.kinks.iter().find(near) else {
+            return self.terms.each_ref().map(|term| term.at(&[t]));
+        };
+        let far = (BESIDE * kink.abs().max(EARLIEST)).copysign(t - kink);
+        let [value, rate, second] = self.terms.each_ref().map(|term| term.at(&[kink + far]));
+        let back = t - (kink + far);
+        [back.mul_add(0.5 * second * back + rate, value), back.mul_add(second, rate), second]
+    }
 }
 
 /// The points of a law, and how it is interpolated between them.
@@ -150,6 +163,23 @@ const SETTLED: f64 = 1e-11;
 const JUMP: f64 = 1e-12;
 /// Most parts in which a product of fast laws is integrated.
 const MOST_PARTS: f64 = 1e6;
+/// Distance from a kink at which derivatives of an expression are taken, relative to its time.
+const BESIDE: f64 = 1e-9;
+/// Time \[s\] of the earliest kinks whose distance is relative to it.
+const EARLIEST: f64 = 1e-6;
+/// Points at which an expression is evaluated to find out where it changes.
+const SAMPLES: u32 = 1 << 14;
+/// Parts of equal change into which an expression is divided.
+const TURNS: u32 = 64;
+
+/// `times`, rising, each once.
+fn merged(times: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut times: Vec<f64> = times.collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
 /// ∫₀¹ f dx and ∫₀¹ (1 − x) f dx; exact for polynomials up to degree 10.
 fn quadrature(time: impl Fn(f64) -> f64, f: impl Fn(f64) -> f64) -> [f64; 2] {
     GAUSS_6.iter().fold([0.0; 2], |[mean, moment], (x, weight)| {
@@ -197,7 +227,7 @@ impl Law {
                 ]
             }
             Self::SpinUp { speed, duration } => [speed * (t - 0.5 * duration), *speed, 0.0],
-            Self::Expression(expression) => expression.terms.each_ref().map(|term| term.at(&[t])),
+            Self::Expression(expression) => expression.at(t),
             Self::Sum(laws) => laws.iter().fold([0.0; 3], |[v, d, s], law| {
                 let [value, rate, second] = law.at(t);
                 [v + value, d + rate, s + second]
@@ -213,18 +243,9 @@ impl Law {
     pub fn jumps(&self) -> Vec<(f64, f64)> {
         match self {
             Self::Step { start } => vec![(*start, 1.0)],
-            Self::Expression(expression) => {
-                let height = |time: f64| self.at(time)[0] - self.at(time.next_down())[0];
-                let heights = expression.kinks.iter().map(|time| (*time, height(*time)));
-                heights.filter(|(_, height)| height.abs() > JUMP).collect()
-            }
+            Self::Expression(expression) => self.jumps_at(&expression.kinks),
             Self::Sum(laws) | Self::Product(laws) => {
-                let mut times: Vec<f64> = laws.iter().flat_map(Self::jumps).map(|(time, _)| time).collect();
-                times.sort_by(f64::total_cmp);
-                times.dedup();
-                let height = |time: f64| self.at(time)[0] - self.at(time.next_down())[0];
-                let heights = times.into_iter().map(|time| (time, height(time)));
-                heights.filter(|(_, height)| height.abs() > JUMP).collect()
+                self.jumps_at(&merged(laws.iter().flat_map(Self::jumps).map(|(time, _)| time)))
             }
             Self::Ramp { .. }
             | Self::SmoothRamp { .. }
@@ -235,12 +256,56 @@ impl Law {
         }
     }
 
+    /// Those of `times` at which the value jumps, and the heights of the jumps.
+    fn jumps_at(&self, times: &[f64]) -> Vec<(f64, f64)> {
+        let height = |time: f64| self.at(time)[0] - self.at(time.next_down())[0];
+        let heights = times.iter().map(|time| (*time, height(*time)));
+        heights.filter(|(_, height)| height.abs() > JUMP).collect()
+    }
+
     /// Whether an expression is part of it.
-    fn is_written(&self) -> bool {
+    fn has_expression(&self) -> bool {
         match self {
             Self::Expression(_) => true,
-            Self::Sum(laws) | Self::Product(laws) => laws.iter().any(Self::is_written),
+            Self::Sum(laws) | Self::Product(laws) => laws.iter().any(Self::has_expression),
             _ => false,
+        }
+    }
+
+    /// Times between `start` and `end`, rising, that divide the changes of an expression evenly, by
+    /// the square roots of what it changes between points of evaluation: so the feet of a pulse
+    /// count too. Between these points nobody knows how an expression behaves, and a long step
+    /// would pass over a short pulse; changes within less than 1/16384 of the time may be missed.
+    /// Other laws have none: their kinks say enough.
+    pub fn turns(&self, [start, end]: [f64; 2]) -> Vec<f64> {
+        match self {
+            Self::Expression(_) => {
+                let time = |i: u32| start + f64::from(i) / f64::from(SAMPLES) * (end - start);
+                let values: Vec<f64> = (0..=SAMPLES).map(|i| self.at(time(i))[0]).collect();
+                let changes = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs().sqrt());
+                let share = changes().sum::<f64>() / f64::from(TURNS);
+                if !share.is_normal() {
+                    return Vec::new();
+                }
+                let (mut passed, mut next, mut turns) = (0.0, share, Vec::new());
+                for (i, change) in (0..).zip(changes()) {
+                    passed += change;
+                    if passed >= next {
+                        turns.push(time(i));
+                        next = (passed / share).floor().mul_add(share, share);
+                    }
+                    if change >= share {
+                        turns.push(time(i + 1));
+                    }
+                }
+                turns.retain(|time| *time > start);
+                turns.dedup();
+                turns
+            }
+            Self::Sum(laws) | Self::Product(laws) => {
+                merged(laws.iter().flat_map(|law| law.turns([start, end])))
+            }
+            _ => Vec::new(),
         }
     }
 
@@ -295,7 +360,7 @@ impl Law {
             }),
             Self::Product(_) => {
                 // In parts in which no harmonic is fast.
-                if self.is_written() {
+                if self.has_expression() {
                     return self.in_parts(start, h);
                 }
                 let parts = (self.fastest() * h.abs() / SLOW).ceil().clamp(1.0, MOST_PARTS);
@@ -345,12 +410,7 @@ impl Law {
             Self::Table(table) => table.times.clone(),
             Self::SpinUp { duration, .. } => vec![*duration],
             Self::Expression(expression) => expression.kinks.clone(),
-            Self::Sum(laws) | Self::Product(laws) => {
-                let mut kinks: Vec<f64> = laws.iter().flat_map(Self::kinks).collect();
-                kinks.sort_by(f64::total_cmp);
-                kinks.dedup();
-                kinks
-            }
+            Self::Sum(laws) | Self::Product(laws) => merged(laws.iter().flat_map(Self::kinks)),
         }
     }
 }
@@ -378,7 +438,27 @@ mod tests {
                 Law::Ramp { start: 0.3, duration: 1.2 },
                 Law::Harmonic { frequency: 3.0, phase: 0.3 },
             ]),
+            written("sqrt((t-0.4)^2)*sin(3*t)", vec![0.4]),
         ]
+    }
+
+    fn written(text: &str, kinks: Vec<f64>) -> Law {
+        Law::Expression(Box::new(Expression::new(text, kinks).expect("an expression")))
+    }
+
+    #[test]
+    fn an_expression_turns_where_its_value_changes() {
+        let pulse = written("exp(-((t-3.37)/1e-3)^2)", vec![]);
+        let turns = pulse.turns([0.0, 10.0]);
+        assert!(turns.len() >= 4 && turns.iter().all(|t| (t - 3.37).abs() < 1e-2), "{turns:?}");
+        let even = written("3 - 2*t", vec![]).turns([1.0, 2.0]);
+        let expected = (1..=64).map(|k| 1.0 + f64::from(k) / 64.0);
+        assert!(even.len() == 64 && even.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4), "{even:?}");
+        for constant in ["2", "1e-320*t", "ln(-t)"] {
+            assert_eq!(written(constant, vec![]).turns([0.0, 1.0]), [0.0; 0]);
+        }
+        let both = Law::Sum(vec![pulse, Law::Step { start: 1.0 }, written("t", vec![])]);
+        assert_eq!(both.turns([0.0, 10.0]).len(), turns.len() + 64);
     }
 
     #[test]

@@ -256,11 +256,7 @@ pub fn write_stages(
     #[cfg(feature = "report")]
     staged.add("report.html", |out| out.write_all(page.as_bytes()))?;
     let summary = StagesSummary::new(summaries, complete);
-    let text = serde_json::to_vec_pretty(&summary).map_err(|source| OutputError::Write {
-        path: directory.join("summary.json"),
-        source: source.into(),
-    })?;
-    staged.add("summary.json", |out| out.write_all(&text))?;
+    staged.add("summary.json", |out| out.write_all(summary.to_json()?.as_bytes()))?;
     let names: Vec<&str> = stages.iter().map(|(name, _)| *name).collect();
     replace(directory, staged, 0, &names)?;
     Ok(summary)

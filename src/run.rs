@@ -17,7 +17,7 @@ mod strings;
 
 pub use error::RunError;
 pub use shapes::shapes_at;
-pub use stages::{StagesRun, check_stages, model_of_stage, solve_stages};
+pub use stages::{StagesRun, inspect_stages, model_of_stage, solve_stages};
 
 use crate::assembly::Needs;
 use crate::basis::BasisCache;

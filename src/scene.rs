@@ -269,7 +269,7 @@ fn tables(name: &str, text: &str) -> Result<Scene, Fault> {
         None => to_model::convert(&file, false)?,
         Some(first) => (first.model.clone(), Analysis::Stages),
     };
-    let accuracy = to_analysis::accuracy(&file)?;
+    let accuracy = to_analysis::accuracy(file.analysis.as_ref())?;
     let open = Open::of(&model, &analysis, !to_analysis::names_an_integrator(&file));
     let output = Output { states: file.output.states, vtu: file.output.vtu };
     Ok(Scene {

@@ -35,6 +35,13 @@ impl Action {
         Self { moment, ..Self::default() }
     }
 
+    /// The action of the nodal forces conjugate to the coordinates x, y, x′, y′ of a node.
+    pub fn of_node([x, y, dx, dy]: [f64; 4], [fx, fy, gx, gy]: [f64; 4]) -> Self {
+        let mut action = Self::at(Vector2::new(x, y), Vector2::new(fx, fy));
+        action.moment += dx * gy - dy * gx;
+        action
+    }
+
     /// The action of a density whose derivatives by its fields are `gradient`; `orders` are the
     /// derivative orders of the fields and `fields` their values in the present state.
     pub fn of_density<const M: usize>(

@@ -86,5 +86,5 @@ pub fn cost(arguments: &CostArguments) -> Result<(), Failure> {
     if study.complete {
         return Ok(());
     }
-    Err(Failure::Interrupted { scene: scene.name().to_owned(), results })
+    Err(Failure::interrupted(&scene, &results))
 }

@@ -2,13 +2,13 @@
 
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::cost::CostError;
 use crate::output::OutputError;
 use crate::results::Run;
 use crate::run::RunError;
-use crate::scene::SceneError;
+use crate::scene::{Scene, SceneError};
 use crate::sweep::SweepError;
 use miette::Diagnostic;
 
@@ -64,6 +64,11 @@ impl Failure {
     /// A failure of the scene called `name`.
     pub fn run(name: &str, error: RunError) -> Self {
         Self::Run { scene: name.to_owned(), error: Box::new(error) }
+    }
+
+    /// The interruption of the scene called `name`, whose results are in `results`.
+    pub fn interrupted(scene: &Scene, results: &Path) -> Self {
+        Self::Interrupted { scene: scene.name().to_owned(), results: results.to_owned() }
     }
 
     /// The failure of results that are less accurate than was wanted.

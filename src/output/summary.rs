@@ -90,6 +90,11 @@ impl StagesSummary {
         let complete = complete && stages.iter().all(|stage| stage.summary.complete);
         Self { title, version, complete, stages }
     }
+
+    /// The text of `summary.json`, as [`Summary::to_json`].
+    pub(super) fn to_json(&self) -> Result<String, serde_json::Error> {
+        indented(self)
+    }
 }
 
 /// What a probe saw at the last record.
@@ -249,8 +254,12 @@ impl Summary {
     /// # Errors
     /// None in practice: every field has a JSON form (what is not finite becomes `null`).
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string_pretty(self).map(|text| text + "\n")
+        indented(self)
     }
+}
+
+fn indented(summary: &impl Serialize) -> Result<String, serde_json::Error> {
+    serde_json::to_string_pretty(summary).map(|text| text + "\n")
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]

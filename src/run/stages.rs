@@ -1,6 +1,6 @@
 //! Analyses one after the other, each from where the one before it ended.
 
-use super::{Control, Options, Progress, RunError, inspect};
+use super::{Control, Inventory, Options, Progress, RunError};
 use crate::model::{Analysis, Displacement, Model, Stage};
 use crate::restart::SavedState;
 use crate::results::Results;
@@ -32,17 +32,21 @@ pub fn model_of_stage(stages: &[Stage], index: usize) -> (Model, &Analysis) {
     (model, analysis)
 }
 
-/// Builds the equations of every stage, and solves nothing.
+/// What would be built of every stage, by [`super::inspect`] or [`super::measure`], with its name.
 ///
 /// # Errors
 /// [`RunError::InStage`] where a stage contradicts itself.
-pub fn check_stages(stages: &[Stage]) -> Result<(), RunError> {
-    for (index, Stage { name, .. }) in stages.iter().enumerate() {
+pub fn inspect_stages(
+    stages: &[Stage],
+    look: impl Fn(&Model, &Analysis) -> Result<Inventory, RunError>,
+) -> Result<Vec<(&str, Inventory)>, RunError> {
+    let of = |(index, Stage { name, .. }): (usize, &'_ Stage)| {
         let (model, analysis) = model_of_stage(stages, index);
-        inspect(&model, analysis)
-            .map_err(|cause| RunError::InStage { stage: name.clone(), cause: Box::new(cause) })?;
-    }
-    Ok(())
+        look(&model, analysis)
+            .map_err(|cause| RunError::InStage { stage: name.clone(), cause: Box::new(cause) })
+    };
+    let inventories = stages.iter().enumerate().map(of).collect::<Result<Vec<_>, _>>()?;
+    Ok(stages.iter().map(|stage| stage.name.as_str()).zip(inventories).collect())
 }
 
 /// Solves `stages`, the first from the start that `options` give. The others start where the one

@@ -25,10 +25,9 @@ pub const MAX_STEPS: f64 = 1e9;
 /// Records of a dynamic run unless the scene says otherwise.
 pub const DYNAMIC_RECORDS: f64 = 200.0;
 
-/// The errors that the results may have; `None` where the scene does not say.
-pub(super) fn accuracy(file: &SceneTable) -> Result<Option<Accuracy>, Fault> {
-    let Some(AnalysisTable { statics, dynamic, buckling, modal }) = file.analysis.as_ref().map(Located::get)
-    else {
+/// The errors that the results of an analysis may have; `None` where the scene does not say.
+pub(super) fn accuracy(analysis: Option<&Located<AnalysisTable>>) -> Result<Option<Accuracy>, Fault> {
+    let Some(AnalysisTable { statics, dynamic, buckling, modal }) = analysis.map(Located::get) else {
         return Ok(None);
     };
     let value = statics.as_ref().and_then(|table| table.accuracy.as_ref());

@@ -37,14 +37,7 @@ pub(super) fn stages(file: &SceneTable) -> Result<Vec<StageScene>, Fault> {
     let position = |name: &Located<String>| {
         given.iter().position(|stage| stage.name.get() == name.get()).ok_or_else(|| unknown(name, given))
     };
-    let mut checked = Ok(());
-    file.clone().retain(&mut |during| {
-        if checked.is_ok() {
-            checked = check(during, &position);
-        }
-        true
-    });
-    checked?;
+    file.durings().into_iter().try_for_each(|during| check(during, &position))?;
     let moves = |stage: &StageTable| stage.analysis.get().dynamic.is_some();
     let first_motion = given.iter().position(moves).unwrap_or(0);
     let scene = |(index, stage): (usize, &StageTable)| {
@@ -60,7 +53,7 @@ pub(super) fn stages(file: &SceneTable) -> Result<Vec<StageScene>, Fault> {
         let mut scene = file.clone();
         scene.stage.clear();
         scene.analysis = Some(stage.analysis.clone());
-        scene.retain(&mut |during| takes_part(during));
+        scene.retain(&takes_part);
         if index != first_motion {
             // A motion that goes on has velocities of its own.
             scene.initial_velocity.clear();
@@ -89,8 +82,7 @@ pub(super) fn finish(file: &SceneTable, stages: &mut [Stage]) -> Result<(), Faul
                 "give `basis.ancf.elements` or `basis.rpim.nodes`: a mesh is chosen for one analysis only",
             ));
         }
-        let alone = SceneTable { analysis: Some(stage.analysis.clone()), ..file.clone() };
-        if to_analysis::accuracy(&alone)?.is_some() {
+        if to_analysis::accuracy(Some(&stage.analysis))?.is_some() {
             return Err(Fault::new(stage.analysis.span(), "the analysis of a stage takes no `accuracy`")
                 .help(
                     "name the mesh, and the `tolerance` or `step`: they are chosen for one analysis only",

@@ -16,7 +16,6 @@
 
 use super::System;
 use crate::assembly::{Action, Actions, InternalVariables, Turning};
-use nalgebra::Vector2;
 
 /// A state in which all forces are in balance.
 #[derive(Clone, Copy, Debug)]
@@ -72,10 +71,8 @@ impl System {
             let range = 4 * part.first_node..4 * (part.first_node + part.basis.nodes().len());
             let nodes =
                 q[range.clone()].as_chunks::<4>().0.iter().zip(support_forces[range].as_chunks::<4>().0);
-            for (s, ([x, y, dx, dy], [fx, fy, gx, gy])) in part.basis.nodes().iter().zip(nodes) {
-                let mut action = Action::at(Vector2::new(*x, *y), Vector2::new(*fx, *fy));
-                action += Action::couple(dx * gy - dy * gx);
-                actions.add_point(*s, action);
+            for (s, (z, force)) in part.basis.nodes().iter().zip(nodes) {
+                actions.add_point(*s, Action::of_node(*z, *force));
             }
         }
         for (constraint, mu) in self.constraints.iter().zip(multipliers) {

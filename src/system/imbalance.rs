@@ -10,7 +10,6 @@ use crate::assembly::{
     ActingLoad, Action, Actions, Amplitude, Earlier, Effect, InternalVariables, Kind, Workspace,
 };
 use crate::linear::Matrix;
-use nalgebra::Vector2;
 use std::ops::Range;
 
 /// Forces above this many round-offs of the internal forces count.
@@ -91,12 +90,8 @@ impl Effect for Imbalance {
 
     fn add_actions(&self, factor: f64, q: &[f64], _: &[f64], sum: &mut Actions) {
         let states = q[self.range.clone()].as_chunks::<4>().0;
-        for ((s, [x, y, dx, dy]), [fx, fy, gx, gy]) in
-            self.nodes.iter().zip(states).zip(self.force.as_chunks::<4>().0)
-        {
-            let mut action = Action::at(Vector2::new(*x, *y), Vector2::new(*fx, *fy));
-            action += Action::couple(dx * gy - dy * gx);
-            sum.add_point(*s, action * -factor);
+        for ((s, z), force) in self.nodes.iter().zip(states).zip(self.force.as_chunks::<4>().0) {
+            sum.add_point(*s, Action::of_node(*z, *force) * -factor);
         }
     }
 

@@ -31,11 +31,20 @@ fn seen(looks: &[LoadSample], f: impl Fn(f64) -> f64) -> [f64; 2] {
 }
 
 impl System {
+    fn laws(&self) -> impl Iterator<Item = &Law> {
+        self.terms.loads.iter().filter_map(law).chain(self.supports.laws())
+    }
+
     /// Times at which a load or the motion of a support is not smooth, in no particular order.
     pub fn kinks(&self) -> Vec<f64> {
-        let laws = self.terms.loads.iter().filter_map(law).map(Law::kinks);
         let travelling = self.terms.moving_loads.iter().flat_map(|load| load.kinks());
-        laws.flatten().chain(self.supports.kinks()).chain(travelling).collect()
+        self.laws().flat_map(Law::kinks).chain(travelling).collect()
+    }
+
+    /// Times between `start` and `end` at which steps should end, so that they see what laws do that
+    /// nobody knows beforehand ([`Law::turns`]); in no particular order.
+    pub fn turns_of_laws(&self, [start, end]: [f64; 2]) -> Vec<f64> {
+        self.laws().flat_map(|law| law.turns([start, end])).collect()
     }
 
     /// Whether a load follows a law of time or moves along a beam.

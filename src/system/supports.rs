@@ -290,13 +290,9 @@ impl Supports {
         })
     }
 
-    /// Times at which the law of a prescribed quantity is not smooth.
-    pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
-        self.pairs
-            .iter()
-            .flat_map(RestrainedPair::prescribed)
-            .filter_map(|course| course.law.as_ref())
-            .flat_map(|law| law.kinks())
+    /// The laws of time of the prescribed quantities.
+    pub fn laws(&self) -> impl Iterator<Item = &Law> {
+        self.pairs.iter().flat_map(RestrainedPair::prescribed).filter_map(|course| course.law.as_ref())
     }
 
     /// Prescribed quantities that jump by a law: a coordinate of the pair, the time, and the height

@@ -91,10 +91,10 @@ fn supports_say_what_they_hold() {
     let step = || Some(Law::Step { start: 0.7 });
     let jumping = supports(step);
     assert_eq!(jumping.jumps().collect::<Vec<_>>(), [(0, 0.7, 0.5), (2, 0.7, 0.8), (10, 0.7, 0.7)]);
-    assert_eq!(jumping.kinks().collect::<Vec<_>>(), [0.7, 0.7, 0.7]);
+    assert_eq!(jumping.laws().flat_map(Law::kinks).collect::<Vec<_>>(), [0.7, 0.7, 0.7]);
     let pairs = vec![pair(1, Restraint::Position([Some(by(0.0, 0.0, step())), Some(by(0.0, -2.0, step()))]))];
     assert_eq!(Supports::new(pairs).jumps().collect::<Vec<_>>(), [(2, 0.7, -2.0)]);
-    assert_eq!(moving.jumps().count() + moving.kinks().count(), 0);
+    assert_eq!(moving.jumps().count() + moving.laws().flat_map(Law::kinks).count(), 0);
 }
 
 /// Held components go where they are prescribed and free ones stay; a direction keeps the length of

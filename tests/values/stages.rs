@@ -219,9 +219,9 @@ fn new_loads_grow_and_old_ones_stay() {
     assert_eq!(more.column("probes.csv", "load"), [0.0, 0.25, 0.5, 0.75, 1.0]);
 }
 
-/// A support that goes leaves its force behind, which fades: half-way a propped cantilever under the
-/// load q hangs by half of 5/384 … of what is taken away. Its prop carries 3/8 q L, and without it
-/// the tip is at q L⁴/8 EI.
+/// A support that goes leaves its force behind, which fades. The prop of a cantilever under the load
+/// q carries 3/8 q L; without it the tip is at q L⁴/8 EI, and half-way there when half of the
+/// prop's force has gone.
 #[test]
 fn the_force_of_a_support_that_goes_fades() {
     let text = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = 8 }

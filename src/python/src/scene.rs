@@ -147,13 +147,10 @@ impl Scene {
     fn inspect(&self, py: Python<'_>) -> PyResult<String> {
         if !self.scene.stages().is_empty() {
             let scene = load::with_forces(py, &self.scene, &self.forces, &Failed::default());
-            let of = |index: usize| {
-                let (model, analysis) = ancf::run::model_of_stage(scene.stages(), index);
-                let inventory = ancf::run::inspect(&model, analysis)
-                    .map_err(|error| errors::of_run(py, self.scene.name(), error))?;
-                Ok(format!("stage {}\n{inventory}", scene.stages()[index].name))
-            };
-            return Ok((0..scene.stages().len()).map(of).collect::<PyResult<Vec<_>>>()?.join("\n"));
+            let inventories = ancf::run::inspect_stages(scene.stages(), ancf::run::inspect)
+                .map_err(|error| errors::of_run(py, self.scene.name(), error))?;
+            let text = |(name, inventory)| format!("stage {name}\n{inventory}");
+            return Ok(inventories.into_iter().map(text).collect::<Vec<_>>().join("\n"));
         }
         let (model, analysis) =
             ancf::accuracy::first(&load::with_forces(py, &self.scene, &self.forces, &Failed::default()));

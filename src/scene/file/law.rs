@@ -34,7 +34,8 @@ pub struct LawTable {
     pub expression: Option<Located<ExpressionTable>>,
 }
 
-/// An expression in the time t in seconds, with pi, tau, e, + − * / ^ and smooth functions.
+/// An expression in the time t in seconds, with pi, tau, e, + − * / ^ and smooth functions. Changes
+/// within less than 1/16384 of the duration may be missed.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ExpressionTable {

@@ -69,12 +69,10 @@ staged!(
     ContactTable,
 );
 
-impl SceneTable {
-    /// Keeps those supports, joints and effects for which `keep` holds, and asks it for all of them
-    /// in order.
-    pub fn retain(&mut self, keep: &mut dyn FnMut(During<'_>) -> bool) {
-        self.support.retain(|table| keep(table.during()));
-        self.joint.retain(|table| keep(table.during()));
+/// Does something with the list of every kind of table that may come and go, in order.
+macro_rules! for_each_list {
+    ($scene:expr, $list:ident => $action:expr) => {{
+        let SceneTable { support, joint, effect, .. } = $scene;
         let EffectTable {
             force,
             moment,
@@ -93,23 +91,49 @@ impl SceneTable {
             force_field,
             moving_force,
             contact,
-        } = &mut self.effect;
-        force.retain(|table| keep(table.during()));
-        moment.retain(|table| keep(table.during()));
-        distributed_force.retain(|table| keep(table.during()));
-        *gravity = gravity.take().filter(|table| keep(table.during()));
-        damping.retain(|table| keep(table.during()));
-        spring.retain(|table| keep(table.during()));
-        torsion_spring.retain(|table| keep(table.during()));
-        point_mass.retain(|table| keep(table.during()));
-        rotary_inertia.retain(|table| keep(table.during()));
-        foundation.retain(|table| keep(table.during()));
-        actuation.retain(|table| keep(table.during()));
-        drag.retain(|table| keep(table.during()));
-        buoyancy.retain(|table| keep(table.during()));
-        electrostatic.retain(|table| keep(table.during()));
-        force_field.retain(|table| keep(table.during()));
-        moving_force.retain(|table| keep(table.during()));
-        contact.retain(|table| keep(table.during()));
+        } = effect;
+        for_each_list!(
+            @each $list => $action,
+            support, joint, force, moment, distributed_force, gravity, damping, spring, torsion_spring,
+            point_mass, rotary_inertia, foundation, actuation, drag, buoyancy, electrostatic, force_field,
+            moving_force, contact
+        );
+    }};
+    (@each $list:ident => $action:expr, $($field:ident),*) => {
+        $({
+            let $list = $field;
+            $action
+        })*
+    };
+}
+
+impl SceneTable {
+    /// When the supports, joints and effects take part, in order.
+    pub fn durings(&self) -> Vec<During<'_>> {
+        let mut all = Vec::new();
+        for_each_list!(self, list => all.extend(list.iter().map(Staged::during)));
+        all
+    }
+
+    /// Keeps those supports, joints and effects for which `keep` holds.
+    pub fn retain(&mut self, keep: &dyn Fn(During<'_>) -> bool) {
+        for_each_list!(self, list => list.retain_tables(keep));
+    }
+}
+
+/// A list of tables, or a table that may be left out.
+trait Tables {
+    fn retain_tables(&mut self, keep: &dyn Fn(During<'_>) -> bool);
+}
+
+impl<T: Staged> Tables for Vec<T> {
+    fn retain_tables(&mut self, keep: &dyn Fn(During<'_>) -> bool) {
+        self.retain(|table| keep(table.during()));
+    }
+}
+
+impl<T: Staged> Tables for Option<T> {
+    fn retain_tables(&mut self, keep: &dyn Fn(During<'_>) -> bool) {
+        self.take_if(|table| !keep(table.during()));
     }
 }

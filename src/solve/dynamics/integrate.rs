@@ -21,6 +21,10 @@
 //! step with a tolerance ends too, and the accelerations that the method carries on are computed
 //! anew ([`Method::renew`]).
 //!
+//! An expression may change at any time, and a long step would pass over a short pulse. So steps end
+//! also at times between which it changes about equally ([`System::turns_of_laws`]); steps of fixed length
+//! only where it changes faster than they can follow.
+//!
 //! # Steps of fixed length
 //! A step whose equations cannot be solved is divided, and the count of rejected steps and a
 //! warning tell so; all others keep their lengths and their ends. In a step in which nodes turn far
@@ -233,6 +237,7 @@ impl<'t, 'a> Driver<'t, 'a> {
         };
         let touching = system.intervals(&state.q).map(|intervals| ContactState::new(intervals > 0)).collect();
         let mut kinks = system.kinks();
+        kinks.extend(sharp_turns(system.turns_of_laws([state.time, task.duration]), control));
         kinks.retain(|kink| *kink > state.time && *kink <= task.duration);
         kinks.sort_by(f64::total_cmp);
         let next_record = (first.time / task.output_every + 1.0 + SLACK).floor() as u64;
@@ -576,6 +581,17 @@ pub(super) fn turned(directions: &[View], state: &State) -> Vec<f64> {
     let known = state.angles.iter().copied().chain(std::iter::repeat(f64::NAN));
     let angles = directions.iter().map(|view| view.fields(&state.q).angle()).zip(known);
     angles.map(|(angle, near)| unfold(angle, near.is_finite().then_some(near))).collect()
+}
+
+/// Those of `turns`, rising, that steps have to end at: all if steps follow a tolerance; of fixed
+/// steps, those that lie within one step of another.
+fn sharp_turns(turns: Vec<f64>, control: StepControl) -> Vec<f64> {
+    let StepControl::Fixed(step) = control else { return turns };
+    let near = |a: usize, b: usize| turns.get(a).zip(turns.get(b)).is_some_and(|(a, b)| b - a < step);
+    (0..turns.len())
+        .filter(|&i| near(i, i + 1) || i.checked_sub(1).is_some_and(|before| near(before, i)))
+        .map(|i| turns[i])
+        .collect()
 }
 
 /// Whether `time` lies in the step of fixed length that is to be taken next; a saved state may
