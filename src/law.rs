@@ -282,11 +282,12 @@ impl Law {
             Self::Expression(_) => {
                 let time = |i: u32| start + f64::from(i) / f64::from(SAMPLES) * (end - start);
                 let values: Vec<f64> = (0..=SAMPLES).map(|i| self.at(time(i))[0]).collect();
-                let changes = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs().sqrt());
-                let share = changes().sum::<f64>() / f64::from(TURNS);
-                if !share.is_normal() {
+                let differences = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+                if !differences().sum::<f64>().is_normal() {
                     return Vec::new();
                 }
+                let changes = || differences().map(f64::sqrt);
+                let share = changes().sum::<f64>() / f64::from(TURNS);
                 let (mut passed, mut next, mut turns) = (0.0, share, Vec::new());
                 for (i, change) in (0..).zip(changes()) {
                     passed += change;
