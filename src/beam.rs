@@ -39,6 +39,16 @@ pub enum StrainMeasure {
     Engineering,
 }
 
+impl StrainMeasure {
+    /// |r'| of the strain ε.
+    pub fn stretch(self, strain: f64) -> f64 {
+        match self {
+            Self::Green => 2.0_f64.mul_add(strain, 1.0).max(0.0).sqrt(),
+            Self::Engineering => 1.0 + strain,
+        }
+    }
+}
+
 /// Number of quadrature points in a cell, per elastic energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GaussPoints {

@@ -23,6 +23,7 @@ mod moment;
 mod moving;
 mod spring;
 mod stretch;
+mod tendon;
 
 pub use actuation::{Actuation, PreCurvature, PreStrain};
 pub use bend::{BeamBend, Bend, curvature};
@@ -43,6 +44,7 @@ pub use moment::{Couple, Moment};
 pub use moving::{MovingForce, Travelling};
 pub use spring::{Dashpot, GroundSpring, Spring, Strut, Torsion, TorsionDashpot, TorsionSpring};
 pub use stretch::{BeamStretch, Engineering, Green, Strain, Stretch};
+pub use tendon::{Pull, Tendon};
 
 use crate::assembly::Part;
 

@@ -57,7 +57,7 @@
 //! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `linear`, [`assembly`], `numeric`, [`model`], [`system`] |
 //! | [`restart`] | a saved state from which another analysis can go on | [`assembly`], [`model`], [`system`], `solve` |
 //! | [`results`] | the results of an analysis | [`system`], `solve`, [`restart`] |
-//! | [`run`](mod@run) | one model, one analysis; or several one after the other | `linear`, [`basis`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
+//! | [`run`](mod@run) | one model, one analysis; or several one after the other | `linear`, [`basis`], [`law`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
 //! | [`output`] | files, plots, the report page | [`restart`], [`results`] |
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`assembly`], [`effect`], [`model`] |
 //! | [`accuracy`] | everything that a scene leaves open chosen for an accuracy, and the errors of results | [`centreline`], [`basis`], [`model`], [`results`], [`run`](mod@run), [`scene`] |
@@ -117,6 +117,7 @@
 //! | `[[effect.point_mass]]`, `[[effect.rotary_inertia]]` | [`effect::PointMass`], [`effect::SectionInertia`] | ½ m ṙ·ṙ + ½ J θ̇² |
 //! | `[[effect.foundation]]` | [`effect::Foundation`] | ½ ∫ k u² ds |
 //! | `[[effect.actuation]]` | [`effect::Actuation`] | ½ EA (ε − ε₀)², ½ EI (κ − κ₀)² |
+//! | `[[effect.tendon]]` | [`effect::Tendon`] | T ∫ \|p'\| ds, p = r + e n |
 //! | `[[effect.drag]]`, `[[effect.buoyancy]]` | [`effect::Drag`], [`effect::Buoyancy`] | −(c + C \|u\|) u along and across; −m g |
 //! | `[[effect.moving_force]]` | [`effect::MovingForce`] | −N(s₀ + v t) F |
 //! | `[[effect.contact]]` | [`effect::Contact`] | ½ ∫ k ⟨−g⟩² ds with circles, half-planes, boxes; friction ½ ∫ k_t e² ds, k_t \|e\| ≤ μ p |

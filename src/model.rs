@@ -6,6 +6,7 @@
 mod accuracy;
 mod analysis;
 mod defaults;
+mod event;
 pub mod freedom;
 mod initial_shape;
 mod joint;
@@ -15,6 +16,7 @@ mod velocity;
 pub use accuracy::{Accuracy, Open};
 pub use analysis::*;
 pub use defaults::*;
+pub use event::{Crossing, EventCondition, EventKind, ProbeQuantity};
 pub use initial_shape::InitialShape;
 pub use joint::Joint;
 pub use stage::Stage;
@@ -54,6 +56,8 @@ pub struct Model {
     /// already, as indices of [parts](Self::parts). In statics their loads act in full from the
     /// beginning, where all others grow with the load factor. Joints may be open in the state.
     pub standing: Option<Vec<usize>>,
+    /// Tendons that acted in that state and have gone: in statics they fade as the load factor grows.
+    pub fading: Vec<Arc<dyn Part>>,
     /// The numbers by which results name the supports and the joints, where these are not 1, 2, 3, …:
     /// those of the scene, of which a stage may have fewer.
     pub numbers: [Vec<usize>; 2],

@@ -14,6 +14,7 @@ mod stages;
 mod start;
 mod statics;
 mod strings;
+mod tendons;
 
 pub use error::RunError;
 pub use shapes::shapes_at;

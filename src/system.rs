@@ -194,6 +194,10 @@ impl System {
                 of.resize(count, number);
             }
         }
+        if !needs.motion {
+            assembly.set_amplitude(Some(Amplitude::Fading));
+            model.fading.iter().try_for_each(|part| part.add_to(&mut assembly))?;
+        }
         system.terms = assembly.finish();
         system.actuated = actuation::actuated(model, &system);
         system.constant_load = vec![0.0; system.coordinates()];

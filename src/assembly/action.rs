@@ -12,6 +12,8 @@
 //! translated and rotated. Elasticity, its actuation and its damping therefore drop out without
 //! special treatment, and the remaining actions balance the section forces at the cut.
 
+use super::TendonPath;
+use crate::beam::Along;
 use nalgebra::Vector2;
 use std::ops::{AddAssign, Mul};
 
@@ -88,6 +90,11 @@ pub enum Side {
 pub struct Actions {
     points: Vec<(f64, Action)>,
     spread: Vec<Spread>,
+    /// The tendons beside it, each with its amplitude.
+    tendons: Vec<(f64, TendonPath)>,
+    /// The strains that are imposed on single layers of its section, each with its amplitude and the
+    /// index of the layer.
+    layers: Vec<(f64, usize, Along)>,
 }
 
 /// The distributed action of one density, cell after cell in the order of arc length.
@@ -116,6 +123,38 @@ impl Actions {
         self.points.push((s, action));
     }
 
+    /// Adds the pull of a tendon, times `factor`. It acts on no piece of the beam together with its
+    /// tendon, and it is not a force of the section, though it passes through a cut.
+    pub fn add_tendon(&mut self, factor: f64, path: &TendonPath) {
+        self.tendons.push((factor, path.clone()));
+    }
+
+    /// Adds a strain that is imposed on layer number `layer` of the section, times `factor`. It acts on
+    /// no piece of the beam, but stresses depend on it.
+    pub fn add_layer_strain(&mut self, factor: f64, layer: usize, strain: &Along) {
+        self.layers.push((factor, layer, strain.clone()));
+    }
+
+    /// The strains that are imposed on the layers at `s`, up to the last layer that has one; `inside`
+    /// as for [`Along::at`].
+    pub fn layer_strains(&self, s: f64, inside: f64) -> Vec<f64> {
+        let count = self.layers.iter().map(|(_, layer, _)| layer + 1).max().unwrap_or(0);
+        let mut strains = vec![0.0; count];
+        for (factor, layer, strain) in &self.layers {
+            strains[*layer] += factor * strain.at(s, inside);
+        }
+        strains
+    }
+
+    /// What tendons carry through a cut at `s`, as (N, Q, M) \[N, N, N m\]; `inside` is a place on
+    /// the side of the cut, at which the beam has the stretch |r'| and the curvature κ.
+    pub fn of_tendons(&self, s: f64, inside: f64, strains: [f64; 2]) -> [f64; 3] {
+        self.tendons.iter().fold([0.0; 3], |sum, (factor, path)| {
+            let carries = path.carries(s, inside, strains);
+            std::array::from_fn(|i| factor.mul_add(carries[i], sum[i]))
+        })
+    }
+
     /// Adds actions per length at the points of a quadrature rule, cell after cell, as (s, weight,
     /// action), with `points` of them in a cell.
     pub fn add_spread(&mut self, points: usize, values: Vec<(f64, f64, Action)>) {
@@ -132,12 +171,14 @@ impl Actions {
         self.spread.push(Spread { cells, points: points.max(1), values });
     }
 
-    /// Arc lengths strictly between the ends 0 and `length` at which a concentrated action acts, in
-    /// rising order.
+    /// Arc lengths strictly between the ends 0 and `length` at which a concentrated action acts or a
+    /// tendon ends, in rising order.
     pub fn jumps(&self, length: f64) -> Vec<f64> {
         let inner = SAME * length..(1.0 - SAME) * length;
         let acting = self.points.iter().filter(|(_, action)| *action != Action::default());
-        let mut places: Vec<f64> = acting.map(|(s, _)| *s).filter(|s| inner.contains(s)).collect();
+        let ends = self.tendons.iter().flat_map(|(_, path)| path.ends);
+        let mut places: Vec<f64> =
+            acting.map(|(s, _)| *s).chain(ends).filter(|s| inner.contains(s)).collect();
         places.sort_by(f64::total_cmp);
         places.dedup_by(|a, b| *a - *b <= SAME * length);
         places

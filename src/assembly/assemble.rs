@@ -1,5 +1,6 @@
 //! The assembly of parts into the terms of the equations.
 
+use super::part::places;
 use super::{
     ActingLoad, Amplitude, BuildError, ContactEffect, Damping, Density, DiscretizedBeam, Dissipation, Effect,
     Extent, FrictionEffect, Integral, Kind, MovingLoad, Needs, Rayleigh, Terms, Turning, Weighted, Winding,
@@ -266,6 +267,16 @@ impl<'a> Assembly<'a> {
                 Box::new(Integral::new(kind, extent.beam(), offset, table, density))
             }
         })
+    }
+
+    /// The arc length of each quadrature point of an extent, and that of the middle of its cell
+    /// \[m\].
+    ///
+    /// # Errors
+    /// As [`Self::elastic`].
+    pub fn places(&self, kind: Kind, extent: &Extent) -> Result<Vec<[f64; 2]>, BuildError> {
+        let (table, _) = self.table(kind, extent, &[0])?;
+        Ok(places(&table).collect())
     }
 
     /// The shape functions at the points of an extent, and the index of its beam's first

@@ -1,5 +1,6 @@
 //! A quantity per unit of arc length, with its derivatives by the local fields.
 
+use super::TendonPath;
 use crate::lanes::{Lanes, Pair, Points, Square};
 use nalgebra::{Matrix2, Vector2};
 
@@ -37,6 +38,11 @@ pub trait Density<const M: usize>: Send + Sync {
 
     /// For which tables its sums are compiled apart.
     const COMPILED_FOR: CompiledFor = CompiledFor::CommonTables;
+
+    /// The tendon whose pull it is, for the densities of tendons.
+    fn tendon(&self) -> Option<&TendonPath> {
+        None
+    }
 
     /// W at quadrature point number `point` \[J/m\]; zero for a density without an energy.
     fn energy(&self, point: usize, z: &Gradient<M>) -> f64;

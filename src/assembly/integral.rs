@@ -461,6 +461,9 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
     }
 
     fn add_actions(&self, factor: f64, q: &[f64], a: &[f64], sum: &mut Actions) {
+        if let Some(path) = self.density.tendon() {
+            return sum.add_tendon(factor, path);
+        }
         self.actions_of_pairs(factor, q, a, sum, |point, _, x| self.density.gradient(point, x));
     }
 

@@ -65,6 +65,8 @@ kinds! {
     PreStrain = "pre_strain",
     /// Curvature imposed on a beam by actuation.
     PreCurvature = "pre_curvature",
+    /// Pull of a tendon.
+    Tendon = "tendon",
     /// Resistance of a fluid.
     Drag = "drag",
     /// Lift by a displaced fluid.

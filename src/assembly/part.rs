@@ -1,6 +1,6 @@
 //! The parts of a model and their extents.
 
-use super::{Assembly, BuildError};
+use super::{Assembly, BuildError, TendonPath};
 use crate::basis::{BasisTable, Quadrature};
 use crate::beam::{Along, Place};
 use crate::law::Law;
@@ -18,13 +18,18 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
     /// [`BuildError`] where the part does not fit the model.
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError>;
 
-    /// The strain and the curvature \[1/m\] that an actuation imposes on beam `beam`, and their law
-    /// of time.
-    fn actuation(&self, _beam: usize) -> Option<([&Along; 2], Option<&Law>)> {
+    /// What an actuation imposes on beam `beam`.
+    fn actuation(&self, _beam: usize) -> Option<Imposed<'_>> {
         None
     }
 
-    /// Places where the curvature of a beam jumps for another reason than a couple.
+    /// The tendon that it is, the index of its beam, and its law of time.
+    fn tendon(&self) -> Option<(usize, &TendonPath, Option<&Law>)> {
+        None
+    }
+
+    /// Places that are to be nodes, because the curvature of the beam jumps there for another reason
+    /// than a couple, or because the part ends there.
     fn jumps(&self) -> Vec<Place> {
         Vec::new()
     }
@@ -55,6 +60,19 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
     fn mass(&self) -> Option<(Place, f64)> {
         None
     }
+}
+
+/// Strains that an actuation imposes on a beam.
+#[derive(Clone, Copy, Debug)]
+pub struct Imposed<'p> {
+    /// The strain.
+    pub strain: &'p Along,
+    /// The curvature \[1/m\].
+    pub curvature: &'p Along,
+    /// Index of the layer on which the strain is imposed; `None` for the whole section.
+    pub layer: Option<usize>,
+    /// The law of time that both follow.
+    pub law: Option<&'p Law>,
 }
 
 /// A motion of a beam against the ground.
@@ -101,12 +119,7 @@ impl Extent {
     /// The factor at each point of its table, where there is one.
     pub(super) fn factors(&self, table: &BasisTable) -> Option<Vec<f64>> {
         let Self::Weighted(_, _, factor) = self else { return None };
-        let cells = table.s.chunks(table.points_per_cell);
-        let factors = cells.flat_map(|places| {
-            let middle = places.iter().sum::<f64>() / places.len() as f64;
-            places.iter().map(move |s| factor.at(*s, middle))
-        });
-        Some(factors.collect())
+        Some(places(table).map(|[s, inside]| factor.at(s, inside)).collect())
     }
 
     /// As [`Self::along`] for a density with two coefficients that adds up from both: one sum for
@@ -131,4 +144,12 @@ impl Extent {
             Self::Point(place) => place.beam,
         }
     }
+}
+
+/// The arc length of each point of a table, and that of the middle of its cell \[m\].
+pub(super) fn places(table: &BasisTable) -> impl Iterator<Item = [f64; 2]> + '_ {
+    table.s.chunks(table.points_per_cell).flat_map(|places| {
+        let middle = places.iter().sum::<f64>() / places.len() as f64;
+        places.iter().map(move |s| [*s, middle])
+    })
 }

@@ -1,6 +1,6 @@
 //! A density times a factor that varies along the beam.
 
-use super::{CompiledFor, Density, Dissipation, Gradient, Hessian};
+use super::{CompiledFor, Density, Dissipation, Gradient, Hessian, TendonPath};
 use crate::lanes::{Lanes, Pair, Points, Square};
 
 /// A density, or a dissipation function, and its factor at each quadrature point.
@@ -26,6 +26,10 @@ impl<D: Density<M>, const M: usize> Density<M> for Weighted<D> {
     // Stretch and bending, in which time is spent, are those that are summed by fours.
     const COMPILED_FOR: CompiledFor =
         if D::BY_FOURS { CompiledFor::CableElements } else { CompiledFor::None };
+
+    fn tendon(&self) -> Option<&TendonPath> {
+        self.density.tendon()
+    }
 
     #[inline(always)]
     fn energy(&self, point: usize, z: &Gradient<M>) -> f64 {

@@ -72,6 +72,45 @@ impl Along {
         }
     }
 
+    /// Its derivative by the arc length at `s`; where that jumps, on the side of `inside`.
+    pub fn slope(&self, s: f64, inside: f64) -> f64 {
+        let at = |along: &Self| along.at(s, inside);
+        let slope = |along: &Self| along.slope(s, inside);
+        match self {
+            Self::Constant(_) | Self::Pieces { .. } => 0.0,
+            Self::Table { s: places, value } => {
+                let right = places.partition_point(|place| *place <= inside);
+                if right == 0 || right == places.len() {
+                    return 0.0;
+                }
+                (value[right] - value[right - 1]) / (places[right] - places[right - 1])
+            }
+            Self::Polynomial(terms) => {
+                let terms = terms.iter().enumerate().skip(1).rev();
+                terms.fold(0.0, |sum, (power, term)| sum * s + power as f64 * term)
+            }
+            Self::Product(factors) => {
+                let others = |i: usize| {
+                    let others = factors.iter().enumerate().filter(|(j, _)| *j != i);
+                    others.map(|(_, factor)| at(factor)).product::<f64>()
+                };
+                factors.iter().enumerate().map(|(i, factor)| slope(factor) * others(i)).sum()
+            }
+            Self::Sum(terms) => terms.iter().map(slope).sum(),
+            Self::Quotient(pair) => {
+                let [above, below] = pair.each_ref().map(at);
+                (slope(&pair[0]) - above / below * slope(&pair[1])) / below
+            }
+            Self::Within { from, to, quantity } => {
+                if (*from..=*to).contains(&inside) {
+                    slope(quantity)
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+
     /// The value, where it is the same everywhere.
     pub fn constant(&self) -> Option<f64> {
         match self {
@@ -299,6 +338,30 @@ mod tests {
         assert_eq!(table().plus(&Along::Constant(1.0)).at(2.0, 2.0), 3.5);
         assert_eq!(Along::Constant(3.0).times(2.0).constant(), Some(6.0));
         assert_eq!(table().times(2.0).at(0.5, 0.5), 6.0);
+    }
+
+    /// Slopes are those of secants a little to either side.
+    #[test]
+    fn slopes_are_those_of_secants() {
+        let polynomial = Along::Polynomial(vec![1.0, -2.0, 0.5, 0.25]);
+        let quotient = polynomial.over(&Along::Polynomial(vec![7.0, 1.0]));
+        let all = [
+            Along::Constant(2.0),
+            table(),
+            pieces(),
+            table().product(&polynomial),
+            table().plus(&quotient).within([0.5, 2.5]),
+            quotient,
+            polynomial,
+        ];
+        for along in all {
+            for s in [0.2, 0.9, 1.6, 2.4, 2.8, 3.4] {
+                let h = 1e-5;
+                let secant = (along.at(s + h, s) - along.at(s - h, s)) / (2.0 * h);
+                assert!((along.slope(s, s) - secant).abs() < 1e-8, "{along} at {s}");
+            }
+        }
+        assert_eq!([0.9, 1.1].map(|inside| table().slope(1.0, inside)), [2.0, -1.5]);
     }
 
     /// 3 between 1 and 2, on a beam of 4 m.

@@ -45,6 +45,9 @@ pub struct Layer {
     pub bottom: Along,
     /// Offset of the face on the left \[m\].
     pub top: Along,
+    /// The parts of EA \[N\] and of EB \[N m\] that it contributes, where a strain may be imposed
+    /// on it alone.
+    pub stiffness: Option<[Along; 2]>,
 }
 
 impl Section {
@@ -103,23 +106,36 @@ impl Section {
     }
 
     /// Stresses \[Pa\] on the right and the left face of every layer at `s`, from the axial force
-    /// \[N\] and the bending moment \[N m\]: σ = E (ε − y κ), where ε and κ are those elastic strains
-    /// that N and M cause. `None` where the section does not tell its shape or its modulus.
-    pub fn stresses(&self, s: f64, inside: f64, [force, moment]: [f64; 2]) -> Option<Vec<[f64; 2]>> {
+    /// \[N\] and the bending moment \[N m\]: σ = E (ε − y κ − ε₀), where ε and κ are those elastic
+    /// strains that N and M cause together with the strains ε₀ that are `imposed` on the layers, none
+    /// beyond the last one given. `None` where the section does not tell its shape or its modulus.
+    pub fn stresses(
+        &self,
+        s: f64,
+        inside: f64,
+        [mut force, mut moment]: [f64; 2],
+        imposed: &[f64],
+    ) -> Option<Vec<[f64; 2]>> {
         if self.layers.is_empty() {
             return None;
         }
         let at = |along: &Along| along.at(s, inside);
+        for (layer, imposed) in self.layers.iter().zip(imposed).filter(|(_, imposed)| **imposed != 0.0) {
+            let [axial, coupling] = layer.stiffness.as_ref()?.each_ref().map(at);
+            force += axial * imposed;
+            moment += coupling * imposed;
+        }
         let (axial, bending) = (at(self.axial_stiffness.as_ref()?), at(self.bending_stiffness.as_ref()?));
         let coupling = self.coupling.as_ref().map_or(0.0, at);
         let determinant = axial * bending - coupling * coupling;
         let strain = (bending * force - coupling * moment) / determinant;
         let curvature = (axial * moment - coupling * force) / determinant;
-        let of_layer = |layer: &Layer| {
+        let of_layer = |(number, layer): (usize, &Layer)| {
             let modulus = at(layer.youngs_modulus.as_ref()?);
-            Some([&layer.bottom, &layer.top].map(|y| modulus * (strain - at(y) * curvature)))
+            let elastic = strain - imposed.get(number).unwrap_or(&0.0);
+            Some([&layer.bottom, &layer.top].map(|y| modulus * (elastic - at(y) * curvature)))
         };
-        self.layers.iter().map(of_layer).collect()
+        self.layers.iter().enumerate().map(of_layer).collect()
     }
 }
 
@@ -131,25 +147,34 @@ mod tests {
     /// is positive.
     #[test]
     fn stresses_of_a_rectangle() {
-        let layer = Layer { youngs_modulus: Some(5.0.into()), bottom: (-0.1).into(), top: 0.1.into() };
+        let layer = Layer {
+            youngs_modulus: Some(5.0.into()),
+            bottom: (-0.1).into(),
+            top: 0.1.into(),
+            stiffness: None,
+        };
         let section = Section { layers: vec![layer], ..Section::new(1.0, 5.0 * 0.008 / 12.0) };
-        let stresses = section.stresses(0.0, 0.0, [0.4, 0.03]).unwrap();
+        let stresses = section.stresses(0.0, 0.0, [0.4, 0.03], &[]).unwrap();
         let expected = [0.4 / 0.2 + 6.0 * 0.03 / 0.04, 0.4 / 0.2 - 6.0 * 0.03 / 0.04];
         assert_eq!(stresses.len(), 1);
         for (stress, expected) in stresses[0].iter().zip(expected) {
             assert!((stress - expected).abs() < 1e-12, "{stresses:?}");
         }
         assert_eq!(section.faces(0.0, 0.0), Some([-0.1, 0.1]));
-        assert_eq!(Section::new(1.0, 1.0).stresses(0.0, 0.0, [1.0, 1.0]), None);
+        assert_eq!(Section::new(1.0, 1.0).stresses(0.0, 0.0, [1.0, 1.0], &[]), None);
     }
 
     /// Two layers of E = 1 and 3 whose stresses add up to the N and M that they came from.
     #[test]
     fn stresses_of_layers_add_up_to_force_and_moment() {
-        let layer = |modulus: f64, bottom: f64, top: f64| Layer {
-            youngs_modulus: Some(modulus.into()),
-            bottom: bottom.into(),
-            top: top.into(),
+        let layer = |modulus: f64, bottom: f64, top: f64| {
+            let area = top - bottom;
+            Layer {
+                youngs_modulus: Some(modulus.into()),
+                bottom: bottom.into(),
+                top: top.into(),
+                stiffness: Some([(modulus * area).into(), (-0.5 * modulus * area * (top + bottom)).into()]),
+            }
         };
         let layers = vec![layer(1.0, -0.3, 0.1), layer(3.0, 0.1, 0.2)];
         let integral = |power: i32| -> f64 {
@@ -163,16 +188,19 @@ mod tests {
             layers,
             ..Section::new(integral(0), integral(2))
         };
-        let stresses = section.stresses(0.0, 0.0, [0.7, -0.2]).unwrap();
-        // Linear stress over a layer: ∫ σ dy and −∫ σ y dy by Simpson's rule, which is exact.
-        let sums = |[from, to]: [f64; 2], [bottom, top]: [f64; 2]| {
-            let middle = 0.5 * (from + to);
-            let h = top - bottom;
-            let mean_y = 0.5 * (bottom + top);
-            (h * middle, -h / 6.0 * (from * bottom + 4.0 * middle * mean_y + to * top))
-        };
-        let (a, b) = (sums(stresses[0], [-0.3, 0.1]), sums(stresses[1], [0.1, 0.2]));
-        assert!((a.0 + b.0 - 0.7).abs() < 1e-12 && (a.1 + b.1 + 0.2).abs() < 1e-12, "{a:?} {b:?}");
+        // Whether or not strains are imposed on the layers.
+        for imposed in [vec![], vec![0.4], vec![-0.3, 0.7]] {
+            let stresses = section.stresses(0.0, 0.0, [0.7, -0.2], &imposed).unwrap();
+            // Linear stress over a layer: ∫ σ dy and −∫ σ y dy by Simpson's rule, which is exact.
+            let sums = |[from, to]: [f64; 2], [bottom, top]: [f64; 2]| {
+                let middle = 0.5 * (from + to);
+                let h = top - bottom;
+                let mean_y = 0.5 * (bottom + top);
+                (h * middle, -h / 6.0 * (from * bottom + 4.0 * middle * mean_y + to * top))
+            };
+            let (a, b) = (sums(stresses[0], [-0.3, 0.1]), sums(stresses[1], [0.1, 0.2]));
+            assert!((a.0 + b.0 - 0.7).abs() < 1e-12 && (a.1 + b.1 + 0.2).abs() < 1e-12, "{a:?} {b:?}");
+        }
         assert_eq!(section.faces(0.0, 0.0), Some([-0.3, 0.2]));
     }
 }

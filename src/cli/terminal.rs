@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::cost;
-use crate::model::Analysis;
+use crate::model::{Analysis, ProbeQuantity};
 use crate::output::plot::human;
 use crate::output::with_error;
 use crate::results::{AnalysisKind, ContactImpulse, ErrorEstimate, Event, ProbeSample, Results, Run};
@@ -274,8 +274,12 @@ fn table(results: &Results, directory: &Path) -> String {
     }
     for event in &trajectory.events {
         match event {
-            Event::Crossing { time, probe, axis, value } => {
-                let at = format!("{} s: {axis} = {} m", number(*time), number(*value));
+            Event::Probe { time, probe, quantity, value, turns } => {
+                let unit = ProbeQuantity::ALL.iter().map(|of| of.name()).find(|(name, _)| name == quantity);
+                let unit = unit.map_or("", |(_, unit)| unit);
+                let turns = turns.map_or_else(String::new, |turns| format!(", a {turns}"));
+                let value = format!("{} {unit}", number(*value));
+                let at = format!("{} s: {quantity} = {}{turns}", number(*time), value.trim_end());
                 row(&format!("event at {probe}"), at);
             }
             Event::Contact { time, contact, touches, impulse } => {
@@ -698,7 +702,7 @@ mod tests {
                 lost: 16.0,
             }],
             events: vec![
-                Event::Crossing { time: 0.5, probe: "tip".into(), axis: "y".into(), value: -0.125 },
+                Event::Probe { time: 0.5, probe: "tip".into(), quantity: "y", value: -0.125, turns: None },
                 Event::Contact { time: 0.625, contact: "arm.1".into(), touches: true, impulse: None },
                 Event::Contact {
                     time: 0.6875,

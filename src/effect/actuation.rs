@@ -5,9 +5,12 @@
 //! energy ½ EA (ε − ε₀)², only the term −EA ε₀ ε couples the actuation to the motion. It is treated
 //! as a load with a potential, beside the elastic energy ½ EA ε², so that it can be switched on
 //! like any other load.
+//!
+//! A strain on one layer alone, as heat imposes it on a bimetal, has the force N₀ = EA_l ε₀ and the
+//! moment M₀ = EB_l ε₀ with that layer's parts of EA and EB.
 
 use super::{Engineering, Green, Strain, bend};
-use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
+use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Imposed, Kind, Part};
 use crate::basis::Quadrature;
 use crate::beam::{Along, Place, Section, StrainMeasure};
 use crate::lanes;
@@ -23,6 +26,9 @@ pub struct Actuation {
     pub strain: Option<Along>,
     /// κ₀ \[1/m\].
     pub curvature: Option<Along>,
+    /// Index of the layer of the section on which alone the strain is imposed, such as the warmer one of
+    /// a bimetal; `None` for the whole section.
+    pub layer: Option<usize>,
     /// In a motion, the law of time that both follow; without one they act in full from the start.
     pub law: Option<Law>,
 }
@@ -34,6 +40,15 @@ impl Part for Actuation {
         if !beam.section.is_linear() {
             return Err(lacks("stiffness that is a number"));
         }
+        let (stretch, bend) = (beam.gauss_points.stretch_rule(), beam.gauss_points.bend_rule());
+        if let Some(layer) = self.layer {
+            let stiffness = beam.section.layers.get(layer).and_then(|layer| layer.stiffness.as_ref());
+            let [axial, coupling] = stiffness.ok_or_else(|| lacks("layer of known stiffness"))?;
+            let Some(strain) = &self.strain else { return Ok(()) };
+            let force = axial.product(strain);
+            self.add_pre_strain(assembly, Kind::PreStrain, (beam.strain, stretch), &force)?;
+            return self.add_pre_curvature(assembly, bend, &coupling.product(strain));
+        }
         let Section { axial_stiffness, bending_stiffness, coupling, .. } = &beam.section;
         let product = |value: &Option<Along>, stiffness: &Option<Along>, name: &'static str| match value {
             None => Ok(None),
@@ -43,7 +58,6 @@ impl Part for Actuation {
         };
         let coupled =
             |value: &Option<Along>| coupling.as_ref().zip(value.as_ref()).map(|(b, v)| b.product(v));
-        let (stretch, bend) = (beam.gauss_points.stretch_rule(), beam.gauss_points.bend_rule());
         if let Some(force) = product(&self.strain, axial_stiffness, "axial stiffness")? {
             self.add_pre_strain(assembly, Kind::PreStrain, (beam.strain, stretch), &force)?;
         }
@@ -53,16 +67,14 @@ impl Part for Actuation {
         }
         let moments =
             [product(&self.curvature, bending_stiffness, "bending stiffness")?, coupled(&self.strain)];
-        for moment in moments.into_iter().flatten() {
-            let (moment, extent) = Extent::along(self.beam, bend, &moment);
-            assembly.load(Kind::PreCurvature, extent, self.law.as_ref(), |_| PreCurvature { moment })?;
-        }
-        Ok(())
+        moments.into_iter().flatten().try_for_each(|moment| self.add_pre_curvature(assembly, bend, &moment))
     }
 
-    fn actuation(&self, beam: usize) -> Option<([&Along; 2], Option<&Law>)> {
-        let own = [&self.strain, &self.curvature].map(|value| value.as_ref().unwrap_or(&NOTHING));
-        (beam == self.beam).then_some((own, self.law.as_ref()))
+    fn actuation(&self, beam: usize) -> Option<Imposed<'_>> {
+        let [strain, curvature] =
+            [&self.strain, &self.curvature].map(|value| value.as_ref().unwrap_or(&NOTHING));
+        let imposed = Imposed { strain, curvature, layer: self.layer, law: self.law.as_ref() };
+        (beam == self.beam).then_some(imposed)
     }
 
     fn jumps(&self) -> Vec<Place> {
@@ -72,6 +84,17 @@ impl Part for Actuation {
 }
 
 impl Actuation {
+    /// Adds −∫ M₀ κ ds.
+    fn add_pre_curvature(
+        &self,
+        assembly: &mut Assembly<'_>,
+        rule: Quadrature,
+        moment: &Along,
+    ) -> Result<(), BuildError> {
+        let (moment, extent) = Extent::along(self.beam, rule, moment);
+        assembly.load(Kind::PreCurvature, extent, self.law.as_ref(), |_| PreCurvature { moment })
+    }
+
     /// Adds −∫ N₀ ε ds.
     fn add_pre_strain(
         &self,

@@ -24,6 +24,7 @@ pub use integral::ContactIntegral;
 pub use obstacle::Obstacle;
 
 use crate::assembly::{Assembly, BuildError, Density, Gradient, Hessian, Part, Resistance};
+use crate::beam::Place;
 use nalgebra::{Matrix2, Vector2};
 use std::sync::Arc;
 
@@ -40,6 +41,8 @@ pub struct Contact {
     pub half_thickness: f64,
     /// Friction; `None` for a contact without friction.
     pub friction: Option<Friction>,
+    /// Arc lengths \[m\] between which the beam can touch; `None` for all of it.
+    pub between: Option<[f64; 2]>,
 }
 
 impl Part for Contact {
@@ -47,7 +50,7 @@ impl Part for Contact {
         let beam = assembly.beam("contact", self.beam)?;
         let normal = Penalty { obstacle: self.obstacle, stiffness: self.stiffness, gap: self.half_thickness };
         let part = assembly.discretized(self.beam);
-        let pressing = ContactIntegral::new(normal, self.beam, &part.basis, part.offset());
+        let pressing = ContactIntegral::new(normal, self.beam, self.between, &part.basis, part.offset());
         let pressing = Arc::new(pressing.map_err(|e| BuildError::basis(&beam.name, e))?);
         if let Some(friction) = self.friction {
             let pressing = Arc::clone(&pressing);
@@ -59,6 +62,10 @@ impl Part for Contact {
 
     fn resists(&self) -> Vec<Resistance> {
         vec![Resistance::Contact(self.beam)]
+    }
+
+    fn jumps(&self) -> Vec<Place> {
+        self.between.into_iter().flatten().map(|s| Place::new(self.beam, s)).collect()
     }
 
     fn outline(&self, size: f64) -> Vec<[f64; 2]> {

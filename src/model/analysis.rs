@@ -1,5 +1,6 @@
 //! Analyses and their settings.
 
+use super::EventCondition;
 use std::fmt;
 
 /// An analysis of a model.
@@ -106,29 +107,6 @@ pub struct Dynamic {
     pub integrator: Integrator,
     /// Events to detect.
     pub events: Vec<EventCondition>,
-}
-
-/// The event that a probe's coordinate reaches a value from one side, even if it turns back there.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EventCondition {
-    /// The coordinate and its value.
-    pub target: ProbeTarget,
-    /// The direction in which the value is reached.
-    pub crossing: Crossing,
-    /// Whether the simulation ends at the event.
-    pub stop: bool,
-}
-
-/// The direction in which a value is crossed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Crossing {
-    /// Either direction.
-    #[default]
-    Any,
-    /// From below.
-    Rising,
-    /// From above.
-    Falling,
 }
 
 /// A method of time integration.

@@ -151,6 +151,10 @@ fn shape(t: &Trajectory) -> Option<Sketch> {
             chart = chart.with(Series::line("", face, colour_of_beam(i)).size(0.9));
         }
     }
+    let tendons = t.last.iter().flat_map(|beam| &beam.tendons);
+    for (line, label) in tendons.zip(std::iter::once("tendon").chain(std::iter::repeat(""))) {
+        chart = chart.with(Series::line(label, line.clone(), GREY).size(1.4));
+    }
     for (i, beam) in t.last.iter().enumerate() {
         let label = if i == 0 { "nodes" } else { "" };
         let radius = if beam.nodes.len() > 60 { 1.8 } else { 3.2 };
@@ -161,13 +165,7 @@ fn shape(t: &Trajectory) -> Option<Sketch> {
 
 /// The outer faces of a beam whose section tells its shape.
 fn surfaces(beam: &Shape) -> Vec<Vec<[f64; 2]>> {
-    let face = |side: usize| {
-        let places = beam.x.iter().zip(&beam.y).zip(&beam.angle).zip(&beam.faces);
-        let off = |(((x, y), angle), faces): (((&f64, &f64), &f64), &[f64; 2])| {
-            [x - faces[side] * angle.sin(), y + faces[side] * angle.cos()]
-        };
-        places.map(off).collect()
-    };
+    let face = |side: usize| (0..beam.faces.len()).map(|i| beam.beside(i, beam.faces[i][side])).collect();
     if beam.faces.is_empty() { Vec::new() } else { vec![face(0), face(1)] }
 }
 

@@ -28,6 +28,12 @@ pub struct LargestStress {
 }
 
 impl Shape {
+    /// The place \[m\] beside point number `point`, at a distance to the left of the beam \[m\].
+    pub fn beside(&self, point: usize, distance: f64) -> [f64; 2] {
+        let (sine, cosine) = self.angle[point].sin_cos();
+        [self.x[point] - distance * sine, self.y[point] + distance * cosine]
+    }
+
     /// Stresses \[Pa\] on the outer faces: those of the first layer's face on the right, and of the
     /// last layer's face on the left.
     pub fn face_stresses(&self) -> Option<[&[f64]; 2]> {
@@ -89,6 +95,9 @@ pub struct Shape {
     /// empty where the scene does not tell the shape of the section.
     #[serde(skip)]
     pub faces: Vec<[f64; 2]>,
+    /// The lines of the tendons that run beside it \[m\]; given for the last state alone.
+    #[serde(skip)]
+    pub tendons: Vec<Vec<[f64; 2]>>,
     /// Positions of the nodes \[m\].
     pub nodes: Vec<[f64; 2]>,
 }

@@ -147,16 +147,19 @@ pub struct EffectSeries {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Event {
-    /// A probe's coordinate crossed a value.
-    Crossing {
+    /// A quantity at a probe reached a value, or turned back.
+    Probe {
         /// When \[s\].
         time: f64,
         /// Name of the probe.
         probe: String,
-        /// `x` or `y`.
-        axis: String,
-        /// The value \[m\].
+        /// The quantity's name, such as `x`.
+        quantity: &'static str,
+        /// Its value, in SI units.
         value: f64,
+        /// Whether it turned back there: `maximum` or `minimum`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        turns: Option<&'static str>,
     },
     /// A beam touched an obstacle, or came free of it.
     Contact {
@@ -176,7 +179,7 @@ impl Event {
     /// When it happened \[s\].
     pub fn time(&self) -> f64 {
         match self {
-            Self::Crossing { time, .. } | Self::Contact { time, .. } => *time,
+            Self::Probe { time, .. } | Self::Contact { time, .. } => *time,
         }
     }
 }

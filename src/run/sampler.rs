@@ -5,13 +5,17 @@ use super::angle;
 use super::laws::Reach;
 use super::locking::Locking;
 use super::strings;
-use crate::assembly::{Actions, BuildError, InternalVariables, Side, nodes};
+use super::tendons::Tendons;
+use crate::assembly::{Actions, BuildError, InternalVariables, Side, TendonPath, nodes};
 use crate::linear::Singular;
-use crate::model::{ArcLength, Dynamic, Model, ProbeTarget, StepControl, StrainMeasure};
+use crate::model::{
+    ArcLength, Beam, Dynamic, EventCondition, EventKind, Model, ProbeQuantity, ProbeTarget, StepControl,
+    StrainMeasure,
+};
 use crate::restart::SavedState;
 use crate::results::{
     AnalysisKind, EffectSeries, Energy, Event, Frame, LayerStress, ModeShape, ProbeSample, ProbeSeries,
-    ReactionSeries, Run, Shape, Trajectory,
+    ReactionSeries, Run, SectionForces, Shape, Trajectory,
 };
 use crate::solve::Work;
 use crate::solve::dynamics;
@@ -184,22 +188,68 @@ impl<'a> Sampler<'a> {
     }
 
     fn view_of(&self, target: &ProbeTarget) -> Result<View, RunError> {
-        let found = self.probes.iter().find(|probe| probe.name == target.probe);
-        let probe = found.ok_or_else(|| RunError::NoSuchProbe {
-            probe: target.probe.clone(),
+        Ok(self.probes[self.probe_named(&target.probe)?].view.clone())
+    }
+
+    fn probe_named(&self, name: &str) -> Result<usize, RunError> {
+        let found = self.probes.iter().position(|probe| probe.name == name);
+        found.ok_or_else(|| RunError::NoSuchProbe {
+            probe: name.to_owned(),
             known: self.probes.iter().map(|probe| probe.name.as_str()).collect::<Vec<_>>().join(", "),
-        })?;
-        Ok(probe.view.clone())
+        })
     }
 
     /// The events of a motion, each with the view of its probe.
-    pub(super) fn watches(&self, settings: &Dynamic) -> Result<Vec<dynamics::EventWatch>, RunError> {
-        let watch = |event: &crate::model::EventCondition| {
-            let view = self.view_of(&event.target)?;
-            let (axis, value) = (event.target.axis, event.target.value);
-            Ok(dynamics::EventWatch { view, axis, value, crossing: event.crossing, stop: event.stop })
+    pub(super) fn watches(&self, settings: &Dynamic) -> Result<Vec<dynamics::EventWatch<'_>>, RunError> {
+        let watch = |event: &EventCondition| {
+            let number = self.probe_named(&event.probe)?;
+            Ok(dynamics::EventWatch {
+                quantity: self.quantity(number, event.quantity),
+                when: event.when,
+                stop: event.stop,
+            })
         };
         settings.events.iter().map(watch).collect()
+    }
+
+    /// A quantity at probe number `number` as a function of the state.
+    fn quantity(&self, number: usize, quantity: ProbeQuantity) -> dynamics::Quantity<'_> {
+        use dynamics::Quantity::{OfForces, OfMotion, Position};
+        let ProbePoint { beam, view, measure, reference_strain, .. } = &self.probes[number];
+        let place = (*beam, view.s()[0]);
+        let carries = move |of: fn(SectionForces) -> Option<f64>| {
+            OfForces(Box::new(move |balance| {
+                let actions = self.system.actions(balance.view());
+                of(self.section_at(place, &balance.state.q, &actions)).unwrap_or(f64::NAN)
+            }))
+        };
+        match quantity {
+            ProbeQuantity::X => Position(view.clone(), 0),
+            ProbeQuantity::Y => Position(view.clone(), 1),
+            ProbeQuantity::Angle => OfMotion(Box::new(move |state| {
+                let near = state.angles.get(number).copied().filter(|angle| angle.is_finite());
+                unfold(view.fields(&state.q).angle(), near)
+            })),
+            ProbeQuantity::Vx => OfMotion(Box::new(|state| view.at_point(&state.v)[0])),
+            ProbeQuantity::Vy => OfMotion(Box::new(|state| view.at_point(&state.v)[1])),
+            ProbeQuantity::Speed => OfMotion(Box::new(|state| {
+                let [x, y] = view.at_point(&state.v);
+                x.hypot(y)
+            })),
+            // The strain of a state that is interpolated between steps errs by far more than its
+            // position.
+            ProbeQuantity::Strain => OfForces(Box::new(move |balance| {
+                view.fields(&balance.state.q).strain(*measure) - reference_strain
+            })),
+            ProbeQuantity::Curvature => {
+                OfForces(Box::new(|balance| view.fields(&balance.state.q).curvature()))
+            }
+            ProbeQuantity::AxialForce => carries(|section| Some(section.axial_force)),
+            ProbeQuantity::ShearForce => carries(|section| Some(section.shear_force)),
+            ProbeQuantity::BendingMoment => carries(|section| Some(section.bending_moment)),
+            ProbeQuantity::StressBottom => carries(|section| section.stress_bottom),
+            ProbeQuantity::StressTop => carries(|section| section.stress_top),
+        }
     }
 
     pub(super) fn empty(&self, analysis: AnalysisKind) -> Trajectory {
@@ -374,6 +424,7 @@ impl<'a> Sampler<'a> {
                     (s != even.s()).then(|| View::points(&part.basis, part.offset(), &s).ok()).flatten();
                 let mut shape = self.shape_of(beam, more.as_ref().unwrap_or(even), q);
                 self.cut(beam, actions, &sides, &mut shape);
+                shape.tendons = self.tendons(beam, &shape);
                 shape
             })
             .collect()
@@ -409,23 +460,40 @@ impl<'a> Sampler<'a> {
         (s, v.map_or_else(Vec::new, |v| view.positions(FRAME_STRIDE, v).collect()))
     }
 
+    /// The lines of the tendons of a beam.
+    fn tendons(&self, beam: usize, shape: &Shape) -> Vec<Vec<[f64; 2]>> {
+        let paths = self.model.parts.iter().filter_map(|part| part.tendon());
+        let line = |path: &TendonPath| {
+            let [from, to] = path.ends;
+            let points = (0..shape.s.len()).filter(|i| (from..=to).contains(&shape.s[*i]));
+            points.map(|i| shape.beside(i, path.offset.at(shape.s[i], shape.s[i]))).collect()
+        };
+        paths.filter(|(of, ..)| *of == beam).map(|(_, path, _)| line(path)).collect()
+    }
+
     /// Adds the section forces; a string has only N.
     fn cut(&self, beam: usize, actions: &Actions, sides: &[Side], shape: &mut Shape) {
-        let section = &self.model.beams[beam].section;
+        let Beam { section, strain: measure, .. } = &self.model.beams[beam];
         let bends = section.bending_stiffness.is_some();
         let length = self.system.beams()[beam].basis.length();
         for (i, side) in sides.iter().enumerate() {
             let before = actions.until(shape.s[i], *side, length);
             let (r, (sine, cosine)) = (Vector2::new(shape.x[i], shape.y[i]), shape.angle[i].sin_cos());
             let force = -before.force;
-            shape.axial_force.push(force.x * cosine + force.y * sine);
-            shape.shear_force.push(if bends { force.y * cosine - force.x * sine } else { 0.0 });
-            shape.bending_moment.push(if bends { r.perp(&before.force) - before.moment } else { 0.0 });
             let inside = shape.s[i] + if *side == Side::Left { -SAME_PLACE } else { SAME_PLACE } * length;
+            let stretch = measure.stretch(shape.strain[i]);
+            let [axial, shear, moment] =
+                actions.of_tendons(shape.s[i], inside, [stretch, shape.curvature[i]]);
+            let across = force.y * cosine - force.x * sine - shear;
+            shape.axial_force.push(force.x * cosine + force.y * sine - axial);
+            shape.shear_force.push(if bends { across } else { 0.0 });
+            let couple = r.perp(&before.force) - before.moment - moment;
+            shape.bending_moment.push(if bends { couple } else { 0.0 });
             shape.faces.extend(section.faces(shape.s[i], inside));
             let forces = [shape.axial_force[i], shape.bending_moment[i]];
+            let imposed = actions.layer_strains(shape.s[i], inside);
             for (layer, [bottom, top]) in
-                section.stresses(shape.s[i], inside, forces).into_iter().flatten().enumerate()
+                section.stresses(shape.s[i], inside, forces, &imposed).into_iter().flatten().enumerate()
             {
                 if layer == shape.stress.len() {
                     shape.stress.push(LayerStress::default());
@@ -527,6 +595,7 @@ impl<'a> Sampler<'a> {
         let count = solution.states.len();
         let mut locking = self.locking.clone();
         let mut reach = Reach::new(self.model);
+        let mut tendons = Tendons::new(self.model, true);
         let states = solution.states.iter().zip(&solution.variables).zip(&solution.work);
         for (i, (((load, x), variables), work)) in states.enumerate() {
             let q = self.coordinates_of(x);
@@ -542,6 +611,9 @@ impl<'a> Sampler<'a> {
             }
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
+                if tendons.are_there() {
+                    tendons.see(&self.shape(q));
+                }
                 if reach.watches() {
                     reach.see(&self.shape(q), &trajectory.run.undeformed);
                 }
@@ -558,6 +630,8 @@ impl<'a> Sampler<'a> {
         trajectory.run.warnings.extend(locking.jammed(&trajectory.last, work));
         trajectory.run.warnings.extend(locking.warnings());
         trajectory.run.warnings.extend(reach.warnings());
+        trajectory.parameter.iter().for_each(|at| tendons.see_factor(*at));
+        trajectory.run.warnings.extend(tendons.warnings());
         trajectory.history = solution.history.clone();
         trajectory.run.statistics = solution.statistics;
         if let Some(UnstableMechanism { load, unstable, free }) = solution.pressed {
@@ -722,6 +796,7 @@ impl<'a> Sampler<'a> {
         let count = solution.states.len();
         let mut locking = self.locking.clone();
         let mut reach = Reach::new(self.model);
+        let mut tendons = Tendons::new(self.model, false);
         for reactions in &solution.reactions {
             self.record_reactions(&mut trajectory, reactions);
         }
@@ -741,6 +816,9 @@ impl<'a> Sampler<'a> {
             }
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
+                if tendons.are_there() {
+                    tendons.see(&self.shape(q));
+                }
                 if reach.watches() {
                     reach.see(&self.shape(q), &trajectory.run.undeformed);
                 }
@@ -754,10 +832,22 @@ impl<'a> Sampler<'a> {
                 None => self.shape(&state.q),
             };
         }
-        for (watch, state) in &solution.events {
-            let ProbeTarget { probe, axis, value } = settings.events[*watch].target.clone();
-            let axis = ["x", "y"][axis].into();
-            trajectory.events.push(Event::Crossing { time: state.time, probe, axis, value });
+        for &(watch, time, value) in &solution.events {
+            let EventCondition { probe, quantity, when, .. } = &settings.events[watch];
+            let turns = match when {
+                EventKind::Reaches { .. } => None,
+                EventKind::Maximum => Some("maximum"),
+                EventKind::Minimum => Some("minimum"),
+            };
+            let (probe, quantity) = (probe.clone(), quantity.name().0);
+            trajectory.events.push(Event::Probe { time, probe, quantity, value, turns });
+        }
+        if let Some((watch, time)) = solution.unseen {
+            let EventCondition { probe, quantity, .. } = &settings.events[watch];
+            trajectory.run.warnings.push(format!(
+                "the {} at probe `{probe}` was not known in every step from t = {time:.6} s on, so that events may have been missed",
+                quantity.name().0
+            ));
         }
         let contacts: Vec<String> = self.system.contact_names().collect();
         for dynamics::Change { contact, touches, time, impulse } in solution.contacts.iter().copied() {
@@ -774,6 +864,8 @@ impl<'a> Sampler<'a> {
         }
         trajectory.run.warnings.extend(locking.warnings());
         trajectory.run.warnings.extend(reach.warnings());
+        trajectory.parameter.iter().for_each(|at| tendons.see_factor(*at));
+        trajectory.run.warnings.extend(tendons.warnings());
         let divided = solution.statistics.rejected_steps;
         if divided > 0 && matches!(settings.integrator.step_control(), StepControl::Fixed(_)) {
             let smallest = solution.history.iter().map(|r| r.step).fold(f64::INFINITY, f64::min);

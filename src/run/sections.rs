@@ -29,7 +29,12 @@ impl Sampler<'_> {
     }
 
     /// What the section at a place carries: behind the place, and at the beam's end before it.
-    fn section_at(&self, (beam, s): (usize, f64), q: &[f64], actions: &[Actions]) -> SectionForces {
+    pub(super) fn section_at(
+        &self,
+        (beam, s): (usize, f64),
+        q: &[f64],
+        actions: &[Actions],
+    ) -> SectionForces {
         let side = if s >= self.system.beams()[beam].basis.length() { Side::Left } else { Side::Right };
         let shape = self.cut_shape(beam, &[s], &[side], q, &actions[beam]);
         let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);

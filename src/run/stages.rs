@@ -1,9 +1,12 @@
 //! Analyses one after the other, each from where the one before it ended.
 
 use super::{Control, Inventory, Options, Progress, RunError};
+use crate::assembly::Part;
 use crate::model::{Analysis, Displacement, Model, Stage};
 use crate::restart::SavedState;
 use crate::results::Results;
+use std::borrow::Cow;
+use std::sync::Arc;
 
 /// What is computed of a scene with stages.
 #[derive(Debug)]
@@ -56,6 +59,8 @@ pub fn inspect_stages(
 pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
     let mut run = StagesRun { results: Vec::with_capacity(stages.len()), failure: None };
     let mut reached: Option<SavedState> = None;
+    // The parts that have acted in the state that was reached.
+    let mut acted: &[Arc<dyn Part>] = &[];
     let mut observer = options.observer.take();
     for (index, Stage { name, model, analysis }) in stages.iter().enumerate() {
         let mut watch =
@@ -64,6 +69,16 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
             start: reached.as_ref().or(options.start),
             observer: Some(&mut watch),
             ..options.copied()
+        };
+        // A tendon's forces turn with its beam, which those of other things that have gone do not.
+        let gone = |part: &&Arc<dyn Part>| {
+            part.tendon().is_some_and(|(_, _, law)| law.is_none()) && !model.parts.contains(part)
+        };
+        let fading: Vec<Arc<dyn Part>> = acted.iter().filter(gone).cloned().collect();
+        let model = if fading.is_empty() {
+            Cow::Borrowed(model)
+        } else {
+            Cow::Owned(Model { fading, ..model.clone() })
         };
         match model.solve_with(analysis, here) {
             Ok(results) => {
@@ -80,7 +95,7 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
                         break;
                     }
                     None => {}
-                    saved => reached = saved,
+                    saved => (reached, acted) = (saved, &stages[index].model.parts),
                 }
             }
             Err(mut error) => {

@@ -381,6 +381,8 @@ pub struct EffectTable {
     pub foundation: Vec<FoundationTable>,
     /// Strains and curvatures that beams would take by themselves.
     pub actuation: Vec<ActuationTable>,
+    /// Tendons along beams.
+    pub tendon: Vec<TendonTable>,
     /// Resistance of a fluid.
     pub drag: Vec<DragTable>,
     /// Lift by a displaced fluid.

@@ -48,6 +48,16 @@ impl Stretch {
         Ok(Self { beam, length, ends: (ends != [0.0, length]).then_some(ends) })
     }
 
+    /// From and to which arc length \[m\], where it is not the whole beam.
+    pub(super) fn part(&self) -> Option<[f64; 2]> {
+        self.ends
+    }
+
+    /// From and to which arc length \[m\].
+    pub(super) fn ends(&self) -> [f64; 2] {
+        self.ends.unwrap_or([0.0, self.length])
+    }
+
     /// 1 on this stretch, and 0 elsewhere.
     pub(super) fn indicator(&self) -> Along {
         match self.ends {

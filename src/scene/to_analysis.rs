@@ -4,15 +4,17 @@ use std::ops::Range;
 
 use crate::model::{
     About, Accuracy, Analysis, ArcLength, Buckling, Crossing, Discretization, Dynamic, EventCondition,
-    Integrator, Modal, Model, ProbeTarget, SPECTRAL_RADIUS, STEP_CONTROL, Static, StepControl, Undamped,
+    EventKind, Integrator, Modal, Model, Probe, ProbeQuantity, ProbeTarget, SPECTRAL_RADIUS, STEP_CONTROL,
+    Section, Static, StepControl, Undamped,
 };
 
 use super::diagnose::choices;
 use super::error::Fault;
 use super::file::{
-    AboutName, AnalysisTable, ArcLengthTable, CrossingName, DynamicTable, EventTable, SceneTable, StaticTable,
+    AboutName, AnalysisTable, ArcLengthTable, CrossingName, DynamicTable, EventTable, ProbeQuantityName,
+    SceneTable, StaticTable,
 };
-use super::quantity::{Length, Positive, Quantity, Ratio, Time};
+use super::quantity::{Length, Positive, Quantity, Ratio, Stress, Time};
 use super::to_basis::{MAX_MEMORY, Size};
 use super::value::{AccuracyTable, AccuracyValue, Count, Located};
 
@@ -213,21 +215,25 @@ fn arc_length(located: &Located<ArcLengthTable>, model: &Model, size: Size) -> R
     })
 }
 
+fn known_probe<'m>(probe: &Located<String>, model: &'m Model) -> Result<&'m Probe, Fault> {
+    let name = probe.get();
+    model.probes.iter().find(|probe| probe.name == *name).ok_or_else(|| {
+        let names: Vec<String> = model.probes.iter().map(|probe| probe.name.clone()).collect();
+        Fault::new(probe.span(), format!("there is no probe named `{name}`")).help(choices(
+            "probes of this scene",
+            name,
+            &names,
+        ))
+    })
+}
+
 fn probe_target(
     probe: &Located<String>,
     x: Option<Quantity<Length>>,
     y: Option<Quantity<Length>>,
     model: &Model,
 ) -> Result<ProbeTarget, Fault> {
-    let name = probe.get();
-    if !model.probes.iter().any(|probe| probe.name == *name) {
-        let names: Vec<String> = model.probes.iter().map(|probe| probe.name.clone()).collect();
-        return Err(Fault::new(probe.span(), format!("there is no probe named `{name}`")).help(choices(
-            "probes of this scene",
-            name,
-            &names,
-        )));
-    }
+    let name = &known_probe(probe, model)?.name;
     let (axis, value) = match (x, y) {
         (Some(x), None) => (0, x.si),
         (None, Some(y)) => (1, y.si),
@@ -240,16 +246,92 @@ fn probe_target(
 }
 
 fn event(table: &EventTable, model: &Model) -> Result<EventCondition, Fault> {
-    let crossing = match table.crossing {
+    use ProbeQuantity as Of;
+    let probe = known_probe(&table.probe, model)?;
+    let stress = |stress: &Option<Located<Quantity<Stress>>>| stress.as_ref().map(|stress| stress.get().si);
+    let values = [
+        (Of::X, table.x.map(|x| x.si)),
+        (Of::Y, table.y.map(|y| y.si)),
+        (Of::Angle, table.angle.map(|angle| angle.si)),
+        (Of::Vx, table.vx.map(|v| v.si)),
+        (Of::Vy, table.vy.map(|v| v.si)),
+        (Of::Speed, table.speed.map(|v| v.si)),
+        (Of::Strain, table.strain.map(|strain| strain.si)),
+        (Of::Curvature, table.curvature.map(|curvature| curvature.si)),
+        (Of::AxialForce, table.axial_force.map(|force| force.si)),
+        (Of::ShearForce, table.shear_force.map(|force| force.si)),
+        (Of::BendingMoment, table.bending_moment.map(|moment| moment.si)),
+        (Of::StressBottom, stress(&table.stress_bottom)),
+        (Of::StressTop, stress(&table.stress_top)),
+    ];
+    let crossing = table.crossing.as_ref().map_or(Crossing::Any, |name| match name.get() {
         CrossingName::Any => Crossing::Any,
         CrossingName::Rising => Crossing::Rising,
         CrossingName::Falling => Crossing::Falling,
+    });
+    let reached = values
+        .into_iter()
+        .filter_map(|(quantity, value)| Some((quantity, EventKind::Reaches { value: value?, crossing })));
+    let turns = [(&table.maximum, EventKind::Maximum), (&table.minimum, EventKind::Minimum)];
+    let turns =
+        turns.into_iter().filter_map(|(name, when)| Some((probe_quantity(*name.as_ref()?.get()), when)));
+    let all: Vec<(ProbeQuantity, EventKind)> = reached.chain(turns).collect();
+    let [(quantity, when)] = all[..] else {
+        return Err(Fault::new(
+            table.probe.span(),
+            format!("an event needs exactly one quantity of its probe; found {}", all.len()),
+        )
+        .help(format!(
+            "such as `probe = \"{0}\", y = -0.5`, `probe = \"{0}\", speed = \"3 m/s\"` or `probe = \"{0}\", maximum = \"y\"`",
+            table.probe.get()
+        )));
     };
-    Ok(EventCondition {
-        target: probe_target(&table.probe, table.x, table.y, model)?,
-        crossing,
-        stop: table.stop,
-    })
+    if let (Some(crossing), EventKind::Maximum | EventKind::Minimum) = (&table.crossing, when) {
+        return Err(Fault::new(crossing.span(), "a maximum or a minimum has no `crossing`")
+            .help("leave `crossing` out; it belongs to a value that is reached"));
+    }
+    let Section { bending_stiffness, .. } = &model.beams[probe.at.beam].section;
+    let of_bending = matches!(quantity, Of::Curvature | Of::ShearForce | Of::BendingMoment);
+    if bending_stiffness.is_none() && of_bending {
+        return Err(Fault::new(
+            table.probe.span(),
+            format!("probe `{}` lies on a string, which has no {}", probe.name, quantity.name().0),
+        )
+        .help("watch its `axial_force` or `strain`, or give the beam a `bending_stiffness`"));
+    }
+    if matches!(quantity, Of::StressBottom | Of::StressTop) {
+        let beam = &model.beams[probe.at.beam];
+        let s = probe.at.s;
+        if beam.section.stresses(s, s, [0.0; 2], &[]).is_none() {
+            return Err(Fault::new(
+                table.probe.span(),
+                format!(
+                    "the stress at probe `{}` is not known: beam `{}` has no `section`",
+                    probe.name, beam.name
+                ),
+            )
+            .help("give the beam a `section` with its `youngs_modulus`, or watch the `bending_moment`"));
+        }
+    }
+    Ok(EventCondition { probe: probe.name.clone(), quantity, when, stop: table.stop })
+}
+
+fn probe_quantity(name: ProbeQuantityName) -> ProbeQuantity {
+    match name {
+        ProbeQuantityName::X => ProbeQuantity::X,
+        ProbeQuantityName::Y => ProbeQuantity::Y,
+        ProbeQuantityName::Angle => ProbeQuantity::Angle,
+        ProbeQuantityName::Vx => ProbeQuantity::Vx,
+        ProbeQuantityName::Vy => ProbeQuantity::Vy,
+        ProbeQuantityName::Speed => ProbeQuantity::Speed,
+        ProbeQuantityName::Strain => ProbeQuantity::Strain,
+        ProbeQuantityName::Curvature => ProbeQuantity::Curvature,
+        ProbeQuantityName::AxialForce => ProbeQuantity::AxialForce,
+        ProbeQuantityName::ShearForce => ProbeQuantity::ShearForce,
+        ProbeQuantityName::BendingMoment => ProbeQuantity::BendingMoment,
+        ProbeQuantityName::StressBottom => ProbeQuantity::StressBottom,
+        ProbeQuantityName::StressTop => ProbeQuantity::StressTop,
+    }
 }
 
 fn dynamic(located: &Located<DynamicTable>, model: &Model, size: Size) -> Result<Dynamic, Fault> {

@@ -2,23 +2,24 @@
 
 use std::sync::Arc;
 
+use crate::assembly::TendonPath;
 use crate::centreline::Curve;
 use crate::effect::{
     Actuation, BeamDamping, Buoyancy, Contact, DistributedForce, Drag, Electrostatic, Field, Force,
     ForceField, Foundation, Friction, Gravity, Moment, MovingForce, Obstacle, PointMass, SectionInertia,
-    Spring, TorsionSpring,
+    Spring, Tendon, TorsionSpring,
 };
 use crate::model::{Along, Beam, InitialShape, Joint, Model};
 
 use super::error::Fault;
 use super::file::{
-    ContactTable, ElectrostaticTable, ForceFieldTable, FrictionTable, GravityTable, HalfPlaneTable,
-    JointName, JointTable, PointTable, SceneTable,
+    ActuationTable, ContactTable, ElectrostaticTable, ForceFieldTable, FrictionTable, GravityTable,
+    HalfPlaneTable, JointName, JointTable, PointTable, SceneTable, TendonTable,
 };
 use super::place::{Built, beam_index, place};
 use super::to_along::{Stretch, along};
 use super::to_law;
-use super::value::Located;
+use super::value::{Count, Located};
 
 /// Adds the parts that the file names to the model.
 pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Result<(), Fault> {
@@ -157,12 +158,18 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
             "`strain`, `curvature`",
         )?;
         let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
+        let layer =
+            t.layer.as_ref().map(|number| layer(number, t, &model.beams[stretch.beam])).transpose()?;
         parts.push(Arc::new(Actuation {
             beam: stretch.beam,
             strain: stretch.optional(&t.strain, "strain")?,
             curvature: stretch.optional(&t.curvature, "curvature")?,
+            layer,
             law: t.in_time.as_ref().map(to_law::law).transpose()?,
         }));
+    }
+    for t in &effects.tendon {
+        parts.push(Arc::new(tendon(t, built, &model.beams)?));
     }
     for t in &effects.drag {
         let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
@@ -254,7 +261,8 @@ fn half_thickness(name: &Located<String>, beam: &Beam) -> Result<f64, Fault> {
 }
 
 fn contact(t: &ContactTable, built: &[Built], beams: &[Beam]) -> Result<Contact, Fault> {
-    let beam = beam_index(&t.beam, built)?;
+    let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
+    let beam = stretch.beam;
     let half_thickness = match t.half_thickness {
         Some(given) => given.si,
         None => half_thickness(&t.beam, &beams[beam])?,
@@ -290,7 +298,65 @@ fn contact(t: &ContactTable, built: &[Built], beams: &[Beam]) -> Result<Contact,
         stiffness: t.stiffness.si,
         half_thickness,
         friction: t.friction.as_ref().map(|f| friction(f, t.stiffness.si)).transpose()?,
+        between: stretch.part(),
     })
+}
+
+/// The index of the layer on which an actuation imposes its strain.
+fn layer(number: &Located<Count<1>>, t: &ActuationTable, beam: &Beam) -> Result<usize, Fault> {
+    let (found, layers) = (number.get().0, &beam.section.layers);
+    if let Some(curvature) = &t.curvature {
+        return Err(Fault::new(curvature.span(), "no `curvature` can be imposed on a single layer")
+            .help("give its `strain`, or leave `layer` out"));
+    }
+    let index = usize::try_from(found - 1)
+        .ok()
+        .filter(|index| layers.get(*index).is_some_and(|layer| layer.stiffness.is_some()));
+    index.ok_or_else(|| {
+        let known = layers.iter().filter(|layer| layer.stiffness.is_some()).count();
+        Fault::new(
+            number.span(),
+            format!("beam `{}` has no layer {found}: its `section` has {known} layers", beam.name),
+        )
+        .help("layers are those of `section.layers`, counted from 1, from the right face to the left one")
+    })
+}
+
+fn tendon(t: &TendonTable, built: &[Built], beams: &[Beam]) -> Result<Tendon, Fault> {
+    let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
+    let (ends, section) = (stretch.ends(), &beams[stretch.beam].section);
+    let offset = along(&t.offset, "offset", built[stretch.beam].curve.length())?;
+    if section.bending_stiffness.is_none() && !offset.is_zero() {
+        return Err(Fault::new(
+            t.offset.span(),
+            format!("beam `{}` is a string, on which nothing can pull beside its centreline", t.beam.get()),
+        )
+        .help("give the beam a `bending_stiffness`, or the tendon the `offset` 0"));
+    }
+    if let Some(s) = offset.jumps().into_iter().find(|s| (ends[0]..=ends[1]).contains(s)) {
+        return Err(Fault::new(t.offset.span(), format!("this tendon jumps to another offset at s = {s} m"))
+            .help("let it run there over a length: `offset = { table = { s = [0.0, 0.5, 0.6], value = [0.01, 0.01, 0.02] } }`"));
+    }
+    let between = |i: usize| ends[0] + (ends[1] - ends[0]) * i as f64 / CHECKED as f64;
+    let kinks = offset.kinks().into_iter().chain(section.jumps());
+    let kinks = kinks.filter(|s| (ends[0]..=ends[1]).contains(s));
+    for s in (0..=CHECKED).map(between).chain(kinks) {
+        let place = offset.at(s, s);
+        if let Some([low, high]) = section.faces(s, s).filter(|[low, high]| place < *low || place > *high) {
+            return Err(Fault::new(
+                t.offset.span(),
+                format!(
+                    "this tendon leaves the section of beam `{}` at s = {s:.6} m: its offset is {place:.4e} m there, and the                      section reaches from {low:.4e} m to {high:.4e} m",
+                    t.beam.get()
+                ),
+            )
+            .help(
+                "offsets count to the left of the direction from the beam's start to its end; for a tendon that is held outside                  the section, give the beam its stiffnesses in place of a `section`",
+            ));
+        }
+    }
+    let path = TendonPath { ends, offset, tension: t.tension.si };
+    Ok(Tendon { beam: stretch.beam, path, law: t.in_time.as_ref().map(to_law::law).transpose()? })
 }
 
 fn force_field(t: &ForceFieldTable, built: &[Built]) -> Result<ForceField, Fault> {
@@ -319,7 +385,8 @@ fn force_field(t: &ForceFieldTable, built: &[Built]) -> Result<ForceField, Fault
     Ok(ForceField { beam: stretch.beam, field, acting: stretch.indicator(), law })
 }
 
-/// Places along a beam at which its distance from an electrode is checked.
+/// Parts of a beam at whose ends its distance from an electrode, or that of a tendon from its faces,
+/// is checked.
 const CHECKED: usize = 200;
 
 fn electrostatic(

@@ -180,6 +180,7 @@ fn linear_section(label: &str, table: &BeamTable, length: f64) -> Result<Section
         youngs_modulus: e.as_ref().map(|(modulus, _)| modulus.clone()),
         bottom: shape.half_height.times(-1.0),
         top: shape.half_height,
+        stiffness: None,
     });
     let (with_modulus, with_density) = ((&e, "youngs_modulus"), (&density, "density"));
     Ok(Section {
@@ -334,8 +335,10 @@ fn of_layers(
         // About the centreline: I = A (h²/12 + y²).
         let square = height.product(height).times(1.0 / 12.0).plus(&middle.product(&middle));
         let second_moment = area.product(&square);
-        stiffness[0].push(modulus.product(&area));
-        stiffness[1].push(modulus.product(&area).product(&middle).times(-1.0));
+        let axial = modulus.product(&area);
+        let coupling = axial.product(&middle).times(-1.0);
+        stiffness[0].push(axial.clone());
+        stiffness[1].push(coupling.clone());
         stiffness[2].push(modulus.product(&second_moment));
         if let Some(density) = &row.density {
             let density = along(density, "density", length)?;
@@ -347,6 +350,7 @@ fn of_layers(
             youngs_modulus: Some(modulus),
             bottom: middle.plus(&half.times(-1.0)),
             top: middle.plus(&half),
+            stiffness: Some([axial, coupling]),
         });
     }
     let usable = |key: &str, along: Option<Along>| {

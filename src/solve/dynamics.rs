@@ -8,7 +8,7 @@
 //! | [`generalized_alpha`] | second order, numerical damping by choice |
 //! | [`collocation`], [`tableau`] | Gauss (order 2, 4, 6; symplectic), Radau IIA (order 3, 5; stiff) |
 //! | [`start`] | initial velocities |
-//! | [`integrate`] | the driver: steps, restart; with its records and events in `record` and `crossing`, forces and powers in `forces`, steps that gain energy in `balance`, contacts in `touch` |
+//! | [`integrate`] | the driver: steps, restart; with its records in `record`, events in `event` and `crossing`, forces and powers in `forces`, steps that gain energy in `balance`, contacts in `touch` |
 //!
 //! # No explicit method
 //! Störmer's and Verlet's rule and the six-stage method of order 4 of Blanes and Moan were measured
@@ -27,6 +27,7 @@ mod balance;
 pub mod collocation;
 mod contact;
 mod crossing;
+mod event;
 mod forces;
 pub mod generalized_alpha;
 pub mod integrate;
@@ -47,7 +48,8 @@ use crate::system::Reaction;
 use serde::{Deserialize, Serialize};
 
 pub use contact::Change;
-pub use integrate::{Checkpointing, EventWatch, Task, solve};
+pub use event::{EventWatch, Quantity};
+pub use integrate::{Checkpointing, Task, solve};
 pub use memory::Memory;
 
 /// A state of motion.
@@ -145,8 +147,10 @@ pub struct Solution {
     pub end: Option<motion::Balance>,
     /// Attempted steps, thinned out where there are very many.
     pub history: Vec<StepRecord>,
-    /// Events in the order of their times: (number of the watch, state).
-    pub events: Vec<(usize, State)>,
+    /// Events in the order of their times: number of the watch, time \[s\], value of the quantity.
+    pub events: Vec<(usize, f64, f64)>,
+    /// The first watch whose quantity was not known, and from when on \[s\].
+    pub unseen: Option<(usize, f64)>,
     /// Contacts in which the beam was pushed past the middle of the obstacle: the number of the
     /// contact, and the end of the first such step \[s\].
     pub crossings: Vec<(usize, f64)>,

@@ -12,7 +12,7 @@
 //! changes, the actuator supplies the power −∫ N ε̇₀ ds − ∫ M κ̇₀ ds.
 
 use super::System;
-use crate::assembly::{Amplitude, DiscretizedBeam, Kind};
+use crate::assembly::{Actions, Amplitude, DiscretizedBeam, Imposed, Kind};
 use crate::model::{Along, Beam, Model};
 
 /// The actuations of a beam.
@@ -21,6 +21,8 @@ pub(super) struct Actuated {
     beam: usize,
     /// a_i; `None` stands for the amplitude of all loads without a law.
     amplitudes: Vec<Option<Amplitude>>,
+    /// The strains that are imposed on single layers: index of the layer, strain, and a_i.
+    layers: Vec<(usize, Along, Option<Amplitude>)>,
     /// ∫ EA ε₀ᵢ ε₀ⱼ ds, and ∫ (EI κ₀ᵢ κ₀ⱼ + EB ε₀ᵢ κ₀ⱼ + EB κ₀ᵢ ε₀ⱼ) ds \[J\], of row i and column j.
     own: [Vec<Vec<f64>>; 2],
 }
@@ -31,9 +33,9 @@ pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
         let numbered = model.parts.iter().enumerate();
         let parts: Vec<_> = numbered
             .filter_map(|(number, part)| {
-                let (actuation, law) = part.actuation(index)?;
+                let imposed = part.actuation(index)?;
                 let standing = model.stands(number).then_some(Amplitude::Full);
-                Some((actuation, law.cloned().map(Amplitude::Law).or(standing)))
+                Some((imposed, imposed.law.cloned().map(Amplitude::Law).or(standing)))
             })
             .collect();
         let length = part.basis.length();
@@ -42,21 +44,44 @@ pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
             product.map_or(0.0, |along| along.mean(length) * length)
         };
         let section = &beam.section;
+        // What is imposed on one layer acts together with what is imposed on the same one, or on all.
+        let shared = |i: usize, j: usize, part: usize| -> Option<Option<Along>> {
+            match (parts[i].0.layer, parts[j].0.layer) {
+                (None, None) => None,
+                (Some(a), Some(b)) if a != b => Some(None),
+                (a, b) => {
+                    let layer = section.layers.get(a.or(b)?)?;
+                    Some(layer.stiffness.as_ref().map(|stiffness| stiffness[part].clone()))
+                }
+            }
+        };
         let stretch = |i: usize, j: usize| {
-            let ([first, _], [second, _]) = (parts[i].0, parts[j].0);
-            integral(&section.axial_stiffness, first, second)
+            let (first, second) = (parts[i].0.strain, parts[j].0.strain);
+            match shared(i, j, 0) {
+                Some(stiffness) => integral(&stiffness, first, second),
+                None => integral(&section.axial_stiffness, first, second),
+            }
         };
         let bend = |i: usize, j: usize| {
-            let ([e, k], [f, l]) = (parts[i].0, parts[j].0);
-            integral(&section.bending_stiffness, k, l)
-                + integral(&section.coupling, e, l)
-                + integral(&section.coupling, k, f)
+            let Imposed { strain: e, curvature: k, .. } = parts[i].0;
+            let Imposed { strain: f, curvature: l, .. } = parts[j].0;
+            let coupling = match shared(i, j, 1) {
+                // A layer has no curvature of its own.
+                Some(coupling) => return integral(&coupling, e, l) + integral(&coupling, k, f),
+                None => &section.coupling,
+            };
+            integral(&section.bending_stiffness, k, l) + integral(coupling, e, l) + integral(coupling, k, f)
         };
         let rows = |entry: &dyn Fn(usize, usize) -> f64| {
             (0..parts.len()).map(|i| (0..parts.len()).map(|j| entry(i, j)).collect()).collect()
         };
         let amplitudes = parts.iter().map(|(_, amplitude)| amplitude.clone()).collect();
-        (!parts.is_empty()).then(|| Actuated { beam: index, amplitudes, own: [rows(&stretch), rows(&bend)] })
+        let layers = parts.iter().filter_map(|(imposed, amplitude)| {
+            Some((imposed.layer?, imposed.strain.clone(), amplitude.clone()))
+        });
+        let layers = layers.collect();
+        let own = || [rows(&stretch), rows(&bend)];
+        (!parts.is_empty()).then(|| Actuated { beam: index, amplitudes, layers, own: own() })
     };
     model.beams.iter().zip(&system.beams).enumerate().filter_map(of_beam).collect()
 }
@@ -110,6 +135,16 @@ impl System {
             }
         }
         (energy, put_in)
+    }
+
+    /// Notes the strains that are imposed on layers beside the actions on each beam.
+    pub(super) fn add_layer_strains(&self, parameter: f64, actions: &mut [Actions]) {
+        for Actuated { beam, layers, .. } in &self.actuated {
+            for (layer, strain, amplitude) in layers {
+                let factor = amplitude.as_ref().unwrap_or(&self.amplitude).at(parameter);
+                actions[*beam].add_layer_strain(factor, *layer, strain);
+            }
+        }
     }
 
     /// Whether there are any actuators.

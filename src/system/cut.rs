@@ -46,6 +46,7 @@ impl System {
             let factor = self.amplitude_of(load).at(parameter);
             load.effect.add_actions(factor, q, q, &mut actions[load.effect.beam()]);
         }
+        self.add_layer_strains(parameter, &mut actions);
         for force in &self.terms.moving_loads {
             force.add_actions(parameter, q, &mut actions[force.beam()]);
         }

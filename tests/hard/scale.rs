@@ -5,8 +5,8 @@ use crate::property::generators::clamp;
 use ancf::effect::{DistributedForce, Force, Gravity, Moment};
 use ancf::model::{
     About, Analysis, ArcLength, Beam, Buckling, Centreline, Crossing, Discretization, Dynamic,
-    EventCondition, Fixed, GaussPoints, InitialVelocity, Integrator, Kernel, Modal, Model, Nodes, Place,
-    Probe, ProbeTarget, Section, SideCondition, Static, StepControl, StrainMeasure, Support,
+    EventCondition, EventKind, Fixed, GaussPoints, InitialVelocity, Integrator, Kernel, Modal, Model, Nodes,
+    Place, Probe, ProbeQuantity, Section, SideCondition, Static, StepControl, StrainMeasure, Support,
 };
 use ancf::results::{AnalysisKind, Results};
 use std::sync::Arc;
@@ -202,12 +202,13 @@ fn frequencies() {
 }
 
 fn motion(units: Units, integrator: Integrator) -> Analysis {
-    let target = ProbeTarget { probe: "tip".into(), axis: 1, value: -0.2 * units.length };
+    let when = EventKind::Reaches { value: -0.2 * units.length, crossing: Crossing::Any };
+    let event = EventCondition { probe: "tip".into(), quantity: ProbeQuantity::Y, when, stop: false };
     Analysis::Dynamic(Dynamic {
         duration: 1.0 * units.time,
         output_every: 0.25 * units.time,
         integrator,
-        events: vec![EventCondition { target, crossing: Crossing::Any, stop: false }],
+        events: vec![event],
     })
 }
 

@@ -241,7 +241,7 @@ pub(super) fn swing() -> Trajectory {
             step(0.08, 0.03, &[2e-3, 1e-8], &[1e-3, 1e-9]),
         ],
         events: vec![
-            Event::Crossing { time: 0.03, probe: "end".to_owned(), axis: "x".to_owned(), value: 0.48 },
+            Event::Probe { time: 0.03, probe: "end".into(), quantity: "x", value: 0.48, turns: None },
             Event::Contact { time: 0.04, contact: "arm.1".to_owned(), touches: true, impulse: None },
             Event::Contact {
                 time: 0.06,

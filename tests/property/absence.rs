@@ -41,6 +41,7 @@ fn blocks() -> Vec<(&'static str, Vec<Kind>)> {
         ("[[effect.rotary_inertia]]\nbeam = 'arm'\nper_length = 1e-3", vec![Kind::RotaryInertia]),
         ("[[effect.foundation]]\nbeam = 'arm'\nstiffness = [0.0, 1.0]", vec![Kind::Foundation]),
         ("[[effect.actuation]]\nbeam = 'arm'\nstrain = 1e-3", vec![Kind::PreStrain]),
+        ("[[effect.tendon]]\nbeam = 'arm'\noffset = 0.0\ntension = 1.0", vec![Kind::Tendon]),
         ("[[effect.drag]]\nbeam = 'arm'\nnormal = 1.0", vec![Kind::Drag]),
         (
             "[[effect.electrostatic]]\nbeam = 'arm'\nvoltage = 1\nwidth = 1\nelectrode = { point = [0, -1], normal = [0, 1] }",

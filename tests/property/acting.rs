@@ -10,8 +10,13 @@ use std::sync::Arc;
 /// An actuated cantilever without loads takes the arc of its own curvature, and is free of stress.
 #[test]
 fn an_actuated_beam_takes_its_own_shape() {
-    let actuation =
-        Actuation { beam: 0, strain: Some((0.02).into()), curvature: Some((1.5).into()), law: None };
+    let actuation = Actuation {
+        beam: 0,
+        strain: Some((0.02).into()),
+        curvature: Some((1.5).into()),
+        layer: None,
+        law: None,
+    };
     let trajectory = still(&one(vec![support(0.0, FixedRotation::Angle)], vec![Arc::new(actuation)]));
     let last = trajectory.probes[0].samples.last().expect("a record");
     // κ counts per reference length: the arc has the angle κ L and the length 1.02 L.
@@ -33,6 +38,7 @@ fn a_beam_bounces_from_a_plane() {
         stiffness: 1e4,
         half_thickness: 0.0,
         friction,
+        between: None,
     };
     let tolerance = Integrator::Gauss { stages: 2, step: StepControl::Tolerance(1e-7) };
     for friction in [None, Some(Friction { coefficient: 0.3, stiffness: 1e4 })] {

@@ -68,7 +68,7 @@ proptest! {
         discretization in generators::discretization(), obstacle in obstacle(),
         gap in prop_oneof![Just(0.0), 0.002..0.05_f64], noise in prop::collection::vec(-1.0..1.0_f64, 64),
     ) {
-        let contact = Contact { beam: 0, obstacle, stiffness: 2.0, half_thickness: gap, friction: None };
+        let contact = Contact { beam: 0, obstacle, stiffness: 2.0, half_thickness: gap, friction: None, between: None };
         let system = touching(discretization, contact);
         let moved = |q: &[f64], size: f64, from: usize| -> Vec<f64> {
             let noise = noise[from..].iter().cycle();

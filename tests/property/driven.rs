@@ -47,6 +47,7 @@ fn driven(rotation: FixedRotation, duration: f64) -> Model {
             beam: 0,
             strain: Some((1e-3).into()),
             curvature: Some((0.3).into()),
+            layer: None,
             law: Some(Law::Polynomial(vec![0.0, 2.0, -1.0])),
         }),
     ];

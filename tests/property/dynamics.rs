@@ -5,12 +5,12 @@ use ancf::assembly::Needs;
 use ancf::effect::{Contact, Obstacle};
 use ancf::effect::{Force, Gravity, Moment};
 use ancf::model::{
-    Beam, Centreline, Crossing, Discretization, Fixed, FixedRotation, GaussPoints, InitialVelocity,
-    Integrator, Kernel, Model, Nodes, Place, Profile, Section, SideCondition, StepControl, StrainMeasure,
-    Support, Tabulated,
+    Beam, Centreline, Crossing, Discretization, EventKind, Fixed, FixedRotation, GaussPoints,
+    InitialVelocity, Integrator, Kernel, Model, Nodes, Place, Profile, Section, SideCondition, StepControl,
+    StrainMeasure, Support, Tabulated,
 };
 use ancf::solve::dynamics::start::from_rest;
-use ancf::solve::dynamics::{Checkpoint, EventWatch, Memory, Solution, State, Task, solve};
+use ancf::solve::dynamics::{Checkpoint, EventWatch, Memory, Quantity, Solution, State, Task, solve};
 use ancf::system::{System, View};
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -386,8 +386,14 @@ proptest! {
 /// the contacts that have ended.
 #[test]
 fn impulses_of_contacts_balance_the_momentum() {
-    let contact =
-        |obstacle| Contact { beam: 0, obstacle, stiffness: 2e3, half_thickness: 0.01, friction: None };
+    let contact = |obstacle| Contact {
+        beam: 0,
+        obstacle,
+        stiffness: 2e3,
+        half_thickness: 0.01,
+        friction: None,
+        between: None,
+    };
     let ground = Obstacle::HalfPlane { point: [0.0, -0.3], normal: [0.0, 1.0] };
     let stone = Obstacle::Circle { center: [0.9, -0.2], radius: 0.2, inside: false };
     let methods = [GAUSS.with_step(StepControl::Tolerance(1e-8)), ALPHA.with_step(StepControl::Fixed(1e-4))];
@@ -594,12 +600,10 @@ fn records_stand_at_the_times_asked_for() {
 fn events_are_located_to_the_accuracy_of_the_motion() {
     for discretization in either() {
         let system = system(discretization, vec![]);
-        let watch = |crossing, stop| EventWatch {
-            view: View::point(&system.beams()[0].basis, 0, LENGTH).expect("on the beam"),
-            axis: 1,
-            value: -1.0,
-            crossing,
-            stop,
+        let watch = |crossing, stop| {
+            let view = View::point(&system.beams()[0].basis, 0, LENGTH).expect("on the beam");
+            let when = EventKind::Reaches { value: -1.0, crossing };
+            EventWatch { quantity: Quantity::Position(view, 1), when, stop }
         };
         let watches =
             [watch(Crossing::Rising, true), watch(Crossing::Any, false), watch(Crossing::Falling, true)];
@@ -608,7 +612,7 @@ fn events_are_located_to_the_accuracy_of_the_motion() {
             let task = Task { watches: &watches, ..task(&system, 2.0, integrator) };
             let solution = finished(solve(&system, &task, &mut |_, _, _| true));
             let time = (2.0 / -GRAVITY[1]).sqrt();
-            let numbers: Vec<usize> = solution.events.iter().map(|(watch, _)| *watch).collect();
+            let numbers: Vec<usize> = solution.events.iter().map(|(watch, ..)| *watch).collect();
             assert_eq!(numbers, [1, 2], "the rising one does not happen");
             assert!((last(&solution).time - time).abs() < 1e-9, "{} instead of {time}", last(&solution).time);
             // A method goes on from before the step that the event cuts short, which is taken once

@@ -50,7 +50,7 @@ proptest! {
             Obstacle::Circle { center: [0.5, 0.2], radius: 0.4, inside: true },
         ][which];
         let friction = Some(Friction { coefficient: 0.4, stiffness: 30.0 });
-        let contact = Contact { beam: 0, obstacle, stiffness: 20.0, half_thickness: 0.01, friction };
+        let contact = Contact { beam: 0, obstacle, stiffness: 20.0, half_thickness: 0.01, friction, between: None };
         let beam = Beam {
             name: "beam".into(),
             centreline: Centreline::Line { start: [0.0, 0.0], end: [1.0, 0.0] },

@@ -326,9 +326,9 @@ const CASES: &[Case] = &[
         "30:20: `analysis.dynamic.radau.stages`: found 1, expected a whole number, 2 or more",
     ),
     (
-        "an event of no axis",
+        "an event of no quantity",
         &[("[analysis.static]", "[analysis.dynamic]\nduration = 2\nevent = [{ probe = \"tip\" }]")],
-        "30:20: a probe's target needs either `x` or `y`",
+        "30:20: an event needs exactly one quantity of its probe; found 0",
     ),
     (
         "an event of no probe",

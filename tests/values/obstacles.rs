@@ -99,6 +99,42 @@ fn a_resting_rod_sinks_and_slips_by_load_over_stiffness() {
     }
 }
 
+/// A rod whose middle alone can touch sinks in by all of its load over the part's stiffness, and rests
+/// on it in balance; beyond it the rod goes through the obstacle.
+///
+/// Would catch a part that is counted from the wrong end, and one that ends at another node.
+#[test]
+fn a_rod_touches_only_where_it_can() {
+    for (basis, friction) in [("ancf.elements = 3", ""), ("rpim.nodes = 7", ", friction.coefficient = 0.5")] {
+        let text = format!(
+            "beam.rod = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1e4, basis.{basis} }}
+             effect.contact = [{{ beam = 'rod', half_plane = {{ point = [0, 0.001], normal = [0, 1] }}, stiffness = 200, from = 0.3, to = '80 cm'{friction} }}]
+             support = [{{ beam = 'rod', at = 'start', fix = ['angle'] }}]
+             effect.foundation = [{{ beam = 'rod', stiffness = [10, 0] }}]
+             effect.force = [{{ beam = 'rod', at = 0.55, value = [0, -2] }}]
+             probe = [{{ name = 'middle', beam = 'rod', at = 0.5 }}, {{ name = 'end', beam = 'rod', at = 'end' }}]
+             output = {{ effects = true, reactions = true }}
+             analysis.static = {{}}\n"
+        );
+        let found = Written::of(&text);
+        let expected = [("middle.y", -0.019), ("end.y", -0.019), ("end.angle", 0.0)];
+        // The part is pressed in its middle, under the force.
+        found.ends("reactions.csv", &[("support1.moment", 0.0)], 1e-5);
+        found.ends("probes.csv", &expected, 1e-5);
+        found.ends("effects.csv", &[("contact.rod.fy", 2.0), ("contact.rod.energy", 0.02)], 1e-5);
+    }
+    // A circle beside the part is not met.
+    let free = "beam.rod = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }
+        initial_velocity = [{ beam = 'rod', value = [0, -1] }]
+        effect.contact = [{ beam = 'rod', circle = { center = [0.2, -0.1], radius = 0.05 }, stiffness = 1e4, from = 0.4 }]
+        probe = [{ name = 'end', beam = 'rod', at = 'end' }]
+        analysis.dynamic = { duration = 0.2, radau.tolerance = 1e-8 }\n";
+    near(Written::of(free).last("probes.csv", "end.y"), -0.2, 1e-7, "y");
+    let met = Written::of(&free.replace("from = 0.4", "to = 0.4"));
+    assert!(met.last("probes.csv", "end.y") < -0.2 - 1e-3);
+    assert_eq!(met.summary()["events"][0]["touches"], true);
+}
+
 /// A rod that bounces off the ground as it came: would catch impulses along another axis or of
 /// another sign, forces and times that are another.
 #[test]

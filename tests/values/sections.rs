@@ -208,6 +208,58 @@ fn an_actuated_laminate_takes_its_strain_and_curvature() {
     }
 }
 
+/// Timoshenko's bimetal (1925): a strip of two metals of which one would be longer by e bends by
+/// κ = 6 e (1 + m)²/(h (3 (1 + m)² + (1 + m n)(m² + 1/(m n)))), with m = h₁/h₂ and n = E₁/E₂. No section
+/// carries a force or a couple, and at the bond the stresses differ by what the strains miss.
+#[test]
+fn a_bimetal_bends_as_timoshenko_said() {
+    let section = "section.layers = [{ youngs_modulus = '100 GPa', width = 0.02, height = '1 mm' }, \
+                   { youngs_modulus = '300 GPa', width = 0.02, height = '2 mm' }]";
+    let bent = |layer: u32, basis: &str| {
+        let heat = format!("effect.actuation = [{{ beam = 'arm', layer = {layer}, strain = 1e-3 }}]");
+        Written::of(&arm(section, &heat, basis))
+    };
+    let (m, n): (f64, f64) = (0.5, 1.0 / 3.0);
+    let kappa = 6e-3 * (1.0 + m).powi(2)
+        / (3e-3 * (3.0 * (1.0 + m).powi(2) + (1.0 + m * n) * (m * m + 1.0 / (m * n))));
+    // The strain of the bond, where layer 2 has the stress of its own force P and curvature.
+    let stiffness = [1e11 * 0.02 * 1e-3, 3e11 * 0.02 * 2e-3];
+    let rigidity: f64 = [1e11 * 1e-9, 3e11 * 8e-9].iter().map(|eh: &f64| eh * 0.02 / 12.0).sum();
+    let force = rigidity * kappa / 1.5e-3;
+    for basis in ["ancf.elements = 16", "rpim.nodes = 9"] {
+        for (layer, sign) in [(1, 1.0), (2, -1.0)] {
+            let found = bent(layer, basis);
+            near(found.said("/probes/tip/curvature"), sign * kappa, 2e-3 * kappa, "curvature");
+            near(found.said("/probes/tip/angle"), sign * kappa, 1e-4 * kappa, "angle");
+            for column in ["axial_force", "bending_moment"] {
+                near(found.last("shape.csv", column), 0.0, 1e-6 * force, column);
+            }
+            // The last rows are those of layer 2: pulled by P if layer 1 is longer, and bent.
+            let sigma = |y: f64| sign * (force / 4e-5 - 3e11 * y * kappa);
+            let stresses = [("stress_bottom", sigma(-1e-3)), ("stress_top", sigma(1e-3))];
+            found.ends("layers.csv", &stresses, 2e-4 * sigma(-1e-3).abs());
+            // ½ P² (1/EA₁ + 1/EA₂) + ½ (EI₁ + EI₂) κ².
+            let energy = 0.5 * force * force * stiffness.map(f64::recip).iter().sum::<f64>()
+                + 0.5 * rigidity * kappa * kappa;
+            near(found.said("/energy/stretch") + found.said("/energy/bend"), energy, 1e-4 * energy, "energy");
+        }
+    }
+    // Both layers alike are the whole section.
+    let both = "effect.actuation = [{ beam = 'arm', layer = 1, strain = 1e-3 }, { beam = 'arm', layer = 2, strain = 1e-3 }]";
+    let found = Written::of(&arm(section, both, "ancf.elements = 4"));
+    near(found.said("/probes/tip/strain"), 1e-3, 1e-9, "strain");
+    near(found.said("/energy/total"), 0.0, 1e-9, "energy");
+    for (heat, part) in [
+        ("layer = 3, strain = 1e-3", "beam `arm` has no layer 3: its `section` has 2 layers"),
+        ("layer = 1, strain = 1e-3, curvature = 1", "no `curvature` can be imposed on a single layer"),
+    ] {
+        let scene =
+            arm(section, &format!("effect.actuation = [{{ beam = 'arm', {heat} }}]"), "ancf.elements = 4");
+        let said = parse("arm.toml", &scene).expect_err(part).to_string();
+        assert!(said.contains(part), "{said}");
+    }
+}
+
 /// A column of EI = (1 + s/4)² on hinges: with z = 1 + s/4 its shape is √z sin(β ln z), β = nπ/ln 1.25,
 /// under P = (β² + ¼)/16.
 #[test]

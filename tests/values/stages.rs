@@ -84,6 +84,7 @@ fn what_comes_and_goes_leads_to_the_same_equilibria() {
         ("torsion_spring", "{ beam = 'arm', at = 0.5, stiffness = 7 }"),
         ("foundation", "{ beam = 'arm', stiffness = [3, 30] }"),
         ("actuation", "{ beam = 'arm', strain = 1e-4, curvature = 0.8 }"),
+        ("tendon", "{ beam = 'arm', offset = 0.05, tension = 20, from = 0.25 }"),
         ("drag", "{ beam = 'leg', normal = 2, flow = [1.5, 0] }"),
         (
             "electrostatic",

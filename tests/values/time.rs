@@ -243,7 +243,7 @@ fn events_are_when_and_where_the_rod_crosses() {
         for (found, time) in events.iter().zip(times) {
             near(found["time"].as_f64().expect("a time"), *time, 1e-7, event);
             assert_eq!(
-                (found["axis"].as_str(), found["value"].as_f64()),
+                (found["quantity"].as_str(), found["value"].as_f64()),
                 (Some(axis), Some(value)),
                 "{event}"
             );

@@ -296,6 +296,11 @@ impl Cells {
         last.ok_or(BasisError::Order { order: 0 })
     }
 
+    /// Keeps the cells whose middles lie between two arc lengths \[m\].
+    pub fn keep_between(&mut self, [from, to]: [f64; 2]) {
+        self.cells.retain(|cell| (from..=to).contains(&(cell.start + 0.5 * cell.length)));
+    }
+
     /// Number of cells.
     pub fn count(&self) -> usize {
         self.cells.len()

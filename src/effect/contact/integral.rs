@@ -46,12 +46,22 @@ pub struct ContactIntegral {
 }
 
 impl ContactIntegral {
-    /// `offset` is the first coefficient of beam number `beam` in the system.
+    /// `offset` is the first coefficient of beam number `beam` in the system. The beam can touch
+    /// between the arc lengths `between` \[m\], at which it has nodes.
     ///
     /// # Errors
     /// Where the shape functions cannot be tabulated.
-    pub fn new(penalty: Penalty, beam: usize, basis: &Basis, offset: usize) -> Result<Self, BasisError> {
-        let cells = Cells::new(basis, offset)?;
+    pub fn new(
+        penalty: Penalty,
+        beam: usize,
+        between: Option<[f64; 2]>,
+        basis: &Basis,
+        offset: usize,
+    ) -> Result<Self, BasisError> {
+        let mut cells = Cells::new(basis, offset)?;
+        if let Some(ends) = between {
+            cells.keep_between(ends);
+        }
         let (places, weights) = Quadrature::Gauss(cells.degree() + MORE_POINTS).rule()?;
         let rule = places.into_iter().zip(weights).collect();
         Ok(Self { borders: penalty.obstacle.borders(penalty.gap), penalty, cells, beam, rule })

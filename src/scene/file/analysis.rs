@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::super::quantity::{Length, Positive, Quantity, Ratio, Time};
+use super::super::quantity::{
+    Angle, Curvature, Force, Length, Moment, Positive, Quantity, Ratio, Stress, Time, Velocity,
+};
 use super::super::value::{AccuracyValue, Count, Located};
 
 /// What to compute.
@@ -81,18 +83,23 @@ pub struct DynamicTable {
     /// Radau IIA collocation, of order 3 or 5: damps what is too fast to be followed; the one that
     /// is taken when none is named.
     pub radau: Option<Located<RadauTable>>,
-    /// Probes' coordinates that cross a value.
+    /// Quantities at probes that reach a value or turn back.
     #[serde(default)]
     pub event: Vec<EventTable>,
     /// Largest error of the results, for which everything is chosen that the scene does not name.
     pub accuracy: Option<Located<AccuracyValue>>,
 }
 
-/// A probe's coordinate reaches a value, `x` or `y`, from one side: also where it turns back there,
-/// and as often as it does within a step.
+/// A quantity at a probe reaches a value from one side, also where it turns back there; or it has a
+/// `maximum` or a `minimum`. As often as it does within a step.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [{ "required": ["x"] }, { "required": ["y"] }]))]
+#[schemars(extend("oneOf" = [
+    { "required": ["x"] }, { "required": ["y"] }, { "required": ["angle"] }, { "required": ["vx"] }, { "required": ["vy"] },
+    { "required": ["speed"] }, { "required": ["strain"] }, { "required": ["curvature"] }, { "required": ["axial_force"] },
+    { "required": ["shear_force"] }, { "required": ["bending_moment"] }, { "required": ["stress_bottom"] },
+    { "required": ["stress_top"] }, { "required": ["maximum"] }, { "required": ["minimum"] },
+]))]
 pub struct EventTable {
     /// Name of the probe.
     pub probe: Located<String>,
@@ -100,20 +107,76 @@ pub struct EventTable {
     pub x: Option<Quantity<Length>>,
     /// Value of its y.
     pub y: Option<Quantity<Length>>,
-    /// From which side it comes; from either when left out.
-    #[serde(default)]
-    pub crossing: CrossingName,
+    /// Value of its direction, with full turns.
+    pub angle: Option<Quantity<Angle>>,
+    /// Value of its velocity along x.
+    pub vx: Option<Quantity<Velocity>>,
+    /// Value of its velocity along y.
+    pub vy: Option<Quantity<Velocity>>,
+    /// Value of the magnitude of its velocity.
+    pub speed: Option<Quantity<Velocity>>,
+    /// Value of the axial strain there.
+    pub strain: Option<Quantity<Ratio>>,
+    /// Value of the curvature there.
+    pub curvature: Option<Quantity<Curvature>>,
+    /// Value of the axial force there.
+    pub axial_force: Option<Quantity<Force>>,
+    /// Value of the shear force there.
+    pub shear_force: Option<Quantity<Force>>,
+    /// Value of the bending moment there.
+    pub bending_moment: Option<Quantity<Moment>>,
+    /// Value of the stress on the right face of the section there.
+    pub stress_bottom: Option<Located<Quantity<Stress>>>,
+    /// Value of the stress on the left face.
+    pub stress_top: Option<Located<Quantity<Stress>>>,
+    /// The quantity that begins to fall.
+    pub maximum: Option<Located<ProbeQuantityName>>,
+    /// The quantity that begins to rise.
+    pub minimum: Option<Located<ProbeQuantityName>>,
+    /// From which side a value is reached; from either when left out.
+    pub crossing: Option<Located<CrossingName>>,
     /// Whether the motion ends there.
     #[serde(default)]
     pub stop: bool,
 }
 
+/// A quantity at a probe.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ProbeQuantityName {
+    /// Position along x.
+    X,
+    /// Position along y.
+    Y,
+    /// Direction of r'.
+    Angle,
+    /// Velocity along x.
+    Vx,
+    /// Velocity along y.
+    Vy,
+    /// Magnitude of the velocity.
+    Speed,
+    /// Axial strain.
+    Strain,
+    /// Curvature.
+    Curvature,
+    /// Axial force.
+    AxialForce,
+    /// Shear force.
+    ShearForce,
+    /// Bending moment.
+    BendingMoment,
+    /// Stress on the right face.
+    StressBottom,
+    /// Stress on the left face.
+    StressTop,
+}
+
 /// The way in which a value is crossed.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum CrossingName {
     /// Either way.
-    #[default]
     Any,
     /// From below.
     Rising,

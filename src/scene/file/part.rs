@@ -10,7 +10,7 @@ use crate::scene::quantity::{
     Permittivity, Positive, Quantity, Ratio, RotaryInertia, RotaryInertiaPerLength, Stress, Time,
     TorsionalDamping, TranslationalDamping, Velocity, ViscousDamping, Voltage,
 };
-use crate::scene::value::{At, Located, Vector};
+use crate::scene::value::{At, Count, Located, Vector};
 
 /// Damping of a beam; at least one of the coefficients.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -139,11 +139,38 @@ pub struct ActuationTable {
     pub strain: Option<Located<AlongBeam<Ratio>>>,
     /// κ₀.
     pub curvature: Option<Located<AlongBeam<Curvature>>>,
+    /// Number of the layer of the section, from 1, on which alone the strain is imposed; the whole
+    /// section when left out.
+    pub layer: Option<Located<Count<1>>>,
     /// Arc length from which on it acts; the beam's start when left out.
     pub from: Option<Located<At>>,
     /// Arc length up to which it acts; the beam's end when left out.
     pub to: Option<Located<At>>,
     /// In a motion: the law of time that multiplies both.
+    pub in_time: Option<Located<LawTable>>,
+    /// Stage from whose start on it takes part; the first when left out.
+    pub stage: Option<Located<String>>,
+    /// Stage from whose start on it takes part no more; it stays to the end when left out.
+    pub until: Option<Located<String>>,
+}
+
+/// A tendon without friction along a beam, pulled with a given tension: it presses on the sections
+/// at which it ends, and on its sheath where it is bent.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TendonTable {
+    /// Name of the beam.
+    pub beam: Located<String>,
+    /// Distance from the centreline, to the left of the direction from the beam's start to its end;
+    /// without jumps.
+    pub offset: Located<AlongBeam<Length>>,
+    /// Tension.
+    pub tension: Quantity<Force, Positive>,
+    /// Arc length at which it begins; the beam's start when left out.
+    pub from: Option<Located<At>>,
+    /// Arc length at which it ends; the beam's end when left out.
+    pub to: Option<Located<At>>,
+    /// In a motion: the law of time that multiplies the tension.
     pub in_time: Option<Located<LawTable>>,
     /// Stage from whose start on it takes part; the first when left out.
     pub stage: Option<Located<String>>,
@@ -290,6 +317,10 @@ pub struct ContactTable {
     pub half_thickness: Option<Quantity<Length, Positive>>,
     /// Dry friction.
     pub friction: Option<FrictionTable>,
+    /// Arc length from which on the beam can touch; its start when left out.
+    pub from: Option<Located<At>>,
+    /// Arc length up to which it can; its end when left out.
+    pub to: Option<Located<At>>,
     /// Stage from whose start on it takes part; the first when left out.
     pub stage: Option<Located<String>>,
     /// Stage from whose start on it takes part no more; it stays to the end when left out.

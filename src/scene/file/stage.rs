@@ -61,6 +61,7 @@ staged!(
     SectionInertiaTable,
     FoundationTable,
     ActuationTable,
+    TendonTable,
     DragTable,
     BuoyancyTable,
     ElectrostaticTable,
@@ -85,6 +86,7 @@ macro_rules! for_each_list {
             rotary_inertia,
             foundation,
             actuation,
+            tendon,
             drag,
             buoyancy,
             electrostatic,
@@ -95,8 +97,8 @@ macro_rules! for_each_list {
         for_each_list!(
             @each $list => $action,
             support, joint, force, moment, distributed_force, gravity, damping, spring, torsion_spring,
-            point_mass, rotary_inertia, foundation, actuation, drag, buoyancy, electrostatic, force_field,
-            moving_force, contact
+            point_mass, rotary_inertia, foundation, actuation, tendon, drag, buoyancy, electrostatic,
+            force_field, moving_force, contact
         );
     }};
     (@each $list:ident => $action:expr, $($field:ident),*) => {

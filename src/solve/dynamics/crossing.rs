@@ -1,8 +1,6 @@
-//! Where in a step a coordinate of a probe reaches a value.
+//! Where a polynomial of time reaches zero, and where it turns back.
 //!
-//! A coordinate is linear in q, so that in a step it is one polynomial of time, the Hermite
-//! interpolation of the data at both ends: positions and velocities (cubic), and if known
-//! accelerations (quintic). Between the zeros of its derivative a polynomial is monotonic and has
+//! Between the zeros of its derivative a polynomial is monotonic and has
 //! at most one zero, and the zeros of the derivative are found in the same way. So no zero is
 //! missed, and no sampling is needed.
 //!
@@ -47,11 +45,74 @@ impl Polynomial {
         Self([q0, v0, a0, third, fourth, fifth])
     }
 
+    /// The polynomial with these values at [`Self::PLACES`].
+    pub(super) fn through(values: [f64; DEGREE + 1]) -> Self {
+        // Newton's divided differences, and then Horner's scheme outwards.
+        let mut c = values;
+        for order in 1..=DEGREE {
+            for k in (order..=DEGREE).rev() {
+                c[k] = (c[k] - c[k - 1]) / (Self::PLACES[k] - Self::PLACES[k - order]);
+            }
+        }
+        for order in (0..DEGREE).rev() {
+            for k in order..DEGREE {
+                c[k] -= Self::PLACES[order] * c[k + 1];
+            }
+        }
+        Self(c)
+    }
+
+    /// The extrema of Chebyshev's polynomial of the same degree, on [0, 1].
+    pub(super) const PLACES: [f64; DEGREE + 1] = [
+        0.0,
+        0.095_491_502_812_526_27,
+        0.345_491_502_812_526_3,
+        0.654_508_497_187_473_7,
+        0.904_508_497_187_473_7,
+        1.0,
+    ];
+
+    /// Where it turns back after `last`, the sign of its slope before: rising to falling or falling
+    /// to rising, in order. `last` becomes the sign of its slope at the end.
+    pub(super) fn turns_back(&self, last: &mut f64) -> Vec<f64> {
+        let slope = self.derivative();
+        let sign = |x: f64| {
+            let slope = slope.at(x)[0];
+            if slope == 0.0 { 0.0 } else { slope.signum() }
+        };
+        let mut found = Vec::new();
+        let mut from = 0.0;
+        // Between these places the slope is monotonic.
+        for to in slope.turns().into_iter().chain([1.0]) {
+            let start = std::mem::replace(&mut from, to);
+            let end = sign(to);
+            if *last == 0.0 {
+                *last = sign(start);
+            }
+            if end == 0.0 {
+                continue;
+            }
+            if *last != 0.0 && end != *last {
+                let turned = |x: f64| sign(x) == end;
+                found.push(if turned(start) { start } else { bisect([start, to], turned) });
+            }
+            *last = end;
+        }
+        found
+    }
+
     /// Value and derivative at `x`.
     pub(super) fn at(&self, x: f64) -> [f64; 2] {
         let [start, rest @ ..] = &self.0;
         let (p, dp) = rest.iter().rev().fold((0.0, 0.0), |(p, dp), c| (x * p + c, x * dp + p));
         [start + x * p, p + x * dp]
+    }
+
+    /// It less a number.
+    pub(super) fn less(&self, value: f64) -> Self {
+        let mut less = *self;
+        less.0[0] -= value;
+        less
     }
 
     fn derivative(&self) -> Self {
@@ -167,6 +228,33 @@ mod tests {
             prop_assert_eq!(flat.len(), 1);
             prop_assert_eq!(flat[0].rising, scale > 0.0);
         }
+    }
+
+    #[test]
+    fn a_polynomial_goes_through_its_values() {
+        let exact = with_roots(0.7, &[-0.3, 0.2, 0.4, 0.9, 1.4]);
+        let found = Polynomial::through(Polynomial::PLACES.map(|x| exact.at(x)[0]));
+        for (a, b) in found.0.iter().zip(exact.0) {
+            assert!((a - b).abs() < 1e-12, "{found:?}, {exact:?}");
+        }
+    }
+
+    /// (x − 0.3)² falls and then rises; what has turned at the border between two steps is found in the
+    /// second one.
+    #[test]
+    fn turning_back_is_remembered() {
+        let parabola = with_roots(1.0, &[0.3, 0.3]);
+        let mut last = 0.0;
+        let turns = parabola.turns_back(&mut last);
+        assert!(turns.len() == 1 && (turns[0] - 0.3).abs() < 1e-9 && last == 1.0, "{turns:?}");
+        let falling = Polynomial([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!((falling.turns_back(&mut last), last), (vec![0.0], -1.0));
+        let flat = Polynomial([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!((flat.turns_back(&mut last), last), (vec![], -1.0));
+        // A flat place without a turn.
+        let cubic = with_roots(1.0, &[0.5, 0.5, 0.5]);
+        let mut last = 0.0;
+        assert_eq!((cubic.turns_back(&mut last), last), (vec![], 1.0));
     }
 
     #[test]

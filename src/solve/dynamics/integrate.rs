@@ -34,6 +34,7 @@
 
 use super::collocation::Collocation;
 use super::contact::ContactState;
+use super::event::{EventWatch, Watched};
 use super::generalized_alpha::GeneralizedAlpha;
 use super::method::Method;
 use super::motion::Motion;
@@ -41,7 +42,7 @@ use super::tableau::Tableau;
 use super::{Checkpoint, NoStep, Solution, State};
 use crate::assembly::{AcceptedState, nodes};
 use crate::linear::Singular;
-use crate::model::{Crossing, Integrator, StepControl};
+use crate::model::{Integrator, StepControl};
 use crate::solve::newton::{Failure, Iterations, not_crushed};
 use crate::solve::{Statistics, StepRecord};
 use crate::system::{System, View, unfold};
@@ -64,7 +65,7 @@ pub struct Task<'t> {
     /// found later.
     pub forces: bool,
     /// Events to watch for.
-    pub watches: &'t [EventWatch],
+    pub watches: &'t [EventWatch<'t>],
     /// Points whose directions are followed from step to step, so that full turns are counted.
     pub directions: &'t [View],
     /// Receives checkpoints during the motion.
@@ -78,20 +79,6 @@ pub struct Checkpointing<'k> {
     pub every: Duration,
     /// Receives them.
     pub take: &'k dyn Fn(Checkpoint),
-}
-
-/// A coordinate of a point of a beam that may cross a value.
-pub struct EventWatch {
-    /// The point.
-    pub view: View,
-    /// 0 for x, 1 for y.
-    pub axis: usize,
-    /// The value \[m\].
-    pub value: f64,
-    /// Which way it is crossed.
-    pub crossing: Crossing,
-    /// Whether the motion ends there.
-    pub stop: bool,
 }
 
 /// Part of the tolerance that a step may err by: as if ten thousand errors added up. A step that is
@@ -193,6 +180,8 @@ pub(super) struct Driver<'t, 'a> {
     pub(super) last_step: f64,
     /// Equations of motion for evaluating forces; made when first needed.
     pub(super) observer: Option<Motion<'a>>,
+    /// What is remembered of each watched quantity.
+    pub(super) watched: Vec<Watched>,
 }
 
 /// Whether forces are smooth at the end of a step.
@@ -264,6 +253,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             damping_powers: Vec::new(),
             last_step: step,
             observer: None,
+            watched: vec![Watched::default(); task.watches.len()],
         };
         driver.set_accepted();
         let balance = if driver.task.reactions { driver.balance_at_start(&first) } else { None };

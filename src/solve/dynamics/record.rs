@@ -1,9 +1,7 @@
-//! Records of a motion at the requested times, and of probes that cross a value.
+//! Records of a motion at the requested times.
 
-use super::crossing::{NEAR, Polynomial};
 use super::integrate::{Driver, SLACK, turned, worst};
 use super::{NoStep, State};
-use crate::model::Crossing;
 use crate::solve::newton::Failure;
 
 impl Driver<'_, '_> {
@@ -79,44 +77,5 @@ impl Driver<'_, '_> {
         state.angles = turned(self.task.directions, &state);
         self.settle(&mut state);
         state
-    }
-
-    /// Notes the events of the step to `new` in the order of time; returns the state of the first
-    /// that ends the motion.
-    fn note_events(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) -> Option<State> {
-        let h = new.time - self.state.time;
-        let near = NEAR * self.system.length();
-        let mut found: Vec<(f64, usize)> = Vec::new();
-        for (number, watch) in self.task.watches.iter().enumerate() {
-            let of = |scale: f64, vectors: [&[f64]; 2]| {
-                vectors.map(|v| scale * watch.view.at_point(v)[watch.axis])
-            };
-            let positions = of(1.0, [&self.state.q, &new.q]).map(|position| position - watch.value);
-            let halves = accelerations.map(|pair| of(0.5 * h * h, pair));
-            let polynomial = Polynomial::hermite(positions, of(h, [&self.state.v, &new.v]), halves);
-            let reached = polynomial.reaches_zero(near).into_iter().filter(|reached| match watch.crossing {
-                Crossing::Any => true,
-                Crossing::Rising => reached.rising,
-                Crossing::Falling => !reached.rising,
-            });
-            let new = reached.filter(|reached| self.state.time + reached.at * h > self.first.time);
-            found.extend(new.map(|reached| (reached.at, number)));
-        }
-        // Among simultaneous events, one that ends the motion comes last.
-        found.sort_by(|a, b| {
-            a.0.total_cmp(&b.0).then(self.task.watches[a.1].stop.cmp(&self.task.watches[b.1].stop))
-        });
-        for (at, number) in found {
-            let state = if at < 1.0 {
-                self.between(new, self.state.time + at * h, accelerations)
-            } else {
-                new.clone()
-            };
-            self.solution.events.push((number, state.clone()));
-            if self.task.watches[number].stop {
-                return Some(state);
-            }
-        }
-        None
     }
 }

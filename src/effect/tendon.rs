@@ -1,0 +1,139 @@
+//! The pull of a tendon that runs along a beam.
+
+use super::{Engineering, Strain, bend};
+use crate::assembly::{
+    Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part, TendonPath,
+};
+use crate::beam::{Along, Place};
+use crate::lanes;
+use crate::law::Law;
+use nalgebra::Vector2;
+use std::sync::Arc;
+
+/// A tendon without friction in its sheath, which runs beside the centreline of a beam and is pulled
+/// with a given tension.
+///
+/// Its tension is the same everywhere, so that it has the potential W = T ∫ |p'| ds with the line p
+/// of [`TendonPath`]. This contains the forces on the sections at which it ends, and those that
+/// press it against its sheath where it is bent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tendon {
+    /// Index of the beam.
+    pub beam: usize,
+    /// Where it runs, and its tension.
+    pub path: TendonPath,
+    /// In a motion, the law of time that multiplies the tension; without one it acts in full from
+    /// the start.
+    pub law: Option<Law>,
+}
+
+impl Tendon {
+    /// Whether it is fixed at the ends of a beam of length `length` \[m\].
+    fn is_whole(&self, length: f64) -> bool {
+        self.path.ends == [0.0, length]
+    }
+}
+
+impl Part for Tendon {
+    fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
+        let beam = assembly.beam("a tendon", self.beam)?;
+        let TendonPath { ends, offset, .. } = &self.path;
+        if beam.section.bending_stiffness.is_none() && !offset.is_zero() {
+            return Err(BuildError::missing(beam, "bending stiffness", "a tendon beside the centreline"));
+        }
+        let one = Along::Constant(1.0);
+        let whole = self.is_whole(assembly.discretized(self.beam).basis.length());
+        let acting = if whole { one } else { one.within(*ends) };
+        // The factor has the kinks of the offset too, so that cells are divided there.
+        let acting = acting.plus(&offset.times(0.0));
+        let (_, extent) = Extent::along(self.beam, assembly.mass_rule(self.beam), &acting);
+        let places = assembly.places(Kind::Tendon, &extent)?;
+        let law = self.law.as_ref();
+        assembly.load(Kind::Tendon, extent, law, |z| Pull::new(Arc::new(self.path.clone()), &places, &z))
+    }
+
+    fn jumps(&self) -> Vec<Place> {
+        self.path.ends.iter().map(|s| Place::new(self.beam, *s)).collect()
+    }
+
+    fn tendon(&self) -> Option<(usize, &TendonPath, Option<&Law>)> {
+        Some((self.beam, &self.path, self.law.as_ref()))
+    }
+}
+
+/// The density of a tendon's pull: W = T (|p'| − |p'|₀), relative to the stress-free shape.
+#[derive(Clone, Debug)]
+pub struct Pull {
+    path: Arc<TendonPath>,
+    /// e and e' at each quadrature point.
+    offsets: Vec<[f64; 2]>,
+    /// |p'|₀ at each quadrature point.
+    start: Vec<f64>,
+}
+
+impl Pull {
+    /// `places` holds the arc length of each quadrature point and that of the middle of its cell
+    /// \[m\], `reference` (r', r'') of the stress-free shape there.
+    pub fn new(path: Arc<TendonPath>, places: &[[f64; 2]], reference: &[[Vector2<f64>; 2]]) -> Self {
+        let offsets: Vec<[f64; 2]> = places
+            .iter()
+            .map(|[s, inside]| [path.offset.at(*s, *inside), path.offset.slope(*s, *inside)])
+            .collect();
+        let start = offsets.iter().zip(reference).map(|(offset, z)| length(*offset, z).0).collect();
+        Self { path, offsets, start }
+    }
+}
+
+/// |p'|, and its first two derivatives by a = |r'| − e κ.
+fn length([offset, slope]: [f64; 2], [first, second]: &Gradient<2>) -> (f64, f64, f64) {
+    let along = first.norm() - offset * bend::curvature(first, second);
+    if slope == 0.0 {
+        return (along, 1.0, 0.0);
+    }
+    let length = along.hypot(slope);
+    let share = slope / length;
+    (length, along / length, share * share / length)
+}
+
+impl Density<2> for Pull {
+    const ORDERS: [usize; 2] = [1, 2];
+    const COMPILED_FOR: CompiledFor = CompiledFor::None;
+
+    fn tendon(&self) -> Option<&TendonPath> {
+        Some(&self.path)
+    }
+
+    fn energy(&self, point: usize, z: &Gradient<2>) -> f64 {
+        self.path.tension * (length(self.offsets[point], z).0 - self.start[point])
+    }
+
+    fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
+        let (_, by_a, _) = length(self.offsets[point], z);
+        let (_, tangent) = Engineering::first(z[0].into());
+        let [by_first, by_second] = bend::gradient(z);
+        let (force, offset) = (self.path.tension * by_a, self.offsets[point][0]);
+        [(Vector2::from(tangent) - by_first * offset) * force, by_second * (-offset * force)]
+    }
+
+    fn gradient_and_hessian(
+        &self,
+        point: usize,
+        z: &Gradient<2>,
+        _: &Gradient<2>,
+        _: &Gradient<2>,
+    ) -> (Gradient<2>, Hessian<2>) {
+        let (_, by_a, by_aa) = length(self.offsets[point], z);
+        let (_, tangent, second) = Engineering::second(z[0].into());
+        let ([by_first, by_second], [aa, ab]) = (bend::gradient(z), bend::hessian(z));
+        let offset = self.offsets[point][0];
+        let (force, stiffness) = (self.path.tension * by_a, self.path.tension * by_aa);
+        let a = [Vector2::from(tangent) - by_first * offset, by_second * -offset];
+        let block = |m: usize, n: usize| a[m] * a[n].transpose() * stiffness;
+        let mixed = block(0, 1) - ab * (offset * force);
+        let hessian = [
+            [block(0, 0) + (lanes::matrix(second) - aa * offset) * force, mixed],
+            [mixed.transpose(), block(1, 1)],
+        ];
+        (a.map(|a| a * force), hessian)
+    }
+}

@@ -1,0 +1,94 @@
+//! Warnings on tendons that push, and on beams that are bent about a centre within the tendon.
+
+use crate::assembly::TendonPath;
+use crate::law::Law;
+use crate::model::{Model, StrainMeasure};
+use crate::results::Shape;
+
+/// The tendons of a model, and what was seen of them.
+#[derive(Clone)]
+pub(super) struct Tendons<'m> {
+    all: Vec<Tendon<'m>>,
+}
+
+#[derive(Clone)]
+struct Tendon<'m> {
+    beam: usize,
+    name: &'m str,
+    measure: StrainMeasure,
+    path: &'m TendonPath,
+    law: Option<&'m Law>,
+    /// Whether it acts in full whatever the load factor is.
+    standing: bool,
+    /// The load factor or time at which it pushed most, and the factor of its tension there.
+    pushed: Option<(f64, f64)>,
+    /// Arc length \[m\] at which the beam was bent too far.
+    folded: Option<f64>,
+}
+
+impl<'m> Tendons<'m> {
+    /// Those of `model`; in statics, `is_static`, tensions grow with the load factor.
+    pub(super) fn new(model: &'m Model, is_static: bool) -> Self {
+        let tendon = |(number, part): (usize, &'m std::sync::Arc<dyn crate::assembly::Part>)| {
+            let (beam, path, law) = part.tendon()?;
+            let of = model.beams.get(beam)?;
+            let standing = !is_static || model.stands(number);
+            let (name, measure) = (of.name.as_str(), of.strain);
+            Some(Tendon { beam, name, measure, path, law, standing, pushed: None, folded: None })
+        };
+        Self { all: model.parts.iter().enumerate().filter_map(tendon).collect() }
+    }
+
+    /// Whether there are any.
+    pub(super) fn are_there(&self) -> bool {
+        !self.all.is_empty()
+    }
+
+    /// Takes a load factor or a time into account.
+    pub(super) fn see_factor(&mut self, parameter: f64) {
+        for tendon in &mut self.all {
+            let factor = match tendon.law {
+                Some(law) => law.at(parameter)[0],
+                None if tendon.standing => 1.0,
+                None => parameter,
+            };
+            if factor < tendon.pushed.map_or(0.0, |(_, least)| least) {
+                tendon.pushed = Some((parameter, factor));
+            }
+        }
+    }
+
+    /// Takes a state into account.
+    pub(super) fn see(&mut self, shapes: &[Shape]) {
+        for Tendon { beam, measure, path, folded, .. } in &mut self.all {
+            let shape = &shapes[*beam];
+            let [from, to] = path.ends;
+            let strains = shape.strain.iter().zip(&shape.curvature);
+            let bent = shape.s.iter().zip(strains).find(|(s, (strain, curvature))| {
+                let along = measure.stretch(**strain) - path.offset.at(**s, **s) * **curvature;
+                (from..=to).contains(*s) && along <= 0.0
+            });
+            *folded = folded.or(bent.map(|(s, _)| *s));
+        }
+    }
+
+    /// What to say of them.
+    pub(super) fn warnings(&self) -> impl Iterator<Item = String> + '_ {
+        self.all.iter().flat_map(|Tendon { name, pushed, folded, .. }| {
+            let pushed = pushed.map(|(at, factor)| {
+                format!(
+                    "a tendon of beam `{name}` pushes with {:.4} times its tension at {at:.6}, which no real tendon can: let its law, or the load \
+                     factor, not become negative",
+                    -factor
+                )
+            });
+            let folded = folded.map(|s| {
+                format!(
+                    "beam `{name}` is bent at s = {s:.4} m about a centre that lies between it and its tendon, where sections would cross: use a \
+                     smaller `offset` or `tension`"
+                )
+            });
+            [pushed, folded].into_iter().flatten()
+        })
+    }
+}

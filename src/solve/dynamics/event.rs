@@ -1,0 +1,217 @@
+//! Quantities at probes that reach a value, or turn back.
+//!
+//! A position is linear in q, so that in a step it is one polynomial of time, the Hermite
+//! interpolation of the data at both ends: positions and velocities (cubic), and if known
+//! accelerations (quintic). Any other quantity is evaluated in states within the step, and is
+//! represented by polynomials of degree five on so many parts of the step that they err by less than
+//! [`CLOSE`]. The events are those of the polynomials ([`super::crossing`]).
+
+use super::State;
+use super::crossing::{NEAR, Polynomial};
+use super::integrate::Driver;
+use super::motion::Balance;
+use crate::model::{Crossing, EventKind};
+use crate::system::View;
+
+/// Largest error of a polynomial, relative to the change of the quantity in the step.
+const CLOSE: f64 = 1e-8;
+/// How often a step is halved at most to represent a quantity.
+const HALVINGS: u32 = 6;
+/// Changes of velocities, strains and forces below this part of the largest value so far are errors of
+/// the integration, and no turns.
+const NOISE: f64 = 1e-6;
+/// Places at which a polynomial is compared with the quantity.
+const BETWEEN: [f64; 3] = [0.2, 0.5, 0.8];
+
+/// A quantity that is watched.
+pub struct EventWatch<'t> {
+    /// The quantity.
+    pub quantity: Quantity<'t>,
+    /// What it has to do.
+    pub when: EventKind,
+    /// Whether the motion ends there.
+    pub stop: bool,
+}
+
+/// A scalar function of the state, by what it needs.
+pub enum Quantity<'t> {
+    /// A component of the position of a point: 0 for x, 1 for y.
+    Position(View, usize),
+    /// A function of coordinates and velocities.
+    OfMotion(Box<dyn Fn(&State) -> f64 + 't>),
+    /// A function of a state in which all forces are in balance.
+    OfForces(Box<dyn Fn(&Balance) -> f64 + 't>),
+}
+
+/// What is remembered of a watched quantity from step to step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Watched {
+    /// Its value at the end of the last step.
+    value: Option<f64>,
+    /// Its largest magnitude so far.
+    largest: f64,
+    /// The sign of its slope there, or of the last slope that was not zero.
+    slope: f64,
+    /// Its value where it turned back last, or at the start.
+    turned: Option<f64>,
+}
+
+/// A part of a step, from 0 to 1, and the quantity on it.
+type Piece = ([f64; 2], Polynomial);
+
+impl Driver<'_, '_> {
+    /// Notes the events of the step to `new` in the order of time; returns the state of the first
+    /// that ends the motion.
+    pub(super) fn note_events(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) -> Option<State> {
+        let task = self.task;
+        let h = new.time - self.state.time;
+        // Place in the step, number and value of each.
+        let mut found: Vec<(f64, usize, f64)> = Vec::new();
+        for (number, watch) in task.watches.iter().enumerate() {
+            let pieces = self.pieces(watch, new, accelerations);
+            if pieces.iter().any(|(_, piece)| !(piece.at(0.0)[0] + piece.at(1.0)[0]).is_finite()) {
+                self.solution.unseen.get_or_insert((number, self.state.time));
+                continue;
+            }
+            let memory = &mut self.watched[number];
+            let ends = pieces.iter().flat_map(|(_, piece)| [0.0, 1.0].map(|x| piece.at(x)[0].abs()));
+            memory.largest = ends.fold(memory.largest, f64::max);
+            let (unit, noise) = match watch.quantity {
+                Quantity::Position(..) => (self.system.length(), NEAR),
+                _ => (memory.largest, NOISE),
+            };
+            let events = match watch.when {
+                EventKind::Reaches { value, crossing } => {
+                    reached(&pieces, value, crossing, NEAR * unit.max(value.abs()), memory)
+                }
+                EventKind::Maximum => turned(&pieces, 1.0, noise * unit, memory),
+                EventKind::Minimum => turned(&pieces, -1.0, noise * unit, memory),
+            };
+            memory.value = pieces.last().map(|(_, piece)| piece.at(1.0)[0]);
+            let later = events.into_iter().filter(|(at, _)| self.state.time + at * h > self.first.time);
+            found.extend(later.map(|(at, value)| (at, number, value)));
+        }
+        // Among simultaneous events, one that ends the motion comes last.
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(task.watches[a.1].stop.cmp(&task.watches[b.1].stop)));
+        for (at, number, value) in found {
+            let state = match at {
+                _ if at < 1.0 => self.between(new, self.state.time + at * h, accelerations),
+                _ => new.clone(),
+            };
+            self.solution.events.push((number, state.time, value));
+            if task.watches[number].stop {
+                return Some(state);
+            }
+        }
+        None
+    }
+
+    /// A watched quantity in the step to `new`.
+    fn pieces(
+        &mut self,
+        watch: &EventWatch<'_>,
+        new: &State,
+        accelerations: Option<[&[f64]; 2]>,
+    ) -> Vec<Piece> {
+        let h = new.time - self.state.time;
+        if let Quantity::Position(view, axis) = &watch.quantity {
+            let of = |scale: f64, vectors: [&[f64]; 2]| vectors.map(|v| scale * view.at_point(v)[*axis]);
+            let halves = accelerations.map(|pair| of(0.5 * h * h, pair));
+            let (positions, slopes) = (of(1.0, [&self.state.q, &new.q]), of(h, [&self.state.v, &new.v]));
+            return vec![([0.0, 1.0], Polynomial::hermite(positions, slopes, halves))];
+        }
+        let mut at = |x: f64| self.value(&watch.quantity, new, x, accelerations);
+        let (mut pieces, mut open) = (Vec::new(), vec![([0.0, 1.0], HALVINGS)]);
+        while let Some(([from, to], halvings)) = open.pop() {
+            let place = |x: f64| from + x * (to - from);
+            let values = Polynomial::PLACES.map(|x| at(place(x)));
+            let polynomial = Polynomial::through(values);
+            let (low, high) =
+                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+            let size = low.abs().max(high.abs());
+            let close = (CLOSE * (high - low)).max(NEAR * size);
+            let misses = |x: f64| (polynomial.at(x)[0] - at(place(x))).abs() > close;
+            if halvings > 0 && size.is_finite() && BETWEEN.into_iter().any(misses) {
+                let middle = place(0.5);
+                open.extend([([middle, to], halvings - 1), ([from, middle], halvings - 1)]);
+            } else {
+                pieces.push(([from, to], polynomial));
+            }
+        }
+        pieces
+    }
+
+    /// A watched quantity at the place `x`, from 0 to 1, of the step to `new`; no number where it is
+    /// not known.
+    fn value(
+        &mut self,
+        quantity: &Quantity<'_>,
+        new: &State,
+        x: f64,
+        accelerations: Option<[&[f64]; 2]>,
+    ) -> f64 {
+        let time = self.state.time + x * (new.time - self.state.time);
+        let mut state = self.state.between(new, time, accelerations);
+        match quantity {
+            Quantity::Position(view, axis) => view.at_point(&state.q)[*axis],
+            Quantity::OfMotion(value) => value(&state),
+            Quantity::OfForces(value) => {
+                self.settle(&mut state);
+                self.balance_within(new, &state).map_or(f64::NAN, |balance| value(&balance))
+            }
+        }
+    }
+}
+
+/// Where the quantity reaches `value`, and the value. What is nearer to it than `near` is at it.
+fn reached(pieces: &[Piece], value: f64, crossing: Crossing, near: f64, memory: &Watched) -> Vec<(f64, f64)> {
+    let wanted = |rising: bool| match crossing {
+        Crossing::Any => true,
+        Crossing::Rising => rising,
+        Crossing::Falling => !rising,
+    };
+    let mut found = Vec::new();
+    // Forces may jump from one step to the next.
+    let start = pieces.first().map_or(value, |(_, piece)| piece.at(0.0)[0]);
+    let jumped = memory.value.filter(|before| {
+        (before - value).abs() > near && (start - value).abs() > near && (before < &value) == (start > value)
+    });
+    if jumped.is_some_and(|before| wanted(before < value)) {
+        found.push((0.0, value));
+    }
+    for ([from, to], piece) in pieces {
+        let events = piece.less(value).reaches_zero(near).into_iter().filter(|event| wanted(event.rising));
+        found.extend(events.map(|event| (from + event.at * (to - from), value)));
+    }
+    found
+}
+
+/// Where the quantity times `sign` begins to fall after it has risen by more than `near`, and its
+/// values there.
+fn turned(pieces: &[Piece], sign: f64, near: f64, memory: &mut Watched) -> Vec<(f64, f64)> {
+    let mut found = Vec::new();
+    for ([from, to], piece) in pieces {
+        let start = piece.at(0.0)[0];
+        let mut reference = memory.turned.unwrap_or(start);
+        let mut slope = memory.slope;
+        let turns = piece.turns_back(&mut slope);
+        // Before its last turn it had the slope from which the memory started, or the opposite one.
+        let mut rising = memory.slope;
+        if rising == 0.0 {
+            rising = if turns.len() % 2 == 0 { slope } else { -slope };
+        }
+        for at in turns {
+            let value = piece.at(at)[0];
+            let change = value - reference;
+            if change * rising > near {
+                reference = value;
+                if rising == sign {
+                    found.push((from + at * (to - from), value));
+                }
+            }
+            rising = -rising;
+        }
+        (memory.slope, memory.turned) = (slope, Some(reference));
+    }
+    found
+}

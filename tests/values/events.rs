@@ -1,0 +1,147 @@
+//! Events on all quantities of a probe: when they happen, and the values there.
+
+use super::{ROD, Written, near};
+use ancf::scene::parse;
+
+/// Times and values of the events of a scene, and the time at which its motion ends.
+fn events(text: &str) -> (Vec<(f64, f64)>, f64) {
+    let found = Written::of(text);
+    let summary = found.summary();
+    let events = summary["events"].as_array().cloned().unwrap_or_default();
+    let number = |event: &serde_json::Value, key: &str| event[key].as_f64().expect("a number");
+    (
+        events.iter().map(|event| (number(event, "time"), number(event, "value"))).collect(),
+        found.said("/last"),
+    )
+}
+
+fn expect(text: &str, expected: &[(f64, f64)], tolerance: f64, what: &str) {
+    let (found, _) = events(text);
+    assert_eq!(found.len(), expected.len(), "{what}: {found:?}");
+    for ((time, value), (t, v)) in found.iter().zip(expected) {
+        near(*time, *t, tolerance, what);
+        near(*value, *v, tolerance * v.abs().max(1.0), what);
+    }
+}
+
+const METHODS: [&str; 3] =
+    ["radau.tolerance = 1e-9", "gauss = { stages = 3, step = 0.07 }", "generalized_alpha.tolerance = 1e-9"];
+
+/// A rod thrown with (2, 4) m/s against 10 m/s² has vy = 4 − 10 t and its apex at 0.4 s; turned with
+/// 9 rad/s it points anywhere, with full turns counted.
+#[test]
+fn velocities_angles_and_apices_of_a_thrown_rod() {
+    for method in METHODS {
+        let thrown = |event: &str| {
+            format!(
+                "{ROD}effect.gravity.acceleration = [0, -10]\ninitial_velocity = [{{ beam = 'rod', value = [2, 4] }}]
+                analysis.dynamic = {{ duration = 1, output_every = 0.25, {method}, event = [{{ probe = 'middle', {event} }}] }}\n"
+            )
+        };
+        for (event, expected) in [
+            ("vy = '1 m/s'", &[(0.3, 1.0)][..]),
+            ("vx = 3", &[]),
+            ("speed = 2.5", &[(0.25, 2.5), (0.55, 2.5)]),
+            ("speed = 2.5, crossing = 'rising'", &[(0.55, 2.5)]),
+            ("maximum = 'y'", &[(0.4, 0.8)]),
+            ("minimum = 'y'", &[]),
+            ("minimum = 'vy'", &[]),
+            ("minimum = 'speed'", &[(0.4, 2.0)]),
+            ("maximum = 'speed'", &[]),
+        ] {
+            expect(&thrown(event), expected, 1e-6, &format!("{event} by {method}"));
+        }
+        let (_, last) = events(&thrown("maximum = 'y', stop = true"));
+        near(last, 0.4, 1e-6, method);
+        let turned = format!(
+            "{ROD}initial_velocity = [{{ beam = 'rod', rotation = -9, about = [0.5, 0] }}]
+            analysis.dynamic = {{ duration = 1, output_every = 0.25, {method}, event = [\
+                {{ probe = 'end', angle = '-7.2 rad' }}, {{ probe = 'end', angle = 1 }}, {{ probe = 'end', maximum = 'x' }}] }}\n"
+        );
+        // x = 0.5 + 0.5 cos 9 t; the rod is a little longer as it turns.
+        let turn = std::f64::consts::TAU / 9.0;
+        expect(&turned, &[(turn, 1.0), (0.8, -7.2)], 3e-4, method);
+    }
+}
+
+/// A rod that is guided at its start and pulled at its end by 40 t³ N carries half of it in its middle,
+/// and the moment 0.375 m of it where it acts across.
+#[test]
+fn forces_strains_and_stresses_of_a_rod_that_is_accelerated() {
+    let pulled = |along: bool, event: &str| {
+        let (fix, force) = if along { ("y", "[40, 0]") } else { ("x", "[0, 40]") };
+        format!(
+            "beam.rod = {{ start = [0, 0], end = [1, 0], section.rectangle = {{ width = 0.1, height = 0.2 }}, youngs_modulus = 5e9, \
+             density = 100, basis.ancf.elements = 16 }}
+            support = [{{ beam = 'rod', at = 'start', fix = ['{fix}', 'angle'] }}]
+            effect.force = [{{ beam = 'rod', at = 'end', value = {force}, in_time.polynomial = [0, 0, 0, 1] }}]
+            probe = [{{ name = 'middle', beam = 'rod', at = 0.5 }}]
+            analysis.dynamic = {{ duration = 0.8, radau.tolerance = 1e-9, event = [{{ probe = 'middle', {event} }}] }}\n"
+        )
+    };
+    // N = 20 t³, EA = 1e8.
+    for (event, value) in
+        [("axial_force = '5 N'", 5.0), ("strain = 5e-8", 5e-8), ("stress_top = '250 Pa'", 250.0)]
+    {
+        expect(&pulled(true, event), &[(0.25_f64.cbrt(), value)], 2e-5, event);
+    }
+    // Q = 20 t³, M = 15 t³, EI = 5e9 · 6.667e-5, σ = 0.1 M/I on the right.
+    for (event, cube, value) in [
+        ("shear_force = '5 N'", 0.25, 5.0),
+        ("bending_moment = '3 N m'", 0.2, 3.0),
+        ("curvature = 9e-6", 0.2, 9e-6),
+        ("stress_bottom = '4.5 kPa'", 0.2, 4500.0),
+        ("stress_top = '-4500 Pa', crossing = 'falling'", 0.2, -4500.0),
+        ("stress_top = '-4500 Pa', crossing = 'rising'", 0.0, 0.0),
+    ] {
+        let expected: &[(f64, f64)] = if cube > 0.0 { &[(f64::cbrt(cube), value)] } else { &[] };
+        // Curvatures at nodes converge slowly.
+        let tolerance = if event.starts_with("curvature") { 1e-3 } else { 1e-4 };
+        expect(&pulled(false, event), expected, tolerance, event);
+    }
+}
+
+/// A weight that is thrown down from a bar swings at 5 rad/s: the force in the bar is √(k m) v sin(ω t),
+/// with its maximum after a quarter of a period and its minimum after three.
+#[test]
+fn a_force_has_maxima() {
+    let text = "beam.bar = { start = [0, 0], end = [0, -1], axial_stiffness = 100, bending_stiffness = 1, mass_per_length = 1e-6, basis.ancf.elements = 1 }
+        support = [{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.point_mass = [{ beam = 'bar', at = 'end', mass = 4 }]
+        initial_velocity = [{ beam = 'bar', polynomial.vy = [0, -0.05] }]
+        probe = [{ name = 'top', beam = 'bar', at = 0.5 }]
+        analysis.dynamic = { duration = 3, output_every = 0.1, gauss.tolerance = 1e-9, event = [\
+            { probe = 'top', maximum = 'axial_force' }, { probe = 'top', minimum = 'axial_force' }] }\n";
+    let quarter = std::f64::consts::FRAC_PI_2 / 5.0;
+    let expected = [
+        (quarter, 1.0),
+        (3.0 * quarter, -1.0),
+        (5.0 * quarter, 1.0),
+        (7.0 * quarter, -1.0),
+        (9.0 * quarter, 1.0),
+    ];
+    expect(text, &expected, 1e-4, "force");
+}
+
+#[test]
+fn events_that_cannot_be_are_refused() {
+    let rod = |event: &str| {
+        format!("{ROD}analysis.dynamic = {{ duration = 1, event = [{{ probe = 'middle', {event} }}] }}\n")
+    };
+    for (text, part) in [
+        (rod("x = 1, y = 2"), "an event needs exactly one quantity of its probe; found 2"),
+        (rod("stop = true"), "found 0"),
+        (rod("maximum = 'y', crossing = 'rising'"), "a maximum or a minimum has no `crossing`"),
+        (rod("maximum = 'z'"), "found \"z\", expected one of \"x\", \"y\", \"angle\""),
+        (rod("stress_top = 1"), "the stress at probe `middle` is not known"),
+        (rod("maximum = 'stress_bottom'"), "the stress at probe `middle` is not known"),
+        (
+            rod("curvature = 1").replace("bending_stiffness = 1e4, ", ""),
+            "lies on a string, which has no curvature",
+        ),
+        (rod("y = 1").replace("probe = 'middle'", "probe = 'centre'"), "there is no probe named `centre`"),
+    ] {
+        let said = parse("events.toml", &text).expect_err(part).to_string();
+        assert!(said.contains(part), "{said}");
+    }
+}
