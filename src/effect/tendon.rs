@@ -46,7 +46,13 @@ impl Part for Tendon {
         let acting = if whole { one } else { one.within(*ends) };
         // The factor has the kinks of the offset too, so that cells are divided there.
         let acting = acting.plus(&offset.times(0.0));
-        let (_, extent) = Extent::along(self.beam, assembly.mass_rule(self.beam), &acting);
+        // The points at which the beam's own axial force acts: on the centreline the tendon's tension
+        // then takes exactly from the beam's stiffness against bending what its thrust gives.
+        let rule = match beam.section.axial_stiffness {
+            Some(_) => beam.gauss_points.stretch_rule(),
+            None => assembly.mass_rule(self.beam),
+        };
+        let (_, extent) = Extent::along(self.beam, rule, &acting);
         let places = assembly.places(Kind::Tendon, &extent)?;
         let law = self.law.as_ref();
         assembly.load(Kind::Tendon, extent, law, |z| Pull::new(Arc::new(self.path.clone()), &places, &z))

@@ -147,8 +147,12 @@ fn a_tendon_on_the_centreline_presses_and_does_not_buckle() {
     }
     let text = hard("analysis.buckling.count = 1").replace("output.section_forces = true", "");
     let scene = parse("scene.toml", &text).expect("a scene");
-    let loads = scene.model().solve(scene.analysis());
-    assert!(loads.is_err() || loads.is_ok_and(|loads| loads.states().parameter.len() <= 1));
+    // What round-off leaves is beyond anything, and told.
+    if scene.model().solve(scene.analysis()).is_ok() {
+        let found = Written::of(&text);
+        assert!(found.column("load_factors.csv", "load_factor").iter().all(|factor| factor.abs() > 1e9));
+        assert_ne!(found.summary()["warnings"].to_string(), "[]");
+    }
 }
 
 /// In a motion a law multiplies the tension, and what the tendon puts in is what the finger has.
