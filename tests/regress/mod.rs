@@ -2,7 +2,7 @@
 //! case's scenes, and how much work they take. Accept a wanted change with `cargo insta review`.
 
 use ancf::results::Results;
-use ancf::run::inspect;
+use ancf::run::{Options, inspect, inspect_stages, solve_stages};
 use ancf::scene::Scene;
 use ancf_check::Suite;
 use std::fmt::Write as _;
@@ -41,8 +41,13 @@ fn regress_inventories() {
     let mut text = String::new();
     for (name, path) in scenes() {
         let scene = Scene::load(&path, &[]).expect("a case's scene is legal");
-        let inventory = inspect(scene.model(), scene.analysis()).expect("a case's scene can be built");
-        writeln!(text, "{name}\n{inventory}\n").expect("text takes text");
+        if scene.stages().is_empty() {
+            let inventory = inspect(scene.model(), scene.analysis()).expect("a case's scene can be built");
+            writeln!(text, "{name}\n{inventory}\n").expect("text takes text");
+        }
+        for (stage, inventory) in inspect_stages(scene.stages(), inspect).expect("stages that can be built") {
+            writeln!(text, "{name} {stage}\n{inventory}\n").expect("text takes text");
+        }
     }
     snapshot("inventories", &text);
 }
@@ -54,23 +59,33 @@ fn regress_statistics_and_results() {
     let (mut counts, mut results) = (String::new(), String::new());
     for (name, path) in scenes() {
         let scene = Scene::load(&path, &[]).expect("a case's scene is legal");
-        let solved = scene.model().solve(scene.analysis());
-        let solved = solved.expect("a case's scene can be solved");
-        let s = solved.run().statistics;
-        writeln!(
-            counts,
-            "{name}: {} unknowns, {} steps, {} rejected, {} Newton iterations, {} residuals, {} tangents, {} factorisations, {} warnings",
-            solved.run().degrees_of_freedom,
-            s.steps,
-            s.rejected_steps,
-            s.newton_iterations,
-            s.residual_evaluations,
-            s.tangent_evaluations,
-            s.factorizations,
-            solved.run().warnings.len(),
-        )
-        .expect("text takes text");
-        results.push_str(&found(&name, &solved));
+        let mut solved = Vec::new();
+        if scene.stages().is_empty() {
+            let alone = scene.model().solve(scene.analysis());
+            solved.push((name, alone.expect("a case's scene can be solved")));
+        } else {
+            let run = solve_stages(scene.stages(), Options::default());
+            assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
+            let names = scene.stages().iter().map(|stage| format!("{name} {}", stage.name));
+            solved.extend(names.zip(run.results));
+        }
+        for (name, solved) in solved {
+            let s = solved.run().statistics;
+            writeln!(
+                counts,
+                "{name}: {} unknowns, {} steps, {} rejected, {} Newton iterations, {} residuals, {} tangents, {} factorisations, {} warnings",
+                solved.run().degrees_of_freedom,
+                s.steps,
+                s.rejected_steps,
+                s.newton_iterations,
+                s.residual_evaluations,
+                s.tangent_evaluations,
+                s.factorizations,
+                solved.run().warnings.len(),
+            )
+            .expect("text takes text");
+            results.push_str(&found(&name, &solved));
+        }
     }
     snapshot("statistics", &counts);
     let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots/results.snap");

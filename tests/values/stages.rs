@@ -314,6 +314,29 @@ fn a_bow_gives_back_what_the_hand_has_put_in() {
     assert!(0.5 * 0.012 * speed * speed > 0.5 * loose.last("energy.csv", "kinetic"), "{speed}");
 }
 
+/// A motion that an event has ended within a step goes on in the next stage, with joints and lengths
+/// that its state holds to the accuracy of the step.
+#[test]
+fn a_motion_goes_on_after_an_event() {
+    let text = "beam.arm = { start = [0, 0], end = [1, 0], bending_stiffness = 2, mass_per_length = 0.5, basis.ancf.elements = 3 }
+        beam.leg = { start = [1, 0], end = [2, 0], bending_stiffness = 1, mass_per_length = 0.3, basis.ancf.elements = 3 }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y'] }]
+        joint = [{ type = 'hinge', first = { beam = 'arm', at = 'end' }, second = { beam = 'leg', at = 'start' } }]
+        effect.gravity.acceleration = [0, -9.81]
+        probe = [{ name = 'end', beam = 'leg', at = 'end' }]
+        stage = [{ name = 'fall', analysis.dynamic = { duration = 2, output_every = 0.1, radau.tolerance = 1e-4, \
+            event = [{ probe = 'end', y = -0.7, stop = true }] } }, \
+            { name = 'on', analysis.dynamic = { duration = 0.2, output_every = 0.1, radau.tolerance = 1e-4 } }]";
+    let found = stages(text);
+    let (fall, on) = (&found[0], &found[1]);
+    near(fall.last("probes.csv", "end.y"), -0.7, 1e-9, "end.y");
+    for column in ["end.x", "end.y", "end.vx", "end.vy"] {
+        let (before, after) = (fall.last("probes.csv", column), on.column("probes.csv", column)[0]);
+        near(after, before, 1e-3, column);
+    }
+    near(on.last("energy.csv", "total"), fall.column("energy.csv", "total")[0], 1e-3, "total");
+}
+
 /// In two files a state says what acted in it: what both scenes have stays, what is new grows.
 #[test]
 fn statics_goes_on_from_the_state_of_another_scene() {

@@ -248,7 +248,11 @@ fn tasks_of(suite: &Suite, name: &str) -> Result<Vec<Task>, Failure> {
     for (family, declared) in families {
         for member in members(&declared)?.into_iter().filter(|member| !member.interpolate) {
             let path = case.folder.join(&member.scene);
-            let scene = Scene::load(&path, &member.set)?.opened(TRUTH)?;
+            let scene = Scene::load(&path, &member.set)?;
+            if !scene.stages().is_empty() {
+                continue; // Meshes are chosen for one analysis only.
+            }
+            let scene = scene.opened(TRUTH)?;
             if seen.insert(scene.text().to_owned()) {
                 let tables = case.text.oracle.keys();
                 let tables = tables.map(|oracle| Ok((oracle.clone(), suite.table(name, oracle)?)));

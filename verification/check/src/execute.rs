@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use ancf::run::{Options, solve_stages};
 use ancf::scene::Scene;
 use indexmap::IndexMap;
 
@@ -109,6 +110,14 @@ fn run(case: &Case, member: &Member) -> std::result::Result<quantity::Result, St
             ));
         };
         return Ok(quantity::Result::Interpolated(Box::new(interpolate(beam)?)));
+    }
+    if !scene.stages().is_empty() {
+        let run = solve_stages(scene.stages(), Options::default());
+        if let Some(failure) = run.failure {
+            return Err(chain(&failure));
+        }
+        let names = scene.stages().iter().map(|stage| stage.name.clone());
+        return Ok(quantity::Result::Staged(names.zip(run.results).collect()));
     }
     let results = scene.model().solve(scene.analysis()).map_err(|error| chain(&error))?;
     Ok(quantity::Result::Solved(Box::new(results)))

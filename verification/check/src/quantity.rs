@@ -10,6 +10,7 @@
 //! | `shape.x` (`s`, `y`, `angle`, `strain`, `curvature`, `axial_force`, `shear_force`, `bending_moment`, `stress_bottom`, `stress_top`), `shape.<beam>.x` | the last state | s \[m\] |
 //! | `frequency.<k>`, `load-factor.<k>` | k-th from 1, \[Hz\] or – | – |
 //! | `statistics.<name>` | counts, as in `summary.json`; `most_iterations` of an accepted step | – |
+//! | `stage.<name>.<quantity>` | the quantity in a stage; without it that of the last stage | as there |
 //! | `interpolated.stretch` (`bend`) | ½∫EA ε² ds, ½∫EI κ² ds of exact nodal values \[J\] | – |
 //! | `interpolated.distance` | largest distance of 201 even places of the interpolated curve from the exact one \[m\] | – |
 //! | `interpolated.x` (`s`, `y`, `curvature`, `strain`) | the interpolated curve | s \[m\] |
@@ -28,6 +29,8 @@ const UNSTRESSED: &str = "the section of this beam does not tell its shape";
 pub enum Result {
     /// The results of a computation.
     Solved(Box<Results>),
+    /// The results of all stages, by their names.
+    Staged(Vec<(String, Results)>),
     /// An interpolation of exact nodal values.
     Interpolated(Box<Interpolation>),
 }
@@ -106,9 +109,21 @@ pub fn values(path: &str, result: &Result) -> std::result::Result<Values, String
     let words: Vec<&str> = path.split('.').collect();
     match result {
         Result::Solved(results) => solved(&words, results),
+        Result::Staged(stages) => staged(&words, stages),
         Result::Interpolated(interpolation) => interpolated(&words, interpolation),
     }
     .map_err(|message| format!("`{path}`: {message}"))
+}
+
+fn staged(words: &[&str], stages: &[(String, Results)]) -> std::result::Result<Values, String> {
+    if let ["stage", name, rest @ ..] = words {
+        let found = stages.iter().find(|(stage, _)| stage == name);
+        let names = || crate::case::list(stages.iter().map(|(stage, _)| stage));
+        let (_, results) = found.ok_or_else(|| format!("no such stage; there are {}", names()))?;
+        return solved(rest, results);
+    }
+    let (_, last) = stages.last().ok_or("no stage was run")?;
+    solved(words, last)
 }
 
 fn solved(words: &[&str], results: &Results) -> std::result::Result<Values, String> {
