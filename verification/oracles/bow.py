@@ -51,15 +51,24 @@ def braced(u):
 
 SCALE = [10.0, 100.0, 100.0]
 
-if __name__ == "__main__":
-    # The string's tension T bends the limb by its distance, some 0.2 m: the first guess that leads to a limb bent to the archer.
+
+def at_rest():
+    """Moment and force at the riser of the braced bow.
+
+    The string's tension T bends the limb by its distance, some 0.2 m: the first guess that leads to a limb bent to the archer.
+    """
     for tension in range(100, 900, 20):
         try:
             rest = solve(braced, [0.2 * tension, 0.0, -tension], SCALE)
         except AssertionError:
             continue
         if limb(rest)[0][0] < -0.1:
-            break
+            return rest
+    raise ArithmeticError("no braced bow")
+
+
+if __name__ == "__main__":
+    rest = at_rest()
     (x, *_), _ = limb(rest)
     rows = []
     values = x - 0.015 * np.arange(1, 31)
