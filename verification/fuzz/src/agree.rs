@@ -9,6 +9,7 @@
 mod balance;
 mod cut;
 mod draw;
+mod formula;
 mod frame;
 mod gap;
 mod judge;
@@ -19,6 +20,7 @@ mod quantity;
 mod report;
 mod settings;
 mod shrink;
+mod stages;
 mod vocabulary;
 mod ways;
 

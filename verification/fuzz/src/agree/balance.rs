@@ -4,10 +4,11 @@ use toml::{Table, Value};
 
 use super::gap::force_size;
 use super::outcome::Seen;
-use super::settings;
+use super::{settings, stages};
 
 /// The worst of the balances: its error relative to the largest force, and its name.
 pub fn worst(scene: &Table, seen: &Seen) -> Option<(f64, String)> {
+    let scene = &stages::last(scene);
     let kind = settings::analysis(scene);
     if !matches!(kind, "static" | "dynamic") {
         return None;
@@ -30,7 +31,7 @@ pub fn worst(scene: &Table, seen: &Seen) -> Option<(f64, String)> {
     }
     for ((name, table), beam) in settings::beams(scene).zip(&seen.beams) {
         // A string has no Q and no M, whatever holds its direction.
-        if !["bending_stiffness", "second_moment", "section"].iter().any(|key| table.contains_key(*key)) {
+        if !settings::bends(table) {
             continue;
         }
         for (end, index) in [("start", 0), ("end", beam.forces.len().saturating_sub(1))] {

@@ -36,7 +36,8 @@ pub fn cut(scene: &Table) -> Option<Table> {
         }
     };
     // What varies along the beam, or acts on a stretch of it, is not cut.
-    let quantities = beam.iter().filter(|(key, _)| !matches!(key.as_str(), "arc" | "basis" | "section"));
+    let whole = ["arc", "basis", "section", "axial_law", "bending_law", "initial_shape"];
+    let quantities = beam.iter().filter(|(key, _)| !whole.contains(&key.as_str()));
     let varies = quantities.into_iter().any(|(_, value)| value.is_table());
     let layered = beam.get("section").is_some_and(|section| section.to_string().contains("table"));
     let effects = scene.get("effect").and_then(Value::as_table);
@@ -182,9 +183,30 @@ fn length(beam: &Table) -> Option<f64> {
 }
 
 fn pieces(beam: &Table, length: f64, at: f64) -> Option<[Table; 2]> {
-    let (mut first, mut second) = (beam.clone(), beam.clone());
     let part = at / length;
-    if let Some(Value::Table(arc)) = beam.get("arc") {
+    let mut both = shapes(beam, part)?;
+    match beam.get("initial_shape").and_then(Value::as_table) {
+        Some(shape) if shape.contains_key("points") => return None,
+        Some(shape) => {
+            let line = shape.get("line").and_then(Value::as_table);
+            let pieces = shapes(line.unwrap_or(shape), part)?;
+            for (beam, piece) in both.iter_mut().zip(pieces) {
+                let mut shape = piece;
+                if line.is_some() {
+                    shape = [("line".to_owned(), Value::from(shape))].into_iter().collect();
+                }
+                beam.insert("initial_shape".into(), shape.into());
+            }
+        }
+        None => {}
+    }
+    Some(both)
+}
+
+/// A table with an `arc`, or with `start` and `end`, cut at a part of its length.
+fn shapes(whole: &Table, part: f64) -> Option<[Table; 2]> {
+    let (mut first, mut second) = (whole.clone(), whole.clone());
+    if let Some(Value::Table(arc)) = whole.get("arc") {
         let float = |key: &str| arc.get(key).and_then(Value::as_float);
         let (from, to) = (float("from")?, float("to")?);
         // More than a turn is cut as well.
@@ -193,7 +215,7 @@ fn pieces(beam: &Table, length: f64, at: f64) -> Option<[Table; 2]> {
         first.get_mut("arc")?.as_table_mut()?.insert("to".into(), middle.into());
         second.get_mut("arc")?.as_table_mut()?.insert("from".into(), middle.into());
     } else {
-        let ([a, b], [c, d]) = (vector(beam.get("start")?)?, vector(beam.get("end")?)?);
+        let ([a, b], [c, d]) = (vector(whole.get("start")?)?, vector(whole.get("end")?)?);
         let middle = list([a + part * (c - a), b + part * (d - b)]);
         first.insert("end".into(), middle.clone());
         second.insert("start".into(), middle);

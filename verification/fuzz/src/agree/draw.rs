@@ -4,7 +4,9 @@
 mod analysis;
 mod beams;
 mod effects;
+mod fields;
 mod law;
+mod staged;
 mod support;
 
 use fastrand::Rng;
@@ -25,12 +27,17 @@ pub struct Draw<'r> {
 /// A beam that was drawn.
 struct Drawn {
     name: String,
+    /// Its stress-free shape.
     curve: ancf::centreline::Curve,
+    /// Where it is at the start.
+    starts: ancf::centreline::Curve,
     straight: bool,
     /// Length of the beam.
     length: f64,
     axial: Option<f64>,
     bends: bool,
+    /// Whether it has an elastic law in place of a stiffness.
+    by_law: bool,
 }
 
 /// The kind of analysis.
@@ -64,8 +71,10 @@ pub fn scene(rng: &mut Rng) -> Table {
     draw.effects();
     draw.probes();
     draw.analysis();
-    if draw.chance(0.08) {
-        draw.accuracy();
+    match draw.rng.u8(0..100) {
+        0..8 => draw.accuracy(),
+        8..40 => draw.stages(),
+        _ => {}
     }
     draw.output();
     draw.scene

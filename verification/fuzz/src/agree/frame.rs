@@ -4,6 +4,7 @@
 use toml::{Table, Value};
 
 use super::quantity::{Dimension, Nature, axes, nature};
+use super::{formula, settings};
 
 /// How natural coordinates become those of a scene: mirrored first, then turned, stretched and
 /// shifted.
@@ -101,10 +102,17 @@ impl Frame {
         {
             layers.reverse();
         }
+        // A mirror exchanges bending to the left with bending to the right.
+        if self.mirrored && path == "beam.*.bending_law" {
+            for list in table.iter_mut().filter_map(|(_, list)| list.as_array_mut()) {
+                list.reverse();
+            }
+        }
         for (key, value) in table.iter_mut() {
             let below = match path {
                 "" => key.clone(),
                 "beam" => "beam.*".to_owned(),
+                "stage" if key == "analysis" => key.clone(),
                 _ => format!("{path}.{key}"),
             };
             self.value(&below, value);
@@ -146,9 +154,39 @@ impl Frame {
                     self.quantity(Nature::Scalar([0, 0, -power]), c);
                 }
             }
+            (Nature::Root(d), Value::Float(v)) => *v *= self.unit(d).sqrt(),
+            (Nature::OfTime, Value::String(text)) => {
+                *text = formula::with(text, &[("t", formula::scaled("t", 1.0 / self.units[2]))]);
+            }
+            (Nature::OfPlace(d), Value::String(text)) => {
+                *text = formula::scaled(&format!("({})", self.of_place(text)), self.unit(d));
+            }
+            (Nature::VectorOfPlace(d), Value::Array(both)) => self.vector_of_place(both, d),
             (Nature::Scalar(_) | Nature::Turning(_), Value::Table(table)) => self.along(nature, table),
             (nature, Value::Array(items)) => items.iter_mut().for_each(|item| self.quantity(nature, item)),
             _ => {}
+        }
+    }
+
+    /// A formula of the natural place as one of the coordinates of the scene.
+    fn of_place(&self, text: &str) -> String {
+        let origin = self.point_back([0.0; 2]);
+        let [x, y] = [self.point_back([1.0, 0.0]), self.point_back([0.0, 1.0])];
+        let [x, y] = [0, 1].map(|axis: usize| {
+            let slopes = [x[axis] - origin[axis], y[axis] - origin[axis]];
+            formula::sum(&[(slopes[0], "x"), (slopes[1], "y"), (origin[axis], "1")])
+        });
+        formula::with(text, &[("x", x), ("y", y)])
+    }
+
+    /// Turns a force that formulas tell.
+    fn vector_of_place(&self, both: &mut [Value], dimension: Dimension) {
+        let [Value::String(x), Value::String(y)] = both else { return };
+        let of = [self.of_place(x), self.of_place(y)].map(|text| format!("({text})"));
+        let columns = [self.direction([1.0, 0.0]), self.direction([0.0, 1.0])];
+        let unit = self.unit(dimension);
+        for (axis, text) in [x, y].into_iter().enumerate() {
+            *text = formula::sum(&[(unit * columns[0][axis], &of[0]), (unit * columns[1][axis], &of[1])]);
         }
     }
 
@@ -263,6 +301,10 @@ impl Frame {
 
 /// Whether a scene has settings along one axis, so that only quarter turns leave it what it is.
 pub fn has_axes(scene: &Table) -> bool {
+    let ends = |analysis: &Table| {
+        settings::names(analysis, &["dynamic", "event"])
+            || settings::get(analysis, &["static", "arc_length", "until_probe"]).is_some()
+    };
     let lists = |path: &[&str]| {
         let mut value = Some(scene);
         for key in &path[..path.len() - 1] {
@@ -283,8 +325,7 @@ pub fn has_axes(scene: &Table) -> bool {
         |foundation: &Value| foundation.get("stiffness").and_then(vector).is_none_or(|[x, y]| x != y);
     items(&["support"]).iter().any(one_axis)
         || items(&["effect", "foundation"]).iter().any(uneven)
-        || !items(&["analysis", "dynamic", "event"]).is_empty()
-        || lists(&["analysis", "static", "arc_length", "until_probe"]).is_some()
+        || settings::analyses(scene).any(ends)
 }
 
 /// Two floats.

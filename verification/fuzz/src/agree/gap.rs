@@ -8,6 +8,8 @@ pub struct Gap {
     /// Positions at probes and along beams \[natural lengths\], and eigenvalues \[of their size\]:
     /// the quantities to which a tolerance refers.
     pub places: f64,
+    /// Section forces and reactions, relative to the largest force.
+    pub forces: f64,
     /// The largest of all differences.
     pub all: f64,
     /// The quantity with the largest difference.
@@ -25,10 +27,20 @@ impl Gap {
     }
 
     fn place(&mut self, what: &str, difference: f64) {
-        if difference.is_nan() || difference > self.places {
-            self.places = difference;
-        }
+        larger(&mut self.places, difference);
         self.note(what, difference, 1.0);
+    }
+
+    fn force(&mut self, what: &str, difference: f64, size: f64) {
+        larger(&mut self.forces, difference / size);
+        self.note(what, difference, size);
+    }
+}
+
+/// Keeps the larger of two; what is no number is the largest.
+fn larger(kept: &mut f64, other: f64) {
+    if other.is_nan() || other > *kept {
+        *kept = other;
     }
 }
 
@@ -47,9 +59,24 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Compares two outcomes.
+/// Compares two outcomes, and their stages, if both have as many.
 pub fn between(a: &Seen, b: &Seen, records: Records) -> Gap {
     let mut gap = Gap::default();
+    // The records of statics are chosen by the solver.
+    let of_stages = |seen: &Seen| if seen.moves { records } else { Records::Last };
+    let staged = !a.before.is_empty() && a.before.len() == b.before.len();
+    for (i, (a, b)) in a.before.iter().zip(&b.before).enumerate().filter(|_| staged) {
+        let stage = between(a, b, of_stages(a));
+        gap.note(&format!("{} in stage {}", stage.what, i + 1), stage.all, 1.0);
+        larger(&mut gap.places, stage.places);
+        larger(&mut gap.forces, stage.forces);
+    }
+    let records = if a.before.is_empty() { records } else { of_stages(a) };
+    one(a, b, records, &mut gap);
+    gap
+}
+
+fn one(a: &Seen, b: &Seen, records: Records, gap: &mut Gap) {
     let pairs = match records {
         Records::All if a.parameter.len() != b.parameter.len() => {
             let n = a.parameter.len().abs_diff(b.parameter.len());
@@ -64,10 +91,10 @@ pub fn between(a: &Seen, b: &Seen, records: Records) -> Gap {
     for &(i, j) in &pairs {
         gap.note("load factor or time of a record", (a.parameter[i] - b.parameter[j]).abs(), end);
     }
-    probes(a, b, &pairs, &mut gap);
-    energies(a, b, &pairs, &mut gap);
-    lines(a, b, &mut gap);
-    eigenvalues(a, b, &mut gap);
+    probes(a, b, &pairs, gap);
+    energies(a, b, &pairs, gap);
+    lines(a, b, gap);
+    eigenvalues(a, b, gap);
     if a.events.len() == b.events.len() {
         for (s, t) in a.events.iter().zip(&b.events) {
             gap.note("time of an event", (s - t).abs(), end);
@@ -75,7 +102,6 @@ pub fn between(a: &Seen, b: &Seen, records: Records) -> Gap {
     } else if records == Records::All {
         gap.note("number of events", 1.0, 1.0);
     }
-    gap
 }
 
 /// The largest difference of two last states, in lengths of the beam, or of eigenvalues, relative.
@@ -162,13 +188,13 @@ fn lines(a: &Seen, b: &Seen, gap: &mut Gap) {
         }
         for (f, g) in a.forces.iter().zip(&b.forces) {
             for (name, (f, g)) in ["N", "Q", "M"].iter().zip(f.iter().zip(g)) {
-                gap.note(&format!("section force {name}"), (f - g).abs(), force);
+                gap.force(&format!("section force {name}"), (f - g).abs(), force);
             }
         }
     }
     for ((name, r), (_, s)) in a.reactions.iter().zip(&b.reactions) {
         for (r, s) in r.iter().zip(s) {
-            gap.note(&format!("reaction of {name}"), (r - s).abs(), force);
+            gap.force(&format!("reaction of {name}"), (r - s).abs(), force);
         }
     }
 }

@@ -8,7 +8,7 @@ use super::gap::{self, Gap, Records};
 use super::neighbour::{self, Growth};
 use super::outcome::{self, Outcome, Seen};
 use super::ways::{self, Way};
-use super::{balance, cut, momentum, settings};
+use super::{balance, cut, momentum, settings, stages};
 
 /// Largest difference that two runs may have, in units of the accuracy asked for.
 const ALLOWED: f64 = 10.0;
@@ -274,7 +274,10 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
         Way::Mesh => (settings::all_cells(scene) <= 40).then(|| settings::finer(scene)).flatten(),
         Way::Welded => cut::cut(scene),
         Way::Basis => settings::other_basis(scene),
+        Way::Continued if stages::has(scene) => return in_two_files(case, base, rng),
         Way::Continued => return continued(case, base, rng),
+        Way::Split => stages::split(scene, rng),
+        Way::AtOnce => return at_once(case, base, rng),
         Way::Accuracy => return accurate(case, rng),
         Way::Turned | Way::Mirrored | Way::Units | Way::Balance | Way::Momentum => None,
     };
@@ -329,6 +332,7 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
                 let next = gap::between(&fine, &fine_other, records);
                 estimated(&next, errors[0].places + errors[1].places, 1e-6 + plain)
             }
+            Way::Split => places_or_forces(&gap, plain, scene),
             _ => places(gap.places, plain),
         })
     })();
@@ -336,6 +340,81 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
         Ok(measured) => decide(case, way, measured, &text(), rng),
         Err(verdict) => verdict,
     }
+}
+
+/// Positions that must agree, or else forces.
+fn places_or_forces(gap: &Gap, allowed: f64, scene: &Table) -> Measured {
+    let forces = FORCES.max(allowed) + OF_FORCES * round_off(scene);
+    if gap.places <= allowed && gap.forces > forces {
+        let what = "section forces or reactions".to_owned();
+        return Measured { value: gap.forces, allowed: forces, places: false, what };
+    }
+    Measured { value: gap.places, allowed, places: true, what: "a position or an eigenvalue".to_owned() }
+}
+
+/// What comes and goes in static stages leads to the equilibrium that all of it has at once.
+fn at_once(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
+    let Case { scene, frame, .. } = case;
+    let way = Way::AtOnce;
+    let Some(changed) = stages::at_once(scene) else { return Verdict::NotApplicable };
+    let seen = match other(&changed, frame, way) {
+        Ok(seen) => seen,
+        Err(verdict) => return verdict,
+    };
+    let gone = base.before.len() - seen.before.len();
+    let later = Seen { before: base.before[gone..].to_vec(), ..base.clone() };
+    let gap = gap::between(&later, &seen, Records::Last);
+    let allowed = ALLOWED * settings::tolerance(scene) + round_off(scene);
+    let measured = places_or_forces(&gap, allowed, scene);
+    if measured.value > measured.allowed && other_branch(case, &changed, &later, measured.allowed) {
+        return Verdict::Unstable;
+    }
+    decide(case, way, measured, &frame.write(&changed).to_string(), rng)
+}
+
+/// Whether what static stages lead to is another equilibrium of the scene that has all at once: it
+/// then stays there.
+fn other_branch(case: &Case, changed: &Table, base: &Seen, allowed: f64) -> bool {
+    let first = base.before.first().unwrap_or(base);
+    let statics = stages::part(changed, 0..1).unwrap_or_else(|| changed.clone());
+    let Some(saved) = &first.saved else { return false };
+    match outcome::run_from(&statics, &case.frame, Some(saved)) {
+        Outcome::Solved(seen) => {
+            let alone = Seen { before: Vec::new(), ..first.clone() };
+            gap::between(&alone, &seen, Records::Last).places <= allowed
+        }
+        _ => false,
+    }
+}
+
+/// Stages of which the later ones go on from a saved state.
+fn in_two_files(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
+    let Case { scene, frame, .. } = case;
+    let way = Way::Continued;
+    let Some([first, rest]) = stages::two_files(scene, rng) else { return Verdict::NotApplicable };
+    let half = match other(&first, frame, way) {
+        Ok(half) => half,
+        Err(verdict) => return verdict,
+    };
+    let Some(saved) = &half.saved else {
+        return finding(way, "a stage leaves no state".into(), frame.write(&first).to_string());
+    };
+    let text = || format!("{}\n# and then, --from its state:\n{}", frame.write(&first), frame.write(&rest));
+    let seen = match outcome::run_from(&rest, frame, Some(saved)) {
+        Outcome::Solved(seen) if seen.warnings.is_empty() => seen,
+        Outcome::Solved(_) => return Verdict::Warned,
+        Outcome::Failed(said) | Outcome::Refused(said) => {
+            return finding(way, format!("it does not go on: {said}"), text());
+        }
+        Outcome::Panicked(said) => return finding(way, format!("a panic: {said}"), text()),
+        Outcome::TooLong => return Verdict::TooLong,
+    };
+    let gone = base.before.len() - seen.before.len();
+    let later = Seen { before: base.before[gone..].to_vec(), ..base.clone() };
+    let gap = gap::between(&later, &seen, Records::Last);
+    let tolerance =
+        if settings::has_expression(scene) { ALLOWED * settings::tolerance(scene) } else { CONTINUED };
+    decide(case, way, places_or_forces(&gap, tolerance + round_off(scene), scene), &text(), rng)
 }
 
 /// A difference that an estimate of the error should explain.
@@ -411,7 +490,13 @@ fn continued(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
     // The state goes on bit for bit; forces are computed of it, and are round-off where nothing
     // acts.
     let allowed = if gap.places > CONTINUED { CONTINUED } else { CONTINUED + OF_FORCES * round_off(scene) };
-    let measured = Measured { value: gap.all, allowed, places: false, what: gap.what };
+    let measured = if settings::has_expression(scene) {
+        // Where steps end depends on how long an expression is looked at.
+        let allowed = ALLOWED * settings::tolerance(scene) + round_off(scene);
+        Measured { value: gap.places, allowed, places: true, what: "a position".to_owned() }
+    } else {
+        Measured { value: gap.all, allowed, places: false, what: gap.what }
+    };
     decide(case, way, measured, &text(), rng)
 }
 

@@ -8,7 +8,7 @@ use toml::{Table, Value};
 
 use super::frame::Frame;
 use super::outcome::Seen;
-use super::settings;
+use super::{settings, stages};
 
 /// Effects whose force has no law of its own, and those that only act within beams.
 const KNOWN: [&str; 8] = [
@@ -37,7 +37,8 @@ pub fn is_known(scene: &Table) -> bool {
     };
     let weight = settings::get(scene, &["effect", "gravity"]).and_then(Value::as_table);
     let drawn = |table: &Table| table.contains_key("mass_proportional");
-    settings::motion(scene).is_some()
+    !stages::has(scene)
+        && settings::motion(scene).is_some()
         && !settings::names(scene, &["support"])
         && settings::items(scene, &["joint"])
             .all(|joint| joint.get("type").and_then(Value::as_str) != Some("slider"))

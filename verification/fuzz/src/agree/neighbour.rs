@@ -9,6 +9,17 @@ use super::gap::{self, Records};
 use super::outcome::{self, Outcome};
 use super::settings;
 
+/// Quantities of beams that neighbours have otherwise.
+const SHAKEN: [&str; 7] = [
+    "bending_stiffness",
+    "axial_stiffness",
+    "second_moment",
+    "mass_per_length",
+    "section",
+    "axial_law",
+    "bending_law",
+];
+
 /// The scene with loads, stiffnesses and prescribed motions that differ by about `share`. A vector
 /// changes its direction too, so that symmetry does not hide that it can be lost.
 pub fn near(scene: &Table, share: f64, rng: &mut Rng) -> Table {
@@ -35,8 +46,7 @@ pub fn near(scene: &Table, share: f64, rng: &mut Rng) -> Table {
     }
     if let Some(Value::Table(beams)) = near.get_mut("beam") {
         for (_, beam) in beams.iter_mut() {
-            for key in ["bending_stiffness", "axial_stiffness", "second_moment", "mass_per_length", "section"]
-            {
+            for key in SHAKEN {
                 if let Some(value) = beam.get_mut(key) {
                     shake(key, value, share, rng);
                 }

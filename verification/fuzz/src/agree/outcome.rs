@@ -8,7 +8,7 @@ use ancf::accuracy;
 use ancf::model::{Beam, Discretization};
 use ancf::restart::SavedState;
 use ancf::results::{ProbeSample, Results, Shape};
-use ancf::run::{self, Control};
+use ancf::run::{self, Control, RunError, StagesRun};
 use ancf::scene;
 use toml::Table;
 
@@ -64,6 +64,10 @@ pub struct Seen {
     /// Steps, rejected steps, iterations.
     pub counts: [usize; 3],
     pub saved: Option<SavedState>,
+    /// Whether these are results of a motion.
+    pub moves: bool,
+    /// The results of the stages before, if this is the last of several.
+    pub before: Vec<Seen>,
     /// Estimated error of positions in the last state [beam lengths], or of eigenvalues, of a run
     /// that chose its mesh.
     pub estimated: Option<f64>,
@@ -139,6 +143,16 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
         if gave_up { Control::Stop } else { Control::Continue }
     };
     let options = run::Options { start: saved, observer: Some(observer), ..run::Options::default() };
+    if !scene.stages().is_empty() {
+        let StagesRun { results, failure } = run::solve_stages(scene.stages(), options);
+        if gave_up {
+            return Outcome::TooLong;
+        }
+        return match failure {
+            None => Outcome::Solved(Box::new(see_all(&results, frame))),
+            Some(error) => without_result(&error),
+        };
+    }
     let outcome = accuracy::run(&scene, options);
     if gave_up {
         return Outcome::TooLong;
@@ -149,9 +163,25 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
             Outcome::Failed(missed.unwrap_or_default())
         }
         Ok(results) => Outcome::Solved(Box::new(see(&results, frame))),
-        Err(error) if error.exit_status() == 2 => Outcome::Refused(first_line(&error.to_string())),
-        Err(error) => Outcome::Failed(first_line(&error.to_string())),
+        Err(error) => without_result(&error),
     }
+}
+
+fn without_result(error: &RunError) -> Outcome {
+    let said = first_line(&error.to_string());
+    if error.exit_status() == 2 { Outcome::Refused(said) } else { Outcome::Failed(said) }
+}
+
+/// The last stage, with those before it; the warnings and the counts are those of all.
+fn see_all(results: &[Results], frame: &Frame) -> Seen {
+    let mut before: Vec<Seen> = results.iter().map(|results| see(results, frame)).collect();
+    let mut last = before.pop().unwrap_or_default();
+    for seen in before.iter().rev() {
+        last.warnings.splice(0..0, seen.warnings.iter().cloned());
+        last.counts.iter_mut().zip(seen.counts).for_each(|(all, count)| *all += count);
+    }
+    last.before = before;
+    last
 }
 
 fn see(results: &Results, frame: &Frame) -> Seen {
@@ -181,6 +211,8 @@ fn see(results: &Results, frame: &Frame) -> Seen {
     let rate = frame.unit([0, 0, -1]);
     let unit = if t.run.analysis == ancf::results::AnalysisKind::Modal { rate } else { 1.0 };
     Seen {
+        moves: t.run.analysis == ancf::results::AnalysisKind::Dynamic,
+        before: Vec::new(),
         warnings: t.run.warnings.clone(),
         parameter: t.parameter.iter().map(|p| p / time).collect(),
         probes: t.probes.iter().map(|probe| samples(&probe.samples, frame)).collect(),

@@ -22,6 +22,14 @@ pub enum Nature {
     Polar,
     /// Coefficients of 1, t, t², …
     Polynomial,
+    /// A number whose square has this dimension: voltages, whose unit the permittivity leaves open.
+    Root(Dimension),
+    /// A formula of the time, without a dimension.
+    OfTime,
+    /// A formula of the place with this dimension.
+    OfPlace(Dimension),
+    /// Formulas of the place for both components in the fixed frame.
+    VectorOfPlace(Dimension),
 }
 
 const NUMBER: Dimension = [0, 0, 0];
@@ -39,10 +47,14 @@ const MASS_PER_LENGTH: Dimension = [-1, 1, 0];
 /// The nature of the key at a path without list indices, with `*` for the names of beams; none if
 /// it is not a quantity, or holds tables.
 pub fn nature(path: &str) -> Option<Nature> {
-    use Nature::{Point, Polar, Polynomial, Scalar, Turning, Vector};
-    if let Some((_, law)) = path.split_once(".in_time.") {
-        let law = law.trim_start_matches("sum.").trim_start_matches("product.");
+    use Nature::{OfPlace, OfTime, Point, Polar, Polynomial, Root, Scalar, Turning, Vector, VectorOfPlace};
+    if let Some((_, mut law)) = path.split_once(".in_time.") {
+        while let Some(inner) = law.strip_prefix("sum.").or_else(|| law.strip_prefix("product.")) {
+            law = inner;
+        }
         return Some(match law {
+            "expression" | "expression.of" => OfTime,
+            "expression.kinks" => Scalar(TIME),
             "ramp.start" | "ramp.duration" | "smooth_ramp.start" | "smooth_ramp.duration" | "step.start" => {
                 Scalar(TIME)
             }
@@ -54,6 +66,19 @@ pub fn nature(path: &str) -> Option<Nature> {
     }
     Some(match path {
         "beam.*.start" | "beam.*.end" | "beam.*.points" | "beam.*.arc.center" => Point,
+        "beam.*.initial_shape.line.start" | "beam.*.initial_shape.line.end" => Point,
+        "beam.*.initial_shape.points" | "beam.*.initial_shape.arc.center" => Point,
+        "beam.*.initial_shape.arc.radius" => Scalar(LENGTH),
+        "beam.*.initial_shape.arc.from" | "beam.*.initial_shape.arc.to" => Polar,
+        "beam.*.axial_law.force" => Scalar(FORCE),
+        "beam.*.bending_law.curvature" => Turning([-1, 0, 0]),
+        "beam.*.bending_law.moment" => Turning(MOMENT),
+        "effect.electrostatic.voltage" => Root(FORCE),
+        "effect.electrostatic.width" | "effect.electrostatic.half_thickness" => Scalar(LENGTH),
+        "effect.electrostatic.electrode.point" => Point,
+        "effect.electrostatic.electrode.normal" => Vector(NUMBER),
+        "effect.force_field.potential" => OfPlace(FORCE),
+        "effect.force_field.value" => VectorOfPlace(FORCE_PER_LENGTH),
         "beam.*.arc.radius" | "beam.*.basis.ancf.nodes" | "beam.*.basis.rpim.nodes" => Scalar(LENGTH),
         "beam.*.arc.from" | "beam.*.arc.to" => Polar,
         "beam.*.youngs_modulus" => Scalar(STRESS),

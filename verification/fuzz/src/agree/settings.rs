@@ -2,18 +2,44 @@
 
 use toml::{Table, Value};
 
-/// The value at a path of tables.
+use super::stages;
+
+/// The value at a path of tables. The `analysis` of a scene with stages is that of the last one.
 pub fn get<'t>(scene: &'t Table, path: &[&str]) -> Option<&'t Value> {
     let (first, rest) = path.split_first()?;
-    let value = scene.get(*first)?;
+    let last = || scene.get("stage").filter(|_| *first == "analysis")?.as_array()?.last()?.get("analysis");
+    let value = scene.get(*first).or_else(last)?;
     if rest.is_empty() { Some(value) } else { get(value.as_table()?, rest) }
 }
 
-/// The table at a path, made where there is none.
+/// The table at a path, made where there is none. The `analysis` of a scene with stages is that of
+/// the last one.
 pub fn table<'t>(scene: &'t mut Table, path: &[&str]) -> Option<&'t mut Table> {
     let Some((first, rest)) = path.split_first() else { return Some(scene) };
+    if *first == "analysis" && scene.contains_key("stage") {
+        return table(scene.get_mut("stage")?.as_array_mut()?.last_mut()?.as_table_mut()?, path);
+    }
     let below = scene.entry(*first).or_insert_with(|| Table::new().into());
     table(below.as_table_mut()?, rest)
+}
+
+/// The analyses of a scene in their order: one, or those of its stages.
+pub fn analyses(scene: &Table) -> impl DoubleEndedIterator<Item = &Table> {
+    let stages = scene.get("stage").and_then(Value::as_array).into_iter().flatten();
+    let one = scene.get("analysis").and_then(Value::as_table);
+    one.into_iter().chain(stages.filter_map(|stage| stage.get("analysis")?.as_table()))
+}
+
+/// The analyses of a scene, to change them.
+pub fn analyses_mut(scene: &mut Table) -> Vec<&mut Table> {
+    fn of(stage: &mut Value) -> Option<&mut Table> {
+        stage.get_mut("analysis")?.as_table_mut()
+    }
+    if scene.contains_key("stage") {
+        let stages = scene.get_mut("stage").and_then(Value::as_array_mut);
+        return stages.into_iter().flatten().filter_map(of).collect();
+    }
+    scene.get_mut("analysis").and_then(Value::as_table_mut).into_iter().collect()
 }
 
 /// The tables of a list.
@@ -42,9 +68,17 @@ pub struct Motion {
     pub output_every: f64,
 }
 
-/// Reads the settings of a motion.
+/// The settings of a motion, to change them.
+pub fn dynamic_mut(analysis: &mut Table) -> Option<&mut Table> {
+    analysis.get_mut("dynamic")?.as_table_mut()
+}
+
+/// Reads the settings of a motion: of the last one, where there are several.
 pub fn motion(scene: &Table) -> Option<Motion> {
-    let dynamic = get(scene, &["analysis", "dynamic"])?.as_table()?;
+    analyses(scene).rev().find_map(|analysis| motion_of(analysis.get("dynamic")?.as_table()?))
+}
+
+fn motion_of(dynamic: &Table) -> Option<Motion> {
     let float = |table: &Table, key: &str| table.get(key).and_then(Value::as_float);
     let duration = float(dynamic, "duration")?;
     let output_every = float(dynamic, "output_every").unwrap_or(duration / 200.0);
@@ -65,10 +99,10 @@ pub fn motion(scene: &Table) -> Option<Motion> {
     })
 }
 
-/// The scene with another integrator.
+/// The scene with another integrator of all its motions.
 pub fn with_integrator(scene: &Table, name: &str, key: &str, value: f64) -> Table {
     let mut scene = scene.clone();
-    if let Some(dynamic) = table(&mut scene, &["analysis", "dynamic"]) {
+    for dynamic in analyses_mut(&mut scene).into_iter().filter_map(dynamic_mut) {
         let same = dynamic.remove(name).and_then(|settings| match settings {
             Value::Table(settings) => Some(settings),
             _ => None,
@@ -89,8 +123,11 @@ pub fn with_integrator(scene: &Table, name: &str, key: &str, value: f64) -> Tabl
     scene
 }
 
-/// The scene with nothing chosen but an accuracy.
+/// The scene with nothing chosen but an accuracy; none where there are stages, which name all.
 pub fn opened(scene: &Table, accuracy: f64) -> Option<Table> {
+    if stages::has(scene) {
+        return None;
+    }
     let mut scene = scene.clone();
     for (_, beam) in table(&mut scene, &["beam"])?.iter_mut() {
         beam.as_table_mut()?.remove("basis");
@@ -117,16 +154,19 @@ pub fn tolerance(scene: &Table) -> f64 {
     if let Some(accuracy) = accuracy(scene) {
         return accuracy;
     }
-    match motion(scene) {
-        // The errors of the iterations of a thousand fixed steps should add up to less.
-        Some(motion) => motion.tolerance.unwrap_or_else(|| 1e-8_f64.max(1e3 * newton_tolerance(scene))),
-        None => get(scene, &["analysis", "static", "tolerance"]).and_then(Value::as_float).unwrap_or(1e-10),
-    }
+    analyses(scene).map(tolerance_of).fold(0.0, f64::max)
 }
 
-fn newton_tolerance(scene: &Table) -> f64 {
-    let path = ["analysis", "dynamic", "generalized_alpha", "newton_tolerance"];
-    get(scene, &path).and_then(Value::as_float).unwrap_or(0.0)
+fn tolerance_of(analysis: &Table) -> f64 {
+    let dynamic = analysis.get("dynamic").and_then(Value::as_table);
+    match dynamic.and_then(|dynamic| Some((dynamic, motion_of(dynamic)?))) {
+        // The errors of the iterations of a thousand fixed steps should add up to less.
+        Some((dynamic, motion)) => motion.tolerance.unwrap_or_else(|| {
+            let given = get(dynamic, &["generalized_alpha", "newton_tolerance"]).and_then(Value::as_float);
+            1e-8_f64.max(1e3 * given.unwrap_or(0.0))
+        }),
+        None => get(analysis, &["static", "tolerance"]).and_then(Value::as_float).unwrap_or(1e-10),
+    }
 }
 
 /// Every beam's table.
@@ -147,14 +187,62 @@ pub fn cells(basis: &Table) -> usize {
     basis.iter().next().map_or(1, |(_, kind)| of(kind))
 }
 
+/// Whether a beam can be stretched.
+pub fn stretches(beam: &Table) -> bool {
+    ["axial_stiffness", "youngs_modulus", "section", "axial_law"].iter().any(|key| beam.contains_key(*key))
+}
+
 /// Largest EA L²/EI in natural units. The stiffness of a string counts relative to its loads;
 /// inextensible beams do not count.
 pub fn stiffness_ratio(scene: &Table) -> f64 {
     let of = |beam: &Table| {
-        let float = |key: &str| beam.get(key).and_then(Value::as_float);
-        float("axial_stiffness").or_else(|| Some(float("youngs_modulus")? * float("area")?)).unwrap_or(1.0)
+        let most = |key: &str| most(beam.get(key)?);
+        let by_law = || slope(get(beam, &["axial_law", "strain"])?, get(beam, &["axial_law", "force"])?);
+        let by_material = || Some(most("youngs_modulus")? * most("area")?);
+        let by_shape = || Some(stretching(beam.get("section")?.as_table()?, most("youngs_modulus")));
+        most("axial_stiffness").or_else(by_material).or_else(by_shape).or_else(by_law).unwrap_or(1.0)
     };
     beams(scene).map(|(_, beam)| of(beam)).fold(1.0, f64::max)
+}
+
+/// The largest value of a quantity that may vary along a beam of about the natural length.
+fn most(quantity: &Value) -> Option<f64> {
+    let numbers = |list: &Value| list.as_array()?.iter().map(Value::as_float).collect::<Option<Vec<f64>>>();
+    match quantity {
+        Value::Float(value) => Some(*value),
+        Value::Table(table) => {
+            let (kind, below) = table.iter().next()?;
+            if kind == "polynomial" {
+                return Some(numbers(below)?.iter().map(|c| c.abs()).sum());
+            }
+            numbers(below.get("value")?)?.into_iter().reduce(f64::max)
+        }
+        _ => None,
+    }
+}
+
+/// EA of a section at its largest.
+fn stretching(section: &Table, modulus: Option<f64>) -> f64 {
+    let of = |shape: &Value| {
+        let side = |key: &str| shape.get(key).and_then(most);
+        let modulus = side("youngs_modulus").or(modulus).unwrap_or(1.0);
+        // The square about a circle is near enough.
+        let area = side("diameter").map(|d| d * d).or_else(|| Some(side("width")? * side("height")?));
+        modulus * area.unwrap_or(1.0)
+    };
+    let shapes = section.iter().flat_map(|(_, shape)| match shape {
+        Value::Array(layers) => layers.iter().collect::<Vec<_>>(),
+        one => vec![one],
+    });
+    shapes.map(of).sum()
+}
+
+/// The largest slope of a table.
+fn slope(x: &Value, y: &Value) -> Option<f64> {
+    let numbers = |list: &Value| list.as_array()?.iter().map(Value::as_float).collect::<Option<Vec<f64>>>();
+    let (x, y) = (numbers(x)?, numbers(y)?);
+    let slopes = x.windows(2).zip(y.windows(2)).map(|(x, y)| (y[1] - y[0]) / (x[1] - x[0]));
+    slopes.reduce(f64::max)
 }
 
 /// All cells of a scene.
@@ -167,6 +255,20 @@ pub fn names(scene: &Table, path: &[&str]) -> bool {
     items(scene, path).next().is_some()
 }
 
+/// Whether an expression in the time acts.
+pub fn has_expression(scene: &Table) -> bool {
+    fn within(value: &Value) -> bool {
+        match value {
+            Value::Table(table) => {
+                table.contains_key("expression") || table.iter().any(|(_, below)| within(below))
+            }
+            Value::Array(items) => items.iter().any(within),
+            _ => false,
+        }
+    }
+    ["support", "effect"].iter().any(|key| scene.get(*key).is_some_and(within))
+}
+
 /// Whether some contact has friction.
 pub fn has_friction(scene: &Table) -> bool {
     items(scene, &["effect", "contact"]).any(|contact| contact.contains_key("friction"))
@@ -175,13 +277,15 @@ pub fn has_friction(scene: &Table) -> bool {
 /// Whether an equilibrium contains a string without a load along its whole length: then any of its
 /// shapes is one.
 pub fn is_slack(scene: &Table) -> bool {
+    let stays = |load: &Table| !["stage", "until"].iter().any(|key| load.contains_key(*key));
     let pulled = |beam: &str| {
         items(scene, &["effect", "distributed_force"])
-            .filter(|load| load.get("follower").and_then(Value::as_bool) != Some(true))
+            .filter(|load| load.get("follower").and_then(Value::as_bool) != Some(true) && stays(load))
             .any(|load| load.get("beam").and_then(Value::as_str) == Some(beam))
     };
-    let weighs = get(scene, &["effect", "gravity"]).is_some();
-    motion(scene).is_none() && beams(scene).any(|(name, beam)| !(bends(beam) || weighs || pulled(name)))
+    let weighs = get(scene, &["effect", "gravity"]).and_then(Value::as_table).is_some_and(stays);
+    let rests = analyses(scene).any(|analysis| !analysis.contains_key("dynamic"));
+    rests && beams(scene).any(|(name, beam)| !(bends(beam) || weighs || pulled(name)))
 }
 
 /// Changes every beam's `basis`; none where one cannot be.
@@ -243,5 +347,5 @@ pub fn other_basis(scene: &Table) -> Option<Table> {
 
 /// Whether a beam resists bending, and is no string.
 pub fn bends(beam: &Table) -> bool {
-    ["bending_stiffness", "second_moment", "section"].iter().any(|key| beam.contains_key(*key))
+    ["bending_stiffness", "second_moment", "section", "bending_law"].iter().any(|key| beam.contains_key(*key))
 }

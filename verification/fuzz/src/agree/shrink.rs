@@ -6,14 +6,14 @@ use super::draw::round;
 use super::frame::Frame;
 use super::judge::{Case, Finding, Verdict, judge};
 use super::outcome;
-use super::settings;
 use super::ways::Way;
+use super::{settings, stages};
 
 /// Scenes that are tried at most.
 const TRIES: usize = 100;
 
 /// Keys of a beam's stiffness and mass.
-const SECTION: [&str; 8] = [
+const SECTION: [&str; 10] = [
     "axial_stiffness",
     "bending_stiffness",
     "mass_per_length",
@@ -22,6 +22,8 @@ const SECTION: [&str; 8] = [
     "second_moment",
     "density",
     "section",
+    "axial_law",
+    "bending_law",
 ];
 
 /// The smallest scene found, and what it is a finding of.
@@ -79,6 +81,10 @@ impl Shrink {
         let mut smaller = false;
         for beam in ["c", "b"] {
             let without = without_beam(&self.best.scene, beam);
+            smaller |= without.is_some_and(|scene| self.keeps(scene, self.best.frame));
+        }
+        for index in (0..stages::kinds(&self.best.scene).len()).rev() {
+            let without = stages::without(&self.best.scene, index);
             smaller |= without.is_some_and(|scene| self.keeps(scene, self.best.frame));
         }
         let mut paths = Vec::new();

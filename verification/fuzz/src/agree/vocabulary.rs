@@ -18,7 +18,12 @@ fn visit(root: &Json, schema: &Json, path: &str, keys: &mut BTreeSet<String>) {
     if let Some(name) = schema.get("$ref").and_then(Json::as_str) {
         let definition = root.pointer(name.trim_start_matches('#'));
         // A law is described where the first load has one.
-        let path = if name.ends_with("LawTable") { "law" } else { path };
+        let path = match name.rsplit('/').next() {
+            Some("LawTable") => "law",
+            // An analysis is the same in a stage.
+            Some("AnalysisTable") => "analysis",
+            _ => path,
+        };
         // Sums and products of laws consist of laws.
         let known = path == "law" && keys.contains("law.ramp");
         if let Some(definition) = definition.filter(|_| !known) {
@@ -62,7 +67,11 @@ fn table(path: &str, scene: &Table, used: &mut BTreeSet<String>) {
         if path != "beam" {
             used.insert(here.clone());
         }
-        let here = if key == "in_time" { "law" } else { &here };
+        let here = match &here[..] {
+            _ if key == "in_time" => "law",
+            "stage.analysis" => "analysis",
+            here => here,
+        };
         value(here, below, used);
     }
 }

@@ -25,10 +25,12 @@ pub enum Way {
     Accuracy,
     Balance,
     Momentum,
+    Split,
+    AtOnce,
 }
 
 /// All of them, in the order of the report.
-pub const WAYS: [Way; 15] = [
+pub const WAYS: [Way; 17] = [
     Way::Turned,
     Way::Mirrored,
     Way::Units,
@@ -44,6 +46,8 @@ pub const WAYS: [Way; 15] = [
     Way::Accuracy,
     Way::Balance,
     Way::Momentum,
+    Way::Split,
+    Way::AtOnce,
 ];
 
 impl Way {
@@ -65,6 +69,8 @@ impl Way {
             Self::Accuracy => "accuracy",
             Self::Balance => "balance",
             Self::Momentum => "momentum",
+            Self::Split => "split",
+            Self::AtOnce => "at-once",
         }
     }
 
@@ -103,17 +109,23 @@ pub fn other_frame(way: Way, frame: &Frame, scene: &Table, rng: &mut Rng) -> Fra
     other
 }
 
-/// The same equilibrium by other load steps.
+/// The same equilibrium by other load steps; of scenes with stages, in one of them.
 pub fn load_steps(scene: &Table, rng: &mut Rng) -> Option<Table> {
-    let statics = settings::get(scene, &["analysis", "static"])?.as_table()?;
-    if statics.contains_key("arc_length") || settings::has_friction(scene) {
+    let statics: Vec<(usize, &Table)> = settings::analyses(scene)
+        .enumerate()
+        .filter_map(|(i, analysis)| Some((i, analysis.get("static")?.as_table()?)))
+        .filter(|(_, statics)| !statics.contains_key("arc_length"))
+        .collect();
+    let (index, statics) = *statics.get(rng.usize(0..statics.len().max(1)))?;
+    if settings::has_friction(scene) {
         return None;
     }
     let mut other = scene.clone();
-    let table = settings::table(&mut other, &["analysis", "static"])?;
+    let mut analyses = settings::analyses_mut(&mut other);
+    let table = settings::table(analyses.get_mut(index)?, &["static"])?;
     let steps = statics.get("steps").and_then(Value::as_integer);
     // A path may pass the full load on another branch, which is not asked for here.
-    if rng.u8(0..4) == 0 && !rests_on_weight(scene) {
+    if rng.u8(0..4) == 0 && !rests_on_weight(scene) && !begins_bent(scene) {
         let mut path = Table::new();
         path.insert("until_load".into(), 1.0.into());
         table.remove("steps");
@@ -124,6 +136,11 @@ pub fn load_steps(scene: &Table, rng: &mut Rng) -> Option<Table> {
         table.insert("steps".into(), (steps.unwrap_or(1) * rng.i64(2..8)).into());
     }
     Some(other)
+}
+
+/// Whether a beam begins in another shape than the stress-free one, where no path starts.
+fn begins_bent(scene: &Table) -> bool {
+    settings::beams(scene).any(|(_, beam)| beam.contains_key("initial_shape"))
 }
 
 /// Whether the scene has strings, so that a path is refused although an equilibrium is not.
@@ -141,19 +158,22 @@ pub fn tighter(scene: &Table) -> Option<Table> {
             0.01 * motion.tolerance?,
         ));
     }
-    let given = settings::get(scene, &["analysis", "static", "tolerance"])?.as_float()?;
-    let mut other = scene.clone();
-    settings::table(&mut other, &["analysis", "static"])?.insert("tolerance".into(), (0.01 * given).into());
-    Some(other)
+    let (mut other, mut any) = (scene.clone(), false);
+    for analysis in settings::analyses_mut(&mut other) {
+        let given = settings::get(analysis, &["static", "tolerance"]).and_then(Value::as_float);
+        if let (Some(given), Some(table)) = (given, settings::table(analysis, &["static"])) {
+            table.insert("tolerance".into(), (0.01 * given).into());
+            any = true;
+        }
+    }
+    any.then_some(other)
 }
 
 /// The scene with another integrator and the same tolerance.
 pub fn integrator(scene: &Table, rng: &mut Rng) -> Option<Table> {
     let motion = settings::motion(scene)?;
     let tolerance = motion.tolerance?;
-    let inextensible = settings::beams(scene).any(|(_, beam)| {
-        !["axial_stiffness", "youngs_modulus", "section"].iter().any(|key| beam.contains_key(*key))
-    });
+    let inextensible = settings::beams(scene).any(|(_, beam)| !settings::stretches(beam));
     let mut others = vec!["radau"];
     if !inextensible {
         others.push("gauss");

@@ -65,13 +65,13 @@ impl Draw<'_> {
         Some((name.clone(), beam.get("basis")?.clone()))
     }
 
-    fn modes(&mut self) -> Table {
+    pub(super) fn modes(&mut self) -> Table {
         let mut table = Table::new();
         table.insert("count".into(), self.rng.i64(1..6).into());
         table
     }
 
-    fn statics(&mut self) -> Table {
+    pub(super) fn statics(&mut self) -> Table {
         let mut table = Table::new();
         if self.chance(0.3) {
             table.insert("steps".into(), self.rng.i64(1..8).into());

@@ -7,6 +7,7 @@ use ancf::model::Centreline;
 use toml::{Table, Value};
 
 use super::super::frame::list;
+use super::super::settings;
 use super::{Draw, Drawn, Kind, round};
 
 impl Draw<'_> {
@@ -50,15 +51,13 @@ impl Draw<'_> {
         let bends = like.as_ref().map_or_else(
             // No path by arc length leads away from a string without a load.
             || axial.is_none() || self.kind == Kind::ArcLength || !self.chance(0.08),
-            |like| {
-                ["bending_stiffness", "second_moment", "section"].iter().any(|key| like.contains_key(*key))
-            },
+            |like| settings::bends(like),
         );
         let mut table = geometry;
         if let Some(like) = like {
-            let same = like
-                .into_iter()
-                .filter(|(key, _)| !matches!(key.as_str(), "start" | "end" | "arc" | "points"));
+            let same = like.into_iter().filter(|(key, _)| {
+                !matches!(key.as_str(), "start" | "end" | "arc" | "points" | "initial_shape")
+            });
             table.extend(same);
             let ratio = length / self.beams[0].length;
             let quantities = table.iter_mut().filter(|(key, _)| !matches!(key.as_str(), "arc" | "basis"));
@@ -74,8 +73,86 @@ impl Draw<'_> {
             let basis = self.basis(length, count);
             table.insert("basis".into(), basis.into());
         }
-        self.beams.push(Drawn { name: name.to_owned(), curve, straight, length, axial, bends });
+        let starts = if count == 1 { self.initial_shape(&mut table, &curve, axial) } else { None };
+        let starts = starts.unwrap_or_else(|| curve.clone());
+        let by_law = ["axial_law", "bending_law"].iter().any(|key| table.contains_key(*key));
+        self.beams.push(Drawn {
+            name: name.to_owned(),
+            curve,
+            starts,
+            straight,
+            length,
+            axial,
+            bends,
+            by_law,
+        });
         table
+    }
+
+    /// Lets a beam begin in another shape than the stress-free one, sometimes.
+    fn initial_shape(&mut self, table: &mut Table, curve: &Curve, axial: Option<f64>) -> Option<Curve> {
+        if !matches!(self.kind, Kind::Static | Kind::Dynamic | Kind::Equilibrium) || !self.chance(0.12) {
+            return None;
+        }
+        let (origin, [tx, ty]) = (curve.position(0.0), curve.tangent(0.0));
+        let soft = axial.is_some_and(|axial| axial < 1e5);
+        let stretch = if soft && self.chance(0.5) { self.even(-0.01, 0.01) } else { 0.0 };
+        let length = curve.length() * (1.0 + stretch);
+        let heading = ty.atan2(tx) + if self.chance(0.5) { 0.0 } else { self.even(-0.6, 0.6) };
+        let kind = match self.rng.u8(0..if axial.is_some() { 6 } else { 5 }) {
+            0..2 => "line",
+            2..5 => "arc",
+            _ => "points",
+        };
+        let (value, centreline): (Value, Centreline) = match kind {
+            "line" => {
+                let end = [origin[0] + length * heading.cos(), origin[1] + length * heading.sin()];
+                let mut line = Table::new();
+                line.insert("start".into(), list(origin));
+                line.insert("end".into(), list(end));
+                (line.into(), Centreline::Line { start: origin, end })
+            }
+            "arc" => {
+                let (table, centreline) = self.arc(origin, heading, length, 3.0);
+                (table.into(), centreline)
+            }
+            _ => {
+                let n = self.rng.usize(2..5);
+                let mut points = vec![origin];
+                for i in 1..=n {
+                    let (along, off) = (length * i as f64 / n as f64, length * self.even(-0.04, 0.04));
+                    let (sine, cosine) = heading.sin_cos();
+                    points.push([
+                        round(origin[0] + along * cosine - off * sine, 6),
+                        round(origin[1] + along * sine + off * cosine, 6),
+                    ]);
+                }
+                let value = Value::Array(points.iter().map(|p| list(*p)).collect());
+                (value, Centreline::Points(points))
+            }
+        };
+        let starts = Curve::new(&centreline).ok()?;
+        let mut shape = Table::new();
+        shape.insert(kind.into(), value);
+        table.insert("initial_shape".into(), shape.into());
+        Some(starts)
+    }
+
+    /// An arc from a point in a direction, by an angle of at most `most`.
+    fn arc(&mut self, origin: [f64; 2], heading: f64, length: f64, most: f64) -> (Table, Centreline) {
+        let angle = self.signed(0.1, most);
+        let radius = length / angle.abs();
+        let (sine, cosine) = heading.sin_cos();
+        let off = radius * angle.signum();
+        let center = [origin[0] - off * sine, origin[1] + off * cosine];
+        let from = heading - 0.5 * PI * angle.signum();
+        let to = from + angle;
+        let mut arc = Table::new();
+        arc.insert("center".into(), list(center));
+        for (key, value) in [("radius", radius), ("from", from), ("to", to)] {
+            arc.insert(key.into(), value.into());
+        }
+        (arc, Centreline::Arc { center, radius, from, to })
     }
 
     fn fallback(&mut self) -> (Table, Centreline, Curve) {
@@ -118,18 +195,9 @@ impl Draw<'_> {
                 (table, Centreline::Line { start: origin, end })
             }
             6..8 => {
-                let angle = self.signed(0.1, 4.0);
-                let radius = length / angle.abs();
-                let center = at(0.0, radius * angle.signum());
-                let from = heading - 0.5 * PI * angle.signum();
-                let to = from + angle;
-                let mut arc = Table::new();
-                arc.insert("center".into(), list(center));
-                for (key, value) in [("radius", radius), ("from", from), ("to", to)] {
-                    arc.insert(key.into(), value.into());
-                }
+                let (arc, centreline) = self.arc(origin, heading, length, 4.0);
                 table.insert("arc".into(), arc.into());
-                (table, Centreline::Arc { center, radius, from, to })
+                (table, centreline)
             }
             _ => {
                 let n = self.rng.usize(2..5);
@@ -196,15 +264,41 @@ impl Draw<'_> {
                 put("density", mass / area);
             }
             _ => {
-                if let Some(axial) = axial {
-                    put("axial_stiffness", axial);
-                }
-                if bends {
-                    put("bending_stiffness", bending);
-                }
                 put("mass_per_length", mass);
+                if let Some(axial) = axial {
+                    if self.chance(0.06) {
+                        let law = self.elastic(["strain", "force"], axial, [1e-3, 0.1, 0.6]);
+                        table.insert("axial_law".into(), law.into());
+                    } else {
+                        table.insert("axial_stiffness".into(), axial.into());
+                    }
+                }
+                if bends && self.chance(0.06) {
+                    let law = self.elastic(["curvature", "moment"], bending, [0.1, 5.0, 100.0]);
+                    table.insert("bending_law".into(), law.into());
+                } else if bends {
+                    table.insert("bending_stiffness".into(), bending.into());
+                }
             }
         }
+    }
+
+    /// An elastic law with about this stiffness, with corners between `low` and `high`, and an end.
+    fn elastic(&mut self, keys: [&str; 2], stiffness: f64, [low, high, end]: [f64; 3]) -> Table {
+        // What takes no pressure, or has play.
+        let slack = self.chance(0.1);
+        let mut side = |slack: bool| {
+            let corner = self.log(low, high);
+            let first = if slack { 0.0 } else { stiffness * self.even(0.7, 1.3) };
+            let force = corner * first;
+            [(corner, force), (end, force + (end - corner) * first.max(stiffness) * self.log(0.3, 3.0))]
+        };
+        let [plus, minus] = [side(false), side(slack)];
+        let points = [(-minus[1].0, -minus[1].1), (-minus[0].0, -minus[0].1), (0.0, 0.0), plus[0], plus[1]];
+        let mut law = Table::new();
+        law.insert(keys[0].into(), list(points.map(|(x, _)| x)));
+        law.insert(keys[1].into(), list(points.map(|(_, y)| y + 0.0)));
+        law
     }
 
     /// A shape of the section with about this EA, EI and ρA.

@@ -25,6 +25,8 @@ impl Draw<'_> {
         self.actuation();
         self.drag();
         self.moving_force(size);
+        self.electrostatic();
+        self.force_field(size);
         self.contact();
         self.initial_velocity();
     }
@@ -203,6 +205,9 @@ impl Draw<'_> {
         let (beam, mut table) = self.of_beam();
         let drawn = &self.beams[beam];
         let (stretches, bends) = (drawn.axial.is_some(), drawn.bends);
+        if drawn.by_law {
+            return;
+        }
         if stretches && self.chance(0.6) {
             table.insert("strain".into(), self.signed(1e-5, 3e-2).into());
         }
@@ -262,8 +267,8 @@ impl Draw<'_> {
         let length = self.beams[beam].length;
         let thickness = if self.chance(0.3) { self.log(1e-3, 2e-2) } else { 0.0 };
         let gap = self.log(1e-3, 0.2) + thickness;
-        let curve = &self.beams[beam].curve;
-        let s = length * (0.3 + 0.7 * self.rng.f64());
+        let s = self.beams[beam].starts.length() * (0.3 + 0.7 * self.rng.f64());
+        let curve = &self.beams[beam].starts;
         let (p, [tx, ty]) = (curve.position(s), curve.tangent(s));
         let side = if self.rng.bool() { 1.0 } else { -1.0 };
         let normal = [-ty * side, tx * side];

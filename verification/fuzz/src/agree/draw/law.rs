@@ -2,6 +2,7 @@
 
 use toml::{Table, Value};
 
+use super::super::formula::number;
 use super::Draw;
 
 impl Draw<'_> {
@@ -16,7 +17,8 @@ impl Draw<'_> {
             return law;
         }
         let mut inner = Table::new();
-        let kind = match self.rng.u8(0..12) {
+        let kind = match self.rng.u8(0..15) {
+            12.. => "expression",
             0..2 => "ramp",
             2..4 => "smooth_ramp",
             4 => "step",
@@ -29,6 +31,11 @@ impl Draw<'_> {
             kind => kind,
         };
         match kind {
+            "expression" => {
+                let expression = self.expression(smooth);
+                law.insert(kind.into(), expression);
+                return law;
+            }
             "ramp" | "smooth_ramp" => {
                 if self.chance(0.5) {
                     inner.insert("start".into(), (duration * self.even(0.0, 0.5)).into());
@@ -71,6 +78,27 @@ impl Draw<'_> {
         }
         law.insert(kind.into(), inner.into());
         law
+    }
+
+    /// An expression in t; zero at the start if `smooth`.
+    fn expression(&mut self, smooth: bool) -> Value {
+        let duration = self.duration;
+        let mut rate = |low: f64, high: f64| number(self.log(low, high) / duration);
+        let (slow, fast, turn) = (rate(0.5, 5.0), rate(1.0, 30.0), self.even(0.1, 0.9) * duration);
+        let at = number(turn);
+        let kinked = if smooth { 2 } else { 5 };
+        match self.rng.u8(0..kinked) {
+            0 => format!("sin({fast}*t)*exp(-{slow}*t)").into(),
+            1 => format!("1-cos({fast}*t)/(1+({slow}*t)^2)").into(),
+            2 => format!("exp(-({fast}*(t-{at}))^2)").into(),
+            3 => format!("tanh({slow}*(t-{at}))+0.3*cos(2*pi*{slow}*t)").into(),
+            _ => {
+                let mut table = Table::new();
+                table.insert("of".into(), format!("sqrt(({slow}*(t-{at}))^2)").into());
+                table.insert("kinks".into(), Value::Array(vec![turn.into()]));
+                table.into()
+            }
+        }
     }
 
     /// In a motion, adds a law with the probability `share`.
