@@ -1,55 +1,255 @@
 //! Formulas of given variables, such as `sin(2*pi*t)*(1-exp(-t/0.5))`, and their derivatives.
 //!
-//! The crate `exmex` parses and differentiates. Before it sees a text, numbers are written out, and
-//! what it would read in another way than mathematicians do is brought into a form that has one
-//! meaning, or refused: it takes −t² for (−t)², and 2^3^2 for (2^3)^2.
+//! A formula is a list of steps on a stack of numbers, and its derivatives are found by numbers that
+//! carry them (hyper-dual numbers), exact to round-off. Nothing here calls itself, so that brackets
+//! in brackets take no room on the stack of the thread. What has no one meaning is refused, such as
+//! 2^3^2; −t² is −(t²), as mathematicians write it.
 
-use exmex::{Differentiate, Express, FlatEx};
+use std::f64::consts::{E, LOG2_E, LOG10_E, PI, TAU};
 use std::fmt;
+use std::sync::Arc;
 
-/// A formula of some variables.
+/// A formula of some variables, or a derivative of one.
 #[derive(Clone)]
 pub struct Formula {
     text: String,
     variables: &'static [&'static str],
-    parsed: FlatEx<f64>,
+    steps: Arc<[Step]>,
+    /// Numbers on the stack at most.
+    room: usize,
+    /// The variables by which it is differentiated, two at most.
+    by: Vec<usize>,
 }
 
+/// One step of an evaluation: puts a number on the stack, or takes its operands from there.
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    Number(f64),
+    Variable(usize),
+    Call(Function),
+    Operator(char),
+}
+
+/// Value, first and second derivative of a function of one number.
+type Function = fn(f64) -> [f64; 3];
+
 /// Functions that may be used: all are smooth where they are defined.
-const FUNCTIONS: [&str; 17] = [
-    "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp",
-    "sqrt", "ln", "log2", "log10",
+const FUNCTIONS: [(&str, Function); 17] = [
+    ("sin", |x| [x.sin(), x.cos(), -x.sin()]),
+    ("cos", |x| [x.cos(), -x.sin(), -x.cos()]),
+    ("tan", |x| {
+        let (value, slope) = (x.tan(), 1.0 / (x.cos() * x.cos()));
+        [value, slope, 2.0 * value * slope]
+    }),
+    ("asin", |x| {
+        let square = 1.0 - x * x;
+        [x.asin(), 1.0 / square.sqrt(), x / (square * square.sqrt())]
+    }),
+    ("acos", |x| {
+        let square = 1.0 - x * x;
+        [x.acos(), -1.0 / square.sqrt(), -x / (square * square.sqrt())]
+    }),
+    ("atan", |x| {
+        let slope = 1.0 / (1.0 + x * x);
+        [x.atan(), slope, -2.0 * x * slope * slope]
+    }),
+    ("sinh", |x| [x.sinh(), x.cosh(), x.sinh()]),
+    ("cosh", |x| [x.cosh(), x.sinh(), x.cosh()]),
+    ("tanh", |x| {
+        let (value, inverse) = (x.tanh(), 1.0 / x.cosh());
+        let slope = inverse * inverse;
+        [value, slope, -2.0 * value * slope]
+    }),
+    ("asinh", |x| {
+        let square = 1.0 + x * x;
+        [x.asinh(), 1.0 / square.sqrt(), -x / (square * square.sqrt())]
+    }),
+    ("acosh", |x| {
+        let square = x * x - 1.0;
+        [x.acosh(), 1.0 / square.sqrt(), -x / (square * square.sqrt())]
+    }),
+    ("atanh", |x| {
+        let slope = 1.0 / (1.0 - x * x);
+        [x.atanh(), slope, 2.0 * x * slope * slope]
+    }),
+    ("exp", |x| [x.exp(); 3]),
+    ("sqrt", |x| {
+        let root = x.sqrt();
+        [root, 0.5 / root, -0.25 / (x * root)]
+    }),
+    ("ln", |x| [x.ln(), 1.0 / x, -1.0 / (x * x)]),
+    ("log2", |x| [x.log2(), LOG2_E / x, -LOG2_E / (x * x)]),
+    ("log10", |x| [x.log10(), LOG10_E / x, -LOG10_E / (x * x)]),
 ];
 
-/// Constants, and their names in `exmex`.
-const CONSTANTS: [(&str, &str); 5] = [("pi", "π"), ("π", "π"), ("tau", "τ"), ("τ", "τ"), ("e", "e")];
+/// Constants.
+const CONSTANTS: [(&str, f64); 5] = [("pi", PI), ("π", PI), ("tau", TAU), ("τ", TAU), ("e", E)];
+
+/// Numbers for which there is room without asking for memory.
+const ROOM: usize = 16;
 
 impl Formula {
-    /// Reads `text`, a formula of `variables`, which are in alphabetical order.
+    /// Reads `text`, a formula of `variables`.
     ///
     /// # Errors
     /// What was found and what is legal, in one sentence.
     pub fn new(text: &str, variables: &'static [&'static str]) -> Result<Self, String> {
-        let normal = normal(text, variables)?;
-        // Every variable takes part, so that values belong to all of them in this order.
-        let all: String = variables.iter().map(|name| format!("+0*{name}")).collect();
-        let parsed = exmex::parse(&format!("({normal}){all}")).map_err(|_| "it is no formula".to_owned())?;
-        Ok(Self { text: text.to_owned(), variables, parsed })
+        let steps = read(text, variables)?;
+        let (mut depth, mut room) = (0_usize, 0);
+        for step in &steps {
+            match step {
+                Step::Number(_) | Step::Variable(_) => depth += 1,
+                Step::Call(_) => {}
+                Step::Operator(_) => depth -= 1,
+            }
+            room = room.max(depth);
+        }
+        Ok(Self { text: text.to_owned(), variables, steps: steps.into(), room, by: Vec::new() })
     }
 
     /// The derivative by variable number `variable`.
     ///
     /// # Errors
-    /// In one sentence, where there is none.
+    /// In one sentence, where there is none: of a second derivative.
     pub fn derivative(&self, variable: usize) -> Result<Self, String> {
-        let parsed = self.parsed.clone().partial(variable);
-        let parsed = parsed.map_err(|_| "it cannot be differentiated".to_owned())?;
-        Ok(Self { text: format!("∂{}({})", self.variables[variable], self.text), parsed, ..self.clone() })
+        if self.by.len() == 2 {
+            return Err("it is differentiated twice at most".to_owned());
+        }
+        let mut derivative = self.clone();
+        derivative.by.push(variable);
+        derivative.text = format!("∂{}({})", self.variables[variable], self.text);
+        Ok(derivative)
     }
 
     /// Its value where the variables have these values; not a number where it has none.
     pub fn at(&self, values: &[f64]) -> f64 {
-        self.parsed.eval_relaxed(values).unwrap_or(f64::NAN)
+        let (mut few, mut many) = ([Jet::default(); ROOM], Vec::new());
+        let stack = if self.room <= ROOM {
+            &mut few[..]
+        } else {
+            many.resize(self.room, Jet::default());
+            &mut many[..]
+        };
+        let result = self.evaluate(values, stack);
+        match self.by.len() {
+            0 => result.value,
+            1 => result.first[0],
+            _ => result.second,
+        }
+    }
+
+    fn evaluate(&self, values: &[f64], stack: &mut [Jet]) -> Jet {
+        let mut top = 0;
+        for step in &*self.steps {
+            match *step {
+                Step::Number(value) => {
+                    stack[top] = Jet::constant(value);
+                    top += 1;
+                }
+                Step::Variable(variable) => {
+                    let mut jet = Jet::constant(values[variable]);
+                    for (first, by) in jet.first.iter_mut().zip(&self.by) {
+                        *first = f64::from(*by == variable);
+                    }
+                    jet.varies = jet.first != [0.0; 2];
+                    stack[top] = jet;
+                    top += 1;
+                }
+                Step::Call(function) => {
+                    stack[top - 1] = stack[top - 1].through(function(stack[top - 1].value))
+                }
+                Step::Operator(operator) => {
+                    top -= 1;
+                    stack[top - 1] = stack[top - 1].with(operator, stack[top]);
+                }
+            }
+        }
+        stack[0]
+    }
+}
+
+/// A number with its derivatives by two variables, and by both of them.
+#[derive(Clone, Copy, Debug, Default)]
+struct Jet {
+    value: f64,
+    first: [f64; 2],
+    second: f64,
+    /// Whether it depends on any of them: infinite derivatives of what does not are none.
+    varies: bool,
+}
+
+impl Jet {
+    fn constant(value: f64) -> Self {
+        Self { value, ..Self::default() }
+    }
+
+    /// A function of it, given its value and its first two derivatives.
+    fn through(self, [value, first, second]: [f64; 3]) -> Self {
+        if !self.varies {
+            return Self::constant(value);
+        }
+        let [a, b] = self.first;
+        Self {
+            value,
+            first: [first * a, first * b],
+            second: first * self.second + second * (a * b),
+            varies: true,
+        }
+    }
+
+    fn with(self, operator: char, other: Self) -> Self {
+        match operator {
+            '+' => self.plus(1.0, other),
+            '-' => self.plus(-1.0, other),
+            '*' => self.times(other),
+            '/' => {
+                let inverse = 1.0 / other.value;
+                let square = inverse * inverse;
+                let inverse = other.through([inverse, -square, 2.0 * square * inverse]);
+                Self { value: self.value / other.value, ..self.times(inverse) }
+            }
+            _ => self.power(other),
+        }
+    }
+
+    fn plus(self, factor: f64, other: Self) -> Self {
+        Self {
+            value: self.value + factor * other.value,
+            first: [0, 1].map(|i: usize| self.first[i] + factor * other.first[i]),
+            second: self.second + factor * other.second,
+            varies: self.varies || other.varies,
+        }
+    }
+
+    fn times(self, other: Self) -> Self {
+        let value = self.value * other.value;
+        match (self.varies, other.varies) {
+            (false, false) => Self::constant(value),
+            (true, false) => self.through([value, other.value, 0.0]),
+            (false, true) => other.through([value, self.value, 0.0]),
+            (true, true) => Self {
+                value,
+                first: [0, 1].map(|i: usize| self.first[i] * other.value + self.value * other.first[i]),
+                second: self.second * other.value
+                    + self.first[0] * other.first[1]
+                    + self.first[1] * other.first[0]
+                    + self.value * other.second,
+                varies: true,
+            },
+        }
+    }
+
+    fn power(self, exponent: Self) -> Self {
+        let (x, n) = (self.value, exponent.value);
+        let value = x.powf(n);
+        if exponent.varies {
+            // x^n = exp(n ln x).
+            let logarithm = self.through([x.ln(), 1.0 / x, -1.0 / (x * x)]);
+            return exponent.times(logarithm).through([value; 3]);
+        }
+        // Where a factor is zero there is no derivative, however large the power is.
+        let term = |factor: f64, power: f64| if factor == 0.0 { 0.0 } else { factor * x.powf(power) };
+        self.through([value, term(n, n - 1.0), term(n * (n - 1.0), n - 2.0)])
     }
 }
 
@@ -78,9 +278,37 @@ enum Before {
     Function,
 }
 
-/// The formula as `exmex` reads it in the meaning that it has.
-fn normal(text: &str, variables: &[&str]) -> Result<String, String> {
-    let mut out = String::new();
+/// What waits for its right operand, or for its bracket to be closed.
+#[derive(Clone, Copy)]
+enum Waiting {
+    Operator(char),
+    Bracket,
+    Function(Function),
+}
+
+/// How tightly an operator binds.
+fn rank(operator: char) -> u8 {
+    match operator {
+        '+' | '-' => 0,
+        '*' | '/' => 1,
+        _ => 2,
+    }
+}
+
+/// Moves what waits and binds at least as tightly as `least` to the steps.
+fn settle(waiting: &mut Vec<Waiting>, steps: &mut Vec<Step>, least: u8) {
+    while let Some(Waiting::Operator(operator)) = waiting.last().copied().filter(|top| match top {
+        Waiting::Operator(operator) => rank(*operator) >= least,
+        _ => false,
+    }) {
+        steps.push(Step::Operator(operator));
+        waiting.pop();
+    }
+}
+
+/// The steps by which a formula is evaluated.
+fn read(text: &str, variables: &[&str]) -> Result<Vec<Step>, String> {
+    let (mut steps, mut waiting) = (Vec::new(), Vec::new());
     let mut before = Before::Open;
     // Per open bracket, whether what is raised to a power there has one already.
     let mut powers = vec![false];
@@ -100,8 +328,7 @@ fn normal(text: &str, variables: &[&str]) -> Result<String, String> {
             if before == Before::Value {
                 return Err(follows_value(&format!("`{}`", &rest[..end])));
             }
-            // Written out, for an exponent such as that of 1e-3 would be taken for a word.
-            out.push_str(&format!("{value}"));
+            steps.push(Step::Number(value));
             (before, rest) = (Before::Value, &rest[end..]);
             continue;
         }
@@ -111,21 +338,23 @@ fn normal(text: &str, variables: &[&str]) -> Result<String, String> {
             if before == Before::Value {
                 return Err(follows_value(&format!("`{word}`")));
             }
+            let variable = variables.iter().position(|name| *name == word);
             let constant = CONSTANTS.iter().find(|(name, _)| *name == word);
-            before = match constant {
-                _ if variables.contains(&word) => {
-                    out.push_str(word);
+            let function = FUNCTIONS.iter().find(|(name, _)| *name == word);
+            before = match (variable, constant, function) {
+                (Some(variable), ..) => {
+                    steps.push(Step::Variable(variable));
                     Before::Value
                 }
-                Some((_, name)) => {
-                    out.push_str(name);
+                (None, Some((_, value)), _) => {
+                    steps.push(Step::Number(*value));
                     Before::Value
                 }
-                None if FUNCTIONS.contains(&word) => {
-                    out.push_str(word);
+                (None, None, Some((_, function))) => {
+                    waiting.push(Waiting::Function(*function));
                     Before::Function
                 }
-                None => return Err(unknown(word, variables)),
+                (None, None, None) => return Err(unknown(word, variables)),
             };
             rest = &rest[end..];
             continue;
@@ -133,7 +362,7 @@ fn normal(text: &str, variables: &[&str]) -> Result<String, String> {
         match c {
             '(' if before == Before::Value => return Err(follows_value("`(`")),
             '(' => {
-                out.push('(');
+                waiting.push(Waiting::Bracket);
                 powers.push(false);
                 before = Before::Open;
             }
@@ -145,12 +374,18 @@ fn normal(text: &str, variables: &[&str]) -> Result<String, String> {
                     return Err("something is missing before `)`".to_owned());
                 }
                 powers.pop();
-                out.push(')');
+                settle(&mut waiting, &mut steps, 0);
+                waiting.pop();
+                if let Some(Waiting::Function(function)) = waiting.last() {
+                    steps.push(Step::Call(*function));
+                    waiting.pop();
+                }
+                before = Before::Value;
             }
             '-' | '+' if before == Before::Open => {
                 // −t² is −(t²), as 0 − t² is.
-                out.push('0');
-                out.push(c);
+                steps.push(Step::Number(0.0));
+                waiting.push(Waiting::Operator(c));
                 before = Before::Operator(c);
             }
             '-' | '+' | '*' | '/' | '^' => {
@@ -168,7 +403,8 @@ fn normal(text: &str, variables: &[&str]) -> Result<String, String> {
                     }
                     *power = c == '^';
                 }
-                out.push(c);
+                settle(&mut waiting, &mut steps, rank(c));
+                waiting.push(Waiting::Operator(c));
                 before = Before::Operator(c);
             }
             other => return Err(format!("it cannot contain `{other}`")),
@@ -176,9 +412,12 @@ fn normal(text: &str, variables: &[&str]) -> Result<String, String> {
         rest = &rest[c.len_utf8()..];
     }
     match before {
-        Before::Value if powers.len() == 1 => Ok(out),
+        Before::Value if powers.len() == 1 => {
+            settle(&mut waiting, &mut steps, 0);
+            Ok(steps)
+        }
         Before::Value => Err("a bracket is not closed".to_owned()),
-        Before::Open if out.is_empty() => Err("it is empty".to_owned()),
+        Before::Open if steps.is_empty() && powers.len() == 1 => Err("it is empty".to_owned()),
         _ => Err("it ends too early".to_owned()),
     }
 }
@@ -207,7 +446,7 @@ fn unknown(word: &str, variables: &[&str]) -> String {
         "abs" | "min" | "max" | "floor" | "ceil" | "round" | "sign" | "signum" | "mod" => {
             "what has corners is a `table`, a `ramp` or a `step`, which `sum` and `product` combine with others".to_owned()
         }
-        _ => format!("it knows {}, pi, tau, e, and {}", variables.join(", "), FUNCTIONS.join(", ")),
+        _ => format!("it knows {}, pi, tau, e, and {}", variables.join(", "), FUNCTIONS.map(|(name, _)| name).join(", ")),
     };
     format!("it cannot contain `{word}`: {advice}")
 }
@@ -215,7 +454,6 @@ fn unknown(word: &str, variables: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{E, PI, TAU};
 
     fn formula(text: &str) -> Result<Formula, String> {
         Formula::new(text, &["t"])
@@ -290,6 +528,64 @@ mod tests {
             (4.0, 0.0)
         );
         assert!(Formula::new("t", &["x", "y"]).is_err());
+    }
+
+    /// A library that called itself for every bracket overflowed the stacks of threads by a dozen.
+    #[test]
+    fn brackets_in_brackets_take_no_stack() {
+        let deep = |n: usize| format!("{}t{}", "(1+".repeat(n), ")".repeat(n));
+        assert_eq!(at(&deep(100_000), 2.0), [100_002.0, 1.0, 0.0]);
+        let nested = format!("{}t/2{}", "sin(".repeat(60), ")".repeat(60));
+        let [value, first, _] = at(&nested, 1.0);
+        let (mut v, mut slope) = (0.5_f64, 0.5);
+        for _ in 0..60 {
+            slope *= v.cos();
+            v = v.sin();
+        }
+        assert!((value - v).abs() < 1e-15 && (first - slope).abs() < 1e-15, "{value}, {first}");
+        // Operands that wait for the last one.
+        let right = format!("{}t{}", "t*(2-".repeat(40), ")".repeat(40));
+        let mut expected = [1.5_f64, 1.0, 0.0];
+        for _ in 0..40 {
+            let [v, d, s] = expected.map(|of| -of);
+            expected = [1.5 * (2.0 + v), 2.0 + v + 1.5 * d, 2.0 * d + 1.5 * s];
+        }
+        let found = at(&right, 1.5);
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() <= 1e-12 * expected.abs(), "{found} and {expected}");
+        }
+    }
+
+    /// A derivative by one variable, and by two of them in turn, of everything that is not linear.
+    #[test]
+    fn mixed_derivatives_are_those_of_the_product_rule() {
+        let of = |text: &str, by: &[usize], place: [f64; 2]| {
+            let formula = Formula::new(text, &["x", "y"]).expect("a formula");
+            by.iter().try_fold(formula, |formula, by| formula.derivative(*by)).expect("smooth").at(&place)
+        };
+        let (x, y) = (0.7_f64, 1.3_f64);
+        type Function = fn(f64, f64) -> f64;
+        let all: [(&str, Function); 6] = [
+            ("x^3*y^2", |x, y| 6.0 * x * x * y),
+            ("x/y", |_, y| -1.0 / (y * y)),
+            ("x^y", |x, y| x.powf(y - 1.0) * (1.0 + y * x.ln())),
+            ("exp(x*y)", |x, y| (x * y).exp() * (1.0 + x * y)),
+            ("sin(x)*cos(y)", |x, y| -x.cos() * y.sin()),
+            ("sqrt(x^2+y^2)", |x, y| -x * y / (x * x + y * y).powf(1.5)),
+        ];
+        for (text, expected) in all {
+            for by in [[0, 1], [1, 0]] {
+                let found = of(text, &by, [x, y]);
+                assert!((found - expected(x, y)).abs() < 1e-14, "{text}: {found}");
+            }
+        }
+        // What does not depend on a variable has no infinite derivative by it.
+        assert_eq!(of("sqrt(x)*y", &[1], [0.0, 2.0]), 0.0);
+        assert_eq!(of("x^2*y^1", &[0, 0], [0.0, 3.0]), 6.0);
+        assert!(of("sqrt(x^2)", &[0], [0.0, 1.0]).is_nan(), "a corner has no slope");
+        let thrice =
+            Formula::new("x", &["x", "y"]).and_then(|f| f.derivative(0)?.derivative(0)?.derivative(0));
+        assert!(thrice.is_err());
     }
 
     #[test]
