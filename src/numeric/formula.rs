@@ -4,6 +4,10 @@
 //! carry them (hyper-dual numbers), exact to round-off. Nothing here calls itself, so that brackets
 //! in brackets take no room on the stack of the thread. What has no one meaning is refused, such as
 //! 2^3^2; −t² is −(t²), as mathematicians write it.
+//!
+//! The crate `exmex` differentiates symbols by functions that call themselves: the second derivative
+//! of a sum of 24 terms overflows a stack of 2 MiB, which ends the process, and that of eight factors
+//! takes 18 ms to find.
 
 use std::f64::consts::{E, LOG2_E, LOG10_E, PI, TAU};
 use std::fmt;
