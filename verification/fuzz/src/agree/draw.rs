@@ -38,6 +38,8 @@ struct Drawn {
     bends: bool,
     /// Whether it has an elastic law in place of a stiffness.
     by_law: bool,
+    /// Whether the shape of its section is known.
+    shaped: bool,
 }
 
 /// The kind of analysis.

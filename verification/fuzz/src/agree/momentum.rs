@@ -11,12 +11,13 @@ use super::outcome::Seen;
 use super::{settings, stages};
 
 /// Effects whose force has no law of its own, and those that only act within beams.
-const KNOWN: [&str; 8] = [
+const KNOWN: [&str; 9] = [
     "gravity",
     "force",
     "distributed_force",
     "damping",
     "actuation",
+    "tendon",
     "point_mass",
     "rotary_inertia",
     "initial_velocity",

@@ -125,6 +125,9 @@ pub fn nature(path: &str) -> Option<Nature> {
         }
         "effect.actuation.strain" => Scalar(NUMBER),
         "effect.actuation.curvature" => Turning([-1, 0, 0]),
+        "effect.tendon.offset" => Turning(LENGTH),
+        "effect.tendon.tension" => Scalar(FORCE),
+        "analysis.dynamic.event.speed" => Scalar(VELOCITY),
         "effect.drag.normal" | "effect.drag.tangential" => Scalar([-2, 1, 0]),
         "effect.drag.viscous_normal" | "effect.drag.viscous_tangential" => Scalar([-1, 1, -1]),
         "effect.drag.flow" | "initial_velocity.value" => Vector(VELOCITY),

@@ -159,6 +159,11 @@ impl Draw<'_> {
         }
         if self.chance(0.12) {
             let mut event = self.coordinate(0.05);
+            if self.chance(0.3) {
+                event.remove("x");
+                event.remove("y");
+                event.insert("speed".into(), self.log(0.05, 1.0).into());
+            }
             if self.chance(0.6) {
                 event.insert("crossing".into(), self.pick(&["rising", "falling", "any"]).into());
             }

@@ -85,6 +85,7 @@ impl Draw<'_> {
             axial,
             bends,
             by_law,
+            shaped: table.contains_key("section"),
         });
         table
     }

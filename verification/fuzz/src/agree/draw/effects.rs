@@ -23,6 +23,7 @@ impl Draw<'_> {
         self.masses();
         self.foundation();
         self.actuation();
+        self.tendon();
         self.drag();
         self.moving_force(size);
         self.electrostatic();
@@ -222,6 +223,22 @@ impl Draw<'_> {
         self.push(&["effect", "actuation"], table);
     }
 
+    fn tendon(&mut self) {
+        if !self.chance(0.08) {
+            return;
+        }
+        let (beam, mut table) = self.of_beam();
+        let drawn = &self.beams[beam];
+        // A string takes none beside its centreline; sections of a given shape may be thin.
+        let aside = drawn.bends && !drawn.shaped;
+        let offset = if aside && self.chance(0.8) { self.signed(1e-3, 0.1) } else { 0.0 };
+        table.insert("offset".into(), offset.into());
+        table.insert("tension".into(), self.log(0.05, 4.0).into());
+        self.perhaps_in_time(&mut table, 0.4);
+        self.perhaps_stretch(&mut table);
+        self.push(&["effect", "tendon"], table);
+    }
+
     fn drag(&mut self) {
         if !self.chance(0.1) {
             return;
@@ -303,6 +320,9 @@ impl Draw<'_> {
         inner.extend(obstacle.into_iter().map(|(key, value)| (key.to_owned(), value)));
         table.insert(kind.into(), inner.into());
         table.insert("stiffness".into(), self.log(10.0, 1e5).into());
+        if self.chance(0.3) {
+            self.perhaps_stretch(&mut table);
+        }
         if thickness > 0.0 {
             table.insert("half_thickness".into(), thickness.into());
         }
