@@ -3,14 +3,15 @@
 //! Every unknown belongs to a node, and a node has four: x, y, x', y'. A beam's tangent is
 //! therefore a band of 4 × 4 blocks, with as many blocks to the right of the diagonal as a support
 //! has further nodes (1 for the cable element, 5 for six-node radial point interpolation). The
-//! pattern decides among five factorisations; the caller only states whether a matrix is definite:
+//! pattern decides among six factorisations; the caller only states whether a matrix is definite:
 //!
 //! | pattern | method | file |
 //! |---|---|---|
 //! | symmetric band | LDLᵀ by blocks, no pivoting; its signs are the inertia | [`symmetric`] |
 //! | band (follower loads), or a symmetric one with a vanishing pivot | LU with partial pivoting | [`band`] |
 //! | the first, definite and bordered by few constraint rows | LDLᵀ and a small Schur complement | [`condensed`] |
-//! | band bordered by constraint rows within it | LU of a band in another order | [`interleaved`] |
+//! | symmetric band of neighbours, bordered by rows within three nodes | LDLᵀ, the rows in between | [`chain`] |
+//! | band bordered by other constraint rows within it | LU of a band in another order | [`interleaved`] |
 //! | band bordered by others, such as those of joints | sparse LU by faer | [`bordered`] |
 //!
 //! Bands of small blocks have factorisations of their own, because a Newton iteration is little
@@ -24,10 +25,12 @@
 
 pub mod band;
 pub mod bordered;
+pub mod chain;
 pub mod complex;
 mod complex_ldl;
 pub mod condensed;
 mod equilibrate;
+mod four;
 pub(crate) mod inertia;
 pub mod interleaved;
 pub mod isotropic;
@@ -37,6 +40,7 @@ pub mod symmetric;
 use crate::lanes::fma;
 use band::{Band, BandLu};
 use bordered::{BorderRow, Bordered};
+use chain::Chain;
 use condensed::Condensed;
 use interleaved::Interleaved;
 use symmetric::{Ldl, SymmetricBand};
@@ -53,6 +57,10 @@ pub enum Matrix {
 /// Panic message of methods that solve with a tangent before one is factorised, a fault of the
 /// program.
 pub(crate) const NOT_FACTORISED: &str = "a tangent is factorised before it is solved with";
+
+/// Factor of the weights with which the signs of a chain's pivots are counted a second time: without
+/// pivoting, a small pivot may amplify round-off to the size of entries eliminated after it.
+const OTHER_WEIGHTS: f64 = 30.0;
 
 /// The matrix could not be factorised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -194,6 +202,31 @@ impl Matrix {
         }
     }
 
+    /// Adds a block c ⊗ 1₂ in the rows of node `a` and the columns of node `b`, which is not before
+    /// it, and its transpose in the other half: c is
+    /// \[position–position, position–slope, slope–position, slope–slope\].
+    #[inline]
+    pub fn add_isotropic(&mut self, a: usize, b: usize, c: [f64; 4]) {
+        for (place, value) in c.into_iter().enumerate() {
+            let (row, column) = (2 * (place / 2), 2 * (place % 2));
+            for d in 0..2 {
+                let (i, j) = (row + d, column + d);
+                match self {
+                    Self::Symmetric(matrix) => {
+                        let stride = matrix.stride();
+                        matrix.panel_mut(a)[i * stride + 4 * (b - a) + j] += value;
+                    }
+                    Self::General(matrix) => {
+                        matrix.row_mut(4 * a + i, 4 * b + j, 1)[0] += value;
+                        if a != b {
+                            matrix.row_mut(4 * b + j, 4 * a + i, 1)[0] += value;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
     /// `y += factor · A x`.
     pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         match self {
@@ -219,10 +252,21 @@ pub enum Factor {
     Lu(BandLu),
     /// LDLᵀ of a symmetric band bordered by few rows.
     Condensed(Box<Condensed>),
+    /// LDLᵀ of a symmetric band of neighbours that is bordered by rows within three nodes.
+    Chain(Box<Chain>),
     /// LU of a bordered band whose constraint rows are numbered among the unknowns.
     Interleaved(Box<Interleaved>),
     /// Sparse LU of a bordered band.
     Bordered(Box<Bordered>),
+}
+
+/// What is known of a matrix to be factorised.
+#[derive(Clone, Copy, Default)]
+struct Hint<'m> {
+    /// It is probably definite.
+    definite: bool,
+    /// c and M, where c M is to be added to it.
+    shift: Option<(f64, &'m Matrix)>,
 }
 
 impl Factor {
@@ -233,7 +277,7 @@ impl Factor {
     /// [`Singular`] if the matrix is singular to round-off.
     pub fn new(matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
         if !border.is_empty() {
-            return Self::bordered(None, matrix, border);
+            return Self::bordered(None, matrix, Hint::default(), border);
         }
         match matrix {
             Matrix::Symmetric(symmetric) => match Ldl::new(symmetric) {
@@ -244,26 +288,54 @@ impl Factor {
         }
     }
 
-    fn bordered(earlier: Option<Bordered>, matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
-        if interleaved::fits(matrix, border) {
-            let lu = Interleaved::new(matrix, |i, j| matrix.get(i, j), border)?;
+    /// Factorises `matrix`, plus c M where `shift` is (c, M), bordered by at least one row. A chain
+    /// whose elimination meets a vanishing pivot is factorised again with pivoting.
+    fn bordered(
+        earlier: Option<Self>,
+        matrix: &Matrix,
+        Hint { definite, shift }: Hint<'_>,
+        border: &[BorderRow],
+    ) -> Result<Self, Singular> {
+        let (kept, earlier) = match earlier {
+            Some(Self::Chain(chain)) => (Some(*chain), None),
+            Some(Self::Bordered(bordered)) => (None, Some(*bordered)),
+            _ => (None, None),
+        };
+        let symmetric = match (matrix, shift) {
+            (Matrix::Symmetric(k), Some((c, Matrix::Symmetric(m)))) => Some((k, Some((c, m)))),
+            (Matrix::Symmetric(k), None) => Some((k, None)),
+            _ => None,
+        };
+        if let Some((k, shift)) = symmetric
+            && chain::fits(k, border)
+            && let Ok(chain) = Chain::new(kept, k, shift, definite, border)
+        {
+            return Ok(Self::Chain(Box::new(chain)));
+        }
+        let mut sum = std::borrow::Cow::Borrowed(matrix);
+        if let Some((c, mass)) = shift {
+            sum.to_mut().add(c, mass);
+        }
+        if interleaved::fits(&sum, border) {
+            let lu = Interleaved::new(&sum, |i, j| sum.get(i, j), border)?;
             return Ok(Self::Interleaved(Box::new(lu)));
         }
-        Ok(Self::Bordered(Box::new(Bordered::new(matrix, border, earlier)?)))
+        Ok(Self::Bordered(Box::new(Bordered::new(&sum, border, earlier)?)))
     }
 
     /// Factorises a symmetric positive definite `matrix`, bordered by constraint rows if there are
-    /// any.
+    /// any, where possible in the memory of an earlier factorisation.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn definite(matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
+    pub fn definite(earlier: Option<Self>, matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
         match matrix {
             Matrix::Symmetric(symmetric) if !border.is_empty() && condensed::serves(matrix, border) => {
                 let condensed = Condensed::new(Ldl::new(symmetric)?, symmetric.size(), border)?;
                 Ok(Self::Condensed(Box::new(condensed)))
             }
-            _ => Self::new(matrix, border),
+            _ if border.is_empty() => Self::new(matrix, border),
+            _ => Self::bordered(earlier, matrix, Hint { definite: true, shift: None }, border),
         }
     }
 
@@ -277,8 +349,8 @@ impl Factor {
             (Some(Self::Ldl(ldl)), Matrix::Symmetric(symmetric)) if border.is_empty() => {
                 Ldl::again(Some(ldl), symmetric, None).map(Self::Ldl).or_else(|_| Self::new(matrix, border))
             }
-            (Some(Self::Bordered(earlier)), _) if !border.is_empty() => {
-                Self::bordered(Some(*earlier), matrix, border)
+            (Some(earlier), _) if !border.is_empty() => {
+                Self::bordered(Some(earlier), matrix, Hint::default(), border)
             }
             _ => Self::new(matrix, border),
         }
@@ -314,6 +386,9 @@ impl Factor {
                 Err(_) => {}
             }
         }
+        if !border.is_empty() {
+            return Self::bordered(earlier, matrix, Hint { definite: true, shift: Some((c, mass)) }, border);
+        }
         let mut sum = matrix.clone();
         sum.add(c, mass);
         Self::again(earlier, &sum, border)
@@ -325,6 +400,7 @@ impl Factor {
             Self::Ldl(ldl) => ldl.solve(b),
             Self::Lu(lu) => lu.solve(b),
             Self::Condensed(condensed) => condensed.solve(b),
+            Self::Chain(chain) => chain.solve(b),
             Self::Interleaved(interleaved) => interleaved.solve(b),
             Self::Bordered(bordered) => bordered.solve(b),
         }
@@ -335,7 +411,9 @@ impl Factor {
     pub fn negative_eigenvalues(&self) -> Option<usize> {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots()),
-            Self::Lu(_) | Self::Condensed(_) | Self::Interleaved(_) | Self::Bordered(_) => None,
+            Self::Lu(_) | Self::Condensed(_) | Self::Chain(_) | Self::Interleaved(_) | Self::Bordered(_) => {
+                None
+            }
         }
     }
 
@@ -344,7 +422,7 @@ impl Factor {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots() % 2 == 1),
             Self::Lu(lu) => Some(lu.determinant_is_negative()),
-            Self::Condensed(_) | Self::Interleaved(_) | Self::Bordered(_) => None,
+            Self::Condensed(_) | Self::Chain(_) | Self::Interleaved(_) | Self::Bordered(_) => None,
         }
     }
 
@@ -353,6 +431,12 @@ impl Factor {
     pub fn negative_directions(&self, matrix: &Matrix, border: &[BorderRow]) -> Option<usize> {
         if border.is_empty() {
             return self.negative_eigenvalues();
+        }
+        if let (Self::Chain(chain), Matrix::Symmetric(k)) = (self, matrix)
+            && let Some(count) = chain.negative_directions()
+            && chain.negative_directions_again(OTHER_WEIGHTS, k, border) == Some(count)
+        {
+            return Some(count);
         }
         inertia::negative_directions(matrix, border)
     }

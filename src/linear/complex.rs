@@ -6,6 +6,7 @@
 //! else by faer's sparse LU.
 
 use super::bordered::{BorderRow, Bordered};
+use super::chain::{self, ComplexChain};
 pub use super::complex_ldl::ComplexLdl;
 use super::condensed::{self, ComplexCondensed};
 use super::interleaved::{self, Interleaved};
@@ -19,6 +20,8 @@ pub enum ComplexFactor {
     Ldl(ComplexLdl),
     /// L D Lᵀ of a symmetric band that is bordered by few rows.
     Condensed(Box<ComplexCondensed>),
+    /// L D Lᵀ of a symmetric band of neighbours that is bordered by rows within three nodes.
+    Chain(Box<ComplexChain>),
     /// LU of a band whose constraint rows are numbered among the unknowns.
     Interleaved(Box<Interleaved<c64>>),
     /// Sparse LU of a bordered band.
@@ -50,6 +53,16 @@ impl ComplexFactor {
             }
             return Ok(Self::Condensed(Box::new(ComplexCondensed::new(ldl, k.size(), border)?)));
         }
+        let (kept, earlier) = match earlier {
+            Some(Self::Chain(chain)) => (Some(*chain), None),
+            other => (None, other),
+        };
+        if let (Matrix::Symmetric(symmetric), Matrix::Symmetric(mass)) = (k, m)
+            && chain::fits(symmetric, border)
+            && let Ok(chain) = ComplexChain::complex(kept, symmetric, mass, zeta, border)
+        {
+            return Ok(Self::Chain(Box::new(chain)));
+        }
         let entry = |i, j| c64::new(k.get(i, j) + zeta.re * m.get(i, j), zeta.im * m.get(i, j));
         if interleaved::fits(k, border) {
             return Ok(Self::Interleaved(Box::new(Interleaved::new(k, entry, border)?)));
@@ -66,6 +79,7 @@ impl ComplexFactor {
         match self {
             Self::Ldl(ldl) => ldl.solve(re, im),
             Self::Condensed(condensed) => condensed.solve(re, im),
+            Self::Chain(chain) => chain.solve_parts(re, im),
             Self::Interleaved(lu) => pairwise(re, im, |b| lu.solve(b)),
             Self::Sparse(sparse) => pairwise(re, im, |b| sparse.solve(b)),
         }
