@@ -26,6 +26,7 @@ pub mod inextensible;
 mod inventory;
 pub mod joint;
 pub mod laws;
+mod lengths;
 mod measure;
 pub mod polar;
 pub mod prescribed;
@@ -54,6 +55,7 @@ use crate::model::freedom::Freedom;
 use crate::model::{Along, Centreline, Discretization, Joint, Model, Place};
 use constraints::Constraint;
 use imbalance::Start;
+use lengths::Lengths;
 use polar::Polar;
 use reaction::Source;
 use supports::Supports;
@@ -83,6 +85,14 @@ pub struct System {
     /// Per constraint row of an inextensible beam, which are the last rows: where its multiplier is
     /// the axial force.
     lengths: Vec<inextensible::Row>,
+    /// Inextensible beams whose rows are summed cell by cell.
+    kept: Vec<Lengths>,
+    /// The numbers of the constraint rows that these do not sum.
+    tied: Vec<usize>,
+    /// Per coordinate, whether a support at a node fixes it, in that support's frame.
+    fixed: Vec<bool>,
+    /// Per node, whether a support or a weld changes the components of a row there.
+    special: Vec<bool>,
     reference: Vec<f64>,
     /// The state in which an analysis begins, where it is not the stress-free one.
     start: Option<Start>,
@@ -170,6 +180,10 @@ impl System {
             actuated: Vec::new(),
             sources: Vec::new(),
             lengths: Vec::new(),
+            kept: Vec::new(),
+            tied: Vec::new(),
+            fixed: Vec::new(),
+            special: Vec::new(),
             reference,
             start: start.map(Start::given),
             history_of: [Vec::new(), Vec::new()],
@@ -212,9 +226,17 @@ impl System {
             system.sources.push(Source::Rows(first..system.constraints.len()));
         }
         system.polar = joint::polar(&system, &model.joints)?;
-        let (lengths, rows) = inextensible::rows(&system, model)?;
-        system.lengths = lengths;
-        system.constraints.extend(rows);
+        let rows = inextensible::rows(&system, model)?;
+        system.lengths = rows.places;
+        system.constraints.extend(rows.constraints);
+        let summed = |row: &usize| rows.summed.iter().any(|(_, rows)| rows.contains(row));
+        system.tied = (0..system.constraints.len()).filter(|row| !summed(row)).collect();
+        system.kept = rows.summed.into_iter().map(|(lengths, _)| lengths).collect();
+        system.fixed = vec![false; system.coordinates()];
+        system.supports.eliminated().for_each(|i| system.fixed[i] = true);
+        system.special = vec![false; system.nodes];
+        let special = system.supports.nodes().chain(system.polar.nodes());
+        special.for_each(|node| system.special[node] = true);
         if system.stiffness == 0.0 {
             // Chains have no stiffness; the scale of their forces is their load.
             let load = system.norm(&system.constant_load);
@@ -412,10 +434,8 @@ impl System {
     }
 
     /// Per coordinate, whether a support at a node fixes it, in that support's frame.
-    pub fn fixed(&self) -> Vec<bool> {
-        let mut fixed = vec![false; self.coordinates()];
-        self.supports.eliminated().for_each(|i| fixed[i] = true);
-        fixed
+    pub fn fixed(&self) -> &[bool] {
+        &self.fixed
     }
 
     /// The constraint rows: of supports between nodes, of joints, and of inextensible beams.

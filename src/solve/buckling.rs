@@ -78,7 +78,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     system.supports().clear_fixed(0.0, &mut geometric);
     system.supports().eliminate(0.0, &mut stiffness);
     let (border, fixed) = (system.border(0.0, system.reference()), system.fixed());
-    let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, fixed: &fixed };
+    let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, fixed };
     let mut pairs = largest_reciprocals(&pencil, count)?;
     // A load that compresses nothing gives reciprocals that are round-off alone.
     let mut load = vec![0.0; n];

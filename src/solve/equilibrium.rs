@@ -140,7 +140,7 @@ impl<'a> Equilibrium<'a> {
         system.supports().turn_matrix(load, &mut self.tangent);
         self.rate_right_hand_side(load, x, rate);
         system.supports().eliminate(load, &mut self.tangent);
-        self.border = system.border(load, q);
+        system.border_again(load, q, &mut self.border);
         self.factor = Some(Factor::again(self.factor.take(), &self.tangent, &self.border)?);
         Ok(residual)
     }
@@ -171,7 +171,7 @@ impl<'a> Equilibrium<'a> {
         self.tangent.add_diagonal(sigma, diagonal);
         system.supports().turn_matrix(load, &mut self.tangent);
         system.supports().eliminate(load, &mut self.tangent);
-        self.border = system.border(load, q);
+        system.border_again(load, q, &mut self.border);
         self.factor = Some(Factor::again(self.factor.take(), &self.tangent, &self.border)?);
         Ok(())
     }
@@ -249,18 +249,10 @@ impl<'a> Equilibrium<'a> {
 
 /// Adds Bᵀμ to the forces that are in `r`, turns them into the supports' frames and appends g.
 /// Returns the largest force, `scale` or larger.
-pub(super) fn balance(system: &System, load: f64, x: &[f64], mut scale: f64, r: &mut [f64]) -> f64 {
+pub(super) fn balance(system: &System, load: f64, x: &[f64], scale: f64, r: &mut [f64]) -> f64 {
     let (q, multipliers) = x.split_at(system.coordinates());
     let (force, gaps) = r.split_at_mut(q.len());
-    for ((constraint, mu), gap) in system.constraints().iter().zip(multipliers).zip(gaps) {
-        let unit = constraint.scale(system.stiffness(), system.length());
-        let mu = mu * unit;
-        for (i, value) in constraint.gradient(load, q) {
-            scale = scale.max((mu * value).abs() * if i % 4 < 2 { 1.0 } else { 1.0 / system.length() });
-            force[i] += mu * value;
-        }
-        *gap = unit * constraint.value(load, q);
-    }
+    let scale = system.constrain(load, [q, multipliers], force, gaps, scale);
     system.supports().to_frames(load, force);
     scale
 }

@@ -169,6 +169,14 @@ impl Constraint {
         size_of::<Self>() + self.fields.iter().map(|field| size_of_val(&field.shape[..])).sum::<usize>()
     }
 
+    /// The value in the stress-free state of a length that is kept \[m\]; 0 for other rows.
+    pub fn kept(&self) -> f64 {
+        match self.row {
+            Row::Length { value, .. } => value,
+            _ => 0.0,
+        }
+    }
+
     /// Whether ∂g/∂q depends on q.
     pub fn is_nonlinear(&self) -> bool {
         matches!(self.row, Row::Length { .. } | Row::Angle(_))

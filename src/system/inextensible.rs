@@ -31,12 +31,14 @@
 //! ∫ N N'ᵀN' ds, has an error of 5e-4 in its fourth frequency.
 
 use super::constraints::Constraint;
+use super::lengths::Lengths;
 use super::{BuildError, System};
 use crate::basis::Quadrature;
 use crate::model::{FixedRotation, Model, Place};
+use std::ops::Range;
 
 /// Number of Gauss points per cell: exact for cubic shape functions and a quadratic axial force.
-const POINTS: usize = 4;
+pub(super) const POINTS: usize = 4;
 
 /// The place where a multiplier is the axial force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,10 +49,23 @@ pub(super) struct Row {
     pub s: f64,
 }
 
-/// The rows of all inextensible beams, in the order of their arc lengths, with their places.
-pub(super) fn rows(system: &System, model: &Model) -> Result<(Vec<Row>, Vec<Constraint>), BuildError> {
+/// The rows of all inextensible beams.
+#[derive(Debug, Default)]
+pub(super) struct Rows {
+    /// In the order of the beams and their arc lengths.
+    pub constraints: Vec<Constraint>,
+    /// Their places.
+    pub places: Vec<Row>,
+    /// The beams whose rows are summed cell by cell, with their rows, counted among all
+    /// constraints.
+    pub summed: Vec<(Lengths, Range<usize>)>,
+}
+
+/// The rows of all inextensible beams, which follow the constraints that `system` has.
+pub(super) fn rows(system: &System, model: &Model) -> Result<Rows, BuildError> {
     let held = held_lengths(system, model);
-    let (mut places, mut rows) = (Vec::new(), Vec::new());
+    let before_rows = system.constraints.len();
+    let (mut places, mut rows, mut summed) = (Vec::new(), Vec::new(), Vec::new());
     for (index, (beam, part)) in model.beams.iter().zip(&system.beams).enumerate() {
         if beam.section.axial_stiffness.is_some() {
             continue;
@@ -80,16 +95,30 @@ pub(super) fn rows(system: &System, model: &Model) -> Result<(Vec<Row>, Vec<Cons
                 }
             }
         }
+        let first = before_rows + rows.len();
+        let mut of_cells = vec![[None; 3]; nodes.len() - 1];
         for (i, points) in of_node.iter().enumerate() {
+            if let Some(before) = i.checked_sub(1) {
+                of_cells[before][2] = Some(before_rows + rows.len());
+            }
+            if let Some(after) = of_cells.get_mut(i) {
+                after[0] = Some(before_rows + rows.len());
+            }
             places.push(Row { beam: index, s: nodes[i] });
             rows.push(Constraint::length(points, &system.reference));
             if let Some(points) = of_cell.get(i).filter(|points| !points.is_empty()) {
+                of_cells[i][1] = Some(before_rows + rows.len());
                 places.push(Row { beam: index, s: 0.5 * (nodes[i] + nodes[i + 1]) });
                 rows.push(Constraint::length(points, &system.reference));
             }
         }
+        let at_points = |linear| std::array::from_fn(|p| functions(xi[p], linear));
+        let functions = [at_points(false), at_points(true)];
+        if let Some(lengths) = Lengths::new(part.offset(), table, of_cells, functions) {
+            summed.push((lengths, first..before_rows + rows.len()));
+        }
     }
-    Ok((places, rows))
+    Ok(Rows { constraints: rows, places, summed })
 }
 
 /// The functions φ of the left node, the cell and the right node at ξ.

@@ -4,6 +4,7 @@ use super::System;
 use super::measure::Measured;
 use crate::assembly::Kind;
 use crate::linear::condensed::serves;
+use crate::linear::{Matrix, chain};
 use crate::linear::interleaved::fits;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -149,6 +150,9 @@ impl System {
             solver: match (self.constraints.is_empty(), symmetric) {
                 (false, true) if !self.terms.inertia.is_empty() && serves(&matrix, &border) => {
                     "banded LDLᵀ, constraints condensed"
+                }
+                (false, true) if matches!(&matrix, Matrix::Symmetric(k) if chain::fits(k, &border)) => {
+                    "banded LDLᵀ, constraints among the unknowns"
                 }
                 (false, _) if fits(&matrix, &border) => "banded LU, constraints among the unknowns",
                 (false, _) => "sparse LU (faer)",

@@ -1,8 +1,10 @@
 //! The constraint rows of supports between nodes, of joints and of inextensible beams.
 
 use super::constraints::Constraint;
+use super::lengths::Lengths;
 use super::polar::Polar;
 use super::{BuildError, System};
+use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 use crate::linear::bordered::BorderRow;
 use std::collections::BTreeMap;
@@ -11,35 +13,67 @@ impl System {
     /// Scaled rows of ∂g/∂q in the supports' frames, without fixed coordinates. Entries of
     /// nonlinear rows that happen to vanish are kept, so that the pattern does not change.
     pub fn border(&self, load: f64, q: &[f64]) -> Vec<BorderRow> {
-        self.border_of(&Polar::default(), load, q)
+        let mut rows = Vec::new();
+        self.write_border(&Polar::default(), load, q, &mut rows);
+        rows
+    }
+
+    /// As [`Self::border`], in memory that was used before.
+    pub fn border_again(&self, load: f64, q: &[f64], rows: &mut Vec<BorderRow>) {
+        self.write_border(&Polar::default(), load, q, rows);
     }
 
     /// As [`Self::border`], for the unknowns of a motion.
-    pub fn border_in_motion(&self, time: f64, q: &[f64]) -> Vec<BorderRow> {
-        self.border_of(&self.polar, time, q)
+    pub fn border_in_motion(&self, time: f64, q: &[f64], rows: &mut Vec<BorderRow>) {
+        self.write_border(&self.polar, time, q, rows);
     }
 
-    fn border_of(&self, polar: &Polar, load: f64, q: &[f64]) -> Vec<BorderRow> {
-        let mut dense = vec![0.0; self.coordinates()];
-        let fixed = self.fixed();
-        let mut rows = Vec::with_capacity(self.constraints.len());
-        for constraint in &self.constraints {
-            let scale = constraint.scale(self.stiffness, self.length);
-            let mut touched = Vec::new();
-            for (i, value) in constraint.gradient(load, q) {
-                dense[i] += scale * value;
-                // A support's frame mixes the two components.
-                touched.extend([i & !1, i | 1]);
-            }
+    fn write_border(&self, polar: &Polar, load: f64, q: &[f64], rows: &mut Vec<BorderRow>) {
+        rows.resize(self.constraints.len(), BorderRow::new());
+        rows.iter_mut().for_each(Vec::clear);
+        let mut dense = Vec::new();
+        let mut in_frames = |row: &mut BorderRow, keeps_zeros: bool| {
+            dense.resize(self.coordinates(), 0.0);
+            row.iter().for_each(|(i, value)| dense[*i] += value);
+            // A support's frame mixes the two components.
+            let mut touched: Vec<usize> = row.iter().flat_map(|(i, _)| [i & !1, i | 1]).collect();
             touched.sort_unstable();
             touched.dedup();
             self.supports.to_frames(load, &mut dense);
             polar.forces(q, &mut dense);
-            let keep = |i: &usize| !fixed[*i] && (constraint.is_nonlinear() || dense[*i] != 0.0);
-            rows.push(touched.iter().filter(|i| keep(i)).map(|&i| (i, dense[i])).collect());
+            let keep = |i: &&usize| !self.fixed[**i] && (keeps_zeros || dense[**i] != 0.0);
+            row.clear();
+            row.extend(touched.iter().filter(keep).map(|&i| (i, dense[i])));
             touched.iter().for_each(|&i| dense[i] = 0.0);
+        };
+        for &r in &self.tied {
+            let constraint = &self.constraints[r];
+            let scale = constraint.scale(self.stiffness, self.length);
+            rows[r].extend(constraint.gradient(load, q).map(|(i, value)| (i, scale * value)));
+            in_frames(&mut rows[r], constraint.is_nonlinear());
         }
-        rows
+        for lengths in &self.kept {
+            lengths.entries(self.unit_of_lengths(), q, |first, numbers, entries| {
+                for (number, entries) in numbers.into_iter().zip(entries) {
+                    if let Some(row) = number.and_then(|number| rows.get_mut(number)) {
+                        add_entries(row, first, entries);
+                    }
+                }
+            });
+            let special = |row: &BorderRow| {
+                let ends = row.first().zip(row.last());
+                ends.is_some_and(|((first, _), (last, _))| self.special[first / 4..=last / 4].contains(&true))
+            };
+            rows[lengths.numbers()]
+                .iter_mut()
+                .filter(|row| special(row))
+                .for_each(|row| in_frames(row, true));
+        }
+    }
+
+    /// Factor of the rows of lengths.
+    fn unit_of_lengths(&self) -> f64 {
+        self.stiffness / self.length
     }
 
     /// Whether any row depends on the state.
@@ -49,18 +83,35 @@ impl System {
 
     /// `k += Σ μ ∂²g/∂q∂q` with the scaled multipliers μ, in the state `q`.
     pub fn add_constraint_stiffness(&self, q: &[f64], multipliers: &[f64], k: &mut Matrix) {
-        for (mu, constraint) in multipliers.iter().zip(&self.constraints) {
+        for (mu, constraint) in self.pulling(multipliers) {
             let mu = mu * constraint.scale(self.stiffness, self.length);
             constraint.second_derivative(q).for_each(|(i, j, value)| k.add_at(i, j, mu * value));
+        }
+        for lengths in &self.kept {
+            lengths.add_stiffness(self.unit_of_lengths(), multipliers, k);
         }
     }
 
     /// `f += Σ μ ∂²g/∂q∂q·v` with the scaled multipliers μ, in the state `q`.
     pub fn add_constraint_stiffness_product(&self, q: &[f64], multipliers: &[f64], v: &[f64], f: &mut [f64]) {
-        for (mu, constraint) in multipliers.iter().zip(&self.constraints) {
+        for (mu, constraint) in self.pulling(multipliers) {
             let mu = mu * constraint.scale(self.stiffness, self.length);
             constraint.second_derivative(q).for_each(|(i, j, value)| f[i] += mu * value * v[j]);
         }
+        for lengths in &self.kept {
+            lengths.add_forces(self.unit_of_lengths(), v, multipliers, f);
+        }
+    }
+
+    /// The constraints that are not summed cell by cell, with their multipliers; none of those whose
+    /// multipliers are not known.
+    fn pulling<'m>(&'m self, multipliers: &'m [f64]) -> impl Iterator<Item = (f64, &'m Constraint)> {
+        self.tied_rows().filter_map(|(r, constraint)| Some((*multipliers.get(r)?, constraint)))
+    }
+
+    /// The constraints that are not summed cell by cell, with their numbers.
+    fn tied_rows(&self) -> impl Iterator<Item = (usize, &Constraint)> {
+        self.tied.iter().map(|&r| (r, &self.constraints[r]))
     }
 
     /// The row that the state `q` violates most: one of its coordinates, and the violation (in beam
@@ -72,39 +123,135 @@ impl System {
 
     /// Writes −g(q), scaled.
     pub fn constraint_values(&self, parameter: f64, q: &[f64], values: &mut [f64]) {
-        for (value, constraint) in values.iter_mut().zip(&self.constraints) {
-            *value = -constraint.scale(self.stiffness, self.length) * constraint.value(parameter, q);
+        for (r, constraint) in self.tied_rows() {
+            values[r] = -constraint.scale(self.stiffness, self.length) * constraint.value(parameter, q);
+        }
+        self.start_lengths(1.0, values);
+        for lengths in &self.kept {
+            lengths.add_products(-0.5 * self.unit_of_lengths(), q, q, values);
+        }
+    }
+
+    /// Writes `factor` times the scaled values of the stress-free state into the rows of lengths.
+    fn start_lengths(&self, factor: f64, values: &mut [f64]) {
+        let factor = factor * self.unit_of_lengths();
+        for row in self.kept.iter().flat_map(Lengths::numbers) {
+            values[row] = factor * self.constraints[row].kept();
         }
     }
 
     /// Writes −∂g/∂q·v, scaled, in the state `q`. If `v` are the velocities that supports
     /// prescribe, this is what the rates of the unknowns must contribute.
     pub fn constraint_rates(&self, parameter: f64, q: &[f64], v: &[f64], rates: &mut [f64]) {
-        for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
+        for (r, constraint) in self.tied_rows() {
             let scale = constraint.scale(self.stiffness, self.length);
-            *rate = -scale * constraint.gradient(parameter, q).map(|(i, value)| value * v[i]).sum::<f64>();
+            rates[r] = -scale * constraint.gradient(parameter, q).map(|(i, value)| value * v[i]).sum::<f64>();
+        }
+        self.start_lengths(0.0, rates);
+        for lengths in &self.kept {
+            lengths.add_products(-self.unit_of_lengths(), q, v, rates);
         }
     }
 
     /// Adds −v·∂²g/∂q∂q·v in the state `q`, scaled: the part of −g̈ that is quadratic in
     /// velocities.
     pub fn add_constraint_curvatures(&self, q: &[f64], v: &[f64], rates: &mut [f64]) {
-        for (rate, constraint) in rates.iter_mut().zip(&self.constraints) {
-            *rate -= constraint.scale(self.stiffness, self.length) * constraint.curvature(q, v);
+        for (r, constraint) in self.tied_rows() {
+            rates[r] -= constraint.scale(self.stiffness, self.length) * constraint.curvature(q, v);
+        }
+        for lengths in &self.kept {
+            lengths.add_products(-self.unit_of_lengths(), v, v, rates);
         }
     }
 
     /// `f += Bᵀ μ` with the scaled multipliers μ, in the state `q`.
     pub fn add_constraint_forces(&self, parameter: f64, q: &[f64], multipliers: &[f64], f: &mut [f64]) {
-        for (mu, constraint) in multipliers.iter().zip(&self.constraints) {
+        for (mu, constraint) in self.pulling(multipliers) {
             let mu = mu * constraint.scale(self.stiffness, self.length);
             constraint.gradient(parameter, q).for_each(|(i, value)| f[i] += mu * value);
         }
+        for lengths in &self.kept {
+            lengths.add_forces(self.unit_of_lengths(), q, multipliers, f);
+        }
+    }
+
+    /// `f += Bᵀ μ` with the scaled multipliers μ, and writes g, scaled, in the state `q`. Returns
+    /// the largest force of a constraint on a node, `scale` or larger; those on gradients are
+    /// divided by the beam length.
+    pub fn constrain(
+        &self,
+        parameter: f64,
+        [q, multipliers]: [&[f64]; 2],
+        f: &mut [f64],
+        values: &mut [f64],
+        mut scale: f64,
+    ) -> f64 {
+        let inverse = 1.0 / self.length;
+        for (r, constraint) in self.tied_rows() {
+            let unit = constraint.scale(self.stiffness, self.length);
+            let mu = multipliers[r] * unit;
+            for (i, value) in constraint.gradient(parameter, q) {
+                scale = scale.max((mu * value).abs() * if i % 4 < 2 { 1.0 } else { inverse });
+                f[i] += mu * value;
+            }
+            values[r] = unit * constraint.value(parameter, q);
+        }
+        self.start_lengths(-1.0, values);
+        for lengths in &self.kept {
+            let largest = lengths.balance(self.unit_of_lengths(), q, multipliers, f, values).to_array();
+            let units = [1.0, 1.0, inverse, inverse];
+            scale =
+                largest.into_iter().zip(units).fold(scale, |scale, (force, unit)| scale.max(force * unit));
+        }
+        scale
+    }
+
+    /// [`Self::constrain`] in four states, one per lane, each at its own parameter; `scratch` holds
+    /// two vectors of coordinates.
+    pub fn constrain_in_lanes(
+        &self,
+        parameters: [f64; 4],
+        [q, multipliers]: [&[Lanes]; 2],
+        f: &mut [Lanes],
+        values: &mut [Lanes],
+        mut scale: Lanes,
+        scratch: &mut [Vec<f64>; 2],
+    ) -> Lanes {
+        let inverse = 1.0 / self.length;
+        if !self.tied.is_empty() {
+            let mut scales = scale.to_array();
+            lanes::one_by_one(q, f, scratch, |lane, q, f| {
+                for (r, constraint) in self.tied_rows() {
+                    let unit = constraint.scale(self.stiffness, self.length);
+                    let mu = multipliers[r].to_array()[lane] * unit;
+                    for (i, value) in constraint.gradient(parameters[lane], q) {
+                        let size = (mu * value).abs() * if i % 4 < 2 { 1.0 } else { inverse };
+                        scales[lane] = scales[lane].max(size);
+                        f[i] += mu * value;
+                    }
+                    let mut of_row = values[r].to_array();
+                    of_row[lane] = unit * constraint.value(parameters[lane], q);
+                    values[r] = Lanes::new(of_row);
+                }
+            });
+            scale = Lanes::new(scales);
+        }
+        let unit = self.unit_of_lengths();
+        for lengths in &self.kept {
+            for row in lengths.numbers() {
+                values[row] = Lanes::splat(-unit * self.constraints[row].kept());
+            }
+            let largest = lengths.balance_in_lanes(unit, q, multipliers, f, values);
+            for (force, unit) in largest.into_iter().zip([1.0, 1.0, inverse, inverse]) {
+                scale = (force * Lanes::splat(unit)).fast_max(scale);
+            }
+        }
+        scale
     }
 
     /// Refuses more constraint rows on the same coordinates than these have free ones.
     pub(super) fn check_room(&self) -> Result<(), BuildError> {
-        let fixed = self.fixed();
+        let fixed = &self.fixed;
         let mut rows_of: BTreeMap<(usize, usize), usize> = BTreeMap::new();
         for span in self.constraints.iter().filter_map(Constraint::span) {
             *rows_of.entry((span.start, span.end)).or_default() += 1;
@@ -118,5 +265,17 @@ impl System {
             }
         }
         Ok(())
+    }
+}
+
+/// Adds the entries of a cell, whose first coordinate is `first`, to a row that holds those of the
+/// cells before.
+fn add_entries(row: &mut BorderRow, first: usize, entries: &[f64]) {
+    let start = row.first().map_or(first, |(i, _)| *i);
+    for (i, value) in (first..).zip(entries) {
+        match row.get_mut(i - start) {
+            Some((_, sum)) => *sum += value,
+            None => row.push((i, *value)),
+        }
     }
 }

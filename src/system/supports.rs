@@ -122,6 +122,11 @@ impl Supports {
         })
     }
 
+    /// Nodes at which anything is fixed.
+    pub fn nodes(&self) -> impl Iterator<Item = usize> + '_ {
+        self.pairs.iter().map(|restrained| restrained.pair / 2)
+    }
+
     /// Nodes with a pair of which one component is fixed and the other free, in the support's
     /// frame.
     pub fn half_fixed(&self) -> impl Iterator<Item = usize> + '_ {

@@ -45,7 +45,7 @@ use crate::lanes::{Lanes, Real};
 use crate::linear::bordered::BorderRow;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::isotropic::Inertia;
-use crate::linear::{Factor, Matrix, Singular};
+use crate::linear::{Factor, Matrix, NOT_FACTORISED, Singular};
 use crate::solve::Statistics;
 use crate::solve::equilibrium::{self, Largest, balance, negate};
 use crate::system::System;
@@ -86,7 +86,11 @@ pub struct Motion<'a> {
     pub(super) mass: Inertia,
     /// The mass matrix in the supports' frames, with zeros for the fixed coordinates.
     free_mass: Matrix,
-    mass_factor: Factor,
+    /// The same with diagonal entries for the fixed coordinates.
+    eliminated_mass: Matrix,
+    mass_factor: Option<Factor>,
+    /// The constraint rows with which it is factorised.
+    mass_border: Vec<BorderRow>,
     border: Vec<BorderRow>,
     /// Tangent of elastic forces and loads in the supports' frames, fixed coordinates eliminated.
     tangent: Matrix,
@@ -135,16 +139,19 @@ impl<'a> Motion<'a> {
     pub fn new(system: &'a System) -> Result<Self, Singular> {
         let n = system.coordinates();
         let mass = Inertia::new(system.mass_matrix());
-        let border = system.border_in_motion(0.0, system.start());
-        let [free_mass, eliminated] = free_mass(system, 0.0, system.start(), &mass);
-        let mass_factor = Factor::definite(&eliminated, &border)?;
+        let mut border = Vec::new();
+        system.border_in_motion(0.0, system.start(), &mut border);
+        let [free_mass, eliminated_mass] = free_mass(system, 0.0, system.start(), &mass);
+        let mass_factor = Some(Factor::definite(None, &eliminated_mass, &border)?);
         let carries = system.carries();
         let carried = if carries { n } else { 0 };
         Ok(Self {
             system,
             mass,
             free_mass,
+            eliminated_mass,
             mass_factor,
+            mass_border: Vec::new(),
             border,
             tangent: system.matrix(),
             damping: system.is_damped().then(|| system.damping_pattern()),
@@ -215,10 +222,14 @@ impl<'a> Motion<'a> {
     /// `q` in fixed axes, if they are not constant. The mass matrix and rows that belong to the
     /// tangent stay as they are, so that a motion continued from a saved state finds the same.
     fn mass_at(&mut self, time: f64, q: &[f64]) -> Result<(), Singular> {
-        if self.system.turns() || self.system.has_turning_inertia() || self.follows {
-            let border = self.system.border_in_motion(time, q);
-            let [_, eliminated] = free_mass(self.system, time, q, &self.mass);
-            self.mass_factor = Factor::definite(&eliminated, &border)?;
+        let mass_turns = self.system.turns() || self.system.has_turning_inertia();
+        if mass_turns {
+            [_, self.eliminated_mass] = free_mass(self.system, time, q, &self.mass);
+        }
+        if mass_turns || self.follows {
+            self.system.border_in_motion(time, q, &mut self.mass_border);
+            let earlier = self.mass_factor.take();
+            self.mass_factor = Some(Factor::definite(earlier, &self.eliminated_mass, &self.mass_border)?);
         }
         Ok(())
     }
@@ -263,7 +274,7 @@ impl<'a> Motion<'a> {
             self.carry(fixed.to_mut());
         }
         self.mass_at(state.time, &fixed.q)?;
-        self.mass_factor.solve(forces);
+        self.mass_factor.as_ref().expect(NOT_FACTORISED).solve(forces);
         self.from_frames(forces);
         self.release(forces);
         Ok(())
@@ -289,7 +300,7 @@ impl<'a> Motion<'a> {
         supports.to_frames(time, &mut momentum[..n]);
         self.system.polar().forces(q, &mut momentum[..n]);
         self.system.constraint_rates(time, q, &prescribed, &mut momentum[n..]);
-        self.mass_factor.solve(&mut momentum);
+        self.mass_factor.as_ref().expect(NOT_FACTORISED).solve(&mut momentum);
         supports.to_fixed_axes(time, &mut momentum[..n]);
         self.system.polar().changes(q, &mut momentum[..n]);
         wanted.iter_mut().zip(&momentum).zip(&prescribed).for_each(|((v, w), p)| *v = w + p);
@@ -420,7 +431,7 @@ impl<'a> Motion<'a> {
         system.polar().matrix(&x[..n], tangent);
         supports.eliminate(rates.time, tangent);
         if self.follows || system.turns() {
-            self.border = system.border_in_motion(rates.time, &x[..n]);
+            system.border_in_motion(rates.time, &x[..n], &mut self.border);
         }
         if system.has_turning_inertia() || system.turns() {
             [self.free_mass, _] = free_mass(system, rates.time, &x[..n], &self.mass);
@@ -590,13 +601,13 @@ impl<'a> Motion<'a> {
         // The error that a step leaves is so small that one correction is enough, for quadratic
         // rows too.
         self.system.constraint_values(state.time, &state.q, &mut change[n..]);
-        self.mass_factor.solve(&mut change);
+        self.mass_factor.as_ref().expect(NOT_FACTORISED).solve(&mut change);
         supports.to_fixed_axes(state.time, &mut change[..n]);
         self.system.polar().changes(&state.q, &mut change[..n]);
         state.q.iter_mut().zip(&change).for_each(|(q, d)| *q += d);
         change[..n].fill(0.0);
         self.system.constraint_rates(state.time, &state.q, &state.v, &mut change[n..]);
-        self.mass_factor.solve(&mut change);
+        self.mass_factor.as_ref().expect(NOT_FACTORISED).solve(&mut change);
         supports.to_fixed_axes(state.time, &mut change[..n]);
         self.system.polar().changes(&state.q, &mut change[..n]);
         state.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);

@@ -208,7 +208,7 @@ impl Motion<'_> {
     /// [`Self::residual`] of the first `count` stages of a step, at their `times`: writes all of
     /// them to `stages` and returns the largest.
     pub fn residuals(&mut self, times: [f64; 4], count: usize, stages: &mut Stages) -> f64 {
-        if self.carries || self.system.multipliers() > 0 || self.system.has_turning_inertia() {
+        if self.carries || self.system.has_turning_inertia() {
             let mut largest = 0.0_f64;
             let mut rows: [Vec<f64>; 4] = Default::default();
             for (stage, row) in rows.iter_mut().enumerate() {
@@ -227,20 +227,23 @@ impl Motion<'_> {
         }
         self.statistics.residual_evaluations += count;
         let Self { system, mass, side_by_side, accepted, .. } = self;
-        let force = &mut stages.residual;
-        system.forces(times, &stages.x, force, side_by_side);
+        let n = system.coordinates();
+        let (force, gaps) = stages.residual.split_at_mut(n);
+        let (q, multipliers) = stages.x.split_at(n);
+        system.forces(times, q, force, side_by_side);
         if system.has_history() {
-            lanes::one_by_one(&stages.x, force, side_by_side, |_, q, f| system.add_history(accepted, q, f));
+            lanes::one_by_one(q, force, side_by_side, |_, q, f| system.add_history(accepted, q, f));
         }
         if system.is_damped() {
             let velocities: [Vec<f64>; 4] = std::array::from_fn(|stage| lane(&stages.velocity, stage));
-            lanes::one_by_one(&stages.x, force, side_by_side, |lane, q, f| {
+            lanes::one_by_one(q, force, side_by_side, |lane, q, f| {
                 system.add_damping(q, &velocities[lane], f);
             });
         }
         let inverse = 1.0 / system.length();
         let units = [1.0, 1.0, inverse, inverse];
-        let scale = largest(force, units);
+        let mut scale = largest(force, units);
+        scale = system.constrain_in_lanes(times, [q, multipliers], force, gaps, scale, side_by_side);
         mass.multiply_add_lanes(&stages.acceleration, force, side_by_side);
         system.supports().to_frames(0.0, force);
         let residual =
