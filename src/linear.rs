@@ -331,7 +331,7 @@ impl Factor {
     pub fn definite(earlier: Option<Self>, matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
         match matrix {
             Matrix::Symmetric(symmetric) if !border.is_empty() && condensed::serves(matrix, border) => {
-                let condensed = Condensed::new(Ldl::new(symmetric)?, symmetric.size(), border)?;
+                let condensed = Condensed::new(Ldl::new(symmetric)?, &[symmetric], border)?;
                 Ok(Self::Condensed(Box::new(condensed)))
             }
             _ if border.is_empty() => Self::new(matrix, border),
@@ -379,7 +379,7 @@ impl Factor {
             match Ldl::again(kept, k, Some((c, m))) {
                 Ok(ldl) if border.is_empty() => return Ok(Self::Ldl(ldl)),
                 Ok(ldl) => {
-                    if let Ok(condensed) = Condensed::new(ldl, k.size(), border) {
+                    if let Ok(condensed) = Condensed::new(ldl, &[k, m], border) {
                         return Ok(Self::Condensed(Box::new(condensed)));
                     }
                 }

@@ -51,7 +51,7 @@ impl ComplexFactor {
             if border.is_empty() {
                 return Ok(Self::Ldl(ldl));
             }
-            return Ok(Self::Condensed(Box::new(ComplexCondensed::new(ldl, k.size(), border)?)));
+            return Ok(Self::Condensed(Box::new(ComplexCondensed::new(ldl, &[k, m], border)?)));
         }
         let (kept, earlier) = match earlier {
             Some(Self::Chain(chain)) => (Some(*chain), None),

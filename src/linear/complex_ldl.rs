@@ -151,6 +151,41 @@ impl ComplexLdl {
         }
     }
 
+    /// The order in which nodes are eliminated.
+    pub(super) fn order(&self) -> Order {
+        Order::new(self.rows.len() / self.blocks, self.blocks == 2)
+    }
+
+    /// Solves A x = b in place, where b vanishes outside nodes that are not coupled with others and
+    /// are eliminated at the rising `positions`.
+    pub(super) fn solve_part(&self, positions: &[u32], re: &mut [f64], im: &mut [f64]) {
+        let (re, im) = (re.as_chunks_mut::<4>().0, im.as_chunks_mut::<4>().0);
+        let order = self.order();
+        for position in positions.iter().map(|position| *position as usize) {
+            let panel = &self.rows[position * self.blocks..(position + 1) * self.blocks];
+            let node = order.node(position);
+            let here = numbers([re[node], im[node]].map(Lanes::new));
+            for (b, w) in panel.iter().enumerate().skip(1) {
+                let Some(next) = order.next(position, b) else { break };
+                let (change, next) = (product(w, here), order.node(next));
+                re[next] = (Lanes::new(re[next]) - change[0]).to_array();
+                im[next] = (Lanes::new(im[next]) - change[1]).to_array();
+            }
+            [re[node], im[node]] = product(&panel[0], here).map(Lanes::to_array);
+        }
+        let right = self.blocks - 1;
+        for position in positions.iter().rev().map(|position| *position as usize) {
+            let node = order.node(position);
+            let mut here = [re[node], im[node]].map(Lanes::new);
+            for (b, w) in self.transposed[position * right..(position + 1) * right].iter().enumerate() {
+                let Some(next) = order.next(position, b + 1).map(|next| order.node(next)) else { break };
+                let change = product(w, numbers([re[next], im[next]].map(Lanes::new)));
+                here = [here[0] - change[0], here[1] - change[1]];
+            }
+            [re[node], im[node]] = here.map(Lanes::to_array);
+        }
+    }
+
     /// Substitutes, with the number of blocks as a compile-time constant, or 0 if it is uncommon.
     fn substitute<const BLOCKS: usize>(&self, re: &mut [f64], im: &mut [f64]) {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };

@@ -8,34 +8,111 @@
 //! ```
 //!
 //! This takes r substitutions for K⁻¹Bᵀ at factorisation and one per solution, which is a fifth of
-//! the time of a sparse LU for a chain of two beams.
+//! the time of a sparse LU for a chain of two beams. Beams are not coupled in K, so that the
+//! substitution for the row of a joint involves only the beams that it joins.
 
 use super::bordered::BorderRow;
 use super::complex_ldl::ComplexLdl;
 use super::interleaved::fits;
-use super::symmetric::Ldl;
+use super::order::Order;
+use super::symmetric::{Ldl, SymmetricBand};
 use super::{Matrix, Singular};
 use faer::c64;
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
+use std::ops::Range;
 
+/// Number of substitutions with all nodes, or as many nodes in substitutions for some beams, above
+/// which a sparse LU is faster.
+const MOST_SUBSTITUTIONS: usize = 48;
 /// Number of rows above which a sparse LU is faster.
-const MOST_ROWS: usize = 48;
+const MOST_ROWS: usize = 400;
 /// Number of local rows above which the LU of a wider band is faster ([`super::interleaved`]).
 const MOST_LOCAL_ROWS: usize = 12;
 
-/// Whether the rows are few enough for this method to be the fastest.
+/// Whether the rows are few enough, or involve so few beams each, that this method is the fastest.
 pub fn serves(matrix: &Matrix, border: &[BorderRow]) -> bool {
-    border.len() <= if fits(matrix, border) { MOST_LOCAL_ROWS } else { MOST_ROWS }
+    if fits(matrix, border) {
+        return border.len() <= MOST_LOCAL_ROWS;
+    }
+    if border.len() <= MOST_SUBSTITUTIONS {
+        return true;
+    }
+    let Matrix::Symmetric(band) = matrix else { return false };
+    let nodes = band.size() / 4;
+    let parts = Parts::new(&[band], Order::new(nodes, false));
+    let of_row = |row: &BorderRow| parts.of(row).map(|part| parts.positions[part].len()).sum::<usize>();
+    border.len() <= MOST_ROWS && border.iter().map(of_row).sum::<usize>() <= MOST_SUBSTITUTIONS * nodes
 }
+
+/// The parts of a band that are not coupled, such as beams: each consists of successive nodes.
+#[derive(Clone, Debug, Default)]
+struct Parts {
+    of_node: Vec<u32>,
+    /// Per part: its first node.
+    first: Vec<usize>,
+    /// Per part: the positions at which its nodes are eliminated.
+    positions: Vec<Vec<u32>>,
+}
+
+impl Parts {
+    /// The parts of a sum of `bands` whose nodes are eliminated in the given order.
+    fn new(bands: &[&SymmetricBand], order: Order) -> Self {
+        let nodes = bands.first().map_or(0, |band| band.size() / 4);
+        let mut parts = Self::default();
+        // The node after the last with which any node so far is coupled.
+        let mut end = 0;
+        for node in 0..nodes {
+            if node >= end {
+                parts.first.push(node);
+            }
+            let reach = bands.iter().map(|band| band.reach(node)).max().unwrap_or(0);
+            end = end.max(node + reach + 1);
+            parts.of_node.push(parts.first.len() as u32 - 1);
+        }
+        parts.positions = vec![Vec::new(); parts.first.len()];
+        for position in 0..nodes {
+            let part = parts.of_node[order.node(position)] as usize;
+            parts.positions[part].push(position as u32);
+        }
+        parts
+    }
+
+    /// The parts that a row, whose unknowns rise, touches.
+    fn of<'r>(&'r self, row: &'r BorderRow) -> impl Iterator<Item = usize> + 'r {
+        let mut last = None;
+        row.iter().filter_map(move |(i, _)| {
+            let part = self.of_node[i / 4] as usize;
+            (last.replace(part) != Some(part)).then_some(part)
+        })
+    }
+
+    /// The unknowns of a part.
+    fn unknowns(&self, part: usize) -> Range<usize> {
+        let first = self.first[part];
+        4 * first..4 * (first + self.positions[part].len())
+    }
+
+    /// Per part: the rows that touch it.
+    fn rows(&self, border: &[BorderRow]) -> Vec<Vec<usize>> {
+        let mut rows = vec![Vec::new(); self.first.len()];
+        for (r, row) in border.iter().enumerate() {
+            self.of(row).for_each(|part| rows[part].push(r));
+        }
+        rows
+    }
+}
+
+/// A column of K⁻¹ Bᵀ: per part, its first unknown and the numbers there.
+type Column<T> = Vec<(usize, Vec<T>)>;
 
 fn dot(row: &BorderRow, x: &[f64]) -> f64 {
     row.iter().map(|(i, value)| value * x[*i]).sum()
 }
 
-fn dense(row: &BorderRow, size: usize) -> Vec<f64> {
-    let mut dense = vec![0.0; size];
-    row.iter().for_each(|(i, value)| dense[*i] = *value);
-    dense
+/// The same with the numbers `x` of the unknowns `range` only.
+fn dot_within(row: &BorderRow, range: &Range<usize>, x: &[f64]) -> f64 {
+    let inside = row.iter().filter(|(i, _)| range.contains(i));
+    inside.map(|(i, value)| value * x[i - range.start]).sum()
 }
 
 /// A bordered matrix, by the LDLᵀ of its band and the LU of S.
@@ -44,20 +121,36 @@ pub struct Condensed {
     ldl: Ldl,
     border: Vec<BorderRow>,
     /// K⁻¹ Bᵀ.
-    columns: Vec<Vec<f64>>,
+    columns: Vec<Column<f64>>,
     schur: LU<f64, Dyn, Dyn>,
 }
 
 impl Condensed {
-    /// Borders the factorised band `ldl` of `size` unknowns.
+    /// Borders the factorised sum `ldl` of `bands`.
     ///
     /// # Errors
     /// [`Singular`] if the rows are linearly dependent.
-    pub fn new(ldl: Ldl, size: usize, border: &[BorderRow]) -> Result<Self, Singular> {
-        let mut columns: Vec<Vec<f64>> = border.iter().map(|row| dense(row, size)).collect();
-        columns.iter_mut().for_each(|column| ldl.solve(column));
-        let schur = DMatrix::from_fn(border.len(), border.len(), |r, c| dot(&border[r], &columns[c])).lu();
-        let condensed = Self { ldl, border: border.to_vec(), columns, schur };
+    pub fn new(ldl: Ldl, bands: &[&SymmetricBand], border: &[BorderRow]) -> Result<Self, Singular> {
+        let parts = Parts::new(bands, ldl.order());
+        let rows = parts.rows(border);
+        let size = parts.of_node.len() * 4;
+        let mut x = vec![0.0; size];
+        let mut schur = DMatrix::zeros(border.len(), border.len());
+        let mut columns = Vec::with_capacity(border.len());
+        for (c, row) in border.iter().enumerate() {
+            row.iter().for_each(|(i, value)| x[*i] = *value);
+            let mut column = Column::new();
+            for part in parts.of(row) {
+                let range = parts.unknowns(part);
+                ldl.solve_part(&parts.positions[part], &mut x);
+                let solution = x[range.clone()].to_vec();
+                x[range.clone()].fill(0.0);
+                rows[part].iter().for_each(|&r| schur[(r, c)] += dot_within(&border[r], &range, &solution));
+                column.push((range.start, solution));
+            }
+            columns.push(column);
+        }
+        let condensed = Self { ldl, border: border.to_vec(), columns, schur: schur.lu() };
         if condensed.schur.is_invertible() { Ok(condensed) } else { Err(Singular { row: size }) }
     }
 
@@ -73,7 +166,9 @@ impl Condensed {
         let mut mu = DVector::from_fn(g.len(), |r, _| dot(&self.border[r], x) - g[r]);
         self.schur.solve_mut(&mut mu);
         for (column, mu) in self.columns.iter().zip(mu.iter()) {
-            x.iter_mut().zip(column).for_each(|(x, c)| *x -= mu * c);
+            for (first, column) in column {
+                x[*first..].iter_mut().zip(column).for_each(|(x, c)| *x -= mu * c);
+            }
         }
         g.copy_from_slice(mu.as_slice());
     }
@@ -84,29 +179,42 @@ impl Condensed {
 pub struct ComplexCondensed {
     ldl: ComplexLdl,
     border: Vec<BorderRow>,
-    /// K⁻¹ Bᵀ, column by column, as real and imaginary parts.
-    columns: Vec<[Vec<f64>; 2]>,
+    /// K⁻¹ Bᵀ.
+    columns: Vec<Column<c64>>,
     schur: LU<Complex<f64>, Dyn, Dyn>,
 }
 
 impl ComplexCondensed {
-    /// Borders the factorised band `ldl` of `size` unknowns.
+    /// Borders the factorised sum `ldl` of `bands`, the second times a complex number.
     ///
     /// # Errors
     /// [`Singular`] if the rows are linearly dependent.
-    pub fn new(ldl: ComplexLdl, size: usize, border: &[BorderRow]) -> Result<Self, Singular> {
-        let solved = |row: &BorderRow| {
-            let (mut re, mut im) = (dense(row, size), vec![0.0; size]);
-            ldl.solve(&mut re, &mut im);
-            [re, im]
-        };
-        let columns: Vec<_> = border.iter().map(solved).collect();
-        let entry = |r: usize, c: usize| {
-            let [re, im] = &columns[c];
-            c64::new(dot(&border[r], re), dot(&border[r], im))
-        };
-        let schur = DMatrix::from_fn(border.len(), border.len(), entry).lu();
-        let condensed = Self { ldl, border: border.to_vec(), columns, schur };
+    pub fn new(ldl: ComplexLdl, bands: &[&SymmetricBand], border: &[BorderRow]) -> Result<Self, Singular> {
+        let parts = Parts::new(bands, ldl.order());
+        let rows = parts.rows(border);
+        let size = parts.of_node.len() * 4;
+        let (mut re, mut im) = (vec![0.0; size], vec![0.0; size]);
+        let mut schur = DMatrix::zeros(border.len(), border.len());
+        let mut columns = Vec::with_capacity(border.len());
+        for (c, row) in border.iter().enumerate() {
+            row.iter().for_each(|(i, value)| re[*i] = *value);
+            let mut column = Column::new();
+            for part in parts.of(row) {
+                let range = parts.unknowns(part);
+                ldl.solve_part(&parts.positions[part], &mut re, &mut im);
+                let [here_re, here_im] = [&re, &im].map(|x| &x[range.clone()]);
+                for &r in &rows[part] {
+                    let of = |x| dot_within(&border[r], &range, x);
+                    schur[(r, c)] += c64::new(of(here_re), of(here_im));
+                }
+                let solution = here_re.iter().zip(here_im).map(|(re, im)| c64::new(*re, *im)).collect();
+                column.push((range.start, solution));
+                re[range.clone()].fill(0.0);
+                im[range].fill(0.0);
+            }
+            columns.push(column);
+        }
+        let condensed = Self { ldl, border: border.to_vec(), columns, schur: schur.lu() };
         if condensed.schur.is_invertible() { Ok(condensed) } else { Err(Singular { row: size }) }
     }
 
@@ -125,10 +233,12 @@ impl ComplexCondensed {
             c64::new(dot(row, xr) - gr[r], dot(row, xi) - gi[r])
         });
         self.schur.solve_mut(&mut mu);
-        for ([re, im], mu) in self.columns.iter().zip(mu.iter()) {
-            for ((xr, xi), (re, im)) in xr.iter_mut().zip(xi.iter_mut()).zip(re.iter().zip(im)) {
-                *xr -= mu.re * re - mu.im * im;
-                *xi -= mu.re * im + mu.im * re;
+        for (column, mu) in self.columns.iter().zip(mu.iter()) {
+            for (first, column) in column {
+                for ((xr, xi), c) in xr[*first..].iter_mut().zip(&mut xi[*first..]).zip(column) {
+                    *xr -= mu.re * c.re - mu.im * c.im;
+                    *xi -= mu.re * c.im + mu.im * c.re;
+                }
             }
         }
         for ((gr, gi), mu) in gr.iter_mut().zip(gi).zip(mu.iter()) {

@@ -77,6 +77,15 @@ impl SymmetricBand {
         4 * self.blocks
     }
 
+    /// Number of nodes from `node` to the last one after it with which it is coupled.
+    pub(super) fn reach(&self, node: usize) -> usize {
+        let coupled = |block: &usize| {
+            let zero = [0.0; 4];
+            self.block(node, *block).iter().any(|row| row.to_array() != zero)
+        };
+        (1..self.blocks.min(self.nodes - node)).rev().find(coupled).unwrap_or(0)
+    }
+
     /// Adds `factor` times another matrix of the same pattern.
     pub fn add(&mut self, factor: f64, other: &Self) {
         debug_assert_eq!(self.data.len(), other.data.len());
@@ -382,6 +391,41 @@ impl Ldl {
             let mut here = x[order.node(position)];
             for (b, w) in transposed.iter().enumerate() {
                 let Some(next) = order.next(position, b + 1) else { break };
+                here = subtract(w, x[order.node(next)], here);
+            }
+            x[order.node(position)] = here;
+        }
+    }
+
+    /// The order in which nodes are eliminated.
+    pub(super) fn order(&self) -> Order {
+        Order::new(self.reciprocal.len(), self.from_both_ends)
+    }
+
+    /// Solves A x = b in place, where b vanishes outside nodes that are not coupled with others and
+    /// are eliminated at the rising `positions`.
+    pub(super) fn solve_part(&self, positions: &[u32], b: &mut [f64]) {
+        let x = b.as_chunks_mut::<4>().0;
+        let order = self.order();
+        for position in positions.iter().map(|position| *position as usize) {
+            let panel = &self.rows[position * self.blocks..(position + 1) * self.blocks];
+            let here = x[order.node(position)];
+            for (block, w) in panel.iter().enumerate().skip(1) {
+                let Some(next) = order.next(position, block) else { break };
+                let target = &mut x[order.node(next)];
+                *target = subtract(w, here, *target);
+            }
+            x[order.node(position)] = if self.from_both_ends {
+                multiply(&panel[0], here)
+            } else {
+                solve_pivots(&panel[0], &self.reciprocal[position], here)
+            };
+        }
+        let right = self.blocks - 1;
+        for position in positions.iter().rev().map(|position| *position as usize) {
+            let mut here = x[order.node(position)];
+            for (block, w) in self.transposed[position * right..(position + 1) * right].iter().enumerate() {
+                let Some(next) = order.next(position, block + 1) else { break };
                 here = subtract(w, x[order.node(next)], here);
             }
             x[order.node(position)] = here;
