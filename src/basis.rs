@@ -22,6 +22,7 @@ mod cells;
 mod discretization;
 mod double_double;
 mod error;
+mod even;
 mod interpolation;
 mod kernel;
 mod lu;
@@ -40,6 +41,7 @@ pub use table::{BasisTable, Cell};
 
 use cache::{Request, Tables};
 use cells::{Supports, distinct_cells};
+use even::Even;
 use interpolation::{Interpolation, Quality, Wanted};
 use rpim::{Interpolant, Precisions};
 
@@ -78,8 +80,26 @@ enum Shapes {
     Rpim {
         interpolation: Interpolation,
         /// Per geometry: its solved shape functions.
-        shapes: Vec<Interpolant>,
+        shapes: Vec<Solved>,
     },
+}
+
+/// The shape functions of a cell.
+#[derive(Debug)]
+enum Solved {
+    /// Of evenly spaced nodes, which share them with all others.
+    Even(Even),
+    /// Of others.
+    Uneven(Interpolant),
+}
+
+impl Solved {
+    fn quality(&self) -> Quality {
+        match self {
+            Self::Even(even) => even.quality(),
+            Self::Uneven(shape) => shape.quality,
+        }
+    }
 }
 
 /// How well the shape functions satisfy the conditions that define them, over all cells.
@@ -169,9 +189,13 @@ impl Basis {
             let cell = cell as usize;
             let here = supports.of(cell);
             let place = rpim::place(&nodes, here.clone(), cell);
-            let shape = Interpolant::solve(&interpolation, place, &mut precisions)
-                .map_err(|quality| ill_conditioned(cell, here.start, place.nodes, kernel, quality))?;
-            shapes.push(shape);
+            let shape = if even::is_even(place.nodes, length / spacings as f64) {
+                Even::find(&interpolation, here.len(), place.left, &mut precisions).map(Solved::Even)
+            } else {
+                Interpolant::solve(&interpolation, place, &mut precisions).map(Solved::Uneven)
+            };
+            let failed = |quality| ill_conditioned(cell, here.start, place.nodes, kernel, quality);
+            shapes.push(shape.map_err(failed)?);
         }
         let shapes = Shapes::Rpim { interpolation, shapes };
         let width = 2 * widest;
@@ -383,7 +407,7 @@ impl Basis {
             }
             Shapes::Rpim { shapes, .. } => {
                 let start = Defects { distinct_cells: shapes.len(), ..Defects::default() };
-                shapes.iter().map(|shape| shape.quality).fold(start, |worst, cell| Defects {
+                shapes.iter().map(Solved::quality).fold(start, |worst, cell| Defects {
                     kronecker: worst.kronecker.max(cell.kronecker),
                     reproduction: worst.reproduction.max(cell.reproduction),
                     estimated_error: worst.estimated_error.max(cell.error),
@@ -431,7 +455,10 @@ impl Basis {
                 let place = rpim::place(&self.nodes, here, solved);
                 if let Some(rows) = rows.get_mut(padding..) {
                     let wanted = Wanted { xi, orders, stride: self.width };
-                    shape.rows(interpolation, place, precisions, wanted, rows);
+                    match shape {
+                        Solved::Even(even) => even.rows(precisions, wanted, rows),
+                        Solved::Uneven(shape) => shape.rows(interpolation, place, precisions, wanted, rows),
+                    }
                 }
             }
         }
