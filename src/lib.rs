@@ -44,7 +44,7 @@
 //! | module | subject | imports |
 //! |---|---|---|
 //! | `lanes` | four numbers side by side, multiply–add | – |
-//! | `linear` | block-banded LDLᵀ, real and complex; banded LU, also with constraint rows; bordered sparse LU; inertia | `lanes` |
+//! | `linear` | block-banded LDLᵀ, real and complex, also with rows of neighbouring nodes; banded LU, also with constraint rows; bordered sparse LU; inertia | `lanes` |
 //! | `numeric` | Gauss' rules with few points, cubic splines, formulas | – |
 //! | [`centreline`] | stress-free curves | `numeric` |
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | – |

@@ -145,7 +145,7 @@ proptest! {
         }
         let system = system(&model(beams, supports));
         let ((k, m), border, held) = (matrices(&system), system.border(0.0, system.reference()), system.fixed());
-        let pencil = Pencil { a: &k, b: &m, border: &border, fixed: &held };
+        let pencil = Pencil { a: &k, b: &m, border: &border, fixed: held };
         let found: [Pairs; 2] =
             [dense::largest_reciprocals(&pencil, 8), lanczos::largest_reciprocals(&pencil, 8)]
                 .map(|pairs| pairs.expect("a stable state"));
