@@ -4,7 +4,8 @@
 //! interrupted: the file holds the integrator's data that are carried from step to step, in decimal
 //! digits that give back the same numbers. Where the end of a run, or an event, cut a step short,
 //! these data are saved as they were before this step, which is then taken once more in full;
-//! results that the run has reported already are not reported again.
+//! results that the run has reported already are not reported again. Where an expression of time acts,
+//! it goes on to its accuracy: where steps end depends on how long the expression is looked at.
 //!
 //! Another scene may start from the state too, with other loads, supports or another integrator: a
 //! motion at rest in the equilibrium that a static run found, or a static run anywhere. Its beams

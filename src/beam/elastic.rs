@@ -101,6 +101,15 @@ impl Elastic {
         (0..self.strain.len() - 1).map(|piece| self.slope(piece)).fold(0.0, f64::max)
     }
 
+    /// The stiffnesses on both sides of a corner at `strain`, or within `near` of its width.
+    pub fn corner(&self, strain: f64, near: f64) -> Option<[f64; 2]> {
+        let [first, last] = self.ends();
+        let point = self.strain.iter().position(|point| (point - strain).abs() <= near * (last - first))?;
+        let inner = (1..self.strain.len() - 1).contains(&point);
+        let sides = inner.then(|| [self.slope(point - 1), self.slope(point)])?;
+        ((sides[1] - sides[0]).abs() > near * self.stiffness()).then_some(sides)
+    }
+
     /// The first and the last strain that it knows.
     pub fn ends(&self) -> [f64; 2] {
         [self.strain[0], self.strain[self.strain.len() - 1]]

@@ -1,4 +1,4 @@
-//! Warnings on strains beyond the tables of elastic laws.
+//! Warnings on strains beyond the tables of elastic laws, and at their corners.
 
 use crate::model::Model;
 use crate::results::Shape;
@@ -61,4 +61,33 @@ impl Reach {
             })
         })
     }
+}
+
+/// Distance from a corner of a law, relative to the width of its table, that counts as none.
+const CORNER: f64 = 1e-9;
+
+/// Warnings on beams in the state `now` that are at corners of their laws, of which a linear
+/// solution about the state takes one side only; `free` is the stress-free state.
+pub(super) fn at_corners(model: &Model, now: &[Shape], free: &[Shape]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (beam, (now, free)) in model.beams.iter().zip(now.iter().zip(free)) {
+        let bend = now.curvature.iter().zip(&free.curvature).map(|(now, free)| now - free).collect();
+        let laws = [
+            (&beam.section.axial_law, now.strain.clone(), "axial strain", "axial_law"),
+            (&beam.section.bending_law, bend, "curvature", "bending_law"),
+        ];
+        for (law, strains, what, key) in laws {
+            let Some(law) = law else { continue };
+            // A single place, such as a free end, resists nothing by itself.
+            let corner = |strain: f64| law.corner(strain, CORNER);
+            let along = strains.windows(2).find_map(|pair| corner(pair[0]).and(corner(pair[1])));
+            let Some([left, right]) = along else { continue };
+            warnings.push(format!(
+                "the {what} of beam `{}` is at a corner of its `{key}`, where its stiffness is {left:.4e} on one side and {right:.4e} on the other: \
+                 a linear solution about this state takes one of both; give the table no corner there, or load the beam before",
+                beam.name
+            ));
+        }
+    }
+    warnings
 }

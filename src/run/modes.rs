@@ -1,5 +1,6 @@
 //! Vibrations and critical loads of a model.
 
+use super::laws::at_corners;
 use super::sampler::Sampler;
 use super::start::Start;
 use super::{Options, RunError, Solve, Stopwatch, Watch, memory, needs, timed};
@@ -122,6 +123,7 @@ impl Sampler<'_> {
         }
         let about = if load == 0.0 { "the stress-free state" } else { "the equilibrium under all loads" };
         run.settings.push(("vibrations about".into(), about.into()));
+        run.warnings.extend(at_corners(self.model, &equilibrium.last, &run.undeformed));
         let modes = modal::solve(self.system, load, x, variables, count)?;
         run.statistics.factorizations += modes.factorizations;
         if let Some((number, change)) = modes.unsure.filter(|(_, change)| *change > UNSURE) {
@@ -145,6 +147,8 @@ impl Sampler<'_> {
         unloaded.last = self.unloaded();
         unloaded.run.statistics.factorizations = modes.factorizations;
         unloaded.run.warnings.extend(beyond_the_linear(modes));
+        let corners = at_corners(self.model, &unloaded.last, &unloaded.run.undeformed);
+        unloaded.run.warnings.extend(corners);
         let reference = self.system.reference();
         let mode = |(load_factor, mode): (&f64, &Vec<f64>)| {
             let largest = nodes(mode).map(|node| node.shift()).fold(0.0, f64::max);

@@ -121,6 +121,40 @@ fn a_law_that_is_left_is_told() {
     assert_eq!(said(100.0), "[]");
 }
 
+/// Found by the fuzzer: about a state at a corner of a law, round-off chose between two stiffnesses
+/// for the frequencies of a scene and of its mirror image, without a word.
+#[test]
+fn a_linear_solution_at_a_corner_of_a_law_is_told() {
+    let warnings = |law: &str, force: f64, analysis: &str| {
+        let text = format!(
+            "beam.bar = {{ start = [0, 0], end = [1, 0], {law}, mass_per_length = 1, basis.ancf.elements = 4 }}
+            support = [{{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }}]
+            effect.force = [{{ beam = 'bar', at = 'end', value = [-1e-3, {force}] }}]
+            analysis.{analysis}\n"
+        );
+        let found = Written::of(&text);
+        let summary = std::fs::read_to_string(found.path("summary.json")).expect("a summary");
+        let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+        summary["warnings"].to_string()
+    };
+    let bend = "axial_stiffness = 1e4, bending_law = { curvature = [-9, 0, 9], moment = [-9, 0, 18] }";
+    let straight = "axial_stiffness = 1e4, bending_law = { curvature = [-9, -1, 9], moment = [-9, -1, 9] }";
+    let axial = "bending_stiffness = 1, axial_law = { strain = [-0.1, 0, 0.1], force = [-1e3, 0, 2e3] }";
+    let about = "modal = { count = 1, about = 'equilibrium' }";
+    for analysis in [about, "buckling.count = 1"] {
+        let said = warnings(bend, 0.0, analysis);
+        let corner = "the curvature of beam `bar` is at a corner of its `bending_law`, where its stiffness is 1.0000e0 on one side and 2.0000e0";
+        assert!(said.contains(corner), "{said}");
+        let said = warnings(straight, 0.0, analysis);
+        assert_eq!(said, "[]");
+    }
+    // Bent, but for its free end.
+    assert_eq!(warnings(bend, 0.1, about), "[]");
+    let said = warnings(axial, 0.0, "buckling.count = 1");
+    assert!(said.contains("the axial strain of beam `bar` is at a corner of its `axial_law`"), "{said}");
+    assert_eq!(warnings(axial, 0.0, about), "[]");
+}
+
 #[test]
 fn what_is_no_elastic_law_is_refused_with_its_place() {
     let refused = |keys: &str| {
