@@ -78,7 +78,10 @@ fn at_end(scene: &Table, seen: &Seen, beam: &str, end: &str) -> Acts {
         .flat_map(|joint| ["first", "second"].map(|key| joint.get(key).and_then(Value::as_table)))
         .flatten()
         .any(here);
-    if acts || travels || joined {
+    // A tendon pulls at the sections at which it ends.
+    let pulled = settings::items(scene, &["effect", "tendon"])
+        .any(|tendon| tendon.get("beam").and_then(Value::as_str) == Some(beam));
+    if acts || travels || joined || pulled {
         return Acts::More;
     }
     let supports: Vec<usize> =

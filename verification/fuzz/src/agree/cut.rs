@@ -41,7 +41,10 @@ pub fn cut(scene: &Table) -> Option<Table> {
     let varies = quantities.into_iter().any(|(_, value)| value.is_table());
     let layered = beam.get("section").is_some_and(|section| section.to_string().contains("table"));
     let effects = scene.get("effect").and_then(Value::as_table);
-    let on_a_stretch = |item: &Value| item.get("from").is_some() || item.get("to").is_some();
+    let on_a_stretch = |item: &Value| {
+        let varies = item.get("offset").is_some_and(Value::is_table);
+        item.get("from").is_some() || item.get("to").is_some() || varies
+    };
     let mut items = effects.into_iter().flatten().filter_map(|(_, list)| list.as_array()).flatten();
     if varies || layered || items.any(on_a_stretch) {
         return None;

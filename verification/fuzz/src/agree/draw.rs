@@ -38,8 +38,9 @@ struct Drawn {
     bends: bool,
     /// Whether it has an elastic law in place of a stiffness.
     by_law: bool,
-    /// Whether the shape of its section is known.
+    /// Whether its section has a shape, and layers.
     shaped: bool,
+    layered: bool,
 }
 
 /// The kind of analysis.

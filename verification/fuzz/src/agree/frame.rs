@@ -3,7 +3,7 @@
 
 use toml::{Table, Value};
 
-use super::quantity::{Dimension, Nature, axes, nature};
+use super::quantity::{Dimension, Nature, axes, nature, watched};
 use super::{formula, settings};
 
 /// How natural coordinates become those of a scene: mirrored first, then turned, stretched and
@@ -95,6 +95,15 @@ impl Frame {
         }
         if path == "support" {
             self.fixed(table);
+        }
+        if path == "analysis.dynamic.event" {
+            self.event(table);
+        }
+        // Of the two layers that are drawn.
+        if let (true, Some(Value::Integer(layer))) =
+            (self.mirrored && path == "effect.actuation", table.get_mut("layer"))
+        {
+            *layer = 3 - *layer;
         }
         // Layers are listed from the right face to the left one, which a mirror exchanges.
         if let (true, Some(Value::Array(layers))) =
@@ -270,16 +279,63 @@ impl Frame {
         place[axis] = 1.0;
         let turned = self.direction(place);
         let axis = usize::from(turned[1].abs() > 0.5);
-        let place = self.units[0] * (turned[axis] * value + self.shift[axis]);
+        let place = if keys == ["vx", "vy"] {
+            self.unit([1, 0, -1]) * turned[axis] * value
+        } else {
+            self.units[0] * (turned[axis] * value + self.shift[axis])
+        };
         table.insert(keys[axis].to_owned(), Value::Float(place));
-        if turned[axis] < 0.0
-            && let Some(Value::String(way)) = table.get_mut("crossing")
-        {
-            *way = match way.as_str() {
-                "rising" => "falling".to_owned(),
-                "falling" => "rising".to_owned(),
-                other => other.to_owned(),
-            };
+        if turned[axis] < 0.0 {
+            exchange(table, "crossing", ["rising", "falling"]);
+        }
+    }
+
+    /// Converts what an event watches.
+    fn event(&self, event: &mut Table) {
+        for keys in [["x", "y"], ["vx", "vy"]] {
+            let both = keys.map(|key| event.remove(key));
+            if both.iter().any(Option::is_some) {
+                self.crossing(event, keys, both);
+            }
+        }
+        let mut flips = false;
+        for (key, value) in event.iter_mut() {
+            let (Some((dimension, turns)), Value::Float(value)) = (watched(key), value) else { continue };
+            if key == "angle" {
+                let turned = self.angle() + self.sign() * *value;
+                *value = turned.sin().atan2(turned.cos());
+            } else {
+                *value *= self.unit(dimension) * if turns { self.sign() } else { 1.0 };
+            }
+            flips |= turns && self.mirrored;
+        }
+        if flips {
+            exchange(event, "crossing", ["rising", "falling"]);
+        }
+        if self.mirrored {
+            rename(event, ["stress_bottom", "stress_top"]);
+        }
+        let mut turns_back = false;
+        for key in ["maximum", "minimum"] {
+            let Some(Value::String(name)) = event.get_mut(key) else { continue };
+            for axes in [["x", "y"], ["vx", "vy"]] {
+                if let Some(axis) = axes.iter().position(|axis| *axis == name.as_str()) {
+                    let mut place = [0.0; 2];
+                    place[axis] = 1.0;
+                    let turned = self.direction(place);
+                    let axis = usize::from(turned[1].abs() > 0.5);
+                    *name = axes[axis].to_owned();
+                    turns_back = turned[axis] < 0.0;
+                    break;
+                }
+            }
+            turns_back |= self.mirrored && watched(name).is_some_and(|(_, turns)| turns);
+            if self.mirrored {
+                exchange(event, key, ["stress_bottom", "stress_top"]);
+            }
+        }
+        if turns_back {
+            rename(event, ["maximum", "minimum"]);
         }
     }
 
@@ -296,6 +352,23 @@ impl Frame {
                 _ => continue,
             };
         }
+    }
+}
+
+/// Replaces one of two words by the other.
+fn exchange(table: &mut Table, key: &str, words: [&str; 2]) {
+    if let Some(Value::String(word)) = table.get_mut(key)
+        && let Some(found) = words.iter().position(|other| *other == word.as_str())
+    {
+        *word = words[1 - found].to_owned();
+    }
+}
+
+/// Exchanges two keys.
+fn rename(table: &mut Table, keys: [&str; 2]) {
+    let values = keys.map(|key| table.remove(key));
+    for (key, value) in keys.into_iter().rev().zip(values) {
+        table.extend(value.map(|value| (key.to_owned(), value)));
     }
 }
 

@@ -123,11 +123,10 @@ pub fn nature(path: &str) -> Option<Nature> {
         "effect.foundation.stiffness" | "effect.contact.stiffness" | "effect.contact.friction.stiffness" => {
             Scalar(STRESS)
         }
-        "effect.actuation.strain" => Scalar(NUMBER),
-        "effect.actuation.curvature" => Turning([-1, 0, 0]),
         "effect.tendon.offset" => Turning(LENGTH),
         "effect.tendon.tension" => Scalar(FORCE),
-        "analysis.dynamic.event.speed" => Scalar(VELOCITY),
+        "effect.actuation.strain" => Scalar(NUMBER),
+        "effect.actuation.curvature" => Turning([-1, 0, 0]),
         "effect.drag.normal" | "effect.drag.tangential" => Scalar([-2, 1, 0]),
         "effect.drag.viscous_normal" | "effect.drag.viscous_tangential" => Scalar([-1, 1, -1]),
         "effect.drag.flow" | "initial_velocity.value" => Vector(VELOCITY),
@@ -143,14 +142,28 @@ pub fn nature(path: &str) -> Option<Nature> {
     })
 }
 
+/// What becomes of a value that an event watches at a probe: its dimension, and whether a mirror
+/// changes its sign.
+pub fn watched(quantity: &str) -> Option<(Dimension, bool)> {
+    Some(match quantity {
+        "speed" => (VELOCITY, false),
+        "strain" => (NUMBER, false),
+        "axial_force" => (FORCE, false),
+        "stress_bottom" | "stress_top" => (STRESS, false),
+        "curvature" => ([-1, 0, 0], true),
+        "shear_force" => (FORCE, true),
+        "bending_moment" => (MOMENT, true),
+        "angle" => (NUMBER, true),
+        _ => return None,
+    })
+}
+
 /// Describes tables with one key for each axis: the keys, the dimension, and whether they are
 /// places rather than differences.
 pub fn axes(path: &str) -> Option<([&'static str; 2], Dimension, bool)> {
     match path {
         "support.move" => Some((["x", "y"], LENGTH, false)),
-        "analysis.dynamic.event" | "analysis.static.arc_length.until_probe" => {
-            Some((["x", "y"], LENGTH, true))
-        }
+        "analysis.static.arc_length.until_probe" => Some((["x", "y"], LENGTH, true)),
         "initial_velocity.polynomial" | "initial_velocity.table" => Some((["vx", "vy"], VELOCITY, false)),
         _ => None,
     }

@@ -194,8 +194,13 @@ pub fn two_files(scene: &Table, rng: &mut Rng) -> Option<[Table; 2]> {
     let leaves = |i: &usize| matches!(&kinds[i - 1][..], "static" | "dynamic");
     let places: Vec<usize> = (1..kinds.len()).filter(leaves).collect();
     let at = *places.get(rng.usize(0..places.len().max(1)))?;
-    // What only frequencies follow is not told where it begins.
     let mut rest = part(scene, at..kinds.len())?;
+    // Frequencies after a stage are those about an equilibrium.
+    for modal in
+        settings::analyses_mut(&mut rest).into_iter().filter_map(|analysis| analysis.get_mut("modal"))
+    {
+        modal.as_table_mut()?.insert("about".into(), "equilibrium".into());
+    }
     if kinds[..at].iter().any(|kind| kind == "dynamic") {
         rest.remove("initial_velocity");
     }

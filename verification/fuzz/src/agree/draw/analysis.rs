@@ -157,21 +157,69 @@ impl Draw<'_> {
             }
             table.insert(kind.into(), settings.into());
         }
-        if self.chance(0.12) {
-            let mut event = self.coordinate(0.05);
-            if self.chance(0.3) {
-                event.remove("x");
-                event.remove("y");
-                event.insert("speed".into(), self.log(0.05, 1.0).into());
-            }
-            if self.chance(0.6) {
-                event.insert("crossing".into(), self.pick(&["rising", "falling", "any"]).into());
-            }
-            if self.chance(0.3) {
-                event.insert("stop".into(), true.into());
-            }
-            table.insert("event".into(), Value::Array(vec![event.into()]));
+        if self.chance(0.3) {
+            let count = self.pick(&[1, 2, 3]);
+            let events = (0..count).map(|_| self.event().into()).collect();
+            table.insert("event".into(), Value::Array(events));
         }
         table
+    }
+
+    /// Something to watch for at the first probe.
+    fn event(&mut self) -> Table {
+        let [x, y] = self.beams[0].curve.tangent(self.beams[0].length);
+        let (heading, velocity) = (y.atan2(x), 1.0 / self.duration.max(0.1));
+        let value = match self.rng.u8(0..16) {
+            0..2 => None,
+            2 => Some((self.pick(&["vx", "vy"]), self.signed(0.01, 1.0) * velocity)),
+            3 => Some(("speed", self.log(0.01, 1.0) * velocity)),
+            4 => Some(("strain", self.signed(1e-6, 1e-3))),
+            5 => Some(("axial_force", self.signed(0.01, 5.0))),
+            // Near to half a turn the angle of a turned scene would begin on the other side.
+            6 if (0.4..1.17).contains(&heading.rem_euclid(std::f64::consts::FRAC_PI_2)) => {
+                Some(("angle", heading + self.signed(0.01, 0.3)))
+            }
+            7 if self.beams[0].bends => Some(("curvature", self.signed(0.05, 3.0))),
+            8 if self.beams[0].bends => Some(("shear_force", self.signed(0.01, 5.0))),
+            9 if self.beams[0].bends => Some(("bending_moment", self.signed(0.01, 2.0))),
+            10..14 => {
+                let key = self.pick(&["maximum", "minimum"]);
+                let mut names = vec!["x", "y", "vx", "vy", "speed", "angle", "strain", "axial_force"];
+                if self.beams[0].bends {
+                    names.extend(["curvature", "shear_force", "bending_moment"]);
+                }
+                if self.beams[0].shaped {
+                    names.extend(["stress_bottom", "stress_top"]);
+                }
+                let mut event = Table::new();
+                event.insert("probe".into(), "p0".into());
+                event.insert(key.into(), self.pick(&names).into());
+                return self.perhaps_stop(event);
+            }
+            _ if self.beams[0].shaped => {
+                Some((self.pick(&["stress_bottom", "stress_top"]), self.signed(0.1, 100.0)))
+            }
+            _ => None,
+        };
+        let mut event = match value {
+            None => self.coordinate(0.05),
+            Some((key, value)) => {
+                let mut event = Table::new();
+                event.insert("probe".into(), "p0".into());
+                event.insert(key.into(), value.into());
+                event
+            }
+        };
+        if self.chance(0.6) {
+            event.insert("crossing".into(), self.pick(&["rising", "falling", "any"]).into());
+        }
+        self.perhaps_stop(event)
+    }
+
+    fn perhaps_stop(&mut self, mut event: Table) -> Table {
+        if self.chance(0.12) {
+            event.insert("stop".into(), true.into());
+        }
+        event
     }
 }

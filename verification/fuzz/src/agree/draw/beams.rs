@@ -76,6 +76,8 @@ impl Draw<'_> {
         let starts = if count == 1 { self.initial_shape(&mut table, &curve, axial) } else { None };
         let starts = starts.unwrap_or_else(|| curve.clone());
         let by_law = ["axial_law", "bending_law"].iter().any(|key| table.contains_key(*key));
+        let shaped = table.contains_key("section");
+        let layered = settings::get(&table, &["section", "layers"]).is_some();
         self.beams.push(Drawn {
             name: name.to_owned(),
             curve,
@@ -85,7 +87,8 @@ impl Draw<'_> {
             axial,
             bends,
             by_law,
-            shaped: table.contains_key("section"),
+            shaped,
+            layered,
         });
         table
     }

@@ -23,7 +23,7 @@ impl Draw<'_> {
         self.masses();
         self.foundation();
         self.actuation();
-        self.tendon();
+        self.tendon(size);
         self.drag();
         self.moving_force(size);
         self.electrostatic();
@@ -205,7 +205,7 @@ impl Draw<'_> {
         }
         let (beam, mut table) = self.of_beam();
         let drawn = &self.beams[beam];
-        let (stretches, bends) = (drawn.axial.is_some(), drawn.bends);
+        let (stretches, bends, layered) = (drawn.axial.is_some(), drawn.bends, drawn.layered);
         if drawn.by_law {
             return;
         }
@@ -215,7 +215,11 @@ impl Draw<'_> {
         if !stretches && !bends {
             return;
         }
-        if bends && (table.len() == 1 || self.chance(0.5)) {
+        let layer = layered && table.contains_key("strain") && self.chance(0.8);
+        if layer {
+            table.insert("layer".into(), self.rng.i64(1..3).into());
+        }
+        if bends && !layer && (table.len() == 1 || self.chance(0.5)) {
             table.insert("curvature".into(), self.signed(1e-2, 5.0).into());
         }
         self.perhaps_in_time(&mut table, 0.5);
@@ -223,17 +227,28 @@ impl Draw<'_> {
         self.push(&["effect", "actuation"], table);
     }
 
-    fn tendon(&mut self) {
-        if !self.chance(0.08) {
+    /// A tendon along a beam, beside its centreline if nothing says where its faces are.
+    fn tendon(&mut self, size: f64) {
+        if !self.chance(0.07) {
             return;
         }
         let (beam, mut table) = self.of_beam();
-        let drawn = &self.beams[beam];
-        // A string takes none beside its centreline; sections of a given shape may be thin.
-        let aside = drawn.bends && !drawn.shaped;
-        let offset = if aside && self.chance(0.8) { self.signed(1e-3, 0.1) } else { 0.0 };
-        table.insert("offset".into(), offset.into());
-        table.insert("tension".into(), self.log(0.05, 4.0).into());
+        let (length, beside) = (self.beams[beam].length, self.beams[beam].bends && !self.beams[beam].shaped);
+        let (a, b, c) = (self.even(-0.06, 0.06), self.even(-0.06, 0.06), self.even(-0.06, 0.06));
+        let offset = if !beside {
+            0.0.into()
+        } else if self.chance(0.3) {
+            let mut places = Table::new();
+            places.insert("s".into(), list([0.0, 0.5 * length, length]));
+            places.insert("value".into(), list([a, b, c]));
+            let mut varying = Table::new();
+            varying.insert("table".into(), places.into());
+            Value::Table(varying)
+        } else {
+            a.into()
+        };
+        table.insert("offset".into(), offset);
+        table.insert("tension".into(), self.log(0.1 * size, 5.0 * size).into());
         self.perhaps_in_time(&mut table, 0.4);
         self.perhaps_stretch(&mut table);
         self.push(&["effect", "tendon"], table);
@@ -320,9 +335,6 @@ impl Draw<'_> {
         inner.extend(obstacle.into_iter().map(|(key, value)| (key.to_owned(), value)));
         table.insert(kind.into(), inner.into());
         table.insert("stiffness".into(), self.log(10.0, 1e5).into());
-        if self.chance(0.3) {
-            self.perhaps_stretch(&mut table);
-        }
         if thickness > 0.0 {
             table.insert("half_thickness".into(), thickness.into());
         }
@@ -334,6 +346,7 @@ impl Draw<'_> {
             }
             table.insert("friction".into(), friction.into());
         }
+        self.perhaps_stretch(&mut table);
         self.push(&["effect", "contact"], table);
     }
 
