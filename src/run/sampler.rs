@@ -49,7 +49,7 @@ const LOOKED_AT: usize = 400;
 
 /// Everything needed to evaluate states of one system.
 pub(super) struct Sampler<'a> {
-    model: &'a Model,
+    pub(super) model: &'a Model,
     pub(super) system: &'a System,
     shapes: Vec<View>,
     probes: Vec<ProbePoint>,

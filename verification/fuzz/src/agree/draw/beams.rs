@@ -51,7 +51,7 @@ impl Draw<'_> {
         let bends = like.as_ref().map_or_else(
             // No path by arc length leads away from a string without a load.
             || axial.is_none() || self.kind == Kind::ArcLength || !self.chance(0.08),
-            |like| settings::bends(like),
+            settings::bends,
         );
         let mut table = geometry;
         if let Some(like) = like {

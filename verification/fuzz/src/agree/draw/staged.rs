@@ -7,9 +7,6 @@ use super::{Draw, Kind};
 /// The names of the stages, in order.
 const NAMES: [&str; 4] = ["one", "two", "three", "four"];
 
-/// Keys of a motion that each of its parts has.
-const STOPS: &str = "event";
-
 impl Draw<'_> {
     /// Makes the analysis the last one of several stages, and lets supports, joints and effects come
     /// and go.
@@ -32,7 +29,7 @@ impl Draw<'_> {
                         && let Value::Table(table) = &mut given
                     {
                         table.remove("arc_length");
-                        table.remove(STOPS);
+                        table.remove("event");
                     }
                     of(kind, given)
                 }
