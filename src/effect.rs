@@ -44,7 +44,7 @@ pub use moment::{Couple, Moment};
 pub use moving::{MovingForce, Travelling};
 pub use spring::{Dashpot, GroundSpring, Spring, Strut, Torsion, TorsionDashpot, TorsionSpring};
 pub use stretch::{BeamStretch, Engineering, Green, Strain, Stretch};
-pub use tendon::{Pull, Tendon};
+pub use tendon::{Detour, Tendon};
 
 use crate::assembly::Part;
 

@@ -1,6 +1,6 @@
 //! The pull of a tendon that runs along a beam.
 
-use super::{Engineering, Strain, bend};
+use super::{Engineering, PreStrain, Strain, bend};
 use crate::assembly::{
     Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part, TendonPath,
 };
@@ -41,21 +41,24 @@ impl Part for Tendon {
         if beam.section.bending_stiffness.is_none() && !offset.is_zero() {
             return Err(BuildError::missing(beam, "bending stiffness", "a tendon beside the centreline"));
         }
+        let law = self.law.as_ref();
         let one = Along::Constant(1.0);
         let whole = self.is_whole(assembly.discretized(self.beam).basis.length());
         let acting = if whole { one } else { one.within(*ends) };
-        // The factor has the kinks of the offset too, so that cells are divided there.
-        let acting = acting.plus(&offset.times(0.0));
-        // The points at which the beam's own axial force acts: on the centreline the tendon's tension
-        // then takes exactly from the beam's stiffness against bending what its thrust gives.
+        // T ∫ |r'| ds at the points at which the beam's own axial force acts: on the centreline the tendon
+        // then takes exactly from the resistance to bending what its thrust gives.
         let rule = match beam.section.axial_stiffness {
             Some(_) => beam.gauss_points.stretch_rule(),
             None => assembly.mass_rule(self.beam),
         };
-        let (_, extent) = Extent::along(self.beam, rule, &acting);
+        let (factor, extent) = Extent::along(self.beam, rule, &acting);
+        let pull = PreStrain::<Engineering>::new(-self.path.tension * factor);
+        assembly.load(Kind::Tendon, extent, law, |_| pull)?;
+        // The factor has the kinks of the offset too, so that cells are divided there.
+        let acting = acting.plus(&offset.times(0.0));
+        let (_, extent) = Extent::along(self.beam, assembly.mass_rule(self.beam), &acting);
         let places = assembly.places(Kind::Tendon, &extent)?;
-        let law = self.law.as_ref();
-        assembly.load(Kind::Tendon, extent, law, |z| Pull::new(Arc::new(self.path.clone()), &places, &z))
+        assembly.load(Kind::Tendon, extent, law, |z| Detour::new(Arc::new(self.path.clone()), &places, &z))
     }
 
     fn jumps(&self) -> Vec<Place> {
@@ -67,17 +70,18 @@ impl Part for Tendon {
     }
 }
 
-/// The density of a tendon's pull: W = T (|p'| − |p'|₀), relative to the stress-free shape.
+/// What the way of a tendon beside the centreline adds to its potential: the density
+/// W = T (|p'| − |r'|), relative to the stress-free shape.
 #[derive(Clone, Debug)]
-pub struct Pull {
+pub struct Detour {
     path: Arc<TendonPath>,
     /// e and e' at each quadrature point.
     offsets: Vec<[f64; 2]>,
-    /// |p'|₀ at each quadrature point.
+    /// |p'| − |r'| of the stress-free shape at each quadrature point.
     start: Vec<f64>,
 }
 
-impl Pull {
+impl Detour {
     /// `places` holds the arc length of each quadrature point and that of the middle of its cell
     /// \[m\], `reference` (r', r'') of the stress-free shape there.
     pub fn new(path: Arc<TendonPath>, places: &[[f64; 2]], reference: &[[Vector2<f64>; 2]]) -> Self {
@@ -85,23 +89,25 @@ impl Pull {
             .iter()
             .map(|[s, inside]| [path.offset.at(*s, *inside), path.offset.slope(*s, *inside)])
             .collect();
-        let start = offsets.iter().zip(reference).map(|(offset, z)| length(*offset, z).0).collect();
+        let start = offsets.iter().zip(reference).map(|(offset, z)| detour(*offset, z).0).collect();
         Self { path, offsets, start }
     }
 }
 
-/// |p'|, and its first two derivatives by a = |r'| − e κ.
-fn length([offset, slope]: [f64; 2], [first, second]: &Gradient<2>) -> (f64, f64, f64) {
-    let along = first.norm() - offset * bend::curvature(first, second);
+/// |p'| − |r'|, and the first two derivatives of |p'| by a = |r'| − e κ.
+fn detour([offset, slope]: [f64; 2], [first, second]: &Gradient<2>) -> (f64, f64, f64) {
+    let bent = -offset * bend::curvature(first, second);
     if slope == 0.0 {
-        return (along, 1.0, 0.0);
+        return (bent, 1.0, 0.0);
     }
+    let stretch = first.norm();
+    let along = stretch + bent;
     let length = along.hypot(slope);
     let share = slope / length;
-    (length, along / length, share * share / length)
+    (length - stretch, along / length, share * share / length)
 }
 
-impl Density<2> for Pull {
+impl Density<2> for Detour {
     const ORDERS: [usize; 2] = [1, 2];
     const COMPILED_FOR: CompiledFor = CompiledFor::None;
 
@@ -110,15 +116,16 @@ impl Density<2> for Pull {
     }
 
     fn energy(&self, point: usize, z: &Gradient<2>) -> f64 {
-        self.path.tension * (length(self.offsets[point], z).0 - self.start[point])
+        self.path.tension * (detour(self.offsets[point], z).0 - self.start[point])
     }
 
     fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
-        let (_, by_a, _) = length(self.offsets[point], z);
+        let (_, by_a, _) = detour(self.offsets[point], z);
         let (_, tangent) = Engineering::first(z[0].into());
         let [by_first, by_second] = bend::gradient(z);
-        let (force, offset) = (self.path.tension * by_a, self.offsets[point][0]);
-        [(Vector2::from(tangent) - by_first * offset) * force, by_second * (-offset * force)]
+        let (tension, across) = (self.path.tension, -self.offsets[point][0] * by_a);
+        let along = Vector2::from(tangent) * (by_a - 1.0);
+        [(along + by_first * across) * tension, by_second * (across * tension)]
     }
 
     fn gradient_and_hessian(
@@ -128,18 +135,18 @@ impl Density<2> for Pull {
         _: &Gradient<2>,
         _: &Gradient<2>,
     ) -> (Gradient<2>, Hessian<2>) {
-        let (_, by_a, by_aa) = length(self.offsets[point], z);
+        let (_, by_a, by_aa) = detour(self.offsets[point], z);
         let (_, tangent, second) = Engineering::second(z[0].into());
         let ([by_first, by_second], [aa, ab]) = (bend::gradient(z), bend::hessian(z));
-        let offset = self.offsets[point][0];
-        let (force, stiffness) = (self.path.tension * by_a, self.path.tension * by_aa);
+        let (tension, offset) = (self.path.tension, self.offsets[point][0]);
+        let (along, across) = (tension * (by_a - 1.0), -offset * tension * by_a);
         let a = [Vector2::from(tangent) - by_first * offset, by_second * -offset];
-        let block = |m: usize, n: usize| a[m] * a[n].transpose() * stiffness;
-        let mixed = block(0, 1) - ab * (offset * force);
+        let block = |m: usize, n: usize| a[m] * a[n].transpose() * (tension * by_aa);
+        let mixed = block(0, 1) + ab * across;
         let hessian = [
-            [block(0, 0) + (lanes::matrix(second) - aa * offset) * force, mixed],
+            [block(0, 0) + lanes::matrix(second) * along + aa * across, mixed],
             [mixed.transpose(), block(1, 1)],
         ];
-        (a.map(|a| a * force), hessian)
+        (self.gradient(point, z), hessian)
     }
 }

@@ -71,9 +71,15 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     };
     let mut stiffness = tangent(0.0, None, &x[n..]);
     let ahead: Vec<f64> = rate.iter().map(|rate| FAR_AHEAD * rate).collect();
-    let mut geometric = tangent(FAR_AHEAD, Some(&ahead[..n]), &ahead[n..]);
-    geometric.add(-1.0, &stiffness);
-    geometric.scale(-1.0 / FAR_AHEAD);
+    let mut geometric_at = |load: f64| {
+        let mut geometric = tangent(load, Some(&ahead[..n]), &ahead[n..]);
+        geometric.add(-1.0, &stiffness);
+        geometric.scale(-1.0 / FAR_AHEAD);
+        geometric
+    };
+    // What loads that follow the beam add may cancel what the forces within it do, but for round-off.
+    let within = system.loads_have_tangents().then(|| geometric_at(0.0));
+    let mut geometric = geometric_at(FAR_AHEAD);
     system.supports().eliminate(0.0, &mut geometric);
     system.supports().clear_fixed(0.0, &mut geometric);
     system.supports().eliminate(0.0, &mut stiffness);
@@ -87,7 +93,8 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     // The standard deviation of 1/λ = φᵀ B φ, with φᵀ A φ = 1, due to the round-off of both
     // matrices.
     let known = |(reciprocal, shape): (&f64, &Vec<f64>)| {
-        let deviation = round_off(&geometric, shape) + reciprocal * round_off(&stiffness, shape);
+        let of_geometric = round_off(within.as_ref().unwrap_or(&geometric), shape);
+        let deviation = of_geometric + reciprocal * round_off(&stiffness, shape);
         *reciprocal > least.max(CERTAIN * deviation)
     };
     let real = pairs.reciprocals.iter().zip(&pairs.vectors).take_while(|pair| known(*pair)).count();

@@ -84,6 +84,11 @@ impl System {
         !self.terms.moving_loads.is_empty() || self.terms.loads.iter().any(|load| !load.has_potential())
     }
 
+    /// Whether any load depends on the state.
+    pub fn loads_have_tangents(&self) -> bool {
+        self.terms.loads.iter().any(|load| !load.effect.is_constant())
+    }
+
     /// Whether forces depend on velocities.
     pub fn is_damped(&self) -> bool {
         !self.terms.damping.is_empty()

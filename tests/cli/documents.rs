@@ -36,5 +36,8 @@ fn printed_scenes_run_as_printed() {
             }
         }
     }
-    assert_eq!(count, 8, "one scene in README, one each on motion, mechanisms and stages, four on sections");
+    assert_eq!(
+        count, 9,
+        "one scene in README, one each on motion and stages, two on mechanisms, four on sections"
+    );
 }

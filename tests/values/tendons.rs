@@ -146,13 +146,7 @@ fn a_tendon_on_the_centreline_presses_and_does_not_buckle() {
         near(with, without, 1e-3 * without, "frequency");
     }
     let text = hard("analysis.buckling.count = 1").replace("output.section_forces = true", "");
-    let scene = parse("scene.toml", &text).expect("a scene");
-    // What round-off leaves is beyond anything, and told.
-    if scene.model().solve(scene.analysis()).is_ok() {
-        let found = Written::of(&text);
-        assert!(found.column("load_factors.csv", "load_factor").iter().all(|factor| factor.abs() > 1e9));
-        assert_ne!(found.summary()["warnings"].to_string(), "[]");
-    }
+    assert_eq!(Written::of(&text).column("load_factors.csv", "load_factor"), [0.0; 0]);
 }
 
 /// In a motion a law multiplies the tension, and what the tendon puts in is what the finger has.
