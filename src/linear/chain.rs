@@ -422,12 +422,12 @@ impl<F: Four> Chain<F> {
                 next = far.added(unity, next);
                 far = F::ZERO;
             }
-            for r in 0..4 {
-                own = stage.x_a[r].subtracted(here[r], own);
-                next = stage.x_rest[0][r].subtracted(here[r], next);
-                rest = stage.x_rest[1][r].subtracted(here[r], rest);
+            for (r, x) in here.into_iter().enumerate() {
+                own = stage.x_a[r].subtracted(x, own);
+                next = stage.x_rest[0][r].subtracted(x, next);
+                rest = stage.x_rest[1][r].subtracted(x, rest);
                 if AUGMENTED {
-                    far = stage.x_rest[2][r].subtracted(here[r], far);
+                    far = stage.x_rest[2][r].subtracted(x, far);
                 }
             }
             let [a, b, ..] = own.numbers();
