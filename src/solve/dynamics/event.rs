@@ -3,8 +3,8 @@
 //! A position is linear in q, so that in a step it is one polynomial of time, the Hermite
 //! interpolation of the data at both ends: positions and velocities (cubic), and if known
 //! accelerations (quintic). Any other quantity is evaluated in states within the step, and is
-//! represented by polynomials of degree five on so many parts of the step that they err by less than
-//! [`CLOSE`]. The events are those of the polynomials ([`super::crossing`]).
+//! represented by polynomials of degree five, where it follows from the motion alone on so many parts
+//! of the step that they err by less than [`CLOSE`]. The events are those of the polynomials ([`super::crossing`]).
 
 use super::State;
 use super::crossing::{NEAR, Polynomial};
@@ -13,10 +13,8 @@ use super::motion::Balance;
 use crate::model::{Crossing, EventKind};
 use crate::system::View;
 
-/// Largest error of a polynomial, relative to the change of the quantity in the step: of one that
-/// follows from the motion, and of one that follows from forces, each of whose values costs as much
-/// as an iteration.
-const CLOSE: [f64; 2] = [1e-8, 1e-6];
+/// Largest error of a polynomial, relative to the change of the quantity in the step.
+const CLOSE: f64 = 1e-8;
 /// How often a step is halved at most to represent a quantity.
 const HALVINGS: u32 = 4;
 /// Changes of velocities, strains and forces below this part of the largest value so far are errors of
@@ -122,9 +120,11 @@ impl Driver<'_, '_> {
             let (positions, slopes) = (of(1.0, [&self.state.q, &new.q]), of(h, [&self.state.v, &new.v]));
             return vec![([0.0, 1.0], Polynomial::hermite(positions, slopes, halves))];
         }
-        let close = CLOSE[usize::from(matches!(watch.quantity, Quantity::OfForces(_)))];
+        // Accelerations are interpolated between the stages of a step, so that forces are smooth in it;
+        // and each of their values costs as much as an iteration.
+        let halvings = if matches!(watch.quantity, Quantity::OfForces(_)) { 0 } else { HALVINGS };
         let mut at = |x: f64| self.value(&watch.quantity, new, x, accelerations);
-        let (mut pieces, mut open) = (Vec::new(), vec![([0.0, 1.0], HALVINGS)]);
+        let (mut pieces, mut open) = (Vec::new(), vec![([0.0, 1.0], halvings)]);
         while let Some(([from, to], halvings)) = open.pop() {
             let place = |x: f64| from + x * (to - from);
             let values = Polynomial::PLACES.map(|x| at(place(x)));
@@ -132,7 +132,7 @@ impl Driver<'_, '_> {
             let (low, high) =
                 values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
             let size = low.abs().max(high.abs());
-            let close = (close * (high - low)).max(NEAR * size);
+            let close = (CLOSE * (high - low)).max(NEAR * size);
             let misses = |x: f64| (polynomial.at(x)[0] - at(place(x))).abs() > close;
             if halvings > 0 && size.is_finite() && BETWEEN.into_iter().any(misses) {
                 let middle = place(0.5);

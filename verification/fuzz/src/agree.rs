@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     /// The number of scenes ends the test, never the clock.
-    const SCENES: usize = 80;
+    const SCENES: usize = 60;
 
     #[test]
     fn equivalent_runs_of_drawn_scenes_agree() {

@@ -137,9 +137,15 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
     };
     let nodes: usize = scene.model().beams.iter().map(nodes).sum();
     let (mut steps, mut gave_up) = (0, false);
+    // Iterations of the stages before, and of this one.
+    let (mut before, mut now) = (0, 0);
     let observer = &mut |progress: &run::Progress| {
         steps += 1;
-        gave_up = steps > STEPS || progress.newton_iterations * nodes > WORK;
+        if progress.newton_iterations < now {
+            before += now;
+        }
+        now = progress.newton_iterations;
+        gave_up = steps > STEPS || (before + now) * nodes > WORK;
         if gave_up { Control::Stop } else { Control::Continue }
     };
     let options = run::Options { start: saved, observer: Some(observer), ..run::Options::default() };
