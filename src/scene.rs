@@ -19,6 +19,7 @@ mod merge;
 mod overrides;
 mod place;
 mod quantity;
+mod reader;
 mod rigid_motion;
 mod schema;
 mod to_along;
@@ -37,7 +38,6 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde::Deserialize;
 use toml::de::DeTable;
 
 use crate::assembly::Part;
@@ -256,8 +256,8 @@ pub fn seconds(text: &str) -> Result<f64, String> {
 
 fn tables(name: &str, text: &str) -> Result<Scene, Fault> {
     let root = DeTable::parse(text).map_err(|error| diagnose::syntax(&error, text))?;
-    let file = file::SceneTable::deserialize(toml::Deserializer::from(root.clone()))
-        .map_err(|error| diagnose::data(&error, root.get_ref()))?;
+    let file: file::SceneTable =
+        reader::read(&root).map_err(|error| diagnose::data(&error, root.get_ref()))?;
     let mut stages = Vec::new();
     for (index, stage) in to_stages::stages(&file)?.into_iter().enumerate() {
         let (model, analysis) = to_model::convert(&stage.scene, index > 0)?;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use super::error::Fault;
+use super::reader;
 
 /// The fault behind an error of the TOML syntax.
 pub(super) fn syntax(error: &toml::de::Error, text: &str) -> Fault {
@@ -19,11 +20,11 @@ pub(super) fn syntax(error: &toml::de::Error, text: &str) -> Fault {
 }
 
 /// The fault behind an error that serde found in the tables of `document`.
-pub(super) fn data(error: &toml::de::Error, document: &DeTable<'_>) -> Fault {
-    let span = error.span().unwrap_or(0..0);
+pub(super) fn data(error: &reader::Error, document: &DeTable<'_>) -> Fault {
+    let span = error.span.clone().unwrap_or(0..0);
     // An empty span is that of the scene as a whole.
     let path = if span.is_empty() { String::new() } else { path_at(document, &span).join(".") };
-    let (first, rest) = error.message().split_once('\n').unwrap_or((error.message(), ""));
+    let (first, rest) = error.message.split_once('\n').unwrap_or((&error.message, ""));
     let place = if path.is_empty() { "at the top of the scene".to_owned() } else { format!("in `{path}`") };
 
     if let Some(rest) = first.strip_prefix("unknown field ") {
@@ -55,12 +56,7 @@ pub(super) fn data(error: &toml::de::Error, document: &DeTable<'_>) -> Fault {
     {
         format!("found {rest}")
     } else {
-        match first {
-            "wanted string or table" => "expected a word in quotation marks".to_owned(),
-            "floating-point number overflowed" => "the number is beyond the largest one, 1.8e308".to_owned(),
-            "integer number overflowed" => "the whole number has too many digits".to_owned(),
-            other => other.to_owned(),
-        }
+        first.to_owned()
     };
     let place = if path.is_empty() { String::new() } else { format!("`{path}`: ") };
     let help = list_form(&path, &message)

@@ -2,6 +2,7 @@
 //! and [`Located`], which remembers where in the text a value stands.
 
 use std::borrow::Cow;
+use std::cmp::Ordering;
 use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range as ByteRange;
@@ -9,29 +10,70 @@ use std::ops::Range as ByteRange;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
-use toml::Spanned;
 
 use super::quantity::{Length, Measure, Positive, Quantity, Ratio};
+use super::reader::PLACE;
 
-/// A value and the bytes of the text that it came from.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Located<T>(Spanned<T>);
+/// A value and the bytes of the text that it came from; compared by the value.
+#[derive(Clone, Debug)]
+pub struct Located<T> {
+    value: T,
+    start: usize,
+    end: usize,
+}
 
 impl<T> Located<T> {
     /// The value.
     pub fn get(&self) -> &T {
-        self.0.get_ref()
+        &self.value
     }
 
     /// Where it stands.
     pub fn span(&self) -> ByteRange<usize> {
-        self.0.span()
+        self.start..self.end
+    }
+}
+
+impl<T: PartialEq> PartialEq for Located<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.value == other.value
+    }
+}
+
+impl<T: Eq> Eq for Located<T> {}
+
+impl<T: PartialOrd> PartialOrd for Located<T> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        self.value.partial_cmp(&other.value)
+    }
+}
+
+impl<T: Ord> Ord for Located<T> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.value.cmp(&other.value)
     }
 }
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Located<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Spanned::deserialize(deserializer).map(Self)
+        struct Reader<T>(PhantomData<T>);
+
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for Reader<T> {
+            type Value = Located<T>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a value and its place")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Located<T>, A::Error> {
+                match (items.next_element()?, items.next_element()?, items.next_element()?) {
+                    (Some(start), Some(end), Some(value)) => Ok(Located { value, start, end }),
+                    _ => Err(serde::de::Error::custom("a value without its place")),
+                }
+            }
+        }
+
+        deserializer.deserialize_tuple_struct(PLACE, 3, Reader(PhantomData))
     }
 }
 

@@ -23,6 +23,9 @@ use crate::lanes::{self, Lanes, Pair, Points};
 use crate::linear::Matrix;
 use nalgebra::Vector2;
 
+/// Shape functions of a cable element.
+const CABLE: usize = 4;
+
 impl<D: Density<M>, const M: usize> Integral<D, M> {
     pub(super) fn tangent_within<const W: usize>(
         &self,
@@ -33,21 +36,37 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        if W > 4 || self.fours.is_empty() {
-            for cell in 0..self.table.cells.len() {
-                self.tangent_of_cell::<W>(cell, factor, q, earlier, f, k, workspace);
+        // A condition on a constant alone: for other densities the loops by fours are not compiled.
+        if D::BY_FOURS {
+            if W == CABLE && !self.fours.is_empty() {
+                self.tangents_by_fours(factor, q, earlier, f, k, workspace);
+                for &cell in &self.singles {
+                    self.tangent_of_cell::<W>(cell as usize, factor, q, earlier, f, k, workspace);
+                }
+                return;
             }
-            return;
         }
+        for cell in 0..self.table.cells.len() {
+            self.tangent_of_cell::<W>(cell, factor, q, earlier, f, k, workspace);
+        }
+    }
+
+    /// The cable elements that are grouped by four.
+    fn tangents_by_fours(
+        &self,
+        factor: f64,
+        q: &[f64],
+        earlier: Option<Earlier<'_>>,
+        f: &mut [f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
         match self.table.points_per_cell {
-            2 => self.tangents_of_fours::<W, 2>(factor, q, earlier, f, k, workspace),
-            3 => self.tangents_of_fours::<W, 3>(factor, q, earlier, f, k, workspace),
-            4 if Self::COMMON => self.tangents_of_fours::<W, 4>(factor, q, earlier, f, k, workspace),
-            5 if Self::COMMON => self.tangents_of_fours::<W, 5>(factor, q, earlier, f, k, workspace),
+            2 => self.tangents_of_fours::<2>(factor, q, earlier, f, k, workspace),
+            3 => self.tangents_of_fours::<3>(factor, q, earlier, f, k, workspace),
+            4 if Self::COMMON => self.tangents_of_fours::<4>(factor, q, earlier, f, k, workspace),
+            5 if Self::COMMON => self.tangents_of_fours::<5>(factor, q, earlier, f, k, workspace),
             _ => {}
-        }
-        for &cell in &self.singles {
-            self.tangent_of_cell::<W>(cell as usize, factor, q, earlier, f, k, workspace);
         }
     }
 
@@ -70,16 +89,21 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         let first = self.first(cell);
         let range = first..first + 2 * W;
         let here = coefficients::<W>(&q[range.clone()]);
-        let earlier = earlier
-            .map(|earlier| [earlier.q, earlier.increment].map(|q| coefficients::<W>(&q[range.clone()])));
+        let earlier = match earlier {
+            Some(Earlier { q, increment }) => {
+                Some([coefficients::<W>(&q[range.clone()]), coefficients(&increment[range.clone()])])
+            }
+            None => None,
+        };
         let mut sums = [[0.0; 2]; W];
         let by_point = weights.iter().zip(rows.chunks_exact(M)).zip(products.chunks_exact_mut(M * W));
         for (p, ((weight, rows), products)) in by_point.enumerate() {
             let weight = factor * weight;
             let z = fields::<M, W>(rows, &here);
-            let [before, change] = earlier
-                .as_ref()
-                .map_or([z, [Vector2::zeros(); M]], |q| q.each_ref().map(|q| fields(rows, q)));
+            let [before, change] = match &earlier {
+                Some([q, increment]) => [fields(rows, q), fields(rows, increment)],
+                None => [z, [Vector2::zeros(); M]],
+            };
             let (gradient, hessian) =
                 self.density.gradient_and_hessian(cell * points + p, &z, &before, &change);
             for (g, row) in gradient.iter().zip(rows) {
@@ -114,9 +138,8 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         });
     }
 
-    /// The cells that are grouped by four, with `P` points in each.
-    #[allow(clippy::too_many_arguments)]
-    fn tangents_of_fours<const W: usize, const P: usize>(
+    /// As [`Self::tangents_by_fours`] for `P` points in each element.
+    fn tangents_of_fours<const P: usize>(
         &self,
         factor: f64,
         q: &[f64],
@@ -126,24 +149,30 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         workspace: &mut Workspace,
     ) {
         let products = &mut workspace.pairs;
-        products.resize(P * M * 2 * W, [Lanes::ZERO; 2]);
-        let products = products.as_chunks_mut::<W>().0.as_chunks_mut::<2>().0.as_chunks_mut::<M>().0;
+        products.resize(P * M * 2 * CABLE, [Lanes::ZERO; 2]);
+        let products = products.as_chunks_mut::<CABLE>().0.as_chunks_mut::<2>().0.as_chunks_mut::<M>().0;
         for &cell in &self.fours {
             let cell = cell as usize;
             let first = self.first(cell);
-            let range = first..first + 2 * W + 12;
+            let range = first..first + 2 * CABLE + 12;
             let (weights, rows) = self.table.block(self.table.cells[cell]);
-            let (weights, rows) = (&weights[..P], &rows.as_chunks::<W>().0[..P * M]);
-            let here = lanes::gather::<W>(&q[range.clone()]);
-            let earlier = earlier
-                .map(|earlier| [earlier.q, earlier.increment].map(|q| lanes::gather::<W>(&q[range.clone()])));
+            let (weights, rows) = (&weights[..P], &rows.as_chunks::<CABLE>().0[..P * M]);
+            let here = lanes::gather::<CABLE>(&q[range.clone()]);
+            let earlier = match earlier {
+                Some(Earlier { q, increment }) => Some([
+                    lanes::gather::<CABLE>(&q[range.clone()]),
+                    lanes::gather::<CABLE>(&increment[range.clone()]),
+                ]),
+                None => None,
+            };
             let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
             for p in 0..P {
                 let rows = &rows[p * M..(p + 1) * M];
-                let z = fields_of_four::<M, W>(rows, &here);
-                let [before, change] = earlier
-                    .as_ref()
-                    .map_or([z, [[Lanes::ZERO; 2]; M]], |q| q.each_ref().map(|q| fields_of_four(rows, q)));
+                let z = fields_of_four::<M, CABLE>(rows, &here);
+                let [before, change] = match &earlier {
+                    Some([q, increment]) => [fields_of_four(rows, q), fields_of_four(rows, increment)],
+                    None => [z, [[Lanes::ZERO; 2]; M]],
+                };
                 let points = Points { first: cell * P + p, stride: P };
                 let states = [&z, &before, &change];
                 let (gradient, hessian) =
@@ -151,7 +180,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
                 gradients[p] = gradient;
                 for m in 0..M {
                     for d in 0..2 {
-                        for b in 0..W {
+                        for b in 0..CABLE {
                             products[p][m][d][b] = hessian[m][0][d].map(|h| h * Lanes::splat(rows[0][b]));
                             for n in 1..M {
                                 let shape = Lanes::splat(rows[n][b]);
@@ -164,10 +193,10 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
                     }
                 }
             }
-            lanes::scatter(&sums_of_points::<M, W, P>(rows, &gradients), &mut f[range]);
-            for_tiles::<W>(k, |k, a, b| {
+            lanes::scatter(&sums_of_points::<M, CABLE, P>(rows, &gradients), &mut f[range]);
+            for_tiles::<CABLE>(k, |k, a, b| {
                 let mut tiles = [[Lanes::ZERO; 4]; 4];
-                tiles_of_four::<M, W, P>(rows, products, [a, b], &mut tiles);
+                tiles_of_four::<M, CABLE, P>(rows, products, [a, b], &mut tiles);
                 for (node, tile) in (first / 4..).zip(&tiles) {
                     add_tile(k, node + a, node + b, tile);
                 }
