@@ -131,6 +131,9 @@ pub struct Run {
     pub outlines: Vec<Vec<[f64; 2]>>,
     /// Warnings for the user: instabilities met, with the load factor.
     pub warnings: Vec<String>,
+    /// The tensions at the end of the tendons whose lengths are given.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tensions: Vec<Tension>,
     /// Counts of steps, iterations and factorisations.
     pub statistics: Statistics,
     /// Wall times of the parts of the run.
@@ -138,6 +141,15 @@ pub struct Run {
     /// How wrong the results are, where that was asked for.
     #[serde(skip)]
     pub error: Option<Box<ErrorEstimate>>,
+}
+
+/// The tension of a tendon whose length is given.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Tension {
+    /// Name of its beam.
+    pub beam: String,
+    /// Its tension \[N\]; negative where it pushes, which no real tendon can.
+    pub tension: f64,
 }
 
 /// The kind of an analysis.

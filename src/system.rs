@@ -247,6 +247,10 @@ impl System {
             let mass = length * masses.fold(f64::INFINITY, f64::min);
             system.lowest_vibration = CHAIN * system.stiffness / (mass * length);
         }
+        if !needs.motion && system.start.is_some() {
+            let start = system.start().to_vec();
+            system.begin_lengths_open(&start);
+        }
         system.check_room()?;
         system.check_rows(model)?;
         if !needs.motion {
@@ -328,7 +332,7 @@ impl System {
 
     /// Number of Lagrange multipliers.
     pub fn multipliers(&self) -> usize {
-        self.constraints.len()
+        self.constraints.len() + self.terms.held.len()
     }
 
     /// Number of unknowns: coordinates that are not fixed, and multipliers.

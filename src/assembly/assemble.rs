@@ -3,7 +3,8 @@
 use super::part::places;
 use super::{
     ActingLoad, Amplitude, BuildError, ContactEffect, Damping, Density, DiscretizedBeam, Dissipation, Effect,
-    Extent, FrictionEffect, Integral, Kind, MovingLoad, Needs, Rayleigh, Terms, Turning, Weighted, Winding,
+    Extent, FrictionEffect, HeldLength, Integral, Kind, MovingLoad, Needs, Rayleigh, TendonPath, Terms,
+    Turning, Weighted, Winding,
 };
 use crate::basis::{Basis, BasisTable, Quadrature};
 use crate::beam::{Beam, Place};
@@ -202,6 +203,35 @@ impl<'a> Assembly<'a> {
     /// system.
     pub fn friction(&mut self, friction: impl FnOnce(usize) -> Box<dyn FrictionEffect>) {
         self.terms.friction.push(friction(self.terms.friction.len()));
+    }
+
+    /// Keeps the length of the line of a tendon, which is the sum of two densities, at that of the
+    /// stress-free state less `shortening` \[m\] times an amplitude: in statics the load factor, in a
+    /// motion 1 or `law`.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn hold_length<C, D, const M: usize, const N: usize>(
+        &mut self,
+        (path, shortening): (&TendonPath, f64),
+        law: Option<&Law>,
+        centreline: (Extent, C),
+        (extent, detour): (Extent, impl FnOnce(Vec<[Vector2<f64>; N]>) -> D),
+    ) -> Result<(), BuildError>
+    where
+        C: Density<M> + 'static,
+        D: Density<N> + 'static,
+    {
+        if law.is_some() && !self.needs.motion {
+            return Err(BuildError::NoTime { what: "a tendon" });
+        }
+        let sums = [
+            self.effect(Kind::Tendon, &centreline.0, |_| centreline.1)?,
+            self.effect(Kind::Tendon, &extent, detour)?,
+        ];
+        let amplitude = law.cloned().map(Amplitude::Law).or_else(|| self.amplitude.clone());
+        self.terms.held.push(HeldLength::new(sums, path.clone(), shortening, amplitude, self.reference));
+        Ok(())
     }
 
     /// Adds the energy of the full turns of a torsion spring ½ k θ². `direction` is made from the

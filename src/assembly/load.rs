@@ -27,6 +27,22 @@ impl Amplitude {
         }
     }
 
+    /// As [`Self::at`], with the first two derivatives by the time.
+    pub fn rates(&self, time: f64) -> [f64; 3] {
+        match self {
+            Self::Law(law) => law.at(time),
+            _ => [self.at(time), 0.0, 0.0],
+        }
+    }
+
+    /// The law of time that it follows.
+    pub fn law(&self) -> Option<&Law> {
+        match self {
+            Self::Law(law) => Some(law),
+            _ => None,
+        }
+    }
+
     /// Its derivative with respect to the load factor, which laws of time do not depend on.
     pub fn rate(&self) -> f64 {
         match self {

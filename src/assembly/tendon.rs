@@ -17,7 +17,7 @@ pub struct TendonPath {
     pub ends: [f64; 2],
     /// e \[m\].
     pub offset: Along,
-    /// Its tension \[N\], at the amplitude 1.
+    /// Its tension \[N\], at the amplitude 1; that of a tendon of given length, times the multiplier.
     pub tension: f64,
 }
 

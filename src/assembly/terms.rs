@@ -1,6 +1,8 @@
 //! The terms of the equations of a system.
 
-use super::{ActingLoad, ContactEffect, Damping, Effect, FrictionEffect, Kind, MovingLoad, Winding};
+use super::{
+    ActingLoad, ContactEffect, Damping, Effect, FrictionEffect, HeldLength, Kind, MovingLoad, Winding,
+};
 use std::sync::Arc;
 
 /// The kinds of terms that an analysis needs; no others are built.
@@ -43,6 +45,8 @@ pub struct Terms {
     pub friction: Vec<Box<dyn FrictionEffect>>,
     /// Full turns of torsion springs.
     pub windings: Vec<Winding>,
+    /// Lengths that are kept.
+    pub held: Vec<HeldLength>,
     /// Effects that the analysis leaves out, each with the index of its beam.
     pub left_out: Vec<(Kind, usize)>,
 }

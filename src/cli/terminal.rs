@@ -12,7 +12,9 @@ use crate::cost;
 use crate::model::{Analysis, ProbeQuantity};
 use crate::output::plot::human;
 use crate::output::with_error;
-use crate::results::{AnalysisKind, ContactImpulse, ErrorEstimate, Event, ProbeSample, Results, Run};
+use crate::results::{
+    AnalysisKind, ContactImpulse, ErrorEstimate, Event, ProbeSample, Results, Run, Tension,
+};
 use crate::run::Progress;
 use crate::sweep;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -253,6 +255,9 @@ fn table(results: &Results, directory: &Path) -> String {
             }
             _ => row(&format!("frequency {mode}"), format!("{} Hz{free}", number(value))),
         }
+    }
+    for Tension { beam, tension } in &run.tensions {
+        row("tendon", format!("of beam {beam}: tension {} N", number(*tension)));
     }
     if let Some(energy) = trajectory.energy.last() {
         let parts = [

@@ -15,19 +15,29 @@ use std::sync::Arc;
 ///
 /// Its tension is the same everywhere, so that it has the potential W = T ∫ |p'| ds with the line p
 /// of [`TendonPath`]. This contains the forces on the sections at which it ends, and those that
-/// press it against its sheath where it is bent.
+/// press it against its sheath where it is bent. A tendon of given length has a tension that keeps its
+/// length, as [`crate::assembly::HeldLength`] says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tendon {
     /// Index of the beam.
     pub beam: usize,
     /// Where it runs, and its tension.
     pub path: TendonPath,
-    /// In a motion, the law of time that multiplies the tension; without one it acts in full from
-    /// the start.
+    /// For a tendon of given length: by how much it is shorter than in the stress-free state \[m\].
+    pub shortening: Option<f64>,
+    /// In a motion, the law of time that multiplies the tension, or the shortening; without one it
+    /// acts in full from the start.
     pub law: Option<Law>,
 }
 
 impl Tendon {
+    /// The same tendon, pulled with a tension \[N\] in place of its length.
+    #[must_use]
+    pub fn pulled_with(&self, tension: f64) -> Self {
+        let path = TendonPath { tension, ..self.path.clone() };
+        Self { path, shortening: None, law: None, ..self.clone() }
+    }
+
     /// Whether it is fixed at the ends of a beam of length `length` \[m\].
     fn is_whole(&self, length: f64) -> bool {
         self.path.ends == [0.0, length]
@@ -53,12 +63,22 @@ impl Part for Tendon {
         };
         let (factor, extent) = Extent::along(self.beam, rule, &acting);
         let pull = PreStrain::<Engineering>::new(-self.path.tension * factor);
-        assembly.load(Kind::Tendon, extent, law, |_| pull)?;
+        let centreline = (extent, pull);
         // The factor has the kinks of the offset too, so that cells are divided there.
         let acting = acting.plus(&offset.times(0.0));
         let (_, extent) = Extent::along(self.beam, assembly.mass_rule(self.beam), &acting);
         let places = assembly.places(Kind::Tendon, &extent)?;
-        assembly.load(Kind::Tendon, extent, law, |z| Detour::new(Arc::new(self.path.clone()), &places, &z))
+        let detour = |z: Vec<_>| Detour::new(Arc::new(self.path.clone()), &places, &z);
+        match self.shortening {
+            Some(shortening) => {
+                assembly.hold_length((&self.path, shortening), law, centreline, (extent, detour))
+            }
+            None => {
+                let (along, pull) = centreline;
+                assembly.load(Kind::Tendon, along, law, |_| pull)?;
+                assembly.load(Kind::Tendon, extent, law, detour)
+            }
+        }
     }
 
     fn jumps(&self) -> Vec<Place> {

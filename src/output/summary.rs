@@ -4,7 +4,7 @@ use serde::{Serialize, Serializer};
 
 use crate::results::{
     AnalysisKind, Energy, ErrorEstimate, Event, LargestStress, ProbeSample, Reaction, Results, RunForError,
-    Seconds, SectionForces, Shape, Statistics,
+    Seconds, SectionForces, Shape, Statistics, Tension,
 };
 
 /// The contents of `summary.json`; keys and their order are those of the fields.
@@ -52,6 +52,9 @@ pub struct Summary {
     /// Estimated errors of the critical load factors, where they are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load_factor_errors: Option<Vec<f64>>,
+    /// The tensions at the end of the tendons whose lengths are given.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tensions: Vec<Tension>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Counts of steps, iterations and factorisations.
@@ -243,6 +246,7 @@ impl Summary {
             load_factor_errors: absolute(AnalysisKind::Buckling),
             frequencies: (run.analysis == AnalysisKind::Modal).then(|| results.eigenvalues()),
             load_factors: (run.analysis == AnalysisKind::Buckling).then(|| results.eigenvalues()),
+            tensions: run.tensions.clone(),
             warnings: run.warnings.clone(),
             statistics: run.statistics,
             seconds: run.seconds,

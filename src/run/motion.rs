@@ -45,7 +45,7 @@ impl Solve for Dynamic {
             integrator: self.integrator,
             start,
             watches: &watches,
-            reactions: model.outputs.reactions,
+            reactions: model.outputs.reactions || system.has_held_lengths(),
             forces: options.states || model.outputs.section_forces,
             directions: &directions,
             keep: keep.map(|keep| dynamics::Checkpointing { every: keep.every, take: &take }),

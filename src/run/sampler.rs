@@ -609,6 +609,7 @@ impl<'a> Sampler<'a> {
             if is_among(i, count, self.frames) {
                 trajectory.frames.push(self.frame(*load, q));
             }
+            tendons.see_tensions(*load, self.system.tensions(&x[q.len()..]).map(|(tension, _)| tension));
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
                 if tendons.are_there() {
@@ -620,6 +621,8 @@ impl<'a> Sampler<'a> {
             }
         }
         if let (Some((load, x)), Some(variables)) = (solution.states.last(), solution.variables.last()) {
+            let known = self.system.tensions(&x[self.system.coordinates()..]);
+            trajectory.run.tensions = tendons.tensions(known.map(|(tension, _)| tension));
             let actions = self.system.static_actions(*load, x, variables);
             trajectory.last = self.loaded(self.coordinates_of(x), &actions);
         }
@@ -797,8 +800,14 @@ impl<'a> Sampler<'a> {
         let mut locking = self.locking.clone();
         let mut reach = Reach::new(self.model);
         let mut tendons = Tendons::new(self.model, false);
-        for reactions in &solution.reactions {
-            self.record_reactions(&mut trajectory, reactions);
+        if self.model.outputs.reactions {
+            solution.reactions.iter().for_each(|all| self.record_reactions(&mut trajectory, all));
+        }
+        for (time, tensions) in &solution.tensions {
+            tendons.see_tensions(*time, tensions.iter().copied());
+        }
+        if let Some((_, last)) = solution.tensions.last() {
+            trajectory.run.tensions = tendons.tensions(last.iter().copied());
         }
         for (i, state) in solution.states.iter().enumerate() {
             let (q, v) = (&state.q[..], Some(&state.v[..]));

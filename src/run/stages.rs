@@ -2,9 +2,11 @@
 
 use super::{Control, Inventory, Options, Progress, RunError};
 use crate::assembly::Part;
+use crate::effect::Tendon;
 use crate::model::{Analysis, Displacement, Model, Stage};
 use crate::restart::SavedState;
 use crate::results::Results;
+use std::any::Any;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -52,6 +54,22 @@ pub fn inspect_stages(
     Ok(stages.iter().map(|stage| stage.name.as_str()).zip(inventories).collect())
 }
 
+/// A tendon, and the one that pulls as it does in the state that was reached; none for a tendon whose
+/// tension follows a law of time. `tensions` are those of the tendons of given length, in turn.
+fn pull<'p>(
+    part: &'p Arc<dyn Part>,
+    tensions: &mut impl Iterator<Item = f64>,
+) -> Option<(&'p Arc<dyn Part>, Option<Arc<dyn Part>>)> {
+    let any: &dyn Any = part.as_ref();
+    let tendon = any.downcast_ref::<Tendon>()?;
+    let pull = match (tendon.shortening, &tendon.law) {
+        (Some(_), _) => tensions.next().map(|tension| Arc::new(tendon.pulled_with(tension)) as Arc<dyn Part>),
+        (None, None) => Some(Arc::clone(part)),
+        (None, Some(_)) => None,
+    };
+    Some((part, pull))
+}
+
 /// Solves `stages`, the first from the start that `options` give. The others start where the one
 /// before them ended: motions at rest after statics, and with its velocities after a motion. In
 /// statics what is new grows with the load factor, and what has gone fades. Vibrations leave the
@@ -61,6 +79,8 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
     let mut reached: Option<SavedState> = None;
     // The parts that have acted in the state that was reached.
     let mut acted: &[Arc<dyn Part>] = &[];
+    // The tensions of those among them that are tendons of given length.
+    let mut held: Vec<f64> = Vec::new();
     let mut observer = options.observer.take();
     for (index, Stage { name, model, analysis }) in stages.iter().enumerate() {
         let mut watch =
@@ -70,11 +90,13 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
             observer: Some(&mut watch),
             ..options.copied()
         };
+        let mut tensions = held.iter().copied();
         // A tendon's forces turn with its beam, which those of other things that have gone do not.
-        let gone = |part: &&Arc<dyn Part>| {
-            part.tendon().is_some_and(|(_, _, law)| law.is_none()) && !model.parts.contains(part)
-        };
-        let fading: Vec<Arc<dyn Part>> = acted.iter().filter(gone).cloned().collect();
+        let pulled = acted.iter().filter_map(|part| pull(part, &mut tensions));
+        let fading = pulled
+            .filter(|(part, _)| !model.parts.contains(part))
+            .filter_map(|(_, pull)| pull)
+            .collect::<Vec<_>>();
         let model = if fading.is_empty() {
             Cow::Borrowed(model)
         } else {
@@ -84,6 +106,7 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
             Ok(results) => {
                 let complete = results.run().complete;
                 let saved = results.states().saved.clone();
+                let tensions: Vec<f64> = results.run().tensions.iter().map(|of| of.tension).collect();
                 run.results.push(results);
                 if !complete {
                     break;
@@ -95,7 +118,7 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
                         break;
                     }
                     None => {}
-                    saved => (reached, acted) = (saved, &stages[index].model.parts),
+                    saved => (reached, acted, held) = (saved, &stages[index].model.parts, tensions),
                 }
             }
             Err(mut error) => {

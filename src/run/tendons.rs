@@ -1,9 +1,14 @@
 //! Warnings on tendons that push, and on beams that are bent about a centre within the tendon.
 
 use crate::assembly::TendonPath;
+use crate::effect;
 use crate::law::Law;
 use crate::model::{Model, StrainMeasure};
-use crate::results::Shape;
+use crate::results::{Shape, Tension};
+use std::any::Any;
+
+/// Share of the largest tension that counts as none.
+const SLACK: f64 = 1e-6;
 
 /// The tendons of a model, and what was seen of them.
 #[derive(Clone)]
@@ -18,10 +23,15 @@ struct Tendon<'m> {
     measure: StrainMeasure,
     path: &'m TendonPath,
     law: Option<&'m Law>,
+    /// Whether its length is given, not its tension.
+    held: bool,
     /// Whether it acts in full whatever the load factor is.
     standing: bool,
     /// The load factor or time at which it pushed most, and the factor of its tension there.
     pushed: Option<(f64, f64)>,
+    /// For one of given length, the least tension \[N\] with the load factor or time of it, and the
+    /// largest size of its tension.
+    tensions: Option<(f64, f64, f64)>,
     /// Arc length \[m\] at which the beam was bent too far.
     folded: Option<f64>,
 }
@@ -32,9 +42,12 @@ impl<'m> Tendons<'m> {
         let tendon = |(number, part): (usize, &'m std::sync::Arc<dyn crate::assembly::Part>)| {
             let (beam, path, law) = part.tendon()?;
             let of = model.beams.get(beam)?;
+            let part: &dyn Any = &**part;
+            let held = part.downcast_ref::<effect::Tendon>().is_some_and(|of| of.shortening.is_some());
             let standing = !is_static || model.stands(number);
             let (name, measure) = (of.name.as_str(), of.strain);
-            Some(Tendon { beam, name, measure, path, law, standing, pushed: None, folded: None })
+            let (pushed, tensions, folded) = Default::default();
+            Some(Tendon { beam, name, measure, path, law, held, standing, pushed, tensions, folded })
         };
         Self { all: model.parts.iter().enumerate().filter_map(tendon).collect() }
     }
@@ -46,7 +59,7 @@ impl<'m> Tendons<'m> {
 
     /// Takes a load factor or a time into account.
     pub(super) fn see_factor(&mut self, parameter: f64) {
-        for tendon in &mut self.all {
+        for tendon in self.all.iter_mut().filter(|tendon| !tendon.held) {
             let factor = match tendon.law {
                 Some(law) => law.at(parameter)[0],
                 None if tendon.standing => 1.0,
@@ -55,6 +68,15 @@ impl<'m> Tendons<'m> {
             if factor < tendon.pushed.map_or(0.0, |(_, least)| least) {
                 tendon.pushed = Some((parameter, factor));
             }
+        }
+    }
+
+    /// Takes into account the tensions \[N\] of the tendons of given length at a load factor or a time.
+    pub(super) fn see_tensions(&mut self, parameter: f64, tensions: impl Iterator<Item = f64>) {
+        for (tendon, tension) in self.all.iter_mut().filter(|tendon| tendon.held).zip(tensions) {
+            let (at, least, size) = tendon.tensions.unwrap_or((parameter, tension, 0.0));
+            let (at, least) = if tension < least { (parameter, tension) } else { (at, least) };
+            tendon.tensions = Some((at, least, size.max(tension.abs())));
         }
     }
 
@@ -72,9 +94,24 @@ impl<'m> Tendons<'m> {
         }
     }
 
+    /// The tensions of those of given length, of which `tensions` \[N\] are known.
+    pub(super) fn tensions(&self, tensions: impl Iterator<Item = f64>) -> Vec<Tension> {
+        let held = self.all.iter().filter(|tendon| tendon.held);
+        held.zip(tensions)
+            .map(|(tendon, tension)| Tension { beam: tendon.name.to_owned(), tension })
+            .collect()
+    }
+
     /// What to say of them.
     pub(super) fn warnings(&self) -> impl Iterator<Item = String> + '_ {
-        self.all.iter().flat_map(|Tendon { name, pushed, folded, .. }| {
+        self.all.iter().flat_map(|Tendon { name, pushed, tensions, folded, .. }| {
+            let slack = tensions.filter(|(_, least, size)| *least < -SLACK * size).map(|(at, least, _)| {
+                format!(
+                    "a tendon of beam `{name}`, whose length is given, pushes with {:.4e} N at {at:.6}, which no real tendon can: it would be \
+                     slack there; shorten it more, or give it a `tension`",
+                    -least
+                )
+            });
             let pushed = pushed.map(|(at, factor)| {
                 format!(
                     "a tendon of beam `{name}` pushes with {:.4} times its tension at {at:.6}, which no real tendon can: let its law, or the load \
@@ -88,7 +125,7 @@ impl<'m> Tendons<'m> {
                      smaller `offset` or `tension`"
                 )
             });
-            [pushed, folded].into_iter().flatten()
+            [pushed, slack, folded].into_iter().flatten()
         })
     }
 }

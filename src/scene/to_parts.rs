@@ -355,9 +355,66 @@ fn tendon(t: &TendonTable, built: &[Built], beams: &[Beam]) -> Result<Tendon, Fa
             ));
         }
     }
-    let path = TendonPath { ends, offset, tension: t.tension.si };
-    Ok(Tendon { beam: stretch.beam, path, law: t.in_time.as_ref().map(to_law::law).transpose()? })
+    let path =
+        TendonPath { ends, offset, tension: t.tension.as_ref().map_or(1.0, |tension| tension.get().si) };
+    let shortening = match (&t.tension, &t.length, &t.shortening) {
+        (Some(_), None, None) => None,
+        (None, Some(length), None) => {
+            let free = stress_free_length(&path, &built[stretch.beam].curve);
+            if length.get().si > free * (1.0 + TAUT) {
+                return Err(Fault::new(
+                    length.span(),
+                    format!(
+                        "this tendon would be slack: it is {} m long, and its way along the stress-free beam `{}` is {free:.9} m",
+                        length.get().si,
+                        t.beam.get()
+                    ),
+                )
+                .help("a tendon of given length pulls and cannot push: give a shorter `length`, or a `shortening`"));
+            }
+            Some(free - length.get().si)
+        }
+        (None, None, Some(shortening)) if shortening.get().si >= 0.0 => Some(shortening.get().si),
+        (None, None, Some(shortening)) => {
+            return Err(Fault::new(
+                shortening.span(),
+                "this tendon would be slack: its shortening is negative",
+            )
+            .help("a tendon of given length pulls and cannot push"));
+        }
+        _ => {
+            return Err(Fault::new(
+                t.beam.span(),
+                "a tendon needs exactly one of `tension`, `length`, `shortening`",
+            )
+            .help("such as `tension = \"20 N\"`, or `shortening = \"5 mm\"` for one that does not stretch"));
+        }
+    };
+    let law = t.in_time.as_ref().map(to_law::law).transpose()?;
+    Ok(Tendon { beam: stretch.beam, path, shortening, law })
 }
+
+/// ∫ |p'| ds of a tendon on the stress-free beam \[m\], by Gauss's rule of two points in many parts.
+fn stress_free_length(path: &TendonPath, curve: &Curve) -> f64 {
+    let [from, to] = path.ends;
+    let even = (0..=CHECKED).map(|i| from + (to - from) * i as f64 / CHECKED as f64);
+    let kinks = path.offset.kinks().into_iter().filter(|s| (from..to).contains(s));
+    let mut ends: Vec<f64> = even.chain(kinks).collect();
+    ends.sort_unstable_by(f64::total_cmp);
+    let part = |part: &[f64]| {
+        let (middle, half) = (0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0]));
+        let speed = |s: f64| {
+            let (offset, slope) = (path.offset.at(s, middle), path.offset.slope(s, middle));
+            (1.0 - offset * curve.curvature(s)).hypot(slope)
+        };
+        let offset = half / 3.0_f64.sqrt();
+        half * (speed(middle - offset) + speed(middle + offset))
+    };
+    ends.windows(2).map(part).sum()
+}
+
+/// Relative excess of a tendon's length that counts as round-off.
+const TAUT: f64 = 1e-9;
 
 fn force_field(t: &ForceFieldTable, built: &[Built]) -> Result<ForceField, Fault> {
     let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;

@@ -141,6 +141,9 @@ pub struct Solution {
     pub states: Vec<State>,
     /// Forces of supports and joints in each of them, where they were asked for.
     pub reactions: Vec<Vec<Reaction>>,
+    /// The time of each state, and the tensions \[N\] of the tendons of given length there, where
+    /// reactions are known.
+    pub tensions: Vec<(f64, Vec<f64>)>,
     /// What all forces in each of them follow from, where that was asked for.
     pub forces: Vec<RecordedForces>,
     /// All forces in the last state.

@@ -188,6 +188,7 @@ impl<'a> Equilibrium<'a> {
             let unit = constraint.scale(system.stiffness(), system.length());
             rate[n + r] = -unit * constraint.rate(load, q);
         }
+        system.held_load_rates(q, None, &mut rate[n..]);
         system.supports().rate(load, q, &mut self.prescribed_rate);
         if system.supports().moves() {
             system.supports().to_frames(load, &mut rate[..n]);
@@ -200,6 +201,7 @@ impl<'a> Equilibrium<'a> {
                 rate[n + r] -=
                     unit * constraint.gradient(load, q).map(|(i, value)| value * global[i]).sum::<f64>();
             }
+            system.held_load_rates(q, Some(&global), &mut rate[n..]);
         }
         system.supports().to_frames(load, &mut rate[..n]);
     }

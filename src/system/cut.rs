@@ -83,6 +83,9 @@ impl System {
                 actions[beam].add_point(s, action);
             }
         }
+        for (tension, length) in self.tensions(multipliers) {
+            actions[length.beam()].add_tendon(tension, &length.path);
+        }
         actions
     }
 

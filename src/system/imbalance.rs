@@ -106,6 +106,7 @@ impl System {
     pub fn begin_in(&mut self, q: &[f64], variables: &InternalVariables) {
         self.freeze(q);
         self.constraints.iter_mut().for_each(|row| row.begin_open(q));
+        self.begin_lengths_open(q);
         let (q, variables) = (q.to_vec(), variables.clone());
         self.start = Some(Start { q, multipliers: Vec::new(), variables, taken_up: true });
     }

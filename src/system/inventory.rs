@@ -100,8 +100,9 @@ impl System {
         let friction =
             self.terms.friction.iter().map(|friction| (friction.beam(), Kind::Friction, friction.size()));
         let lengths = self.lengths().map(|(beam, bytes)| (beam, Kind::Inextensibility, (1, bytes)));
+        let held = self.terms.held.iter().map(|length| (length.beam(), Kind::Tendon, length.size()));
         for (beam, kind, (points, bytes)) in
-            effects.chain(damping).chain(travelling).chain(friction).chain(lengths)
+            effects.chain(damping).chain(travelling).chain(friction).chain(lengths).chain(held)
         {
             let entry = entries.entry((beam, kind)).or_default();
             entry.0 += points;
@@ -147,7 +148,7 @@ impl System {
             multipliers: self.multipliers(),
             symmetric,
             half_bandwidth: 4 * self.blocks - 1,
-            solver: match (self.constraints.is_empty(), symmetric) {
+            solver: match (self.multipliers() == 0, symmetric) {
                 (false, true) if !self.terms.inertia.is_empty() && serves(&matrix, &border) => {
                     "banded LDLᵀ, constraints condensed"
                 }

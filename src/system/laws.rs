@@ -8,7 +8,7 @@
 //! and position that it misses, however fast a law oscillates compared with the step.
 
 use super::System;
-use crate::assembly::{ActingLoad, Amplitude};
+use crate::assembly::ActingLoad;
 use crate::law::Law;
 
 /// A time at which a method evaluates loads, with its weights in the mean over the step and in the
@@ -16,10 +16,7 @@ use crate::law::Law;
 pub type LoadSample = (f64, [f64; 2]);
 
 fn law(load: &ActingLoad) -> Option<&Law> {
-    match &load.amplitude {
-        Some(Amplitude::Law(law)) => Some(law),
-        _ => None,
-    }
+    load.amplitude.as_ref()?.law()
 }
 
 /// Mean and first moment of `f` as the method computes them from its samples `looks`.
@@ -32,7 +29,8 @@ fn seen(looks: &[LoadSample], f: impl Fn(f64) -> f64) -> [f64; 2] {
 
 impl System {
     fn laws(&self) -> impl Iterator<Item = &Law> {
-        self.terms.loads.iter().filter_map(law).chain(self.supports.laws())
+        let lengths = self.terms.held.iter().filter_map(|length| length.amplitude.as_ref()?.law());
+        self.terms.loads.iter().filter_map(law).chain(self.supports.laws()).chain(lengths)
     }
 
     /// Times at which a load or the motion of a support is not smooth, in no particular order.

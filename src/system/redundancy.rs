@@ -52,6 +52,10 @@ impl System {
         parts.extend(
             beams.iter().map(|&beam| format!("the length that beam `{}` keeps", self.beams[beam].name)),
         );
+        let tendons = self.held_rows().filter(|(row, _)| involved.contains(row));
+        parts.extend(
+            tendons.map(|(_, length)| format!("a tendon of beam `{}`", self.beams[length.beam()].name)),
+        );
         // The supports at the places of the joint of such a row are named, too.
         let tie = held.and_then(|row| self.joint_of(row, model));
         let ties: Vec<Place> = tie.map_or(Vec::new(), |joint| joint.places().collect());
@@ -84,11 +88,12 @@ impl System {
     /// 1; a row is empty if supports at nodes fix all of its coordinates.
     fn directions(&self) -> Vec<BorderRow> {
         let mut rows = self.border(0.0, &self.reference);
-        for (row, constraint) in rows.iter_mut().zip(&self.constraints) {
+        let scales = self.constraints.iter().map(|row| row.scale(self.stiffness, self.length));
+        let scales = scales.chain(self.terms.held.iter().map(|_| self.stiffness / self.length));
+        for (row, scale) in rows.iter_mut().zip(scales) {
             // Dividing the entries for gradients by the length gives them the unit of the entries
             // for positions: none, or an inverse length.
             row.iter_mut().filter(|(i, _)| i % 4 > 1).for_each(|(_, value)| *value /= self.length);
-            let scale = constraint.scale(self.stiffness, self.length);
             let size = row.iter().map(|(_, value)| value * value).sum::<f64>().sqrt();
             if size > SHARE * SHARE * scale / self.length {
                 row.iter_mut().for_each(|(_, value)| *value /= size);

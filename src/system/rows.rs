@@ -1,13 +1,18 @@
-//! The constraint rows of supports between nodes, of joints and of inextensible beams.
+//! The constraint rows of supports between nodes, of joints, of inextensible beams and of tendons of given
+//! length.
 
 use super::constraints::Constraint;
 use super::lengths::Lengths;
 use super::polar::Polar;
 use super::{BuildError, System};
+use crate::assembly::{Amplitude, HeldLength};
 use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 use crate::linear::bordered::BorderRow;
 use std::collections::BTreeMap;
+
+/// Excess of a tendon's length, in beam lengths, that counts as round-off.
+const ROUND_OFF: f64 = 1e-12;
 
 impl System {
     /// Scaled rows of ∂g/∂q in the supports' frames, without fixed coordinates. Entries of
@@ -29,7 +34,7 @@ impl System {
     }
 
     fn write_border(&self, polar: &Polar, load: f64, q: &[f64], rows: &mut Vec<BorderRow>) {
-        rows.resize(self.constraints.len(), BorderRow::new());
+        rows.resize(self.multipliers(), BorderRow::new());
         rows.iter_mut().for_each(Vec::clear);
         let mut dense = Vec::new();
         let mut in_frames = |row: &mut BorderRow, keeps_zeros: bool| {
@@ -69,6 +74,80 @@ impl System {
                 .filter(|row| special(row))
                 .for_each(|row| in_frames(row, true));
         }
+        for (row, length) in self.held_rows() {
+            let mut gradient = vec![0.0; self.coordinates()];
+            length.add_gradient(self.unit_of_lengths(), q, &mut gradient);
+            let part = &self.beams[length.beam()];
+            let coordinates = 4 * part.first_node..4 * (part.first_node + part.basis.nodes().len());
+            rows[row].extend(coordinates.map(|i| (i, gradient[i])));
+            in_frames(&mut rows[row], true);
+        }
+    }
+
+    /// The lengths of tendons that are kept, with the numbers of their rows: the last ones.
+    pub(super) fn held_rows(&self) -> impl Iterator<Item = (usize, &HeldLength)> {
+        (self.constraints.len()..).zip(&self.terms.held)
+    }
+
+    /// The lengths of tendons that are kept, with their tensions \[N\]; none whose multipliers are not
+    /// known.
+    pub fn tensions<'m>(&'m self, multipliers: &'m [f64]) -> impl Iterator<Item = (f64, &'m HeldLength)> {
+        let unit = self.unit_of_lengths();
+        self.held_rows().filter_map(move |(row, length)| Some((unit * *multipliers.get(row)?, length)))
+    }
+
+    fn amplitude_of_length<'a>(&'a self, length: &'a HeldLength) -> &'a Amplitude {
+        length.amplitude.as_ref().unwrap_or(&self.amplitude)
+    }
+
+    /// g of a tendon of given length \[m\].
+    fn excess(&self, length: &HeldLength, parameter: f64, q: &[f64]) -> f64 {
+        let wanted = length.shortening * self.amplitude_of_length(length).at(parameter);
+        length.stretch(q) + wanted - length.remains_open(parameter)
+    }
+
+    /// Lets the rows of tendons be open in the state `q` at load factor 0.
+    pub(super) fn begin_lengths_open(&mut self, q: &[f64]) {
+        for k in 0..self.terms.held.len() {
+            let open = self.excess(&self.terms.held[k], 0.0, q);
+            let open = if open.abs() > ROUND_OFF * self.length { open } else { 0.0 };
+            self.terms.held[k].begin_open(open);
+        }
+    }
+
+    /// Whether there are tendons of given length.
+    pub fn has_held_lengths(&self) -> bool {
+        !self.terms.held.is_empty()
+    }
+
+    /// Whether a tendon is pulled by a law of time.
+    pub fn pulls_in_time(&self) -> bool {
+        self.terms.held.iter().any(|length| self.amplitude_of_length(length).law().is_some())
+    }
+
+    /// Whether supports move, or tendons of given length are pulled, by laws of time: both do work.
+    pub fn works_by_constraints(&self) -> bool {
+        self.supports.moves_in_time() || self.pulls_in_time()
+    }
+
+    /// Adds −∂g/∂t, scaled, to the rows of tendons whose lengths follow the time; with `order` 2
+    /// −∂²g/∂t².
+    pub fn add_prescribed_rates(&self, order: usize, time: f64, rates: &mut [f64]) {
+        for (row, length) in self.held_rows() {
+            let rate = self.amplitude_of_length(length).rates(time)[order];
+            rates[row] -= self.unit_of_lengths() * length.shortening * rate;
+        }
+    }
+
+    /// Writes −∂g/∂λ − ∂g/∂q·v, scaled, into the rows of tendons, where `v` are the rates that supports
+    /// prescribe.
+    pub fn held_load_rates(&self, q: &[f64], v: Option<&[f64]>, rates: &mut [f64]) {
+        let unit = self.unit_of_lengths();
+        for (row, length) in self.held_rows() {
+            let along = v.map_or(0.0, |v| rate_of(length, q, v));
+            let rate = self.amplitude_of_length(length).rate();
+            rates[row] = -unit * (length.shortening * rate - length.closes() + along);
+        }
     }
 
     /// Factor of the rows of lengths.
@@ -78,7 +157,7 @@ impl System {
 
     /// Whether any row depends on the state.
     pub fn has_nonlinear_constraints(&self) -> bool {
-        self.constraints.iter().any(Constraint::is_nonlinear)
+        !self.terms.held.is_empty() || self.constraints.iter().any(Constraint::is_nonlinear)
     }
 
     /// `k += Σ μ ∂²g/∂q∂q` with the scaled multipliers μ, in the state `q`.
@@ -90,6 +169,9 @@ impl System {
         for lengths in &self.kept {
             lengths.add_stiffness(self.unit_of_lengths(), multipliers, k);
         }
+        for (tension, length) in self.tensions(multipliers) {
+            length.add_curvature(tension, q, k);
+        }
     }
 
     /// `f += Σ μ ∂²g/∂q∂q·v` with the scaled multipliers μ, in the state `q`.
@@ -100,6 +182,9 @@ impl System {
         }
         for lengths in &self.kept {
             lengths.add_forces(self.unit_of_lengths(), v, multipliers, f);
+        }
+        for (tension, length) in self.tensions(multipliers) {
+            length.add_curvature_product(tension, q, v, f);
         }
     }
 
@@ -121,6 +206,14 @@ impl System {
         missed.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
+    /// The tendon of given length that is farthest from it in the state `q`: the name of its beam, and
+    /// by how much it is too long \[m\].
+    pub fn missed_length(&self, parameter: f64, q: &[f64]) -> Option<(&str, f64)> {
+        let excess = self.terms.held.iter().map(|length| (length, self.excess(length, parameter, q)));
+        let (length, excess) = excess.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        Some((&self.beams[length.beam()].name, excess))
+    }
+
     /// Writes −g(q), scaled.
     pub fn constraint_values(&self, parameter: f64, q: &[f64], values: &mut [f64]) {
         for (r, constraint) in self.tied_rows() {
@@ -129,6 +222,9 @@ impl System {
         self.start_lengths(1.0, values);
         for lengths in &self.kept {
             lengths.add_products(-0.5 * self.unit_of_lengths(), q, q, values);
+        }
+        for (row, length) in self.held_rows() {
+            values[row] = -self.unit_of_lengths() * self.excess(length, parameter, q);
         }
     }
 
@@ -151,6 +247,9 @@ impl System {
         for lengths in &self.kept {
             lengths.add_products(-self.unit_of_lengths(), q, v, rates);
         }
+        for (row, length) in self.held_rows() {
+            rates[row] = -self.unit_of_lengths() * rate_of(length, q, v);
+        }
     }
 
     /// Adds −v·∂²g/∂q∂q·v in the state `q`, scaled: the part of −g̈ that is quadratic in
@@ -162,6 +261,11 @@ impl System {
         for lengths in &self.kept {
             lengths.add_products(-self.unit_of_lengths(), v, v, rates);
         }
+        for (row, length) in self.held_rows() {
+            let mut product = vec![0.0; v.len()];
+            length.add_curvature_product(self.unit_of_lengths(), q, v, &mut product);
+            rates[row] -= dot(&product, v);
+        }
     }
 
     /// `f += Bᵀ μ` with the scaled multipliers μ, in the state `q`.
@@ -172,6 +276,9 @@ impl System {
         }
         for lengths in &self.kept {
             lengths.add_forces(self.unit_of_lengths(), q, multipliers, f);
+        }
+        for (tension, length) in self.tensions(multipliers) {
+            length.add_gradient(tension, q, f);
         }
     }
 
@@ -203,7 +310,31 @@ impl System {
             scale =
                 largest.into_iter().zip(units).fold(scale, |scale, (force, unit)| scale.max(force * unit));
         }
+        for (row, length) in self.held_rows() {
+            let forces = self.pull(length, parameter, [q, multipliers], (row, values), f);
+            scale = scale.max(forces);
+        }
         scale
+    }
+
+    /// [`Self::constrain`] for the row of one tendon.
+    fn pull(
+        &self,
+        length: &HeldLength,
+        parameter: f64,
+        [q, multipliers]: [&[f64]; 2],
+        (row, values): (usize, &mut [f64]),
+        f: &mut [f64],
+    ) -> f64 {
+        let unit = self.unit_of_lengths();
+        let mut force = vec![0.0; q.len()];
+        length.add_gradient(unit * multipliers[row], q, &mut force);
+        values[row] = unit * self.excess(length, parameter, q);
+        let inverse = 1.0 / self.length;
+        force.iter().zip(f).enumerate().fold(0.0, |largest: f64, (i, (force, f))| {
+            *f += force;
+            largest.max(force.abs() * if i % 4 < 2 { 1.0 } else { inverse })
+        })
     }
 
     /// [`Self::constrain`] in four states, one per lane, each at its own parameter; `scratch` holds
@@ -218,6 +349,23 @@ impl System {
         scratch: &mut [Vec<f64>; 2],
     ) -> Lanes {
         let inverse = 1.0 / self.length;
+        if !self.terms.held.is_empty() {
+            let mut scales = scale.to_array();
+            let mut of_lane = vec![0.0; multipliers.len()];
+            let mut gaps = vec![0.0; multipliers.len()];
+            lanes::one_by_one(q, f, scratch, |lane, q, f| {
+                let to_lane = |(of_lane, all): (&mut f64, &Lanes)| *of_lane = all.to_array()[lane];
+                of_lane.iter_mut().zip(multipliers).for_each(to_lane);
+                for (row, length) in self.held_rows() {
+                    let largest = self.pull(length, parameters[lane], [q, &of_lane], (row, &mut gaps), f);
+                    scales[lane] = scales[lane].max(largest);
+                    let mut of_row = values[row].to_array();
+                    of_row[lane] = gaps[row];
+                    values[row] = Lanes::new(of_row);
+                }
+            });
+            scale = Lanes::new(scales);
+        }
         if !self.tied.is_empty() {
             let mut scales = scale.to_array();
             lanes::one_by_one(q, f, scratch, |lane, q, f| {
@@ -266,6 +414,17 @@ impl System {
         }
         Ok(())
     }
+}
+
+/// ∂g/∂q·v of a tendon of given length.
+fn rate_of(length: &HeldLength, q: &[f64], v: &[f64]) -> f64 {
+    let mut gradient = vec![0.0; q.len()];
+    length.add_gradient(1.0, q, &mut gradient);
+    dot(&gradient, v)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Adds the entries of a cell, whose first coordinate is `first`, to a row that holds those of the

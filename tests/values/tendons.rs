@@ -164,6 +164,163 @@ fn a_tendon_that_is_pulled_in_time_does_work() {
     }
 }
 
+/// The finger with a tendon of given length, in place of one that is pulled with 5 N.
+fn held(basis: &str, tendon: &str, more: &str) -> String {
+    finger(basis, tendon, more).replace("tension = '5 N', ", "")
+}
+
+/// A tendon at the offset e that is shorter by Δ pulls with T = Δ/(L (1/EA + e²/EI)): the same arc as
+/// under this tension.
+#[test]
+fn a_tendon_of_given_length_has_the_tension_of_its_arc() {
+    for basis in [CABLE, MESHFREE] {
+        for offset in [0.15, -0.15] {
+            let shortening = 5.0 * 0.5 * (1.0 / EA + offset * offset / EI);
+            let length = 0.5 - shortening;
+            for pull in [format!("shortening = {shortening}"), format!("length = {length}")] {
+                let found = Written::of(&held(basis, &format!("offset = {offset}, {pull}"), STATIC));
+                near(found.said("/tensions/0/tension"), 5.0, 1e-6, "tension");
+                let turn = 5.0 * offset / EI * 0.5;
+                let radius = (1.0 - 5.0 / EA) * 0.5 / turn;
+                let expected = [
+                    ("tip.x", radius * turn.sin()),
+                    ("tip.y", radius * (1.0 - turn.cos())),
+                    ("middle.axial_force", -5.0),
+                    ("middle.bending_moment", 5.0 * offset),
+                ];
+                found.ends("probes.csv", &expected, 2e-5);
+            }
+        }
+    }
+    // On an arc of radius 1 m, which bends to the left, the way at the offset e is that of 1 − e.
+    let arc = |length: f64| {
+        let text = held("basis.ancf.elements = 60", &format!("offset = 0.1, length = {length}"), STATIC);
+        let line = "start = [0, 0], end = [0.5, 0]";
+        text.replace(
+            line,
+            "arc = { center = [0, 1], radius = 1, from = '-90 deg', to = '-61.3521102435088 deg' }",
+        )
+    };
+    assert!(parse("arc.toml", &arc(0.45 + 1e-6)).unwrap_err().to_string().contains("would be slack"));
+    near(Written::of(&arc(0.45 - 1e-9)).said("/tensions/0/tension"), 0.0, 1e-4, "tension of an arc");
+}
+
+/// If a tendon and the axis do not stretch, ∫(u' − e v'') ds = 0 keeps the direction of the tip: the beam
+/// vibrates, and buckles, as one whose tip is guided.
+#[test]
+fn a_tendon_that_does_not_stretch_guides_the_tip() {
+    let stiff = |more: &str| {
+        held("basis.ancf.elements = 20", "offset = 0.2, shortening = 0", more)
+            .replace("axial_stiffness = 2000", "axial_stiffness = 2e7")
+            .replace("output.section_forces = true", "")
+    };
+    let found = Written::of(&stiff("analysis.modal.count = 2")).column("frequencies.csv", "frequency");
+    // tan β + tanh β = 0 for β, in beam lengths.
+    for (found, beta) in found.into_iter().zip([2.365_020_372_431_352_f64, 5.497_803_919_000_836]) {
+        let omega = (beta / 0.5).powi(2) * (EI / 0.2).sqrt();
+        near(found * std::f64::consts::TAU, omega, 1e-4 * omega, "ω");
+    }
+    let press =
+        "effect.force = [{ beam = 'finger', at = 'end', value = [-1, 0] }]\nanalysis.buckling.count = 1";
+    let found = Written::of(&stiff(press)).column("load_factors.csv", "load_factor");
+    let critical = (std::f64::consts::PI / 0.5).powi(2) * EI;
+    near(found[0], critical, 1e-3 * critical, "critical load");
+}
+
+/// A law multiplies what is pulled in, whatever integrates the motion; what the tendon puts in is what
+/// the finger has.
+#[test]
+fn a_tendon_that_is_shortened_in_time_does_work() {
+    let tendon = "offset = '15 cm', shortening = '60 mm', in_time.smooth_ramp.duration = 0.2";
+    let mut tips = Vec::new();
+    for method in ["gauss.tolerance = 1e-7", "radau.tolerance = 1e-6", "generalized_alpha.step = 1e-3"] {
+        let motion = format!("analysis.dynamic = {{ duration = 0.3, output_every = 0.02, {method} }}");
+        let found = Written::of(&held("basis.ancf.elements = 8", tendon, &motion));
+        let column = |name: &str| found.column("energy.csv", name);
+        let largest = column("work").into_iter().fold(0.0, f64::max);
+        assert!(largest > 0.05, "{largest}");
+        for total in column("total") {
+            near(total, 0.0, 2e-4 * largest, method);
+        }
+        tips.push([found.last("probes.csv", "tip.x"), found.last("probes.csv", "tip.y")]);
+    }
+    for tip in &tips[1..] {
+        near(tip[0], tips[0][0], 1e-4, "x by another integrator");
+        near(tip[1], tips[0][1], 1e-4, "y by another integrator");
+    }
+}
+
+/// Between stages a tendon keeps its length under other loads and in a motion, and lets go as it is; one
+/// that comes to a bent beam is tightened from there.
+#[test]
+fn a_tendon_of_given_length_comes_and_goes_in_stages() {
+    let stages = |tendon: &str, stages: &str| {
+        let force = "effect.force = [{ beam = 'finger', at = 'end', value = [0, -0.3], stage = 'push' }]\n";
+        held(CABLE, &format!("offset = 0.15, shortening = 0.02, {tendon}"), &format!("{force}{stages}"))
+    };
+    let stage = |name: &str| format!("[[stage]]\nname = '{name}'\nanalysis.static = {{}}\n");
+    let swing = "[[stage]]\nname = 'swing'\nanalysis.dynamic = { duration = 0.02 }\n";
+    let tip = |text: &str| {
+        let scene = parse("finger.toml", text).unwrap_or_else(|error| panic!("{error}"));
+        let run = ancf::run::solve_stages(scene.stages(), ancf::Options::default());
+        assert!(run.failure.is_none(), "{:?}", run.failure);
+        let results = run.results.last().expect("a stage");
+        let sample = *results.states().probes[0].samples.last().expect("a state");
+        ([sample.x, sample.y], results.run().tensions.first().map(|of| of.tension))
+    };
+    let [pull, push, rest] = ["pull", "push", "rest"].map(stage);
+    let (both, tension) = tip(&stages("", &format!("{push}{rest}")));
+    for (tendon, order) in [
+        ("", format!("{pull}{push}")),
+        ("", format!("{pull}{push}{swing}")),
+        ("stage = 'rest'", format!("{push}{rest}")),
+    ] {
+        let (found, other) = tip(&stages(tendon, &order));
+        near(found[0], both[0], 1e-8, "x");
+        near(found[1], both[1], 1e-8, "y");
+        near(other.unwrap_or_default(), tension.unwrap_or_default(), 1e-6, "tension");
+    }
+    let (free, none) = tip(&stages("until = 'rest'", &format!("{push}{rest}")));
+    let (alone, _) = tip(&stages("", &push).replace("effect.tendon", "# effect.tendon"));
+    assert_eq!(none, None);
+    near(free[0], alone[0], 1e-8, "x without a tendon");
+    near(free[1], alone[1], 1e-8, "y without a tendon");
+}
+
+#[test]
+fn tendons_of_a_length_that_cannot_be_are_refused_or_told() {
+    for (tendon, part) in [
+        ("shortening = 0.01, tension = 3", "needs exactly one of `tension`, `length`, `shortening`"),
+        ("length = 0.3, shortening = 0.01", "needs exactly one of"),
+        ("", "needs exactly one of"),
+        (
+            "length = 0.6",
+            "would be slack: it is 0.6 m long, and its way along the stress-free beam `finger` is 0.5",
+        ),
+        ("shortening = '-1 mm'", "would be slack"),
+    ] {
+        let said = parse("finger.toml", &held(CABLE, &format!("offset = 0.1, {tendon}"), STATIC));
+        let said = said.expect_err(part).to_string();
+        assert!(said.contains(part) && said.contains("finger.toml:3:"), "{said}");
+    }
+    let motion = "analysis.dynamic = { duration = 0.1 }";
+    let sudden =
+        parse("finger.toml", &held(CABLE, "offset = 0.1, shortening = 0.01", motion)).expect("a scene");
+    let said = ancf::accuracy::run(&sudden, ancf::Options::default()).expect_err("a jump").to_string();
+    assert!(said.contains("a tendon of beam `finger` is 1.000e-2 m too long"), "{said}");
+    let up = "effect.force = [{ beam = 'finger', at = 'end', value = [0, 1] }]\n";
+    let slack = held(CABLE, "offset = 0.1, shortening = 1e-4", &format!("{up}{STATIC}"));
+    let said = Written::of(&slack).summary()["warnings"].to_string();
+    assert!(said.contains("pushes with") && said.contains("it would be slack there"), "{said}");
+    // Twice the same length: neither tension is known.
+    let one = "{ beam = 'finger', offset = 0.1, shortening = 0.01 }";
+    let twice = held(CABLE, "offset = 0.1, shortening = 0.01", STATIC);
+    let twice = twice.replace("shortening = 0.01 }]", &format!("shortening = 0.01 }}, {one}]"));
+    let twice = parse("finger.toml", &twice).expect("a scene");
+    let said = ancf::accuracy::run(&twice, ancf::Options::default()).expect_err("redundant").to_string();
+    assert!(said.contains("a tendon of beam `finger` and a tendon of beam `finger`"), "{said}");
+}
+
 #[test]
 fn tendons_that_cannot_be_are_refused_or_told() {
     let section = |tendon: &str, section: &str| {

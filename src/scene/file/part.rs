@@ -154,7 +154,7 @@ pub struct ActuationTable {
     pub until: Option<Located<String>>,
 }
 
-/// A tendon without friction along a beam, pulled with a given tension: it presses on the sections
+/// A tendon without friction along a beam, pulled with a given tension or to a given length: it presses on the sections
 /// at which it ends, and on its sheath where it is bent.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -165,12 +165,16 @@ pub struct TendonTable {
     /// without jumps.
     pub offset: Located<AlongBeam<Length>>,
     /// Tension.
-    pub tension: Quantity<Force, Positive>,
+    pub tension: Option<Located<Quantity<Force, Positive>>>,
+    /// Its length, in place of a tension: it does not stretch, and is pulled until it has this length.
+    pub length: Option<Located<Quantity<Length, Positive>>>,
+    /// The same by how much shorter it is than in the stress-free shape; 0 for one that is just taut.
+    pub shortening: Option<Located<Quantity<Length>>>,
     /// Arc length at which it begins; the beam's start when left out.
     pub from: Option<Located<At>>,
     /// Arc length at which it ends; the beam's end when left out.
     pub to: Option<Located<At>>,
-    /// In a motion: the law of time that multiplies the tension.
+    /// In a motion: the law of time that multiplies the tension, or what is pulled in.
     pub in_time: Option<Located<LawTable>>,
     /// Stage from whose start on it takes part; the first when left out.
     pub stage: Option<Located<String>>,

@@ -45,7 +45,7 @@ impl Driver<'_, '_> {
         self.system.has_work()
             || self.system.is_damped()
             || self.system.has_friction()
-            || self.system.supports().moves_in_time()
+            || self.system.works_by_constraints()
     }
 
     /// Sets the internal variables of a state of the present step. The energy that the springs of

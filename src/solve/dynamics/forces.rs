@@ -24,10 +24,10 @@ fn integrals(times: &[f64], start: f64, end: f64) -> Vec<f64> {
 }
 
 impl<'a> Driver<'_, 'a> {
-    /// Work of moving supports until `time` in the step to `new`, by the quadrature rule of the
+    /// Work of moving supports and of tendons that are pulled until `time` in the step to `new`, by the quadrature rule of the
     /// method itself.
     pub(super) fn work_of_supports(&mut self, new: &State, time: f64) -> f64 {
-        if !self.system.supports().moves_in_time() {
+        if !self.system.works_by_constraints() {
             return 0.0;
         }
         if self.support_powers.is_empty() {
@@ -136,7 +136,7 @@ impl<'a> Driver<'_, 'a> {
     /// and with moving supports, whose energy balance would suffer from the strain error of an
     /// interpolated state.
     pub(super) fn settles(&self) -> bool {
-        self.task.reactions || self.system.supports().moves_in_time()
+        self.task.reactions || self.system.works_by_constraints()
     }
 
     /// Keeps what all forces in a record follow from.
@@ -150,6 +150,10 @@ impl<'a> Driver<'_, 'a> {
 
     /// Keeps the forces of supports and joints in a record.
     pub(super) fn keep_reactions(&mut self, balance: Option<Balance>) {
+        if let Some(balance) = balance.as_ref().filter(|_| self.system.has_held_lengths()) {
+            let tensions = self.system.tensions(&balance.multipliers).map(|(tension, _)| tension);
+            self.solution.tensions.push((balance.state.time, tensions.collect()));
+        }
         let reactions = match (balance, self.observer()) {
             (Some(balance), Some(motion)) => motion.reactions_in(&balance),
             _ => vec![Reaction { fx: f64::NAN, fy: f64::NAN, moment: f64::NAN }],

@@ -263,6 +263,7 @@ impl<'a> Motion<'a> {
         };
         self.system.constraint_rates(state.time, q, supported, &mut forces[n..]);
         self.system.add_constraint_curvatures(q, v, &mut forces[n..]);
+        self.system.add_prescribed_rates(2, state.time, &mut forces[n..]);
         forces
     }
 
@@ -300,6 +301,7 @@ impl<'a> Motion<'a> {
         supports.to_frames(time, &mut momentum[..n]);
         self.system.polar().forces(q, &mut momentum[..n]);
         self.system.constraint_rates(time, q, &prescribed, &mut momentum[n..]);
+        self.system.add_prescribed_rates(1, time, &mut momentum[n..]);
         self.mass_factor.as_ref().expect(NOT_FACTORISED).solve(&mut momentum);
         supports.to_fixed_axes(time, &mut momentum[..n]);
         self.system.polar().changes(q, &mut momentum[..n]);
@@ -607,6 +609,7 @@ impl<'a> Motion<'a> {
         state.q.iter_mut().zip(&change).for_each(|(q, d)| *q += d);
         change[..n].fill(0.0);
         self.system.constraint_rates(state.time, &state.q, &state.v, &mut change[n..]);
+        self.system.add_prescribed_rates(1, state.time, &mut change[n..]);
         self.mass_factor.as_ref().expect(NOT_FACTORISED).solve(&mut change);
         supports.to_fixed_axes(state.time, &mut change[..n]);
         self.system.polar().changes(&state.q, &mut change[..n]);

@@ -51,6 +51,20 @@ pub enum StartError {
         /// By how much the state misses it, in beam lengths or rad.
         miss: f64,
     },
+    /// A tendon does not have its length at the start.
+    #[error("a tendon of beam `{beam}` is {excess:.3e} m too long for its given length at t = {time} s")]
+    #[diagnostic(help(
+        "a motion begins with tendons that have their lengths: shorten them in a static stage before, or from zero on by a law of \
+         time, such as `in_time.ramp = {{ duration = \"0.1 s\" }}`"
+    ))]
+    Tendon {
+        /// Name of the beam.
+        beam: String,
+        /// By how much it is too long \[m\].
+        excess: f64,
+        /// When \[s\].
+        time: f64,
+    },
     /// A support jumps.
     #[error(
         "a support moves beam `{beam}` near s = {s:.6} m by {change:.3e} (m, or rad) at t = {time} s, all at once"
@@ -124,13 +138,18 @@ pub fn from_state(
     if change > ROUND_OFF {
         return Err(jump(system, at, state.time, (imposed[at] - state.q[at]).abs()));
     }
+    if let Some((beam, excess)) = system.missed_length(state.time, &state.q)
+        && excess.abs() > JOINED * system.length()
+    {
+        return Err(StartError::Tendon { beam: beam.to_owned(), excess, time: state.time });
+    }
     if let Some((at, miss)) = system.missed(state.time, &state.q).filter(|(_, miss)| *miss > JOINED) {
         let (beam, s) = system.place_of(at);
         return Err(StartError::Open { beam: system.beams()[beam].name.clone(), s, miss });
     }
     state.q = imposed;
     let at_rest = velocities.is_empty() && state.v.iter().all(|v| *v == 0.0);
-    if at_rest && !system.supports().moves_in_time() {
+    if at_rest && !system.works_by_constraints() {
         return Ok(Checkpoint { state, ..Checkpoint::default() });
     }
     for velocity in velocities {
@@ -145,7 +164,7 @@ pub fn from_state(
     }
     let admissible = Motion::new(system)?.admissible_velocity(state.time, &state.q, &state.v)?;
     // A support that moves gives the beam its velocity.
-    let moves = system.supports().moves_in_time();
+    let moves = system.works_by_constraints();
     let mut given = state.v.clone();
     for (i, (given, admissible)) in given.iter_mut().zip(&admissible).enumerate() {
         if moves && !system.supports().is_stationary(i) {

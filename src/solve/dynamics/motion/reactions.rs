@@ -171,6 +171,7 @@ impl Motion<'_> {
         let [q, v, a] = self.in_fixed_axes(state, &rates[..self.coordinates()]);
         self.system.constraint_rates(state.time, &q, &a, defects);
         self.system.add_constraint_curvatures(&q, &v, defects);
+        self.system.add_prescribed_rates(2, state.time, defects);
         defects.iter_mut().for_each(|defect| *defect *= factor);
     }
 

@@ -125,6 +125,7 @@ pub fn nature(path: &str) -> Option<Nature> {
         }
         "effect.tendon.offset" => Turning(LENGTH),
         "effect.tendon.tension" => Scalar(FORCE),
+        "effect.tendon.length" | "effect.tendon.shortening" => Scalar(LENGTH),
         "effect.actuation.strain" => Scalar(NUMBER),
         "effect.actuation.curvature" => Turning([-1, 0, 0]),
         "effect.drag.normal" | "effect.drag.tangential" => Scalar([-2, 1, 0]),

@@ -248,8 +248,18 @@ impl Draw<'_> {
             a.into()
         };
         table.insert("offset".into(), offset);
-        table.insert("tension".into(), self.log(0.1 * size, 5.0 * size).into());
-        self.perhaps_in_time(&mut table, 0.4);
+        if self.chance(0.3) {
+            table.insert("shortening".into(), self.log(1e-4 * length, 1e-2 * length).into());
+            if self.is_motion() {
+                // A motion begins with the length of the stress-free shape.
+                let ramp = Table::from_iter([("duration".to_owned(), self.log(0.01, 1.0).into())]);
+                let law = Table::from_iter([("smooth_ramp".to_owned(), Value::Table(ramp))]);
+                table.insert("in_time".into(), law.into());
+            }
+        } else {
+            table.insert("tension".into(), self.log(0.1 * size, 5.0 * size).into());
+            self.perhaps_in_time(&mut table, 0.4);
+        }
         self.perhaps_stretch(&mut table);
         self.push(&["effect", "tendon"], table);
     }
