@@ -168,6 +168,9 @@ fn every_column_of_every_file_has_a_value_test() {
                 )
                 .replace("output =", "analysis.static = {}\n        output ="),
         ),
+        Written::of(&format!(
+            "{held}effect.tendon = [{{ beam = 'arm', offset = 0.01, shortening = 1e-3 }}]\nanalysis.static = {{}}\n"
+        )),
         // Missed, and short.
         Written::of(&format!("{short}analysis.static = {{ steps = 2, accuracy = 1e-12 }}\n")),
     ];
