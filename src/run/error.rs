@@ -63,6 +63,14 @@ pub enum RunError {
         /// The names that exist.
         known: String,
     },
+    /// Critical loads are asked for in a state that is no equilibrium.
+    #[error(
+        "critical loads are those that are added to an equilibrium, and the state with which this analysis starts is none without its own loads"
+    )]
+    #[diagnostic(help(
+        "let what comes and goes besides loads do so in a static stage of its own before this one, and let a motion come to rest"
+    ))]
+    Unbalanced,
     /// An eigenvalue problem could not be solved.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -163,6 +171,7 @@ impl RunError {
             | Self::Start(_)
             | Self::Restart(_)
             | Self::Undamped(_)
+            | Self::Unbalanced
             | Self::NoShape { .. }
             | Self::Unavailable { .. } => 2,
             Self::NoEquilibrium { .. }

@@ -3,7 +3,7 @@
 use super::laws::at_corners;
 use super::sampler::Sampler;
 use super::start::Start;
-use super::{Options, RunError, Solve, Stopwatch, Watch, memory, needs, timed};
+use super::{Options, RunError, Solve, Stopwatch, Watch, memory, timed};
 use crate::assembly::{InternalVariables, nodes};
 use crate::model::{About, Analysis, Buckling, Modal, Model, Static};
 use crate::results::{
@@ -12,7 +12,6 @@ use crate::results::{
 };
 use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};
-use crate::system::System;
 
 /// Accuracy of the equilibrium: as far as round-off lets Newton's method come, because stress, and
 /// with it the stiffness, is a small difference of large numbers.
@@ -55,14 +54,17 @@ impl Solve for Buckling {
     type Results = CriticalLoads;
 
     fn solve(&self, model: &Model, options: Options<'_>) -> Result<CriticalLoads, RunError> {
-        options.refuses_a_start("buckling analysis")?;
         let analysis = Analysis::Buckling(*self);
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;
-        let system = System::build_with(model, needs(&analysis), options.cache)?;
-        let sampler = Sampler::new(model, &system, options.detail())?;
+        let start = Start::new(model, &analysis, &options)?;
+        if start.system.is_fading() {
+            return Err(RunError::Unbalanced);
+        }
+        let mut sampler = Sampler::new(&start.model, &start.system, options.detail())?;
+        sampler.angles = start.angles();
         stopwatch.built();
-        let modes = buckling::solve(&system, self.count)?;
+        let modes = buckling::solve(&start.system, self.count)?;
         stopwatch.solved();
         let mut loads = sampler.critical_loads(&modes);
         loads.unloaded.run.seconds = stopwatch.finish();
@@ -144,20 +146,19 @@ impl Sampler<'_> {
 
     fn critical_loads(&self, modes: &buckling::Modes) -> CriticalLoads {
         let mut unloaded = self.empty(AnalysisKind::Buckling);
-        unloaded.last = self.unloaded();
+        let x = buckling::base(self.system);
+        let q = self.coordinates_of(&x);
+        let (_, variables) = self.system.start_history();
+        unloaded.last = self.loaded(q, &self.system.static_actions(0.0, &x, &variables));
         unloaded.run.statistics.factorizations = modes.factorizations;
         unloaded.run.warnings.extend(beyond_the_linear(modes));
         let corners = at_corners(self.model, &unloaded.last, &unloaded.run.undeformed);
         unloaded.run.warnings.extend(corners);
-        let reference = self.system.reference();
         let mode = |(load_factor, mode): (&f64, &Vec<f64>)| {
             let largest = nodes(mode).map(|node| node.shift()).fold(0.0, f64::max);
             let scaled: Vec<f64> = mode.iter().map(|change| change / largest).collect();
             let mode = if largest > 0.0 { &scaled } else { mode };
-            BucklingMode {
-                load_factor: *load_factor,
-                shape: self.mode_shape(&unloaded.last, reference, mode),
-            }
+            BucklingMode { load_factor: *load_factor, shape: self.mode_shape(&unloaded.last, q, mode) }
         };
         let modes = modes.load_factors.iter().zip(&modes.shapes).map(mode).collect();
         CriticalLoads { unloaded, modes }

@@ -86,16 +86,6 @@ pub(super) fn analysis(
         return Err(Fault::new(0..0, "missing key `analysis` in the scene").help(ADD));
     };
     let table = located.get();
-    if let (true, Some(_)) = (goes_on, &table.buckling) {
-        return Err(Fault::new(
-            located.span(),
-            "a buckling analysis starts from the stress-free state, and not from the stage before it",
-        )
-        .help(
-            "let it be the first stage, or follow the loads of this stage by `arc_length` in a static analysis, which tells where the \
-             equilibrium becomes unstable",
-        ));
-    }
     match (&table.statics, &table.dynamic, &table.buckling, &table.modal) {
         (Some(table), None, None, None) => Ok(Analysis::Static(statics(table, model, size)?)),
         (None, Some(table), None, None) => Ok(Analysis::Dynamic(dynamic(table, model, size)?)),

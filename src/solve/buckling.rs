@@ -6,7 +6,9 @@
 //! K₁ = ∫ N₁ ∂²ε/∂q∂q + M₁ ∂²κ/∂q∂q ds + …
 //! ```
 //!
-//! with all derivatives taken in the stress-free state. The direction in which a beam resists
+//! with all derivatives taken in the stress-free state, or, after another stage, in the equilibrium that it
+//! has left: K₀ is then the tangent there, under all that acts already, and λ multiplies what is new. The
+//! direction in which a beam resists
 //! stretch is that of this state too. Its turn with the rotations of u is a first-order term that a
 //! second-order term cancels; keeping the first alone would make a stiff beam in bending buckle at
 //! once. An effect whose tangent extrapolates its resultants ([`crate::effect`]) gives K₀ + λ K₁
@@ -44,6 +46,16 @@ const ROUND_OFF: f64 = 1e-11;
 /// deviations.
 const CERTAIN: f64 = 10.0;
 
+/// The coordinates and scaled multipliers of the state whose critical loads are found.
+pub fn base(system: &System) -> Vec<f64> {
+    if system.is_taken_up() {
+        return Equilibrium::new(system).start();
+    }
+    let mut x = system.reference().to_vec();
+    x.resize(x.len() + system.multipliers(), 0.0);
+    x
+}
+
 /// The `count` lowest positive critical load factors.
 ///
 /// # Errors
@@ -54,18 +66,20 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         return Err(EigenError::NotSymmetric { analysis: "buckling" });
     }
     let mut equilibrium = Equilibrium::new(system);
-    let x = equilibrium.start();
+    let x = base(system);
+    let variables = system.start_history().1;
     let (mut negative, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     equilibrium.linearize(0.0, &x, None, &mut negative, &mut rate)?;
     equilibrium.solve(0.0, &mut rate, true);
     let n = system.coordinates();
-    let reference = system.reference();
+    let q = &x[..n];
     let mut workspace = Workspace::default();
     let mut tangent = |load: f64, increment: Option<&[f64]>, multipliers: &[f64]| {
         let (mut k, mut force) = (system.matrix(), vec![0.0; n]);
-        let earlier = increment.map(|increment| Earlier { q: reference, increment });
-        system.force_and_tangent(load, reference, earlier, &mut force, &mut k, &mut workspace);
-        system.add_constraint_stiffness(reference, multipliers, &mut k);
+        let earlier = increment.map(|increment| Earlier { q, increment });
+        system.force_and_tangent(load, q, earlier, &mut force, &mut k, &mut workspace);
+        system.add_winding_tangent(&variables, q, &mut k);
+        system.add_constraint_stiffness(q, multipliers, &mut k);
         system.supports().turn_matrix(0.0, &mut k);
         k
     };
@@ -83,12 +97,12 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     system.supports().eliminate(0.0, &mut geometric);
     system.supports().clear_fixed(0.0, &mut geometric);
     system.supports().eliminate(0.0, &mut stiffness);
-    let (border, fixed) = (system.border(0.0, system.reference()), system.fixed());
+    let (border, fixed) = (system.border(0.0, q), system.fixed());
     let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, fixed };
     let mut pairs = largest_reciprocals(&pencil, count)?;
     // A load that compresses nothing gives reciprocals that are round-off alone.
     let mut load = vec![0.0; n];
-    system.add_load_rate(1.0, reference, &mut load);
+    system.add_load_rate(1.0, q, &mut load);
     let least = ROUND_OFF * system.norm(&load) / system.stiffness();
     // The standard deviation of 1/λ = φᵀ B φ, with φᵀ A φ = 1, due to the round-off of both
     // matrices.
@@ -106,7 +120,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     });
     let load_factors: Vec<f64> = pairs.reciprocals.iter().map(|r| 1.0 / r).collect();
     let (mut turn, mut strain) = (0.0_f64, 0.0_f64);
-    for (rate, node) in nodes(&rate[..n]).zip(nodes(reference)) {
+    for (rate, node) in nodes(&rate[..n]).zip(nodes(q)) {
         let ([x, y], [dx, dy]) = (node.gradient, rate.gradient);
         let squared = x * x + y * y;
         turn = turn.max((x * dy - y * dx).abs() / squared);

@@ -141,6 +141,11 @@ impl System {
         self.norm(&force) > STRESSED * self.round_off
     }
 
+    /// Whether anything fades as the load factor grows.
+    pub fn is_fading(&self) -> bool {
+        self.terms.loads.iter().any(|load| load.amplitude == Some(Amplitude::Fading))
+    }
+
     /// Whether an analysis begins in a state that another one has left.
     pub fn is_taken_up(&self) -> bool {
         self.start.as_ref().is_some_and(|start| start.taken_up)

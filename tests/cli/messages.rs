@@ -198,11 +198,6 @@ const CASES: &[(&str, &str, &str)] = &[
     ),
     ("a stage that names no folder", "[analysis.static]", "[[stage]]\nname = \"../a\"\nanalysis.static = {}"),
     (
-        "a stage that buckles",
-        "[analysis.static]",
-        "[[stage]]\nname = \"a\"\nanalysis.static = {}\n[[stage]]\nname = \"b\"\nanalysis.buckling.count = 1",
-    ),
-    (
         "vibrations not about the stage before",
         "[analysis.static]",
         "[[stage]]\nname = \"a\"\nanalysis.static = {}\n[[stage]]\nname = \"b\"\nanalysis.modal = { count = 1, about = \"reference\" }",

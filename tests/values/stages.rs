@@ -85,6 +85,7 @@ fn what_comes_and_goes_leads_to_the_same_equilibria() {
         ("foundation", "{ beam = 'arm', stiffness = [3, 30] }"),
         ("actuation", "{ beam = 'arm', strain = 1e-4, curvature = 0.8 }"),
         ("tendon", "{ beam = 'arm', offset = 0.05, tension = 20, from = 0.25 }"),
+        ("tendon", "{ beam = 'arm', offset = 0.05, shortening = 1e-3, from = 0.25 }"),
         ("drag", "{ beam = 'leg', normal = 2, flow = [1.5, 0] }"),
         (
             "electrostatic",
@@ -408,4 +409,44 @@ fn with_friction_the_order_of_stages_decides() {
     assert!(sticks.abs() < 1e-3, "{sticks}");
     // 20 N less friction of 5 N on a spring of 40 N/m.
     near(slid, 15.0 / 40.0, 1e-2, "the way");
+}
+
+/// A column that is pressed already needs so much less to buckle, and one that is pulled so much more;
+/// its shapes, and what a spring that is there adds, are those of one analysis with the whole load.
+#[test]
+fn critical_loads_of_a_stage_come_on_top_of_what_acts() {
+    const EI: f64 = 2.0;
+    let column = |before: &str, stages: &str| {
+        format!(
+            "beam.column = {{ start = [0, 0], end = [0, 1], axial_stiffness = 1e9, bending_stiffness = {EI}, basis.ancf.elements = 16 }}
+            support = [{{ beam = 'column', at = 'start', fix = ['x', 'y', 'angle'] }}]
+            effect.force = [{before}{{ beam = 'column', at = 'end', value = [0, -1], stage = 'more' }}]
+            {stages}"
+        )
+    };
+    let stages =
+        "stage = [{ name = 'first', analysis.static = {} }, { name = 'more', analysis.buckling.count = 2 }]";
+    let factors = |text: &str| match solved(text).pop().expect("stages") {
+        Results::CriticalLoads(found) => found.modes.iter().map(|mode| mode.load_factor).collect::<Vec<_>>(),
+        other => panic!("{other:?}"),
+    };
+    let critical = |mode: f64| ((2.0 * mode - 1.0) * PI / 2.0).powi(2) * EI;
+    for before in [-3.0, 0.5, 40.0] {
+        let acts = format!("{{ beam = 'column', at = 'end', value = [0, {before}] }}, ");
+        for (found, mode) in factors(&column(&acts, stages)).into_iter().zip([1.0, 2.0]) {
+            near(found, critical(mode) + before, 1e-4 * critical(mode), "critical load");
+        }
+    }
+    // A motion that is not at rest, and a support that goes, leave no equilibrium.
+    let moved = "stage = [{ name = 'first', analysis.dynamic = { duration = 0.01 } }, { name = 'more', analysis.buckling.count = 1 }]";
+    let side = "{ beam = 'column', at = 'end', value = [0.1, 0], until = 'more' }, ";
+    for text in [
+        column(side, moved).replace("bending_stiffness", "mass_per_length = 1, bending_stiffness"),
+        column(side, stages),
+    ] {
+        let scene = parse("column.toml", &text).expect("a scene");
+        let run = solve_stages(scene.stages(), Options::default());
+        let said = run.failure.expect("no equilibrium").to_string();
+        assert!(said.contains("is none without its own loads"), "{said}");
+    }
 }
