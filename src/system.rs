@@ -20,6 +20,7 @@ mod contacts;
 mod cut;
 mod energy;
 mod fix;
+mod held;
 mod history;
 mod imbalance;
 pub mod inextensible;

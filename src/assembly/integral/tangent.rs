@@ -37,6 +37,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         workspace: &mut Workspace,
     ) {
         // A condition on a constant alone: for other densities the loops by fours are not compiled.
+        #[expect(clippy::collapsible_if, reason = "together they would not be such a condition")]
         if D::BY_FOURS {
             if W == CABLE && !self.fours.is_empty() {
                 self.tangents_by_fours(factor, q, earlier, f, k, workspace);
@@ -89,12 +90,9 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         let first = self.first(cell);
         let range = first..first + 2 * W;
         let here = coefficients::<W>(&q[range.clone()]);
-        let earlier = match earlier {
-            Some(Earlier { q, increment }) => {
-                Some([coefficients::<W>(&q[range.clone()]), coefficients(&increment[range.clone()])])
-            }
-            None => None,
-        };
+        let earlier = earlier.map(|Earlier { q, increment }| {
+            [coefficients::<W>(&q[range.clone()]), coefficients(&increment[range.clone()])]
+        });
         let mut sums = [[0.0; 2]; W];
         let by_point = weights.iter().zip(rows.chunks_exact(M)).zip(products.chunks_exact_mut(M * W));
         for (p, ((weight, rows), products)) in by_point.enumerate() {
@@ -158,13 +156,9 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let (weights, rows) = self.table.block(self.table.cells[cell]);
             let (weights, rows) = (&weights[..P], &rows.as_chunks::<CABLE>().0[..P * M]);
             let here = lanes::gather::<CABLE>(&q[range.clone()]);
-            let earlier = match earlier {
-                Some(Earlier { q, increment }) => Some([
-                    lanes::gather::<CABLE>(&q[range.clone()]),
-                    lanes::gather::<CABLE>(&increment[range.clone()]),
-                ]),
-                None => None,
-            };
+            let earlier = earlier.map(|Earlier { q, increment }| {
+                [q, increment].map(|q| lanes::gather::<CABLE>(&q[range.clone()]))
+            });
             let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
             for p in 0..P {
                 let rows = &rows[p * M..(p + 1) * M];
