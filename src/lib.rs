@@ -50,7 +50,7 @@
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | – |
 //! | [`law`] | laws of time | `numeric` |
 //! | [`beam`] | a beam with its section and discretisation, and places along it | [`centreline`], [`basis`] |
-//! | [`assembly`] | densities, their sums over tables, and the assembly of a model's parts into terms of the equations | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`beam`] |
+//! | [`assembly`] | densities, their sums over tables, and the assembly of a model's parts into terms of the equations | `lanes`, `linear`, `numeric`, [`centreline`], [`basis`], [`law`], [`beam`] |
 //! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part by which a model contains it | `lanes`, `linear`, `numeric`, [`basis`], [`law`], [`beam`], [`assembly`] |
 //! | [`model`] | the continuous problem: beams, supports, joints, parts, probes, analyses | [`centreline`], [`basis`], [`law`], [`beam`], [`assembly`] |
 //! | [`system`] | coordinates, supports, joints, sums over effects, inventory | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`] |
@@ -119,6 +119,7 @@
 //! | `[[effect.actuation]]` | [`effect::Actuation`] | ½ EA (ε − ε₀)², ½ EI (κ − κ₀)² |
 //! | `[[effect.tendon]]` | [`effect::Tendon`] | T ∫ \|p'\| ds, p = r + e n |
 //! | `[[effect.drag]]`, `[[effect.buoyancy]]` | [`effect::Drag`], [`effect::Buoyancy`] | −(c + C \|u\|) u along and across; −m g |
+//! | `[[effect.force_field]]` | [`effect::ForceField`] | U(x, y, t), or F(x, y, t) by itself |
 //! | `[[effect.moving_force]]` | [`effect::MovingForce`] | −N(s₀ + v t) F |
 //! | `[[effect.contact]]` | [`effect::Contact`] | ½ ∫ k ⟨−g⟩² ds with circles, half-planes, boxes; friction ½ ∫ k_t e² ds, k_t \|e\| ≤ μ p |
 //!

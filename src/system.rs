@@ -453,6 +453,7 @@ impl System {
         let loads = self.terms.loads.iter().map(|load| &load.effect);
         self.terms.friction.is_empty()
             && self.terms.internal.iter().chain(loads).all(|effect| effect.is_symmetric())
+            && self.terms.timed_loads.iter().all(|load| load.is_symmetric())
     }
 
     /// A zero tangent with the right pattern.

@@ -3,8 +3,8 @@
 use super::part::places;
 use super::{
     ActingLoad, Amplitude, BuildError, ContactEffect, Damping, Density, DiscretizedBeam, Dissipation, Effect,
-    Extent, FrictionEffect, HeldLength, Integral, Kind, MovingLoad, Needs, Rayleigh, TendonPath, Terms,
-    Turning, Weighted, Winding,
+    Extent, FrictionEffect, HeldLength, Integral, Kind, Needs, Rayleigh, TendonPath, Terms, TimedDensity,
+    TimedIntegral, TimedLoad, Turning, Weighted, Winding,
 };
 use crate::basis::{Basis, BasisTable, Quadrature};
 use crate::beam::{Beam, Place};
@@ -251,16 +251,41 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// Adds a force whose position moves along the beam.
+    /// Adds a load that depends on time by more than a factor; `what` names it for the error.
     ///
     /// # Errors
     /// [`BuildError::NoTime`] in an analysis without time.
-    pub fn moving_load(&mut self, load: Box<dyn MovingLoad>) -> Result<(), BuildError> {
+    pub fn timed_load(&mut self, what: &'static str, load: Box<dyn TimedLoad>) -> Result<(), BuildError> {
         if !self.needs.motion {
-            return Err(BuildError::NoTime { what: "a moving force" });
+            return Err(BuildError::NoTime { what });
         }
-        self.terms.moving_loads.push(load);
+        self.terms.timed_loads.push(load);
         Ok(())
+    }
+
+    /// Adds a load with a density that depends on time, times `law`; `what` names it for the error.
+    ///
+    /// # Errors
+    /// As [`Self::elastic`] and [`Self::timed_load`].
+    pub fn timed_density<D: TimedDensity<M> + 'static, const M: usize>(
+        &mut self,
+        what: &'static str,
+        kind: Kind,
+        extent: &Extent,
+        law: Option<&Law>,
+        density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
+    ) -> Result<(), BuildError> {
+        let (table, offset) = self.table(kind, extent, &D::ORDERS)?;
+        let density = density(fields::<M>(&table, offset, self.reference));
+        let (beam, law) = (extent.beam(), law.cloned());
+        let load: Box<dyn TimedLoad> = match extent.factors(&table) {
+            None => Box::new(TimedIntegral::new(Integral::new(kind, beam, offset, table, density), law)),
+            Some(factors) => {
+                let density = Weighted::new(density, factors);
+                Box::new(TimedIntegral::new(Integral::new(kind, beam, offset, table, density), law))
+            }
+        };
+        self.timed_load(what, load)
     }
 
     /// The sum of a density over its extent.
@@ -271,7 +296,7 @@ impl<'a> Assembly<'a> {
         density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
     ) -> Result<Box<dyn Effect>, BuildError> {
         let (table, offset) = self.table(kind, extent, &D::ORDERS)?;
-        let density = density(reference_fields::<M>(&table, offset, self.reference));
+        let density = density(fields::<M>(&table, offset, self.reference));
         Ok(match extent.factors(&table) {
             None => Box::new(Integral::new(kind, extent.beam(), offset, table, density)),
             Some(factors) => {
@@ -289,7 +314,7 @@ impl<'a> Assembly<'a> {
         density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
     ) -> Result<Box<dyn Damping>, BuildError> {
         let (table, offset) = self.table(kind, extent, &D::ORDERS)?;
-        let density = density(reference_fields::<M>(&table, offset, self.reference));
+        let density = density(fields::<M>(&table, offset, self.reference));
         Ok(match extent.factors(&table) {
             None => Box::new(Integral::new(kind, extent.beam(), offset, table, Rayleigh(density))),
             Some(factors) => {
@@ -341,15 +366,15 @@ impl<'a> Assembly<'a> {
     }
 }
 
-/// The fields of the reference state at all points of a table: one array `[z_0, z_1, …]` per point.
-fn reference_fields<const M: usize>(table: &BasisTable, offset: usize, q: &[f64]) -> Vec<[Vector2<f64>; M]> {
+/// The fields of the state `q` at all points of a table: one array `[z_0, z_1, …]` per point.
+pub(super) fn fields<const M: usize>(table: &BasisTable, offset: usize, q: &[f64]) -> Vec<[Vector2<f64>; M]> {
     let width = table.width;
-    let mut fields = Vec::with_capacity(table.s.len());
+    let mut all = Vec::with_capacity(table.s.len());
     for entry in &table.cells {
         let (_, rows) = table.block(*entry);
         let q = &q[2 * (offset + entry.first as usize)..];
         for rows in rows.chunks_exact(M * width) {
-            fields.push(std::array::from_fn(|m| {
+            all.push(std::array::from_fn(|m| {
                 let row = &rows[m * width..(m + 1) * width];
                 row.iter()
                     .zip(q.chunks_exact(2))
@@ -357,5 +382,5 @@ fn reference_fields<const M: usize>(table: &BasisTable, offset: usize, q: &[f64]
             }));
         }
     }
-    fields
+    all
 }

@@ -49,7 +49,7 @@ pub struct Integral<D, const M: usize> {
     pub(super) kind: Kind,
     pub(super) beam: usize,
     /// First coefficient of the beam; coefficient c has the coordinates 2c and 2c + 1.
-    offset: usize,
+    pub(super) offset: usize,
     pub(super) table: BasisTable,
     /// The first cells of groups of four equal cells, each one node after the cell before, as
     /// [`BasisTable::by_fours`] finds them; `singles` are all other cells.
@@ -233,7 +233,16 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         }
     }
 
-    fn product_of<const W: usize>(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
+    /// `f += factor · ∫ Σ_m Σ_n N⁽ᵒᵐ⁾ H_mn v_n ds`, where H is `hessian` of the fields of `q`, and v_n are
+    /// the fields of `v`.
+    pub(super) fn product_of<const W: usize>(
+        &self,
+        factor: f64,
+        q: &[f64],
+        v: &[f64],
+        f: &mut [f64],
+        hessian: impl Fn(usize, &Gradient<M>) -> Hessian<M>,
+    ) {
         let width = self.width::<W>();
         for (cell, entry) in self.table.cells.iter().enumerate() {
             let (weights, rows) = self.table.block(*entry);
@@ -242,12 +251,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let (q, v, f) = (&q[range.clone()], &v[range.clone()], &mut f[range]);
             for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
                 let (z, change) = (self.fields::<W>(rows, q), self.fields::<W>(rows, v));
-                let (_, hessian) = self.density.gradient_and_hessian(
-                    cell * weights.len() + p,
-                    &z,
-                    &z,
-                    &[Vector2::zeros(); M],
-                );
+                let hessian = hessian(cell * weights.len() + p, &z);
                 let product = std::array::from_fn(|m| {
                     hessian[m].iter().zip(&change).map(|(h, change)| h * change).sum::<Vector2<f64>>()
                 });
@@ -256,8 +260,10 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         }
     }
 
+    /// Force and tangent, times `factor`, of the densities whose first and second derivatives `derivatives`
+    /// gives for a point, its fields, those of the earlier iterate, and the change.
     #[allow(clippy::too_many_arguments)]
-    fn tangent_any(
+    pub(super) fn tangent_of(
         &self,
         factor: f64,
         q: &[f64],
@@ -265,6 +271,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         f: &mut [f64],
         k: &mut Matrix,
         workspace: &mut Workspace,
+        derivatives: impl Fn(usize, &Gradient<M>, &Gradient<M>, &Gradient<M>) -> (Gradient<M>, Hessian<M>),
     ) {
         let width = self.table.width;
         let columns = 2 * width;
@@ -287,7 +294,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
                 let [before, change] =
                     earlier.map_or([z, [Vector2::zeros(); M]], |q| q.map(|q| self.fields::<0>(rows, q)));
                 let point = cell * weights.len() + p;
-                let (gradient, hessian) = self.density.gradient_and_hessian(point, &z, &before, &change);
+                let (gradient, hessian) = derivatives(point, &z, &before, &change);
                 self.add_gradient::<0>(weight, rows, &gradient, f);
                 multiply_rows::<M>(weight, &hessian, rows, width, products);
             }
@@ -450,13 +457,17 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
             4 if Self::CABLES => self.tangent_within::<4>(factor, q, earlier, f, k, workspace),
             8 if Self::COMMON => self.tangent_within::<8>(factor, q, earlier, f, k, workspace),
             12 if Self::COMMON => self.tangent_within::<12>(factor, q, earlier, f, k, workspace),
-            _ => self.tangent_any(factor, q, earlier, f, k, workspace),
+            _ => self.tangent_of(factor, q, earlier, f, k, workspace, |point, z, before, change| {
+                self.density.gradient_and_hessian(point, z, before, change)
+            }),
         }
     }
 
     fn add_tangent_product(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
         if D::HAS_TANGENT {
-            with_width!(self.product_of(factor, q, v, f));
+            let still = [Vector2::zeros(); M];
+            let hessian = |point, z: &Gradient<M>| self.density.gradient_and_hessian(point, z, z, &still).1;
+            with_width!(self.product_of(factor, q, v, f, hessian));
         }
     }
 

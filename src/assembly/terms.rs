@@ -1,7 +1,7 @@
 //! The terms of the equations of a system.
 
 use super::{
-    ActingLoad, ContactEffect, Damping, Effect, FrictionEffect, HeldLength, Kind, MovingLoad, Winding,
+    ActingLoad, ContactEffect, Damping, Effect, FrictionEffect, HeldLength, Kind, TimedLoad, Winding,
 };
 use std::sync::Arc;
 
@@ -37,8 +37,8 @@ pub struct Terms {
     pub turning: Vec<Turning>,
     /// Dissipation functions.
     pub damping: Vec<Box<dyn Damping>>,
-    /// Loads whose position moves along a beam.
-    pub moving_loads: Vec<Box<dyn MovingLoad>>,
+    /// Loads that depend on time by more than a factor.
+    pub timed_loads: Vec<Box<dyn TimedLoad>>,
     /// The contacts; each is also one of the `internal` effects.
     pub contacts: Vec<Arc<dyn ContactEffect>>,
     /// Friction in contacts.

@@ -6,8 +6,8 @@ use crate::lanes::{Lanes, Pair, Points, Square};
 /// A density, or a dissipation function, and its factor at each quadrature point.
 #[derive(Clone, Debug)]
 pub struct Weighted<D> {
-    density: D,
-    factors: Vec<f64>,
+    pub(super) density: D,
+    pub(super) factors: Vec<f64>,
 }
 
 impl<D> Weighted<D> {
@@ -93,7 +93,7 @@ impl<D: Dissipation<M>, const M: usize> Dissipation<M> for Weighted<D> {
 }
 
 #[inline(always)]
-fn scaled<const M: usize>(
+pub(super) fn scaled<const M: usize>(
     (gradient, hessian): (Gradient<M>, Hessian<M>),
     factor: f64,
 ) -> (Gradient<M>, Hessian<M>) {

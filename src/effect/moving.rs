@@ -4,7 +4,7 @@
 //! with time. They are tabulated at Lobatto points of every cell and interpolated between these by
 //! Lagrange's polynomial of degree 7, which is exact for the cable element's cubics.
 
-use crate::assembly::{Action, Actions, Assembly, BuildError, Kind, MovingLoad, Part};
+use crate::assembly::{Action, Actions, Assembly, BuildError, Kind, Part, TimedLoad};
 use crate::basis::{Basis, BasisError, BasisTable, Quadrature};
 use nalgebra::Vector2;
 
@@ -31,7 +31,8 @@ impl Part for MovingForce {
         let beam = assembly.beam("a moving force", self.beam)?;
         let part = assembly.discretized(self.beam);
         let travelling = Travelling::new(*self, &part.basis, part.offset());
-        assembly.moving_load(Box::new(travelling.map_err(|e| BuildError::basis(&beam.name, e))?))
+        let travelling = travelling.map_err(|e| BuildError::basis(&beam.name, e))?;
+        assembly.timed_load("a moving force", Box::new(travelling))
     }
 }
 
@@ -56,9 +57,15 @@ impl Travelling {
         Ok(Self { force, table, offset, length: basis.length(), rule: Quadrature::Gauss(RULE).rule()? })
     }
 
+    /// The times at which it enters and leaves the beam.
+    fn ends(&self) -> [f64; 2] {
+        let [a, b] = [0.0, self.length].map(|s| (s - self.force.start) / self.force.speed);
+        [a.min(b), a.max(b)]
+    }
+
     /// The arc length at which it acts at `time`, if it is on the beam.
     fn place(&self, time: f64) -> Option<f64> {
-        let [comes, goes] = self.kinks();
+        let [comes, goes] = self.ends();
         (comes..goes).contains(&time).then(|| self.force.speed.mul_add(time, self.force.start))
     }
 
@@ -80,7 +87,7 @@ impl Travelling {
     }
 }
 
-impl MovingLoad for Travelling {
+impl TimedLoad for Travelling {
     fn kind(&self) -> Kind {
         Kind::MovingForce
     }
@@ -89,15 +96,15 @@ impl MovingLoad for Travelling {
         self.force.beam
     }
 
-    fn add_force(&self, factor: f64, time: f64, f: &mut [f64]) {
+    fn add_force(&self, factor: f64, time: f64, _: &[f64], f: &mut [f64]) {
         let Some(s) = self.place(time) else { return };
         self.shape(s, |pair, n| {
             f[pair].iter_mut().zip(self.force.value).for_each(|(f, value)| *f -= factor * n * value);
         });
     }
 
-    fn add_moments(&self, start: f64, end: f64, [mean, moment]: [&mut [f64]; 2]) {
-        let [comes, goes] = self.kinks();
+    fn add_moments(&self, [start, end]: [f64; 2], q: &[f64], [mean, moment]: [&mut [f64]; 2]) {
+        let [comes, goes] = self.ends();
         if end <= comes || start >= goes {
             return;
         }
@@ -107,8 +114,8 @@ impl MovingLoad for Travelling {
             for (at, weight) in self.rule.0.iter().zip(&self.rule.1) {
                 let (x, weight) = ((part as f64 + at) / parts, weight / parts);
                 let time = (end - start).mul_add(x, start);
-                self.add_force(weight, time, mean);
-                self.add_force((1.0 - x) * weight, time, moment);
+                self.add_force(weight, time, q, mean);
+                self.add_force((1.0 - x) * weight, time, q, moment);
             }
         }
     }
@@ -120,9 +127,8 @@ impl MovingLoad for Travelling {
         sum.add_point(s, Action::at(r, self.force.value.into()));
     }
 
-    fn kinks(&self) -> [f64; 2] {
-        let [a, b] = [0.0, self.length].map(|s| (s - self.force.start) / self.force.speed);
-        [a.min(b), a.max(b)]
+    fn kinks(&self) -> Vec<f64> {
+        self.ends().to_vec()
     }
 
     fn size(&self) -> (usize, usize) {

@@ -125,6 +125,11 @@ impl Formula {
         Ok(derivative)
     }
 
+    /// Whether it contains variable number `variable`.
+    pub fn contains(&self, variable: usize) -> bool {
+        self.steps.iter().any(|step| matches!(step, Step::Variable(of) if *of == variable))
+    }
+
     /// Its value where the variables have these values; not a number where it has none.
     pub fn at(&self, values: &[f64]) -> f64 {
         let (mut few, mut many) = ([Jet::default(); ROOM], Vec::new());

@@ -210,7 +210,7 @@ pub(super) fn parts(file: &SceneTable, built: &[Built], model: &mut Model) -> Re
         parts.push(Arc::new(electrostatic(t, built, &model.beams, &model.initial_shapes)?));
     }
     for t in &effects.force_field {
-        parts.push(Arc::new(force_field(t, built)?));
+        parts.push(Arc::new(force_field(t, file, built)?));
     }
     for t in &effects.moving_force {
         let (beam, speed) = (beam_index(&t.beam, built)?, t.speed.get().si);
@@ -416,20 +416,34 @@ fn stress_free_length(path: &TendonPath, curve: &Curve) -> f64 {
 /// Relative excess of a tendon's length that counts as round-off.
 const TAUT: f64 = 1e-9;
 
-fn force_field(t: &ForceFieldTable, built: &[Built]) -> Result<ForceField, Fault> {
+fn force_field(t: &ForceFieldTable, file: &SceneTable, built: &[Built]) -> Result<ForceField, Fault> {
     let stretch = Stretch::new(&t.beam, t.from.as_ref(), t.to.as_ref(), built)?;
     let wrong = |span: std::ops::Range<usize>, reason: String| {
         Fault::new(span, format!("this formula cannot be read: {reason}"))
-            .help("such as `potential = \"50*(y-0.2)^2\"`, or `value = [\"-3*y\", \"3*x\"]`, with x and y in metres")
+            .help("such as `potential = \"50*(y-0.2)^2\"`, or `value = [\"-3*y\", \"3*x\"]`, with x and y in metres, and in motions t in seconds")
+    };
+    let stands = file.analysis.as_ref().is_some_and(|analysis| analysis.get().dynamic.is_none());
+    // Which time would be meant where there is none, nobody knows.
+    let in_time = |text: &Located<String>, field: Field| {
+        match stands && field.depends_on_time() {
+        false => Ok(field),
+        true => Err(Fault::new(text.span(), "this formula names the time t, which this analysis does not have")
+            .help(
+                "put a number in place of t, or use `[analysis.dynamic]`; in a scene with stages let the field begin with a motion, \
+                 by `stage = \"…\"`, and end with it, by `until = \"…\"`",
+            )),
+    }
     };
     let field = match (&t.potential, &t.value) {
         (Some(potential), None) => {
-            Field::of_potential(potential.get()).map_err(|reason| wrong(potential.span(), reason))?
+            let field = Field::of_potential(potential.get());
+            in_time(potential, field.map_err(|reason| wrong(potential.span(), reason))?)?
         }
         (None, Some([x, y])) => {
             // Each by itself first, so that a fault is told at its place.
             for one in [x, y] {
-                Field::of_components([one.get(), "0"]).map_err(|reason| wrong(one.span(), reason))?;
+                let alone = Field::of_components([one.get(), "0"]);
+                in_time(one, alone.map_err(|reason| wrong(one.span(), reason))?)?;
             }
             Field::of_components([x.get(), y.get()]).map_err(|reason| wrong(x.span(), reason))?
         }

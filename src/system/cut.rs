@@ -47,8 +47,8 @@ impl System {
             load.effect.add_actions(factor, q, q, &mut actions[load.effect.beam()]);
         }
         self.add_layer_strains(parameter, &mut actions);
-        for force in &self.terms.moving_loads {
-            force.add_actions(parameter, q, &mut actions[force.beam()]);
+        for load in &self.terms.timed_loads {
+            load.add_actions(parameter, q, &mut actions[load.beam()]);
         }
         if let Some([v, a]) = motion {
             for effect in &self.terms.inertia {

@@ -95,14 +95,13 @@ impl System {
             .iter()
             .chain(turning)
             .map(|damping| (damping.beam(), damping.kind(), damping.size()));
-        let travelling =
-            self.terms.moving_loads.iter().map(|force| (force.beam(), force.kind(), force.size()));
+        let timed = self.terms.timed_loads.iter().map(|load| (load.beam(), load.kind(), load.size()));
         let friction =
             self.terms.friction.iter().map(|friction| (friction.beam(), Kind::Friction, friction.size()));
         let lengths = self.lengths().map(|(beam, bytes)| (beam, Kind::Inextensibility, (1, bytes)));
         let held = self.terms.held.iter().map(|length| (length.beam(), Kind::Tendon, length.size()));
         for (beam, kind, (points, bytes)) in
-            effects.chain(damping).chain(travelling).chain(friction).chain(lengths).chain(held)
+            effects.chain(damping).chain(timed).chain(friction).chain(lengths).chain(held)
         {
             let entry = entries.entry((beam, kind)).or_default();
             entry.0 += points;

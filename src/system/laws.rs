@@ -15,6 +15,13 @@ use crate::law::Law;
 /// first moment.
 pub type LoadSample = (f64, [f64; 2]);
 
+/// Changes of a load that are larger than its median change by this factor are sudden.
+const SUDDEN: f64 = 8.0;
+/// Steps into which a sudden change is divided.
+const PIECES: usize = 16;
+/// Changes of a load, relative to its size, that count as none.
+const NOTHING: f64 = 1e-9;
+
 fn law(load: &ActingLoad) -> Option<&Law> {
     load.amplitude.as_ref()?.law()
 }
@@ -35,8 +42,8 @@ impl System {
 
     /// Times at which a load or the motion of a support is not smooth, in no particular order.
     pub fn kinks(&self) -> Vec<f64> {
-        let travelling = self.terms.moving_loads.iter().flat_map(|load| load.kinks());
-        self.laws().flat_map(Law::kinks).chain(travelling).collect()
+        let timed = self.terms.timed_loads.iter().flat_map(|load| load.kinks());
+        self.laws().flat_map(Law::kinks).chain(timed).collect()
     }
 
     /// Times between `start` and `end` at which steps should end, so that they see what laws do that
@@ -45,9 +52,32 @@ impl System {
         self.laws().flat_map(|law| law.turns([start, end])).collect()
     }
 
-    /// Whether a load follows a law of time or moves along a beam.
+    /// Times between `start` and `end` at which steps should end, because loads with formulas of place
+    /// and time change suddenly on beams that fly on as they do in the state (q, v): where such a change
+    /// begins, or, if it begins at the start, some until it ends. The time is looked at in as many
+    /// `parts`.
+    pub fn sudden_changes(&self, [start, end]: [f64; 2], state: [&[f64]; 2], parts: usize) -> Vec<f64> {
+        let loads = &self.terms.timed_loads;
+        let mut changes = vec![0.0; if loads.is_empty() { 0 } else { parts }];
+        let size: f64 = loads.iter().map(|load| load.add_changes([start, end], state, &mut changes)).sum();
+        let mut sorted = changes.clone();
+        sorted.sort_by(f64::total_cmp);
+        let level = SUDDEN.mul_add(sorted.get(parts / 2).copied().unwrap_or(0.0), NOTHING * size);
+        let time = |part: usize| start + (end - start) * part as f64 / parts as f64;
+        match changes.iter().position(|change| *change > level) {
+            Some(0) => {
+                let last = changes.iter().position(|change| *change <= level).unwrap_or(0);
+                let piece = (time(last) - start) / PIECES as f64;
+                let ends = (1..=PIECES).map(|pieces| piece.mul_add(pieces as f64, start));
+                ends.filter(|end| *end > start).collect()
+            }
+            begins => begins.map(time).into_iter().collect(),
+        }
+    }
+
+    /// Whether a load follows a law of time, moves along a beam, or has a formula of time.
     pub fn loads_follow_time(&self) -> bool {
-        !self.terms.moving_loads.is_empty() || self.terms.loads.iter().any(|load| law(load).is_some())
+        !self.terms.timed_loads.is_empty() || self.terms.loads.iter().any(|load| law(load).is_some())
     }
 
     /// Adds to `mean` and `moment` those of the loads from `start` to `end` in the state `q`, less
@@ -71,11 +101,11 @@ impl System {
                 moment[i] += (unseen[1] - seen[1]) * force;
             }
         }
-        for force in &self.terms.moving_loads {
-            force.add_moments(start, end, [mean, moment]);
+        for load in &self.terms.timed_loads {
+            load.add_moments([start, end], q, [mean, moment]);
             for (time, [a, b]) in looks {
-                force.add_force(-a, *time, mean);
-                force.add_force(-b, *time, moment);
+                load.add_force(-a, *time, q, mean);
+                load.add_force(-b, *time, q, moment);
             }
         }
     }

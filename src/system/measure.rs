@@ -52,6 +52,10 @@ impl System {
             let seconds = time(|| effect.add_force_and_tangent(1.0, q, None, &mut f, &mut k, &mut workspace));
             note(&mut inventory, effect.kind(), effect.beam(), seconds);
         }
+        for load in &self.terms.timed_loads {
+            let seconds = time(|| load.add_force_and_tangent(0.0, q, &mut f, &mut k, &mut workspace));
+            note(&mut inventory, load.kind(), load.beam(), seconds);
+        }
         if self.is_damped() {
             let (v, mut d) = (vec![0.0; q.len()], self.damping_pattern());
             for damping in &self.terms.damping {

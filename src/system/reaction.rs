@@ -132,9 +132,9 @@ impl System {
             let energy = load.effect.is_conservative().then(|| amplitude * load.effect.energy(q));
             out.push((name(load.effect.kind(), load.effect.beam()), energy, resultant(&mut f)));
         }
-        for force in &self.terms.moving_loads {
-            force.add_force(1.0, parameter, &mut f);
-            out.push((name(force.kind(), force.beam()), None, resultant(&mut f)));
+        for load in &self.terms.timed_loads {
+            load.add_force(1.0, parameter, q, &mut f);
+            out.push((name(load.kind(), load.beam()), None, resultant(&mut f)));
         }
         for friction in &self.terms.friction {
             friction.add_force_of(variables, q, &mut f);

@@ -17,7 +17,7 @@ impl System {
         for (effect, amplitude) in self.varying_loads(parameter) {
             effect.add_force(amplitude, q, f);
         }
-        self.terms.moving_loads.iter().for_each(|force| force.add_force(1.0, parameter, f));
+        self.terms.timed_loads.iter().for_each(|load| load.add_force(1.0, parameter, q, f));
     }
 
     /// The forces of [`Self::force`] in four states, one per lane, each at its own parameter;
@@ -32,8 +32,8 @@ impl System {
             let amplitude = self.amplitude_of(load);
             load.effect.add_forces(Lanes::new(parameters.map(|p| amplitude.at(p))), q, f, scratch);
         }
-        for force in &self.terms.moving_loads {
-            lanes::one_by_one(q, f, scratch, |lane, _, f| force.add_force(1.0, parameters[lane], f));
+        for load in &self.terms.timed_loads {
+            lanes::one_by_one(q, f, scratch, |lane, q, f| load.add_force(1.0, parameters[lane], q, f));
         }
     }
 
@@ -74,19 +74,20 @@ impl System {
         self.amplitude.at(parameter)
     }
 
-    /// Whether there are loads, other than moving ones.
+    /// Whether there are loads, other than those of [`Terms::timed_loads`](crate::assembly::Terms).
     pub fn has_loads(&self) -> bool {
         !self.terms.loads.is_empty()
     }
 
     /// Whether a load does work that no potential accounts for.
     pub fn has_work(&self) -> bool {
-        !self.terms.moving_loads.is_empty() || self.terms.loads.iter().any(|load| !load.has_potential())
+        !self.terms.timed_loads.is_empty() || self.terms.loads.iter().any(|load| !load.has_potential())
     }
 
     /// Whether any load depends on the state.
     pub fn loads_have_tangents(&self) -> bool {
         self.terms.loads.iter().any(|load| !load.effect.is_constant())
+            || self.terms.timed_loads.iter().any(|load| !load.is_constant())
     }
 
     /// Whether forces depend on velocities.
@@ -101,7 +102,7 @@ impl System {
         for load in self.terms.loads.iter().filter(|load| !load.has_potential()) {
             load.effect.add_force(self.amplitude_of(load).at(parameter), q, scratch);
         }
-        self.terms.moving_loads.iter().for_each(|force| force.add_force(1.0, parameter, scratch));
+        self.terms.timed_loads.iter().for_each(|load| load.add_force(1.0, parameter, q, scratch));
         -scratch.iter().zip(v).map(|(f, v)| f * v).sum::<f64>()
     }
 
@@ -155,7 +156,9 @@ impl System {
         for (effect, amplitude) in self.varying_loads(parameter) {
             effect.add_force_and_tangent(amplitude, q, earlier, f, k, workspace);
         }
-        self.terms.moving_loads.iter().for_each(|force| force.add_force(1.0, parameter, f));
+        for load in &self.terms.timed_loads {
+            load.add_force_and_tangent(parameter, q, f, k, workspace);
+        }
     }
 
     /// `f = K v` with the tangent of [`Self::force_and_tangent`] at `q`, but with many more correct
@@ -168,6 +171,7 @@ impl System {
         for (effect, amplitude) in self.varying_loads(parameter).filter(|(_, amplitude)| *amplitude != 0.0) {
             effect.add_tangent_product(amplitude, q, v, f);
         }
+        self.terms.timed_loads.iter().for_each(|load| load.add_tangent_product(parameter, q, v, f));
     }
 
     /// The tangent of the internal forces alone, which is symmetric.

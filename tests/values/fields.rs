@@ -69,10 +69,142 @@ fn a_vortex_turns_a_rod() {
     near(found.last("energy.csv", "work"), found.last("energy.csv", "kinetic"), 1e-8, "work");
 }
 
+const STEPS: [&str; 4] = [
+    "radau.tolerance = 1e-6",
+    "gauss = { stages = 3, tolerance = 1e-6 }",
+    "radau.step = 0.005",
+    "generalized_alpha.tolerance = 1e-7",
+];
+
+fn in_motion(field: &str, held: &str, duration: f64, steps: &str) -> Written {
+    let every = duration / 4.0;
+    let analysis = format!("analysis.dynamic = {{ duration = {duration}, output_every = {every}, {steps} }}");
+    Written::of(&rod(field, &format!("{held}\n{analysis}")))
+}
+
+/// y(T) of ÿ = a(y, t) from y = 0 with the velocity `v`, by the classical Runge–Kutta method.
+fn motion_of(a: impl Fn(f64, f64) -> f64, mut v: f64, duration: f64) -> f64 {
+    let (count, mut y) = (4000_u32, 0.0);
+    let h = duration / f64::from(count);
+    for t in (0..count).map(|step| f64::from(step) * h) {
+        let a1 = a(y, t);
+        let a2 = a(y + 0.5 * h * v, t + 0.5 * h);
+        let a3 = a(y + 0.5 * h * v + 0.25 * h * h * a1, t + 0.5 * h);
+        let a4 = a(y + h * v + 0.5 * h * h * a2, t + h);
+        y += h * v + h * h * (a1 + a2 + a3) / 6.0;
+        v += h * (a1 + 2.0 * a2 + 2.0 * a3 + a4) / 6.0;
+    }
+    y
+}
+
+/// A guided rod is a point that moves in y. Waves that travel across it, as a force and as a potential,
+/// and a spring that varies (Mathieu's equation) against another integration of ÿ = F(y, t)/ρA, and
+/// energy against work.
+#[test]
+fn a_wave_across_a_rod_moves_it_as_a_point() {
+    let wave = |y: f64, t: f64| 4.0 * (3.0 * y - 5.0 * t).sin() / 1.5;
+    let spring = |y: f64, t: f64| (6.0 - (40.0 + 24.0 * (9.0 * t).cos()) * y) / 1.5;
+    let twice = |y: f64, t: f64| 0.8 * (6.0 * t).sin() * wave(y, t);
+    for steps in STEPS {
+        for (field, expected) in [
+            ("value = ['0', '4*sin(3*y-5*t)']", motion_of(wave, 0.0, 1.0)),
+            ("potential = '4/3*cos(3*y-5*t)+t'", motion_of(wave, 0.0, 1.0)),
+            ("potential = '(20+12*cos(9*t))*y^2-6*y'", motion_of(spring, 0.0, 1.0)),
+            (
+                "value = ['0', '4*sin(3*y-5*t)'], in_time.expression = '0.8*sin(6*t)'",
+                motion_of(twice, 0.0, 1.0),
+            ),
+        ] {
+            let found = in_motion(field, GUIDED, 1.0, steps);
+            near(found.last("probes.csv", "end.y"), expected, 2e-6, &format!("{field}, {steps}"));
+            let [total, kinetic] = ["total", "kinetic"].map(|name| found.column("energy.csv", name));
+            let largest = kinetic.iter().copied().fold(0.0, f64::max);
+            assert!(total.iter().all(|total| total.abs() < 1e-5 * largest), "{field}, {steps}: {total:?}");
+            assert_eq!(found.last("energy.csv", "potential"), 0.0);
+        }
+    }
+}
+
+/// A wave along the rod, 3 sin k (x − c t), is ∫ over its 2 m: ÿ = (cos k c t − cos k (2 − c t)) 3/3k,
+/// whose motion from rest is in closed form. It is that of two fields with laws of time.
+#[test]
+fn a_wave_along_a_rod_pushes_it_by_its_sum() {
+    let (k, c, time) = (2.3_f64, 2.0_f64, 1.0_f64);
+    let w = k * c;
+    let rest = (1.0 - (w * time).cos()) / (w * w);
+    let other = ((2.0 * k).cos() - (2.0 * k - w * time).cos()) / (w * w) + time * (2.0 * k).sin() / w;
+    let expected = (rest - other) / k;
+    for field in [
+        "value = ['0', '3*sin(2.3*(x-2*t))']",
+        "value = ['0', '3*sin(2.3*x)'], in_time.expression = 'cos(4.6*t)' },
+         { beam = 'rod', value = ['0', '-3*cos(2.3*x)'], in_time.expression = 'sin(4.6*t)'",
+    ] {
+        let found = in_motion(field, GUIDED, time, "radau.step = 0.01");
+        // The wave bends the rod by some 1e-6 m.
+        near(found.last("probes.csv", "end.y"), expected, 3e-5, field);
+    }
+}
+
+/// An unsymmetric tangent that varies: a vortex (−y, x) k t turns a rod about its start by θ̈ = k t/ρA.
+#[test]
+fn a_vortex_that_grows_turns_a_rod() {
+    let hinged = "support = [{ beam = 'rod', at = 'start', fix = ['x', 'y'] }]";
+    for steps in STEPS {
+        let found = in_motion("value = ['-3*y*t', '3*x*t']", hinged, 1.0, steps);
+        near(found.last("probes.csv", "end.angle"), 2.0 / 6.0, 1e-6, steps);
+        near(found.last("energy.csv", "work"), found.last("energy.csv", "kinetic"), 2e-6, steps);
+    }
+}
+
+/// Pulses much shorter than a step of a rod at rest or in flight, whose time depends on where the rod
+/// is by then: each gives its whole momentum, and 0.5 s after the rod has met it that is a way.
+#[test]
+fn no_step_passes_over_a_short_pulse() {
+    let flying = format!("{GUIDED}\ninitial_velocity = [{{ beam = 'rod', value = [0, 2] }}]");
+    for (field, held, start, met) in [
+        ("value = ['0', '300*exp(-((t-0.5)/0.0005)^2)']", GUIDED, 0.0, 0.5),
+        // At y = 2 t the pulse comes at t = 0.8 − 0.3 y = 0.5, and lasts 1/1.6 as long.
+        ("value = ['0', '300*exp(-((t-0.8+0.3*y)/0.0005)^2)']", &flying, 2.0, 0.5),
+    ] {
+        let moves = field.contains('y');
+        let a = |y: f64, t: f64| {
+            let at = if moves { t - 0.8 + 0.3 * y } else { t - 0.5 };
+            200.0 * (-(at / 0.0005).powi(2)).exp()
+        };
+        // The pulse by itself, in steps that suit it.
+        let expected = {
+            let before = start * (met - 0.01);
+            let shifted = |y: f64, t: f64| a(before + y, t + met - 0.01);
+            let (y, h) = (motion_of(shifted, start, 0.02), 1e-6);
+            let speed = (motion_of(shifted, start, 0.02 + h) - y) / h;
+            before + y + speed * (1.0 - met - 0.01)
+        };
+        for steps in STEPS {
+            let found = in_motion(field, held, 1.0, steps);
+            let tolerance = if steps.contains("step") { 1e-3 } else { 2e-6 };
+            near(found.last("probes.csv", "end.y"), expected, tolerance, &format!("{field}, {steps}"));
+        }
+    }
+}
+
+/// In statics, vibrations and buckling nobody knows which time is meant.
+#[test]
+fn formulas_of_time_are_refused_where_there_is_none() {
+    for analysis in ["static = {}", "modal.count = 1", "buckling.count = 1"] {
+        for (field, at) in [("potential = 'x*t'", "'x*t'"), ("value = ['x', 'y+0*t']", "'y+0*t'")] {
+            let text = rod(field, &format!("{GUIDED}\nanalysis.{analysis}"));
+            let said = parse("field.toml", &text).expect_err(field).to_string();
+            assert!(said.contains("names the time t, which this analysis does not have"), "{said}");
+            let column = text.lines().nth(1).and_then(|line| line.find(at)).expect("the formula") + 1;
+            assert!(said.starts_with(&format!("field.toml:2:{column}: ")), "{column}: {said}");
+        }
+    }
+}
+
 #[test]
 fn formulas_that_cannot_be_read_are_told_with_their_place() {
     for (field, part) in [
-        ("potential = '20*z'", "it cannot contain `z`: it knows x, y, pi"),
+        ("potential = '20*z'", "it cannot contain `z`: it knows x, y, t, pi"),
         ("value = ['x', 'y^2^2']", "a power of a power"),
         ("potential = 'x', value = ['x', 'y']", "exactly one of `potential`, `value`"),
         ("from = 0.5", "exactly one of `potential`, `value`"),

@@ -258,17 +258,18 @@ pub struct ElectrostaticTable {
     pub until: Option<Located<String>>,
 }
 
-/// A force per length that depends on the place, by formulas of x and y in metres: `potential` or
-/// `value`.
+/// A force per length that depends on the place, by formulas of x and y in metres, and in motions of
+/// the time t in seconds: `potential` or `value`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["potential"] }, { "required": ["value"] }]))]
 pub struct ForceFieldTable {
     /// Name of the beam.
     pub beam: Located<String>,
-    /// U in J/m, such as "50*(y-0.2)^2"; the force is −∇U.
+    /// U in J/m, such as "50*(y-0.2)^2"; the force is −∇U. With t, what it gives is work.
     pub potential: Option<Located<String>>,
-    /// Fx and Fy in N/m, such as ["-3*y", "3*x"], which need not have a potential.
+    /// Fx and Fy in N/m, such as ["-3*y", "3*x"] or ["0", "3*sin(2*pi*(x-2*t))"], which need not have a
+    /// potential.
     pub value: Option<[Located<String>; 2]>,
     /// Arc length from which on it acts; the beam's start when left out.
     pub from: Option<Located<At>>,

@@ -25,6 +25,10 @@
 //! also at times between which it changes about equally ([`System::turns_of_laws`]); steps of fixed length
 //! only where it changes faster than they can follow.
 //!
+//! What a formula of place and time does depends on where the beam is by then. So before each step the
+//! driver looks along it ([`System::sudden_changes`]), as closely as for expressions, and ends it where
+//! such a load sets off suddenly; the change itself takes several steps.
+//!
 //! # Steps of fixed length
 //! A step whose equations cannot be solved is divided, and the count of rejected steps and a
 //! warning tell so; all others keep their lengths and their ends. In a step in which nodes turn far
@@ -107,6 +111,10 @@ const NEAR: f64 = 1e-3;
 const MANY_ITERATIONS: usize = 10;
 /// How often a step may end earlier because a contact begins or ends in it.
 const CUTS: usize = 6;
+/// Parts of a whole motion in which formulas of place and time are looked at.
+const LOOKS: f64 = 16384.0;
+/// Steps of fewer such parts are not looked along: what is shorter may be missed.
+const FEWEST_LOOKS: f64 = 16.0;
 /// Attempted steps that are kept for the reader.
 const HISTORY: usize = 20_000;
 /// Time by which a record or an end may miss a step's end, relative to the step.
@@ -373,8 +381,22 @@ impl<'t, 'a> Driver<'t, 'a> {
         self.whole.is_none() && (self.end_cuts() || self.task.watches.iter().any(|watch| watch.stop))
     }
 
+    /// Adds to the kinks where, in the step to come, a load that is a formula of place and time changes
+    /// suddenly.
+    fn look_ahead(&mut self) {
+        let span = [self.state.time, self.next_end(f64::INFINITY)];
+        let parts = LOOKS * (span[1] - span[0]) / self.task.duration;
+        if parts < FEWEST_LOOKS {
+            return;
+        }
+        let state = [&self.state.q[..], &self.state.v[..]];
+        self.kinks.extend(self.system.sudden_changes(span, state, parts as usize));
+        self.kinks.sort_by(f64::total_cmp);
+    }
+
     /// Takes one step to `new`, shortened as often as needed.
     fn advance(&mut self, new: &mut State) -> Result<End, NoStep> {
+        self.look_ahead();
         let (mut touch, mut cuts) = (f64::INFINITY, 0);
         loop {
             let end = self.next_end(touch);
