@@ -390,8 +390,11 @@ impl<'t, 'a> Driver<'t, 'a> {
             return;
         }
         let state = [&self.state.q[..], &self.state.v[..]];
-        self.kinks.extend(self.system.sudden_changes(span, state, parts as usize));
-        self.kinks.sort_by(f64::total_cmp);
+        let sudden = self.system.sudden_changes(span, state, parts as usize);
+        if !sudden.is_empty() {
+            self.kinks.extend(sudden);
+            self.kinks.sort_by(f64::total_cmp);
+        }
     }
 
     /// Takes one step to `new`, shortened as often as needed.
