@@ -54,20 +54,17 @@ pub fn inspect_stages(
     Ok(stages.iter().map(|stage| stage.name.as_str()).zip(inventories).collect())
 }
 
-/// A tendon, and the one that pulls as it does in the state that was reached; none for a tendon whose
-/// tension follows a law of time. `tensions` are those of the tendons of given length, in turn.
-fn pull<'p>(
-    part: &'p Arc<dyn Part>,
-    tensions: &mut impl Iterator<Item = f64>,
-) -> Option<(&'p Arc<dyn Part>, Option<Arc<dyn Part>>)> {
+/// For a tendon one that pulls as it does in the state that was reached; none for other parts, and for a
+/// tendon whose tension follows a law of time. `tensions` are those of the tendons of given length, in
+/// turn.
+fn pull(part: &Arc<dyn Part>, tensions: &mut impl Iterator<Item = f64>) -> Option<Arc<dyn Part>> {
     let any: &dyn Any = part.as_ref();
     let tendon = any.downcast_ref::<Tendon>()?;
-    let pull = match (tendon.shortening, &tendon.law) {
+    match (tendon.shortening, &tendon.law) {
         (Some(_), _) => tensions.next().map(|tension| Arc::new(tendon.pulled_with(tension)) as Arc<dyn Part>),
         (None, None) => Some(Arc::clone(part)),
         (None, Some(_)) => None,
-    };
-    Some((part, pull))
+    }
 }
 
 /// Solves `stages`, the first from the start that `options` give. The others start where the one
@@ -92,11 +89,11 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
         };
         let mut tensions = held.iter().copied();
         // A tendon's forces turn with its beam, which those of other things that have gone do not.
-        let pulled = acted.iter().filter_map(|part| pull(part, &mut tensions));
-        let fading = pulled
-            .filter(|(part, _)| !model.parts.contains(part))
-            .filter_map(|(_, pull)| pull)
-            .collect::<Vec<_>>();
+        let gone = |part: &Arc<dyn Part>| {
+            let pull = pull(part, &mut tensions)?;
+            (!model.parts.contains(part)).then_some(pull)
+        };
+        let fading: Vec<_> = acted.iter().filter_map(gone).collect();
         let model = if fading.is_empty() {
             Cow::Borrowed(model)
         } else {

@@ -177,7 +177,7 @@ impl Frame {
         }
     }
 
-    /// A formula of the natural place as one of the coordinates of the scene.
+    /// A formula of the natural place and time as one of the coordinates of the scene.
     fn of_place(&self, text: &str) -> String {
         let origin = self.point_back([0.0; 2]);
         let [x, y] = [self.point_back([1.0, 0.0]), self.point_back([0.0, 1.0])];
@@ -185,7 +185,8 @@ impl Frame {
             let slopes = [x[axis] - origin[axis], y[axis] - origin[axis]];
             formula::sum(&[(slopes[0], "x"), (slopes[1], "y"), (origin[axis], "1")])
         });
-        formula::with(text, &[("x", x), ("y", y)])
+        let t = formula::scaled("t", 1.0 / self.units[2]);
+        formula::with(text, &[("x", x), ("y", y), ("t", t)])
     }
 
     /// Turns a force that formulas tell.

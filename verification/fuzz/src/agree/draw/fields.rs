@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use super::super::formula::number;
+use super::super::formula::{self, number};
 use super::super::frame::list;
 use super::{Draw, Kind, round};
 
@@ -67,7 +67,14 @@ impl Draw<'_> {
         let mut n = |low: f64, high: f64| number(self.signed(low, high));
         let (a, b) = (n(0.3 * size, 10.0 * size), n(0.3 * size, 10.0 * size));
         let (c, d, k) = (n(0.05, 1.0), n(0.05, 1.0), n(0.3, 5.0));
+        let speed = n(0.3, 3.0);
         let wide = number(self.log(0.1, 2.0));
+        // In a motion some fields travel.
+        let travels = self.is_motion() && self.chance(0.3);
+        let moved = |text: String| match travels {
+            true => formula::with(&text, &[("x", format!("x-{speed}*t"))]),
+            false => text,
+        };
         if self.rng.bool() {
             let potential = match self.rng.u8(0..6) {
                 0 => format!("{a}*(y-{c})^2+{b}*x"),
@@ -77,7 +84,7 @@ impl Draw<'_> {
                 4 => format!("{a}*ln(1+x^2+y^2)+{b}*sqrt(1+(x-y)^2)"),
                 _ => format!("-x^3*{a}/(1+x^2)-{b}*tanh(y/{wide})"),
             };
-            table.insert("potential".into(), potential.into());
+            table.insert("potential".into(), moved(potential).into());
         } else {
             let value = match self.rng.u8(0..5) {
                 0 => [format!("-{a}*y"), format!("{a}*x")],
@@ -86,7 +93,8 @@ impl Draw<'_> {
                 3 => [format!("{a}*sin({k}*y)"), format!("{b}*cos({k}*x)")],
                 _ => [format!("{a}/(1+x^2)"), format!("{b}*exp(-y^2/{wide})+{a}*atan(x*y)")],
             };
-            table.insert("value".into(), Value::Array(value.into_iter().map(Value::String).collect()));
+            let value = value.into_iter().map(|text| Value::String(moved(text)));
+            table.insert("value".into(), Value::Array(value.collect()));
         }
         self.perhaps_in_time(&mut table, 0.4);
         self.perhaps_stretch(&mut table);

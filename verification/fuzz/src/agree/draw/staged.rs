@@ -171,6 +171,9 @@ impl Draw<'_> {
 /// Whether a law of time drives an item.
 fn follows(item: &Value) -> bool {
     ["in_time", "spin_up"].iter().any(|key| item.get(key).is_some())
+        || ["potential", "value"]
+            .iter()
+            .any(|key| item.get(key).is_some_and(|of| of.to_string().contains("*t)")))
 }
 
 fn of(kind: &str, settings: Value) -> Value {
