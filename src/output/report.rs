@@ -9,7 +9,7 @@ use super::motion::Motion;
 use super::plot::human;
 use super::summary::{ProbeSummary, Summary};
 use crate::results::{
-    AnalysisKind, LargestStress, ProbeSample, Reaction, Results, SectionForces, Trajectory,
+    AnalysisKind, LargestStress, ProbeSample, Reaction, Results, SectionForces, Tension, Trajectory,
 };
 
 #[derive(Template)]
@@ -54,6 +54,7 @@ impl<'a> Analysed<'a> {
                 sections(t, summary),
                 stresses(t, summary),
                 reactions(t, summary),
+                tensions(t, summary),
                 energy(t, summary),
             ]
             .into_iter()
@@ -251,6 +252,15 @@ fn reactions(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
     let rows: Vec<_> = summary.reactions.iter().map(row).collect();
     let header = strings(&["reaction of", "fx [N]", "fy [N]", "moment [N m]"]);
     let caption = format!("Reactions{}", last(t));
+    (!rows.is_empty()).then_some(NumberTable { caption, header, rows })
+}
+
+/// Tensions of the tendons whose lengths are given.
+fn tensions(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
+    let row = |Tension { beam, tension }: &Tension| vec![beam.clone(), human(*tension, 7)];
+    let rows: Vec<_> = summary.tensions.iter().map(row).collect();
+    let header = strings(&["tendon of", "tension [N]"]);
+    let caption = format!("Tendons of given length{}", last(t));
     (!rows.is_empty()).then_some(NumberTable { caption, header, rows })
 }
 

@@ -196,7 +196,7 @@ impl Constraint {
         }
     }
 
-    /// Fixes a quantity of a support that follows no law at the value that it has in the state `q`;
+    /// Fixes a quantity of a support that no law moves at the value that it has in the state `q`;
     /// `length` is the scale of lengths.
     pub fn freeze(&mut self, q: &[f64], length: f64) {
         let Some(field) = self.fields.first().map(|field| field.at(q)) else { return };

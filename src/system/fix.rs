@@ -9,7 +9,7 @@ use super::{BuildError, Needs, System, View};
 use crate::model::{Displacement, FixedRotation, Support};
 
 impl System {
-    /// Fixes supports without a law of time at the quantities that they have in the state `q`.
+    /// Fixes what no law of time moves at the quantities that it has in the state `q`.
     pub fn freeze(&mut self, q: &[f64]) {
         let length = self.length;
         self.supports.freeze(q, length);

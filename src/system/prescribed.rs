@@ -24,10 +24,10 @@ impl Prescribed {
         self.change.mul_add(part, self.start)
     }
 
-    /// Sets the start to `value`, unless the quantity follows a law or `value` differs only by
+    /// Sets the start to `value`, unless a law moves the quantity or `value` differs only by
     /// round-off relative to `unit`.
     pub fn freeze(&mut self, value: f64, unit: f64) {
-        if self.law.is_none() && (self.start - value).abs() > ROUND_OFF * unit {
+        if !self.moves_in_time() && (self.start - value).abs() > ROUND_OFF * unit {
             self.start = value;
         }
     }

@@ -175,7 +175,7 @@ impl Supports {
         })
     }
 
-    /// Fixes quantities that follow no law at the values that they have in the state `q`; `length`
+    /// Fixes quantities that no law moves at the values that they have in the state `q`; `length`
     /// is the scale of lengths.
     pub fn freeze(&mut self, q: &[f64], length: f64) {
         for RestrainedPair { pair, restraint } in &mut self.pairs {

@@ -450,3 +450,21 @@ fn critical_loads_of_a_stage_come_on_top_of_what_acts() {
         assert!(said.contains("is none without its own loads"), "{said}");
     }
 }
+
+/// A support with a law holds what the law does not move where the stage before has brought it: a string
+/// that statics has stretched is shaken across, and stays as long as it is.
+#[test]
+fn what_a_law_does_not_move_stays_where_statics_brought_it() {
+    let text = "beam.string = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, mass_per_length = 0.01, basis.ancf.elements = 8 }
+        support = [
+            { beam = 'string', at = 'start', fix = ['x', 'y'] },
+            { beam = 'string', at = 'end', fix = ['x', 'y'], move.x = 0.01, until = 'shake' },
+            { beam = 'string', at = 'end', fix = ['x', 'y'], move = { y = 1e-3, in_time.harmonic.frequency = 20 }, stage = 'shake' },
+        ]
+        probe = [{ name = 'end', beam = 'string', at = 'end' }]
+        stage = [{ name = 'stretch', analysis.static = {} }, { name = 'shake', analysis.dynamic = { duration = 0.0125 } }]";
+    let shaken = solved(text).pop().expect("stages");
+    let samples = &shaken.states().probes[0].samples;
+    assert!(samples.iter().all(|sample| (sample.x - 1.01).abs() < 1e-12));
+    near(samples.last().expect("an end").y, 1e-3, 1e-12, "a quarter of a turn");
+}

@@ -180,6 +180,11 @@ fn a_tendon_of_given_length_has_the_tension_of_its_arc() {
             for pull in [format!("shortening = {shortening}"), format!("length = {length}")] {
                 let found = Written::of(&held(basis, &format!("offset = {offset}, {pull}"), STATIC));
                 near(found.said("/tensions/0/tension"), 5.0, 1e-6, "tension");
+                assert!(
+                    found
+                        .text("report.html")
+                        .contains("<caption>Tendons of given length at load factor 1</caption>")
+                );
                 let turn = 5.0 * offset / EI * 0.5;
                 let radius = (1.0 - 5.0 / EA) * 0.5 / turn;
                 let expected = [

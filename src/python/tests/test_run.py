@@ -228,6 +228,8 @@ def test_what_a_listener_raises_ends_the_run(pendulum: ancf.Scene) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="signals")
 def test_ctrl_c_ends_the_run_and_keeps_what_was_computed() -> None:
     scene = ancf.Scene(falling(analysis=SLOW))
+    # A shell lets what it starts in the background ignore the signal.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(0.6, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     start = time.monotonic()
