@@ -255,6 +255,20 @@ fn a_tendon_that_is_shortened_in_time_does_work() {
     }
 }
 
+/// A law that begins with a rate gives the beam at rest a velocity at once, whose energy is put in.
+#[test]
+fn a_tendon_that_is_pulled_at_once_puts_in_the_energy_of_its_jerk() {
+    let tendon = "offset = '15 cm', shortening = '60 mm', in_time.harmonic.frequency = 1";
+    let motion = "analysis.dynamic = { duration = 0.1, output_every = 0.02, gauss.tolerance = 1e-7 }";
+    let found = Written::of(&held("basis.ancf.elements = 8", tendon, motion));
+    let (work, kinetic) = (found.column("energy.csv", "work"), found.column("energy.csv", "kinetic"));
+    assert!(kinetic[0] > 1e-8, "{}", kinetic[0]);
+    near(work[0], kinetic[0], 1e-12, "put in at the start");
+    for total in found.column("energy.csv", "total") {
+        near(total, 0.0, 1e-5 * work[work.len() - 1], "total");
+    }
+}
+
 /// Between stages a tendon keeps its length under other loads and in a motion, and lets go as it is; one
 /// that comes to a bent beam is tightened from there.
 #[test]

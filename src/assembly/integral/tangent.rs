@@ -40,7 +40,13 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         #[expect(clippy::collapsible_if, reason = "together they would not be such a condition")]
         if D::BY_FOURS {
             if W == CABLE && !self.fours.is_empty() {
-                self.tangents_by_fours(factor, q, earlier, f, k, workspace);
+                match self.table.points_per_cell {
+                    2 => self.tangents_of_fours::<2>(factor, q, earlier, f, k, workspace),
+                    3 => self.tangents_of_fours::<3>(factor, q, earlier, f, k, workspace),
+                    4 if Self::COMMON => self.tangents_of_fours::<4>(factor, q, earlier, f, k, workspace),
+                    5 if Self::COMMON => self.tangents_of_fours::<5>(factor, q, earlier, f, k, workspace),
+                    _ => {}
+                }
                 for &cell in &self.singles {
                     self.tangent_of_cell::<W>(cell as usize, factor, q, earlier, f, k, workspace);
                 }
@@ -49,25 +55,6 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         }
         for cell in 0..self.table.cells.len() {
             self.tangent_of_cell::<W>(cell, factor, q, earlier, f, k, workspace);
-        }
-    }
-
-    /// The cable elements that are grouped by four.
-    fn tangents_by_fours(
-        &self,
-        factor: f64,
-        q: &[f64],
-        earlier: Option<Earlier<'_>>,
-        f: &mut [f64],
-        k: &mut Matrix,
-        workspace: &mut Workspace,
-    ) {
-        match self.table.points_per_cell {
-            2 => self.tangents_of_fours::<2>(factor, q, earlier, f, k, workspace),
-            3 => self.tangents_of_fours::<3>(factor, q, earlier, f, k, workspace),
-            4 if Self::COMMON => self.tangents_of_fours::<4>(factor, q, earlier, f, k, workspace),
-            5 if Self::COMMON => self.tangents_of_fours::<5>(factor, q, earlier, f, k, workspace),
-            _ => {}
         }
     }
 
@@ -136,7 +123,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         });
     }
 
-    /// As [`Self::tangents_by_fours`] for `P` points in each element.
+    /// The cable elements that are grouped by four, with `P` points in each.
     fn tangents_of_fours<const P: usize>(
         &self,
         factor: f64,

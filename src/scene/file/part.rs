@@ -154,10 +154,11 @@ pub struct ActuationTable {
     pub until: Option<Located<String>>,
 }
 
-/// A tendon without friction along a beam, pulled with a given tension or to a given length: it presses on the sections
-/// at which it ends, and on its sheath where it is bent.
+/// A tendon without friction along a beam, pulled with a given tension or to a given length: it presses
+/// on the sections at which it ends, and on its sheath where it is bent.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["tension"] }, { "required": ["length"] }, { "required": ["shortening"] }]))]
 pub struct TendonTable {
     /// Name of the beam.
     pub beam: Located<String>,

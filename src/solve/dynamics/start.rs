@@ -173,7 +173,8 @@ pub fn from_state(
     }
     let (worst, change) = largest(system, |i| given[i] - admissible[i]);
     let allowed = if velocities.is_empty() { WITHIN_A_STEP } else { ROUND_OFF };
-    if change > allowed * largest(system, |i| state.v[i]).1 {
+    // What is at rest until laws move it has no velocity that supports could contradict.
+    if !at_rest && change > allowed * largest(system, |i| state.v[i]).1 {
         let (beam, s) = system.place_of(worst);
         let change = (given[worst] - admissible[worst]).abs();
         return Err(StartError::Held { beam: system.beams()[beam].name.clone(), s, change });
