@@ -8,6 +8,9 @@ use super::{settings, stages};
 
 /// The worst of the balances: its error relative to the largest force, and its name.
 pub fn worst(scene: &Table, seen: &Seen) -> Option<(f64, String)> {
+    if stages::may_end_fading(scene) {
+        return None;
+    }
     let scene = &stages::last(scene);
     let kind = settings::analysis(scene);
     if !matches!(kind, "static" | "dynamic") {

@@ -49,6 +49,12 @@ pub fn cut(scene: &Table) -> Option<Table> {
     if varies || layered || items.any(on_a_stretch) {
         return None;
     }
+    // Two tendons of given length have each a tension of its own, where one has the same throughout.
+    let of_length = |tendon: &Table| !tendon.contains_key("tension");
+    let here = |item: &Table| item.get("beam").and_then(Value::as_str) == Some(&name);
+    if settings::items(scene, &["effect", "tendon"]).any(|tendon| here(tendon) && of_length(tendon)) {
+        return None;
+    }
     let other = format!("{name}2");
     let mut scene = scene.clone();
     // Velocities along the arc length are given for the whole beam and are not cut.

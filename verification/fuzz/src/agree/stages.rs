@@ -80,6 +80,23 @@ pub fn last(scene: &Table) -> Table {
     n.checked_sub(1).and_then(|last| part(scene, last..n)).unwrap_or_else(|| scene.clone())
 }
 
+/// Whether a part of something that goes may still act at the end: it fades with the load factor of
+/// the last stage, which a path need not bring to one.
+pub fn may_end_fading(scene: &Table) -> bool {
+    let Some(name) = names(scene).pop() else { return false };
+    let last = settings::analyses(scene).last();
+    let path = last.is_some_and(|analysis| settings::get(analysis, &["static", "arc_length"]).is_some());
+    let goes = |item: &Table| item.get("until").and_then(Value::as_str) == Some(&name);
+    let list = |value: &Value| match value {
+        Value::Array(items) => items.iter().filter_map(Value::as_table).any(goes),
+        Value::Table(one) => goes(one),
+        _ => false,
+    };
+    let effects = scene.get("effect").and_then(Value::as_table);
+    let ties = ["support", "joint"].into_iter().filter_map(|key| scene.get(key));
+    path && effects.into_iter().flat_map(Table::values).chain(ties).any(list)
+}
+
 /// The scene with what may be left out of its stages: one of them, with what is there only then.
 pub fn without(scene: &Table, index: usize) -> Option<Table> {
     let names = names(scene);
@@ -238,6 +255,21 @@ mod tests {
         );
         assert_eq!(settings::items(&rest, &["effect", "force"]).count(), 1);
         assert!(settings::get(&last(&scene()), &["effect", "force"]).is_none());
+    }
+
+    #[test]
+    fn what_fades_along_a_path_may_still_act_at_its_end() {
+        let text = |analysis: &str, until: &str| {
+            let scene = format!(
+                "stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', analysis.static = {analysis} }}]
+                effect.gravity = {{ acceleration = [0.0, 1.0]{until} }}"
+            );
+            scene.parse().unwrap_or_else(|error| panic!("{error}"))
+        };
+        let path = "{ arc_length.until_load = 0.4 }";
+        assert!(may_end_fading(&text(path, ", until = 'two'")));
+        assert!(!may_end_fading(&text("{}", ", until = 'two'")));
+        assert!(!may_end_fading(&text(path, "")));
     }
 
     #[test]
