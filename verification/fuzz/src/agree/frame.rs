@@ -134,8 +134,9 @@ impl Frame {
             both.reverse();
         }
         match (nature(path), value) {
+            // A formula with its kinks is a table of both.
+            (Some(Nature::OfTime) | None, Value::Table(table)) => self.table(path, table),
             (Some(nature), value) => self.quantity(nature, value),
-            (None, Value::Table(table)) => self.table(path, table),
             (None, Value::Array(list)) => list.iter_mut().for_each(|item| self.value(path, item)),
             (None, _) => {}
         }

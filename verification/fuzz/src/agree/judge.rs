@@ -191,7 +191,8 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         (Outcome::Solved(a), Outcome::Solved(b)) => (a, b),
         (Outcome::Solved(seen), Outcome::Failed(said) | Outcome::Refused(said))
         | (Outcome::Failed(said) | Outcome::Refused(said), Outcome::Solved(seen)) => {
-            let given_up = !seen.warnings.is_empty() || settings::is_slack(scene);
+            let slack = settings::is_slack(scene) || settings::gives_way(scene);
+            let given_up = !seen.warnings.is_empty() || slack;
             if given_up || neighbour::at_the_edge(scene, [frame, &other], rng) {
                 return Verdict::Unstable;
             }

@@ -288,6 +288,16 @@ pub fn is_slack(scene: &Table) -> bool {
     rests && beams(scene).any(|(name, beam)| !(bends(beam) || weighs || pulled(name)))
 }
 
+/// Whether the law of a beam has an interval without resistance, in which any strain or curvature
+/// is as good as another.
+pub fn gives_way(scene: &Table) -> bool {
+    let flat = |beam: &Table, law: &str, value: &str| {
+        let values = get(beam, &[law, value]).and_then(Value::as_array);
+        values.is_some_and(|values| values.windows(2).any(|pair| pair[0] == pair[1]))
+    };
+    beams(scene).any(|(_, beam)| flat(beam, "axial_law", "force") || flat(beam, "bending_law", "moment"))
+}
+
 /// Changes every beam's `basis`; none where one cannot be.
 pub fn map_bases(scene: &Table, change: impl Fn(&Table) -> Option<Table>) -> Option<Table> {
     let mut scene = scene.clone();

@@ -202,6 +202,13 @@ pub fn at_once(scene: &Table) -> Option<Table> {
     if settings::items(scene, &["support"]).any(|support| later(support) && stays(support)) {
         return None;
     }
+    // All stages have a node wherever one of them has something at a point.
+    let at_a_node = |item: &Table| item.get("at").is_some_and(Value::is_float);
+    let effects = scene.get("effect").and_then(Value::as_table).into_iter().flat_map(Table::values);
+    let lists = effects.chain(scene.get("support")).filter_map(Value::as_array).flatten();
+    if lists.filter_map(Value::as_table).any(|item| at_a_node(item) && !stays(item)) {
+        return None;
+    }
     part(scene, last..names.len())
 }
 
