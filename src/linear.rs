@@ -3,12 +3,13 @@
 //! Every unknown belongs to a node, and a node has four: x, y, x', y'. A beam's tangent is
 //! therefore a band of 4 × 4 blocks, with as many blocks to the right of the diagonal as a support
 //! has further nodes (1 for the cable element, 5 for six-node radial point interpolation). The
-//! pattern decides among six factorisations; the caller only states whether a matrix is definite:
+//! pattern decides among seven factorisations; the caller only states whether a matrix is definite:
 //!
 //! | pattern | method | file |
 //! |---|---|---|
 //! | symmetric band | LDLᵀ by blocks, no pivoting; its signs are the inertia | [`symmetric`] |
-//! | band (follower loads), or a symmetric one with a vanishing pivot | LU with partial pivoting | [`band`] |
+//! | band (follower loads) with a mass | LU by blocks, pivoting within them | [`unsymmetric`] |
+//! | band without one, or any of these with a vanishing pivot | LU with partial pivoting | [`band`] |
 //! | the first, definite and bordered by few constraint rows | LDLᵀ and a small Schur complement | [`condensed`] |
 //! | symmetric band of neighbours, bordered by rows within three nodes | LDLᵀ, the rows in between | [`chain`] |
 //! | band bordered by other constraint rows within it | LU of a band in another order | [`interleaved`] |
@@ -36,6 +37,7 @@ pub mod interleaved;
 pub mod isotropic;
 mod order;
 pub mod symmetric;
+pub mod unsymmetric;
 
 use crate::lanes::fma;
 use band::{Band, BandLu};
@@ -44,6 +46,7 @@ use chain::Chain;
 use condensed::Condensed;
 use interleaved::Interleaved;
 use symmetric::{Ldl, SymmetricBand};
+use unsymmetric::BlockLu;
 
 /// A tangent matrix under assembly.
 #[derive(Clone, Debug)]
@@ -116,6 +119,7 @@ impl Matrix {
     pub fn add(&mut self, factor: f64, other: &Self) {
         match (&mut *self, other) {
             (Self::Symmetric(a), Self::Symmetric(b)) if a.stride() == b.stride() => a.add(factor, b),
+            (Self::General(a), Self::Symmetric(b)) => b.add_to(factor, a),
             _ => {
                 for i in 0..other.size() {
                     other.columns(i).for_each(|j| self.add_at(i, j, factor * other.get(i, j)));
@@ -250,6 +254,8 @@ pub enum Factor {
     Ldl(Ldl),
     /// LU of a band.
     Lu(BandLu),
+    /// LU of a band of blocks.
+    BlockLu(BlockLu),
     /// LDLᵀ of a symmetric band bordered by few rows.
     Condensed(Box<Condensed>),
     /// LDLᵀ of a symmetric band of neighbours that is bordered by rows within three nodes.
@@ -391,6 +397,11 @@ impl Factor {
         }
         let mut sum = matrix.clone();
         sum.add(c, mass);
+        if let Matrix::General(band) = &sum
+            && let Ok(lu) = BlockLu::new(band)
+        {
+            return Ok(Self::BlockLu(lu));
+        }
         Self::again(earlier, &sum, border)
     }
 
@@ -399,6 +410,7 @@ impl Factor {
         match self {
             Self::Ldl(ldl) => ldl.solve(b),
             Self::Lu(lu) => lu.solve(b),
+            Self::BlockLu(lu) => lu.solve(b),
             Self::Condensed(condensed) => condensed.solve(b),
             Self::Chain(chain) => chain.solve(b),
             Self::Interleaved(interleaved) => interleaved.solve(b),
@@ -411,9 +423,7 @@ impl Factor {
     pub fn negative_eigenvalues(&self) -> Option<usize> {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots()),
-            Self::Lu(_) | Self::Condensed(_) | Self::Chain(_) | Self::Interleaved(_) | Self::Bordered(_) => {
-                None
-            }
+            _ => None,
         }
     }
 
@@ -422,7 +432,7 @@ impl Factor {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots() % 2 == 1),
             Self::Lu(lu) => Some(lu.determinant_is_negative()),
-            Self::Condensed(_) | Self::Chain(_) | Self::Interleaved(_) | Self::Bordered(_) => None,
+            _ => None,
         }
     }
 

@@ -120,6 +120,13 @@ impl<T: Number> Band<T> {
         &mut self.data[start..start + length]
     }
 
+    /// Four entries of row `i` from column `from` on, which must lie in the band.
+    #[inline]
+    pub(super) fn block_row(&self, i: usize, from: usize) -> &[T; 4] {
+        let start = i * (2 * self.half + 1) + from + self.half - i;
+        &self.data[start..].as_chunks().0[0]
+    }
+
     /// Columns that can be different from zero in row `i`.
     pub fn columns(&self, i: usize) -> std::ops::Range<usize> {
         i.saturating_sub(self.half)..(i + self.half + 1).min(self.n)

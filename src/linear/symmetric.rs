@@ -210,17 +210,28 @@ impl SymmetricBand {
     /// The same matrix with both halves stored.
     pub fn to_band(&self) -> Band {
         let mut band = Band::zeros(self.size(), self.stride() - 1);
-        for i in 0..self.size() {
-            for j in self.columns(i) {
-                band.set(i, j, self.get(i, j));
+        self.add_to(1.0, &mut band);
+        band
+    }
+
+    /// Adds `factor` times both halves to a band that is at least as wide.
+    pub fn add_to(&self, factor: f64, band: &mut Band) {
+        let stride = self.stride();
+        for (i, row) in self.data.chunks_exact(stride).enumerate() {
+            let (first, size) = (4 * (i / 4), self.size());
+            for (j, value) in (first..size).zip(row).skip(i - first) {
+                let value = factor * value;
+                band.row_mut(i, j, 1)[0] += value;
+                if j != i {
+                    band.row_mut(j, i, 1)[0] += value;
+                }
             }
         }
-        band
     }
 }
 
 /// A block of 4 × 4 numbers, row by row.
-type Block = [Lanes; 4];
+pub(super) type Block = [Lanes; 4];
 
 /// A = L D Lᵀ without pivoting, where D consists of blocks of 4 × 4, each of which is D = l d lᵀ in
 /// turn.
@@ -370,31 +381,14 @@ impl Ldl {
     /// Substitutes, with the number of blocks as a compile-time constant, or 0 if it is uncommon.
     fn substitute<const BLOCKS: usize, const FROM_BOTH_ENDS: bool>(&self, b: &mut [f64]) {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
-        let x = b.as_chunks_mut::<4>().0;
-        let order = Order::new(x.len(), FROM_BOTH_ENDS);
-        for (position, (panel, reciprocal)) in
-            self.rows.chunks_exact(blocks).zip(&self.reciprocal).enumerate()
-        {
-            let here = x[order.node(position)];
-            for (block, w) in panel.iter().enumerate().skip(1) {
-                let Some(next) = order.next(position, block) else { break };
-                let target = &mut x[order.node(next)];
-                *target = subtract(w, here, *target);
-            }
-            x[order.node(position)] = if FROM_BOTH_ENDS {
-                multiply(&panel[0], here)
+        let pivots = |position: usize, rows: &Block, here: [f64; 4]| {
+            if FROM_BOTH_ENDS {
+                multiply(rows, here)
             } else {
-                solve_pivots(&panel[0], reciprocal, here)
-            };
-        }
-        for (position, transposed) in self.transposed.chunks_exact((blocks - 1).max(1)).enumerate().rev() {
-            let mut here = x[order.node(position)];
-            for (b, w) in transposed.iter().enumerate() {
-                let Some(next) = order.next(position, b + 1) else { break };
-                here = subtract(w, x[order.node(next)], here);
+                solve_pivots(rows, &self.reciprocal[position], here)
             }
-            x[order.node(position)] = here;
-        }
+        };
+        substitute::<FROM_BOTH_ENDS>(&self.rows, &self.transposed, blocks, pivots, b);
     }
 
     /// The order in which nodes are eliminated.
@@ -438,6 +432,38 @@ impl Ldl {
     }
 }
 
+/// Solves with a factorised matrix in place. `rows` holds per node what `pivots` needs to solve with
+/// its pivots, and its `blocks − 1` blocks to the left of the diagonal, transposed, each divided by
+/// the pivots; `transposed` holds those to the right, in the same form.
+#[inline(always)]
+pub(super) fn substitute<const FROM_BOTH_ENDS: bool>(
+    rows: &[Block],
+    transposed: &[Block],
+    blocks: usize,
+    pivots: impl Fn(usize, &Block, [f64; 4]) -> [f64; 4],
+    b: &mut [f64],
+) {
+    let x = b.as_chunks_mut::<4>().0;
+    let order = Order::new(x.len(), FROM_BOTH_ENDS);
+    for (position, panel) in rows.chunks_exact(blocks).enumerate() {
+        let here = x[order.node(position)];
+        for (block, w) in panel.iter().enumerate().skip(1) {
+            let Some(next) = order.next(position, block) else { break };
+            let target = &mut x[order.node(next)];
+            *target = subtract(w, here, *target);
+        }
+        x[order.node(position)] = pivots(position, &panel[0], here);
+    }
+    for (position, transposed) in transposed.chunks_exact((blocks - 1).max(1)).enumerate().rev() {
+        let mut here = x[order.node(position)];
+        for (b, w) in transposed.iter().enumerate() {
+            let Some(next) = order.next(position, b + 1) else { break };
+            here = subtract(w, x[order.node(next)], here);
+        }
+        x[order.node(position)] = here;
+    }
+}
+
 /// Subtracts multiples of row `R` of the panel from the rows below so that the entries below its
 /// pivot become zero. Returns 1/pivot, or `None` if the pivot vanishes relative to `scale`.
 #[inline(always)]
@@ -468,7 +494,7 @@ fn subtract(rows: &Block, factors: [f64; 4], target: [f64; 4]) -> [f64; 4] {
 
 /// `Σ_r rows_r · factors_r`, summed in two independent chains.
 #[inline(always)]
-fn multiply(rows: &Block, factors: [f64; 4]) -> [f64; 4] {
+pub(super) fn multiply(rows: &Block, factors: [f64; 4]) -> [f64; 4] {
     let factors = factors.map(Lanes::splat);
     let sum = rows[1].mul_add(factors[1], rows[0] * factors[0]);
     (rows[3].mul_add(factors[3], rows[2] * factors[2]) + sum).to_array()
