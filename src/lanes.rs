@@ -33,6 +33,8 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// 1/x.
     fn inverse(self) -> Self;
+    /// |x|.
+    fn abs(self) -> Self;
 }
 
 impl Real for f64 {
@@ -55,6 +57,11 @@ impl Real for f64 {
     fn inverse(self) -> Self {
         1.0 / self
     }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self::abs(self)
+    }
 }
 
 impl Real for Lanes {
@@ -76,6 +83,11 @@ impl Real for Lanes {
     #[inline(always)]
     fn inverse(self) -> Self {
         Self::ONE / self
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self::abs(self)
     }
 }
 

@@ -53,6 +53,9 @@ pub trait Density<const M: usize>: Send + Sync {
     /// Whether [`Self::gradients`] is faster than four times [`Self::gradient`].
     const BY_FOURS: bool = false;
 
+    /// Whether [`Self::gradients_and_hessians`] is, too.
+    const TANGENTS_BY_FOURS: bool = Self::BY_FOURS;
+
     /// `factor · ∂W/∂z` at four points.
     #[inline(always)]
     fn gradients(&self, factor: f64, points: Points, z: &[Pair<Lanes>; M]) -> [Pair<Lanes>; M] {
@@ -101,6 +104,6 @@ pub trait Density<const M: usize>: Send + Sync {
 
 /// The local fields at one of four points.
 #[inline(always)]
-fn lane_of<const M: usize>(z: &[Pair<Lanes>; M], lane: usize) -> Gradient<M> {
+pub(super) fn lane_of<const M: usize>(z: &[Pair<Lanes>; M], lane: usize) -> Gradient<M> {
     z.map(|pair| Vector2::from(pair.map(|lanes| lanes.to_array()[lane])))
 }

@@ -3,8 +3,8 @@
 //!
 //! The table's width is dispatched once per effect, so that the inner loops are compiled for a
 //! known number of shape functions (4 for the cable element; 8 and 12 for radial point
-//! interpolation): forces in `force.rs`, tangents in `tangent.rs`. Other widths are summed by the
-//! loops of this file.
+//! interpolation): forces in `force.rs`, those that depend on velocities, too, in `pairs.rs`,
+//! tangents in `tangent.rs`. Other widths are summed by the loops of this file.
 //!
 //! # Reasons for this structure
 //! The forces of a cable element consist of short dependent sums for the local fields and of the
@@ -24,6 +24,7 @@
 //! was tried and was slower, because memory idles while forces are computed.
 
 mod force;
+mod pairs;
 mod tangent;
 
 use super::{Action, Actions, CompiledFor, Density, Earlier, Effect, Gradient, Hessian, Kind};
@@ -168,39 +169,6 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     #[inline(always)]
     pub(super) fn first(&self, cell: usize) -> usize {
         2 * (self.offset + self.table.cells[cell].first as usize)
-    }
-
-    /// `f += ∫ Σ_m N⁽ᵒᵐ⁾ g_m(z, ż) ds`, where z are the fields of `q`, ż those of `v`, and g is
-    /// `force`.
-    pub(super) fn force_of_pairs(
-        &self,
-        q: &[f64],
-        v: &[f64],
-        f: &mut [f64],
-        force: impl Fn(usize, &Gradient<M>, &Gradient<M>) -> Gradient<M>,
-    ) {
-        with_width!(self.force_of_pairs_within(q, v, f, force));
-    }
-
-    fn force_of_pairs_within<const W: usize>(
-        &self,
-        q: &[f64],
-        v: &[f64],
-        f: &mut [f64],
-        force: impl Fn(usize, &Gradient<M>, &Gradient<M>) -> Gradient<M>,
-    ) {
-        let width = self.width::<W>();
-        for (cell, entry) in self.table.cells.iter().enumerate() {
-            let (weights, rows) = self.table.block(*entry);
-            let first = 2 * (self.offset + entry.first as usize);
-            let range = first..first + 2 * width;
-            let (q, v, f) = (&q[range.clone()], &v[range.clone()], &mut f[range]);
-            for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
-                let (z, rate) = (self.fields::<W>(rows, q), self.fields::<W>(rows, v));
-                let gradient = force(cell * weights.len() + p, &z, &rate);
-                self.add_gradient::<W>(*weight, rows, &gradient, f);
-            }
-        }
     }
 
     /// Adds to `sum` the actions of the forces Σ_m N⁽ᵒᵐ⁾ g_m(z, x), where z are the fields of `q`,

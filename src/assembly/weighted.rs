@@ -22,10 +22,10 @@ impl<D: Density<M>, const M: usize> Density<M> for Weighted<D> {
     const SYMMETRIC: bool = D::SYMMETRIC;
     const HAS_TANGENT: bool = D::HAS_TANGENT;
     const CONSERVATIVE: bool = D::CONSERVATIVE;
-    const BY_FOURS: bool = D::BY_FOURS;
+    const BY_FOURS: bool = D::TANGENTS_BY_FOURS;
     // Stretch and bending, in which time is spent, are those that are summed by fours.
     const COMPILED_FOR: CompiledFor =
-        if D::BY_FOURS { CompiledFor::CableElements } else { CompiledFor::None };
+        if Self::BY_FOURS { CompiledFor::CableElements } else { CompiledFor::None };
 
     fn tendon(&self) -> Option<&TendonPath> {
         self.density.tendon()

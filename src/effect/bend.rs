@@ -103,13 +103,13 @@ impl Bend {
 
 /// The fields (r', r'') as pairs of numbers.
 #[inline(always)]
-fn pairs(z: &Gradient<2>) -> [Pair<f64>; 2] {
+pub(super) fn pairs(z: &Gradient<2>) -> [Pair<f64>; 2] {
     z.map(Into::into)
 }
 
 /// κ, ∂κ/∂r', ∂κ/∂r'' and 1/|r'|².
 #[inline(always)]
-fn first_derivatives<T: Real>([first, second]: &[Pair<T>; 2]) -> (T, [Pair<T>; 2], T) {
+pub(super) fn first_derivatives<T: Real>([first, second]: &[Pair<T>; 2]) -> (T, [Pair<T>; 2], T) {
     let inverse = dot(*first, *first).inverse();
     let kappa = cross(*first, *second) * inverse;
     let (twice, opposite) = (kappa + kappa, -inverse);

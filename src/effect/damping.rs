@@ -7,6 +7,7 @@
 use super::{CouplingDamping, Engineering, Green, Strain, bend};
 use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
 use crate::beam::{Along, StrainMeasure};
+use crate::lanes::{Lanes, Pair, Points, Real, dot};
 use nalgebra::{Matrix2, Vector2};
 
 /// Damping proportional to mass: R = ½ c ṙ·ṙ with c = α ρA \[N s/m²\].
@@ -22,6 +23,13 @@ impl Dissipation<1> for MassDamping {
     #[inline(always)]
     fn force(&self, _: usize, _: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
         [rate[0] * self.coefficient]
+    }
+
+    const BY_FOURS: bool = true;
+
+    #[inline(always)]
+    fn forces(&self, _: Points, _: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
+        [rate[0].map(|rate| rate * Lanes::splat(self.coefficient))]
     }
 
     #[inline(always)]
@@ -43,6 +51,13 @@ impl<S: Strain> StretchDamping<S> {
     pub fn new(coefficient: f64) -> Self {
         Self { coefficient, strain: std::marker::PhantomData }
     }
+
+    #[inline(always)]
+    fn of<T: Real>(&self, gradient: Pair<T>, rate: Pair<T>) -> Pair<T> {
+        let (_, first) = S::first(gradient);
+        let force = T::of(self.coefficient) * dot(first, rate);
+        first.map(|first| first * force)
+    }
 }
 
 impl<S: Strain> Dissipation<1> for StretchDamping<S> {
@@ -50,8 +65,14 @@ impl<S: Strain> Dissipation<1> for StretchDamping<S> {
 
     #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
-        let first = Vector2::from(S::first(z[0].into()).1);
-        [first * (self.coefficient * first.dot(&rate[0]))]
+        [self.of(z[0].into(), rate[0].into()).into()]
+    }
+
+    const BY_FOURS: bool = true;
+
+    #[inline(always)]
+    fn forces(&self, _: Points, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
+        [self.of(z[0], rate[0])]
     }
 
     #[inline(always)]
@@ -74,14 +95,28 @@ pub struct BendDamping {
     pub coefficient: f64,
 }
 
+impl BendDamping {
+    #[inline(always)]
+    fn of<T: Real>(&self, z: &[Pair<T>; 2], rate: [Pair<T>; 2]) -> [Pair<T>; 2] {
+        let (_, [a, b], _) = bend::first_derivatives(z);
+        let moment = T::of(self.coefficient) * (dot(a, rate[0]) + dot(b, rate[1]));
+        [a, b].map(|a| a.map(|a| a * moment))
+    }
+}
+
 impl Dissipation<2> for BendDamping {
     const ORDERS: [usize; 2] = [1, 2];
 
     #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<2>, rate: &Gradient<2>) -> Gradient<2> {
-        let [a, b] = bend::gradient(z);
-        let moment = self.coefficient * (a.dot(&rate[0]) + b.dot(&rate[1]));
-        [a * moment, b * moment]
+        self.of(&bend::pairs(z), bend::pairs(rate)).map(Vector2::from)
+    }
+
+    const BY_FOURS: bool = true;
+
+    #[inline(always)]
+    fn forces(&self, _: Points, z: &[Pair<Lanes>; 2], rate: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
+        self.of(z, *rate)
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@ use super::DeadForce;
 use crate::assembly::{Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part};
 use crate::basis::Quadrature;
 use crate::beam::Along;
+use crate::lanes::{Lanes, Pair, Points, Real, dot};
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
@@ -115,12 +116,34 @@ impl Density<2> for SteadyDrag {
     }
 }
 
+impl DragForce {
+    /// The force on a section with the gradient r' and the velocity ṙ.
+    #[inline(always)]
+    fn of<T: Real>(&self, gradient: Pair<T>, velocity: Pair<T>) -> Pair<T> {
+        let inverse = dot(gradient, gradient).sqrt().inverse();
+        let along = gradient.map(|x| x * inverse);
+        let u = [velocity[0] - T::of(self.flow[0]), velocity[1] - T::of(self.flow[1])];
+        let [along_force, across_force] = [along, [-along[1], along[0]]].map(|axis| dot(u, axis));
+        let force =
+            |d: usize, speed: T| (T::of(self.quadratic[d]).fma(speed.abs(), T::of(self.viscous[d]))) * speed;
+        let [t, n] = [force(0, along_force), force(1, across_force)];
+        [t * along[0] - n * along[1], t * along[1] + n * along[0]]
+    }
+}
+
 impl Dissipation<2> for DragForce {
     const ORDERS: [usize; 2] = [0, 1];
 
     #[inline(always)]
-    fn force(&self, point: usize, z: &Gradient<2>, rate: &Gradient<2>) -> Gradient<2> {
-        self.force_and_matrix(point, z, rate).0
+    fn force(&self, _: usize, z: &Gradient<2>, rate: &Gradient<2>) -> Gradient<2> {
+        [self.of(z[1].into(), rate[0].into()).into(), Vector2::zeros()]
+    }
+
+    const BY_FOURS: bool = true;
+
+    #[inline(always)]
+    fn forces(&self, _: Points, z: &[Pair<Lanes>; 2], rate: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
+        [self.of(z[1], rate[0]), [Lanes::ZERO; 2]]
     }
 
     #[inline(always)]

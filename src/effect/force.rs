@@ -3,6 +3,7 @@
 
 use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
 use crate::beam::{Along, Place};
+use crate::lanes::{Lanes, Pair, Points, Real};
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
@@ -156,8 +157,8 @@ impl Density<1> for DeadForce {
 /// F = f_t t + f_n J t, with the quarter turn J, and ∂F/∂r' = (f_t 1 + f_n J)(1 − t tᵀ)/|r'|.
 #[derive(Clone, Debug)]
 pub struct FollowerForce {
-    /// (f_t, f_n) per point.
-    components: Vec<Vector2<f64>>,
+    /// f_t and f_n per point.
+    components: [Vec<f64>; 2],
 }
 
 impl FollowerForce {
@@ -165,20 +166,23 @@ impl FollowerForce {
     /// per point.
     pub fn new(force: [f64; 2], reference: &[Vector2<f64>]) -> Self {
         let force = Vector2::from(force);
-        let components = reference
-            .iter()
-            .map(|r| {
-                let t = r / r.norm();
-                Vector2::new(force.dot(&t), t.x * force.y - t.y * force.x)
-            })
-            .collect();
-        Self { components }
+        let component = |of: fn(Vector2<f64>, Vector2<f64>) -> f64| {
+            reference.iter().map(|r| of(r / r.norm(), force)).collect()
+        };
+        Self { components: [component(|t, force| t.dot(&force)), component(|t, force| t.perp(&force))] }
     }
 
     #[inline(always)]
     fn turned(&self, point: usize) -> Matrix2<f64> {
-        let c = self.components[point];
-        Matrix2::new(c.x, -c.y, c.y, c.x)
+        let [along, across] = self.components.each_ref().map(|list| list[point]);
+        Matrix2::new(along, -across, across, along)
+    }
+
+    /// −(f_t t + f_n J t) at a section with the gradient r'.
+    #[inline(always)]
+    fn of<T: Real>([along, across]: [T; 2], [x, y]: Pair<T>) -> Pair<T> {
+        let inverse = -x.fma(x, y * y).sqrt().inverse();
+        [(along * x - across * y) * inverse, (along * y + across * x) * inverse]
     }
 }
 
@@ -193,8 +197,17 @@ impl Density<2> for FollowerForce {
 
     #[inline(always)]
     fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
-        let t = z[1] / z[1].norm_squared().sqrt();
-        [-(self.turned(point) * t), Vector2::zeros()]
+        let components = self.components.each_ref().map(|list| list[point]);
+        [Self::of(components, z[1].into()).into(), Vector2::zeros()]
+    }
+
+    const BY_FOURS: bool = true;
+    const TANGENTS_BY_FOURS: bool = false;
+
+    #[inline(always)]
+    fn gradients(&self, factor: f64, points: Points, z: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
+        let force = Self::of(self.components.each_ref().map(|list| points.of(list)), z[1]);
+        [force.map(|force| force * Lanes::splat(factor)), [Lanes::ZERO; 2]]
     }
 
     #[inline(always)]

@@ -16,6 +16,7 @@ use super::Inertia;
 use super::direction;
 use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
 use crate::beam::{Along, Place};
+use crate::lanes::{Lanes, Pair, Points, Real, cross, dot};
 
 /// A mass at a point: T = ½ m ṙ·ṙ + ½ J θ̇².
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,12 +82,29 @@ pub struct RotaryInertia {
     pub inertia: f64,
 }
 
+impl RotaryInertia {
+    #[inline(always)]
+    fn of<T: Real>(&self, [x, y]: Pair<T>, rate: Pair<T>) -> Pair<T> {
+        let inverse = x.fma(x, y * y).inverse();
+        let p = [-y * inverse, x * inverse];
+        let momentum = T::of(self.inertia) * dot(p, rate);
+        p.map(|p| p * momentum)
+    }
+}
+
 impl Dissipation<1> for RotaryInertia {
     const ORDERS: [usize; 1] = [1];
 
     #[inline(always)]
-    fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
-        self.force_and_matrix(point, z, rate).0
+    fn force(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
+        [self.of(z[0].into(), rate[0].into()).into()]
+    }
+
+    const BY_FOURS: bool = true;
+
+    #[inline(always)]
+    fn forces(&self, _: Points, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
+        [self.of(z[0], rate[0])]
     }
 
     #[inline(always)]
@@ -101,12 +119,31 @@ impl Dissipation<1> for RotaryInertia {
 #[derive(Clone, Debug)]
 pub struct Gyration(pub RotaryInertia);
 
+impl Gyration {
+    #[inline(always)]
+    fn of<T: Real>(&self, [x, y]: Pair<T>, [u, v]: Pair<T>) -> Pair<T> {
+        let inverse = x.fma(x, y * y).inverse();
+        let p = [-y * inverse, x * inverse];
+        // ṙ'·∂²θ/∂r'∂r'·ṙ' = −2 (r'·ṙ') (r' × ṙ')/|r'|⁴
+        let along = dot([x, y], [u, v]) * inverse;
+        let force = T::of(-2.0 * self.0.inertia) * along * (cross([x, y], [u, v]) * inverse);
+        p.map(|p| p * force)
+    }
+}
+
 impl Dissipation<1> for Gyration {
     const ORDERS: [usize; 1] = [1];
 
     #[inline(always)]
-    fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
-        self.force_and_matrix(point, z, rate).0
+    fn force(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
+        [self.of(z[0].into(), rate[0].into()).into()]
+    }
+
+    const BY_FOURS: bool = true;
+
+    #[inline(always)]
+    fn forces(&self, _: Points, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
+        [self.of(z[0], rate[0])]
     }
 
     #[inline(always)]

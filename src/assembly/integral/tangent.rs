@@ -38,7 +38,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     ) {
         // A condition on a constant alone: for other densities the loops by fours are not compiled.
         #[expect(clippy::collapsible_if, reason = "together they would not be such a condition")]
-        if D::BY_FOURS {
+        if D::TANGENTS_BY_FOURS {
             if W == CABLE && !self.fours.is_empty() {
                 match self.table.points_per_cell {
                     2 => self.tangents_of_fours::<2>(factor, q, earlier, f, k, workspace),
