@@ -12,17 +12,24 @@ pub trait ContactEffect: Effect {
     /// Number of separate intervals of the beam that touch in the state `q`.
     fn intervals(&self, q: &[f64]) -> usize;
 
+    /// The resultant \[N\] of its forces on the beam in the state `q`; `None` where nothing touches.
+    fn resultant(&self, q: &[f64]) -> Option<[f64; 2]>;
+
     /// The first θ on the path `way` at which the beam touches by more than a negligible depth, if
     /// it does.
     fn first_touch(&self, way: CubicStates<'_>) -> Option<f64>;
 
-    /// The first θ on the path `way` that conflicts with the obstacle, if there is one: where the
-    /// beam is deeper than at the start by so large a fraction of the obstacle's thickness that a
-    /// step would miss the contact force on the way; and, unless it `may_cross`, where it might
+    /// Whether the path `way` leads so deep that it may be in [`Self::conflict`] with the obstacle,
+    /// or cross it. Most paths do not, and this is the cheapest test.
+    fn is_deep(&self, way: CubicStates<'_>) -> bool;
+
+    /// The first θ on a deep path `way` that conflicts with the obstacle, if there is one: where
+    /// the beam is deeper than at the start by so large a fraction of the obstacle's thickness that
+    /// a step would miss the contact force on the way; and, unless it `may_cross`, where it might
     /// leave the obstacle on the other side.
     fn conflict(&self, way: CubicStates<'_>, may_cross: bool) -> Option<f64>;
 
-    /// Whether the beam might leave the obstacle on the other side on the path `way`.
+    /// Whether the beam might leave the obstacle on the other side on a deep path `way`.
     fn crosses(&self, way: CubicStates<'_>) -> bool;
 
     /// Whether anything touches in the state `q`.

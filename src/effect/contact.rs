@@ -86,11 +86,13 @@ pub struct Penalty {
 
 impl Penalty {
     /// g: the distance of the beam's surface from the obstacle \[m\].
+    #[inline(always)]
     fn gap_at(&self, r: &Vector2<f64>) -> f64 {
         self.obstacle.distance(r).0 - self.gap
     }
 
     /// ⟨−g⟩, ∂g/∂r and ∂²g/∂r²; `None` without contact.
+    #[inline(always)]
     fn penetration(&self, r: &Vector2<f64>) -> Option<(f64, Vector2<f64>, Matrix2<f64>)> {
         let (distance, normal, second) = self.obstacle.distance(r);
         (distance < self.gap).then_some((self.gap - distance, normal, second))

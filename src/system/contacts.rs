@@ -2,13 +2,17 @@
 //! states.
 
 use super::System;
-use super::sums::resultant;
-use crate::assembly::{AcceptedState, Effect};
+use crate::assembly::AcceptedState;
 
 impl System {
     /// Whether there are any contacts.
     pub fn has_contacts(&self) -> bool {
         !self.terms.contacts.is_empty()
+    }
+
+    /// Number of contacts.
+    pub fn contacts(&self) -> usize {
+        self.terms.contacts.len()
     }
 
     /// Per contact: the number of separate intervals of the beam that touch in the state `q`.
@@ -22,13 +26,15 @@ impl System {
     }
 
     /// The resultant \[N\] of contact number `contact` on its beam in the state `q`, without
-    /// friction; `scratch` is overwritten.
-    pub fn contact_force(&self, contact: usize, q: &[f64], scratch: &mut [f64]) -> [f64; 2] {
-        scratch.fill(0.0);
-        if let Some(contact) = self.terms.contacts.get(contact) {
-            contact.add_force(1.0, q, scratch);
-        }
-        resultant(scratch)
+    /// friction; `None` where it does not touch.
+    pub fn contact_force(&self, contact: usize, q: &[f64]) -> Option<[f64; 2]> {
+        self.terms.contacts.get(contact).and_then(|contact| contact.resultant(q))
+    }
+
+    /// Whether the path `way` leads deep into the obstacle of contact number `contact`: without
+    /// that it neither conflicts with it nor crosses it.
+    pub fn is_deep(&self, contact: usize, way: [&[f64]; 4]) -> bool {
+        self.terms.contacts.get(contact).is_some_and(|contact| contact.is_deep(way))
     }
 
     /// Names of the contacts: the beam's name and the number of the contact, such as `arm.1`.
@@ -42,12 +48,23 @@ impl System {
     /// `may_cross`, crossing an obstacle is allowed, and only penetrating it so fast that a step
     /// would miss the force is a conflict; see [`crate::assembly::ContactEffect::conflict`].
     pub fn conflict(&self, way: [&[f64]; 4], may_cross: bool) -> Option<(f64, usize)> {
-        let contacts = self.terms.contacts.iter().enumerate();
+        let deep = (0..self.contacts()).filter(|contact| self.is_deep(*contact, way));
+        self.conflict_of(deep, way, may_cross)
+    }
+
+    /// [`Self::conflict`] with one of the `contacts`, for which the path is deep.
+    pub fn conflict_of(
+        &self,
+        contacts: impl Iterator<Item = usize>,
+        way: [&[f64]; 4],
+        may_cross: bool,
+    ) -> Option<(f64, usize)> {
+        let contacts = contacts.filter_map(|i| Some((i, self.terms.contacts.get(i)?)));
         let met = contacts.filter_map(|(i, contact)| contact.conflict(way, may_cross).map(|part| (part, i)));
         met.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Whether contact number `contact` is crossed on the path `way`.
+    /// Whether contact number `contact` is crossed on the deep path `way`.
     pub fn crosses(&self, contact: usize, way: [&[f64]; 4]) -> bool {
         self.terms.contacts.get(contact).is_some_and(|contact| contact.crosses(way))
     }

@@ -10,6 +10,7 @@
 //! a degree as high as they need.
 
 use crate::basis::{Basis, BasisError, Quadrature};
+use crate::lanes::fma;
 use nalgebra::{DMatrix, Vector2};
 
 /// Degrees that are tried, in this order, until one is accurate.
@@ -60,6 +61,27 @@ impl Curve {
         self.points().iter().zip(values).fold(Vector2::zeros(), |sum, (p, b)| sum + p * *b)
     }
 
+    /// The curve of which each row of `control` yields a control point from the coefficients `q`.
+    /// `N` is their number if it is known at compile time, or 0.
+    #[inline(always)]
+    fn of_rows<const N: usize>(control: &[f64], width: usize, q: &[f64]) -> Self {
+        let width = if N == 0 { width } else { N };
+        let q = &q[..2 * width];
+        let mut curve = Self { points: [Vector2::zeros(); MOST], count: control.len() / width };
+        for (point, row) in curve.points.iter_mut().zip(control.chunks_exact(width)) {
+            // Two coefficients at a time fill the four lanes of a register.
+            let mut sum = [0.0; 4];
+            for (n, q) in row.as_chunks::<2>().0.iter().zip(q.as_chunks::<4>().0) {
+                let n = [n[0], n[0], n[1], n[1]];
+                for lane in 0..4 {
+                    sum[lane] = fma(n[lane], q[lane], sum[lane]);
+                }
+            }
+            *point = Vector2::new(sum[0] + sum[2], sum[1] + sum[3]);
+        }
+        curve
+    }
+
     /// The point at ξ = ½.
     pub fn middle(&self) -> Vector2<f64> {
         self.halves()[1].points[0]
@@ -101,9 +123,16 @@ pub enum Border {
 }
 
 impl Border {
-    /// Adds the parameters ξ in (0, 1) at which `curve` crosses the border, in no order.
-    pub fn crossings(&self, curve: &Curve, roots: &mut Vec<f64>) {
+    /// Adds the parameters ξ in (0, 1) at which `curve`, one of `cells`, crosses the border, in no
+    /// order.
+    pub fn crossings(&self, cells: &Cells, curve: &Curve, roots: &mut Vec<f64>) {
         let points = curve.points();
+        if let Self::Circle(center, radius) = self
+            && points.iter().all(|p| (p - center).norm_squared() < radius * radius)
+        {
+            // With its control points, the whole curve lies within the circle.
+            return;
+        }
         let mut polynomial = Polynomial { coefficients: [0.0; MOST_COEFFICIENTS], count: points.len() };
         let mut scale = 0.0_f64;
         match *self {
@@ -114,11 +143,9 @@ impl Border {
                 }
             }
             Self::Circle(center, radius) => {
-                let degree = points.len() - 1;
-                polynomial.count = 2 * degree + 1;
-                for (i, p) in points.iter().enumerate() {
-                    for (j, q) in points.iter().enumerate() {
-                        let weight = binomial(degree, i) * binomial(degree, j) / binomial(2 * degree, i + j);
+                polynomial.count = 2 * points.len() - 1;
+                for (i, (p, weights)) in points.iter().zip(cells.products.chunks(points.len())).enumerate() {
+                    for (j, (q, weight)) in points.iter().zip(weights).enumerate() {
                         let product = (p - center).dot(&(q - center)) - radius * radius;
                         polynomial.coefficients[i + j] += weight * product;
                     }
@@ -151,14 +178,28 @@ impl Polynomial {
         [first, second]
     }
 
-    fn at(&self, x: f64) -> f64 {
-        let mut b = self.coefficients;
-        for d in (1..self.count).rev() {
-            for j in 0..d {
-                b[j] += x * (b[j + 1] - b[j]);
-            }
+    /// The coefficients times the binomials, C(n, i) b_i.
+    fn scaled(&self) -> Self {
+        let (mut scaled, mut binomial) = (*self, 1.0);
+        let degree = self.count - 1;
+        for (i, b) in scaled.coefficients[..self.count].iter_mut().enumerate() {
+            *b *= binomial;
+            binomial = binomial * (degree - i) as f64 / (i + 1) as f64;
         }
-        b[0]
+        scaled
+    }
+
+    /// The value at x of a polynomial that is given by its [`Self::scaled`] coefficients: by Horner's
+    /// rule in x/(1 − x), or from the other end in (1 − x)/x, whichever is smaller
+    /// (Schumaker, Volk, *Comput. Aided Geom. Des.* 3, 1986, 149–154).
+    fn value(&self, x: f64) -> f64 {
+        let (b, degree) = (&self.coefficients[..self.count], self.count as i32 - 1);
+        let y = 1.0 - x;
+        if x <= 0.5 {
+            b.iter().rev().fold(0.0, |sum, b| fma(sum, x / y, *b)) * y.powi(degree)
+        } else {
+            b.iter().fold(0.0, |sum, b| fma(sum, y / x, *b)) * x.powi(degree)
+        }
     }
 
     /// Appends the places at which the sign changes; [0, 1] of the polynomial stands for
@@ -180,8 +221,11 @@ impl Polynomial {
         first.roots(zero, [from, middle], roots);
         // A root exactly in the middle belongs to neither half.
         let next = second.coefficients[0];
-        if next.abs() <= zero && self.at(0.5 - 0.5 * APART) * self.at(0.5 + 0.5 * APART) < 0.0 {
-            roots.push(middle);
+        if next.abs() <= zero {
+            let scaled = self.scaled();
+            if scaled.value(0.5 - 0.5 * APART) * scaled.value(0.5 + 0.5 * APART) < 0.0 {
+                roots.push(middle);
+            }
         }
         second.roots(zero, [middle, to], roots);
     }
@@ -189,6 +233,7 @@ impl Polynomial {
     /// The only root, by the Illinois variant of false position, which halves the value at an end
     /// that is kept twice in a row.
     fn root(&self, [mut low, mut high]: [f64; 2]) -> f64 {
+        let scaled = self.scaled();
         let (mut from, mut to, mut side) = (0.0, 1.0, 0_i8);
         let mut x = 0.0;
         for _ in 0..60 {
@@ -197,7 +242,7 @@ impl Polynomial {
                 return next;
             }
             x = next;
-            let value = self.at(x);
+            let value = scaled.value(x);
             if value == 0.0 {
                 return x;
             }
@@ -235,6 +280,9 @@ pub struct Cells {
     width: usize,
     degree: usize,
     rows: Vec<f64>,
+    /// Weights of the Bernstein polynomials of twice the degree in the products of two of this
+    /// degree: B_i B_j = C(n, i) C(n, j)/C(2n, i + j) B_{i + j}.
+    products: Vec<f64>,
 }
 
 impl Cells {
@@ -273,7 +321,12 @@ impl Cells {
                 start += length;
                 cell
             });
-            let cells = Self { cells: cells.collect(), width, degree, rows };
+            let product = |k: usize| {
+                let (i, j) = (k / (degree + 1), k % (degree + 1));
+                binomial(degree, i) * binomial(degree, j) / binomial(2 * degree, i + j)
+            };
+            let products = (0..(degree + 1) * (degree + 1)).map(product).collect();
+            let cells = Self { cells: cells.collect(), width, degree, rows, products };
             // Measures the error of the interpolation at other points.
             let mut missed = 0.0_f64;
             let mut found = vec![0.0; width];
@@ -335,20 +388,23 @@ impl Cells {
 
     /// The rows of a cell that yield its control points, one row per control point.
     pub fn control(&self, cell: usize) -> impl Iterator<Item = &[f64]> {
+        self.block(cell).chunks_exact(self.width)
+    }
+
+    /// All rows of a cell.
+    fn block(&self, cell: usize) -> &[f64] {
         let size = (self.degree + 1) * self.width;
         let start = self.cells[cell].block * size;
-        self.rows[start..start + size].chunks_exact(self.width)
+        &self.rows[start..start + size]
     }
 
     /// The curve of a cell in the state `q`.
     pub fn curve(&self, cell: usize, q: &[f64]) -> Curve {
-        let q = q[self.coordinates(cell)].as_chunks::<2>().0;
-        let mut curve = Curve { points: [Vector2::zeros(); MOST], count: self.degree + 1 };
-        for (point, row) in curve.points.iter_mut().zip(self.control(cell)) {
-            let sum = row.iter().zip(q).fold([0.0; 2], |s, (n, q)| [s[0] + n * q[0], s[1] + n * q[1]]);
-            *point = Vector2::from(sum);
+        let (control, q) = (self.block(cell), &q[self.coordinates(cell)]);
+        match self.width {
+            4 => Curve::of_rows::<4>(control, 4, q),
+            width => Curve::of_rows::<0>(control, width, q),
         }
-        curve
     }
 
     /// Writes the row of shape functions at the point where the Bernstein polynomials are `values`.
@@ -361,6 +417,6 @@ impl Cells {
 
     /// Memory held on the heap \[bytes\].
     pub fn bytes(&self) -> usize {
-        size_of_val(self.cells.as_slice()) + size_of_val(self.rows.as_slice())
+        size_of_val(&self.cells[..]) + size_of_val(&self.rows[..]) + size_of_val(&self.products[..])
     }
 }

@@ -22,6 +22,7 @@
 
 use super::ContactIntegral;
 use super::curve::{Curve, MOST};
+use super::integral::Rule;
 use crate::assembly::{
     AcceptedState, Action, Actions, ContactPiece, Effect, FrictionEffect, InternalVariables, Workspace,
     add_tiles, multiply_rows,
@@ -38,7 +39,7 @@ const AT_LIMIT: f64 = 1e-9;
 /// Number of parts of a cell, in each of which friction is summed and its slips are stored at two
 /// points. The division does not move with the contact; only in the parts that contain an edge of
 /// the contact, where little load is carried, do the points move with the edge.
-const PARTS: f64 = 4.0;
+const PARTS: usize = 4;
 
 /// Dry friction of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,12 +74,14 @@ pub struct FrictionIntegral {
     friction: Friction,
     /// Its index among the contacts with friction.
     number: usize,
+    rule: Rule,
 }
 
 impl FrictionIntegral {
     /// The friction of `contact`; `number` is its index among the contacts with friction.
     pub fn new(contact: Arc<ContactIntegral>, friction: Friction, number: usize) -> Self {
-        Self { contact, friction, number }
+        let rule = Rule::new(GAUSS_2.to_vec(), contact.cells.degree(), PARTS);
+        Self { contact, friction, number, rule }
     }
 
     /// Calls `visit` with the points of the pieces that touch in the state `q`: the cell, the
@@ -92,30 +95,35 @@ impl FrictionIntegral {
         let contact = &*self.contact;
         let empty = Vec::new();
         let pieces = accepted.variables.contacts.get(self.number).unwrap_or(&empty);
-        for (cell, curve) in contact.near(q) {
+        contact.for_near(q, |cell, curve| {
             let before = contact.cells.curve(cell, &accepted.q);
             let first = pieces.partition_point(|piece| piece.cell < cell);
             let known = &pieces[first..first + pieces[first..].partition_point(|piece| piece.cell == cell)];
-            self.for_pieces(&curve, |piece| {
-                for spot in contact.spots_of(&GAUSS_2, cell, &curve, piece) {
+            self.for_pieces(curve, |piece| {
+                for spot in contact.spots_of(&self.rule, cell, curve, piece) {
                     let slip = known.iter().find_map(|piece| slip_at(piece, spot.place));
-                    let touching = self.map(spot.weight, spot.values, [&before, &curve], slip);
+                    let touching = self.map(spot.weight, spot.values, [&before, curve], slip);
                     visit(cell, piece, &touching);
                 }
             });
-        }
+        });
     }
 
     /// Calls `visit` with the pieces of a cell that touch, divided at fixed places of the cell.
     fn for_pieces(&self, curve: &Curve, mut visit: impl FnMut([f64; 2])) {
         self.contact.for_pieces(curve, |mut from, to| {
             while from < to {
-                let next = ((from * PARTS).floor() + 1.0) / PARTS;
+                let next = ((from * PARTS as f64).floor() + 1.0) / PARTS as f64;
                 let end = next.min(to);
                 visit([from, end]);
                 from = end;
             }
         });
+    }
+
+    /// The force \[N\] of a touching point, as a term of the equations of motion.
+    fn force(&self, point: &Touching) -> Vector2<f64> {
+        point.along * (self.friction.stiffness * point.slip * point.weight)
     }
 
     /// The return mapping at a point.
@@ -160,14 +168,13 @@ impl FrictionEffect for FrictionIntegral {
     }
 
     fn size(&self) -> (usize, usize) {
-        (self.contact.cells.count() * PARTS as usize * GAUSS_2.len(), 0)
+        (self.contact.cells.count() * PARTS * self.rule.len(), 0)
     }
 
     fn add_force(&self, accepted: &AcceptedState, q: &[f64], f: &mut [f64]) {
         let mut sum = ControlForces::default();
         self.for_touching(accepted, q, |cell, _, point| {
-            let force = point.along * (self.friction.stiffness * point.slip * point.weight);
-            sum.add(&self.contact, cell, force, &point.values, f);
+            sum.add(&self.contact, cell, self.force(point), &point.values, f);
         });
         sum.finish(&self.contact, f);
     }
@@ -180,17 +187,19 @@ impl FrictionEffect for FrictionIntegral {
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        self.add_force(accepted, q, f);
+        let mut sum = ControlForces::default();
         let cells = &self.contact.cells;
         let width = cells.width();
         let products = &mut workspace.products;
         products.resize(4 * width, 0.0);
         let mut row = vec![0.0; width];
         self.for_touching(accepted, q, |cell, _, point| {
+            sum.add(&self.contact, cell, self.force(point), &point.values, f);
             cells.row(cell, &point.values, &mut row);
             multiply_rows::<1>(point.weight, &[[point.stiffness]], &row, width, &mut products[..4 * width]);
             add_tiles::<1>(&row, &products[..4 * width], width, cells.coordinates(cell).start / 4, k);
         });
+        sum.finish(&self.contact, f);
     }
 
     fn slips(&self, accepted: &AcceptedState, q: &[f64]) -> (Vec<ContactPiece>, f64) {
@@ -214,7 +223,7 @@ impl FrictionEffect for FrictionIntegral {
         for piece in pieces.filter(|piece| piece.cell < contact.cells.count()) {
             let curve = contact.cells.curve(piece.cell, q);
             let mut sum = ControlForces::default();
-            let spots = contact.spots_of(&GAUSS_2, piece.cell, &curve, [piece.from, piece.to]);
+            let spots = contact.spots_of(&self.rule, piece.cell, &curve, [piece.from, piece.to]);
             for (spot, slip) in spots.zip(&piece.slip) {
                 let (_, along, _) = contact.penalty.obstacle.travel(contact.penalty.gap, &spot.r, &spot.r);
                 let force = along * (self.friction.stiffness * slip * spot.weight);
@@ -230,14 +239,14 @@ impl FrictionEffect for FrictionIntegral {
         let mut values = Vec::new();
         for piece in pieces.filter(|piece| piece.cell < contact.cells.count()) {
             let curve = contact.cells.curve(piece.cell, q);
-            let spots = contact.spots_of(&GAUSS_2, piece.cell, &curve, [piece.from, piece.to]);
+            let spots = contact.spots_of(&self.rule, piece.cell, &curve, [piece.from, piece.to]);
             for (spot, slip) in spots.zip(&piece.slip) {
                 let (_, along, _) = contact.penalty.obstacle.travel(contact.penalty.gap, &spot.r, &spot.r);
                 let s = contact.cells.arc_length(piece.cell, spot.place);
                 values.push((s, spot.weight, Action::at(spot.r, along * (-self.friction.stiffness * slip))));
             }
         }
-        sum.add_spread(GAUSS_2.len(), values);
+        sum.add_spread(self.rule.len(), values);
     }
 
     fn sliding(&self, accepted: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool> {
@@ -273,7 +282,7 @@ impl ControlForces {
             self.finish(contact, f);
             self.cell = Some(cell);
         }
-        self.forces.iter_mut().zip(values).for_each(|(sum, value)| *sum += force * *value);
+        contact.share(force, values, &mut self.forces);
     }
 
     fn finish(&mut self, contact: &ContactIntegral, f: &mut [f64]) {

@@ -4,6 +4,7 @@ use super::Penalty;
 use super::curve::{self, Border, Cells, Curve, MOST};
 use crate::assembly::{Action, Actions, Density, Earlier, Effect, Kind, Workspace, add_tiles, multiply_rows};
 use crate::basis::{Basis, BasisError, Quadrature};
+use crate::lanes::fma;
 use crate::linear::Matrix;
 use nalgebra::Vector2;
 
@@ -34,6 +35,50 @@ pub(super) struct ContactPoint {
     pub r: Vector2<f64>,
 }
 
+/// A quadrature rule for pieces of cells. Most pieces are a whole cell, or one of the equal parts
+/// into which friction divides it: there the Bernstein polynomials at the points are known.
+#[derive(Clone, Debug)]
+pub(super) struct Rule {
+    /// Gauss points on (0, 1), each with its weight.
+    points: Vec<(f64, f64)>,
+    /// Number of equal parts of a cell.
+    parts: usize,
+    /// Per part and point.
+    values: Vec<[f64; MOST]>,
+}
+
+impl Rule {
+    /// A rule with these points and weights on (0, 1), for cells of the degree `degree` that are
+    /// divided into `parts`.
+    pub(super) fn new(points: Vec<(f64, f64)>, degree: usize, parts: usize) -> Self {
+        let places =
+            (0..parts).flat_map(|part| points.iter().map(move |(xi, _)| (part as f64 + xi) / parts as f64));
+        let values = places.map(|place| bernstein(degree, place)).collect();
+        Self { parts, values, points }
+    }
+
+    /// The Bernstein polynomials at the points on the piece between two places of a cell, if it is
+    /// one of the parts.
+    fn values(&self, [from, to]: [f64; 2]) -> Option<&[[f64; MOST]]> {
+        let parts = self.parts as f64;
+        let first = from * parts;
+        let is_part = first.fract() == 0.0 && to == (first + 1.0) / parts;
+        is_part.then(|| &self.values[first as usize * self.points.len()..][..self.points.len()])
+    }
+
+    /// Number of points.
+    pub(super) fn len(&self) -> usize {
+        self.points.len()
+    }
+}
+
+/// The Bernstein polynomials at `place`.
+fn bernstein(degree: usize, place: f64) -> [f64; MOST] {
+    let mut values = [0.0; MOST];
+    curve::bernstein(degree, place, &mut values);
+    values
+}
+
 /// A contact of one beam with one obstacle, as an effect.
 #[derive(Clone, Debug)]
 pub struct ContactIntegral {
@@ -41,8 +86,9 @@ pub struct ContactIntegral {
     pub(super) cells: Cells,
     beam: usize,
     borders: Vec<Border>,
-    /// Gauss points on (0, 1), each with its weight.
-    rule: Vec<(f64, f64)>,
+    rule: Rule,
+    /// The Bernstein polynomials at ξ = ½.
+    half: [f64; MOST],
 }
 
 impl ContactIntegral {
@@ -63,33 +109,47 @@ impl ContactIntegral {
             cells.keep_between(ends);
         }
         let (places, weights) = Quadrature::Gauss(cells.degree() + MORE_POINTS).rule()?;
-        let rule = places.into_iter().zip(weights).collect();
-        Ok(Self { borders: penalty.obstacle.borders(penalty.gap), penalty, cells, beam, rule })
+        let rule = Rule::new(places.into_iter().zip(weights).collect(), cells.degree(), 1);
+        let (borders, half) = (penalty.obstacle.borders(penalty.gap), bernstein(cells.degree(), 0.5));
+        Ok(Self { borders, penalty, cells, beam, rule, half })
     }
 
-    /// The cells that may touch in the state `q`.
-    pub(super) fn near<'q>(&'q self, q: &'q [f64]) -> impl Iterator<Item = (usize, Curve)> + 'q {
-        let cells = (0..self.cells.count()).map(|cell| (cell, self.cells.curve(cell, q)));
-        cells.filter(|(_, curve)| self.penalty.obstacle.clearance(curve.points().iter()) < self.penalty.gap)
+    /// Calls `visit` with the cells that may touch in the state `q`. Curves are passed on by reference,
+    /// because to copy them would take longer than to compute them.
+    pub(super) fn for_near(&self, q: &[f64], mut visit: impl FnMut(usize, &Curve)) {
+        for cell in 0..self.cells.count() {
+            let curve = self.cells.curve(cell, q);
+            if self.penalty.obstacle.clearance(curve.points().iter()) < self.penalty.gap {
+                visit(cell, &curve);
+            }
+        }
     }
 
     /// Calls `visit` with the pieces of a cell that touch, in order: intervals of ξ in which the
     /// distance is a smooth function.
     pub(super) fn for_pieces(&self, curve: &Curve, mut visit: impl FnMut(f64, f64)) {
         let mut roots = Vec::new();
-        self.borders.iter().for_each(|border| border.crossings(curve, &mut roots));
+        self.borders.iter().for_each(|border| border.crossings(&self.cells, curve, &mut roots));
         roots.sort_by(f64::total_cmp);
         let mut from = 0.0;
-        let mut values = [0.0; MOST];
         for to in roots.into_iter().chain([1.0]) {
             if to - from < SHORTEST {
                 continue;
             }
-            curve::bernstein(self.cells.degree(), 0.5 * (from + to), &mut values);
-            if self.penalty.gap_at(&curve.at(&values)) < 0.0 {
+            if self.penalty.gap_at(&self.point(curve, 0.5 * (from + to))) < 0.0 {
                 visit(from, to);
             }
             from = to;
+        }
+    }
+
+    /// The point of a curve at the place ξ.
+    fn point(&self, curve: &Curve, place: f64) -> Vector2<f64> {
+        match (place, curve.points()) {
+            (0.0, [first, ..]) => *first,
+            (0.5, _) => curve.at(&self.half),
+            (1.0, [.., last]) => *last,
+            _ => curve.at(&bernstein(self.cells.degree(), place)),
         }
     }
 
@@ -107,11 +167,7 @@ impl ContactIntegral {
 
     /// Number of parts into which a piece is divided for the quadrature.
     fn parts(&self, curve: &Curve, from: f64, to: f64) -> usize {
-        let mut values = [0.0; MOST];
-        let [start, half, end] = [from, 0.5 * (from + to), to].map(|place| {
-            curve::bernstein(self.cells.degree(), place, &mut values);
-            curve.at(&values)
-        });
+        let [start, half, end] = [from, 0.5 * (from + to), to].map(|place| self.point(curve, place));
         let Some(middle) = self.penalty.obstacle.middle(&half) else { return 1 };
         let away = |a: &Vector2<f64>, b: &Vector2<f64>| {
             let (chord, to_middle) = (b - a, middle - a);
@@ -127,16 +183,17 @@ impl ContactIntegral {
     /// The points of the quadrature rule `rule` on a piece of a cell.
     pub(super) fn spots_of(
         &self,
-        rule: &[(f64, f64)],
+        rule: &Rule,
         cell: usize,
         curve: &Curve,
         piece: [f64; 2],
     ) -> impl Iterator<Item = ContactPoint> {
         let [from, to] = piece;
         let length = (to - from) * self.cells.length(cell);
-        rule.iter().map(move |(place, weight)| {
-            let (mut values, place) = ([0.0; MOST], from + (to - from) * place);
-            curve::bernstein(self.cells.degree(), place, &mut values);
+        let known = rule.values(piece);
+        rule.points.iter().enumerate().map(move |(i, (place, weight))| {
+            let place = from + (to - from) * place;
+            let values = known.map_or_else(|| bernstein(self.cells.degree(), place), |values| values[i]);
             ContactPoint { place, weight: length * weight, values, r: curve.at(&values) }
         })
     }
@@ -144,21 +201,32 @@ impl ContactIntegral {
     /// The largest depth of any quadrature point of the contact in the state `q` \[m\].
     pub fn depth(&self, q: &[f64]) -> f64 {
         let mut depth = 0.0_f64;
-        for (cell, curve) in self.near(q) {
-            self.for_spots(cell, &curve, |spot| depth = depth.max(-self.penalty.gap_at(&spot.r)));
-        }
+        self.for_near(q, |cell, curve| {
+            self.for_spots(cell, curve, |spot| depth = depth.max(-self.penalty.gap_at(&spot.r)));
+        });
         depth
     }
 
     /// `f += Σ_j C_j F_j` with the forces F_j on the control points of a cell, and the rows C_j of
     /// these.
     pub(super) fn add_control_forces(&self, cell: usize, forces: &[Vector2<f64>; MOST], f: &mut [f64]) {
-        let f = f[self.cells.coordinates(cell)].as_chunks_mut::<2>().0;
+        let f = f[self.cells.coordinates(cell)].as_chunks_mut::<4>().0;
         for (row, force) in self.cells.control(cell).zip(forces) {
-            for (n, f) in row.iter().zip(&mut *f) {
-                *f = [f[0] + n * force.x, f[1] + n * force.y];
+            let force = [force.x, force.y, force.x, force.y];
+            for (n, f) in row.as_chunks::<2>().0.iter().zip(&mut *f) {
+                let n = [n[0], n[0], n[1], n[1]];
+                for lane in 0..4 {
+                    f[lane] = fma(n[lane], force[lane], f[lane]);
+                }
             }
         }
+    }
+
+    /// Adds the force at a point to those on the control points.
+    #[inline(always)]
+    pub(super) fn share(&self, force: Vector2<f64>, values: &[f64; MOST], forces: &mut [Vector2<f64>; MOST]) {
+        let count = self.cells.degree() + 1;
+        forces[..count].iter_mut().zip(&values[..count]).for_each(|(sum, value)| *sum += force * *value);
     }
 }
 
@@ -185,22 +253,21 @@ impl Effect for ContactIntegral {
 
     fn energy(&self, q: &[f64]) -> f64 {
         let mut energy = 0.0;
-        for (cell, curve) in self.near(q) {
-            self.for_spots(cell, &curve, |spot| energy += spot.weight * self.penalty.energy(0, &[spot.r]));
-        }
+        self.for_near(q, |cell, curve| {
+            self.for_spots(cell, curve, |spot| energy += spot.weight * self.penalty.energy(0, &[spot.r]));
+        });
         energy
     }
 
     fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        for (cell, curve) in self.near(q) {
+        self.for_near(q, |cell, curve| {
             let mut forces = [Vector2::zeros(); MOST];
-            self.for_spots(cell, &curve, |spot| {
+            self.for_spots(cell, curve, |spot| {
                 let [force] = self.penalty.gradient(0, &[spot.r]);
-                let force = force * (factor * spot.weight);
-                forces.iter_mut().zip(spot.values).for_each(|(f, value)| *f += force * value);
+                self.share(force * (factor * spot.weight), &spot.values, &mut forces);
             });
             self.add_control_forces(cell, &forces, f);
-        }
+        });
     }
 
     fn add_force_and_tangent(
@@ -212,51 +279,54 @@ impl Effect for ContactIntegral {
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        self.add_force(factor, q, f);
         let width = self.cells.width();
         let products = &mut workspace.products;
         products.resize(4 * width, 0.0);
         let mut row = vec![0.0; width];
-        for (cell, curve) in self.near(q) {
+        self.for_near(q, |cell, curve| {
             let first = self.cells.coordinates(cell).start / 4;
-            self.for_spots(cell, &curve, |spot| {
+            let mut forces = [Vector2::zeros(); MOST];
+            self.for_spots(cell, curve, |spot| {
                 let z = [spot.r];
-                let (_, hessian) = self.penalty.gradient_and_hessian(0, &z, &z, &z);
+                let ([force], hessian) = self.penalty.gradient_and_hessian(0, &z, &z, &z);
+                self.share(force * (factor * spot.weight), &spot.values, &mut forces);
                 self.cells.row(cell, &spot.values, &mut row);
                 multiply_rows::<1>(factor * spot.weight, &hessian, &row, width, &mut products[..4 * width]);
                 add_tiles::<1>(&row, &products[..4 * width], width, first, k);
             });
-        }
+            self.add_control_forces(cell, &forces, f);
+        });
     }
 
     fn add_tangent_product(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
-        for (cell, curve) in self.near(q) {
+        self.for_near(q, |cell, curve| {
             let change = self.cells.curve(cell, v);
             let mut forces = [Vector2::zeros(); MOST];
-            self.for_spots(cell, &curve, |spot| {
+            self.for_spots(cell, curve, |spot| {
                 let z = [spot.r];
                 let (_, [[hessian]]) = self.penalty.gradient_and_hessian(0, &z, &z, &z);
                 let force = hessian * change.at(&spot.values) * (factor * spot.weight);
-                forces.iter_mut().zip(spot.values).for_each(|(f, value)| *f += force * value);
+                self.share(force, &spot.values, &mut forces);
             });
             self.add_control_forces(cell, &forces, f);
-        }
+        });
     }
 
     fn add_actions(&self, factor: f64, q: &[f64], _: &[f64], sum: &mut Actions) {
         let mut values = Vec::new();
-        for (cell, curve) in self.near(q) {
-            self.for_spots(cell, &curve, |spot| {
+        self.for_near(q, |cell, curve| {
+            self.for_spots(cell, curve, |spot| {
                 let [force] = self.penalty.gradient(0, &[spot.r]);
                 let s = self.cells.arc_length(cell, spot.place);
                 values.push((s, spot.weight, Action::at(spot.r, force * -factor)));
             });
-        }
+        });
         sum.add_spread(self.rule.len(), values);
     }
 
     fn size(&self) -> (usize, usize) {
-        let data = size_of_val(self.borders.as_slice()) + size_of_val(self.rule.as_slice());
+        let rule = size_of_val(&self.rule.points[..]) + size_of_val(&self.rule.values[..]);
+        let data = size_of_val(&self.borders[..]) + rule;
         (self.cells.count() * self.rule.len(), self.cells.bytes() + data)
     }
 }

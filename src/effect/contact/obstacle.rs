@@ -57,7 +57,9 @@ impl Obstacle {
         }
     }
 
-    /// Signed distance of the point `r`, with its gradient and second derivative.
+    /// Signed distance of the point `r`, with its gradient and second derivative. Inlined, so that
+    /// nothing is computed that is not used.
+    #[inline(always)]
     pub fn distance(&self, r: &Vector2<f64>) -> (f64, Vector2<f64>, Matrix2<f64>) {
         // Distance from a fixed point and its derivatives; d is the position relative to that
         // point.

@@ -9,7 +9,8 @@
 
 use super::ContactIntegral;
 use super::curve::Curve;
-use crate::assembly::{ContactEffect, CubicStates};
+use crate::assembly::{ContactEffect, CubicStates, Density};
+use nalgebra::Vector2;
 
 /// Largest number of patches that are examined; a patch that is not clear by then counts as a hit.
 const PATCHES: usize = 20_000;
@@ -59,6 +60,12 @@ impl Patch {
 }
 
 impl ContactIntegral {
+    /// A lower bound of the distances \[m\] by which the points of a patch are less deep than `level`.
+    fn clear(&self, rows: &[Curve; 4], level: f64) -> f64 {
+        let points = rows.iter().flat_map(|curve| curve.points());
+        self.penalty.obstacle.clearance(points) - self.penalty.gap + level
+    }
+
     /// The first θ on the path `way` at which a point of the beam is deeper than `level` \[m\], if
     /// there is one. Depths are resolved to `fine` \[m\].
     pub fn first_deeper(&self, way: CubicStates<'_>, level: f64, fine: f64) -> Option<f64> {
@@ -66,14 +73,18 @@ impl ContactIntegral {
         let (mut patches, mut left) = (0, Vec::new());
         for cell in 0..self.cells.count() {
             let rows = way.map(|q| self.cells.curve(cell, q));
+            patches += 1;
+            if self.clear(&rows, level) > 0.0 {
+                // Most cells are: no patch is stored for them.
+                continue;
+            }
             left.push(Patch { rows, from: 0.0, to: 1.0 });
             while let Some(patch) = left.pop() {
                 if patch.from >= first {
                     continue;
                 }
                 patches += 1;
-                let points = patch.rows.iter().flat_map(|curve| curve.points());
-                let clear = self.penalty.obstacle.clearance(points) - self.penalty.gap + level;
+                let clear = self.clear(&patch.rows, level);
                 if clear > 0.0 {
                     continue;
                 }
@@ -99,14 +110,26 @@ impl ContactIntegral {
 impl ContactEffect for ContactIntegral {
     fn intervals(&self, q: &[f64]) -> usize {
         let (mut count, mut last) = (0, f64::NEG_INFINITY);
-        for (cell, curve) in self.near(q) {
-            self.for_pieces(&curve, |from, to| {
+        self.for_near(q, |cell, curve| {
+            self.for_pieces(curve, |from, to| {
                 let start = cell as f64 + from;
                 count += usize::from(start - last > SHORTEST * self.cells.count() as f64);
                 last = cell as f64 + to;
             });
-        }
+        });
         count
+    }
+
+    fn resultant(&self, q: &[f64]) -> Option<[f64; 2]> {
+        let (mut sum, mut touches) = (Vector2::zeros(), false);
+        self.for_near(q, |cell, curve| {
+            self.for_spots(cell, curve, |spot| {
+                let [force] = self.penalty.gradient(0, &[spot.r]);
+                sum -= force * spot.weight;
+                touches = true;
+            });
+        });
+        touches.then(|| sum.into())
     }
 
     fn first_touch(&self, way: CubicStates<'_>) -> Option<f64> {
@@ -115,14 +138,13 @@ impl ContactEffect for ContactIntegral {
         self.first_deeper(way, GRAZE * shortest, GRAZE * shortest)
     }
 
+    fn is_deep(&self, way: CubicStates<'_>) -> bool {
+        let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
+        deepest.is_finite() && self.first_deeper(way, DEEPER * deepest, FINE * deepest).is_some()
+    }
+
     fn conflict(&self, way: CubicStates<'_>, may_cross: bool) -> Option<f64> {
         let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
-        if deepest.is_infinite() {
-            return None;
-        }
-        // In most calls the path is far from the obstacle, or hardly changes, so a cheap test comes
-        // first.
-        self.first_deeper(way, DEEPER * deepest, FINE * deepest)?;
         let largest = if may_cross { f64::INFINITY } else { MIDDLE * deepest };
         let level = (self.depth(way[0]) + DEEPER * deepest).min(largest);
         self.first_deeper(way, level, FINE * deepest)
@@ -130,7 +152,7 @@ impl ContactEffect for ContactIntegral {
 
     fn crosses(&self, way: CubicStates<'_>) -> bool {
         let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
-        deepest.is_finite() && self.first_deeper(way, MIDDLE * deepest, FINE * deepest).is_some()
+        self.first_deeper(way, MIDDLE * deepest, FINE * deepest).is_some()
     }
 }
 

@@ -9,8 +9,12 @@ pub(super) struct ContactState {
     pub touches: bool,
     /// Its impulse since it began.
     pub impulse: ContactImpulse,
+    /// Its force on the beam \[N\].
+    pub force: [f64; 2],
     /// Whether the beam has been pushed past the middle of the obstacle.
     pub crossed: bool,
+    /// Whether the step that is tried leads deep into the obstacle.
+    pub deep: bool,
 }
 
 /// A contact begins or ends.
@@ -27,8 +31,8 @@ pub struct Change {
 }
 
 impl ContactState {
-    /// A contact at the start of a motion, which touches already or not.
-    pub(super) fn new(touches: bool) -> Self {
-        Self { touches, ..Self::default() }
+    /// A contact at the start of a motion, which has a force if it touches already.
+    pub(super) fn new(force: Option<[f64; 2]>) -> Self {
+        Self { touches: force.is_some(), force: force.unwrap_or_default(), ..Self::default() }
     }
 }

@@ -24,16 +24,20 @@ fn integrals(times: &[f64], start: f64, end: f64) -> Vec<f64> {
 }
 
 impl<'a> Driver<'_, 'a> {
-    /// Work of moving supports and of tendons that are pulled until `time` in the step to `new`, by the quadrature rule of the
-    /// method itself.
+    /// Work of moving supports and of tendons that are pulled until `time` in the step to `new`, by
+    /// the quadrature rule of the method itself.
     pub(super) fn work_of_supports(&mut self, new: &State, time: f64) -> f64 {
         if !self.system.works_by_constraints() {
             return 0.0;
         }
         if self.support_powers.is_empty() {
             let stages = self.method.stages(&self.state, new);
-            let power = |stage: StageState| {
-                (stage.state.time, self.observer().map_or(f64::NAN, |m| m.support_power(stage)))
+            let start = self.state.time;
+            // Friction depends on the last accepted state, which has changed.
+            let known = self.support_power_at_start.filter(|_| !self.system.has_history());
+            let power = |stage: StageState| match known {
+                Some((time, power)) if time == start && time == stage.state.time => (time, power),
+                _ => (stage.state.time, self.observer().map_or(f64::NAN, |m| m.support_power(stage))),
             };
             self.support_powers = stages.into_iter().map(power).collect();
         }

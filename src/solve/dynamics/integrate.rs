@@ -182,6 +182,9 @@ pub(super) struct Driver<'t, 'a> {
     /// Times and powers of moving supports in the stages of the last attempt; empty before they are
     /// asked for.
     pub(super) support_powers: Vec<(f64, f64)>,
+    /// Time and power of moving supports in the last stage of the last step, if that was its end
+    /// and the accelerations go on from there.
+    pub(super) support_power_at_start: Option<(f64, f64)>,
     /// The same for the powers of damping.
     pub(super) damping_powers: Vec<(f64, f64)>,
     /// Length of the last accepted step \[s\].
@@ -232,7 +235,9 @@ impl<'t, 'a> Driver<'t, 'a> {
                 (first_step(system, &*method, [&state.v, &acceleration], tolerance), (state.time, 0))
             }
         };
-        let touching = system.intervals(&state.q).map(|intervals| ContactState::new(intervals > 0)).collect();
+        let contacts = 0..system.contacts();
+        let touching =
+            contacts.map(|contact| ContactState::new(system.contact_force(contact, &state.q))).collect();
         let mut kinks = system.kinks();
         kinks.extend(sharp_turns(system.turns_of_laws([state.time, task.duration]), control));
         kinks.retain(|kink| *kink > state.time && *kink <= task.duration);
@@ -258,6 +263,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             touching,
             powers: [(f64::NAN, (0.0, 0.0)); 2],
             support_powers: Vec::new(),
+            support_power_at_start: None,
             damping_powers: Vec::new(),
             last_step: step,
             observer: None,
@@ -293,6 +299,8 @@ impl<'t, 'a> Driver<'t, 'a> {
                         self.whole = before;
                     }
                     self.method.accept();
+                    let last = self.support_powers.last().copied();
+                    self.support_power_at_start = last.filter(|(time, _)| *time == new.time);
                     std::mem::swap(&mut self.state, &mut new);
                     if !stopped {
                         self.go_on(end);
@@ -537,7 +545,10 @@ impl<'t, 'a> Driver<'t, 'a> {
     /// Prepares the step that follows one with this `end`.
     fn go_on(&mut self, end: End) {
         let renewed = match end {
-            End::ContactChanges => self.method.renew(&self.state),
+            End::ContactChanges => {
+                self.support_power_at_start = None;
+                self.method.renew(&self.state)
+            }
             End::Smooth => Ok(()),
         };
         if let Err(singular) = renewed.and_then(|()| self.pass_kinks()) {

@@ -31,13 +31,17 @@ const BEGUN: f64 = 1e-2;
 impl Driver<'_, '_> {
     /// Refuses a step to `new` that leads through an obstacle, and one of fixed length whose
     /// equations would not see that it touches one.
-    pub(super) fn not_crossed(&self, new: &State) -> Result<(), Failure> {
+    pub(super) fn not_crossed(&mut self, new: &State) -> Result<(), Failure> {
         if self.touching.is_empty() {
             return Ok(());
         }
         let [first, second] = self.state.controls(new);
         let way = [&self.state.q[..], &first, &second, &new.q];
-        if let Some((part, contact)) = self.system.conflict(way, true) {
+        for (contact, state) in self.touching.iter_mut().enumerate() {
+            state.deep = self.system.is_deep(contact, way);
+        }
+        let deep = (0..self.touching.len()).filter(|contact| self.touching[*contact].deep);
+        if let Some((part, contact)) = self.system.conflict_of(deep, way, true) {
             return Err(Failure::Crossed { contact, part });
         }
         let StepControl::Fixed(step) = self.control else { return Ok(()) };
@@ -81,10 +85,9 @@ impl Driver<'_, '_> {
     /// A time in the step to `new` at which the force of a contact reverses, as where the beam is
     /// pushed through an obstacle; `after` is the state just after the start of the step.
     fn turn_within(&self, new: &State, after: &State) -> Option<f64> {
-        let mut scratch = vec![0.0; new.q.len()];
-        let mut forces = |state: &State| -> Vec<[f64; 2]> {
+        let forces = |state: &State| -> Vec<[f64; 2]> {
             let touching = (0..self.touching.len()).filter(|contact| self.touching[*contact].touches);
-            touching.map(|contact| self.system.contact_force(contact, &state.q, &mut scratch)).collect()
+            touching.map(|contact| self.system.contact_force(contact, &state.q).unwrap_or_default()).collect()
         };
         let begun = forces(after);
         self.first_change(new, 1.0, |state| {
@@ -123,13 +126,15 @@ impl Driver<'_, '_> {
     }
 
     /// Adds up the impulses of contacts in the step to `new`, and records those that begin or end
-    /// in it.
+    /// in it. Within a step of second order Simpson's rule is enough for an impulse, and the force
+    /// at its start is known; others are summed at three Gauss points.
     pub(super) fn notice_contacts(&mut self, new: &State) {
-        let now: Vec<bool> = self.system.intervals(&new.q).map(|intervals| intervals > 0).collect();
-        let mut scratch = Vec::new();
-        for (contact, touches) in now.into_iter().enumerate() {
-            let ContactState { touches: touched, mut impulse, mut crossed } = self.touching[contact];
-            if (touched || touches) && !crossed {
+        for contact in 0..self.touching.len() {
+            let ContactState { touches: touched, mut impulse, force: before, mut crossed, deep } =
+                self.touching[contact];
+            let after = self.system.contact_force(contact, &new.q);
+            let (touches, force) = (after.is_some(), after.unwrap_or_default());
+            if (touched || touches) && !crossed && deep {
                 let [first, second] = self.state.controls(new);
                 crossed = self.system.crosses(contact, [&self.state.q, &first, &second, &new.q]);
                 if crossed {
@@ -146,14 +151,22 @@ impl Driver<'_, '_> {
                     Some(time) => (self.state.time, time),
                     None => (self.state.time, new.time),
                 };
-                scratch.resize(new.q.len(), 0.0);
-                for (at, weight) in GAUSS_3 {
+                let within = |at: f64| {
                     let state = self.state.between(new, begin + at * (end - begin), None);
-                    let force = self.system.contact_force(contact, &state.q, &mut scratch);
+                    self.system.contact_force(contact, &state.q).unwrap_or_default()
+                };
+                let mut add = |weight: f64, force: [f64; 2]| {
                     let weight = weight * (end - begin);
                     impulse.impulse[0] += weight * force[0];
                     impulse.impulse[1] += weight * force[1];
                     impulse.largest_force = impulse.largest_force.max(force[0].hypot(force[1]));
+                };
+                if self.method.order() <= 2.0 {
+                    [(1.0, before), (4.0, within(0.5)), (1.0, force)]
+                        .into_iter()
+                        .for_each(|(weight, force)| add(weight / 6.0, force));
+                } else {
+                    GAUSS_3.into_iter().for_each(|(at, weight)| add(weight, within(at)));
                 }
             }
             if let Some(time) = time {
@@ -161,7 +174,7 @@ impl Driver<'_, '_> {
                 self.solution.contacts.push(Change { contact, touches, time, impulse: ended });
                 impulse = if touches { impulse } else { ContactImpulse::default() };
             }
-            self.touching[contact] = ContactState { touches, impulse, crossed };
+            self.touching[contact] = ContactState { touches, impulse, force, crossed, deep };
         }
     }
 }
