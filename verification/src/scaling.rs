@@ -1,10 +1,12 @@
-//! `verify scaling`: what a time step costs per element as elements become many, and the memory
-//! that it takes.
+//! `verify scaling`: what a time step costs per element as elements become many, the memory that it
+//! takes, and what the machine would need at least.
+
+mod floor;
 
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ancf::model::{Centreline, Discretization, Nodes};
+use ancf::model::{Analysis, Centreline, Discretization, Dynamic, Integrator, Model, Nodes};
 use ancf::run::{Control, Options, Progress};
 use ancf::scene::Scene;
 use ancf_check::Suite;
@@ -17,6 +19,8 @@ use crate::report::{machine, now};
 /// repository.
 pub const FILE: &str = "target/verification/scaling.json";
 
+pub use floor::{Count, Machine};
+
 /// Elements of 6 cm, hanging from one end.
 const ELEMENTS: [usize; 4] = [100, 1_000, 10_000, 100_000];
 /// Steps of 1 ms, of which those after the first few are measured: what comes before belongs to no
@@ -25,6 +29,10 @@ const ELEMENTS: [usize; 4] = [100, 1_000, 10_000, 100_000];
 const STEPS: usize = 40;
 const FIRST: usize = 10;
 const LEAST: Duration = Duration::from_secs(2);
+/// Elements whose numbers stay in the caches.
+const IN_CACHE: usize = 100;
+/// Newton's tolerance with which steps take more iterations.
+const STRICT: f64 = 1e-15;
 
 /// One day's measurement.
 #[derive(Deserialize, Serialize)]
@@ -35,6 +43,25 @@ pub struct Scaling {
     pub machine: String,
     /// From few elements to many.
     pub rows: Vec<Row>,
+    /// What one thread of the machine does at best.
+    #[serde(default)]
+    pub best: Machine,
+    /// Iterations and steps beside what the machine does at best.
+    #[serde(default)]
+    pub floors: Vec<Floor>,
+}
+
+/// An iteration or a step of a beam whose numbers stay in the caches.
+#[derive(Deserialize, Serialize)]
+pub struct Floor {
+    /// The beam.
+    pub beam: String,
+    /// What is timed.
+    pub what: String,
+    /// Operations per node.
+    pub operations: f64,
+    /// Time per node \[s\].
+    pub seconds: f64,
 }
 
 /// A number of elements.
@@ -51,66 +78,75 @@ pub struct Row {
     pub megabytes: Option<f64>,
     /// Iterations a step.
     pub iterations: f64,
+    /// Bytes that a step moves per element, if no cache holds anything.
+    #[serde(default)]
+    pub bytes: f64,
 }
 
 /// Measures, prints and writes.
 pub fn print(suite: &Suite) -> Result<bool, Failure> {
-    let scene = suite.root.join("verification/cases/soft-pendulum/scene.toml");
-    let set = [
-        "beam.arm.basis={ancf={elements=30}}".to_owned(),
-        format!(
-            "analysis.dynamic={{duration=\"{STEPS} ms\", output_every=\"{STEPS} ms\", \
-             generalized_alpha={{step=\"1 ms\", spectral_radius=1.0}}}}"
-        ),
-    ];
-    let scene = Scene::load(&scene, &set).map_err(|e| e.to_string())?;
-    let mut result = Scaling { date: now(), machine: machine(), rows: Vec::new() };
+    let path = suite.root.join("verification/cases/soft-pendulum/scene.toml");
+    let motion = format!(
+        "analysis.dynamic={{duration=\"{STEPS} ms\", output_every=\"{STEPS} ms\", \
+         generalized_alpha={{step=\"1 ms\", spectral_radius=1.0}}}}"
+    );
+    let scene = Scene::load(&path, &["beam.arm.basis={ancf={elements=30}}".to_owned(), motion.clone()])?;
+    let best = Machine::measure();
+    let mut result = Scaling { date: now(), machine: machine(), rows: Vec::new(), best, floors: Vec::new() };
     eprintln!(
-        "{:>9} {:>16} {:>17} {:>8} {:>17}",
-        "elements", "µs/element/step", "µs/element before", "MB", "iterations a step"
+        "{:>9} {:>16} {:>17} {:>8} {:>17} {:>18} {:>9}",
+        "elements",
+        "µs/element/step",
+        "µs/element before",
+        "MB",
+        "iterations a step",
+        "bytes/element/step",
+        "of stream"
     );
     for elements in ELEMENTS {
-        let mut model = scene.model().clone();
-        model.beams[0].centreline = Centreline::Line { start: [0.0; 2], end: [0.06 * elements as f64, 0.0] };
-        model.beams[0].discretization = Discretization::Ancf { nodes: Nodes::Uniform(elements + 1) };
-        model.probes.clear();
+        let discretization = Discretization::Ancf { nodes: Nodes::Uniform(elements + 1) };
+        let model = chain(scene.model(), elements, discretization);
         let before = peak(true);
-        let [mut step, mut start] = [f64::INFINITY; 2];
-        let mut iterations = 0.0;
-        let begin = Instant::now();
-        while begin.elapsed() < LEAST {
-            let (mut ends, clock) = (Vec::with_capacity(STEPS), Instant::now());
-            let observer = &mut |progress: &Progress| {
-                ends.push((Instant::now(), progress.newton_iterations));
-                Control::Continue
-            };
-            let options = Options { observer: Some(observer), ..Options::default() };
-            model.solve_with(scene.analysis(), options).map_err(|e| e.to_string())?;
-            let (Some(&(first, _)), Some(&(from, before)), Some(&(to, after))) =
-                (ends.first(), ends.get(FIRST - 1), ends.last())
-            else {
-                return Err("the beam that is measured did not move".into());
-            };
-            let steps = (ends.len() - FIRST) as f64;
-            start = start.min((first - clock).as_secs_f64());
-            step = step.min((to - from).as_secs_f64() / steps);
-            iterations = (after - before) as f64 / steps;
-        }
+        let Timed { step, start, iterations } = time(&model, scene.analysis())?;
         let row = Row {
             elements,
             seconds: step / elements as f64,
             start: start / elements as f64,
             megabytes: before.zip(peak(false)).map(|(before, peak)| peak - before),
             iterations,
+            bytes: floor::work(&model.beams[0]).map_or(0.0, |work| work.step(iterations).bytes),
         };
         let megabytes = row.megabytes.map_or("–".to_owned(), |m| format!("{m:.0}"));
         eprintln!(
-            "{elements:>9} {:>16.3} {:>17.3} {megabytes:>8} {:>17.1}",
+            "{elements:>9} {:>16.3} {:>17.3} {megabytes:>8} {:>17.1} {:>18.0} {:>9.2}",
             1e6 * row.seconds,
             1e6 * row.start,
-            row.iterations
+            row.iterations,
+            row.bytes,
+            row.of_stream(best)
         );
         result.rows.push(row);
+    }
+    for (name, basis) in [
+        ("cable elements", format!("{{ancf={{elements={IN_CACHE}}}}}")),
+        ("radial point interpolation", format!("{{rpim={{nodes={}}}}}", IN_CACHE + 1)),
+    ] {
+        let scene = Scene::load(&path, &[format!("beam.arm.basis={basis}"), motion.clone()])?;
+        let discretization = scene.model().beams[0].discretization.clone();
+        let model = chain(scene.model(), IN_CACHE, discretization);
+        result.floors.extend(floors(name, &model, scene.analysis())?);
+    }
+    eprintln!(
+        "\n{:.1} GB/s, {:.1} operations a nanosecond at best",
+        1e-9 * best.bytes,
+        1e-9 * best.operations
+    );
+    for Floor { beam, what, operations, seconds } in &result.floors {
+        let share = operations / (best.operations * seconds);
+        eprintln!(
+            "{beam}, {what}: {operations:.0} operations a node in {:.1} ns, {share:.2} of the best",
+            1e9 * seconds
+        );
     }
     let file = suite.root.join(FILE);
     if let Some(folder) = file.parent() {
@@ -119,6 +155,83 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
     std::fs::write(&file, serde_json::to_string_pretty(&result)?)
         .map_err(|e| format!("{}: {e}", file.display()))?;
     Ok(true)
+}
+
+/// The beam of `model` with so many elements of 6 cm.
+fn chain(model: &Model, elements: usize, discretization: Discretization) -> Model {
+    let mut model = model.clone();
+    model.beams[0].centreline = Centreline::Line { start: [0.0; 2], end: [0.06 * elements as f64, 0.0] };
+    model.beams[0].discretization = discretization;
+    model.probes.clear();
+    model
+}
+
+/// The shortest times of a motion.
+struct Timed {
+    /// Of a step \[s\].
+    step: f64,
+    /// Until the first step is done \[s\].
+    start: f64,
+    /// Iterations a step.
+    iterations: f64,
+}
+
+fn time(model: &Model, analysis: &Analysis) -> Result<Timed, Failure> {
+    let mut timed = Timed { step: f64::INFINITY, start: f64::INFINITY, iterations: 0.0 };
+    let begin = Instant::now();
+    while begin.elapsed() < LEAST {
+        let (mut ends, clock) = (Vec::with_capacity(STEPS), Instant::now());
+        let observer = &mut |progress: &Progress| {
+            ends.push((Instant::now(), progress.newton_iterations));
+            Control::Continue
+        };
+        let options = Options { observer: Some(observer), ..Options::default() };
+        model.solve_with(analysis, options).map_err(|e| e.to_string())?;
+        let (Some(&(first, _)), Some(&(from, before)), Some(&(to, after))) =
+            (ends.first(), ends.get(FIRST - 1), ends.last())
+        else {
+            return Err("the beam that is measured did not move".into());
+        };
+        let steps = (ends.len() - FIRST) as f64;
+        timed.start = timed.start.min((first - clock).as_secs_f64());
+        timed.step = timed.step.min((to - from).as_secs_f64() / steps);
+        timed.iterations = (after - before) as f64 / steps;
+    }
+    Ok(timed)
+}
+
+/// A step of a beam, and an iteration: the difference that further iterations make.
+fn floors(beam: &str, model: &Model, analysis: &Analysis) -> Result<[Floor; 2], Failure> {
+    let nodes = model.beams[0].discretization.nodes().count() as f64;
+    let work = floor::work(&model.beams[0]).ok_or("the discretisation has no count of operations")?;
+    let usual = time(model, analysis)?;
+    let mut strict = analysis.clone();
+    if let Analysis::Dynamic(Dynamic {
+        integrator: Integrator::GeneralizedAlpha { newton_tolerance, .. },
+        ..
+    }) = &mut strict
+    {
+        *newton_tolerance = STRICT;
+    }
+    let more = time(model, &strict)?;
+    let iteration = (more.step - usual.step) / (more.iterations - usual.iterations);
+    let floor = |what: &str, Count { operations, .. }, seconds: f64| Floor {
+        beam: beam.to_owned(),
+        what: what.to_owned(),
+        operations,
+        seconds: seconds / nodes,
+    };
+    Ok([
+        floor("a step", work.step(usual.iterations), usual.step),
+        floor("an iteration", work.iteration, iteration),
+    ])
+}
+
+impl Row {
+    /// The time in which the machine could move the bytes of a step, as a part of that it takes.
+    pub fn of_stream(&self, best: Machine) -> f64 {
+        self.bytes / (best.bytes * self.seconds)
+    }
 }
 
 /// The last measurement, if there is one.

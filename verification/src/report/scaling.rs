@@ -7,7 +7,7 @@ use askama::Template;
 
 use super::page::Page;
 use crate::Failure;
-use crate::scaling::{Scaling, read};
+use crate::scaling::{Floor, Row, Scaling, read};
 
 /// Growth of the cost per element that is wanted at most, from the fewest elements to the most.
 const WANTED: f64 = 1.5;
@@ -16,8 +16,12 @@ const WANTED: f64 = 1.5;
 #[template(path = "scaling.html")]
 struct Body<'a> {
     measured: Option<&'a Scaling>,
-    /// Elements, time of a step and before it, memory, iterations.
-    rows: Vec<[String; 5]>,
+    /// Elements, time of a step and before it, memory, iterations, bytes moved and their share.
+    rows: Vec<[String; 7]>,
+    /// Bytes and operations a nanosecond at best.
+    best: Option<[String; 2]>,
+    /// Beam, what is timed, operations, time, share of the best.
+    floors: Vec<[String; 5]>,
     growth: String,
     wanted: f64,
     drawing: Result<String, String>,
@@ -33,6 +37,18 @@ pub fn page(file: &Path) -> Result<Page, Failure> {
     let axes = (Axis::log("elements"), Axis::linear("µs per element and step").range(0.0, highest));
     let line = Series::new("", points, Mark::Line, PALETTE[0]);
     let drawing = Chart::new("", axes.0, axes.1).sized(560, 280).with(line).svg().map_err(|e| e.to_string());
+    let best = measured.as_ref().map(|m| m.best).filter(|best| best.bytes > 0.0);
+    let share = |row: &Row| best.map_or("–".to_owned(), |best| format!("{:.2}", row.of_stream(best)));
+    let floor = |floor: &Floor| {
+        let share = best.map(|best| floor.operations / (best.operations * floor.seconds));
+        [
+            floor.beam.clone(),
+            floor.what.clone(),
+            format!("{:.0}", floor.operations),
+            format!("{:.1}", 1e9 * floor.seconds),
+            share.map_or("–".to_owned(), |share| format!("{share:.2}")),
+        ]
+    };
     Ok(Page {
         id: "scaling".into(),
         title: "Many elements".into(),
@@ -49,9 +65,13 @@ pub fn page(file: &Path) -> Result<Page, Failure> {
                         format!("{:.2}", 1e6 * row.start),
                         row.megabytes.map_or("–".to_owned(), |m| format!("{m:.0}")),
                         format!("{:.1}", row.iterations),
+                        format!("{:.0}", row.bytes),
+                        share(row),
                     ]
                 })
                 .collect(),
+            best: best.map(|best| [best.bytes, best.operations].map(|rate| format!("{:.1}", 1e-9 * rate))),
+            floors: measured.iter().flat_map(|m| &m.floors).map(floor).collect(),
             growth: growth.map_or("–".to_owned(), |g| format!("{g:.2}")),
             wanted: WANTED,
             drawing,
