@@ -12,6 +12,9 @@ use crate::report::{machine, now, short};
 /// Where results are written, and where the report looks for them, from the root of the repository.
 pub const FOLDER: &str = "target/verification/work-precision";
 
+/// What pins the codes that nothing else needs: they are large, and a test must not wait for them.
+const REQUIREMENTS: &str = "work-requirements.txt";
+
 /// Steps of the progress bar.
 const PARTS: f64 = 1000.0;
 
@@ -22,8 +25,8 @@ pub fn print(suite: &Suite, names: &[String], quick: bool, out: &Path) -> Result
     if let Some(unknown) = names.iter().find(|name| !all.contains(name)) {
         return Err(format!("there is no problem `{unknown}`; there are: {}", all.join(", ")).into());
     }
-    let tools =
-        bridge::environment()?.facts.tool(|package| ["exudyn", "scikit-fem", "scipy"].contains(&package));
+    let facts = bridge::environment()?.add(suite, &suite.peers_folder().join(REQUIREMENTS))?;
+    let tools = facts.tool(|package| !["mpmath", "numpy", "vtk"].contains(&package));
     std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
     if cfg!(debug_assertions) {
         eprintln!(

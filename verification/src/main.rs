@@ -55,7 +55,7 @@ enum Command {
         /// Cases; those with reference data by a peer if none is named
         cases: Vec<String>,
     },
-    /// Measure what accuracy costs, ours and Exudyn's in turn, and write tables and diagrams; exit
+    /// Measure what accuracy costs, ours and that of other codes in turn, and write tables and diagrams; exit
     /// status 1 if a claim about time does not hold. For numbers that count: a release build, and a
     /// machine that does nothing else
     WorkPrecision {

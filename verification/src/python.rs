@@ -51,12 +51,13 @@ impl Facts {
 const FACTS: &str = r#"
 import datetime, importlib.metadata, json, platform, sys, sysconfig
 lines = [line for path in sys.argv[1:] for line in open(path)]
+there = {p.metadata["Name"].lower(): p.version for p in importlib.metadata.distributions()}
 print(json.dumps({
     "date": datetime.date.today().isoformat(),
     "platform": f"{platform.system()} {platform.machine()}, {' '.join(platform.libc_ver())}".strip(", "),
     "python": platform.python_version(),
     "site_packages": sysconfig.get_path("platlib"),
-    "packages": {p: importlib.metadata.version(p) for p in (l.split("==")[0].strip() for l in lines if "==" in l)},
+    "packages": {p: there[p] for p in (l.split("==")[0].strip() for l in lines if "==" in l) if p in there},
 }))
 "#;
 
@@ -67,8 +68,7 @@ impl Python {
     /// # Errors
     /// Where the interpreter, its venv module or a package is missing.
     pub fn prepare(suite: &Suite) -> Result<Self, Failure> {
-        let requirements =
-            [suite.oracles_folder(), suite.peers_folder()].map(|folder| folder.join("requirements.txt"));
+        let requirements = requirements(suite);
         let mut wanted = INTERPRETER.as_bytes().to_vec();
         for path in &requirements {
             wanted.extend(std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?);
@@ -79,8 +79,7 @@ impl Python {
         let stamp = folder.join("requirements.sha256");
         if std::fs::read_to_string(&stamp).ok().as_deref() != Some(wanted.as_str()) {
             eprintln!("making a Python environment in {} …", folder.display());
-            let mut install = Command::new(&program);
-            install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+            let mut install = pip(&program);
             for path in &requirements {
                 install.arg("--requirement").arg(path);
             }
@@ -89,9 +88,38 @@ impl Python {
                 .map_err(|error| format!("{error}\n{REMEDY}"))?;
             std::fs::write(&stamp, wanted).map_err(|e| format!("{}: {e}", stamp.display()))?;
         }
-        let output = run(Command::new(&program).args(["-c", FACTS]).args(&requirements))?;
-        let facts = serde_json::from_slice(&output.stdout)?;
+        let facts = facts(&program, requirements.iter().map(PathBuf::as_path))?;
         Ok(Self { program, facts })
+    }
+
+    /// The facts with the packages that a further file pins, which are installed where they are not there. What is there stays
+    /// as it is, and what cannot be had is told and left to whoever imports it.
+    ///
+    /// # Errors
+    /// Where the file cannot be read or the interpreter cannot be started.
+    pub fn add(&self, suite: &Suite, further: &Path) -> Result<Facts, Failure> {
+        let text = std::fs::read_to_string(further).map_err(|e| format!("{}: {e}", further.display()))?;
+        let pinned = requirements(suite);
+        let stamp = self.program.with_file_name("further.sha256");
+        let wanted = sha256(text.as_bytes());
+        if std::fs::read_to_string(&stamp).ok().as_deref() != Some(wanted.as_str()) {
+            eprintln!("installing what {} pins …", further.display());
+            let mut all = true;
+            for package in text.lines().filter(|line| line.contains("==")) {
+                let mut install = pip(&self.program);
+                for path in &pinned {
+                    install.arg("--constraint").arg(path);
+                }
+                if let Err(error) = run(install.arg(package)) {
+                    eprintln!("{error}");
+                    all = false;
+                }
+            }
+            if all {
+                std::fs::write(&stamp, wanted).map_err(|e| format!("{}: {e}", stamp.display()))?;
+            }
+        }
+        facts(&self.program, pinned.iter().map(PathBuf::as_path).chain([further]))
     }
 
     /// What a script prints. Its own messages go to the terminal.
@@ -103,6 +131,22 @@ impl Python {
         command.arg(script).args(arguments).stderr(Stdio::inherit());
         Ok(String::from_utf8(run(&mut command)?.stdout)?)
     }
+}
+
+/// What pins the packages that every part of the suite needs.
+fn requirements(suite: &Suite) -> [PathBuf; 2] {
+    [suite.oracles_folder(), suite.peers_folder()].map(|folder| folder.join("requirements.txt"))
+}
+
+fn pip(program: &Path) -> Command {
+    let mut install = Command::new(program);
+    install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+    install
+}
+
+fn facts<'a>(program: &Path, requirements: impl Iterator<Item = &'a Path>) -> Result<Facts, Failure> {
+    let output = run(Command::new(program).args(["-c", FACTS]).args(requirements))?;
+    Ok(serde_json::from_slice(&output.stdout)?)
 }
 
 fn run(command: &mut Command) -> Result<Output, Failure> {

@@ -12,6 +12,7 @@
 //! error.
 
 mod claim;
+mod decade;
 mod diagram;
 mod peer;
 mod price;
@@ -19,10 +20,11 @@ mod problem;
 mod results;
 
 pub use claim::{Cheapest, Verdict, cheapest, on_front};
+pub use decade::{DECADES, Decade, decades, others};
 pub use diagram::diagram;
 pub use price::Paid;
 pub use problem::{Claim, Code, Faster, LeftOut, Method, Price, Problem, names, problem};
-pub use results::{Norm, Point, Results, Spread};
+pub use results::{LEAD, Norm, Point, Results, Spread};
 
 use std::time::{Duration, Instant};
 
@@ -39,7 +41,6 @@ use ancf_check::{Suite, case::Check};
 use indexmap::IndexMap;
 
 use crate::Failure;
-use crate::bridge::Script;
 
 /// Times that every setting takes its turn, unless it is slow.
 const ROUNDS: usize = 3;
@@ -148,6 +149,7 @@ pub fn measure(
         quick,
         norm: norm.collect(),
         prices: problem.price.iter().flat_map(|price| price::paid(price, &points)).collect(),
+        narrow: problem.narrow.trim().to_owned(),
         claims: problem.claim.iter().map(|claim| claim::judge(claim, &points)).collect(),
         points,
         left_out,
@@ -199,8 +201,6 @@ impl Task<'_> {
     }
 
     fn run(&mut self, repeat: usize) -> Result<Found, String> {
-        static EXUDYN: Script = Script::new("exudyn_work");
-        static SCIKIT_FEM: Script = Script::new("scikit_fem_work");
         match self.method.code {
             Code::Ours => {
                 let mut last = Err("it was not run".to_owned());
@@ -224,16 +224,14 @@ impl Task<'_> {
                 }
                 last
             }
-            Code::Exudyn => self.ask(&EXUDYN, repeat),
-            Code::ScikitFem => self.ask(&SCIKIT_FEM, repeat),
+            other => {
+                let timed =
+                    peer::solve(other, &self.scene, &self.settings, repeat).map_err(|e| e.to_string())?;
+                self.seconds.extend(timed.seconds);
+                self.build.extend(timed.build);
+                Ok(timed.results)
+            }
         }
-    }
-
-    fn ask(&mut self, script: &Script, repeat: usize) -> Result<Found, String> {
-        let timed = peer::solve(script, &self.scene, &self.settings, repeat).map_err(|e| e.to_string())?;
-        self.seconds.extend(timed.seconds);
-        self.build.extend(timed.build);
-        Ok(timed.results)
     }
 
     /// The times, errors and counts of the setting.

@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use ancf_check::Suite;
-use ancf_verification::work::{self, Norm, Paid, Point, Results, Verdict, diagram, on_front};
+use ancf_verification::work::{
+    self, Code, DECADES, Decade, LEAD, Norm, Paid, Point, Results, Verdict, decades, diagram, on_front,
+    others,
+};
 use askama::Template;
 
 use super::number::short;
@@ -16,6 +19,7 @@ use crate::cost::{found, time, wanted};
 struct Body<'a> {
     results: &'a Results,
     diagrams: Vec<(&'a Norm, String)>,
+    winners: Vec<Winners<'a>>,
     claims: Vec<ClaimView<'a>>,
     prices: Vec<PriceView>,
     norms: Vec<&'a str>,
@@ -32,6 +36,23 @@ struct ClaimView<'a> {
     /// Per code its name, setting, error, time.
     sides: Vec<[String; 4]>,
     claim: &'a Verdict,
+}
+
+/// The fastest of every code to every decade of a norm.
+struct Winners<'a> {
+    title: &'a str,
+    codes: Vec<&'static str>,
+    rows: Vec<Row>,
+}
+
+struct Row {
+    limit: String,
+    ours: Option<[String; 2]>,
+    /// Time and setting of every other code.
+    others: Vec<Option<[String; 2]>>,
+    ratio: String,
+    verdict: &'static str,
+    badge: &'static str,
 }
 
 struct PriceView {
@@ -53,8 +74,17 @@ struct Line<'a> {
 #[template(path = "work_overview.html")]
 struct Overview<'a> {
     problems: Vec<(&'a Results, Vec<ClaimView<'a>>)>,
+    /// Per problem and norm its title and, per decade, the lead of ours.
+    leads: Vec<(&'a Results, &'a str, Vec<Lead>)>,
+    decades: Vec<String>,
     /// Names of problems that were not measured, or why their results cannot be read.
     missing: Vec<String>,
+}
+
+struct Lead {
+    ratio: String,
+    against: &'static str,
+    badge: &'static str,
 }
 
 /// A page of all claims, and one per problem that was measured. Where none was, the first says how
@@ -75,6 +105,8 @@ pub fn pages(suite: &Suite, folder: &Path) -> Result<Vec<Page>, Failure> {
         listed: true,
         body: Overview {
             problems: measured.iter().map(|r| (r, r.claims.iter().map(claim).collect())).collect(),
+            leads: measured.iter().flat_map(leads).collect(),
+            decades: DECADES.map(short).to_vec(),
             missing,
         }
         .render()?,
@@ -93,6 +125,7 @@ fn page(results: &Results) -> Result<Page, Failure> {
             .iter()
             .map(|(key, norm)| Ok((norm, diagram(results, key)?)))
             .collect::<Result<_, Failure>>()?,
+        winners: results.norm.iter().map(|(key, norm)| winners(results, key, norm)).collect(),
         claims: results.claims.iter().map(claim).collect(),
         prices: results.prices.iter().map(price).collect(),
         lines: results
@@ -112,6 +145,58 @@ fn page(results: &Results) -> Result<Page, Failure> {
         listed: false,
         body: body.render()?,
     })
+}
+
+/// Per norm of a problem, the lead of ours decade by decade.
+fn leads(results: &Results) -> Vec<(&Results, &str, Vec<Lead>)> {
+    let of = |key: &String| {
+        let found = decades(&results.points, key);
+        let lead = |limit: f64| {
+            let at = found.iter().find(|decade| decade.limit == limit);
+            let (verdict, badge) = at.map_or(("", ""), place);
+            let against =
+                at.and_then(|decade| decade.others.first()).map_or(verdict, |point| point.code.name());
+            let ratio = at.and_then(Decade::ratio).map_or_else(|| "–".to_owned(), times);
+            Lead { ratio, against, badge }
+        };
+        DECADES.map(lead).into()
+    };
+    results.norm.iter().map(|(key, norm)| (results, norm.title.as_str(), of(key))).collect()
+}
+
+/// Where ours stands in a decade, and the badge for it.
+fn place(decade: &Decade) -> (&'static str, &'static str) {
+    match (decade.ours, decade.ratio()) {
+        (None, _) => ("ours is not exact enough", " bad"),
+        (_, None) => ("ours alone", ""),
+        (_, Some(ratio)) if ratio >= LEAD => ("first", ""),
+        (_, Some(ratio)) if ratio >= 1.0 => ("first, narrowly", " mark"),
+        _ => ("not first", " bad"),
+    }
+}
+
+fn times(ratio: f64) -> String {
+    if ratio < 9.95 { format!("{ratio:.1} ×") } else { format!("{ratio:.0} ×") }
+}
+
+fn winners<'a>(results: &'a Results, key: &str, norm: &'a Norm) -> Winners<'a> {
+    let codes = others(&results.points);
+    let cell = |point: &Point| [time(point.seconds.median), point.name()];
+    let row = |decade: &Decade| {
+        let of =
+            |code: &Code| decade.others.iter().find(|point| point.code == *code).map(|point| cell(point));
+        let (verdict, badge) = place(decade);
+        Row {
+            limit: short(decade.limit),
+            ours: decade.ours.map(cell),
+            others: codes.iter().map(of).collect(),
+            ratio: decade.ratio().map_or_else(|| "–".to_owned(), times),
+            verdict,
+            badge,
+        }
+    };
+    let rows = decades(&results.points, key).iter().map(row).collect();
+    Winners { title: &norm.title, codes: codes.iter().map(|code| code.name()).collect(), rows }
 }
 
 /// Whether a point is on the front of its line for some norm. A table of all would hide them.
@@ -236,6 +321,7 @@ mod tests {
                 point(Code::Ours, 1e-3, 0.75),
                 point(Code::Exudyn, 1e-4, 2.5),
             ],
+            narrow: "Because it is.".into(),
             claims: vec![Verdict {
                 says: "So it is.".into(),
                 limit: Some(("tip".into(), 1e-3)),
@@ -256,6 +342,8 @@ mod tests {
         assert_eq!(page.pass, Some(false));
         for text in [
             "<svg",
+            "10 ×",
+            "Because it is.",
             "So it is.",
             "30 × faster",
             "10.0 × faster",

@@ -12,6 +12,7 @@ use ancf::system::View;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
+use super::problem::Code;
 use crate::Failure;
 use crate::bridge::Script;
 use crate::peers::Track;
@@ -19,6 +20,13 @@ use crate::peers::describe::{Description, basis, describe};
 
 /// Points at which shapes are sampled, as ours are.
 const SHAPE_POINTS: usize = 201;
+
+/// What asks the other codes.
+static SCRIPTS: [(Code, Script); 3] = [
+    (Code::Exudyn, Script::new("exudyn_work")),
+    (Code::ScikitFem, Script::new("scikit_fem_work")),
+    (Code::OpenSees, Script::new("opensees_work")),
+];
 
 #[derive(Serialize)]
 struct Question<'a> {
@@ -60,11 +68,13 @@ pub struct Timed {
 /// What of the scene has no counterpart, a Python that cannot be had, and what the other code
 /// raises.
 pub fn solve(
-    script: &Script,
+    code: Code,
     scene: &Scene,
     settings: &IndexMap<String, String>,
     repeat: usize,
 ) -> Result<Timed, Failure> {
+    let script = SCRIPTS.iter().find(|(known, _)| *known == code);
+    let (_, script) = script.ok_or_else(|| format!("there is no script for {}", code.name()))?;
     let description = describe(scene.model(), scene.analysis())?;
     let answer: Answer = script.ask(&Question { description, settings, repeat })?;
     let results = results(scene.model(), &answer)?;

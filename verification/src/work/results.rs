@@ -11,6 +11,9 @@ use super::price::Paid;
 use super::problem::{Code, LeftOut};
 use crate::Failure;
 
+/// How many times as fast as the next ours should be.
+pub const LEAD: f64 = 5.0;
+
 /// A problem with its results.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Results {
@@ -32,6 +35,9 @@ pub struct Results {
     pub norm: IndexMap<String, Norm>,
     /// One per setting that came to its end, method by method.
     pub points: Vec<Point>,
+    /// Why ours is not [`LEAD`] times as fast as any other code everywhere, where it is not.
+    #[serde(default)]
+    pub narrow: String,
     /// The outcomes of the claims.
     pub claims: Vec<Verdict>,
     /// What an accuracy alone costs, by accuracy.
