@@ -41,6 +41,13 @@ impl BlockLu {
         let (nodes, blocks) = (matrix.size() / 4, matrix.half_bandwidth() / 4 + 1);
         let from_both_ends = blocks == 2;
         let order = Order::new(nodes, from_both_ends);
+        debug_assert!(
+            (0..4 * nodes).all(|i| {
+                let outside = |j: &usize| (i / 4).abs_diff(j / 4) >= blocks;
+                matrix.columns(i).filter(outside).all(|j| matrix.get(i, j) == 0.0)
+            }),
+            "an entry lies outside the blocks"
+        );
         // The blocks right of and below the diagonal as they stand, in the order of elimination.
         let mut right = vec![[Lanes::ZERO; 4]; nodes * blocks];
         let mut below = vec![[Lanes::ZERO; 4]; nodes * (blocks - 1)];

@@ -47,6 +47,35 @@ fn row(n: usize) -> Vec<(usize, f64)> {
 proptest! {
     #![proptest_config(super::cases(64))]
 
+    /// K + c M of an unsymmetric tangent: by blocks without exchanges between them, and by an LU
+    /// with exchanges across the band.
+    #[test]
+    fn unsymmetric_tangents_with_a_mass_are_solved(
+        nodes in 1..12_usize, blocks in 1..7_usize, numbers in numbers(),
+    ) {
+        let m = symmetric(nodes, blocks, &numbers[3..], 20.0);
+        let mut k = Matrix::zeros(nodes, blocks, false);
+        let mut next = numbers.iter().cycle();
+        for i in 0..4 * nodes {
+            for j in k.columns(i).filter(|j| (i / 4).abs_diff(j / 4) < blocks) {
+                k.add_at(i, j, next.next().copied().unwrap_or(0.0));
+            }
+        }
+        let factor = Factor::shifted(None, &k, (3.0, &m), &[]).expect("a regular matrix");
+        prop_assert!(matches!(factor, Factor::BlockLu(_)));
+        let mut sum = k.clone();
+        for i in 0..4 * nodes {
+            for j in m.columns(i) {
+                sum.add_at(i, j, 3.0 * m.get(i, j));
+            }
+        }
+        let x: Vec<f64> = (0..4 * nodes).map(|i| (i as f64).sin()).collect();
+        let mut b = vec![0.0; 4 * nodes];
+        sum.multiply_add(1.0, &x, &mut b);
+        factor.solve(&mut b);
+        agree(&b, &x, 1e-11)?;
+    }
+
     /// K + ζ M of a collocation method's stages, banded, without symmetry, and bordered: what comes
     /// out is put back into the equations.
     #[test]

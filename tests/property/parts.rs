@@ -2,9 +2,11 @@
 
 use ancf::assembly::{Density, Dissipation};
 use ancf::effect::{
-    BendDamping, Dashpot, DragForce, Engineering, Green, GroundSpring, Gyration, Inertia, Obstacle, Penalty,
-    PreCurvature, PreStrain, RotaryInertia, StretchDamping, Strut, Torsion, TorsionDashpot,
+    BendDamping, Dashpot, DragForce, Engineering, FollowerForce, Green, GroundSpring, Gyration, Inertia,
+    Obstacle, Penalty, PreCurvature, PreStrain, RotaryInertia, StretchDamping, Strut, Torsion,
+    TorsionDashpot,
 };
+use ancf::lanes::{Lanes, Pair, Points};
 use nalgebra::{DVector, Dyn, Vector2};
 use num_dual::{Dual2Vec, DualNum, hessian};
 use proptest::prelude::*;
@@ -41,6 +43,30 @@ fn derivatives<D: Density<M>, const M: usize>(
     }
 }
 
+/// Fields at four points: those given, and others of other sizes.
+fn of_four<const M: usize>(z: &[Vector2<f64>; M]) -> ([[Vector2<f64>; M]; 4], [Pair<Lanes>; M]) {
+    let fields: [[Vector2<f64>; M]; 4] = std::array::from_fn(|k| z.map(|z| z * (1.0 + 0.3 * k as f64)));
+    let part = |m: usize, d: usize| Lanes::new(std::array::from_fn(|k| fields[k][m][d]));
+    (fields, std::array::from_fn(|m| std::array::from_fn(|d| part(m, d))))
+}
+
+/// The forces at four points are those at each.
+fn four_are_each<const M: usize>(found: [Pair<Lanes>; M], each: [[Vector2<f64>; M]; 4]) {
+    for (k, each) in each.iter().enumerate() {
+        let scale = each.iter().fold(1e-12_f64, |m, force| m.max(force.amax()));
+        for (m, force) in each.iter().enumerate() {
+            for d in 0..2 {
+                let found = found[m][d].to_array()[k];
+                assert!(
+                    (found - force[d]).abs() <= 1e-13 * scale,
+                    "point {k}, {m}{d}: {found}, not {}",
+                    force[d]
+                );
+            }
+        }
+    }
+}
+
 /// Force and matrix of a dissipation function R(ż) at the state z.
 fn rates<D: Dissipation<M>, const M: usize>(
     density: &D,
@@ -67,6 +93,10 @@ fn rates<D: Dissipation<M>, const M: usize>(
             self.0.force_and_matrix(point, &self.1, rate)
         }
     }
+    let ((states, z_lanes), (rates, rate_lanes)) = (of_four(&z), of_four(&rate));
+    let points = Points { first: 0, stride: 0 };
+    let each = std::array::from_fn(|k| density.force(0, &states[k], &rates[k]));
+    four_are_each(density.forces(points, &z_lanes, &rate_lanes), each);
     let constant: Vec<Field> = rate.iter().map(|r| [Dual::from(r.x), Dual::from(r.y)]).collect();
     let value = function(&constant).re;
     derivatives(&AtState(density, z, value), rate, function);
@@ -198,6 +228,14 @@ proptest! {
         let [force] = Gyration(RotaryInertia { inertia: 0.6 }).force(0, &[g], &[w]);
         let expected = Vector2::new(-g.y, g.x) * (0.6 * second / g.norm_squared());
         prop_assert!((force - expected).amax() < 1e-5 * (1.0 + expected.amax()), "{force} and {expected}");
+        let gyration = Gyration(RotaryInertia { inertia: 0.6 });
+        let ((states, z_lanes), (velocities, lanes)) = (of_four(&[g]), of_four(&[w]));
+        let each = std::array::from_fn(|k| gyration.force(0, &states[k], &velocities[k]));
+        four_are_each(gyration.forces(Points { first: 0, stride: 0 }, &z_lanes, &lanes), each);
+        let follower = FollowerForce::new([0.7, -1.2], &[c, g, v, w]);
+        let (states, lanes) = of_four(&[r, g]);
+        let each = std::array::from_fn(|k| follower.gradient(k, &states[k]).map(|force| force * 0.4));
+        four_are_each(follower.gradients(0.4, Points { first: 0, stride: 1 }, &lanes), each);
         rates(&TorsionDashpot { coefficient: 0.6 }, [g], [w], |v| {
             square(cross(&g_dual, &v[0]) / g.norm_squared()) * 0.3
         });
@@ -209,5 +247,49 @@ proptest! {
             square(along.clone()) * 0.1 + square(across.clone()) * 0.25
                 + abs(along).powi(3) * (0.1 / 3.0) + abs(across).powi(3)
         });
+    }
+}
+
+/// A force that is linear in the velocity is its matrix times the velocity. Of ten elements eight are
+/// summed four at a time, all matrices one at a time.
+#[test]
+fn forces_of_velocities_are_their_matrices_times_the_velocity() {
+    for (basis, damping) in [
+        (
+            "ancf.elements = 10",
+            "damping = [{ beam = 'arm', stiffness_proportional = 0.3, mass_proportional = 0.7 }]",
+        ),
+        ("ancf.elements = 3", "damping = [{ beam = 'arm', strain = 0.3, curvature = 0.1 }]"),
+        ("rpim.nodes = 11", "damping = [{ beam = 'arm', stiffness_proportional = 0.3 }]"),
+        ("ancf.elements = 10", "drag = [{ beam = 'arm', viscous_normal = 2.0, viscous_tangential = 0.4 }]"),
+        (
+            "ancf = { elements = 10, gauss_points = { stretch = 4, bend = 2 } }",
+            "damping = [{ beam = 'arm', stiffness_proportional = 0.3 }]",
+        ),
+    ] {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0.5], axial_stiffness = 40, bending_stiffness = 0.3, \
+             mass_per_length = 2.0, basis.{basis} }}
+            effect.{damping}
+            analysis.dynamic.duration = 1.0\n"
+        );
+        let scene = ancf::scene::parse("scene.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let needs = ancf::assembly::Needs { inertia: true, motion: true };
+        let system = ancf::system::System::build(scene.model(), needs).expect("a legal model");
+        let n = system.coordinates();
+        let some = |k: usize, size: f64| size * (((7 * k * k + 3 * k) % 23) as f64 / 11.0 - 1.0);
+        let q: Vec<f64> = system.start().iter().enumerate().map(|(k, q)| q + some(k, 0.05)).collect();
+        let v: Vec<f64> = (0..n).map(|k| some(k + 5, 1.0)).collect();
+        let (mut force, mut with_matrix, mut product) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        system.add_damping(&q, &v, &mut force);
+        let mut matrix = system.damping_pattern();
+        let workspace = &mut ancf::assembly::Workspace::default();
+        system.damping_matrix(&q, &v, &mut with_matrix, &mut matrix, workspace);
+        matrix.multiply_add(1.0, &v, &mut product);
+        let scale = product.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        for ((force, with), product) in force.iter().zip(&with_matrix).zip(&product) {
+            assert!((force - product).abs() <= 1e-12 * scale, "{basis}, {damping}: {force}, not {product}");
+            assert!((with - product).abs() <= 1e-12 * scale, "{basis}, {damping}: {with}, not {product}");
+        }
     }
 }
