@@ -2,6 +2,7 @@
 //! takes, and what the machine would need at least.
 
 mod floor;
+mod memory;
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -20,6 +21,7 @@ use crate::report::{machine, now};
 pub const FILE: &str = "target/verification/scaling.json";
 
 pub use floor::{Count, Machine};
+pub use memory::Memory;
 
 /// Elements of 6 cm, hanging from one end.
 const ELEMENTS: [usize; 4] = [100, 1_000, 10_000, 100_000];
@@ -49,6 +51,9 @@ pub struct Scaling {
     /// Iterations and steps beside what the machine does at best.
     #[serde(default)]
     pub floors: Vec<Floor>,
+    /// Memory of several codes.
+    #[serde(default)]
+    pub memory: Vec<Memory>,
 }
 
 /// An iteration or a step of a beam whose numbers stay in the caches.
@@ -92,7 +97,14 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
     );
     let scene = Scene::load(&path, &["beam.arm.basis={ancf={elements=30}}".to_owned(), motion.clone()])?;
     let best = Machine::measure();
-    let mut result = Scaling { date: now(), machine: machine(), rows: Vec::new(), best, floors: Vec::new() };
+    let mut result = Scaling {
+        date: now(),
+        machine: machine(),
+        rows: Vec::new(),
+        best,
+        floors: Vec::new(),
+        memory: Vec::new(),
+    };
     eprintln!(
         "{:>9} {:>16} {:>17} {:>8} {:>17} {:>18} {:>9}",
         "elements",
@@ -148,6 +160,7 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
             1e9 * seconds
         );
     }
+    result.memory = memory::measure(&path)?;
     let file = suite.root.join(FILE);
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;

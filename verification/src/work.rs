@@ -14,7 +14,7 @@
 mod claim;
 mod decade;
 mod diagram;
-mod peer;
+pub mod peer;
 mod price;
 mod problem;
 mod results;
@@ -226,7 +226,8 @@ impl Task<'_> {
             }
             other => {
                 let timed =
-                    peer::solve(other, &self.scene, &self.settings, repeat).map_err(|e| e.to_string())?;
+                    peer::solve(other, (self.scene.model(), self.scene.analysis()), &self.settings, repeat)
+                        .map_err(|e| e.to_string())?;
                 self.seconds.extend(timed.seconds);
                 self.build.extend(timed.build);
                 Ok(timed.results)

@@ -7,7 +7,7 @@ use askama::Template;
 
 use super::page::Page;
 use crate::Failure;
-use crate::scaling::{Floor, Row, Scaling, read};
+use crate::scaling::{Floor, Memory, Row, Scaling, read};
 
 /// Growth of the cost per element that is wanted at most, from the fewest elements to the most.
 const WANTED: f64 = 1.5;
@@ -22,6 +22,8 @@ struct Body<'a> {
     best: Option<[String; 2]>,
     /// Beam, what is timed, operations, time, share of the best.
     floors: Vec<[String; 5]>,
+    /// Code, analysis, bytes per element or why they are not known.
+    memory: Vec<[String; 3]>,
     growth: String,
     wanted: f64,
     drawing: Result<String, String>,
@@ -49,6 +51,13 @@ pub fn page(file: &Path) -> Result<Page, Failure> {
             share.map_or("–".to_owned(), |share| format!("{share:.2}")),
         ]
     };
+    let memory = |memory: &Memory| {
+        let bytes = match &memory.bytes {
+            Ok(bytes) => format!("{bytes:.0}"),
+            Err(why) => why.clone(),
+        };
+        [memory.code.name().to_owned(), memory.analysis.clone(), bytes]
+    };
     Ok(Page {
         id: "scaling".into(),
         title: "Many elements".into(),
@@ -71,6 +80,7 @@ pub fn page(file: &Path) -> Result<Page, Failure> {
                 })
                 .collect(),
             best: best.map(|best| [best.bytes, best.operations].map(|rate| format!("{:.1}", 1e-9 * rate))),
+            memory: measured.iter().flat_map(|m| &m.memory).map(memory).collect(),
             floors: measured.iter().flat_map(|m| &m.floors).map(floor).collect(),
             growth: growth.map_or("–".to_owned(), |g| format!("{g:.2}")),
             wanted: WANTED,

@@ -3,11 +3,10 @@
 
 use std::f64::consts::TAU;
 
-use ancf::model::Model;
+use ancf::model::{Analysis, Model};
 use ancf::results::{
     ProbeSample, ProbeSeries, Results, Run, Shape, Statistics, Trajectory, Vibration, Vibrations,
 };
-use ancf::scene::Scene;
 use ancf::system::View;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -62,22 +61,22 @@ pub struct Timed {
     pub results: Results,
 }
 
-/// Solves a scene `repeat` times.
+/// Solves a model `repeat` times.
 ///
 /// # Errors
 /// What of the scene has no counterpart, a Python that cannot be had, and what the other code
 /// raises.
 pub fn solve(
     code: Code,
-    scene: &Scene,
+    (model, analysis): (&Model, &Analysis),
     settings: &IndexMap<String, String>,
     repeat: usize,
 ) -> Result<Timed, Failure> {
     let script = SCRIPTS.iter().find(|(known, _)| *known == code);
     let (_, script) = script.ok_or_else(|| format!("there is no script for {}", code.name()))?;
-    let description = describe(scene.model(), scene.analysis())?;
+    let description = describe(model, analysis)?;
     let answer: Answer = script.ask(&Question { description, settings, repeat })?;
-    let results = results(scene.model(), &answer)?;
+    let results = results(model, &answer)?;
     Ok(Timed { seconds: answer.seconds, build: answer.build, results })
 }
 
