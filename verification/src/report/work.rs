@@ -75,7 +75,7 @@ struct Line<'a> {
 struct Overview<'a> {
     problems: Vec<(&'a Results, Vec<ClaimView<'a>>)>,
     /// Per problem and norm its title and, per decade, the lead of ours.
-    leads: Vec<(&'a Results, &'a str, Vec<Lead>)>,
+    leads: Vec<(&'a Results, &'a str, Vec<Option<Lead>>)>,
     decades: Vec<String>,
     /// Names of problems that were not measured, or why their results cannot be read.
     missing: Vec<String>,
@@ -148,16 +148,15 @@ fn page(results: &Results) -> Result<Page, Failure> {
 }
 
 /// Per norm of a problem, the lead of ours decade by decade.
-fn leads(results: &Results) -> Vec<(&Results, &str, Vec<Lead>)> {
+fn leads(results: &Results) -> Vec<(&Results, &str, Vec<Option<Lead>>)> {
     let of = |key: &String| {
         let found = decades(&results.points, key);
         let lead = |limit: f64| {
-            let at = found.iter().find(|decade| decade.limit == limit);
-            let (verdict, badge) = at.map_or(("", ""), place);
-            let against =
-                at.and_then(|decade| decade.others.first()).map_or(verdict, |point| point.code.name());
-            let ratio = at.and_then(Decade::ratio).map_or_else(|| "–".to_owned(), times);
-            Lead { ratio, against, badge }
+            let at = found.iter().find(|decade| decade.limit == limit)?;
+            let (verdict, badge) = place(at);
+            let against = at.others.first().map_or(verdict, |point| point.code.name());
+            let ratio = at.ratio().map_or_else(|| "–".to_owned(), times);
+            Some(Lead { ratio, against, badge })
         };
         DECADES.map(lead).into()
     };

@@ -1,12 +1,13 @@
 //! Error against time, both logarithmic.
 //!
-//! Every line of the diagram is the front of its methods, the settings that no other of the same
-//! line beats; all settings have a mark. Lines of other codes are dashed. A ring is around what
-//! nothing in the diagram beats.
+//! Every line of the diagram is a front, the settings that no other of the same line beats; all
+//! settings have a mark. Ours has a line for every label, another code one for all that it can, which is
+//! dashed. A ring is around what nothing in the diagram beats.
 
-use ancf::output::plot::{Axis, Chart, GREY, Mark, PlotError, Series, colour};
+use ancf::output::plot::{Axis, Chart, GREY, Mark, PALETTE, PlotError, Series, colour};
 
 use super::claim::on_front;
+use super::decade::others;
 use super::results::{Point, Results};
 
 /// Size of the drawing \[px\], and what a row of the legend adds.
@@ -21,16 +22,20 @@ pub fn diagram(results: &Results, norm: &str) -> Result<String, PlotError> {
     let label = results.norm.get(norm).map_or(norm, |norm| norm.title.as_str());
     let mut lines: Vec<(&str, Vec<&Point>)> = Vec::new();
     for point in &results.points {
-        match lines.iter_mut().find(|(line, _)| *line == point.line) {
+        let name = if point.code.is_ours() { point.line.as_str() } else { point.code.name() };
+        match lines.iter_mut().find(|(line, _)| *line == name) {
             Some((_, points)) => points.push(point),
-            None => lines.push((&point.line, vec![point])),
+            None => lines.push((name, vec![point])),
         }
     }
+    // A few codes beside many lines of ours: those count colours from the other end.
+    let codes = others(&results.points);
     let rows = u32::try_from(lines.len() / 3).unwrap_or(0);
     let mut chart = Chart::new("", Axis::log("solve time [s]"), Axis::log(label))
         .sized(SIZE[0], SIZE[1] + LEGEND_ROW * rows);
     for (number, (line, points)) in lines.iter().enumerate() {
-        let ours = points.iter().all(|point| point.code.is_ours());
+        let other = codes.iter().position(|code| points.iter().any(|point| point.code == *code));
+        let (ours, number) = (other.is_none(), other.map_or(number, |k| PALETTE.len() - 1 - k));
         let (style, mark) = if ours { (Mark::Line, Mark::Points) } else { (Mark::Dashed, Mark::Crosses) };
         let front = places(points, norm, true);
         chart = chart.with(Series::new(*line, front, style, colour(number))).with(Series::new(

@@ -125,6 +125,10 @@ fn medians_counts_and_what_is_missing_are_recorded_and_read_back() {
     assert!(csv.starts_with("code,method,setting,error_tip,error_curvature,seconds_median,"), "{csv}");
     for norm in ["tip", "curvature"] {
         let drawing = std::fs::read_to_string(folder.path().join(format!("small.{norm}.svg")));
-        assert!(drawing.expect("a drawing").contains("Lobatto"));
+        let drawing = drawing.expect("a drawing");
+        assert!(
+            drawing.contains("Exudyn") && !drawing.contains("Lobatto"),
+            "one line for all methods of another code"
+        );
     }
 }
