@@ -21,10 +21,12 @@ use crate::peers::describe::{Description, basis, describe};
 const SHAPE_POINTS: usize = 201;
 
 /// What asks the other codes.
-static SCRIPTS: [(Code, Script); 3] = [
+static SCRIPTS: [(Code, Script); 5] = [
     (Code::Exudyn, Script::new("exudyn_work")),
     (Code::ScikitFem, Script::new("scikit_fem_work")),
     (Code::OpenSees, Script::new("opensees_work")),
+    (Code::PyElastica, Script::new("elastica_work")),
+    (Code::MuJoCo, Script::new("mujoco_work")),
 ];
 
 #[derive(Serialize)]

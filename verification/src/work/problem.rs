@@ -103,6 +103,12 @@ pub enum Code {
     /// OpenSees' beams with the corotational transformation.
     #[serde(rename = "opensees")]
     OpenSees,
+    /// PyElastica's Cosserat rods, which move explicitly.
+    #[serde(rename = "pyelastica")]
+    PyElastica,
+    /// A chain of rigid links and springs in MuJoCo.
+    #[serde(rename = "mujoco")]
+    MuJoCo,
 }
 
 impl Code {
@@ -119,6 +125,8 @@ impl Code {
             Self::Exudyn => "Exudyn",
             Self::ScikitFem => "scikit-fem",
             Self::OpenSees => "OpenSees",
+            Self::PyElastica => "PyElastica",
+            Self::MuJoCo => "MuJoCo",
         }
     }
 }
