@@ -36,6 +36,7 @@ pub(crate) mod inertia;
 pub mod interleaved;
 pub mod isotropic;
 mod order;
+mod schur;
 pub mod symmetric;
 pub mod unsymmetric;
 

@@ -7,7 +7,7 @@
 //! S = B K⁻¹ Bᵀ,   S μ = B K⁻¹ f − g,   x = K⁻¹ f − K⁻¹Bᵀ μ
 //! ```
 //!
-//! This takes r substitutions for K⁻¹Bᵀ at factorisation and one per solution, which is a fifth of
+//! S is a band where the rows are many ([`super::schur`]). This takes r substitutions for K⁻¹Bᵀ at factorisation and one per solution, which is a fifth of
 //! the time of a sparse LU for a chain of two beams. Beams are not coupled in K, so that the
 //! substitution for the row of a joint involves only the beams that it joins.
 
@@ -15,17 +15,19 @@ use super::bordered::BorderRow;
 use super::complex_ldl::ComplexLdl;
 use super::interleaved::fits;
 use super::order::Order;
+use super::schur::{Numbering, Schur, SchurLu};
 use super::symmetric::{Ldl, SymmetricBand};
 use super::{Matrix, Singular};
 use faer::c64;
-use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
+use nalgebra::DVector;
 use std::ops::Range;
 
 /// Number of substitutions with all nodes, or as many nodes in substitutions for some beams, above
 /// which a sparse LU is faster.
 const MOST_SUBSTITUTIONS: usize = 48;
-/// Number of rows above which a sparse LU is faster.
-const MOST_ROWS: usize = 400;
+/// Multiplications per unknown that the factorisation of S may take: with more a sparse LU of the
+/// whole is faster.
+const MOST_WORK: usize = 2000;
 /// Number of local rows above which the LU of a wider band is faster ([`super::interleaved`]).
 const MOST_LOCAL_ROWS: usize = 12;
 
@@ -41,7 +43,8 @@ pub fn serves(matrix: &Matrix, border: &[BorderRow]) -> bool {
     let nodes = band.size() / 4;
     let parts = Parts::new(&[band], Order::new(nodes, false));
     let of_row = |row: &BorderRow| parts.of(row).map(|part| parts.positions[part].len()).sum::<usize>();
-    border.len() <= MOST_ROWS && border.iter().map(of_row).sum::<usize>() <= MOST_SUBSTITUTIONS * nodes
+    let narrow = || Numbering::new(border.len(), &parts.rows(border)).work() <= MOST_WORK * band.size();
+    border.iter().map(of_row).sum::<usize>() <= MOST_SUBSTITUTIONS * nodes && narrow()
 }
 
 /// The parts of a band that are not coupled, such as beams: each consists of successive nodes.
@@ -122,7 +125,7 @@ pub struct Condensed {
     border: Vec<BorderRow>,
     /// K⁻¹ Bᵀ.
     columns: Vec<Column<f64>>,
-    schur: LU<f64, Dyn, Dyn>,
+    schur: SchurLu<f64>,
 }
 
 impl Condensed {
@@ -135,7 +138,7 @@ impl Condensed {
         let rows = parts.rows(border);
         let size = parts.of_node.len() * 4;
         let mut x = vec![0.0; size];
-        let mut schur = DMatrix::zeros(border.len(), border.len());
+        let mut schur = Schur::zeros(border.len(), &rows);
         let mut columns = Vec::with_capacity(border.len());
         for (c, row) in border.iter().enumerate() {
             row.iter().for_each(|(i, value)| x[*i] = *value);
@@ -145,13 +148,15 @@ impl Condensed {
                 ldl.solve_part(&parts.positions[part], &mut x);
                 let solution = x[range.clone()].to_vec();
                 x[range.clone()].fill(0.0);
-                rows[part].iter().for_each(|&r| schur[(r, c)] += dot_within(&border[r], &range, &solution));
+                for &r in &rows[part] {
+                    schur.add(r, c, dot_within(&border[r], &range, &solution));
+                }
                 column.push((range.start, solution));
             }
             columns.push(column);
         }
-        let condensed = Self { ldl, border: border.to_vec(), columns, schur: schur.lu() };
-        if condensed.schur.is_invertible() { Ok(condensed) } else { Err(Singular { row: size }) }
+        let schur = schur.factorise().ok_or(Singular { row: size })?;
+        Ok(Self { ldl, border: border.to_vec(), columns, schur })
     }
 
     /// The factorised band, whose memory the next factorisation reuses.
@@ -164,7 +169,7 @@ impl Condensed {
         let (x, g) = b.split_at_mut(b.len() - self.border.len());
         self.ldl.solve(x);
         let mut mu = DVector::from_fn(g.len(), |r, _| dot(&self.border[r], x) - g[r]);
-        self.schur.solve_mut(&mut mu);
+        self.schur.solve(&mut mu);
         for (column, mu) in self.columns.iter().zip(mu.iter()) {
             for (first, column) in column {
                 x[*first..].iter_mut().zip(column).for_each(|(x, c)| *x -= mu * c);
@@ -181,7 +186,7 @@ pub struct ComplexCondensed {
     border: Vec<BorderRow>,
     /// K⁻¹ Bᵀ.
     columns: Vec<Column<c64>>,
-    schur: LU<Complex<f64>, Dyn, Dyn>,
+    schur: SchurLu<c64>,
 }
 
 impl ComplexCondensed {
@@ -194,7 +199,7 @@ impl ComplexCondensed {
         let rows = parts.rows(border);
         let size = parts.of_node.len() * 4;
         let (mut re, mut im) = (vec![0.0; size], vec![0.0; size]);
-        let mut schur = DMatrix::zeros(border.len(), border.len());
+        let mut schur = Schur::zeros(border.len(), &rows);
         let mut columns = Vec::with_capacity(border.len());
         for (c, row) in border.iter().enumerate() {
             row.iter().for_each(|(i, value)| re[*i] = *value);
@@ -205,7 +210,7 @@ impl ComplexCondensed {
                 let [here_re, here_im] = [&re, &im].map(|x| &x[range.clone()]);
                 for &r in &rows[part] {
                     let of = |x| dot_within(&border[r], &range, x);
-                    schur[(r, c)] += c64::new(of(here_re), of(here_im));
+                    schur.add(r, c, c64::new(of(here_re), of(here_im)));
                 }
                 let solution = here_re.iter().zip(here_im).map(|(re, im)| c64::new(*re, *im)).collect();
                 column.push((range.start, solution));
@@ -214,8 +219,8 @@ impl ComplexCondensed {
             }
             columns.push(column);
         }
-        let condensed = Self { ldl, border: border.to_vec(), columns, schur: schur.lu() };
-        if condensed.schur.is_invertible() { Ok(condensed) } else { Err(Singular { row: size }) }
+        let schur = schur.factorise().ok_or(Singular { row: size })?;
+        Ok(Self { ldl, border: border.to_vec(), columns, schur })
     }
 
     /// The factorised band, whose memory the next factorisation reuses.
@@ -232,7 +237,7 @@ impl ComplexCondensed {
             let row = &self.border[r];
             c64::new(dot(row, xr) - gr[r], dot(row, xi) - gi[r])
         });
-        self.schur.solve_mut(&mut mu);
+        self.schur.solve(&mut mu);
         for (column, mu) in self.columns.iter().zip(mu.iter()) {
             for (first, column) in column {
                 for ((xr, xi), c) in xr[*first..].iter_mut().zip(&mut xi[*first..]).zip(column) {
