@@ -57,9 +57,10 @@ impl Part for Electrostatic {
         let (facing, extent) = Extent::along(self.beam, rule, &self.facing);
         let (strength, fringe) = (facing * strength * self.width, facing * strength * self.fringe);
         assembly.load(Kind::Electrostatic, extent, law.as_ref(), |z: Vec<[Vector2<f64>; 1]>| {
-            // Where the stress-free beam has no gap, its energy counts from a gap of 1 m.
+            // Where the stress-free beam has no gap, its energy counts from a gap as wide as the
+            // electrode.
             let gap = |[r]: [Vector2<f64>; 1]| Some(normal.dot(&r) - offset).filter(|gap| *gap > 0.0);
-            let start = z.into_iter().map(|z| gap(z).unwrap_or(1.0)).collect();
+            let start = z.into_iter().map(|z| gap(z).unwrap_or(self.width)).collect();
             Plate { normal, offset, strength, fringe, start }
         })
     }

@@ -51,7 +51,7 @@ pub fn measure(path: &Path) -> Result<Vec<Memory>, Failure> {
     eprintln!("\n{:>12} {:>12} {:>14}", "code", "analysis", "bytes/element");
     for (analysis, set) in ANALYSES {
         let overrides = [
-            "beam.arm.basis={ancf={elements=30}}",
+            "beam.arm.basis={ancf={elements=30, gauss_points={stretch=5, bend=3}}}",
             "support=[{beam='arm', at='start', fix=['x', 'y', 'angle']}]",
             "effect.gravity.acceleration=[9.81, 0.0]",
             set,

@@ -154,6 +154,7 @@ fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng)
         // critical load.
         Growth::By { places, .. } if places > NEUTRAL => return Verdict::Unstable,
         Growth::By { places: grown, .. } if places => grown,
+        Growth::By { all, .. } if all > NEUTRAL => return Verdict::Unstable,
         Growth::By { all, .. } => all,
     };
     if value <= allowed * factor {
