@@ -281,3 +281,40 @@ fn a_hub_takes_the_moment_of_inertia_and_puts_in_the_kinetic_energy() {
         assert!((work - kinetic).abs() < 1e-3 * kinetic, "{method}: {work} J of {kinetic} J");
     }
 }
+
+/// The last state of a motion is that before a law's kink at the very end: where damping makes the
+/// forces jump there, sections, reactions and probes show the same side.
+#[test]
+fn a_law_that_ends_with_the_motion_is_seen_from_before_by_all() {
+    for method in METHODS {
+        let text = beam("arm", [0.0, 0.0], 1.0, 0.7, 50.0, 1.0, "ancf.elements = 4")
+            + &format!(
+                "[[support]]
+                beam = 'arm'
+                at = 'end'
+                fix = ['x']
+                move = {{ x = 0.05, in_time = {{ table = {{ times = [0.0, 0.2], values = [0.0, 1.0] }} }} }}
+                [effect]
+                damping = [{{ beam = 'arm', strain = 1e-3 }}]
+                [[probe]]
+                name = 'tip'
+                beam = 'arm'
+                at = 'end'
+                [analysis.dynamic]
+                duration = 0.2
+                output_every = 0.02
+                {method}
+                [output]
+                reactions = true
+                section_forces = true
+"
+            );
+        let t = solved(&text);
+        let reaction = t.reactions[0].samples.last().expect("a record");
+        let shape = t.last.last().expect("a shape");
+        let largest = reaction.fx.hypot(reaction.fy);
+        assert!(largest > 0.1, "{method}: {largest}");
+        let off = differs(shape, shape.s.len() - 1, [reaction.fx, reaction.fy], reaction.moment);
+        assert!(off.iter().all(|off| *off < 1e-5 * largest), "{method}: {off:?} of {largest}");
+    }
+}

@@ -285,9 +285,7 @@ impl<'t, 'a> Driver<'t, 'a> {
     fn run(&mut self, observe: &mut dyn FnMut(f64, f64, &Statistics) -> bool) {
         let mut new = self.state.clone();
         let mut kept = Instant::now();
-        while self.solution.stuck.is_none()
-            && self.task.duration - self.state.time > SMALLEST_STEP * self.task.duration
-        {
+        while self.solution.stuck.is_none() && !self.has_ended() {
             let before = self.may_be_cut().then(|| self.checkpoint());
             let ends_early = self.end_cuts();
             match self.advance(&mut new) {
@@ -303,6 +301,10 @@ impl<'t, 'a> Driver<'t, 'a> {
                     self.support_power_at_start = last.filter(|(time, _)| *time == new.time);
                     std::mem::swap(&mut self.state, &mut new);
                     if !stopped {
+                        if self.has_ended() {
+                            // What a law does after the end is not seen by the last state.
+                            self.solution.end = self.balance_at_end();
+                        }
                         self.go_on(end);
                     }
                     self.set_accepted();
@@ -318,6 +320,11 @@ impl<'t, 'a> Driver<'t, 'a> {
                 }
             }
         }
+    }
+
+    /// Whether the end of the motion is reached.
+    fn has_ended(&self) -> bool {
+        self.task.duration - self.state.time <= SMALLEST_STEP * self.task.duration
     }
 
     /// Makes the present state the one from which internal variables are counted.
