@@ -231,8 +231,9 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
     };
     let (places, all) = match chosen {
         _ if accuracy.is_some() => (ALLOWED * wanted, f64::INFINITY),
-        // Round-off may change the choice of a step; its effect is bounded by the tolerance.
-        Some(_) if !same => (wanted, f64::INFINITY),
+        // Round-off may change the choice of a step, and where an expression turns; its effect is
+        // bounded by the tolerance.
+        Some(_) if !same || settings::has_expression(scene) => (wanted, f64::INFINITY),
         Some(_) => (0.1 * wanted, FORCES.max(wanted)),
         None => (ALLOWED * wanted, FORCES.max(ALLOWED * wanted)),
     };
@@ -336,12 +337,14 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
             }
             Way::Split => {
                 let mut measured = places_or_forces(&gap, plain, scene);
-                // A tolerance bounds errors of positions. Those of forces are larger by what the
-                // beam's stiffness makes of them: a smaller tolerance tells by how much.
-                let tighter = ways::tighter(scene).filter(|_| !measured.places);
-                if let Some(tighter) = tighter.filter(|_| measured.value > measured.allowed) {
-                    let errors = gap::between(base, &*other(&tighter, frame, way)?, records);
-                    measured.allowed = measured.allowed.max(ALLOWED * errors.forces);
+                // Other steps make other errors: of forces, which no tolerance bounds, and of all
+                // where steps are fixed and the first part ends within one. A smaller tolerance,
+                // or steps of half the length, tells how large these are.
+                let finer = ways::tighter(scene).or_else(|| ways::half_steps(scene));
+                if let Some(finer) = finer.filter(|_| measured.value > measured.allowed) {
+                    let errors = gap::between(base, &*other(&finer, frame, way)?, records);
+                    let error = if measured.places { errors.places } else { errors.forces };
+                    measured.allowed = measured.allowed.max(ALLOWED * error);
                 }
                 measured
             }
@@ -507,8 +510,14 @@ fn continued(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
     // acts.
     let allowed = if gap.places > CONTINUED { CONTINUED } else { CONTINUED + OF_FORCES * round_off(scene) };
     let measured = if settings::has_expression(scene) {
-        // Where steps end depends on how long an expression is looked at.
-        let allowed = ALLOWED * settings::tolerance(scene) + round_off(scene);
+        // Where steps end depends on how long an expression is looked at, also fixed ones at a kink.
+        let halved = ways::half_steps(scene).map(|scene| other(&scene, frame, way));
+        let error = match halved {
+            None => settings::tolerance(scene),
+            Some(Ok(halved)) => gap::between(base, &halved, Records::Last).places,
+            Some(Err(verdict)) => return verdict,
+        };
+        let allowed = ALLOWED * error.max(settings::tolerance(scene)) + round_off(scene);
         Measured { value: gap.places, allowed, places: true, what: "a position".to_owned() }
     } else {
         Measured { value: gap.all, allowed, places: false, what: gap.what }
