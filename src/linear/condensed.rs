@@ -7,9 +7,10 @@
 //! S = B K⁻¹ Bᵀ,   S μ = B K⁻¹ f − g,   x = K⁻¹ f − K⁻¹Bᵀ μ
 //! ```
 //!
-//! S is a band where the rows are many (the private module `linear::schur`). This takes r substitutions for K⁻¹Bᵀ at factorisation and one per solution, which is a fifth of
-//! the time of a sparse LU for a chain of two beams. Beams are not coupled in K, so that the
-//! substitution for the row of a joint involves only the beams that it joins.
+//! S is a band where the rows are many (the private module `linear::schur`). This takes r
+//! substitutions for K⁻¹Bᵀ at factorisation and one per solution, which is a fifth of the time of a
+//! sparse LU for a chain of two beams. Beams are not coupled in K, so that the substitution for the
+//! row of a joint involves only the beams that it joins.
 
 use super::bordered::BorderRow;
 use super::complex_ldl::ComplexLdl;
