@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use ancf_check::Suite;
+use ancf_verification::python::Facts;
 use ancf_verification::work::{self, Cheapest, Made, Results, Verdict};
 use ancf_verification::{Failure, bridge};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -18,6 +19,11 @@ const REQUIREMENTS: &str = "work-requirements.txt";
 /// Steps of the progress bar.
 const PARTS: f64 = 1000.0;
 
+/// Installs the codes that nothing else needs.
+pub fn further_packages(suite: &Suite) -> Result<Facts, Failure> {
+    bridge::environment()?.add(suite, &suite.peers_folder().join(REQUIREMENTS))
+}
+
 /// Measures problems, all if none is named, writes their files into `out` and prints what became of
 /// the claims. The answer is whether no claim failed.
 pub fn print(suite: &Suite, names: &[String], quick: bool, out: &Path) -> Result<bool, Failure> {
@@ -25,7 +31,7 @@ pub fn print(suite: &Suite, names: &[String], quick: bool, out: &Path) -> Result
     if let Some(unknown) = names.iter().find(|name| !all.contains(name)) {
         return Err(format!("there is no problem `{unknown}`; there are: {}", all.join(", ")).into());
     }
-    let facts = bridge::environment()?.add(suite, &suite.peers_folder().join(REQUIREMENTS))?;
+    let facts = further_packages(suite)?;
     let tools = facts.tool(|package| !["mpmath", "numpy", "vtk"].contains(&package));
     std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
     if cfg!(debug_assertions) {

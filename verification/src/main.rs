@@ -95,7 +95,11 @@ enum Command {
     },
     /// Measure what a time step costs per element, and the memory it takes, from 100 to 100,000
     /// elements
-    Scaling,
+    Scaling {
+        /// Print the bytes per element that a code takes in an analysis: a process of its own for each
+        #[arg(long, num_args = 2, value_names = ["CODE", "ANALYSIS"], hide = true)]
+        memory: Option<Vec<String>>,
+    },
     /// Count the instructions of some runs with valgrind, keep them for the report, and compare
     /// them with another build's or the last time's; exit status 1 if a count grew by more than 1 %
     Instructions {
@@ -118,7 +122,10 @@ fn main() -> ExitCode {
         Command::Browser { report, prove } => browser::print(&suite, report.as_deref(), prove),
         Command::Numbers => numbers::print(&suite),
         Command::Figures { check } => figures::print(&suite, check),
-        Command::Scaling => scaling::print(&suite),
+        Command::Scaling { memory } => match memory.as_deref() {
+            Some([code, analysis]) => scaling::print_memory(&suite, code, analysis),
+            _ => scaling::print(&suite),
+        },
         Command::Instructions { against, program } => {
             instructions::print(&suite, &program, against.as_deref())
         }

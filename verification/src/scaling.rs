@@ -23,6 +23,8 @@ pub const FILE: &str = "target/verification/scaling.json";
 pub use floor::{Count, Machine};
 pub use memory::Memory;
 
+/// The beam and its load.
+const SCENE: &str = "verification/cases/soft-pendulum/scene.toml";
 /// Elements of 6 cm, hanging from one end.
 const ELEMENTS: [usize; 4] = [100, 1_000, 10_000, 100_000];
 /// Steps of 1 ms, of which those after the first few are measured: what comes before belongs to no
@@ -88,9 +90,14 @@ pub struct Row {
     pub bytes: f64,
 }
 
+/// Prints the bytes per element that a code takes in an analysis.
+pub fn print_memory(suite: &Suite, code: &str, analysis: &str) -> Result<bool, Failure> {
+    memory::print(suite, &suite.root.join(SCENE), code, analysis)
+}
+
 /// Measures, prints and writes.
 pub fn print(suite: &Suite) -> Result<bool, Failure> {
-    let path = suite.root.join("verification/cases/soft-pendulum/scene.toml");
+    let path = suite.root.join(SCENE);
     let motion = format!(
         "analysis.dynamic={{duration=\"{STEPS} ms\", output_every=\"{STEPS} ms\", \
          generalized_alpha={{step=\"1 ms\", spectral_radius=1.0}}}}"
@@ -160,7 +167,7 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
             1e9 * seconds
         );
     }
-    result.memory = memory::measure(&path)?;
+    result.memory = memory::measure()?;
     let file = suite.root.join(FILE);
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;

@@ -5,14 +5,16 @@
 //! so with the objects that another code's Python interface makes.
 
 use std::path::Path;
+use std::process::Command;
 
 use ancf::model::{Discretization, Nodes};
 use ancf::scene::Scene;
+use ancf_check::Suite;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use super::{chain, peak};
-use crate::Failure;
+use crate::{Failure, cost};
 use ancf_verification::work::{Code, peer};
 
 /// Elements: so many that what a program needs besides does not count.
@@ -42,38 +44,23 @@ pub struct Memory {
     pub bytes: Result<f64, String>,
 }
 
-/// Measures and prints all.
+/// Measures and prints all, each in a process of its own: memory that was freed before would be
+/// taken again without being counted.
 ///
 /// # Errors
-/// Where the scene cannot be read; what a code does not solve is said in its entry.
-pub fn measure(path: &Path) -> Result<Vec<Memory>, Failure> {
+/// Where this program cannot be run; what a code does not solve is said in its entry.
+pub fn measure() -> Result<Vec<Memory>, Failure> {
+    let program = std::env::current_exe()?;
     let mut all = Vec::new();
     eprintln!("\n{:>12} {:>12} {:>14}", "code", "analysis", "bytes/element");
-    for (analysis, set) in ANALYSES {
-        let overrides = [
-            "beam.arm.basis={ancf={elements=30, gauss_points={stretch=5, bend=3}}}",
-            "support=[{beam='arm', at='start', fix=['x', 'y', 'angle']}]",
-            "effect.gravity.acceleration=[9.81, 0.0]",
-            set,
-        ];
-        let scene = Scene::load(path, &overrides.map(str::to_owned))?;
-        let discretization = Discretization::Ancf { nodes: Nodes::Uniform(ELEMENTS + 1) };
-        let model = chain(scene.model(), ELEMENTS, discretization);
-        for (code, settings) in CODES {
-            let settings: IndexMap<String, String> =
-                settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-            let before = peak(true);
-            let solved = match code {
-                Code::Ours => model.solve(scene.analysis()).map(drop).map_err(|e| e.to_string()),
-                other => peer::solve(other, (&model, scene.analysis()), &settings, 1)
-                    .map(drop)
-                    .map_err(|e| e.to_string()),
+    for (analysis, _) in ANALYSES {
+        for (code, _) in CODES {
+            let output =
+                Command::new(&program).args(["scaling", "--memory", code.name(), analysis]).output()?;
+            let bytes = match String::from_utf8_lossy(&output.stdout).trim().parse::<f64>() {
+                Ok(bytes) if output.status.success() => Ok(bytes),
+                _ => Err(String::from_utf8_lossy(&output.stderr).trim().to_owned()),
             };
-            let megabytes = before.zip(peak(false)).map(|(before, after)| after - before);
-            let bytes = solved.and_then(|()| {
-                let megabytes = megabytes.ok_or_else(|| "this system does not tell it".to_owned())?;
-                Ok(megabytes * f64::from(1 << 20) / ELEMENTS as f64)
-            });
             match &bytes {
                 Ok(bytes) => eprintln!("{:>12} {analysis:>12} {bytes:>14.0}", code.name()),
                 Err(why) => eprintln!("{:>12} {analysis:>12} {why}", code.name()),
@@ -82,4 +69,39 @@ pub fn measure(path: &Path) -> Result<Vec<Memory>, Failure> {
         }
     }
     Ok(all)
+}
+
+/// Prints the bytes per element that a code takes in an analysis.
+///
+/// # Errors
+/// Where the code or the analysis is not known, is not solved, or the system does not tell.
+pub fn print(suite: &Suite, path: &Path, code: &str, analysis: &str) -> Result<bool, Failure> {
+    let (_, set) = ANALYSES.iter().find(|(name, _)| *name == analysis).ok_or("an unknown analysis")?;
+    let (code, settings) = CODES.iter().find(|(known, _)| known.name() == code).ok_or("an unknown code")?;
+    let overrides = [
+        "beam.arm.basis={ancf={elements=30, gauss_points={stretch=5, bend=3}}}",
+        "support=[{beam='arm', at='start', fix=['x', 'y', 'angle']}]",
+        "effect.gravity.acceleration=[9.81, 0.0]",
+        set,
+    ];
+    let scene = Scene::load(path, &overrides.map(str::to_owned))?;
+    let discretization = Discretization::Ancf { nodes: Nodes::Uniform(ELEMENTS + 1) };
+    let model = chain(scene.model(), ELEMENTS, discretization);
+    let settings: IndexMap<String, String> =
+        settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+    if !code.is_ours() {
+        cost::further_packages(suite)?;
+        // The interpreter and the code are there before the beam is.
+        let few = chain(scene.model(), 4, Discretization::Ancf { nodes: Nodes::Uniform(5) });
+        peer::solve(*code, (&few, scene.analysis()), &settings, 1)?;
+    }
+    let before = peak(true);
+    match code {
+        Code::Ours => drop(model.solve(scene.analysis()).map_err(|e| e.to_string())?),
+        other => drop(peer::solve(*other, (&model, scene.analysis()), &settings, 1)?),
+    }
+    let megabytes = before.zip(peak(false)).map(|(before, after)| after - before);
+    let megabytes = megabytes.ok_or("this system does not tell how much memory a process takes")?;
+    println!("{}", megabytes * f64::from(1 << 20) / ELEMENTS as f64);
+    Ok(true)
 }
