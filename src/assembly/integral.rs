@@ -59,6 +59,8 @@ pub struct Integral<D, const M: usize> {
     pub(super) density: D,
 }
 
+/// Shape functions of a cable element.
+const CABLE: usize = 4;
 /// Numbers of points per cell for which cells are summed four at a time.
 const POINTS_BY_FOURS: std::ops::RangeInclusive<usize> = 2..=5;
 

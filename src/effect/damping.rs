@@ -53,7 +53,7 @@ impl<S: Strain> StretchDamping<S> {
     }
 
     #[inline(always)]
-    fn of<T: Real>(&self, gradient: Pair<T>, rate: Pair<T>) -> Pair<T> {
+    fn force_at<T: Real>(&self, gradient: Pair<T>, rate: Pair<T>) -> Pair<T> {
         let (_, first) = S::first(gradient);
         let force = T::of(self.coefficient) * dot(first, rate);
         first.map(|first| first * force)
@@ -65,14 +65,14 @@ impl<S: Strain> Dissipation<1> for StretchDamping<S> {
 
     #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
-        [self.of(z[0].into(), rate[0].into()).into()]
+        [self.force_at(z[0].into(), rate[0].into()).into()]
     }
 
     const BY_FOURS: bool = true;
 
     #[inline(always)]
     fn forces(&self, _: Points, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
-        [self.of(z[0], rate[0])]
+        [self.force_at(z[0], rate[0])]
     }
 
     #[inline(always)]
@@ -97,7 +97,7 @@ pub struct BendDamping {
 
 impl BendDamping {
     #[inline(always)]
-    fn of<T: Real>(&self, z: &[Pair<T>; 2], rate: [Pair<T>; 2]) -> [Pair<T>; 2] {
+    fn force_at<T: Real>(&self, z: &[Pair<T>; 2], rate: [Pair<T>; 2]) -> [Pair<T>; 2] {
         let (_, [a, b], _) = bend::first_derivatives(z);
         let moment = T::of(self.coefficient) * (dot(a, rate[0]) + dot(b, rate[1]));
         [a, b].map(|a| a.map(|a| a * moment))
@@ -109,14 +109,14 @@ impl Dissipation<2> for BendDamping {
 
     #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<2>, rate: &Gradient<2>) -> Gradient<2> {
-        self.of(&bend::pairs(z), bend::pairs(rate)).map(Vector2::from)
+        self.force_at(&bend::pairs(z), bend::pairs(rate)).map(Vector2::from)
     }
 
     const BY_FOURS: bool = true;
 
     #[inline(always)]
     fn forces(&self, _: Points, z: &[Pair<Lanes>; 2], rate: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
-        self.of(z, *rate)
+        self.force_at(z, *rate)
     }
 
     #[inline(always)]

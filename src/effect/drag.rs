@@ -119,14 +119,15 @@ impl Density<2> for SteadyDrag {
 impl DragForce {
     /// The force on a section with the gradient r' and the velocity ṙ.
     #[inline(always)]
-    fn of<T: Real>(&self, gradient: Pair<T>, velocity: Pair<T>) -> Pair<T> {
+    fn force_at<T: Real>(&self, gradient: Pair<T>, velocity: Pair<T>) -> Pair<T> {
         let inverse = dot(gradient, gradient).sqrt().inverse();
         let along = gradient.map(|x| x * inverse);
         let u = [velocity[0] - T::of(self.flow[0]), velocity[1] - T::of(self.flow[1])];
-        let [along_force, across_force] = [along, [-along[1], along[0]]].map(|axis| dot(u, axis));
-        let force =
-            |d: usize, speed: T| (T::of(self.quadratic[d]).fma(speed.abs(), T::of(self.viscous[d]))) * speed;
-        let [t, n] = [force(0, along_force), force(1, across_force)];
+        let force = |d: usize, axis: Pair<T>| {
+            let speed = dot(u, axis);
+            T::of(self.quadratic[d]).fma(speed.abs(), T::of(self.viscous[d])) * speed
+        };
+        let [t, n] = [force(0, along), force(1, [-along[1], along[0]])];
         [t * along[0] - n * along[1], t * along[1] + n * along[0]]
     }
 }
@@ -136,14 +137,14 @@ impl Dissipation<2> for DragForce {
 
     #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<2>, rate: &Gradient<2>) -> Gradient<2> {
-        [self.of(z[1].into(), rate[0].into()).into(), Vector2::zeros()]
+        [self.force_at(z[1].into(), rate[0].into()).into(), Vector2::zeros()]
     }
 
     const BY_FOURS: bool = true;
 
     #[inline(always)]
     fn forces(&self, _: Points, z: &[Pair<Lanes>; 2], rate: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
-        [self.of(z[1], rate[0]), [Lanes::ZERO; 2]]
+        [self.force_at(z[1], rate[0]), [Lanes::ZERO; 2]]
     }
 
     #[inline(always)]

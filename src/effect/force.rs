@@ -180,7 +180,7 @@ impl FollowerForce {
 
     /// −(f_t t + f_n J t) at a section with the gradient r'.
     #[inline(always)]
-    fn of<T: Real>([along, across]: [T; 2], [x, y]: Pair<T>) -> Pair<T> {
+    fn force_at<T: Real>([along, across]: [T; 2], [x, y]: Pair<T>) -> Pair<T> {
         let inverse = -x.fma(x, y * y).sqrt().inverse();
         [(along * x - across * y) * inverse, (along * y + across * x) * inverse]
     }
@@ -198,7 +198,7 @@ impl Density<2> for FollowerForce {
     #[inline(always)]
     fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
         let components = self.components.each_ref().map(|list| list[point]);
-        [Self::of(components, z[1].into()).into(), Vector2::zeros()]
+        [Self::force_at(components, z[1].into()).into(), Vector2::zeros()]
     }
 
     const BY_FOURS: bool = true;
@@ -206,7 +206,7 @@ impl Density<2> for FollowerForce {
 
     #[inline(always)]
     fn gradients(&self, factor: f64, points: Points, z: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
-        let force = Self::of(self.components.each_ref().map(|list| points.of(list)), z[1]);
+        let force = Self::force_at(self.components.each_ref().map(|list| points.of(list)), z[1]);
         [force.map(|force| force * Lanes::splat(factor)), [Lanes::ZERO; 2]]
     }
 

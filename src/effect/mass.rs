@@ -84,7 +84,7 @@ pub struct RotaryInertia {
 
 impl RotaryInertia {
     #[inline(always)]
-    fn of<T: Real>(&self, [x, y]: Pair<T>, rate: Pair<T>) -> Pair<T> {
+    fn force_at<T: Real>(&self, [x, y]: Pair<T>, rate: Pair<T>) -> Pair<T> {
         let inverse = x.fma(x, y * y).inverse();
         let p = [-y * inverse, x * inverse];
         let momentum = T::of(self.inertia) * dot(p, rate);
@@ -97,14 +97,14 @@ impl Dissipation<1> for RotaryInertia {
 
     #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
-        [self.of(z[0].into(), rate[0].into()).into()]
+        [self.force_at(z[0].into(), rate[0].into()).into()]
     }
 
     const BY_FOURS: bool = true;
 
     #[inline(always)]
     fn forces(&self, _: Points, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
-        [self.of(z[0], rate[0])]
+        [self.force_at(z[0], rate[0])]
     }
 
     #[inline(always)]
@@ -121,7 +121,7 @@ pub struct Gyration(pub RotaryInertia);
 
 impl Gyration {
     #[inline(always)]
-    fn of<T: Real>(&self, [x, y]: Pair<T>, [u, v]: Pair<T>) -> Pair<T> {
+    fn force_at<T: Real>(&self, [x, y]: Pair<T>, [u, v]: Pair<T>) -> Pair<T> {
         let inverse = x.fma(x, y * y).inverse();
         let p = [-y * inverse, x * inverse];
         // ṙ'·∂²θ/∂r'∂r'·ṙ' = −2 (r'·ṙ') (r' × ṙ')/|r'|⁴
@@ -136,14 +136,14 @@ impl Dissipation<1> for Gyration {
 
     #[inline(always)]
     fn force(&self, _: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
-        [self.of(z[0].into(), rate[0].into()).into()]
+        [self.force_at(z[0].into(), rate[0].into()).into()]
     }
 
     const BY_FOURS: bool = true;
 
     #[inline(always)]
     fn forces(&self, _: Points, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
-        [self.of(z[0], rate[0])]
+        [self.force_at(z[0], rate[0])]
     }
 
     #[inline(always)]

@@ -35,8 +35,7 @@ impl BlockLu {
     /// Factorises `matrix`, which must be a band of whole blocks.
     ///
     /// # Errors
-    /// [`Singular`] where a node has a pivot that vanishes relative to its entries, or is not
-    /// finite.
+    /// [`Singular`] where a node has a pivot that vanishes relative to its column, or is not finite.
     pub fn new(matrix: &Band) -> Result<Self, Singular> {
         let (nodes, blocks) = (matrix.size() / 4, matrix.half_bandwidth() / 4 + 1);
         let from_both_ends = blocks == 2;
@@ -115,9 +114,12 @@ fn product(a: &Block, b: &Block) -> Block {
 }
 
 /// A⁻¹ by Gauss and Jordan's elimination with exchanges of rows; the column without a pivot where
-/// there is none.
+/// there is none. Pivots are measured by their columns, because positions and gradients have units
+/// of their own.
 fn inverse(mut a: Block) -> Result<Block, usize> {
-    let largest = a.iter().flat_map(|row| row.to_array()).fold(0.0_f64, |m, entry| m.max(entry.abs()));
+    let rows = a.map(Lanes::to_array);
+    let largest: [f64; 4] =
+        std::array::from_fn(|c| rows.iter().fold(0.0_f64, |largest, row| largest.max(row[c].abs())));
     let mut inverse: Block =
         std::array::from_fn(|r| Lanes::new(std::array::from_fn(|c| f64::from(u8::from(r == c)))));
     for c in 0..4 {
@@ -127,7 +129,7 @@ fn inverse(mut a: Block) -> Result<Block, usize> {
         inverse.swap(c, pivot);
         let entry = a[c].to_array()[c];
         // Written with a negation, so that a NaN fails, too.
-        if !(entry.abs() > SMALLEST_PIVOT * largest && entry.is_finite()) {
+        if !(entry.abs() > SMALLEST_PIVOT * largest[c] && entry.is_finite()) {
             return Err(c);
         }
         let reciprocal = Lanes::splat(1.0 / entry);

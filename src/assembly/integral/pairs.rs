@@ -1,11 +1,9 @@
 //! Forces that depend on two states, such as positions and velocities.
 
+use super::CABLE;
 use super::force::{fields_of_four, sums_of_points};
 use crate::assembly::{Density, Dissipation, Gradient, Integral, Rayleigh};
 use crate::lanes::{self, Lanes, Points};
-
-/// Shape functions of a cable element.
-const CABLE: usize = 4;
 
 impl<D: Density<M>, const M: usize> Integral<D, M> {
     /// `f += ∫ Σ_m N⁽ᵒᵐ⁾ g_m(z, ż) ds`, where z are the fields of `q`, ż those of `v`, and g is

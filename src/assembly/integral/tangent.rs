@@ -16,15 +16,13 @@
 //! their few tiles costs more than the tiles. Wider cells have many tiles; they are summed one at a
 //! time, with four columns of a tile in the lanes.
 
+use super::CABLE;
 use super::force::{coefficients, fields, fields_of_four, sums_of_points};
 use crate::assembly::{Density, Earlier, Integral, Workspace};
 use crate::lanes::fma;
 use crate::lanes::{self, Lanes, Pair, Points};
 use crate::linear::Matrix;
 use nalgebra::Vector2;
-
-/// Shape functions of a cable element.
-const CABLE: usize = 4;
 
 impl<D: Density<M>, const M: usize> Integral<D, M> {
     pub(super) fn tangent_within<const W: usize>(

@@ -41,10 +41,13 @@ impl Driver<'_, '_> {
             let at_end = (time - end.time).abs() <= slack;
             let state =
                 if at_end { State { time, ..end.clone() } } else { self.between(new, time, accelerations) };
-            // A step ends just before a kink, and so do the forces of a record at its end: the laws of
-            // supports are not looked at beyond.
-            let before = State { time: state.time.min(end.time), ..state.clone() };
-            let balance = if self.settles() { self.balance_within(new, &before) } else { None };
+            let balance = if self.settles() {
+                // A step ends just before a kink, and the laws of supports are not looked at beyond.
+                let before = State { time: state.time.min(end.time), ..state.clone() };
+                self.balance_within(new, &before)
+            } else {
+                None
+            };
             let settled = balance.as_ref().filter(|_| !at_end).map(|balance| balance.state.clone());
             if !self.keep(settled.unwrap_or(state)) {
                 return;

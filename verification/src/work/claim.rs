@@ -90,23 +90,13 @@ pub fn judge(claim: &Claim, points: &[Point]) -> Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::work::results::Spread;
 
     fn point(code: Code, method: &str, error: f64, seconds: f64) -> Point {
         Point {
-            code,
             method: method.into(),
             line: method.into(),
             setting: format!("{seconds} s"),
-            wanted: None,
-            error: [("tip".to_owned(), error)].into(),
-            seconds: Spread::of(&[seconds]),
-            build: None,
-            degrees_of_freedom: None,
-            steps: 0,
-            newton_iterations: 0,
-            tangent_evaluations: 0,
-            factorizations: 0,
+            ..Point::example(code, error, seconds)
         }
     }
 

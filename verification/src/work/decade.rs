@@ -52,35 +52,15 @@ pub fn decades<'a>(points: &'a [Point], norm: &str) -> Vec<Decade<'a>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::work::results::Spread;
-
-    fn point(code: Code, error: f64, seconds: f64) -> Point {
-        Point {
-            code,
-            method: "m".into(),
-            line: "m".into(),
-            setting: String::new(),
-            wanted: None,
-            error: [("tip".to_owned(), error)].into(),
-            seconds: Spread::of(&[seconds]),
-            build: None,
-            degrees_of_freedom: None,
-            steps: 0,
-            newton_iterations: 0,
-            tangent_evaluations: 0,
-            factorizations: 0,
-        }
-    }
-
     #[test]
     fn the_fastest_of_every_code_stands_in_every_decade_it_reaches() {
         let points = [
-            point(Code::Accuracy, 1e-9, 0.1),
-            point(Code::Ours, 2e-3, 1.0),
-            point(Code::Ours, 1e-4, 3.0),
-            point(Code::Exudyn, 5e-3, 6.0),
-            point(Code::OpenSees, 5e-2, 0.5),
-            point(Code::OpenSees, 1e-3, 9.0),
+            Point::example(Code::Accuracy, 1e-9, 0.1),
+            Point::example(Code::Ours, 2e-3, 1.0),
+            Point::example(Code::Ours, 1e-4, 3.0),
+            Point::example(Code::Exudyn, 5e-3, 6.0),
+            Point::example(Code::OpenSees, 5e-2, 0.5),
+            Point::example(Code::OpenSees, 1e-3, 9.0),
         ];
         let found = decades(&points, "tip");
         let limits: Vec<_> = found.iter().map(|decade| decade.limit).collect();

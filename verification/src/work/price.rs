@@ -69,21 +69,8 @@ mod tests {
     use crate::work::results::Spread;
 
     fn point(code: Code, wanted: Option<f64>, error: f64, seconds: f64, build: Option<f64>) -> Point {
-        Point {
-            code,
-            method: "m".into(),
-            line: "m".into(),
-            setting: String::new(),
-            wanted,
-            error: [("tip".to_owned(), error)].into(),
-            seconds: Spread::of(&[seconds]),
-            build: build.map(|build| Spread::of(&[build])),
-            degrees_of_freedom: None,
-            steps: 0,
-            newton_iterations: 0,
-            tangent_evaluations: 0,
-            factorizations: 0,
-        }
+        let build = build.map(|build| Spread::of(&[build]));
+        Point { wanted, build, ..Point::example(code, error, seconds) }
     }
 
     #[test]

@@ -95,6 +95,27 @@ impl Point {
     pub fn name(&self) -> String {
         if self.setting.is_empty() { self.line.clone() } else { format!("{}: {}", self.line, self.setting) }
     }
+
+    /// A run of a code with this error in the norm `tip` and this time, of which nothing else is
+    /// known.
+    #[cfg(test)]
+    pub(super) fn example(code: Code, error: f64, seconds: f64) -> Self {
+        Self {
+            code,
+            method: "m".into(),
+            line: "m".into(),
+            setting: String::new(),
+            wanted: None,
+            error: [("tip".to_owned(), error)].into(),
+            seconds: Spread::of(&[seconds]),
+            build: None,
+            degrees_of_freedom: None,
+            steps: 0,
+            newton_iterations: 0,
+            tangent_evaluations: 0,
+            factorizations: 0,
+        }
+    }
 }
 
 /// Times of several runs \[s\].
