@@ -69,6 +69,33 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(super::cases(24))]
+
+    /// A column that keeps its length and stands on its foot buckles under its own weight at
+    /// ρA g L³/EI = 7.8373 (Greenhill 1881), whichever way is up: along its axis it has no stiffness
+    /// but the round-off of the direction.
+    #[test]
+    fn a_column_that_keeps_its_length_stands_in_every_direction(
+        elements in 4..40_usize,
+        rpim in any::<bool>(),
+        turn in prop_oneof![(-4..5_i32).prop_map(|quarters| f64::from(quarters) * 0.5 * PI), -PI..PI],
+        foot in prop_oneof![Just("angle"), Just("gradient")],
+    ) {
+        let (sine, cosine) = turn.sin_cos();
+        let basis = if rpim { format!("rpim.nodes = {}", elements.min(20) + 1) } else { format!("ancf.elements = {elements}") };
+        let loads = solve(&format!(
+            "beam.a = {{ start = [0, 0], end = [{cosine:e}, {sine:e}], bending_stiffness = 1, mass_per_length = 1, basis.{basis} }}
+            support = [{{ beam = \"a\", at = \"start\", fix = [\"x\", \"y\", \"{foot}\"] }}]
+            effect.gravity.acceleration = [{:e}, {:e}]
+            analysis.buckling.count = 1",
+            -cosine, -sine,
+        ));
+        // Four cubic elements err by 3e-4.
+        prop_assert!((loads.eigenvalues()[0] - 7.83734744).abs() < 5e-3, "{:?}", loads.eigenvalues());
+    }
+}
+
 /// A string has no stiffness across it before it is loaded, from which linear buckling would start;
 /// one that rests on a foundation has.
 #[test]

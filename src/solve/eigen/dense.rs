@@ -21,11 +21,11 @@ const DEPENDENT: f64 = 1e-12;
 /// [`EigenError`] where A is singular or indefinite on the allowed motions.
 pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, EigenError> {
     let free: Vec<usize> = (0..pencil.fixed.len()).filter(|&i| !pencil.fixed[i]).collect();
-    // Positions and gradients have different units: every coordinate is measured by its own
-    // stiffness.
+    // Positions and gradients have different units: every coordinate is measured by the stiffness of
+    // its pair, for along the axis of an inextensible beam there is none but round-off.
     let scale: Vec<f64> = free
         .iter()
-        .map(|&i| pencil.a.get(i, i))
+        .map(|&i| pencil.a.get(i & !1, i & !1).max(pencil.a.get(i | 1, i | 1)))
         .map(|a| if a > 0.0 && a.is_finite() { 1.0 / a.sqrt() } else { 1.0 })
         .collect();
     let null_space = null_space(pencil, &free, &scale)?;
