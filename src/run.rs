@@ -2,6 +2,7 @@
 
 mod angle;
 mod error;
+mod events;
 mod laws;
 mod locking;
 mod memory;

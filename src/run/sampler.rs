@@ -9,13 +9,12 @@ use super::tendons::Tendons;
 use crate::assembly::{Actions, BuildError, InternalVariables, Side, TendonPath, nodes};
 use crate::linear::Singular;
 use crate::model::{
-    ArcLength, Beam, Dynamic, EventCondition, EventKind, Model, ProbeQuantity, ProbeTarget, StepControl,
-    StrainMeasure,
+    ArcLength, Beam, Dynamic, EventCondition, EventKind, Model, ProbeTarget, StepControl, StrainMeasure,
 };
 use crate::restart::SavedState;
 use crate::results::{
     AnalysisKind, EffectSeries, Energy, Event, Frame, LayerStress, ModeShape, ProbeSample, ProbeSeries,
-    ReactionSeries, Run, SectionForces, Shape, Trajectory,
+    ReactionSeries, Run, Shape, Trajectory,
 };
 use crate::solve::Work;
 use crate::solve::dynamics;
@@ -52,7 +51,7 @@ pub(super) struct Sampler<'a> {
     pub(super) model: &'a Model,
     pub(super) system: &'a System,
     shapes: Vec<View>,
-    probes: Vec<ProbePoint>,
+    pub(super) probes: Vec<ProbePoint>,
     locking: Locking,
     /// How many frames are kept.
     frames: usize,
@@ -62,13 +61,13 @@ pub(super) struct Sampler<'a> {
 }
 
 /// A probe with the shape functions at its point.
-struct ProbePoint {
-    name: String,
-    beam: usize,
-    view: View,
-    measure: StrainMeasure,
+pub(super) struct ProbePoint {
+    pub(super) name: String,
+    pub(super) beam: usize,
+    pub(super) view: View,
+    pub(super) measure: StrainMeasure,
     /// ε of the stress-free state there.
-    reference_strain: f64,
+    pub(super) reference_strain: f64,
 }
 
 /// The warning about a motion whose balance of energy is off by more than a hundredth of its
@@ -191,65 +190,12 @@ impl<'a> Sampler<'a> {
         Ok(self.probes[self.probe_named(&target.probe)?].view.clone())
     }
 
-    fn probe_named(&self, name: &str) -> Result<usize, RunError> {
+    pub(super) fn probe_named(&self, name: &str) -> Result<usize, RunError> {
         let found = self.probes.iter().position(|probe| probe.name == name);
         found.ok_or_else(|| RunError::NoSuchProbe {
             probe: name.to_owned(),
             known: self.probes.iter().map(|probe| probe.name.as_str()).collect::<Vec<_>>().join(", "),
         })
-    }
-
-    /// The events of a motion, each with the view of its probe.
-    pub(super) fn watches(&self, settings: &Dynamic) -> Result<Vec<dynamics::EventWatch<'_>>, RunError> {
-        let watch = |event: &EventCondition| {
-            let number = self.probe_named(&event.probe)?;
-            Ok(dynamics::EventWatch {
-                quantity: self.quantity(number, event.quantity),
-                when: event.when,
-                stop: event.stop,
-            })
-        };
-        settings.events.iter().map(watch).collect()
-    }
-
-    /// A quantity at probe number `number` as a function of the state.
-    fn quantity(&self, number: usize, quantity: ProbeQuantity) -> dynamics::Quantity<'_> {
-        use dynamics::Quantity::{OfForces, OfMotion, Position};
-        let ProbePoint { beam, view, measure, reference_strain, .. } = &self.probes[number];
-        let place = (*beam, view.s()[0]);
-        let carries = move |of: fn(SectionForces) -> Option<f64>| {
-            OfForces(Box::new(move |balance| {
-                let actions = self.system.actions(balance.view());
-                of(self.section_at(place, &balance.state.q, &actions)).unwrap_or(f64::NAN)
-            }))
-        };
-        match quantity {
-            ProbeQuantity::X => Position(view.clone(), 0),
-            ProbeQuantity::Y => Position(view.clone(), 1),
-            ProbeQuantity::Angle => OfMotion(Box::new(move |state| {
-                let near = state.angles.get(number).copied().filter(|angle| angle.is_finite());
-                unfold(view.fields(&state.q).angle(), near)
-            })),
-            ProbeQuantity::Vx => OfMotion(Box::new(|state| view.at_point(&state.v)[0])),
-            ProbeQuantity::Vy => OfMotion(Box::new(|state| view.at_point(&state.v)[1])),
-            ProbeQuantity::Speed => OfMotion(Box::new(|state| {
-                let [x, y] = view.at_point(&state.v);
-                x.hypot(y)
-            })),
-            // The strain of a state that is interpolated between steps errs by far more than its
-            // position.
-            ProbeQuantity::Strain => OfForces(Box::new(move |balance| {
-                view.fields(&balance.state.q).strain(*measure) - reference_strain
-            })),
-            ProbeQuantity::Curvature => {
-                OfForces(Box::new(|balance| view.fields(&balance.state.q).curvature()))
-            }
-            ProbeQuantity::AxialForce => carries(|section| Some(section.axial_force)),
-            ProbeQuantity::ShearForce => carries(|section| Some(section.shear_force)),
-            ProbeQuantity::BendingMoment => carries(|section| Some(section.bending_moment)),
-            ProbeQuantity::StressBottom => carries(|section| section.stress_bottom),
-            ProbeQuantity::StressTop => carries(|section| section.stress_top),
-        }
     }
 
     pub(super) fn empty(&self, analysis: AnalysisKind) -> Trajectory {

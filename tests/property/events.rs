@@ -141,3 +141,43 @@ fn every_turn_of_a_spinning_rod_is_seen() {
         }
     }
 }
+
+/// Nothing acts beyond the free end of a cantilever: what its forces there do is round-off, and no
+/// turn of theirs is an event.
+#[test]
+fn forces_that_are_round_off_do_not_turn() {
+    let watched = |probe: &str| {
+        let of = |quantity: &str| {
+            ["maximum", "minimum"]
+                .map(|turn| format!("{{ probe = \"{probe}\", {turn} = \"{quantity}\" }}"))
+                .join(", ")
+        };
+        ["axial_force", "shear_force", "bending_moment", "stress_top", "stress_bottom"].map(of).join(", ")
+    };
+    for (end, axial) in [("[1, 0]", 2e5), ("[-0.5, 0.9]", 2e5), ("[0, -1]", 2e9)] {
+        let text = format!(
+            "beam.a = {{ start = [0, 0], end = {end}, youngs_modulus = {modulus:e}, density = 1e4, section.rectangle = {{ width = 0.01, height = {height:e} }}, basis.ancf.elements = 12 }}
+            support = [{{ beam = \"a\", at = \"start\", fix = [\"x\", \"y\", \"angle\"] }}]
+            effect.gravity.acceleration = [0.3, 0.2]
+            probe = [{{ name = \"tip\", beam = \"a\", at = \"end\" }}, {{ name = \"middle\", beam = \"a\", at = 0.4 }}]
+            analysis.dynamic = {{ duration = 0.05, event = [{}, {}] }}",
+            watched("tip"),
+            watched("middle"),
+            // EI = 1.
+            height = (12.0 / axial as f64).sqrt(),
+            modulus = axial / (0.01 * (12.0 / axial as f64).sqrt()),
+        );
+        let scene =
+            ancf::scene::parse("cantilever.toml", &text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+        let states = scene.model().solve(scene.analysis()).expect("a motion").into_states();
+        let of = |probe: &str| {
+            states
+                .events
+                .iter()
+                .filter(|event| matches!(event, Event::Probe { probe: of, .. } if of == probe))
+                .count()
+        };
+        assert_eq!(of("tip"), 0, "{end}: {:?}", states.events);
+        assert!(of("middle") > 5, "{end}: {:?}", states.events);
+    }
+}

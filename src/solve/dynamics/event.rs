@@ -27,6 +27,8 @@ const BETWEEN: [f64; 3] = [0.2, 0.5, 0.8];
 pub struct EventWatch<'t> {
     /// The quantity.
     pub quantity: Quantity<'t>,
+    /// Changes of it that are errors of its arithmetic, and no turns.
+    pub round_off: f64,
     /// What it has to do.
     pub when: EventKind,
     /// Whether the motion ends there.
@@ -84,8 +86,8 @@ impl Driver<'_, '_> {
                 EventKind::Reaches { value, crossing } => {
                     reached(&pieces, value, crossing, NEAR * unit.max(value.abs()), memory)
                 }
-                EventKind::Maximum => turned(&pieces, 1.0, noise * unit, memory),
-                EventKind::Minimum => turned(&pieces, -1.0, noise * unit, memory),
+                EventKind::Maximum => turned(&pieces, 1.0, watch.round_off.max(noise * unit), memory),
+                EventKind::Minimum => turned(&pieces, -1.0, watch.round_off.max(noise * unit), memory),
             };
             memory.value = pieces.last().map(|(_, piece)| piece.at(1.0)[0]);
             let later = events.into_iter().filter(|(at, _)| self.state.time + at * h > self.first.time);

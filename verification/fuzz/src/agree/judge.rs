@@ -266,6 +266,9 @@ fn other(scene: &Table, frame: &Frame, way: Way) -> Result<Box<Seen>, Verdict> {
 
 fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
     let Case { scene, frame, .. } = case;
+    if settings::stops_at_a_turn(scene) && !matches!(way, Way::Continued | Way::AtOnce) {
+        return Verdict::NotApplicable;
+    }
     let tolerance = settings::tolerance(scene);
     let plain = ALLOWED * tolerance + round_off(scene);
     let changed = match way {

@@ -1,0 +1,96 @@
+//! The events that a scene asks for: quantities at probes as functions of the state.
+
+use super::RunError;
+use super::sampler::{ProbePoint, Sampler};
+use crate::beam::Along;
+use crate::model::{Dynamic, EventCondition, ProbeQuantity};
+use crate::results::SectionForces;
+use crate::solve::dynamics;
+use crate::system::unfold;
+
+/// Round-offs of single forces that may add up in a section.
+const ROUND_OFFS: f64 = 4.0;
+
+impl Sampler<'_> {
+    /// The events of a motion, each with the view of its probe.
+    pub(super) fn watches(&self, settings: &Dynamic) -> Result<Vec<dynamics::EventWatch<'_>>, RunError> {
+        let watch = |event: &EventCondition| {
+            let number = self.probe_named(&event.probe)?;
+            Ok(dynamics::EventWatch {
+                quantity: self.quantity(number, event.quantity),
+                round_off: self.round_off(number, event.quantity),
+                when: event.when,
+                stop: event.stop,
+            })
+        };
+        settings.events.iter().map(watch).collect()
+    }
+
+    /// Changes of a quantity at probe number `number` that are round-off of the forces, and no turns: a
+    /// position is stored with the round-off ε L, from which an element of length h makes forces
+    /// ε EA L/h along the beam and 12 ε EI L/h³ across. A bend gives the latter a part h/L of the
+    /// former.
+    fn round_off(&self, number: usize, quantity: ProbeQuantity) -> f64 {
+        let ProbePoint { beam, view, .. } = &self.probes[number];
+        let (section, basis) = (&self.model.beams[*beam].section, &self.system.beams()[*beam].basis);
+        let (s, length) = (view.s()[0], basis.length());
+        let h = basis.nodes().windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        let largest = |along: &Option<Along>| along.as_ref().map_or(0.0, |along| along.bounds(length)[1]);
+        let unit = ROUND_OFFS * f64::EPSILON * length / h;
+        let axial = unit * largest(&section.axial_stiffness);
+        let across = unit * 12.0 * largest(&section.bending_stiffness) / (h * h) + axial * h / length;
+        let stress = |face: usize| {
+            let signs = [1.0, -1.0].map(|sign| section.stresses(s, s, [axial, sign * across * h], &[]));
+            let of = |layers: Vec<[f64; 2]>| layers.iter().fold(0.0_f64, |m, faces| m.max(faces[face].abs()));
+            signs.into_iter().flatten().map(of).fold(0.0, f64::max)
+        };
+        match quantity {
+            ProbeQuantity::AxialForce => axial,
+            ProbeQuantity::ShearForce => across,
+            ProbeQuantity::BendingMoment => across * h,
+            ProbeQuantity::StressBottom => stress(0),
+            ProbeQuantity::StressTop => stress(1),
+            _ => 0.0,
+        }
+    }
+
+    /// A quantity at probe number `number` as a function of the state.
+    fn quantity(&self, number: usize, quantity: ProbeQuantity) -> dynamics::Quantity<'_> {
+        use dynamics::Quantity::{OfForces, OfMotion, Position};
+        let ProbePoint { beam, view, measure, reference_strain, .. } = &self.probes[number];
+        let place = (*beam, view.s()[0]);
+        let carries = move |of: fn(SectionForces) -> Option<f64>| {
+            OfForces(Box::new(move |balance| {
+                let actions = self.system.actions(balance.view());
+                of(self.section_at(place, &balance.state.q, &actions)).unwrap_or(f64::NAN)
+            }))
+        };
+        match quantity {
+            ProbeQuantity::X => Position(view.clone(), 0),
+            ProbeQuantity::Y => Position(view.clone(), 1),
+            ProbeQuantity::Angle => OfMotion(Box::new(move |state| {
+                let near = state.angles.get(number).copied().filter(|angle| angle.is_finite());
+                unfold(view.fields(&state.q).angle(), near)
+            })),
+            ProbeQuantity::Vx => OfMotion(Box::new(|state| view.at_point(&state.v)[0])),
+            ProbeQuantity::Vy => OfMotion(Box::new(|state| view.at_point(&state.v)[1])),
+            ProbeQuantity::Speed => OfMotion(Box::new(|state| {
+                let [x, y] = view.at_point(&state.v);
+                x.hypot(y)
+            })),
+            // The strain of a state that is interpolated between steps errs by far more than its
+            // position.
+            ProbeQuantity::Strain => OfForces(Box::new(move |balance| {
+                view.fields(&balance.state.q).strain(*measure) - reference_strain
+            })),
+            ProbeQuantity::Curvature => {
+                OfForces(Box::new(|balance| view.fields(&balance.state.q).curvature()))
+            }
+            ProbeQuantity::AxialForce => carries(|section| Some(section.axial_force)),
+            ProbeQuantity::ShearForce => carries(|section| Some(section.shear_force)),
+            ProbeQuantity::BendingMoment => carries(|section| Some(section.bending_moment)),
+            ProbeQuantity::StressBottom => carries(|section| section.stress_bottom),
+            ProbeQuantity::StressTop => carries(|section| section.stress_top),
+        }
+    }
+}
