@@ -1,18 +1,20 @@
 //! Builds the copy, without the mutants that do not compile.
 
 use std::collections::BTreeSet;
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::fs;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::Failure;
 use crate::copy::Workshop;
 use crate::splice::Spliced;
 
-/// The packages whose tests need no Python.
+/// The packages that have tests in Rust, without those beside other codes.
 const TESTED: [&str; 7] = ["test", "-p", "ancf", "-p", "ancf-check", "-p", "ancf-fuzz"];
 
 /// A program of tests.
@@ -23,6 +25,17 @@ pub struct Program {
     pub path: PathBuf,
     /// Its package's folder, which its tests expect to be in.
     pub folder: PathBuf,
+    /// How it is asked for its tests and told which to run.
+    pub harness: Harness,
+}
+
+/// What runs tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub enum Harness {
+    /// That of `cargo test`, a part of the program.
+    Rust,
+    /// pytest; the program is the interpreter.
+    Pytest,
 }
 
 /// The result of a build.
@@ -35,12 +48,30 @@ pub enum Built {
 
 /// Checks that the sources compile; quick.
 pub fn check(workshop: &Workshop, spliced: &[(String, Spliced)]) -> Result<Built, Failure> {
-    cargo(workshop, spliced, &["check", "-p", "ancf", "--lib", "--bins"])
+    cargo(workshop, spliced, &["check", "-p", "ancf", "-p", "ancf-python", "--lib", "--bins"])
 }
 
-/// Builds the tests.
+/// Builds the tests, and the Python module for its own.
 pub fn tests(workshop: &Workshop, spliced: &[(String, Spliced)]) -> Result<Built, Failure> {
-    cargo(workshop, spliced, &[&TESTED[..], &["--lib", "--bins", "--test", "main", "--no-run"]].concat())
+    let tests = [&TESTED[..], &["--lib", "--bins", "--test", "main", "--no-run"]].concat();
+    let mut programs = match cargo(workshop, spliced, &tests)? {
+        Built::Programs(programs) => programs,
+        unviable => return Ok(unviable),
+    };
+    if let unviable @ Built::Unviable(_) = cargo(workshop, spliced, &["build", "-p", "ancf-python"])? {
+        return Ok(unviable);
+    }
+    // Beside the half of the module that is written in Python, where its tests find it.
+    let library = format!("{DLL_PREFIX}_ancf{DLL_SUFFIX}");
+    let module = workshop.copy.join("src/python/ancf/_ancf.abi3.so");
+    fs::copy(workshop.target.join("debug").join(library), module)?;
+    programs.push(Program {
+        name: "pytest".to_owned(),
+        path: workshop.python.clone(),
+        folder: workshop.copy.clone(),
+        harness: Harness::Pytest,
+    });
+    Ok(Built::Programs(programs))
 }
 
 #[derive(Deserialize)]
@@ -146,7 +177,7 @@ fn cargo(workshop: &Workshop, spliced: &[(String, Spliced)], command: &[&str]) -
         {
             let folder = manifest.parent().map(PathBuf::from).unwrap_or_default();
             let name = format!("{} {}", target.kind.join(","), target.name);
-            programs.push(Program { name, path, folder });
+            programs.push(Program { name, path, folder, harness: Harness::Rust });
         }
     }
     match (output.status.success(), unviable.is_empty()) {

@@ -13,6 +13,9 @@ use crate::splice::{Spliced, splice};
 /// The module with the switch, for a number of mutants.
 const SWITCH: &str = include_str!("switch.rs.txt");
 
+/// The folder of the sources of the Python module, which are a package of their own.
+pub const PYTHON: &str = "src/python/";
+
 /// Where copy, builds and outcomes are kept from run to run.
 pub struct Workshop {
     /// The repository.
@@ -21,6 +24,8 @@ pub struct Workshop {
     pub copy: PathBuf,
     /// Builds of the copy.
     pub target: PathBuf,
+    /// The interpreter with what the tests of the Python module need.
+    pub python: PathBuf,
     /// Temporary files of tests.
     pub temporary: PathBuf,
     /// The outcomes known so far.
@@ -36,6 +41,7 @@ impl Workshop {
             root: root.to_owned(),
             copy: folder.join("copy"),
             target: folder.join("target"),
+            python: root.join("target/python-tests/bin/python"),
             temporary: folder.join("temporary"),
             outcomes: folder.join("outcomes"),
         };
@@ -127,9 +133,9 @@ pub fn spliced(sources: &[(String, String)], mutants: &[(usize, &Mutant)]) -> Ve
         .iter()
         .filter_map(|(file, text)| {
             let own: Vec<_> = mutants.iter().copied().filter(|(_, m)| m.file == *file).collect();
-            // The program sees the library from outside.
-            let program = file == "src/main.rs" || file == "src/cli.rs" || file.starts_with("src/cli/");
-            let on = if program { "::ancf::mutant_switch::on" } else { "crate::mutant_switch::on" };
+            // The program and the Python module see the library from outside.
+            let outside = file == "src/main.rs" || file.starts_with(PYTHON);
+            let on = if outside { "::ancf::mutant_switch::on" } else { "crate::mutant_switch::on" };
             (!own.is_empty()).then(|| (file.clone(), splice(text, &own, on)))
         })
         .collect()

@@ -34,7 +34,7 @@ struct Arguments {
     /// Try the survivors of the record again, and record nothing
     #[arg(long, conflicts_with_all = ["sample", "least", "seed", "only"])]
     again: bool,
-    /// Try those only whose names hold one of these texts, and record nothing
+    /// Take the sample of those only whose names hold one of these texts, and record nothing
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
     /// How many to try at a time
@@ -72,16 +72,14 @@ fn run(arguments: &Arguments) -> Result<bool, Failure> {
     let before = Record::read(&path)?.map_or_else(Vec::new, |record| record.survivor);
     let survivors: BTreeSet<String> = before.iter().map(|s| without_place(&s.mutant)).collect();
     // Folder by folder: how many are wanted of which candidates.
-    let wanted: Vec<(usize, Vec<usize>)> = if arguments.again || !arguments.only.is_empty() {
-        let meant = |mutant: &Mutant| {
-            let name = mutant.name();
-            (arguments.again && survivors.contains(&without_place(&name)))
-                || arguments.only.iter().any(|text| name.contains(text))
-        };
-        vec![(all.len(), (0..all.len()).filter(|&i| meant(&all[i])).collect())]
+    let wanted: Vec<(usize, Vec<usize>)> = if arguments.again {
+        let meant = |&i: &usize| survivors.contains(&without_place(&all[i].name()));
+        vec![(all.len(), (0..all.len()).filter(meant).collect())]
     } else {
         let candidates = |wanted: usize| (SPARE * wanted as f64).ceil() as usize + 2;
-        parts(&all, arguments.sample, arguments.least, arguments.seed)
+        let only = &arguments.only;
+        let meant = |mutant: &Mutant| only.is_empty() || only.iter().any(|o| mutant.name().contains(o));
+        parts(&all, meant, arguments.sample, arguments.least, arguments.seed)
             .into_values()
             .map(|part| (part.wanted, part.order.into_iter().take(candidates(part.wanted)).collect()))
             .collect()
@@ -106,7 +104,7 @@ fn run(arguments: &Arguments) -> Result<bool, Failure> {
     chosen.sort_by(|a, b| a.0.total_cmp(&b.0));
     let chosen: Vec<(usize, String)> = chosen.into_iter().map(|(_, i)| (i, all[i].name())).collect();
     eprintln!("{} mutants to try, {} do not compile", chosen.len(), unviable.len());
-    let tests = trial::tests(&workshop, &programs, fingerprint)?;
+    let tests = trial::tests(&workshop, &programs, &all, fingerprint)?;
     let outcomes = trial::outcomes(&workshop, &tests, &chosen, fingerprint, arguments.jobs)?;
     let mut record = Record::of(&all, &unviable, &outcomes, &before);
     if !arguments.again && arguments.only.is_empty() {
@@ -116,6 +114,7 @@ fn run(arguments: &Arguments) -> Result<bool, Failure> {
         record.command = format!(".ci/mutants --sample {sample} --least {least} --seed {seed}");
         record.store(&path, &before)?;
     }
+    record.tell();
     Ok(record.total.missed == 0)
 }
 

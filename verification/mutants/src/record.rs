@@ -122,14 +122,18 @@ impl Record {
         for new in self.survivor.iter().filter(|s| !s.explained()) {
             eprintln!("{UNEXPLAINED}: {}", new.mutant);
         }
-        for (name, counts) in &self.folder {
+        Ok(())
+    }
+
+    /// Says what part was caught.
+    pub fn tell(&self) {
+        for (name, counts) in self.folder.iter().filter(|(_, counts)| counts.tried > 0) {
             let part = counts.score().map_or("–".to_owned(), |s| format!("{:.0} %", 100.0 * s));
             eprintln!("{name}: {part} of {} caught", counts.viable());
         }
         let Counts { exist, missed, .. } = self.total;
         let viable = self.total.viable();
-        eprintln!("{viable} viable of {exist} mutants tried, {missed} missed · {}", path.display());
-        Ok(())
+        eprintln!("{viable} viable of {exist} mutants tried, {missed} missed");
     }
 }
 

@@ -18,11 +18,17 @@ pub struct Part {
     pub order: Vec<usize>,
 }
 
-/// Divides a number of mutants among folders by size, but with at least so many in each as long as
-/// there are any.
-pub fn parts(mutants: &[Mutant], number: usize, least: usize, seed: u32) -> IndexMap<String, Part> {
+/// Divides a number of mutants, of those that are meant, among folders by size, but with at least
+/// so many in each as long as there are any.
+pub fn parts(
+    mutants: &[Mutant],
+    meant: impl Fn(&Mutant) -> bool,
+    number: usize,
+    least: usize,
+    seed: u32,
+) -> IndexMap<String, Part> {
     let mut folders: IndexMap<String, Vec<usize>> = IndexMap::new();
-    for (i, mutant) in mutants.iter().enumerate() {
+    for (i, mutant) in mutants.iter().enumerate().filter(|(_, mutant)| meant(mutant)) {
         folders.entry(mutant.folder()).or_default().push(i);
     }
     folders.sort_unstable_keys();
@@ -74,7 +80,13 @@ mod tests {
     #[test]
     fn small_folders_are_tried_whole_and_large_ones_in_proportion() {
         let all = [mutants("src/a/b.rs", 1000), mutants("src/c.rs", 7), mutants("src/d/e.rs", 500)].concat();
-        let parts = parts(&all, 100, 10, 1);
+        let parts = |meant: fn(&Mutant) -> bool| parts(&all, meant, 100, 10, 1);
+        let only = parts(|mutant| mutant.file.starts_with("src/c"));
+        assert_eq!(
+            only.into_iter().map(|(name, part)| (name, part.wanted)).collect::<Vec<_>>(),
+            [("src/c".to_owned(), 7)]
+        );
+        let parts = parts(|_| true);
         let wanted: Vec<usize> = parts.values().map(|part| part.wanted).collect();
         assert_eq!(parts.keys().collect::<Vec<_>>(), ["src/a", "src/c", "src/d"]);
         // 27 are sure; 73 more are 990 to 490.
@@ -86,7 +98,9 @@ mod tests {
     #[test]
     fn the_first_of_the_order_are_spread_and_every_one_comes_once() {
         let all = mutants("src/a/b.rs", 200);
-        let order = |seed| parts(&all, 20, 10, seed).swap_remove("src/a").map(|p| p.order).expect("a folder");
+        let order = |seed| {
+            parts(&all, |_| true, 20, 10, seed).swap_remove("src/a").map(|p| p.order).expect("a folder")
+        };
         let mut tenths: Vec<usize> = order(1).iter().take(20).map(|i| i / 20).collect();
         tenths.sort_unstable();
         tenths.dedup();

@@ -15,8 +15,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
-use crate::build::Program;
-use crate::copy::Workshop;
+use crate::build::{Harness, Program};
+use crate::copy::{PYTHON, Workshop};
+use crate::find::Mutant;
 
 /// A test takes too long after this many times its usual time, and this much more.
 const TIMES: f64 = 5.0;
@@ -26,6 +27,9 @@ const LONGEST: Duration = Duration::from_secs(1800);
 /// Address space of a test in KiB, for mutants that never stop to ask for more.
 const MEMORY: u64 = 8_000_000;
 
+/// How the interpreter is told to run tests: without a record of the last run, which needs a place.
+const PYTEST: [&str; 4] = ["-m", "pytest", "-p", "no:cacheprovider"];
+
 /// A test, by itself.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Test {
@@ -33,6 +37,7 @@ pub struct Test {
     pub name: String,
     program: PathBuf,
     folder: PathBuf,
+    harness: Harness,
     own: String,
     /// Time that it takes without mutant \[s\].
     seconds: f64,
@@ -55,19 +60,27 @@ pub enum Outcome {
 
 /// All tests with what they reach, found by running each once; what is known from an earlier run of
 /// the same sources is not run again.
-pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Result<Vec<Test>, Failure> {
+///
+/// Those in Python, which take a second to start, are kept for the mutants that no others reach:
+/// those of the Python module.
+pub fn tests(
+    workshop: &Workshop,
+    programs: &[Program],
+    mutants: &[Mutant],
+    fingerprint: u64,
+) -> Result<Vec<Test>, Failure> {
     let path = workshop.outcomes.join(format!("{fingerprint:016x}-tests.jsonl"));
     let mut tests: Vec<Test> = lines(&path)?;
     let known: BTreeSet<String> = tests.iter().map(|test| test.name.clone()).collect();
     let mut rest = Vec::new();
     for program in programs {
-        let ignored = list(program, &["--ignored"])?;
-        for own in list(program, &[])?.difference(&ignored) {
+        for own in list(program)? {
             rest.push(Test {
                 name: format!("{} {own}", program.name),
                 program: program.path.clone(),
                 folder: program.folder.clone(),
-                own: own.clone(),
+                harness: program.harness,
+                own,
                 seconds: 0.0,
                 reaches: BTreeSet::new(),
                 passes: false,
@@ -85,6 +98,9 @@ pub fn tests(workshop: &Workshop, programs: &[Program], fingerprint: u64) -> Res
         test.seconds = start.elapsed().as_secs_f64();
         test.passes = end == End::Passed;
         test.reaches = numbers(&reached)?;
+        if test.harness == Harness::Pytest {
+            test.reaches.retain(|&number| mutants[number].file.starts_with(PYTHON));
+        }
         writeln!(file, "{}", serde_json::to_string(&test)?)?;
         tests.push(test);
         if tests.len().is_multiple_of(100) || tests.len() == number {
@@ -194,13 +210,19 @@ impl Test {
         let own = workshop.temporary.join(format!("job-{job}"));
         let _ = fs::remove_dir_all(&own);
         fs::create_dir_all(&own)?;
+        let one: &[&str] = match self.harness {
+            Harness::Rust => &["--exact"],
+            Harness::Pytest => &PYTEST,
+        };
         let child = Command::new("sh")
             .args(["-c", &format!("ulimit -v {MEMORY}; exec \"$0\" \"$@\"")])
             .arg(&self.program)
-            .args(["--exact", &self.own])
+            .args(one)
+            .arg(&self.own)
             .current_dir(&self.folder)
             .env("CARGO_MANIFEST_DIR", &self.folder)
             .env("TMPDIR", &own)
+            .env("PYTHONPATH", workshop.copy.join(PYTHON))
             .env("INSTA_UPDATE", "no")
             .env("RUST_BACKTRACE", "0")
             .env(key, value)
@@ -250,15 +272,33 @@ fn numbers(path: &Path) -> Result<BTreeSet<usize>, Failure> {
     text.lines().map(|line| Ok(line.parse::<usize>().map_err(|e| format!("{line}: {e}"))?)).collect()
 }
 
-fn list(program: &Program, more: &[&str]) -> Result<BTreeSet<String>, Failure> {
-    let output = Command::new(&program.path)
-        .args(["--list", "--format", "terse"])
-        .args(more)
-        .current_dir(&program.folder)
-        .output()
-        .map_err(|e| format!("{}: {e}", program.path.display()))?;
-    let text = String::from_utf8(output.stdout)?;
-    Ok(text.lines().filter_map(|line| line.strip_suffix(": test")).map(str::to_owned).collect())
+/// The names of a program's tests, without those that are ignored.
+fn list(program: &Program) -> Result<BTreeSet<String>, Failure> {
+    let names = |arguments: &[&str]| -> Result<String, Failure> {
+        let output = Command::new(&program.path)
+            .args(arguments)
+            .current_dir(&program.folder)
+            .env("PYTHONPATH", program.folder.join(PYTHON))
+            .output()
+            .map_err(|e| format!("{}: {e}", program.path.display()))?;
+        if !output.status.success() {
+            return Err(format!("{}: {}", program.name, String::from_utf8_lossy(&output.stderr)).into());
+        }
+        Ok(String::from_utf8(output.stdout)?)
+    };
+    let tests = |text: String| -> BTreeSet<String> {
+        text.lines().filter_map(|line| line.strip_suffix(": test")).map(str::to_owned).collect()
+    };
+    Ok(match program.harness {
+        Harness::Rust => {
+            let ignored = tests(names(&["--list", "--format", "terse", "--ignored"])?);
+            &tests(names(&["--list", "--format", "terse"])?) - &ignored
+        }
+        Harness::Pytest => {
+            let listed = names(&[&PYTEST[..], &["--collect-only"]].concat())?;
+            listed.lines().filter(|line| line.contains("::")).map(str::to_owned).collect()
+        }
+    })
 }
 
 #[cfg(test)]
