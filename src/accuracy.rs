@@ -84,10 +84,10 @@ pub fn run(scene: &Scene, options: Options<'_>) -> Result<Results, RunError> {
 }
 
 /// The model and the analysis with which the search for the accuracy of a scene begins; those of
-/// the scene where it leaves nothing open.
+/// the scene where it asks for none.
 pub fn first(scene: &Scene) -> (Model, Analysis) {
     let (model, analysis) = (scene.model(), scene.analysis());
-    if scene.accuracy().is_none() || scene.open().is_closed() {
+    if scene.accuracy().is_none() {
         return (model.clone(), analysis.clone());
     }
     let runner = Runner::new(model, analysis, scene.open(), scene.accuracy(), Options::default());

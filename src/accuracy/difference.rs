@@ -14,6 +14,17 @@ const RIGID: f64 = 1e-5;
 /// Curvatures smaller than this per beam length are round-off.
 const STRAIGHT: f64 = 1e-9;
 
+/// Errors of a record of which nothing is known.
+const UNKNOWN: ProbeSample = ProbeSample {
+    x: f64::NAN,
+    y: f64::NAN,
+    angle: f64::NAN,
+    curvature: f64::NAN,
+    strain: f64::NAN,
+    vx: None,
+    vy: None,
+};
+
 /// Where all beams are watched: the same places in both runs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Stations {
@@ -219,7 +230,7 @@ fn states(
         // Each run chooses load factors of its own, and near a critical one even neighbours differ.
         for j in (0..fine.parameter.len()).filter(|j| !known.contains(j)) {
             difference.records[j] = f64::NAN;
-            difference.probes.iter_mut().for_each(|probe| probe.samples[j] = unknown(&probe.samples[j]));
+            difference.probes.iter_mut().for_each(|probe| probe.samples[j] = UNKNOWN);
         }
     } else {
         fill(&mut difference.records, &known, |a, b| larger(*a, *b));
@@ -264,13 +275,6 @@ fn differ(a: &ProbeSample, b: &ProbeSample) -> ProbeSample {
         vx: of(a.vx, b.vx),
         vy: of(a.vy, b.vy),
     }
-}
-
-/// Errors of which nothing is known.
-fn unknown(like: &ProbeSample) -> ProbeSample {
-    let nan = f64::NAN;
-    let of = |v: Option<f64>| v.map(|_| nan);
-    ProbeSample { x: nan, y: nan, angle: nan, curvature: nan, strain: nan, vx: of(like.vx), vy: of(like.vy) }
 }
 
 /// The largest difference of axial and shear forces, relative to the largest of both and of M/L,
@@ -395,6 +399,248 @@ fn larger(a: f64, b: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::{BucklingMode, CriticalLoads, ProbeSeries, Vibration, Vibrations};
+    use crate::scene::{Scene, parse};
+
+    /// A beam of 2 m with a probe at its tip, and a string of 4 m.
+    fn scene(analysis: &str) -> Scene {
+        let text = "beam.arm = { start = [0, 0], end = [2, 0], axial_stiffness = 1, bending_stiffness = 1, mass_per_length = 1 }\n\
+                    beam.rope = { start = [0, 1], end = [4, 1], axial_stiffness = 1, mass_per_length = 1 }\n\
+                    support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }, \
+                    { beam = 'rope', at = 'start', fix = ['x', 'y'] }, { beam = 'rope', at = 'end', fix = ['x', 'y'] }]\n\
+                    probe = [{ name = 'tip', beam = 'arm', at = 'end' }]\n";
+        parse("scene", &format!("{text}analysis.{analysis}\n")).unwrap()
+    }
+
+    fn meshes() -> [Mesh; 2] {
+        [Mesh::of(&[0.0, 0.5, 2.0]), Mesh::of(&[0.0, 4.0])]
+    }
+
+    /// Two stations in a cell, or one where there are more than 32 cells, and one at the end.
+    #[test]
+    fn stations_are_inside_of_cells_and_at_the_end() {
+        let scene = scene("static = {}");
+        let stations = Stations::new(scene.model(), &meshes());
+        assert_eq!(stations.s, [vec![0.125, 0.375, 0.875, 1.625, 2.0], vec![1.0, 3.0, 4.0]]);
+        let watched = stations.watch(scene.model());
+        let places: Vec<(usize, f64)> =
+            watched.probes.iter().map(|probe| (probe.at.beam, probe.at.s)).collect();
+        assert_eq!(places[..3], [(0, 2.0), (0, 0.125), (0, 0.375)]);
+        assert_eq!(places[5..], [(0, 2.0), (1, 1.0), (1, 3.0), (1, 4.0)]);
+        let of_cells = |cells: usize| {
+            let nodes: Vec<f64> = (0..=cells).map(|i| i as f64).collect();
+            Stations::new(scene.model(), &[Mesh::of(&nodes)]).s.remove(0)
+        };
+        assert_eq!((of_cells(32).len(), of_cells(33).len()), (65, 34));
+        assert_eq!(of_cells(33)[31..], [31.25, 32.25, 33.0]);
+        let mut results = Results::from(Trajectory {
+            probes: (0..9).map(|i| ProbeSeries { name: i.to_string(), samples: Vec::new() }).collect(),
+            ..Trajectory::default()
+        });
+        let names: Vec<String> = stations
+            .of_beams(results.states())
+            .map(|probes| probes.iter().map(|probe| &probe.name[..]).collect())
+            .collect();
+        assert_eq!(names, ["12345", "678"]);
+        stations.strip(&mut results);
+        assert_eq!(results.states().probes.len(), 1);
+    }
+
+    #[test]
+    fn records_at_the_same_time_or_load_belong_together() {
+        assert_eq!(common(&[0.0, 0.5, 1.0], &[0.25, 0.5, 1.0 + 1e-10]), Ok(vec![(1, 1), (2, 2)]));
+        assert_eq!(common(&[-1.0, -0.5], &[-0.5]), Ok(vec![(1, 0)]));
+        // A billionth of the last one apart, times three.
+        assert!(common(&[0.0, 100.0], &[3e-7, 100.0]).is_ok_and(|pairs| pairs == [(1, 1)]));
+        assert!(common(&[0.0, 1.0], &[0.5]).is_err() && common(&[1.0], &[]).is_err());
+        let (still, motion) = (scene("static = {}"), scene("dynamic = { duration = 1 }"));
+        let path = super::super::round::tests::scene("analysis.static.arc_length.max_points = 9");
+        let of = |scene: &Scene, run: &[f64], reference: &[f64]| pairs(scene.analysis(), run, reference);
+        assert_eq!(of(&still, &[0.0, 0.5, 1.0], &[0.0, 0.7, 1.0]), Ok(vec![(0, 0), (2, 2)]));
+        assert_eq!(of(&path, &[0.0, 0.5, 1.0], &[0.0, 1.0]), Ok(vec![(2, 1)]));
+        assert!(of(&path, &[], &[0.0]).is_err() && of(&path, &[0.0], &[]).is_err());
+        // An event has ended both motions, at times that differ a little.
+        assert_eq!(of(&motion, &[0.0, 0.5, 0.7], &[0.0, 0.5, 0.71]), Ok(vec![(0, 0), (1, 1), (2, 2)]));
+        assert_eq!(of(&motion, &[0.0, 0.5, 0.71], &[0.0, 0.71]), Ok(vec![(0, 0), (2, 1)]));
+        // One of them has gone on: the last record of the other has a partner.
+        assert_eq!(of(&motion, &[0.0, 0.5, 1.0], &[0.0, 0.5]), Ok(vec![(0, 0), (1, 1)]));
+    }
+
+    /// What one run, at rest but for these samples (record, probe, sample), saw at some times.
+    fn seen(parameter: &[f64], samples: &[(usize, usize, ProbeSample)]) -> Trajectory {
+        let at_rest = ProbeSample { vx: Some(0.0), ..ProbeSample::default() };
+        let mut probes =
+            vec![ProbeSeries { name: String::new(), samples: vec![at_rest; parameter.len()] }; 9];
+        for &(record, probe, sample) in samples {
+            probes[probe].samples[record] = sample;
+        }
+        Trajectory { parameter: parameter.into(), probes, ..Trajectory::default() }
+    }
+
+    /// Worked out by hand: what differs at nine places in two records, the first and the last of three.
+    #[test]
+    fn differences_of_motions_are_those_of_all_places_and_records() {
+        let bent = |curvature: f64| ProbeSample { curvature, ..ProbeSample::default() };
+        let coarse = seen(
+            &[0.0, 1.0],
+            &[
+                (
+                    1,
+                    0,
+                    ProbeSample {
+                        x: 0.3,
+                        y: 0.4,
+                        angle: 0.1,
+                        strain: 0.2,
+                        vx: Some(1.0),
+                        ..ProbeSample::default()
+                    },
+                ),
+                (0, 1, ProbeSample { angle: 5.0, ..bent(3.0) }),
+                (1, 2, bent(2.0)),
+                (1, 3, bent(-7.0)),
+                (1, 4, bent(4.0)),
+                // At the end of the beam, which is in no cell.
+                (1, 5, ProbeSample { x: 0.8, ..bent(3.5) }),
+                (1, 6, ProbeSample { angle: 0.8, ..bent(100.0) }),
+            ],
+        );
+        let at_rest = ProbeSample { vx: Some(-1.0), ..ProbeSample::default() };
+        let mut fine = seen(&[0.0, 0.5, 1.0], &[(2, 0, at_rest), (2, 3, bent(-8.0))]);
+        let motion = scene("dynamic = { duration = 1 }");
+        let stations = Stations::new(motion.model(), &meshes());
+        let of = |scene: &Scene, coarse: &Trajectory, fine: &Trajectory| {
+            let results = [coarse, fine].map(|run| Results::from(run.clone()));
+            between(scene.model(), scene.analysis(), (&stations, &meshes()), &results[0], &results[1])
+        };
+        let found = of(&motion, &coarse, &fine).unwrap();
+        assert_eq!(found.errors, Errors { result: 0.4, curvature: Some(0.5), section_force: None });
+        assert_eq!(found.records, [0.0, 0.4, 0.4]);
+        let tip = &found.probes[0].samples;
+        let last =
+            ProbeSample { x: 0.5, y: 0.5, angle: 0.1, strain: 0.2, vx: Some(2.0), ..ProbeSample::default() };
+        assert_eq!((found.probes.len(), tip[0].x, tip[1], tip[2]), (1, 0.0, last, last));
+        assert_eq!(found.beams[0].position, [0.0, 0.0, 0.0, 0.0, 0.4]);
+        assert_eq!(found.beams[0].curvature, [3.0, 2.0, 1.0, 4.0, 3.5]);
+        assert_eq!(found.beams[1].curvature, [100.0, 0.0, 0.0]);
+        // Cells of 0.5 m and 1.5 m, with two stations each: the record counts that errs most, 3² of
+        // the first, and 1² and 4² of the last. Of the string the direction counts, over its length.
+        let cells = [(vec![0.25 * 9.0, 0.75 * (1.0 + 16.0)], 2.0), (vec![2.0 * 0.2 * 0.2], 3.0)];
+        for (found, (squares, order)) in found.cells.iter().zip(cells) {
+            assert_eq!(found.order, order);
+            assert!(found.squares.iter().zip(&squares).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?}");
+        }
+        // In equilibria, records without a partner tell nothing.
+        let found = of(&scene("static = {}"), &coarse, &fine).unwrap();
+        assert!(found.records[1].is_nan() && found.records[2] == 0.4);
+        let sample = found.probes[0].samples[1];
+        assert!(sample.x.is_nan() && sample.strain.is_nan());
+        assert_eq!(found.probes[0].samples[2], last);
+        // Where cells meet, curvatures of the last state count, too, but not those of a string.
+        let shape = |curvature: [f64; 3]| Shape {
+            s: vec![0.0, 0.5, 2.0],
+            curvature: curvature.into(),
+            ..Shape::default()
+        };
+        let of_string = Shape { s: vec![0.0, 4.0], curvature: vec![1e3; 2], ..Shape::default() };
+        let coarse = Trajectory { last: vec![shape([0.0, 5.0, 0.0]), Shape::default()], ..coarse };
+        fine.last = vec![shape([0.0, -16.0, 1.0]), of_string];
+        assert_eq!(of(&motion, &coarse, &fine).unwrap().errors.curvature, Some(21.0 / 16.0));
+        // A probe may see more than the stations, and what is not a number is no small difference.
+        let far = ProbeSample { y: 2.0, ..ProbeSample::default() };
+        let found = of(&motion, &seen(&[0.0, 1.0], &[(1, 0, far)]), &seen(&[0.0, 1.0], &[])).unwrap();
+        assert_eq!((found.errors.result, found.errors.curvature), (1.0, None));
+        let lost = ProbeSample { x: f64::NAN, ..ProbeSample::default() };
+        assert!(of(&motion, &seen(&[0.0, 1.0], &[(0, 7, lost)]), &seen(&[0.0, 1.0], &[])).is_err());
+    }
+
+    /// The bent beam and the string in a mode, with values at `s` as parts of their lengths.
+    fn shapes(s: &[f64], beam: [&[f64]; 3], string: [&[f64]; 3]) -> Vec<ModeShape> {
+        let shape = |length: f64, [x, y, bent]: [&[f64]; 3]| ModeShape {
+            s: s.iter().map(|s| s * length).collect(),
+            x: x.into(),
+            y: y.into(),
+            ..if length == 2.0 {
+                ModeShape { curvature: bent.into(), angle: vec![7.0; s.len()], ..ModeShape::default() }
+            } else {
+                ModeShape { angle: bent.into(), curvature: vec![7.0; s.len()], ..ModeShape::default() }
+            }
+        };
+        vec![shape(2.0, beam), shape(4.0, string)]
+    }
+
+    fn vibrations(modes: Vec<(f64, Vec<ModeShape>)>) -> Results {
+        let modes = modes.into_iter().map(|(frequency, shape)| Vibration { frequency, shape }).collect();
+        Results::from(Vibrations { modes, ..Vibrations::default() })
+    }
+
+    #[test]
+    fn differences_of_modes_do_not_depend_on_their_signs() {
+        let scene = scene("modal.count = 1");
+        let stations = Stations::new(scene.model(), &meshes());
+        let of = |coarse: &Results, fine: &Results| {
+            between(scene.model(), scene.analysis(), (&stations, &meshes()), coarse, fine)
+        };
+        let (few, many) = ([0.0, 0.5, 1.0], [0.0, 0.25, 0.5, 0.75, 1.0]);
+        let none = [0.0; 5];
+        let coarse = |sign: f64| {
+            let [beam, string] = [[-2.0, -2.0, -1.0], [1.0, 1.0, 0.0]].map(|v| v.map(|v| sign * v));
+            shapes(
+                &few,
+                [&[0.0; 3], &[0.0, sign * -1.0, sign * -4.0], &beam],
+                [&[0.0; 3], &[0.0; 3], &string],
+            )
+        };
+        let fine =
+            || shapes(&many, [&none, &[0.0, 0.25, 1.0, 2.25, 4.0], &[2.0; 5]], [&none, &none, &[-1.0; 5]]);
+        // The middles of the fine spaces are at 0.25, 0.75, 1.25 and 1.75 m, in cells that meet at 0.5 m;
+        // there the coarse curvatures are 2, 2, 1.75 and 1.25 instead of 2. On the string angles are
+        // 1, 1, 0.75 and 0.25 instead of 1, along 1 m each. Both count in the size, 4·2 + 1·4.
+        let expected =
+            [vec![0.0, 0.5 * (0.25 * 0.25 + 0.75 * 0.75) / 12.0], vec![(0.25 * 0.25 + 0.75 * 0.75) / 12.0]];
+        for sign in [1.0, -1.0] {
+            let found = of(&vibrations(vec![(1.1, coarse(sign))]), &vibrations(vec![(1.0, fine())])).unwrap();
+            assert!(
+                (found.eigenvalues[0] - 0.1).abs() < 1e-15 && found.errors.result == found.eigenvalues[0]
+            );
+            assert_eq!(found.cells.iter().map(|cells| cells.order).collect::<Vec<_>>(), [2.0, 3.0]);
+            for (found, expected) in found.cells.iter().zip(&expected) {
+                assert!(found.squares.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?}");
+            }
+        }
+        // A mode along x has its sign from there. The square of what bends it, ∫ κ² ds = 2 m κ² times the
+        // cube of 4 m, is more than the square of 1e-5 of its displacement; with half of that curvature
+        // it is less, as in a rigid motion, and counts for nothing.
+        let along = |places: &[f64], x: f64, bent: f64| {
+            let [x, y, bent, zero] = [x, 0.0, bent, 0.0].map(|value| vec![value; places.len()]);
+            shapes(places, [&x, &y, &bent], [&zero, &zero, &zero])
+        };
+        for (size, squares) in [(1e-6, [0.25, 0.75]), (5e-7, [0.0, 0.0])] {
+            let (a, b) = (along(&few, -1.0, -2.0 * size), along(&many, 1.0, size));
+            let found = of(&vibrations(vec![(0.0, a)]), &vibrations(vec![(0.0, b)])).unwrap();
+            assert_eq!(found.eigenvalues, [0.0], "a frequency of zero in both runs");
+            assert!(
+                found.cells[0].squares.iter().zip(squares).all(|(a, b)| (a - b).abs() < 1e-9),
+                "{found:?}"
+            );
+        }
+        // Runs with different numbers of values cannot be compared, nor those that are none.
+        let one = |value: f64| vibrations(vec![(value, fine())]);
+        assert!(of(&vibrations(Vec::new()), &one(1.0)).is_err());
+        assert!(of(&vibrations(Vec::new()), &vibrations(Vec::new())).is_err());
+        assert!(of(&one(f64::NAN), &one(1.0)).is_err());
+        let load = |load_factor: f64| {
+            let modes = vec![BucklingMode { load_factor, shape: fine() }];
+            Results::from(CriticalLoads { modes, ..CriticalLoads::default() })
+        };
+        assert_eq!(of(&load(-3.0), &load(-4.0)).unwrap().eigenvalues, [0.25]);
+    }
+
+    #[test]
+    fn a_maximum_keeps_what_is_not_a_number() {
+        assert_eq!((larger(1.0, 2.0), larger(2.0, 1.0)), (2.0, 2.0));
+        assert!(larger(f64::NAN, 1.0).is_nan() && larger(1.0, f64::NAN).is_nan());
+    }
 
     #[test]
     fn between_two_places_values_are_linear_and_at_a_jump_there_are_two() {

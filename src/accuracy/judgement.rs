@@ -139,6 +139,8 @@ pub(super) fn excess(errors: Errors, wanted: Accuracy) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accuracy::round::tests::{round, run, runner, scene};
+    use crate::results::AnalysisKind;
 
     #[test]
     fn errors_are_differences_by_how_much_they_fall() {
@@ -154,6 +156,58 @@ mod tests {
         assert_eq!(excess(errors, wanted(None, None)), 0.1);
         assert_eq!(excess(errors, wanted(Some(0.25), Some(0.125))), 2.0);
         assert_eq!(excess(errors, wanted(Some(0.25), Some(0.0625))), 4.0);
+    }
+
+    #[test]
+    fn errors_fall_no_faster_than_the_methods_promise_and_than_was_seen() {
+        let of = |more: &str, seen: f64| {
+            let scene = scene(more);
+            runner(&scene, 1e-4).contractions(seen)
+        };
+        let still = "analysis.static = {}";
+        assert_eq!(of(still, f64::INFINITY), [15.0, 4.0]);
+        assert_eq!(of(still, f64::NAN), [15.0, 4.0]);
+        assert_eq!([8.0, 1.0].map(|seen| of(still, seen)[0]), [6.0, 1.5]);
+        let motion = |integrator: &str| {
+            of(&format!("analysis.dynamic = {{ duration = 1{integrator} }}"), f64::INFINITY)[0]
+        };
+        assert_eq!(motion(""), 10.0);
+        assert_eq!(motion(", radau = { stages = 3, step = 0.1 }"), 10.0);
+        assert_eq!(motion(", gauss = { stages = 2, step = 0.1 }"), 10.0);
+        assert_eq!(motion(", gauss = { stages = 1, step = 0.1 }"), 4.0);
+        assert_eq!(motion(", generalized_alpha.step = 0.1"), 4.0);
+        assert_eq!(motion(", generalized_alpha.tolerance = 1e-4"), 10.0);
+        let ground = "effect.contact = [{ beam = 'arm', stiffness = 1e4, half_plane = { point = [0, -1], normal = [0, 1] } }]";
+        assert_eq!(of(&format!("{ground}\n{still}"), f64::INFINITY), [6.0, 4.0]);
+    }
+
+    /// What falls 37.5 times where 15 are promised has begun beyond all use.
+    #[test]
+    fn three_runs_are_believed_with_caution_or_not_at_all() {
+        let scene = scene("analysis.static = {}");
+        let runner = runner(&scene, 1e-4);
+        assert_eq!(runner.first_fall(Some(37.5)), (37.5, 1.5));
+        let unknown = (4.0 / 0.75, 1.0);
+        assert_eq!([Some(37.6), None].map(|seen| runner.first_fall(seen)), [unknown; 2]);
+    }
+
+    #[test]
+    fn caution_makes_errors_larger() {
+        let scene = scene("analysis.static = {}");
+        let runner = runner(&scene, 1e-4);
+        let round = || round(&runner, run(AnalysisKind::Static, 1, 0), None);
+        let errors = Errors { result: 8.0, curvature: Some(6.0), section_force: None };
+        let judged = Judged {
+            round: round(),
+            difference: Some(Difference { errors, ..Difference::default() }),
+            contractions: [7.0, 4.0],
+            caution: 1.5,
+            excess: 0.0,
+        };
+        assert_eq!(judged.divide(), [4.0, 2.0]);
+        assert_eq!(judged.errors(), Errors { result: 2.0, curvature: Some(3.0), section_force: None });
+        let unknown = Judged::unknown(round());
+        assert_eq!((unknown.errors().result, unknown.excess), (f64::INFINITY, f64::INFINITY));
     }
 
     /// Four times the cells, and a 256th of the tolerance, are two halvings.

@@ -271,6 +271,14 @@ fn turning(curve: &Curve) -> f64 {
 }
 
 #[cfg(test)]
+impl Mesh {
+    /// A mesh of these nodes, none of which must be.
+    pub fn of(nodes: &[f64]) -> Self {
+        Self { nodes: nodes.into(), fixed: vec![nodes[0], nodes[nodes.len() - 1]] }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
@@ -326,5 +334,128 @@ mod tests {
         assert_eq!(rounded(0.123_456_7, 0.1), 0.1235);
         assert_eq!(rounded(1.234_567_89e-5, 1e-6), 1.2346e-5);
         assert_eq!(rounded(123.456_7, 20.0), 123.46);
+    }
+
+    fn first(text: &str, waves: usize, times: f64) -> Vec<Mesh> {
+        let scene = crate::scene::parse("scene", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        Mesh::first(scene.model(), waves, times)
+    }
+
+    /// Worked out by hand: four cells along the longest beam, even numbers of them between the places
+    /// of forces and supports.
+    #[test]
+    fn first_meshes_have_cells_in_proportion_and_nodes_where_they_must_be() {
+        let text = "beam.arm = { start = [0, 0], end = [4, 0], axial_stiffness = 1, bending_stiffness = 1 }\n\
+                    beam.rod = { start = [0, 1], end = [2, 1], axial_stiffness = 1, bending_stiffness = 1 }\n\
+                    support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }, \
+                    { beam = 'rod', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'arm', at = 1.0, fix = ['y'] }]\n\
+                    effect.force = [{ beam = 'arm', at = 1.0, value = [1, 0] }, { beam = 'rod', at = 'end', value = [0, 1] }]\n\
+                    analysis.static = {}\n";
+        let meshes = first(text, 0, 1.0);
+        assert_eq!(meshes[0].fixed, [0.0, 1.0, 4.0]);
+        assert_eq!(meshes[0].nodes, [0.0, 0.5, 1.0, 1.75, 2.5, 3.25, 4.0]);
+        assert_eq!(meshes[1].nodes, [0.0, 1.0, 2.0]);
+        assert!(meshes[1].is_one_part() && !meshes[0].is_one_part() && meshes[0].length() == 4.0);
+        let cells =
+            |waves: usize, times: f64| first(text, waves, times).iter().map(Mesh::cells).collect::<Vec<_>>();
+        // Six half-waves: 1½ and 4½ cells of the parts, three of the other beam; eight: two and six, four.
+        assert_eq!((cells(6, 1.0), cells(4, 2.0)), (vec![2 + 6, 4], vec![2 + 6, 4]));
+        assert_eq!(cells(3, 1.0), [2 + 4, 2]);
+        assert_eq!(cells(0, 4.0), [4 + 12, 8]);
+    }
+
+    /// An eighth of a turn in a cell at most, whichever way it goes.
+    #[test]
+    fn bent_centrelines_have_more_cells() {
+        let bent = |to: f64| {
+            let text = format!(
+                "beam.arm = {{ arc = {{ center = [0, 0], radius = 2, from = 0.0, to = {to:?} }}, axial_stiffness = 1, bending_stiffness = 1 }}\n\
+                 support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\nanalysis.static = {{}}\n"
+            );
+            first(&text, 0, 1.0)[0].cells()
+        };
+        // 3.9 rad are a little less than five eighths of a turn, 5 rad are more than six; numbers are even.
+        assert_eq!([0.2, 3.9, -3.9, 5.0].map(bent), [4, 6, 6, 8]);
+        let arc = |to: f64| crate::model::Centreline::Arc { center: [0.0; 2], radius: 2.0, from: 0.0, to };
+        for turn in [3.9, -3.9] {
+            let found = turning(&Curve::new(&arc(turn)).unwrap());
+            assert!((found - 3.9).abs() < 1e-9, "{found}");
+        }
+        // A period of a sine turns by 45° four times, here and back. A natural spline has no curvature at
+        // its ends, as the sine.
+        let wave =
+            (0..=60).map(|i| f64::from(i) * std::f64::consts::PI / 30.0).map(|x| [x, x.sin()]).collect();
+        let found = turning(&Curve::new(&crate::model::Centreline::Points(wave)).unwrap());
+        assert!((found - std::f64::consts::PI).abs() < 1e-2, "{found}");
+    }
+
+    #[test]
+    fn densities_grow_by_two_from_cell_to_cell_and_are_never_too_small() {
+        let cells = mesh(&[0.0, 1.0, 2.0, 4.0], &[0.0, 4.0]);
+        // d = (∫ η² ds/h⁵)^{1/5}.
+        let densities = |squares: [f64; 3], mean: f64| {
+            cells.densities(&CellErrors { squares: squares.into(), order: 2.0 }, mean)
+        };
+        let near = |found: Vec<f64>, expected: [f64; 3]| {
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?} {expected:?}");
+        };
+        near(densities([32.0, 1.0, 32.0], 0.0), [2.0, 1.0, 1.0]);
+        near(densities([1024.0, 0.0, 0.0], 0.0), [4.0, 2.0, 1.0]);
+        near(densities([0.0, 0.0, 32768.0], 0.0), [1.0, 2.0, 4.0]);
+        near(densities([32.0, 1.0, 32.0], 5.0), [2.0, 1.5, 1.5]);
+        assert_eq!(cells.integral(&[2.0, 1.0, 0.5]), 4.0);
+        // Of a string, whose direction is of third order: (128/h⁷)^{1/7}.
+        let string =
+            mesh(&[0.0, 1.0], &[0.0, 1.0]).densities(&CellErrors { squares: vec![128.0], order: 3.0 }, 0.0);
+        assert!((string[0] - 2.0).abs() < 1e-14, "{string:?}");
+    }
+
+    #[test]
+    fn nodes_are_spread_by_density_between_those_that_must_be() {
+        let cells = |fixed: &[f64]| mesh(&[0.0, 1.0, 2.0], fixed);
+        let spread =
+            |fixed: &[f64], densities: [f64; 2], each: f64| cells(fixed).spread(&densities, each).nodes;
+        // Five cells with 1 = ∫ d ds each, three with 5/3, of which 0.4167 m and 0.8333 m are the ends.
+        assert_eq!(spread(&[0.0, 2.0], [4.0, 1.0], 1.0), [0.0, 0.25, 0.5, 0.75, 1.0, 2.0]);
+        assert_eq!(spread(&[0.0, 2.0], [4.0, 1.0], 2.0), [0.0, 0.4167, 0.8333, 2.0]);
+        assert_eq!(spread(&[0.0, 2.0], [1.0, 4.0], 1.0), [0.0, 1.0, 1.25, 1.5, 1.75, 2.0]);
+        // Two cells at least between nodes that must be; even ones where densities differ little.
+        assert_eq!(spread(&[0.0, 1.0, 2.0], [4.0, 1.0], 1.0), [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0]);
+        assert_eq!(spread(&[0.0, 2.0], [3.0, 1.0], 1.0), [0.0, 0.5, 1.0, 1.5, 2.0]);
+    }
+
+    #[test]
+    fn numbers_of_cells_follow_from_the_errors_of_equal_shares() {
+        let refined_to = |nodes: &[f64], squares: &[f64], times: f64, most: usize| {
+            let errors = CellErrors { squares: squares.into(), order: 2.0 };
+            refined(&[Mesh::of(nodes)], &[Some(errors)], times, most).remove(0).nodes
+        };
+        // Densities of 2 and 1: equal shares would make the sum (3/2)⁵/2⁴/(1 + 1/32) = 0.46 of what it is,
+        // so that 0.46^{1/4}·8 = 6.6 cells err as eight of this kind would.
+        let squares = [1.0, 1.0 / 32.0];
+        assert_eq!(refined_to(&[0.0, 0.5, 1.0], &squares, 4.0, 100).len(), 1 + 7);
+        assert_eq!(refined_to(&[0.0, 0.5, 1.0], &squares, 3.0, 100).len(), 1 + 5);
+        assert_eq!(refined_to(&[0.0, 0.5, 1.0], &squares, 40.0, 8).len(), 1 + 8);
+        // All in the first of eight cells: densities of 8, 4, 2, 1, and then three tenths of their mean,
+        // 0.6. Twice the cells at once and no more, times (2.174⁵/8⁴/1.032)^{1/4}, are 5.2 cells.
+        let even: Vec<f64> = (0..9).map(|i| f64::from(i) / 8.0).collect();
+        let found = refined_to(&even, &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 4.0, 100);
+        // ∫ d ds is 1, 1/2, 1/4, 1/8 and 0.0747 four times in the old cells, and 0.3623 in each new one.
+        let expected = [0.0, 0.045_29, 0.090_58, 0.146_73, 0.2373, 0.4365, 1.0];
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+        // Where nothing tells where, cells are cut in up to four.
+        let cut = |times: f64| refined_to(&[0.0, 0.5, 1.0], &[0.0, 0.0], times, 100).len() - 1;
+        assert_eq!([0.5, 2.0, 2.3, 9.0].map(cut), [2, 4, 6, 8]);
+    }
+
+    /// Cells go to the beam that errs, from the one that does not.
+    #[test]
+    fn beams_share_cells_by_their_errors() {
+        let even = Mesh::of(&[0.0, 0.25, 0.5, 0.75, 1.0]);
+        let errors = |square: f64| Some(CellErrors { squares: vec![square; 4], order: 2.0 });
+        let found = refined(&[even.clone(), even], &[errors(32.0), errors(1.0)], 2.0, 100);
+        // Densities of 2 and 1 as above, of four cells each: 0.46^{1/4}·16 = 13.2 cells, two thirds of them here.
+        assert_eq!([found[0].cells(), found[1].cells()], [9, 5]);
     }
 }

@@ -74,3 +74,65 @@ pub(super) fn largest<'t>(
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{ProbeSample, ProbeSeries, Shape};
+    use crate::scene::parse;
+
+    /// A beam whose stiffnesses are those of a rectangle of 0.6 m, or of 0.1 m where its section is
+    /// given, and a string.
+    fn model(section: &str) -> Model {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [6, 0], {section} }}\n\
+             beam.rope = {{ start = [0, 1], end = [1, 1], axial_stiffness = 1 }}\n\
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}, \
+             {{ beam = 'rope', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'rope', at = 'end', fix = ['x', 'y'] }}]\n\
+             analysis.static = {{}}\n"
+        );
+        parse("scene", &text).unwrap().model().clone()
+    }
+
+    #[test]
+    fn what_the_model_leaves_out_is_told_where_it_is_large() {
+        let stiff = model("axial_stiffness = 100, bending_stiffness = 3");
+        let of = |model: &Model, lengths: [f64; 2], largest: [[f64; 2]; 2]| notes(model, &lengths, &largest);
+        // h² = 12·3/100; the note comes with curvatures beyond 0.3/0.6 m, and with lengths below
+        // (3·3.12/0.01·0.03)^½ = 5.3 m.
+        assert_eq!(of(&stiff, [6.0, 1.0], [[0.03, 0.4999], [0.0, 1e9]]), [""; 0]);
+        let found = of(&stiff, [6.0, 1.0], [[0.04, 0.6], [0.25, 1e9]]);
+        assert_eq!(found.len(), 3, "{found:?}");
+        assert!(found[0].starts_with("beam `arm` strains by up to 0.04;"), "{found:?}");
+        assert!(found[1].starts_with("beam `arm` bends to a radius of 2.8 of its thickness,"), "{found:?}");
+        assert!(found[2].starts_with("beam `rope` strains by up to 0.25;"), "{found:?}");
+        assert_eq!(of(&stiff, [5.31, 1.0], [[0.0; 2]; 2]), [""; 0]);
+        let found = of(&stiff, [3.0, 1.0], [[0.0; 2]; 2]);
+        // 3·3.12·0.03/3² of the deflection.
+        assert!(found[0].starts_with("beam `arm` is 5 times as long as thick,"), "{found:?}");
+        assert!(found[0].ends_with("would make about 3 % of its deflection"), "{found:?}");
+        // A section of 0.1 m height is as thick as it says.
+        let thin = model("section.rectangle = { width = 0.1, height = 0.1 }, youngs_modulus = 1e9");
+        assert_eq!(of(&thin, [6.0, 1.0], [[0.0, 2.99], [0.0; 2]]), [""; 0]);
+        assert_eq!(of(&thin, [6.0, 1.0], [[0.0, 3.01], [0.0; 2]]).len(), 1);
+    }
+
+    /// Of all records of the stations of a beam, and of all places of the last.
+    #[test]
+    fn the_largest_strain_and_curvature_are_those_of_all_that_was_seen() {
+        let sample =
+            |strain: f64, curvature: f64| ProbeSample { strain, curvature, ..ProbeSample::default() };
+        let station = |samples: &[ProbeSample]| ProbeSeries { name: String::new(), samples: samples.into() };
+        let stations = [
+            station(&[sample(0.1, 0.0), sample(-0.4, 1.0)]),
+            station(&[sample(0.2, -3.0), sample(0.0, 2.0)]),
+            station(&[sample(0.0, 5.0)]),
+        ];
+        let last = vec![Shape { strain: vec![0.0, -0.5], curvature: vec![2.0, -1.0], ..Shape::default() }];
+        let found = largest(
+            [&stations[..2], &stations[2..]].into_iter(),
+            &Trajectory { last, ..Trajectory::default() },
+        );
+        assert_eq!(found, [[0.5, 3.0], [0.0, 5.0]]);
+    }
+}

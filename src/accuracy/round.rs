@@ -6,7 +6,8 @@ use super::setting::{Family, Setting, Solver};
 use crate::basis::Basis;
 use crate::centreline::Curve;
 use crate::model::{
-    Accuracy, Analysis, Beam, Discretization, Integrator, Model, Nodes, Open, RPIM_GAUSS_POINTS, StepControl,
+    Accuracy, Analysis, Beam, Discretization, Dynamic, Integrator, Model, Nodes, Open, RPIM_GAUSS_POINTS,
+    StepControl,
 };
 use crate::results::{AnalysisKind, Results, RunForError};
 use crate::run::{Options, RunError};
@@ -168,23 +169,18 @@ impl<'a, 'o> Runner<'a, 'o> {
         });
         let solver = match self.analysis {
             Analysis::Dynamic(settings) => {
-                let halvings = match steps {
-                    Fineness::Coarsest => 2,
-                    Fineness::Coarse => 1,
-                    Fineness::Fine => 0,
-                };
                 let integrator = match self.open.integrator {
                     true => Integrator::usual(StepControl::Tolerance(self.tolerance)),
                     false => settings.integrator,
                 };
-                Solver::Integrator(integrator.with_step(match integrator.step_control() {
-                    StepControl::Fixed(step) => {
-                        StepControl::Fixed((2.0_f64.powi(halvings) * step).min(settings.duration))
+                Solver::Integrator(match steps {
+                    Fineness::Coarsest => {
+                        integrator.with_step(looser(2, integrator.step_control(), settings))
                     }
-                    StepControl::Tolerance(tolerance) => {
-                        StepControl::Tolerance(short(LOOSER.powi(halvings) * tolerance).min(LOOSEST))
-                    }
-                }))
+                    Fineness::Coarse => integrator.with_step(looser(1, integrator.step_control(), settings)),
+                    // As the scene names it, to the last digit.
+                    Fineness::Fine => integrator,
+                })
             }
             Analysis::Static(_) => self.static_tolerance().map_or(Solver::Scene, Solver::Tolerance),
             _ => Solver::Scene,
@@ -272,6 +268,16 @@ impl<'a, 'o> Runner<'a, 'o> {
     }
 }
 
+/// Steps of twice the length, or with a tolerance that is as much looser, so many times in turn.
+fn looser(times: i32, control: StepControl, settings: &Dynamic) -> StepControl {
+    match control {
+        StepControl::Fixed(step) => StepControl::Fixed((2.0_f64.powi(times) * step).min(settings.duration)),
+        StepControl::Tolerance(tolerance) => {
+            StepControl::Tolerance(short(LOOSER.powi(times) * tolerance).min(LOOSEST))
+        }
+    }
+}
+
 /// Number of every `stride`-th of so many evenly spaced places, ends included; all where they do not
 /// come out even.
 fn every(stride: usize, places: usize) -> usize {
@@ -297,5 +303,155 @@ fn coarser(discretization: &Discretization, places: Nodes) -> Discretization {
             }
         }
         _ => Discretization::Ancf { nodes: places },
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::accuracy::mesh::Mesh;
+    use crate::results::Trajectory;
+    use crate::scene::{Scene, parse};
+
+    /// A clamped beam of 4 m whose basis is open unless it is named.
+    pub fn scene(more: &str) -> Scene {
+        let text = "beam.arm.start = [0, 0]\nbeam.arm.end = [4, 0]\nbeam.arm.axial_stiffness = 1e4\nbeam.arm.bending_stiffness = 1\n\
+                    beam.arm.mass_per_length = 1\nsupport = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]\n";
+        parse("scene", &format!("{text}{more}\n")).unwrap_or_else(|error| panic!("{error}\n{more}"))
+    }
+
+    /// What begins a search in a scene for an error of the result.
+    pub fn runner(scene: &Scene, wanted: f64) -> Runner<'_, 'static> {
+        let wanted = Some(Accuracy::new(wanted));
+        Runner::new(scene.model(), scene.analysis(), scene.open(), wanted, Options::default())
+    }
+
+    /// A round of which no more is told than the statistics of its runs.
+    pub fn round(runner: &Runner<'_, '_>, results: Results, coarse: Option<Results>) -> Round {
+        let stations = Stations::new(runner.model, &runner.meshes);
+        let setting = runner.setting(Fineness::Fine, Fineness::Fine);
+        let cells = runner.meshes.iter().map(Mesh::cells).sum();
+        Round { stations, results, coarse, setting, difference: Err(String::new()), fall: None, cells }
+    }
+
+    const MOTION: &str = "analysis.dynamic = { duration = 1 }";
+
+    fn control(runner: &Runner<'_, '_>, steps: Fineness) -> StepControl {
+        match runner.setting(Fineness::Fine, steps).solver {
+            Solver::Integrator(integrator) => integrator.step_control(),
+            other => panic!("{other}"),
+        }
+    }
+
+    #[test]
+    fn coarser_runs_take_larger_steps() {
+        let of = |analysis: &str| {
+            let scene = scene(analysis);
+            let runner = runner(&scene, 1e-4);
+            [Fineness::Fine, Fineness::Coarse, Fineness::Coarsest].map(|steps| control(&runner, steps))
+        };
+        let named =
+            |step: &str| of(&format!("analysis.dynamic = {{ duration = 1, generalized_alpha.{step} }}"));
+        assert_eq!(named("step = 0.0625"), [0.0625, 0.125, 0.25].map(StepControl::Fixed));
+        assert_eq!(named("step = 0.375"), [0.375, 0.75, 1.0].map(StepControl::Fixed), "the whole motion");
+        // A named tolerance is that of the finer run to the last digit; others need but two.
+        assert_eq!(named("tolerance = 1.234e-5"), [1.234e-5, 2.0e-4, 3.2e-3].map(StepControl::Tolerance));
+        assert_eq!(named("tolerance = 1e-3"), [1e-3, 1.6e-2, 0.1].map(StepControl::Tolerance));
+        assert_eq!(of(MOTION), [3e-4, 4.8e-3, 7.7e-2].map(StepControl::Tolerance));
+    }
+
+    #[test]
+    fn tolerances_follow_what_is_wanted() {
+        let motion = scene(MOTION);
+        assert_eq!([1e-2, 1e-5].map(|wanted| runner(&motion, wanted).tolerance), [1e-3, 3e-5]);
+        let still = scene("analysis.static = {}");
+        let of = |scene: &Scene, wanted: f64| runner(scene, wanted).static_tolerance();
+        assert_eq!([1e-8, 9e-9, 1e-12].map(|wanted| of(&still, wanted)), [None, Some(9e-11), Some(1e-13)]);
+        assert_eq!(of(&scene("analysis.static.tolerance = 1e-9"), 1e-12), None, "the scene names one");
+        assert_eq!(of(&motion, 1e-12), None);
+        assert_eq!((short(1.2345e-5), short(9.99e-3)), (1.2e-5, 1e-2));
+    }
+
+    /// Equilibria begin with more cells the smaller an error is wanted: with the sixth root.
+    #[test]
+    fn searches_begin_with_so_many_cells() {
+        let cells = |analysis: &str, wanted: f64| runner(&scene(analysis), wanted).meshes[0].cells();
+        let still = "analysis.static = {}";
+        assert_eq!([1e-2, 1e-3, 1.1e-9, 1e-9 / 64.0].map(|wanted| cells(still, wanted)), [4, 4, 40, 80]);
+        assert_eq!(cells(MOTION, 1e-9), 4);
+        assert_eq!(cells("analysis.modal.count = 9", 1e-3), 10);
+        assert_eq!(
+            cells(
+                "analysis.buckling.count = 7\neffect.force = [{ beam = 'arm', at = 'end', value = [-1, 0] }]",
+                1e-3
+            ),
+            8
+        );
+        // Of a named mesh of seven cells the coarse run takes every second node, and the end.
+        assert_eq!(cells("beam.arm.basis.ancf.elements = 7\nanalysis.static = {}", 1e-3), 4);
+    }
+
+    #[test]
+    fn runs_of_all_finenesses_are_of_the_same_kind() {
+        let open = scene("analysis.static = {}");
+        let nodes = |runner: &Runner<'_, '_>| {
+            [Fineness::Coarsest, Fineness::Coarse, Fineness::Fine]
+                .map(|mesh| runner.setting(mesh, Fineness::Fine).beams[0].0.nodes().count())
+        };
+        assert_eq!(nodes(&runner(&open, 1e-3)), [3, 5, 9]);
+        let named = scene("beam.arm.basis.rpim = { nodes = 9, neighbours = 3 }\nanalysis.static = {}");
+        let runner = runner(&named, 1e-3);
+        assert_eq!(nodes(&runner), [3, 5, 9]);
+        let coarse = &runner.setting(Fineness::Coarse, Fineness::Fine).beams[0];
+        let Discretization::Rpim { neighbours: 3, nodes: Nodes::Uniform(5), .. } = coarse.0 else {
+            panic!("{coarse:?}")
+        };
+    }
+
+    /// Small errors of motions are cheaper by interpolation without a mesh, of stiff beams without
+    /// places that must be nodes.
+    #[test]
+    fn meshfree_beams_are_for_small_errors_of_motions() {
+        let meshfree = |more: &str, wanted: f64| runner(&scene(more), wanted).families[0] == MESHFREE_FAMILY;
+        assert!(meshfree(MOTION, 3e-5) && !meshfree(MOTION, 4e-5) && !meshfree("analysis.static = {}", 1e-6));
+        let node = "effect.moment = [{ beam = 'arm', at = 1.5, value = 1 }]";
+        assert!(!meshfree(&format!("{node}\n{MOTION}"), 1e-6));
+        let without = |stiffness: &str| {
+            let text = format!(
+                "beam.arm = {{ start = [0, 0], end = [4, 0], {stiffness} = 1, mass_per_length = 1 }}\n\
+                 support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y'] }}]\n{MOTION}\n"
+            );
+            parse("scene", &text).unwrap_or_else(|error| panic!("{error}"))
+        };
+        for stiffness in ["axial_stiffness", "bending_stiffness"] {
+            assert!(runner(&without(stiffness), 1e-6).families[0] == Family::REDUCED, "{stiffness}");
+        }
+    }
+
+    /// A run of so many steps, of which some were rejected.
+    pub fn run(analysis: AnalysisKind, steps: usize, rejected_steps: usize) -> Results {
+        let mut results = Results::from(Trajectory::default());
+        results.run_mut().analysis = analysis;
+        results.run_mut().statistics.steps = steps;
+        results.run_mut().statistics.rejected_steps = rejected_steps;
+        results
+    }
+
+    #[test]
+    fn a_fifth_more_steps_tell_of_their_errors() {
+        let scene = scene(MOTION);
+        let runner = runner(&scene, 1e-4);
+        let tells = |analysis, [steps, rejected]: [usize; 2], coarse: Option<Results>| {
+            round(&runner, run(analysis, steps, rejected), coarse).tells_of_steps()
+        };
+        let (still, motion) = (AnalysisKind::Static, AnalysisKind::Dynamic);
+        let coarse = || Some(run(motion, 80, 20));
+        assert!(tells(motion, [100, 21], coarse()) && !tells(motion, [119, 0], coarse()));
+        assert!(tells(motion, [1, 0], None) && tells(still, [1, 0], coarse()));
+    }
+
+    #[test]
+    fn a_part_of_the_places_comes_out_even_or_is_all() {
+        assert_eq!([every(4, 201), every(4, 5), every(4, 202), every(4, 1)], [51, 2, 202, 1]);
     }
 }

@@ -323,3 +323,141 @@ impl<'a, 'o> Search<'a, 'o> {
         Accurate { results, chosen }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accuracy::difference::Difference;
+    use crate::accuracy::round::tests::{round, run, runner, scene};
+    use crate::results::{AnalysisKind, Trajectory};
+
+    const STILL: &str = "analysis.static = {}";
+    const MOTION: &str = "analysis.dynamic = { duration = 1 }";
+
+    /// What a search knows of a round with these differences; errors are a (contraction − 1)-th.
+    fn judged(search: &Search<'_, '_>, difference: Difference, contractions: [f64; 2]) -> Judged {
+        let results = run(AnalysisKind::Static, 1, 0);
+        Judged {
+            round: round(&search.runner, results, None),
+            difference: Some(difference),
+            contractions,
+            caution: 1.0,
+            excess: 2.0,
+        }
+    }
+
+    /// Errors that were e^{λt}: from 1e-4 to 0.2 within a second, by λ = 7.6/s. A tolerance of 3e-4 may fall
+    /// to 1e-13, which makes errors e^{16.4} times smaller, enough for 2.15 s from where they passed 1e-4.
+    #[test]
+    fn motions_whose_errors_grow_too_fast_are_given_up() {
+        let (motion, still) = (scene(MOTION), scene(STILL));
+        let said = |scene: &crate::Scene, wanted: f64, times: [f64; 4], records: [f64; 4]| {
+            let search = Search::new(runner(scene, wanted));
+            let difference = Difference { records: records.into(), ..Difference::default() };
+            let mut judged = judged(&search, difference, [3.0, 4.0]);
+            judged.round.results.states_mut().parameter = times.into();
+            search.outgrown(&judged, Accuracy::new(wanted))
+        };
+        let growing = [1e-5, 2.2e-4, 0.5, 0.9];
+        let found = said(&motion, 1e-4, [0.0, 1.0, 2.0, 3.2], growing).expect("too fast");
+        assert!(found.contains("double every 0.09 s"), "{found}");
+        assert_eq!(said(&motion, 1e-4, [0.0, 1.0, 2.0, 3.1], growing), None);
+        assert_eq!(said(&still, 1e-4, [0.0, 1.0, 2.0, 3.2], growing), None);
+        assert_eq!(said(&motion, 1e-4, [0.0, 1.0, 2.0, 3.2], [1e-5, 0.5, 0.5, 0.5]), None, "at once");
+        assert_eq!(said(&motion, 1e-4, [0.0, 1.0, 2.0, 3.2], [1e-5, 2.2e-4, 0.1, 0.3]), None);
+        assert_eq!(said(&motion, 0.3, [0.0, 1.0, 2.0, 30.0], [0.0, 0.5, 0.7, 0.9]), None);
+    }
+
+    /// Half of the wanted error of 1e-4 is aimed at, with cells that all err alike.
+    #[test]
+    fn as_many_cells_are_taken_as_errors_need() {
+        let still = scene(STILL);
+        let cells = |errors: Errors, contractions: [f64; 2], wanted: Accuracy, most: usize| {
+            let mut search = Search::new(runner(&still, 1e-3));
+            search.most = most;
+            let even = CellErrors { squares: vec![1.0; 4], order: 2.0 };
+            let judged = judged(
+                &search,
+                Difference { errors, cells: vec![even], ..Difference::default() },
+                contractions,
+            );
+            search.improve(&judged, wanted).map(|()| search.runner.meshes[0].cells())
+        };
+        let result = |error: f64| Errors { result: error, ..Errors::default() };
+        let wanted = Accuracy::new(1e-4);
+        // Of fourth order: sixteen times the error wants twice the cells, but never more than six times.
+        let promised = [15.0, 4.0];
+        assert_eq!(cells(result(14.0 * 5e-5 * 15.9), promised, wanted, 4096), Ok(8));
+        assert_eq!(cells(result(14.0), promised, wanted, 4096), Ok(24));
+        // Seen to be of second order: nine times the error wants thrice the cells, and that is the most.
+        assert_eq!(cells(result(2.0 * 5e-5 * 3.9), [3.0, 4.0], wanted, 4096), Ok(8));
+        assert_eq!(cells(result(2.0 * 5e-5 * 60.0), [3.0, 4.0], wanted, 4096), Ok(12));
+        // A tenth more cells at least; no more than there may be, where one mesh is twice the other.
+        assert_eq!(cells(result(1e-9), promised, wanted, 4096), Ok(5));
+        assert_eq!(cells(result(14.0), promised, wanted, 20), Ok(10));
+        assert_eq!(cells(result(14.0), promised, wanted, 9).map_err(drop), Ok(4));
+        assert!(cells(result(14.0), promised, wanted, 8).is_err_and(|why| why.contains("more than 8 cells")));
+        // Curvatures and section forces are of second order.
+        let errors = Errors { result: 0.0, curvature: Some(3.0 * 0.5 * 8.9), section_force: None };
+        assert_eq!(cells(errors, promised, Accuracy { curvature: Some(1.0), ..wanted }, 4096), Ok(12));
+        assert_eq!(cells(errors, promised, wanted, 4096), Ok(5), "not asked for");
+        let errors = Errors { result: 0.0, curvature: None, section_force: Some(3.0 * 0.5 * 3.9) };
+        assert_eq!(cells(errors, promised, Accuracy { section_force: Some(1.0), ..wanted }, 4096), Ok(8));
+    }
+
+    #[test]
+    fn a_mesh_that_the_scene_names_cannot_be_refined() {
+        let named = scene("beam.arm.basis.ancf.elements = 4\nanalysis.static = {}");
+        let mut search = Search::new(runner(&named, 1e-4));
+        let mut judged = judged(&search, Difference::default(), [15.0, 4.0]);
+        judged.round.cells = 0;
+        assert_eq!(search.improve(&judged, Accuracy::new(1e-4)), Err(NAMED.to_owned()));
+        assert!(!search.refine_everywhere());
+    }
+
+    #[test]
+    fn everywhere_means_twice_the_cells_and_a_sixteenth_of_the_tolerance() {
+        let refined = |more: &str, most: usize| {
+            let scene = scene(more);
+            let mut search = Search::new(runner(&scene, 1e-3));
+            search.most = most;
+            (search.refine_everywhere(), search.runner.meshes[0].cells(), search.runner.tolerance)
+        };
+        assert_eq!(refined(STILL, 4096), (true, 8, 6.3e-5));
+        assert_eq!((refined(STILL, 10), refined(STILL, 8)), ((true, 8, 6.3e-5), (false, 4, 6.3e-5)));
+        let named = format!("beam.arm.basis.ancf.elements = 8\n{MOTION}");
+        assert_eq!(refined(&named, 4096), (true, 4, 6.3e-5), "the integrator is open");
+    }
+
+    #[test]
+    fn searches_may_take_thousands_of_cells_or_sixteen_times_the_first() {
+        let still = scene(STILL);
+        assert_eq!(Search::new(runner(&still, 1e-4)).most, 4096);
+        let mut fine = runner(&still, 1e-4);
+        let nodes: Vec<f64> = (0..=300).map(f64::from).collect();
+        fine.meshes = vec![Mesh::of(&nodes)];
+        assert_eq!(Search::new(fine).most, 4800);
+    }
+
+    #[test]
+    fn an_estimate_says_whether_and_until_when_the_accuracy_is_met() {
+        let motion = scene(MOTION);
+        let estimate = |result: f64, records: [f64; 3]| {
+            let search = Search::new(runner(&motion, 1e-4));
+            let errors = Errors { result, ..Errors::default() };
+            let eigenvalues = vec![6.0];
+            let difference =
+                Difference { errors, records: records.into(), eigenvalues, ..Difference::default() };
+            let mut judged = judged(&search, difference, [4.0, 4.0]);
+            let parameter = vec![0.0, 0.5, 1.0];
+            judged.round.results = Trajectory { parameter, ..Trajectory::default() }.into();
+            *search.finished(judged, None).results.run_mut().error.take().expect("an estimate")
+        };
+        let found = estimate(3e-4, [0.0, 1e-4, 3e-4]);
+        assert!(found.met && found.good_until.is_none() && (found.estimated.result - 1e-4).abs() < 1e-19);
+        assert_eq!((found.eigenvalues, found.records[2] * 3.0), (vec![2.0], 3e-4));
+        let found = estimate(6e-4, [0.0, 1e-4, 6e-4]);
+        assert_eq!((found.met, found.good_until), (false, Some(0.5)));
+        assert_eq!(estimate(6e-4, [6e-4, 1e-4, 0.0]).good_until, None, "from the first record on");
+    }
+}
