@@ -85,16 +85,19 @@ impl Polynomial {
         // Between these places the slope is monotonic.
         for to in slope.turns().into_iter().chain([1.0]) {
             let start = std::mem::replace(&mut from, to);
-            let end = sign(to);
-            if *last == 0.0 {
-                *last = sign(start);
+            let (first, end) = (sign(start), sign(to));
+            // At the start of the step, where the slope may jump.
+            if *last * first < 0.0 {
+                found.push(start);
+            }
+            if first != 0.0 {
+                *last = first;
             }
             if end == 0.0 {
                 continue;
             }
-            if *last != 0.0 && end != *last {
-                let turned = |x: f64| sign(x) == end;
-                found.push(if turned(start) { start } else { bisect([start, to], turned) });
+            if *last * end < 0.0 {
+                found.push(bisect([start, to], |x| sign(x) == end));
             }
             *last = end;
         }
@@ -249,6 +252,11 @@ mod tests {
         assert!(turns.len() == 1 && (turns[0] - 0.3).abs() < 1e-9 && last == 1.0, "{turns:?}");
         let falling = Polynomial([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]);
         assert_eq!((falling.turns_back(&mut last), last), (vec![0.0], -1.0));
+        // After a slope that jumps from falling to rising, x − 2x² turns twice.
+        let kinked = Polynomial([0.0, 1.0, -2.0, 0.0, 0.0, 0.0]);
+        let turns = kinked.turns_back(&mut last);
+        assert!(turns.len() == 2 && turns[0] == 0.0 && (turns[1] - 0.25).abs() < 1e-9, "{turns:?}");
+        assert_eq!(last, -1.0);
         let flat = Polynomial([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         assert_eq!((flat.turns_back(&mut last), last), (vec![], -1.0));
         // A flat place without a turn.

@@ -220,3 +220,76 @@ fn turned(pieces: &[Piece], sign: f64, near: f64, memory: &mut Watched) -> Vec<(
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(found: &[(f64, f64)], expected: &[(f64, f64)]) {
+        let close = |(a, b): (&(f64, f64), &(f64, f64))| (a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-9;
+        assert!(
+            found.len() == expected.len() && found.iter().zip(expected).all(close),
+            "{found:?} {expected:?}"
+        );
+    }
+
+    /// x³/3 − x²/2 + 3x/16 rises to 1/48 at ¼ and falls to 0 at ¾, from where it rises again.
+    fn wave() -> Polynomial {
+        Polynomial::hermite([0.0, 1.0 / 48.0], [3.0 / 16.0; 2], None)
+    }
+
+    #[test]
+    fn maxima_and_minima_are_those_of_a_wave() {
+        let pieces = [([0.5, 1.0], wave())];
+        let (high, low) = (1.0 / 48.0, 0.0);
+        for (sign, near_to, expected) in [
+            (1.0, 1e-9, &[(0.625, high)][..]),
+            (-1.0, 1e-9, &[(0.875, low)]),
+            (1.0, 0.02, &[(0.625, high)]),
+            // Waves that are lower than that are none.
+            (1.0, 0.021, &[]),
+            (-1.0, 0.021, &[]),
+        ] {
+            near(&turned(&pieces, sign, near_to, &mut Watched::default()), expected);
+        }
+        // What was falling before has turned at the border, and comes from the value that is
+        // remembered.
+        let mut memory = Watched { slope: -1.0, turned: Some(1.0), ..Watched::default() };
+        near(&turned(&pieces, -1.0, 1e-9, &mut memory), &[(0.5, 0.0), (0.875, low)]);
+        assert_eq!(memory.slope, 1.0);
+        assert!(memory.turned.is_some_and(|value| value.abs() < 1e-9), "{memory:?}");
+        // A line has no turn; two pieces may have one where they meet.
+        let line = |from: f64, to: f64| Polynomial::hermite([from, to], [to - from; 2], None);
+        near(&turned(&[([0.0, 1.0], line(0.0, 1.0))], 1.0, 1e-9, &mut Watched::default()), &[]);
+        let peak = [([0.0, 0.25], line(0.0, 1.0)), ([0.25, 1.0], line(1.0, 0.5))];
+        near(&turned(&peak, 1.0, 1e-9, &mut Watched::default()), &[(0.25, 1.0)]);
+        near(&turned(&peak, -1.0, 1e-9, &mut Watched::default()), &[]);
+    }
+
+    #[test]
+    fn values_are_reached_within_pieces_and_by_jumps() {
+        let line = |from: f64, to: f64| Polynomial::hermite([from, to], [to - from; 2], None);
+        let up = [([0.5, 1.0], line(-1.0, 3.0))];
+        let of = |pieces: &[Piece], value: f64, crossing: Crossing, before: Option<f64>| {
+            let memory = Watched { value: before, ..Watched::default() };
+            reached(pieces, value, crossing, 1e-3, &memory)
+        };
+        near(&of(&up, 1.0, Crossing::Any, None), &[(0.75, 1.0)]);
+        near(&of(&up, 1.0, Crossing::Rising, Some(-1.0)), &[(0.75, 1.0)]);
+        near(&of(&up, 1.0, Crossing::Falling, None), &[]);
+        let down = [([0.0, 1.0], line(3.0, -1.0))];
+        near(&of(&down, 1.0, Crossing::Falling, None), &[(0.5, 1.0)]);
+        near(&of(&down, 1.0, Crossing::Rising, None), &[]);
+        // A force that stood below 1 before, and begins at 3.
+        let above = [([0.0, 1.0], line(3.0, 3.5))];
+        near(&of(&above, 1.0, Crossing::Any, Some(0.5)), &[(0.0, 1.0)]);
+        near(&of(&above, 1.0, Crossing::Rising, Some(0.5)), &[(0.0, 1.0)]);
+        near(&of(&above, 1.0, Crossing::Falling, Some(0.5)), &[]);
+        near(&of(&above, 1.0, Crossing::Any, Some(2.0)), &[]);
+        near(&of(&above, 1.0, Crossing::Any, None), &[]);
+        // From above, and from a value or to one that is nearly reached.
+        near(&of(&above, 4.0, Crossing::Falling, Some(5.0)), &[(0.0, 4.0)]);
+        near(&of(&above, 1.0, Crossing::Any, Some(0.9995)), &[]);
+        near(&of(&above, 2.9995, Crossing::Any, Some(0.5)), &[]);
+    }
+}
