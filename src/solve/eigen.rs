@@ -154,3 +154,103 @@ pub(super) fn round_off(k: &Matrix, shape: &[f64]) -> f64 {
     }
     f64::EPSILON * sum.sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn diagonal(values: [f64; 8]) -> Matrix {
+        let mut matrix = Matrix::zeros(2, 2, true);
+        matrix.add_diagonal(1.0, &values);
+        matrix
+    }
+
+    /// The same of both methods: reciprocals and the squares of the components of their vectors.
+    fn pairs(pencil: &Pencil<'_>, count: usize) -> Result<Vec<(f64, Vec<f64>)>, EigenError> {
+        let squares = |pairs: Pairs| -> Vec<(f64, Vec<f64>)> {
+            let squares = |vector: Vec<f64>| vector.into_iter().map(|x| x * x).collect();
+            pairs.reciprocals.into_iter().zip(pairs.vectors.into_iter().map(squares)).collect()
+        };
+        let dense = dense::largest_reciprocals(pencil, count).map(squares);
+        let lanczos = lanczos::largest_reciprocals(pencil, count).map(squares);
+        match (&dense, &lanczos) {
+            (Ok(a), Ok(b)) => {
+                assert_eq!(a.len(), b.len(), "{a:?} {b:?}");
+                for ((a, u), (b, v)) in a.iter().zip(b) {
+                    assert!((a - b).abs() < 1e-12 && u.iter().zip(v).all(|(u, v)| (u - v).abs() < 1e-12));
+                }
+            }
+            (a, b) => assert_eq!(a, b),
+        }
+        dense
+    }
+
+    const FREE: [bool; 8] = [false; 8];
+
+    /// Of diagonal matrices pairs are the quotients and the axes.
+    #[test]
+    fn pairs_of_diagonal_matrices_are_known() {
+        let a = diagonal([1.0, 2.0, 4.0, 5.0, 8.0, 10.0, 16.0, 20.0]);
+        let b = diagonal([3.0, 14.0, -4.0, 0.0, 40.0, 1.0, 4.0, 0.0]);
+        let pencil = Pencil { a: &a, b: &b, border: &[], fixed: &FREE };
+        let found = pairs(&pencil, 3).unwrap();
+        for ((reciprocal, squares), (value, axis, square)) in
+            found.iter().zip([(7.0, 1, 0.5), (5.0, 4, 0.125), (3.0, 0, 1.0)])
+        {
+            assert!((reciprocal - value).abs() < 1e-12, "{found:?}");
+            for (i, found) in squares.iter().enumerate() {
+                assert!((found - if i == axis { square } else { 0.0 }).abs() < 1e-12, "{squares:?}");
+            }
+        }
+        // Five of eight are positive; the others are no critical loads.
+        assert_eq!(
+            (found.len(), pairs(&pencil, 8).unwrap().len(), pairs(&pencil, 0).unwrap().len()),
+            (3, 5, 0)
+        );
+        // With the second and the fifth coordinate fixed there are three.
+        let fixed = [false, true, false, false, true, false, false, false];
+        let a = diagonal([1.0, 1.0, 4.0, 5.0, 1.0, 10.0, 16.0, 20.0]);
+        let b = diagonal([3.0, 0.0, -4.0, 0.0, 0.0, 1.0, 4.0, 0.0]);
+        let held = Pencil { a: &a, b: &b, border: &[], fixed: &fixed };
+        let reciprocals: Vec<f64> = pairs(&held, 8).unwrap().into_iter().map(|pair| pair.0).collect();
+        assert!(reciprocals.len() == 3 && (reciprocals[0] - 3.0).abs() < 1e-12, "{reciprocals:?}");
+        assert_eq!((pencil.motions(), held.motions()), (8, 6));
+    }
+
+    /// x₀ + x₁ = 0 leaves the mean of both; a row that says it again is one too many.
+    #[test]
+    fn constraint_rows_leave_the_motions_between() {
+        let a = diagonal([1.0; 8]);
+        let b = diagonal([20.0, 40.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let row = vec![(0, 1.0), (1, 1.0)];
+        let pencil = Pencil { a: &a, b: &b, border: std::slice::from_ref(&row), fixed: &FREE };
+        let found = pairs(&pencil, 8).unwrap();
+        assert_eq!((found.len(), pencil.motions()), (2, 7));
+        assert!((found[0].0 - 30.0).abs() < 1e-10 && (found[1].0 - 10.0).abs() < 1e-10, "{found:?}");
+        assert!((found[0].1[0] - 0.5).abs() < 1e-12 && (found[0].1[1] - 0.5).abs() < 1e-12, "{found:?}");
+        let twice = [row.clone(), row.clone()];
+        let pencil = Pencil { border: &twice, ..pencil };
+        let found = dense::largest_reciprocals(&pencil, 8);
+        assert!(matches!(found, Err(EigenError::Singular(Singular { row: 9 }))), "{found:?}");
+    }
+
+    #[test]
+    fn negative_directions_are_counted() {
+        let a = diagonal([1.0, -2.0, 4.0, 5.0, 8.0, -10.0, 16.0, 20.0]);
+        let b = diagonal([1.0; 8]);
+        let pencil = Pencil { a: &a, b: &b, border: &[], fixed: &FREE };
+        let found = pairs(&pencil, 2);
+        assert!(matches!(found, Err(EigenError::Unstable { count: 2 })), "{found:?}");
+        let pencil = Pencil { fixed: &[true; 8], ..pencil };
+        assert!(matches!(largest_reciprocals(&pencil, 2), Err(EigenError::NoMotion)));
+    }
+
+    /// ε √((4·2·2)² + 2 (1·2·3)² + (9·3·3)²) = 83 ε.
+    #[test]
+    fn round_off_adds_up_as_of_independent_entries() {
+        let mut k = diagonal([4.0, 9.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        k.add_at(0, 1, 1.0);
+        let found = round_off(&k, &[2.0, 3.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert!((found / f64::EPSILON - 83.0).abs() < 1e-12, "{found}");
+    }
+}

@@ -200,3 +200,43 @@ fn noise(k: &Matrix, mass: &Matrix) -> f64 {
     };
     along(0).max(along(1))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_displacement_points_up() {
+        let turned = |shape: [f64; 8]| {
+            let mut turned = shape;
+            point_up(&mut turned);
+            if turned != shape {
+                assert_eq!(turned, shape.map(|x| -x));
+            }
+            turned != shape
+        };
+        // Gradients do not count, nor what is as large but for round-off and comes later.
+        assert!(turned([0.0, -3.0, 9.0, 9.0, 2.0, 1.0, 9.0, 9.0]));
+        assert!(turned([1.0, 2.0, 9.0, 9.0, -3.0, 1.0, 9.0, 9.0]));
+        assert!(!turned([0.0, 3.0, -9.0, -9.0, -2.0, 1.0, -9.0, -9.0]));
+        assert!(!turned([3.0, 0.0, 0.0, 0.0, -3.0 - 1e-9, 0.0, 0.0, 0.0]));
+        assert_eq!(slope(&[7.0, 7.0, 0.0, 1.0, 7.0, 7.0, 3.0, -4.0]), 5.0);
+    }
+
+    /// Stiffnesses 3 along x and 4 along y at two nodes of masses 1 and 2: a translation has
+    /// ε √2·3/3 and ε √2·4/3.
+    #[test]
+    fn translations_have_the_round_off_of_the_stiffness() {
+        let (mut k, mut mass) = (Matrix::zeros(2, 2, true), Matrix::zeros(2, 2, true));
+        for (node, m) in [(0, 1.0), (4, 2.0)] {
+            k.add_at(node, node, 3.0);
+            k.add_at(node + 1, node + 1, 4.0);
+            k.add_at(node + 2, node + 2, 1e9);
+            mass.add_at(node, node, m);
+            mass.add_at(node + 1, node + 1, m);
+        }
+        let expected = f64::EPSILON * 2.0_f64.sqrt() * 4.0 / 3.0;
+        assert!((noise(&k, &mass) / expected - 1.0).abs() < 1e-12);
+        assert_eq!(noise(&k, &Matrix::zeros(2, 2, true)), 0.0);
+    }
+}

@@ -123,4 +123,19 @@ mod tests {
         work.add_piece(&mut path, [(0.0, 0.0), (3.0, 9.0), (6.0, 36.0)], HALVINGS);
         assert_eq!((work.value, work.error), (72.0, 36.0));
     }
+
+    /// P grows from 0 to 4 along 2, by 2 for each of λ, and stays: the trapezoids are 4 J and 8 J, and
+    /// each may err by 2² times a twelfth of how much the slope has changed.
+    #[test]
+    fn trapezoids_may_err_by_the_change_of_slope() {
+        let mut work = Work::default();
+        work.add_straight((0.0, 0.0), (2.0, 4.0));
+        assert_eq!(work.value, 4.0);
+        assert!((work.error - 4.0 * 2.0 / 12.0).abs() < 1e-15, "{work:?}");
+        work.add_straight((2.0, 4.0), (4.0, 4.0));
+        assert_eq!(work.value, 12.0);
+        assert!((work.error - 4.0 * (2.0 + 2.0) / 12.0).abs() < 1e-15, "{work:?}");
+        work.add_straight((4.0, 4.0), (4.0, 9.0));
+        assert!(work.value == 12.0 && work.error.is_finite(), "{work:?}");
+    }
 }

@@ -210,4 +210,47 @@ mod tests {
             assert!((again - inverse).amax() < 1e-12, "{s} stages");
         }
     }
+
+    /// What defines a collocation method: ∫₀^{c_i} τᵏ dτ = c_i^{k+1}/(k+1) for all k below the number of
+    /// stages, and the same once more.
+    #[test]
+    fn stages_integrate_powers_once_and_twice() {
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-13;
+        for (tableau, damps) in [
+            (Tableau::gauss(1), false),
+            (Tableau::gauss(2), false),
+            (Tableau::gauss(3), false),
+            (Tableau::radau(2), true),
+            (Tableau::radau(3), true),
+        ] {
+            let (s, c) = (tableau.stages(), &tableau.nodes);
+            assert_eq!(
+                (tableau.damps(), tableau.order),
+                (damps, (2 * s) as f64 - f64::from(u8::from(damps)))
+            );
+            for power in 0..s as i32 {
+                let values = DVector::from_fn(s, |i, _| c[i].powi(power));
+                let (n, m) = (f64::from(power + 1), f64::from(power + 2));
+                let (once, twice) = (&tableau.a * &values, &tableau.a_squared * &values);
+                for i in 0..s {
+                    assert!(close(once[i], c[i].powi(power + 1) / n), "{s} stages, {power}");
+                    // The integral is a power, too, of which there may be one too many.
+                    let exact = power + 1 < s as i32;
+                    assert!(!exact || close(twice[i], c[i].powi(power + 2) / (n * m)), "{s} stages, {power}");
+                }
+                assert!((&tableau.inverse * &once - &values).amax() < 1e-12);
+                assert!((&tableau.inverse_squared * &twice - &values).amax() < 1e-12);
+                // The position at the end is that after two integrations, and h times the velocity that
+                // after one.
+                let end = &tableau.end * &twice;
+                assert!(close(end[0], 1.0 / (n * m)) && close(end[1], 1.0 / n), "{s} stages, {power}: {end}");
+                let sum: f64 = tableau.weights.iter().zip(values.iter()).map(|(b, v)| b * v).sum();
+                assert!(close(sum, 1.0 / n));
+                for x in [-0.3, 0.45, 1.7_f64] {
+                    let sum: f64 = tableau.lagrange(x).iter().zip(values.iter()).map(|(l, v)| l * v).sum();
+                    assert!(close(sum, x.powi(power)), "{s} stages, {power} at {x}");
+                }
+            }
+        }
+    }
 }
