@@ -195,3 +195,45 @@ impl Probe {
         Self { name: name.to_owned(), at }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn model(more: &str) -> Model {
+        let text = "beam.arm = { start = [0, 0], end = [4, 0], axial_stiffness = 1, bending_stiffness = 1 }\n\
+                    beam.rod = { start = [0, 1], end = [4, 1], axial_stiffness = 1, bending_stiffness = 1 }\n\
+                    support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'arm', at = 1, fix = ['y'] }, \
+                    { beam = 'rod', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'arm', at = 2, fix = ['angle'] }]\n\
+                    analysis.static = {}\n";
+        let scene = crate::scene::parse("scene", &format!("{text}{more}\n"));
+        scene.unwrap_or_else(|error| panic!("{error}\n{more}")).model().clone()
+    }
+
+    /// Couples and held directions make curvatures jump; forces and held positions do not.
+    #[test]
+    fn a_beam_has_nodes_where_its_curvature_jumps() {
+        let model = model(
+            "joint = [{ first = { beam = 'arm', at = 3 }, second = { beam = 'rod', at = 2.5 }, type = 'hinge' }]\n\
+             effect.moment = [{ beam = 'rod', at = 1.5, value = 1 }]\n\
+             effect.force = [{ beam = 'rod', at = 3.5, value = [0, 1] }]",
+        );
+        let sorted = |beam: usize| {
+            let mut breaks = model.breaks(beam);
+            breaks.sort_by(f64::total_cmp);
+            breaks
+        };
+        assert_eq!((sorted(0), sorted(1)), (vec![0.0, 2.0, 3.0], vec![0.0, 1.5, 2.5]));
+    }
+
+    #[test]
+    fn one_contact_among_other_parts_is_a_contact() {
+        let contact = "effect.contact = [{ beam = 'arm', stiffness = 1e4, half_plane = { point = [0, -1], normal = [0, 1] } }]";
+        let spring = "effect.spring = [{ beam = 'arm', at = 'end', stiffness = 1 }]";
+        assert!(!model(spring).has_contact() && model(&format!("{spring}\n{contact}")).has_contact());
+        let mut model = model(contact);
+        assert!(!model.stands(0), "nothing stands that no stage has left");
+        model.standing = Some(vec![0, 2]);
+        assert_eq!([0, 1, 2].map(|part| model.stands(part)), [true, false, true]);
+    }
+}

@@ -52,3 +52,16 @@ impl Open {
         !self.integrator && !self.beams.contains(&true)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_open_beam_or_integrator_leaves_something_to_be_chosen() {
+        let closed = |beams: &[bool], integrator: bool| Open { beams: beams.into(), integrator }.is_closed();
+        assert!(closed(&[false, false], false) && closed(&[], false));
+        assert!(!closed(&[false, true], false) && !closed(&[false], true));
+        assert_eq!(Accuracy::default(), Accuracy { result: 1e-4, curvature: None, section_force: None });
+    }
+}

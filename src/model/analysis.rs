@@ -227,3 +227,53 @@ pub enum StepControl {
     /// Steps as long as this relative accuracy allows.
     Tolerance(f64),
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Beam, Discretization, Model, Section};
+
+    #[test]
+    fn integrators_say_what_they_are_and_keep_it_with_another_step() {
+        let step = StepControl::Fixed(0.25);
+        let alpha = |spectral_radius: f64| Integrator::GeneralizedAlpha {
+            step,
+            spectral_radius,
+            newton_tolerance: Integrator::NEWTON_TOLERANCE,
+        };
+        let tolerance = StepControl::Tolerance(1e-5);
+        for (integrator, said) in [
+            (alpha(0.9), "generalised-α (ρ∞ = 0.9), step 0.25 s"),
+            (Integrator::Gauss { stages: 2, step }, "Gauss collocation (2 stages), step 0.25 s"),
+            (Integrator::usual(step), "Radau IIA collocation (3 stages), step 0.25 s"),
+        ] {
+            assert_eq!((integrator.to_string().as_str(), integrator.step_control()), (said, step));
+            let other = integrator.with_step(tolerance);
+            assert_eq!(other.to_string(), said.replace("step 0.25 s", "tolerance 1e-5"));
+            assert_eq!(other.with_step(step), integrator);
+        }
+        // Where one beam of several keeps its length, only methods that damp suit.
+        let soft = Section::new(1.0, 1.0);
+        let rod = Section { axial_stiffness: None, ..soft.clone() };
+        let beam = |section| Beam::line("rod", [0.0, 0.0], [1.0, 0.0], section, Discretization::ancf(1));
+        let extensible = Model { beams: vec![beam(soft.clone())], ..Model::default() };
+        let one = Model { beams: vec![beam(soft), beam(rod)], ..Model::default() };
+        assert!(one.is_inextensible() && !extensible.is_inextensible());
+        let gauss = Integrator::Gauss { stages: 3, step };
+        assert!([alpha(1.0), gauss, alpha(0.99)].iter().all(|method| method.suits(&extensible).is_ok()));
+        assert!([Integrator::usual(step), alpha(0.99)].iter().all(|method| method.suits(&one).is_ok()));
+        assert_eq!(gauss.suits(&one), Err(Undamped { integrator: gauss }));
+        assert_eq!(alpha(1.0).suits(&one), Err(Undamped { integrator: alpha(1.0) }));
+    }
+
+    #[test]
+    fn analyses_have_the_names_of_their_keys() {
+        let analyses = [
+            Analysis::Static(Static::default()),
+            Analysis::Buckling(Buckling { count: 1 }),
+            Analysis::Modal(Modal { count: 1, about: About::Reference }),
+            Analysis::Stages,
+        ];
+        assert_eq!(analyses.map(|analysis| analysis.kind()), ["static", "buckling", "modal", "stages"]);
+    }
+}

@@ -111,3 +111,26 @@ impl Beam {
         Self::new(name, Centreline::Line { start, end }, section, discretization)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Membrane locking is of elements with both stiffnesses.
+    #[test]
+    fn only_beams_that_may_lock_have_fewer_points() {
+        let full = Section::new(1.0, 1.0);
+        let string = Section { bending_stiffness: None, ..full.clone() };
+        let rod = Section { axial_stiffness: None, ..full.clone() };
+        let ancf = Discretization::ancf(3);
+        let usual = |section: &Section| GaussPoints::usual(&ancf, section);
+        let [few, many] = [ANCF_GAUSS_POINTS, STRING_GAUSS_POINTS];
+        assert_eq!([usual(&full), usual(&string), usual(&rod)], [few, many, many]);
+        let open = [&full, &string].map(|section| GaussPoints::usual(&Discretization::Open, section));
+        assert_eq!(open, [few, many]);
+        let meshfree = Discretization::rpim(7);
+        let found = [&full, &string].map(|section| GaussPoints::usual(&meshfree, section));
+        assert_eq!(found, [RPIM_GAUSS_POINTS; 2]);
+        assert_eq!((ancf.nodes().count(), meshfree.nodes().count()), (4, 7));
+    }
+}

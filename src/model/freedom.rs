@@ -153,3 +153,76 @@ fn subtract(factor: f64, from: &[f64], row: &mut [f64]) {
         row.iter_mut().zip(from).for_each(|(value, other)| *value -= factor * other);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Beam, Discretization, Fixed, Section, Support};
+
+    /// Beams of unit length along x, one above the other, and what holds them.
+    fn model(beams: usize, supports: Vec<Support>, joints: Vec<Joint>) -> Model {
+        let beam = |i: usize| {
+            let y = i as f64;
+            Beam::line("rod", [0.0, y], [1.0, y], Section::new(1.0, 1.0), Discretization::ancf(1))
+        };
+        Model { beams: (0..beams).map(beam).collect(), supports, joints, ..Model::default() }
+    }
+
+    fn position(at: Place) -> [f64; 2] {
+        [at.s, at.beam as f64]
+    }
+
+    /// The motions left with displacements in lengths of 2.
+    fn left(model: &Model) -> Vec<Motion> {
+        Freedom::new(model, 2.0, position).motions()
+    }
+
+    fn at(beam: usize, s: f64) -> Place {
+        Place { beam, s }
+    }
+
+    #[test]
+    fn supports_leave_what_they_do_not_hold() {
+        let every = vec![vec![[1.0, 0.0, 0.0]], vec![[0.0, 1.0, 0.0]], vec![[0.0, 0.0, 1.0]]];
+        assert_eq!(left(&model(1, vec![], vec![])), every);
+        assert_eq!(left(&model(1, vec![Support::clamp(at(0, 0.5))], vec![])), [] as [Motion; 0]);
+        assert_eq!(left(&model(1, vec![Support::pin(at(0, 0.0))], vec![])), [[[0.0, 0.0, 1.0]]]);
+        // About its end a beam turns with its start going down by ω times 1, in units of 2.
+        assert_eq!(left(&model(1, vec![Support::pin(at(0, 1.0))], vec![])), [[[0.0, -0.5, 1.0]]]);
+        // Along y, a rod that is held along x at two heights, by its turn, does not turn.
+        let only = |x, y| Fixed { x, y, ..Fixed::default() };
+        let held = |s, fix| Support { at: at(0, s), fix, ..Support::default() };
+        assert_eq!(left(&model(1, vec![held(0.0, only(true, false))], vec![])).len(), 2);
+        let two = vec![held(0.0, only(false, true)), held(1.0, only(false, true))];
+        assert_eq!(left(&model(1, two, vec![])), [[[1.0, 0.0, 0.0]]]);
+        // Twice the same says no more than once.
+        let same = vec![held(0.5, only(false, true)), held(0.5, only(false, true))];
+        assert_eq!(left(&model(1, same, vec![])).len(), 2);
+    }
+
+    #[test]
+    fn joints_make_beams_move_together() {
+        let [first, second] = [at(0, 1.0), at(1, 0.0)];
+        assert_eq!(left(&model(2, vec![], vec![Joint::Weld { first, second }])).len(), 3);
+        let clamp = || vec![Support::clamp(at(0, 0.0))];
+        assert_eq!(left(&model(2, clamp(), vec![Joint::Weld { first, second }])), [] as [Motion; 0]);
+        let hinge = Joint::Hinge { first, second };
+        assert_eq!(left(&model(2, clamp(), vec![hinge])), [[[0.0; 3], [0.0, 0.0, 1.0]]]);
+        // The first turns about its start by 1, which lifts its end by 1, in units of 2, and with it the
+        // start of the second, which keeps its direction.
+        let both = left(&model(2, vec![Support::pin(at(0, 0.0))], vec![hinge]));
+        assert_eq!(both.len(), 2);
+        for [[tx, ty, turn], [ux, uy, _]] in both.into_iter().map(|motion| [motion[0], motion[1]]) {
+            // Seen from the first's start, its end is at (1, 0), in units of 2 (½, 0).
+            assert_eq!([tx, ty, ux, uy], [0.0, 0.0, 0.0, 0.5 * turn]);
+        }
+        // Along a slope of 4 to 3.
+        let slider = Joint::Slider { at: at(0, 0.0), along: [0.6, 0.8] };
+        let mut slides = Freedom::new(&model(1, vec![], vec![slider]), 2.0, position);
+        slides.fix_direction(0);
+        let [[x, y, turn]] = slides.motions()[0][..] else { panic!("{slides:?}") };
+        assert!(slides.motions().len() == 1 && turn == 0.0 && x != 0.0, "{slides:?}");
+        assert!((y / x - 4.0 / 3.0).abs() < 1e-15, "{slides:?}");
+        assert_eq!(slides.origin(0), [0.0, 0.0]);
+    }
+}

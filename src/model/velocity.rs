@@ -57,3 +57,25 @@ impl InitialVelocity {
         [vx - turn * (y - cy) + wx, vy + turn * (x - cx) + wy, dwx - turn * dy, dwy + turn * dx]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn velocities_and_their_slopes_are_those_of_a_turn_and_of_profiles() {
+        let profile = Profile::Polynomial(vec![2.0, -3.0, 0.5]);
+        assert_eq!(profile.at(4.0), [2.0 - 12.0 + 8.0, -3.0 + 4.0]);
+        assert_eq!((profile.at(0.0), Profile::None.at(4.0)), ([2.0, -3.0], [0.0, 0.0]));
+        let velocity = InitialVelocity {
+            translation: [0.5, 0.25],
+            rotation: 2.0,
+            center: [1.0, 3.0],
+            along: [Profile::Polynomial(vec![0.0, 8.0]), profile],
+            ..InitialVelocity::default()
+        };
+        // ω × (r − c) with r − c = (4, −1), and ω × r' with r' = (0.6, 0.8).
+        let found = velocity.at(4.0, [5.0, 2.0], [0.6, 0.8]);
+        assert_eq!(found, [0.5 + 2.0 + 32.0, 0.25 + 8.0 - 2.0, 8.0 - 1.6, 1.0 + 1.2]);
+    }
+}
