@@ -177,3 +177,35 @@ pub struct Seconds {
     /// Evaluating the states (probes, shapes, frames), and writing the files up to the summary.
     pub write: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_results_has_states_and_only_modes_have_eigenvalues() {
+        let states = || Trajectory { parameter: vec![0.25], ..Trajectory::default() };
+        let shape = |beam: &str| vec![ModeShape { beam: beam.into(), ..ModeShape::default() }];
+        let vibration = |frequency: f64, beam: &str| Vibration { frequency, shape: shape(beam) };
+        let load = |load_factor: f64, beam: &str| BucklingMode { load_factor, shape: shape(beam) };
+        let modes = vec![vibration(2.0, "a"), vibration(3.0, "b")];
+        let loads = vec![load(4.0, "c"), load(5.0, "d")];
+        for (results, values, beams) in [
+            (Results::from(states()), vec![], vec![]),
+            (Vibrations { equilibrium: states(), modes }.into(), vec![2.0, 3.0], vec!["a", "b"]),
+            (CriticalLoads { unloaded: states(), modes: loads }.into(), vec![4.0, 5.0], vec!["c", "d"]),
+        ] {
+            let found: Vec<&str> = results.mode_shapes().iter().map(|shape| shape[0].beam.as_str()).collect();
+            assert_eq!((results.eigenvalues(), found), (values, beams));
+            assert_eq!(results.states().parameter, [0.25]);
+            assert_eq!(results.into_states().parameter, [0.25]);
+        }
+    }
+
+    #[test]
+    fn events_of_every_kind_have_a_time() {
+        let probe = Event::Probe { time: 0.5, probe: "tip".into(), quantity: "x", value: 3.0, turns: None };
+        let contact = Event::Contact { time: 0.75, contact: "arm.1".into(), touches: true, impulse: None };
+        assert_eq!((probe.time(), contact.time()), (0.5, 0.75));
+    }
+}

@@ -156,8 +156,34 @@ mod tests {
             ErrorEstimate { reason: Some("it swings".into()), good_until: Some(1.5), ..estimate(2e-3, 1e-2) };
         let said = late.missed(AnalysisKind::Dynamic).unwrap();
         assert!(said.ends_with(": it swings; good to 1e-3 until 1.5000 s"), "{said}");
+        let exact = estimate(1e-3, 1e-2).missed(AnalysisKind::Static);
+        assert_eq!(exact.as_deref(), Some(first), "of errors that are as large as is wanted nothing is said");
+        let early = ErrorEstimate { good_until: Some(0.5), ..estimate(2e-3, 1e-2) };
+        let said = early.missed(AnalysisKind::Static).unwrap();
+        assert!(said.ends_with("; good to 1e-3 until load factor 0.5000"), "{said}");
+        for analysis in [AnalysisKind::Modal, AnalysisKind::Buckling] {
+            let said = estimate(2e-3, 1e-2).missed(analysis).unwrap();
+            assert!(said.starts_with("the wanted accuracy of 1e-3, relative is not met; "), "{said}");
+        }
+        let forces = |section_force| Errors { section_force: Some(section_force), ..Errors::default() };
+        let of_forces =
+            ErrorEstimate { wanted: Some(forces(1e-2)), estimated: forces(0.02), ..estimate(0.0, 0.0) };
+        let said = of_forces.missed(AnalysisKind::Static).unwrap();
+        assert!(said.ends_with("; section forces may err by 2.0e-2 where 1e-2 is wanted"), "{said}");
         let met = ErrorEstimate { met: true, ..estimate(2e-3, 1e-2) };
         assert_eq!(met.missed(AnalysisKind::Static), None);
         assert_eq!(ErrorEstimate::default().missed(AnalysisKind::Static), None);
+    }
+
+    #[test]
+    fn the_last_errors_of_a_probe_are_found_by_its_name() {
+        let errors = |name: &str, x: f64| ProbeErrors {
+            name: name.into(),
+            samples: vec![ProbeSample::default(), ProbeSample { x, ..ProbeSample::default() }],
+        };
+        let probes = vec![errors("middle", 1.0), errors("tip", 2.0)];
+        let estimate = ErrorEstimate { probes, ..ErrorEstimate::default() };
+        assert_eq!(estimate.last_of("tip").map(|sample| sample.x), Some(2.0));
+        assert_eq!(estimate.last_of("elbow"), None);
     }
 }

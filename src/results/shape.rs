@@ -101,3 +101,35 @@ pub struct Shape {
     /// Positions of the nodes \[m\].
     pub nodes: Vec<[f64; 2]>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On the left of a beam that goes up is the side of smaller x.
+    #[test]
+    fn places_beside_a_beam_are_at_right_angles_to_it() {
+        let (up, x, y) = (std::f64::consts::FRAC_PI_2, vec![7.0, 3.0, 1.0], vec![7.0, 4.0, 2.0]);
+        let shape = Shape { angle: vec![0.3, up, 0.0], x, y, ..Shape::default() };
+        for (point, distance, expected) in
+            [(1, 0.5, [2.5, 4.0]), (1, -0.5, [3.5, 4.0]), (2, 0.5, [1.0, 2.5]), (2, -2.0, [1.0, 0.0])]
+        {
+            let [x, y] = shape.beside(point, distance);
+            assert!((x - expected[0]).hypot(y - expected[1]) < 1e-15, "{x} {y} {expected:?}");
+        }
+        let slope = Shape { angle: vec![0.8_f64.atan2(0.6)], x: vec![1.0], y: vec![2.0], ..Shape::default() };
+        let [x, y] = slope.beside(0, 10.0);
+        assert!((x + 7.0).hypot(y - 8.0) < 1e-14, "{x} {y}");
+    }
+
+    #[test]
+    fn the_largest_stress_is_found_in_any_layer_on_any_face() {
+        let layer = |bottom: [f64; 2], top: [f64; 2]| LayerStress { bottom: bottom.into(), top: top.into() };
+        let stress = vec![layer([1.0, -2.0], [3.0, 4.0]), layer([5.0, -9.0], [6.0, 8.0])];
+        let shape = Shape { beam: "arm".into(), s: vec![0.0, 0.5], stress, ..Shape::default() };
+        let largest = LargestStress { value: -9.0, beam: "arm".into(), s: 0.5, layer: 2, face: "bottom" };
+        assert_eq!(shape.largest_stress(), Some(largest));
+        assert_eq!(shape.face_stresses(), Some([&[1.0, -2.0][..], &[6.0, 8.0][..]]));
+        assert_eq!((Shape::default().largest_stress(), Shape::default().face_stresses()), (None, None));
+    }
+}
