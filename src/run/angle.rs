@@ -28,3 +28,48 @@ pub(super) fn turn(part: &DiscretizedBeam, s: f64, before: &[f64], now: &[f64]) 
         folded[target..still].iter().rev().fold(folded[still], follow)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::Needs;
+    use crate::model::{Beam, Discretization, Model, Section, Support};
+    use crate::system::System;
+
+    /// Nodes that are turned by 1.5 rad more from each to the next, so that the last stands at 6 rad:
+    /// about the first, which is still, and about the last, which is.
+    #[test]
+    fn turns_are_followed_from_the_node_that_is_still() {
+        let beam = |y: f64| {
+            let section = Section::new(1.0, 1.0);
+            Beam::line("rod", [0.0, y], [1.0, y], section, Discretization::ancf(4))
+        };
+        let supports = [0, 1].map(|beam| Support::clamp(crate::model::Place { beam, s: 0.0 })).into();
+        let model = Model { beams: vec![beam(0.0), beam(1.0)], supports, ..Model::default() };
+        let system = System::build(&model, Needs::default()).unwrap();
+        let turned = |start: f64, each: f64| {
+            let mut q = system.reference().to_vec();
+            for (node, q) in q[20..].chunks_exact_mut(4).enumerate() {
+                let (sine, cosine) = (start + node as f64 * each).sin_cos();
+                (q[2], q[3]) = (cosine, sine);
+            }
+            q
+        };
+        let still = turned(0.0, 0.0);
+        for (start, each, s, expected) in [
+            (0.0, 1.5, 1.0, 6.0),
+            (0.0, -1.5, 1.0, -6.0),
+            (-6.0, 1.5, 0.0, -6.0),
+            (-6.0, 1.5, 0.3, -4.5),
+            (-3.0, 1.5, 1.0, 3.0),
+            (-3.0, 1.5, 0.0, -3.0),
+            (0.25, 0.0, 0.6, 0.25),
+        ] {
+            let now = turned(start, each);
+            let found = turn(&system.beams()[1], s, &still, &now);
+            assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
+            let back = turn(&system.beams()[1], s, &now, &still);
+            assert!((back + expected).abs() < 1e-12, "{back} instead of {}", -expected);
+        }
+    }
+}

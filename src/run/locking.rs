@@ -236,6 +236,115 @@ impl LockingBeam {
 mod tests {
     use super::*;
 
+    use crate::assembly::Needs;
+
+    /// A beam of 2 m in one cell with EA = 3 N and EI = 5 N m², behind another one.
+    fn watched() -> (Locking, Vec<f64>) {
+        let beam = |name: &str, y: u32, cells: u32| {
+            format!(
+                "beam.{name} = {{ start = [0, {y}], end = [2, {y}], axial_stiffness = 3, bending_stiffness = 5, \
+                 basis.ancf = {{ elements = {cells}, gauss_points = {{ stretch = 5, bend = 3 }} }} }}\n"
+            )
+        };
+        let held =
+            |name: &str| format!("[[support]]\nbeam = '{name}'\nat = 'start'\nfix = ['x', 'y', 'angle']\n");
+        let beams = [beam("other", 0, 2), beam("arm", 1, 1)].concat();
+        let text = format!("{}\nanalysis.static = {{}}\n{}{}", beams, held("other"), held("arm"));
+        let scene = crate::scene::parse("scene", &text);
+        let model = scene.unwrap_or_else(|error| panic!("{error}\n{text}")).model().clone();
+        let system = System::build(&model, Needs::default()).unwrap();
+        (Locking::new(&model, &system).unwrap(), system.reference().to_vec())
+    }
+
+    /// Energies of the second beam with its two nodes at these coordinates.
+    fn energies(nodes: [[f64; 4]; 2]) -> [f64; 3] {
+        let (mut locking, mut q) = watched();
+        assert_eq!(locking.beams.len(), 2);
+        let first = q.len() - 8;
+        q[first..].copy_from_slice(nodes.as_flattened());
+        locking.see(&q);
+        locking.beams[1].seen[0]
+    }
+
+    /// A strain that grows with the square of s: no linear one comes nearer to s² along a length L than
+    /// by L⁵/180 in the square.
+    #[test]
+    fn energies_are_the_integrals_along_a_cell() {
+        let near = |found: [f64; 3], expected: [f64; 3], within: f64| {
+            let close = found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= within);
+            assert!(close, "{found:?} instead of {expected:?}");
+        };
+        // x = s + a s³ with ε = 3a s², and x = s + a s² with ε = 2a s.
+        let a = 0.01_f64;
+        let cubic = [[0.0, 1.0, 1.0, 0.0], [2.0 + 8.0 * a, 1.0, 1.0 + 12.0 * a, 0.0]];
+        let squares = 9.0 * a * a * 32.0;
+        near(energies(cubic), [0.0, 1.5 * squares / 5.0, 1.5 * squares / 180.0], 1e-16);
+        let square = [[0.0, 1.0, 1.0, 0.0], [2.0 + 4.0 * a, 1.0, 1.0 + 4.0 * a, 0.0]];
+        near(energies(square), [0.0, 1.5 * 4.0 * a * a * 8.0 / 3.0, 0.0], 1e-16);
+        // y = b s² with κ = 2b and ε = 2b² s², but for higher orders of b s.
+        let b = 1e-3_f64;
+        let bent = [[0.0, 1.0, 1.0, 0.0], [2.0, 1.0 + 4.0 * b, 1.0, 4.0 * b]];
+        let [bend, stretch, locked] = energies(bent);
+        assert!((bend / (2.5 * 4.0 * b * b * 2.0) - 1.0).abs() < 1e-4, "{bend}");
+        let squares = 1.5 * 4.0 * b.powi(4) * 32.0;
+        assert!(
+            (stretch / (squares / 5.0) - 1.0).abs() < 1e-4 && (locked / (squares / 180.0) - 1.0).abs() < 1e-4
+        );
+    }
+
+    /// The worst of the states that are bent by a tenth of the most at least, and where what is locked
+    /// is more than a thousandth of all energy.
+    #[test]
+    fn the_worst_state_is_told_of_those_that_matter() {
+        let (mut locking, _) = watched();
+        let told = |locking: &mut Locking, seen: &[[f64; 3]]| {
+            locking.beams[1].seen = seen.into();
+            locking.warnings().next()
+        };
+        for (seen, percent) in [
+            (&[[2.0, 1.0, 0.0101]][..], Some("0.5 %")),
+            (&[[2.0, 1.0, 0.0099]], None),
+            (&[[2.0, 1.0, 0.02], [1.0, 1.0, 0.04], [1.5, 1.0, 0.03]], Some("4.0 %")),
+            (&[[2.0, 1.0, 0.0], [0.19, 0.1, 0.1]], None),
+            (&[[2.0, 1.0, 0.0], [0.21, 0.1, 0.1]], Some("47.6 %")),
+            (&[[2.0, 28.1, 0.03]], None),
+            (&[[2.0, 27.9, 0.03]], Some("1.5 %")),
+        ] {
+            let found = told(&mut locking, seen);
+            assert_eq!(found.is_some(), percent.is_some(), "{seen:?}: {found:?}");
+            if let (Some(found), Some(percent)) = (found, percent) {
+                let part = format!("takes {percent} of the energy of bending");
+                assert!(found.contains(&part) && found.contains("5 points a cell"), "{found}");
+            }
+        }
+        assert_eq!(told(&mut locking, &[]), None);
+    }
+
+    /// Section forces of 2, 4 and 6 N over 1 m and 2 m of EA = 4 N: (½·20/2 + 2·½·52/2)/4 J.
+    #[test]
+    fn strings_are_told_whose_stretch_no_section_force_explains() {
+        let string = |stretch: f64| LockingBeam {
+            axial_stiffness: Along::Constant(4.0),
+            bending_stiffness: None,
+            seen: vec![[0.0, 1e9, 0.0], [0.0, stretch, 0.0]],
+            ..watched().0.beams.remove(1)
+        };
+        let shape = Shape {
+            beam: "arm".into(),
+            s: vec![0.0, 1.0, 3.0],
+            axial_force: vec![2.0, 4.0, 6.0],
+            ..Shape::default()
+        };
+        let told = |stretch: f64, scale: f64| {
+            Locking { beams: vec![string(stretch)] }.jammed(std::slice::from_ref(&shape), scale).next()
+        };
+        assert_eq!(told(77.4, 0.0), None);
+        let said = told(77.6, 0.0).unwrap();
+        assert!(said.contains("takes 7.8e1 J") && said.contains("account for 7.8e0 J"), "{said}");
+        // Where it matters against the work of the loads, of which it is half a percent.
+        assert_eq!((told(77.6, 15_500.0).is_some(), told(77.6, 15_540.0)), (true, None));
+    }
+
     /// ½ EA L ε² of ε = 10⁻⁹ is 3·10⁻¹⁴ J for 2 m of 3·10⁴ N: what stores less than that, and has
     /// no section force at all, is strained by round-off.
     #[test]

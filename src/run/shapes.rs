@@ -55,8 +55,6 @@ pub fn shapes_at(
     };
     let after = after.min(known.len() - 1);
     let before = after.saturating_sub(1);
-    let width = known[after] - known[before];
-    let share = if width == 0.0 { 1.0 } else { ((parameter - known[before]) / width).clamp(0.0, 1.0) };
 
     let (model, system) = match &kept.taken_up {
         Some(taken_up) => (&*taken_up.model, start::again(taken_up, analysis, cache)?),
@@ -70,14 +68,13 @@ pub fn shapes_at(
         acting(&system, known[record], state).ok_or_else(unbalanced)
     };
     // Where the parameter is that of a record, the other one does not matter.
-    if (known[after] - parameter).abs() <= slack || share == 1.0 {
-        let (q, actions) = of(after)?;
-        return Ok(sampler.loaded(&q, &actions));
+    for record in [after, before] {
+        if (known[record] - parameter).abs() <= slack {
+            let (q, actions) = of(record)?;
+            return Ok(sampler.loaded(&q, &actions));
+        }
     }
-    if share == 0.0 || (known[before] - parameter).abs() <= slack {
-        let (q, actions) = of(before)?;
-        return Ok(sampler.loaded(&q, &actions));
-    }
+    let share = (parameter - known[before]) / (known[after] - known[before]);
     let [(q, actions), (next_q, next_actions)] = [of(before)?, of(after)?];
     let jumps = |beam: usize, length: f64| {
         let mut jumps = actions[beam].jumps(length);
