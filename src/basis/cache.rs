@@ -147,4 +147,23 @@ mod tests {
         }
         assert!(basis.points(&[2.5], &[0]).is_err() && basis.points(&[2.5], &[0]).is_err());
     }
+
+    /// The table that was computed first goes first.
+    #[test]
+    fn tables_make_room_for_new_ones() {
+        let tables = Tables::default();
+        let computed = std::cell::Cell::new(0);
+        let get = |s: usize| {
+            let compute = || {
+                computed.set(computed.get() + 1);
+                Ok(BasisTable { width: s, ..BasisTable::default() })
+            };
+            assert_eq!(tables.get(Request::Points(vec![s as f64], vec![0]), compute).unwrap().width, s);
+        };
+        (0..=TABLES).for_each(get);
+        (1..=TABLES).for_each(get);
+        assert_eq!(computed.get(), TABLES + 1, "all but the first were known");
+        get(0);
+        assert_eq!(computed.get(), TABLES + 2);
+    }
 }

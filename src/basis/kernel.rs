@@ -279,7 +279,26 @@ mod tests {
             assert_eq!(parameter(Kernel::ThinPlateSpline { exponent: bad }), "exponent");
             assert_eq!(parameter(Kernel::Wendland { radius: bad }), "radius");
         }
+        for q in [64.5, -64.5] {
+            assert_eq!(parameter(Kernel::Multiquadric { q, shape: 1.0 }), "q");
+        }
+        for exponent in [3.0, 64.5] {
+            assert_eq!(parameter(Kernel::ThinPlateSpline { exponent }), "exponent");
+        }
+        let limits =
+            [Kernel::Multiquadric { q: -64.0, shape: 1.0 }, Kernel::ThinPlateSpline { exponent: 64.0 }];
+        assert!(limits.iter().all(|kernel| check(kernel, 1.0).is_ok()));
         assert_eq!(parameter(Kernel::Wendland { radius: 0.9 }), "radius");
+        assert_eq!(parameter(Kernel::Wendland { radius: 1.0 }), "radius");
+        // What is proposed is legal.
+        for (kernel, widest, proposal) in [
+            (Kernel::Multiquadric { q: 2.0, shape: 1.0 }, 1.0, "try 2.03"),
+            (Kernel::Multiquadric { q: 0.0, shape: 1.0 }, 1.0, "try 0.5"),
+            (Kernel::Wendland { radius: 1.0 }, 1.5, "try 5.0"),
+        ] {
+            let told = check(&kernel, widest).unwrap_err().to_string();
+            assert!(told.ends_with(proposal), "{told}");
+        }
         assert!(KERNELS.iter().all(|kernel| check(kernel, 1.0).is_ok()));
     }
 }

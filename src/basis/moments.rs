@@ -298,3 +298,95 @@ impl<'a, A: Arithmetic> System<'a, A> {
         defect
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Kernel;
+    use super::super::double_double::DoubleDouble;
+    use super::*;
+    use nalgebra::DMatrix;
+
+    fn interpolation(terms: usize) -> Interpolation {
+        Interpolation {
+            kernel: Kernel::Multiquadric { q: 1.03, shape: 1.5 },
+            terms,
+            side_condition: SideCondition::Plus,
+            length: 3.0,
+            spacings: 2,
+        }
+    }
+
+    /// Rows that miss 1 and s − s_left by what is worked out by hand.
+    #[test]
+    fn defects_of_a_row_are_relative_to_its_terms() {
+        let (one, both) = (interpolation(1), interpolation(2));
+        let place = Place { nodes: &[0.0, 1.0, 3.0], left: 1 };
+        let [of_one, of_both] = [&one, &both].map(|of| System::new(&DoubleDouble, of, place));
+        // Values add up to 1¼, as do their sizes, beside 1; moments and slopes to −¼ + ¼ + 2 − 1, which is
+        // half of the cell.
+        let row = [0.25, 0.0, 0.0, 0.25, 1.0, -1.0];
+        for of in [&of_one, &of_both] {
+            assert!((of.reproduction(&row, 0.5, 0) - 0.25 / 2.25).abs() < 1e-15);
+        }
+        let tilted = [0.0, 2.0, 0.0, 0.0, 1.0, 0.0];
+        // 2 + 2 instead of 1, of terms 4 beside 2.
+        assert!((of_both.reproduction(&tilted, 0.5, 0) - 3.0 / 6.0).abs() < 1e-15);
+        assert_eq!(of_one.reproduction(&tilted, 0.5, 0), 0.0);
+        // First derivatives add up to nothing, and those of s to one; sizes beside 1/h = ½ and 1.
+        let slopes = [0.0, 0.0, 0.5, 0.0, 0.0, 1.0];
+        assert!((of_one.reproduction(&slopes, 0.5, 1) - 0.5 / 1.0).abs() < 1e-15);
+        let twice = [-0.5, 0.0, 0.0, 0.0, 0.5, 0.5];
+        // −½·(−1) + ½·2 + ½ instead of 1, of terms 2 beside 1.
+        assert!((of_both.reproduction(&twice, 0.5, 1) - 1.0 / 3.0).abs() < 1e-15);
+        // Second derivatives of both are zero; sizes beside ¼ and ½.
+        let second = [0.0, 0.0, 0.25, 0.0, 0.0, 0.0];
+        assert!((of_one.reproduction(&second, 0.5, 2) - 0.25 / 0.5).abs() < 1e-15);
+        let second = [0.0, 0.25, 0.0, 0.0, 0.0, 0.0];
+        assert!((of_both.reproduction(&second, 0.5, 2) - 0.25 / 0.75).abs() < 1e-15);
+    }
+
+    /// In a cell of 2 m slopes count half, and derivatives twice.
+    #[test]
+    fn defects_at_the_ends_of_a_cell_have_no_dimension() {
+        let both = interpolation(2);
+        let system = System::new(&DoubleDouble, &both, Place { nodes: &[0.0, 1.0, 3.0], left: 1 });
+        let unit = |own: usize, other: usize, by: f64| {
+            let mut row = [0.0; 6];
+            row[own] = 1.0;
+            row[other] += by;
+            row
+        };
+        for (xi, order, own) in [(0.0, 0, 2), (1.0, 0, 4), (0.0, 1, 3), (1.0, 1, 5)] {
+            for other in 0..6 {
+                let found = system.kronecker(&unit(own, other, -0.125), xi, order);
+                let expected = 0.125 * 2.0_f64.powi(order as i32) * if other % 2 == 0 { 1.0 } else { 0.5 };
+                assert_eq!(found, expected, "{xi} {order} {other}");
+            }
+        }
+    }
+
+    /// By the inverse that nalgebra finds, in doubles.
+    #[test]
+    fn conditions_are_those_of_the_matrix() {
+        for (terms, side_condition) in [(1, SideCondition::Plus), (3, SideCondition::Minus)] {
+            let of = Interpolation { side_condition, ..interpolation(terms) };
+            let system = System::new(&DoubleDouble, &of, Place { nodes: &[0.0, 1.0, 3.0], left: 1 });
+            let n = system.size();
+            assert_eq!(n, 6 + terms);
+            let entries = system.transposed_moments();
+            let matrix = DMatrix::from_fn(n, n, |i, j| DoubleDouble.nearest(&entries[i * n + j]));
+            let norm = |matrix: &DMatrix<f64>| {
+                matrix.row_iter().map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max)
+            };
+            let inverse = matrix.clone().try_inverse().expect("a regular matrix");
+            let expected = norm(&matrix).log2() + norm(&inverse).log2();
+            let magnitudes: Vec<f64> = entries.iter().map(|x| DoubleDouble.scaled_magnitude(x, 0)).collect();
+            let lu = Lu::new(&DoubleDouble, n, entries.clone()).expect("a regular matrix");
+            let quality = system.quality(&lu, &entries, &magnitudes).expect("finite numbers");
+            assert!((quality.log2_condition - expected).abs() < 1e-6, "{quality:?} {expected}");
+            // 106 bits less those that the condition takes, with what is allowed beyond.
+            assert!(quality.error.log2() < expected - 100.0 + SAFETY.log2(), "{quality:?}");
+            assert!(quality.kronecker < 1e-15 && quality.reproduction < 1e-15, "{quality:?}");
+        }
+    }
+}

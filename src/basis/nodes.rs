@@ -209,6 +209,15 @@ mod tests {
         for error in [-1e-15, 0.0, 1e-15] {
             assert_eq!(meet(uniform(4), false, &[0.5 + error]).1, [1], "{error}");
         }
+        // Ten cells before the break stay ten, whatever its round-off is.
+        for error in [-1e-15, 0.0, 1e-15] {
+            let breaks = [10.0 / 13.0 + error, 11.6 / 13.0];
+            assert_eq!(meet(uniform(14), false, &breaks).1, [10, 12], "{error}");
+        }
+        // The places of given nodes that are moved: within a tenth of the spacing, ends never.
+        assert_eq!(given(&[0.0, 0.5, 1.0], &[0.549]), (vec![0.0, 0.549, 1.0], vec![1]));
+        assert_eq!(given(&[0.0, 0.5, 1.0], &[0.551]), (vec![0.0, 0.5, 0.551, 1.0], vec![2]));
+        assert_eq!(given(&[0.0, 0.5, 1.0], &[0.01]), (vec![0.0, 0.01, 0.5, 1.0], vec![1]));
         assert_eq!(meet(uniform(3), false, &[0.3, 0.6]), (vec![0.0, 0.3, 0.5, 0.6, 1.0], vec![1, 3]));
         assert_eq!(given(&[0.0, 0.5, 1.0], &[0.3]), (vec![0.0, 0.3, 0.5, 1.0], vec![1]));
         assert_eq!(given(&[0.0, 0.5, 1.0], &[0.49, 0.501]), (vec![0.0, 0.49, 0.501, 1.0], vec![1, 2]));

@@ -109,3 +109,58 @@ impl BasisTable {
             + size_of_val(self.orders.as_slice())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Cells with two points each, of as many blocks as there are numbers.
+    fn table(cells: &[(u32, u32)]) -> BasisTable {
+        let cells: Vec<Cell> = cells.iter().map(|&(first, block)| Cell { first, block }).collect();
+        let blocks = cells.iter().map(|cell| cell.block + 1).max().unwrap_or(0);
+        BasisTable {
+            width: 4,
+            orders: vec![0, 2, 1],
+            points_per_cell: 2,
+            concentrated: false,
+            s: (0..2 * cells.len()).map(|i| i as f64).collect(),
+            weights: (0..2 * blocks).map(f64::from).collect(),
+            rows: (0..2 * 12 * blocks).map(f64::from).collect(),
+            cells,
+        }
+    }
+
+    #[test]
+    fn blocks_are_the_weights_and_rows_of_a_cell() {
+        let table = table(&[(0, 0), (2, 1), (4, 1)]);
+        assert_eq!((table.row_stride(), table.blocks(), table.points()), (12, 2, 6));
+        let (weights, rows) = table.block(table.cells[2]);
+        assert_eq!((weights, rows.len(), rows[0], rows[23]), (&[2.0, 3.0][..], 24, 24.0, 47.0));
+        // Three cells of 8 bytes, 4 weights, 48 numbers in rows, 6 places, and 3 orders.
+        assert_eq!(table.bytes(), 3 * 8 + 8 * (4 + 48 + 6 + 3));
+        assert_eq!((BasisTable::default().blocks(), BasisTable::default().points()), (0, 0));
+    }
+
+    #[test]
+    fn kept_cells_keep_their_places() {
+        let mut table = table(&[(0, 0), (2, 0), (4, 0)]);
+        table.keep_cells(|points| points != (2..4));
+        assert_eq!(table.s, [0.0, 1.0, 4.0, 5.0]);
+        assert_eq!(table.cells.iter().map(|cell| cell.first).collect::<Vec<_>>(), [0, 4]);
+    }
+
+    #[test]
+    fn four_cells_in_a_row_that_are_alike_go_together() {
+        let even: Vec<(u32, u32)> = (0..9).map(|i| (2 * i, 0)).collect();
+        assert_eq!(table(&even).by_fours(), (vec![0, 4], vec![8]));
+        let with = |at: usize, cell: (u32, u32)| {
+            let mut cells = even.clone();
+            cells[at] = cell;
+            table(&cells).by_fours()
+        };
+        assert_eq!(with(0, (0, 1)), (vec![1, 5], vec![0]));
+        assert_eq!(with(3, (6, 1)), (vec![4], vec![0, 1, 2, 3, 8]));
+        // A gap in the coefficients.
+        assert_eq!(with(2, (5, 0)), (vec![3], vec![0, 1, 2, 7, 8]));
+    }
+}
