@@ -587,7 +587,7 @@ mod tests {
             let [beam, string] = [[-2.0, -2.0, -1.0], [1.0, 1.0, 0.0]].map(|v| v.map(|v| sign * v));
             shapes(
                 &few,
-                [&[0.0; 3], &[0.0, sign * -1.0, sign * -4.0], &beam],
+                [&[0.0; 3], &[0.0, -sign, -4.0 * sign], &beam],
                 [&[0.0; 3], &[0.0; 3], &string],
             )
         };
