@@ -585,11 +585,7 @@ mod tests {
         let none = [0.0; 5];
         let coarse = |sign: f64| {
             let [beam, string] = [[-2.0, -2.0, -1.0], [1.0, 1.0, 0.0]].map(|v| v.map(|v| sign * v));
-            shapes(
-                &few,
-                [&[0.0; 3], &[0.0, -sign, -4.0 * sign], &beam],
-                [&[0.0; 3], &[0.0; 3], &string],
-            )
+            shapes(&few, [&[0.0; 3], &[0.0, -sign, -4.0 * sign], &beam], [&[0.0; 3], &[0.0; 3], &string])
         };
         let fine =
             || shapes(&many, [&none, &[0.0, 0.25, 1.0, 2.25, 4.0], &[2.0; 5]], [&none, &none, &[-1.0; 5]]);

@@ -157,4 +157,18 @@ mod tests {
         assert_eq!(of(&[0.0, 1.0], &[1.0, 2.0]), Some(NotElastic::AtZero(1.0)));
         assert_eq!(of(&[-1.0, 1.0], &[0.0, 0.0]), Some(NotElastic::Flat));
     }
+
+    /// Slopes of 1, 1 and 3 between −1, 0, 1 and 2: the one corner is at 1.
+    #[test]
+    fn corners_are_where_the_stiffness_jumps() {
+        let law = Elastic::new(vec![-1.0, 0.0, 1.0, 2.0], vec![-1.0, 0.0, 1.0, 4.0]).expect("a law");
+        let corner = |strain: f64| law.corner(strain, 1e-3);
+        assert_eq!(corner(1.0), Some([1.0, 3.0]));
+        // A thousandth of the width of 3 is as near as that.
+        assert_eq!([1.0 + 2.9e-3, 1.0 - 2.9e-3].map(corner), [Some([1.0, 3.0]); 2]);
+        assert_eq!([1.0 + 3.1e-3, 1.0 - 3.1e-3, -1.0, 0.0, 2.0, 0.5].map(corner), [None; 6]);
+        // Slopes count as different beyond the same part of the largest, 3.
+        let blunt = Elastic::new(vec![-1.0, 1.0, 2.0], vec![-1.0, 1.0, 2.004]).expect("a law");
+        assert_eq!([1e-3, 5e-3].map(|near| blunt.corner(1.0, near).is_some()), [true, false]);
+    }
 }

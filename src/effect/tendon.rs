@@ -170,3 +170,21 @@ impl Density<2> for Detour {
         (self.gradient(point, z), hessian)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tendon that moves off by ¾ for each metre beside a beam that is stretched to 2 and bent by
+    /// κ = 4/|r'|² = 1: at an offset of 1 it runs along a = 2 − 1, and is √(1² + ¾²) = 1¼ long.
+    #[test]
+    fn tendons_are_longer_by_their_slope_and_shorter_by_the_bend() {
+        let z = [Vector2::new(2.0, 0.0), Vector2::new(0.0, 2.0)];
+        assert_eq!(bend::curvature(&z[0], &z[1]), 1.0);
+        let (longer, by_a, again) = detour([1.0, 0.75], &z);
+        assert!((longer + 0.75).abs() < 1e-15 && (by_a - 0.8).abs() < 1e-15, "{longer} {by_a}");
+        // d²/da² √(a² + ¾²) = (¾)²/1¼³.
+        assert!((again - 0.288).abs() < 1e-15, "{again}");
+        assert_eq!(detour([0.5, 0.0], &z), (-0.5, 1.0, 0.0));
+    }
+}

@@ -624,4 +624,17 @@ mod tests {
             assert!(said.contains(part), "{text}: {said}");
         }
     }
+
+    /// t^t is e^{t ln t}, and (t²)^t is e^{2t ln t}.
+    #[test]
+    fn powers_with_varying_exponents_have_two_derivatives() {
+        for (text, n) in [("t^t", 1.0), ("(t^2)^t", 2.0)] {
+            let t = 1.5_f64;
+            let (value, rate) = (t.powf(n * t), n * (t.ln() + 1.0));
+            let expected = [value, value * rate, value * (rate * rate + n / t)];
+            let found = at(text, t);
+            let close = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14 * b);
+            assert!(close, "{text}: {found:?} instead of {expected:?}");
+        }
+    }
 }
