@@ -545,4 +545,41 @@ mod tests {
         assert_eq!(described(&[1.0, 1.0078125, 3.0, 4.0]), (0.0078125, 1.9921875, true));
         assert!(!described(&[0.0, 1.0, 101.0, 102.0]).2, "a hundred times is not too uneven");
     }
+
+    /// ∫ |s − ¾| ds from 0 to 2 is (¾² + 1¼²)/2, by one point a piece, which integrates lines. Kinks at the
+    /// ends of cells, and twice at one place, divide nothing.
+    #[test]
+    fn cells_are_divided_at_kinks() {
+        for discretization in [Discretization::ancf(2), Discretization::rpim(3)] {
+            let basis = Basis::new(&discretization, 2.0).unwrap();
+            let (rule, orders) = (Quadrature::Gauss(1), &[0, 1]);
+            let whole = basis.table(rule, orders).unwrap();
+            assert_eq!(
+                basis.divided_table(rule, orders, &[0.0, 2.0, 1.0, -1.0, 3.0, 1.0 - 1e-10]).unwrap(),
+                whole
+            );
+            let kinks = [1.5, 0.75, 1.0, 0.0, 0.75 + 1e-10, 1.25, 2.0];
+            let table = basis.divided_table(rule, orders, &kinks).unwrap();
+            let middles = [0.375, 0.875, 1.125, 1.375, 1.75];
+            assert!(
+                table.s.iter().zip(middles).all(|(s, middle)| (s - middle).abs() < 1e-9),
+                "{:?}",
+                table.s
+            );
+            assert_eq!((table.cells.len(), table.s.len()), (5, 5));
+            let mut sum = 0.0;
+            // Positions and slopes of a line with slope one at the nodes 0, 1 and 2.
+            let line = [0.0, 1.0, 1.0, 1.0, 2.0, 1.0];
+            for (cell, s) in table.cells.iter().zip(&table.s) {
+                let (weights, rows) = table.block(*cell);
+                sum += weights[0] * (s - 0.75).abs();
+                let of = |row: &[f64]| -> f64 {
+                    row.iter().zip(&line[cell.first as usize..]).map(|(n, q)| n * q).sum()
+                };
+                let [value, slope] = [&rows[..table.width], &rows[table.width..]].map(of);
+                assert!((value - s).abs() < 1e-12 && (slope - 1.0).abs() < 1e-12, "{value} {slope} at {s}");
+            }
+            assert!((sum - 0.5 * (0.75 * 0.75 + 1.25 * 1.25)).abs() < 1e-9, "{sum}");
+        }
+    }
 }
