@@ -137,3 +137,19 @@ def test_what_was_chosen_says_that_functions_are_missing() -> None:
     result = scene.run()
     assert result.chosen is not None and result.chosen.startswith("# Without what was added to the scene by code: 1 of its parts.")
     assert tip(scene.chosen()) == tip(scene)
+
+
+def test_tangents_of_functions_lead_as_fast_as_those_of_the_scene() -> None:
+    """With a wrong tangent Newton's method ends at the same place, but takes more iterations."""
+    follower = {"force": [{"beam": "arm", "at": "end", "value": [-1.0, 4.0], "follower": True}]}
+    turned = ancf.Scene(arm(effect={}))
+    turned.add_force(
+        "arm",
+        "end",
+        lambda x, y, angle: (-math.cos(angle) - 4.0 * math.sin(angle), -math.sin(angle) + 4.0 * math.cos(angle)),
+    )
+    bent = ancf.Scene(arm(effect={}))
+    bent.add_force("arm", "end", lambda x, y, angle: (0.0, 0.0, 3.0))
+    for own, named in [(turned, ancf.Scene(arm(effect=follower))), (bent, ancf.Scene(arm()))]:
+        found = [scene.run().statistics["newton_iterations"] for scene in (own, named)]
+        assert found[0] == found[1] > 0
