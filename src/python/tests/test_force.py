@@ -115,6 +115,18 @@ def test_wrong_places_and_derivatives_are_refused(cantilever: ancf.Scene) -> Non
     cantilever.add_force("arm", "end", nothing, derivative=lambda x, y, angle: [[1.0]])
     with pytest.raises(ValueError, match="2 or 3 rows of 3 numbers"):
         cantilever.run()
+    other = ancf.Scene(arm())
+    other.add_force("arm", "end", nothing, derivative=lambda x, y, angle: [[1.0, 0.0, 0.0], [1.0]])
+    with pytest.raises(ValueError, match="found rows of \\[3, 1\\]"):
+        other.run()
+
+
+def test_a_couple_within_the_span_has_a_node() -> None:
+    """The curvature jumps there, between the nodes of the mesh."""
+    moment = {"moment": [{"beam": "arm", "at": 0.3, "value": 3.0}]}
+    own = ancf.Scene(arm(effect={}))
+    own.add_force("arm", 0.3, lambda x, y, angle: (0.0, 0.0, 3.0))
+    assert tip(own) == pytest.approx(tip(ancf.Scene(arm(effect=moment))), abs=1e-9)
 
 
 def test_a_scene_with_functions_stays_in_its_process(cantilever: ancf.Scene) -> None:
@@ -149,7 +161,8 @@ def test_tangents_of_functions_lead_as_fast_as_those_of_the_scene() -> None:
         lambda x, y, angle: (-math.cos(angle) - 4.0 * math.sin(angle), -math.sin(angle) + 4.0 * math.cos(angle)),
     )
     bent = ancf.Scene(arm(effect={}))
-    bent.add_force("arm", "end", lambda x, y, angle: (0.0, 0.0, 3.0))
-    for own, named in [(turned, ancf.Scene(arm(effect=follower))), (bent, ancf.Scene(arm()))]:
+    bent.add_force("arm", "end", lambda x, y, angle: (0.0, 0.0, 2.2))
+    moment = {"moment": [{"beam": "arm", "at": "end", "value": 2.2}]}
+    for own, named in [(turned, ancf.Scene(arm(effect=follower))), (bent, ancf.Scene(arm(effect=moment)))]:
         found = [scene.run().statistics["newton_iterations"] for scene in (own, named)]
         assert found[0] == found[1] > 0
