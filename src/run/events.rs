@@ -2,7 +2,6 @@
 
 use super::RunError;
 use super::sampler::{ProbePoint, Sampler};
-use crate::beam::Along;
 use crate::model::{Dynamic, EventCondition, ProbeQuantity};
 use crate::results::SectionForces;
 use crate::solve::dynamics;
@@ -35,10 +34,11 @@ impl Sampler<'_> {
         let (section, basis) = (&self.model.beams[*beam].section, &self.system.beams()[*beam].basis);
         let (s, length) = (view.s()[0], basis.length());
         let h = basis.nodes().windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-        let largest = |along: &Option<Along>| along.as_ref().map_or(0.0, |along| along.bounds(length)[1]);
+        let [stretching, bending] = [&section.axial_stiffness, &section.bending_stiffness]
+            .map(|along| along.as_ref().map_or(0.0, |along| along.bounds(length)[1]));
         let unit = ROUND_OFFS * f64::EPSILON * length / h;
-        let axial = unit * largest(&section.axial_stiffness);
-        let across = unit * 12.0 * largest(&section.bending_stiffness) / (h * h) + axial * h / length;
+        let axial = unit * stretching;
+        let across = unit * 12.0 * bending / (h * h) + axial * h / length;
         let stress = |face: usize| {
             let signs = [1.0, -1.0].map(|sign| section.stresses(s, s, [axial, sign * across * h], &[]));
             let of = |layers: Vec<[f64; 2]>| layers.iter().fold(0.0_f64, |m, faces| m.max(faces[face].abs()));
