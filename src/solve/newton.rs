@@ -157,7 +157,7 @@ pub enum Failure {
 }
 
 /// Increments that no longer shrink count as converged below this size: they are round-off.
-const ROUND_OFF: f64 = 1e-6;
+pub(super) const ROUND_OFF: f64 = 1e-6;
 
 /// Iterates from `x`, which receives the solution. `start` holds the state and the increment from
 /// which `x` was predicted; the first tangent is extrapolated from them. `record` receives the

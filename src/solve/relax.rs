@@ -17,7 +17,7 @@
 //! grow with its EA: to 450, in place of 17, where EA is 10,000 times the weight.
 
 use super::equilibrium::Equilibrium;
-use super::newton::{Failure, Iterations, Settings};
+use super::newton::{Failure, Iterations, ROUND_OFF, Settings};
 use crate::assembly::Earlier;
 use crate::system::System;
 
@@ -97,7 +97,7 @@ pub fn relax(
         }
         equilibrium.solve(load, &mut increment, false);
         equilibrium.statistics.newton_iterations += 1;
-        size = equilibrium.size(&increment);
+        let last = std::mem::replace(&mut size, equilibrium.size(&increment));
         record.residuals.push(residual);
         record.increments.push(size);
         sigma *= (size / WANTED).clamp(LIMITS.0, LIMITS.1);
@@ -112,7 +112,9 @@ pub fn relax(
         // On an unstable equilibrium σ stays large enough to outweigh the unstable directions.
         let settled = sigma < SETTLED * first || on_a_crest;
         on_a_crest = false;
-        if size <= settings.tolerance && settled && residual <= settings.residual_tolerance {
+        // Increments of Newton's method that no longer shrink are round-off.
+        let stalled = shift == 0.0 && size <= ROUND_OFF && size > 0.5 * last;
+        if (size <= settings.tolerance || stalled) && settled && residual <= settings.residual_tolerance {
             return Ok(());
         }
     }
