@@ -88,7 +88,8 @@ pub fn scene(rng: &mut Rng) -> Table {
 pub fn frame(rng: &mut Rng, scene: &Table) -> Frame {
     let mut power = |low: f64, high: f64| 10f64.powf(low + (high - low) * rng.f64());
     let units = [power(-6.0, 3.0), power(-9.0, 6.0), power(-6.0, 2.0)];
-    let turn = if has_axes(scene) { 0.0 } else { std::f64::consts::TAU * rng.f64() };
+    // Half of the scenes keep to the axes, as users draw them: exact zeros are a case of their own.
+    let turn = if has_axes(scene) || rng.bool() { 0.0 } else { std::f64::consts::TAU * rng.f64() };
     let shift = if rng.u8(0..3) == 0 { [3.0 * rng.f64(), -2.0 * rng.f64()] } else { [0.0; 2] };
     Frame { units, mirrored: rng.bool(), quarters: rng.u8(0..4), turn, shift }
 }

@@ -212,5 +212,6 @@ fn round_all(table: &mut Table, digits: i32) {
             _ => {}
         }
     }
-    table.iter_mut().for_each(|(_, v)| value(v, digits));
+    // The kinks of an expression are where its text says.
+    table.iter_mut().filter(|(key, _)| *key != "kinks").for_each(|(_, v)| value(v, digits));
 }

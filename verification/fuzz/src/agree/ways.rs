@@ -86,7 +86,7 @@ pub fn other_frame(way: Way, frame: &Frame, scene: &Table, rng: &mut Rng) -> Fra
     match way {
         Way::Turned => {
             other.quarters = (frame.quarters + rng.u8(1..4)) % 4;
-            if !has_axes(scene) {
+            if !has_axes(scene) && rng.bool() {
                 other.turn = frame.turn + std::f64::consts::TAU * rng.f64();
             }
         }
