@@ -5,6 +5,7 @@ mod error;
 mod events;
 mod laws;
 mod locking;
+mod loose;
 mod memory;
 mod modes;
 mod motion;

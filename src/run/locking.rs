@@ -139,37 +139,43 @@ impl Locking {
     }
 }
 
-impl LockingBeam {
-    /// A field at all points of a table, computed from the derivatives at each.
-    fn at_points(&self, table: &BasisTable, q: &[f64], of: impl Fn(&[[f64; 2]]) -> f64) -> Vec<f64> {
-        let mut values = Vec::with_capacity(table.points());
-        for cell in &table.cells {
-            let (_, rows) = table.block(*cell);
-            let q = &q[2 * (self.offset + cell.first as usize)..];
-            for rows in rows.chunks_exact(table.row_stride()) {
-                let mut fields = [[0.0; 2]; 2];
-                for (field, row) in fields.iter_mut().zip(rows.chunks_exact(table.width)) {
-                    for (n, q) in row.iter().zip(q.chunks_exact(2)) {
-                        field[0] += n * q[0];
-                        field[1] += n * q[1];
-                    }
+/// A field of the beam whose coordinates begin with pair `offset`, at all points of a table, computed
+/// from the derivatives at each.
+pub(super) fn at_points(
+    table: &BasisTable,
+    offset: usize,
+    q: &[f64],
+    of: impl Fn(&[[f64; 2]]) -> f64,
+) -> Vec<f64> {
+    let mut values = Vec::with_capacity(table.points());
+    for cell in &table.cells {
+        let (_, rows) = table.block(*cell);
+        let q = &q[2 * (offset + cell.first as usize)..];
+        for rows in rows.chunks_exact(table.row_stride()) {
+            let mut fields = [[0.0; 2]; 2];
+            for (field, row) in fields.iter_mut().zip(rows.chunks_exact(table.width)) {
+                for (n, q) in row.iter().zip(q.chunks_exact(2)) {
+                    field[0] += n * q[0];
+                    field[1] += n * q[1];
                 }
-                values.push(of(&fields));
             }
+            values.push(of(&fields));
         }
-        values
     }
+    values
+}
 
+impl LockingBeam {
     fn strains(&self, q: &[f64]) -> Vec<f64> {
         let strain = |z: &[[f64; 2]]| {
             let fields = Fields { position: [0.0; 2], gradient: z[0], second: [0.0; 2] };
             fields.strain(self.measure)
         };
-        self.at_points(&self.tables[0], q, strain)
+        at_points(&self.tables[0], self.offset, q, strain)
     }
 
     fn curvatures(&self, q: &[f64]) -> Vec<f64> {
-        self.at_points(&self.tables[1], q, |z| curvature(&Vector2::from(z[0]), &Vector2::from(z[1])))
+        at_points(&self.tables[1], self.offset, q, |z| curvature(&Vector2::from(z[0]), &Vector2::from(z[1])))
     }
 
     fn energies(&self, q: &[f64]) -> [f64; 3] {

@@ -4,6 +4,7 @@ use super::RunError;
 use super::angle;
 use super::laws::Reach;
 use super::locking::Locking;
+use super::loose::Loose;
 use super::strings;
 use super::tendons::Tendons;
 use crate::assembly::{Actions, BuildError, InternalVariables, Side, TendonPath, nodes};
@@ -53,6 +54,7 @@ pub(super) struct Sampler<'a> {
     shapes: Vec<View>,
     pub(super) probes: Vec<ProbePoint>,
     locking: Locking,
+    loose: Loose,
     /// How many frames are kept.
     frames: usize,
     /// Directions at the probes in the state from which statics starts, with full turns included;
@@ -177,7 +179,8 @@ impl<'a> Sampler<'a> {
             })
             .collect::<Result<_, BuildError>>()?;
         let locking = Locking::new(model, system)?;
-        Ok(Self { model, system, shapes, probes, locking, frames, angles: Vec::new() })
+        let loose = Loose::new(model, system)?;
+        Ok(Self { model, system, shapes, probes, locking, loose, frames, angles: Vec::new() })
     }
 
     /// The probe at which a path is to end, as (view, axis, value).
@@ -539,7 +542,7 @@ impl<'a> Sampler<'a> {
     pub(super) fn equilibria(&self, analysis: AnalysisKind, solution: &Solution) -> Trajectory {
         let mut trajectory = self.empty(analysis);
         let count = solution.states.len();
-        let mut locking = self.locking.clone();
+        let (mut locking, mut loose) = (self.locking.clone(), self.loose.clone());
         let mut reach = Reach::new(self.model);
         let mut tendons = Tendons::new(self.model, true);
         let states = solution.states.iter().zip(&solution.variables).zip(&solution.work);
@@ -558,6 +561,7 @@ impl<'a> Sampler<'a> {
             tendons.see_tensions(*load, self.system.tensions(&x[q.len()..]).map(|(tension, _)| tension));
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
+                loose.see(q);
                 if tendons.are_there() {
                     tendons.see(&self.shape(q));
                 }
@@ -578,6 +582,7 @@ impl<'a> Sampler<'a> {
         let work = trajectory.energy.last().map_or(0.0, |energy| energy.potential.abs());
         trajectory.run.warnings.extend(locking.jammed(&trajectory.last, work));
         trajectory.run.warnings.extend(locking.warnings());
+        trajectory.run.warnings.extend(loose.warnings());
         trajectory.run.warnings.extend(reach.warnings());
         trajectory.parameter.iter().for_each(|at| tendons.see_factor(*at));
         trajectory.run.warnings.extend(tendons.warnings());
@@ -743,7 +748,7 @@ impl<'a> Sampler<'a> {
         let mut trajectory = self.empty(AnalysisKind::Dynamic);
         trajectory.run.settings.push(("integrator".into(), settings.integrator.to_string()));
         let count = solution.states.len();
-        let mut locking = self.locking.clone();
+        let (mut locking, mut loose) = (self.locking.clone(), self.loose.clone());
         let mut reach = Reach::new(self.model);
         let mut tendons = Tendons::new(self.model, false);
         if self.model.outputs.reactions {
@@ -771,6 +776,7 @@ impl<'a> Sampler<'a> {
             }
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
+                loose.see(q);
                 if tendons.are_there() {
                     tendons.see(&self.shape(q));
                 }
@@ -818,6 +824,7 @@ impl<'a> Sampler<'a> {
             ));
         }
         trajectory.run.warnings.extend(locking.warnings());
+        trajectory.run.warnings.extend(loose.warnings());
         trajectory.run.warnings.extend(reach.warnings());
         trajectory.parameter.iter().for_each(|at| tendons.see_factor(*at));
         trajectory.run.warnings.extend(tendons.warnings());
