@@ -39,7 +39,7 @@ pub(super) fn initial_velocities(file: &SceneTable, built: &[Built], model: &mut
             add(InitialVelocity { beam, along, ..InitialVelocity::default() });
         }
         if let Some(points) = points {
-            let length = built.get(beam).map_or(0.0, |b| b.curve.length());
+            let length = built[beam].curve.length();
             let flat = [0.0, length].map(|end| {
                 model.supports.iter().any(|support| {
                     support.at.beam == beam

@@ -221,6 +221,8 @@ mod tests {
         assert_eq!(values("a=9e-5:1e-4:2"), ["9e-5", "0.0001"]);
         assert_eq!(values("a=999999999999999:1e15:2"), ["999999999999999", "1e15"]);
         assert_eq!(values("a=3 m:3 m:2"), ["3 m", "3 m"]);
+        // 1 − (−1e16) is rounded.
+        assert_eq!(values("a=-1e16:1:2"), ["-1e16", "1"]);
     }
 
     #[test]

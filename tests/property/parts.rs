@@ -251,25 +251,32 @@ proptest! {
 }
 
 /// A force that is linear in the velocity is its matrix times the velocity. Of ten elements eight are
-/// summed four at a time, all matrices one at a time.
+/// summed four at a time, all matrices one at a time. All quantities vary along the beam, so that each
+/// point has its own.
 #[test]
 fn forces_of_velocities_are_their_matrices_times_the_velocity() {
     for (basis, damping) in [
         (
             "ancf.elements = 10",
-            "damping = [{ beam = 'arm', stiffness_proportional = 0.3, mass_proportional = 0.7 }]",
+            "damping = [{ beam = 'arm', stiffness_proportional.polynomial = [0.3, 0.1], mass_proportional.polynomial = [0.7, 0.2] }]",
         ),
-        ("ancf.elements = 3", "damping = [{ beam = 'arm', strain = 0.3, curvature = 0.1 }]"),
+        (
+            "ancf.elements = 3",
+            "damping = [{ beam = 'arm', strain.polynomial = [0.3, 0.1], curvature.polynomial = [0.1, 0.1] }]",
+        ),
         ("rpim.nodes = 11", "damping = [{ beam = 'arm', stiffness_proportional = 0.3 }]"),
-        ("ancf.elements = 10", "drag = [{ beam = 'arm', viscous_normal = 2.0, viscous_tangential = 0.4 }]"),
+        (
+            "ancf.elements = 10",
+            "drag = [{ beam = 'arm', viscous_normal.polynomial = [2, 1], viscous_tangential.polynomial = [0.4, 0.3] }]",
+        ),
         (
             "ancf = { elements = 10, gauss_points = { stretch = 4, bend = 2 } }",
             "damping = [{ beam = 'arm', stiffness_proportional = 0.3 }]",
         ),
     ] {
         let text = format!(
-            "beam.arm = {{ start = [0, 0], end = [1, 0.5], axial_stiffness = 40, bending_stiffness = 0.3, \
-             mass_per_length = 2.0, basis.{basis} }}
+            "beam.arm = {{ start = [0, 0], end = [1, 0.5], axial_stiffness.polynomial = [40, -10], \
+             bending_stiffness.polynomial = [0.3, 0.2], mass_per_length.polynomial = [2, -1], basis.{basis} }}
             effect.{damping}
             analysis.dynamic.duration = 1.0\n"
         );

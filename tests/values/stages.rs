@@ -468,3 +468,21 @@ fn what_a_law_does_not_move_stays_where_statics_brought_it() {
     assert!(samples.iter().all(|sample| (sample.x - 1.01).abs() < 1e-12));
     near(samples.last().expect("an end").y, 1e-3, 1e-12, "a quarter of a turn");
 }
+
+/// A support that statics has moved stays where it is when statics goes on.
+#[test]
+fn a_support_that_was_moved_stays_moved() {
+    let text = "beam.bar = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = 8 }
+        support = [
+            { beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] },
+            { beam = 'bar', at = 'end', fix = ['x', 'y'], move = { x = 0.01, y = 0.2 } },
+        ]
+        effect.force = [{ beam = 'bar', at = 0.5, value = [0, -1], stage = 'load' }]
+        probe = [{ name = 'end', beam = 'bar', at = 'end' }]
+        stage = [{ name = 'pull', analysis.static = {} }, { name = 'load', analysis.static = {} }]";
+    for results in solved(text) {
+        let end = *results.states().probes[0].samples.last().expect("an end");
+        near(end.x, 1.01, 1e-12, "x");
+        near(end.y, 0.2, 1e-12, "y");
+    }
+}

@@ -100,9 +100,8 @@ const LEGEND_PART: f64 = 0.3;
 /// Room for the sample of a series in the legend \[px\].
 fn sample_length(mark: Mark) -> f64 {
     match mark {
-        Mark::Line | Mark::Dashed => 24.0,
+        Mark::Line | Mark::Dashed | Mark::Area => 24.0,
         Mark::Points | Mark::Circles | Mark::Crosses => 10.0,
-        Mark::Area => 24.0,
     }
 }
 
