@@ -42,7 +42,7 @@ struct LooseBeam {
     table: BasisTable,
     /// ε of the stress-free state there.
     reference: Vec<f64>,
-    /// Per node, in how many states it was loose, and the largest T/K.
+    /// Per node, in how many states it was loose, and the least T/K of these.
     nodes: Vec<(usize, f64)>,
 }
 
@@ -60,7 +60,7 @@ impl Loose {
             }
             let table = part.basis.table(points.stretch_rule(), &[1]);
             let table = table.map_err(|e| BuildError::basis(&part.name, e))?;
-            let nodes = vec![(0, 1.0); table.cells.len() + 1];
+            let nodes = vec![(0, f64::INFINITY); table.cells.len() + 1];
             let mut watched = LooseBeam {
                 name: beam.name.clone(),
                 measure: beam.strain,
@@ -91,7 +91,7 @@ impl Loose {
             let (node, (_, ratio)) = loose.max_by(|(_, a), (_, b)| a.1.total_cmp(&b.1))?;
             Some(format!(
                 "beam `{}` is loose at s = {:.4} m: its axial force vanishes there, so that at the points of its quadrature hardly anything but \
-                 its bending stiffness resists a turn of this place, whose own vibration is {:.1} times too slow: use more elements, or \
+                 its bending stiffness resists a turn of this place, whose own vibration is at least {:.1} times too slow: use more elements, or \
                  `gauss_points = {{ stretch = 5, bend = 3 }}`",
                 beam.name,
                 beam.place(node),
@@ -130,11 +130,11 @@ impl LooseBeam {
                     h * (13.0 / 140.0 * force(near) + force(1) / 21.0 - force(far) / 140.0) + bend;
             }
         }
-        for ((times, largest), [resists, should]) in self.nodes.iter_mut().zip(sums) {
+        for ((times, least), [resists, should]) in self.nodes.iter_mut().zip(sums) {
             // Where compression outweighs it, the place buckles, which is another matter.
             if resists > 0.0 && should > LOOSE * resists {
                 *times += 1;
-                *largest = largest.max(should / resists);
+                *least = least.min(should / resists);
             }
         }
     }

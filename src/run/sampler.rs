@@ -44,8 +44,10 @@ const WORK_KNOWN: f64 = 1e-2;
 const LARGEST_DRIFT: f64 = 1e-2;
 /// Energies below this, in EA L, are due to the round-off of strains.
 const LEAST_ENERGY: f64 = 1e-20;
-/// Largest number of states, evenly spread, that are checked for locking.
+/// Largest number of states, evenly spread, that are checked for locking …
 const LOOKED_AT: usize = 400;
+/// … and, of a motion, for loose nodes, which are so in most states or do not matter.
+const LOOSE_AT: usize = 40;
 
 /// Everything needed to evaluate states of one system.
 pub(super) struct Sampler<'a> {
@@ -559,9 +561,11 @@ impl<'a> Sampler<'a> {
                 trajectory.frames.push(self.frame(*load, q));
             }
             tendons.see_tensions(*load, self.system.tensions(&x[q.len()..]).map(|(tension, _)| tension));
+            if i + 1 == count {
+                loose.see(q);
+            }
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
-                loose.see(q);
                 if tendons.are_there() {
                     tendons.see(&self.shape(q));
                 }
@@ -774,9 +778,11 @@ impl<'a> Sampler<'a> {
             if is_among(i, count, self.frames) {
                 trajectory.frames.push(self.frame(state.time, q));
             }
+            if is_among(i, count, LOOSE_AT) {
+                loose.see(q);
+            }
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
-                loose.see(q);
                 if tendons.are_there() {
                     tendons.see(&self.shape(q));
                 }
