@@ -7,9 +7,6 @@ use crate::results::SectionForces;
 use crate::solve::dynamics;
 use crate::system::unfold;
 
-/// Round-offs of single forces that may add up in a section.
-const ROUND_OFFS: f64 = 4.0;
-
 impl Sampler<'_> {
     /// The events of a motion, each with the view of its probe.
     pub(super) fn watches(&self, settings: &Dynamic) -> Result<Vec<dynamics::EventWatch<'_>>, RunError> {
@@ -27,8 +24,8 @@ impl Sampler<'_> {
 
     /// Changes of a quantity at probe number `number` that are round-off of the forces, and no turns: a
     /// position is stored with the round-off ε L, from which an element of length h makes forces
-    /// ε EA L/h along the beam and 12 ε EI L/h³ across. A bend gives the latter a part h/L of the
-    /// former.
+    /// ε EA L/h along the beam and 12 ε EI L/h³ across. A gentle bend turns a part (h/L)² of the former
+    /// across: a larger part would hide the turns of small vibrations.
     fn round_off(&self, number: usize, quantity: ProbeQuantity) -> f64 {
         let ProbePoint { beam, view, .. } = &self.probes[number];
         let (section, basis) = (&self.model.beams[*beam].section, &self.system.beams()[*beam].basis);
@@ -36,9 +33,9 @@ impl Sampler<'_> {
         let h = basis.nodes().windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         let [stretching, bending] = [&section.axial_stiffness, &section.bending_stiffness]
             .map(|along| along.as_ref().map_or(0.0, |along| along.bounds(length)[1]));
-        let unit = ROUND_OFFS * f64::EPSILON * length / h;
+        let unit = f64::EPSILON * length / h;
         let axial = unit * stretching;
-        let across = unit * 12.0 * bending / (h * h) + axial * h / length;
+        let across = unit * 12.0 * bending / (h * h) + axial * (h / length).powi(2);
         let stress = |face: usize| {
             let signs = [1.0, -1.0].map(|sign| section.stresses(s, s, [axial, sign * across * h], &[]));
             let of = |layers: Vec<[f64; 2]>| layers.iter().fold(0.0_f64, |m, faces| m.max(faces[face].abs()));

@@ -34,6 +34,8 @@ pub(super) struct Loose {
 #[derive(Clone)]
 struct LooseBeam {
     name: String,
+    /// Its number in the system.
+    beam: usize,
     measure: StrainMeasure,
     /// EA \[N\] and EI \[N m²\].
     stiffness: [Along; 2],
@@ -50,7 +52,7 @@ impl Loose {
     /// Watches beams that resist stretch at three Lobatto points a cell.
     pub fn new(model: &Model, system: &System) -> Result<Self, BuildError> {
         let mut beams = Vec::new();
-        for (beam, part) in model.beams.iter().zip(system.beams()) {
+        for (index, (beam, part)) in model.beams.iter().zip(system.beams()).enumerate() {
             let (points, section) = (beam.gauss_points, &beam.section);
             let (Some(axial), Some(bending)) = (&section.axial_stiffness, &section.bending_stiffness) else {
                 continue;
@@ -63,6 +65,7 @@ impl Loose {
             let nodes = vec![(0, f64::INFINITY); table.cells.len() + 1];
             let mut watched = LooseBeam {
                 name: beam.name.clone(),
+                beam: index,
                 measure: beam.strain,
                 stiffness: [axial.clone(), bending.clone()],
                 offset: part.offset(),
@@ -76,10 +79,10 @@ impl Loose {
         Ok(Self { beams, states: 0 })
     }
 
-    /// Takes a state into account.
-    pub fn see(&mut self, q: &[f64]) {
+    /// Takes a state into account: of a motion at a time, of statics at a load factor.
+    pub fn see(&mut self, system: &System, parameter: f64, q: &[f64]) {
         self.states += 1;
-        self.beams.iter_mut().for_each(|beam| beam.see(q));
+        self.beams.iter_mut().for_each(|beam| beam.see(system, parameter, q));
     }
 
     /// Messages on beams with nodes that were loose in half of the states or more: in passing, a wave
@@ -114,7 +117,7 @@ impl LooseBeam {
         self.table.s.get(3 * node).or(self.table.s.last()).copied().unwrap_or(0.0)
     }
 
-    fn see(&mut self, q: &[f64]) {
+    fn see(&mut self, system: &System, parameter: f64, q: &[f64]) {
         let mut sums = vec![[0.0; 2]; self.nodes.len()];
         let strains = self.strains(q);
         let cells =
@@ -122,7 +125,10 @@ impl LooseBeam {
         for (cell, ((strain, before), s)) in cells.enumerate() {
             let h = s[2] - s[0];
             let [axial, bending] = self.stiffness.each_ref().map(|along| along.at(s[1], s[1]));
-            let force = |point: usize| axial * (strain[point] - before[point]);
+            let force = |point: usize| {
+                let imposed = system.imposed_force(self.beam, s[point], s[1], parameter);
+                axial * (strain[point] - before[point]) - imposed
+            };
             let bend = 7.0 / 3.0 * bending / h;
             for (node, near, far) in [(cell, 0, 2), (cell + 1, 2, 0)] {
                 sums[node][0] += h * force(near) / 6.0 + bend;

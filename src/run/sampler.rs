@@ -562,7 +562,7 @@ impl<'a> Sampler<'a> {
             }
             tendons.see_tensions(*load, self.system.tensions(&x[q.len()..]).map(|(tension, _)| tension));
             if i + 1 == count {
-                loose.see(q);
+                loose.see(self.system, *load, q);
             }
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);
@@ -779,7 +779,7 @@ impl<'a> Sampler<'a> {
                 trajectory.frames.push(self.frame(state.time, q));
             }
             if is_among(i, count, LOOSE_AT) {
-                loose.see(q);
+                loose.see(self.system, state.time, q);
             }
             if is_among(i, count, LOOKED_AT) {
                 locking.see(q);

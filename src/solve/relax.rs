@@ -113,7 +113,7 @@ pub fn relax(
         let settled = sigma < SETTLED * first || on_a_crest;
         on_a_crest = false;
         // Increments of Newton's method that no longer shrink are round-off.
-        let stalled = shift == 0.0 && size <= ROUND_OFF && size > 0.5 * last;
+        let stalled = shift == 0.0 && size <= ROUND_OFF && size >= last;
         if (size <= settings.tolerance || stalled) && settled && residual <= settings.residual_tolerance {
             return Ok(());
         }

@@ -23,6 +23,8 @@ pub(super) struct Actuated {
     amplitudes: Vec<Option<Amplitude>>,
     /// The strains that are imposed on single layers: index of the layer, strain, and a_i.
     layers: Vec<(usize, Along, Option<Amplitude>)>,
+    /// EA ε₀ᵢ \[N\], and a_i.
+    forces: Vec<(Along, Option<Amplitude>)>,
     /// ∫ EA ε₀ᵢ ε₀ⱼ ds, and ∫ (EI κ₀ᵢ κ₀ⱼ + EB ε₀ᵢ κ₀ⱼ + EB κ₀ᵢ ε₀ⱼ) ds \[J\], of row i and column j.
     own: [Vec<Vec<f64>>; 2],
 }
@@ -80,8 +82,16 @@ pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
             Some((imposed.layer?, imposed.strain.clone(), amplitude.clone()))
         });
         let layers = layers.collect();
+        let forces = parts.iter().filter_map(|(imposed, amplitude)| {
+            let stiffness = match imposed.layer {
+                Some(layer) => section.layers.get(layer)?.stiffness.as_ref().map(|stiffness| &stiffness[0]),
+                None => section.axial_stiffness.as_ref(),
+            };
+            Some((stiffness?.product(imposed.strain), amplitude.clone()))
+        });
+        let forces = forces.collect();
         let own = || [rows(&stretch), rows(&bend)];
-        (!parts.is_empty()).then(|| Actuated { beam: index, amplitudes, layers, own: own() })
+        (!parts.is_empty()).then(|| Actuated { beam: index, amplitudes, layers, forces, own: own() })
     };
     model.beams.iter().zip(&system.beams).enumerate().filter_map(of_beam).collect()
 }
@@ -145,6 +155,15 @@ impl System {
                 actions[*beam].add_layer_strain(factor, *layer, strain);
             }
         }
+    }
+
+    /// The force Σ a_i EA ε₀ᵢ \[N\] at `s` that actuation takes from EA ε; `inside` is a place of the
+    /// same cell.
+    pub fn imposed_force(&self, beam: usize, s: f64, inside: f64, parameter: f64) -> f64 {
+        let of_beam = self.actuated.iter().filter(|actuated| actuated.beam == beam);
+        let forces = of_beam.flat_map(|actuated| &actuated.forces);
+        let at = |amplitude: &Option<Amplitude>| amplitude.as_ref().unwrap_or(&self.amplitude).at(parameter);
+        forces.map(|(force, amplitude)| at(amplitude) * force.at(s, inside)).sum()
     }
 
     /// Whether there are any actuators.
