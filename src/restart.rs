@@ -27,14 +27,20 @@ use std::path::{Path, PathBuf};
 const FORMAT: u32 = 4;
 
 /// A state with the beams to which it belongs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SavedState {
+    saved: Saved,
+}
+
+/// What a file of a saved state holds.
+#[derive(Serialize, Deserialize)]
+struct File<S> {
     /// Version of the format.
     format: u32,
     /// SHA-256 of what follows, as compact JSON.
     sha256: String,
     /// The data that are saved.
-    saved: Saved,
+    saved: S,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -177,6 +183,20 @@ fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// With a checksum, which only what is written needs.
+impl Serialize for SavedState {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        File { format: FORMAT, sha256: self.saved.sha256(), saved: &self.saved }.serialize(serializer)
+    }
+}
+
+/// Whatever the checksum says; [`SavedState::load`] looks at it.
+impl<'de> Deserialize<'de> for SavedState {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        File::deserialize(deserializer).map(|File { saved, .. }| Self { saved })
+    }
+}
+
 /// A checksum of the integrator and of all of a model that determines how a motion goes on.
 pub(crate) fn fingerprint(model: &Model, integrator: Integrator) -> String {
     let Model { beams, supports, joints, parts, .. } = model;
@@ -238,7 +258,7 @@ impl SavedState {
             history_of: system.history_of().map(<[usize]>::to_vec),
             checkpoint,
         };
-        Self { format: FORMAT, sha256: saved.sha256(), saved }
+        Self { saved }
     }
 
     /// Its time \[s\].
@@ -285,11 +305,11 @@ impl SavedState {
         if format != FORMAT {
             return Err(RestartError::Format { found: format });
         }
-        let state: Self = serde_json::from_str(&text).map_err(no_state)?;
-        if state.sha256 != state.saved.sha256() {
+        let File::<Saved> { sha256, saved, .. } = serde_json::from_str(&text).map_err(no_state)?;
+        if sha256 != saved.sha256() {
             return Err(RestartError::Altered { path: path.to_path_buf() });
         }
-        Ok(state)
+        Ok(Self { saved })
     }
 
     /// Writes a file.

@@ -11,8 +11,10 @@ use std::f64::consts::FRAC_PI_4;
 use crate::centreline::Curve;
 use crate::model::{Model, Nodes};
 
-/// Cells with which the search begins, of the longest beam …
+/// Cells with which the search begins, of the longest beam; fewer are of no use …
 const FIRST: f64 = 4.0;
+/// … for every half-wave of the modes that are wanted …
+const OF_HALF_WAVE: f64 = 2.5;
 /// … and of every beam or part of a beam between two places that must be nodes.
 const LEAST: usize = 2;
 /// Largest turn of a stress-free centreline in a cell of the first mesh \[rad\].
@@ -51,8 +53,7 @@ pub(super) struct CellErrors {
 
 impl Mesh {
     /// Where the search begins, for every beam; with `waves` half-waves of a mode along the longest
-    /// each has a cell. There are `times` as many cells as where nothing is known of the error that
-    /// is wanted.
+    /// each has some cells. There are `times` as many as an error of a thousandth needs.
     pub fn first(model: &Model, waves: usize, times: f64) -> Vec<Self> {
         let curves: Vec<Option<Curve>> =
             model.beams.iter().map(|beam| Curve::new(&beam.centreline).ok()).collect();
@@ -73,7 +74,8 @@ impl Mesh {
                 }
             }
             fixed.push(length);
-            let straight = (times * FIRST.max(waves as f64) * length / longest).ceil() as usize;
+            let straight = ((times * FIRST.max(OF_HALF_WAVE * waves as f64)).max(FIRST) * length / longest)
+                .ceil() as usize;
             let turns = (turning(curve) / TURN).ceil() as usize;
             let cells = straight.max(turns).max(LEAST);
             let spread = |part: &[f64]| {
@@ -358,9 +360,9 @@ mod tests {
         assert!(meshes[1].is_one_part() && !meshes[0].is_one_part() && meshes[0].length() == 4.0);
         let cells =
             |waves: usize, times: f64| first(text, waves, times).iter().map(Mesh::cells).collect::<Vec<_>>();
-        // Six half-waves: 1½ and 4½ cells of the parts, three of the other beam; eight: two and six, four.
-        assert_eq!((cells(6, 1.0), cells(4, 2.0)), (vec![2 + 6, 4], vec![2 + 6, 4]));
-        assert_eq!(cells(3, 1.0), [2 + 4, 2]);
+        // Six half-waves have 15 cells, 3¾ and 11¼ of the parts, 7½ of the other beam; twice four have 20.
+        assert_eq!((cells(6, 1.0), cells(4, 2.0)), (vec![4 + 12, 8], vec![6 + 16, 10]));
+        assert_eq!((cells(3, 1.0), cells(3, 0.1)), (vec![2 + 6, 4], vec![2 + 4, 2]));
         assert_eq!(cells(0, 4.0), [4 + 12, 8]);
     }
 

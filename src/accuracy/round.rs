@@ -9,16 +9,17 @@ use crate::model::{
     Accuracy, Analysis, Beam, Discretization, Dynamic, Integrator, Model, Nodes, Open, RPIM_GAUSS_POINTS,
     StepControl,
 };
-use crate::results::{AnalysisKind, Results, RunForError};
+use crate::results::{AnalysisKind, RecordedState, Results, RunForError};
 use crate::run::{Options, RunError};
+use crate::solve::near::Known;
 
 /// Smallest tolerance of any run.
 pub(super) const FINEST: f64 = 1e-13;
 /// Tolerance of the first finer run, in the wanted error.
-pub(super) const TOLERANCE: f64 = 3.0;
+const TOLERANCE: f64 = 3.0;
 /// Loosest tolerance of the first finer run: beyond, other things than the tolerance decide about
 /// steps.
-pub(super) const FIRST_TOLERANCE: f64 = 1e-3;
+const FIRST_TOLERANCE: f64 = 1e-3;
 /// Errors of motions that are wanted smaller than this need fewer nodes of a meshfree beam than
 /// cable elements, by so much that each may cost more …
 const MESHFREE: f64 = 3e-5;
@@ -26,11 +27,13 @@ const MESHFREE: f64 = 3e-5;
 const MESHFREE_FAMILY: Family = Family::Rpim { neighbours: 1, shape: 6.0, points: RPIM_GAUSS_POINTS.bend };
 /// The tolerance of the coarse run, in that of the finer one.
 pub(super) const LOOSER: f64 = 16.0;
-/// Wanted errors of equilibria and modes down to which the search begins with the fewest cells …
+/// Wanted errors of equilibria and modes for which the first cells of a search do; for smaller ones
+/// it begins with as many more as errors of fourth order need.
 const FIRST_CELLS_DO: f64 = 1e-3;
-/// … and the power of smaller ones by which it begins with more: less than the quarter that errors
-/// of smooth solutions go with, as those of the fewest cells may be small already.
-const FIRST_CELLS_GROW: f64 = 1.0 / 6.0;
+/// So many times as many for a motion, of which fewer tell nothing.
+const FIRST_CELLS_OF_MOTION: f64 = 2.0;
+/// Most times as many for an equilibrium: where it is near the start, few cells do for small errors.
+const MOST_FIRST_CELLS: f64 = 6.0;
 /// Curvatures and section forces of the coarse run are compared at each so many-th place.
 const COARSER: usize = 4;
 /// Loosest tolerance of any run.
@@ -120,19 +123,17 @@ impl<'a, 'o> Runner<'a, 'o> {
         };
         let result = wanted.map_or(Accuracy::USUAL, |wanted| wanted.result);
         let times = match analysis {
-            // The first rounds of a motion explore its steps, for which few cells do.
-            Analysis::Dynamic(_) => 1.0,
-            _ => (FIRST_CELLS_DO / result).powf(FIRST_CELLS_GROW).max(1.0),
+            Analysis::Dynamic(_) => FIRST_CELLS_OF_MOTION,
+            Analysis::Static(_) => (FIRST_CELLS_DO / result).powf(0.25).min(MOST_FIRST_CELLS),
+            _ => (FIRST_CELLS_DO / result).powf(0.25),
         };
         let mut meshes = Mesh::first(model, waves, times);
         for (beam, mesh) in model.beams.iter().zip(&mut meshes) {
             if beam.discretization != Discretization::Open {
                 let curve = Curve::new(&beam.centreline);
-                let nodes = curve.ok().and_then(|curve| {
-                    let nodes = Discretization::Ancf { nodes: beam.discretization.nodes().clone() };
-                    Basis::new(&nodes, curve.length()).ok().map(|basis| basis.nodes().to_vec())
-                });
-                if let Some(nodes) = nodes {
+                if let Some(nodes) =
+                    curve.ok().and_then(|curve| nodes_of(&beam.discretization, curve.length()))
+                {
                     *mesh = mesh.every_second_of(&nodes);
                 }
             }
@@ -195,23 +196,53 @@ impl<'a, 'o> Runner<'a, 'o> {
         settings.tolerance.is_none().then(|| short((EQUILIBRIUM * wanted).max(FINEST)))
     }
 
-    /// Solves the watched model with a setting.
+    /// The equilibria of a fine run, near which those of coarser ones are; where load steps are of
+    /// any length, only the ends, as each run would choose others.
+    fn known(&self, setting: &Setting, results: &mut Results) -> Option<Known> {
+        let Analysis::Static(settings) = self.analysis else { return None };
+        let trajectory = results.states_mut();
+        let states = match self.options.states {
+            true => trajectory.states.clone(),
+            false => trajectory.states.take(),
+        };
+        let loads = trajectory.parameter.iter().copied();
+        let mut states: Vec<(f64, Vec<f64>)> = loads
+            .zip(states?.states)
+            .filter_map(|(load, state)| match state {
+                RecordedState::Equilibrium { x, .. } => Some((load, x)),
+                RecordedState::Moving { .. } => None,
+            })
+            .collect();
+        if settings.steps.is_none() && states.len() > 2 {
+            states.drain(1..states.len() - 1);
+        }
+        let beams = setting.beams.iter().zip(&self.meshes).zip(&trajectory.last);
+        let nodes = beams.map(|(((beam, _), mesh), shape)| {
+            // What breaks a beam may have added nodes to those of the scene.
+            nodes_of(beam, mesh.length()).filter(|nodes| nodes.len() == shape.nodes.len())
+        });
+        Some(Known { nodes: nodes.collect::<Option<_>>()?, states })
+    }
+
+    /// Solves the watched model with a setting, near `known` equilibria where there are some.
     pub fn solve(
         &mut self,
         stations: &Stations,
         setting: &Setting,
         purpose: Purpose,
+        known: Option<&Known>,
     ) -> Result<Results, RunError> {
         let (model, analysis) = setting.apply(&stations.watch(self.model), self.analysis);
         let Options { start, observer, checkpoints, cache, states, frames, shape_points } = &mut self.options;
         let wanted = self.wanted.is_some_and(|w| w.curvature.is_some() || w.section_force.is_some());
+        let is_static = matches!(self.analysis, Analysis::Static(_));
         let places_tell = wanted || matches!(self.analysis, Analysis::Modal(_) | Analysis::Buckling(_));
         let options = Options {
             start: *start,
             observer: observer.as_mut().map(|observer| &mut **observer as _),
             checkpoints: *checkpoints,
             cache: *cache,
-            states: *states && purpose == Purpose::Results,
+            states: (*states || is_static) && purpose == Purpose::Results,
             frames: if purpose == Purpose::Results { *frames } else { 0 },
             shape_points: match purpose {
                 _ if places_tell => *shape_points,
@@ -220,7 +251,10 @@ impl<'a, 'o> Runner<'a, 'o> {
                 Purpose::Results => *shape_points,
             },
         };
-        let results = model.solve_with(&analysis, options)?;
+        let results = match &analysis {
+            Analysis::Static(settings) => settings.solve_near(known, &model, options)?.into(),
+            _ => model.solve_with(&analysis, options)?,
+        };
         let run = results.run();
         let cells: usize = setting.beams.iter().map(|(beam, _)| beam.nodes().count().saturating_sub(1)).sum();
         self.runs.push(RunForError {
@@ -235,14 +269,24 @@ impl<'a, 'o> Runner<'a, 'o> {
         Ok(results)
     }
 
-    /// A coarse run and a finer one; in the first round one that is still coarser, too.
+    /// A fine run and a coarser one; in the first round one that is still coarser, too.
     pub fn round(&mut self, first: bool) -> Result<Round, RunError> {
         let stations = Stations::new(self.model, &self.meshes);
-        let mut pair = |fineness, purpose| self.solve(&stations, &self.setting(fineness, fineness), purpose);
-        let coarsest = if first { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
-        let coarse = pair(Fineness::Coarse, Purpose::Shapes);
+        let fine = self.runs.len();
         let setting = self.setting(Fineness::Fine, Fineness::Fine);
-        let results = self.solve(&stations, &setting, Purpose::Results)?;
+        let mut results = self.solve(&stations, &setting, Purpose::Results, None)?;
+        if !results.run().complete {
+            let difference = Err("it was interrupted".to_owned());
+            return Ok(Round { stations, results, coarse: None, setting, difference, fall: None, cells: 0 });
+        }
+        let known = self.known(&setting, &mut results);
+        let mut pair = |fineness, purpose| {
+            self.solve(&stations, &self.setting(fineness, fineness), purpose, known.as_ref())
+        };
+        let coarse = pair(Fineness::Coarse, Purpose::Shapes);
+        let coarsest = if first { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
+        // From coarse to fine.
+        self.runs[fine..].reverse();
         let difference = match &coarse {
             Ok(coarse) if coarse.run().complete => self.difference(&stations, coarse, &results),
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
@@ -288,6 +332,12 @@ fn every(stride: usize, places: usize) -> usize {
 /// Two digits, which is enough for a tolerance.
 pub(super) fn short(tolerance: f64) -> f64 {
     format!("{tolerance:.1e}").parse().unwrap_or(tolerance)
+}
+
+/// Arc lengths of the nodes of a beam of such a length \[m\].
+fn nodes_of(discretization: &Discretization, length: f64) -> Option<Vec<f64>> {
+    let nodes = Discretization::Ancf { nodes: discretization.nodes().clone() };
+    Basis::new(&nodes, length).ok().map(|basis| basis.nodes().to_vec())
 }
 
 /// The same kind of discretisation on fewer nodes.
@@ -372,20 +422,21 @@ pub(super) mod tests {
         assert_eq!((short(1.2345e-5), short(9.99e-3)), (1.2e-5, 1e-2));
     }
 
-    /// Equilibria begin with more cells the smaller an error is wanted: with the sixth root.
+    /// The smaller an error is wanted, the more cells a search begins with: as the fourth root of the error, but
+    /// no more than six times as many for an equilibrium.
     #[test]
     fn searches_begin_with_so_many_cells() {
         let cells = |analysis: &str, wanted: f64| runner(&scene(analysis), wanted).meshes[0].cells();
         let still = "analysis.static = {}";
-        assert_eq!([1e-2, 1e-3, 1.1e-9, 1e-9 / 64.0].map(|wanted| cells(still, wanted)), [4, 4, 40, 80]);
+        assert_eq!([1e-2, 1e-3, 1.1e-3 / 16.0, 1e-7].map(|wanted| cells(still, wanted)), [4, 4, 8, 24]);
         assert_eq!(cells(MOTION, 1e-9), 4);
-        assert_eq!(cells("analysis.modal.count = 9", 1e-3), 10);
+        assert_eq!([1e-2, 1e-3].map(|wanted| cells("analysis.modal.count = 9", wanted)), [14, 24]);
         assert_eq!(
             cells(
                 "analysis.buckling.count = 7\neffect.force = [{ beam = 'arm', at = 'end', value = [-1, 0] }]",
                 1e-3
             ),
-            8
+            18
         );
         // Of a named mesh of seven cells the coarse run takes every second node, and the end.
         assert_eq!(cells("beam.arm.basis.ancf.elements = 7\nanalysis.static = {}", 1e-3), 4);

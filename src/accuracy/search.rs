@@ -2,7 +2,7 @@
 
 use super::judgement::{CAUTION, Judged, Seen, excess, scaled};
 use super::mesh::{self, CellErrors, Mesh};
-use super::round::{FINEST, FIRST_TOLERANCE, Fineness, LOOSER, Purpose, Round, Runner, TOLERANCE, short};
+use super::round::{FINEST, Fineness, LOOSER, Purpose, Round, Runner, short};
 use super::{Accurate, model_error, statement};
 use crate::model::{Accuracy, Analysis};
 use crate::results::{ErrorEstimate, Errors};
@@ -214,7 +214,7 @@ impl<'a, 'o> Search<'a, 'o> {
             && round.tells_of_steps()
             && let Some(coarse) = &round.coarse
             // A run on the coarse mesh with the finer steps tells the errors of both apart.
-            && let Ok(between) = self.runner.solve(&round.stations, &self.runner.setting(Fineness::Coarse, Fineness::Fine), Purpose::Positions)
+            && let Ok(between) = self.runner.solve(&round.stations, &self.runner.setting(Fineness::Coarse, Fineness::Fine), Purpose::Positions, None)
             && let Ok(of_steps) = self.runner.difference(&round.stations, coarse, &between)
             && let Ok(of_mesh) = self.runner.difference(&round.stations, &between, &round.results)
         {
@@ -233,14 +233,12 @@ impl<'a, 'o> Search<'a, 'o> {
         let times = needed.min(if contractions[0] < promised { CAREFUL_LEAP } else { LEAP });
         let mut steps = false;
         if let Some(time) = time {
-            // While the mesh is not yet what it has to be, steps need not be better than the mesh.
-            let left = if round.cells == 0 { 1.0 } else { (needed / times).max(1.0).powf(order) };
-            let ratio = time / (AIM * wanted.result * left);
-            steps = ratio > 1.0;
-            if steps || left > 1.0 {
-                let factor = ratio.powf(-POWER.recip()).clamp(LEAP_OF_TOLERANCE.recip(), LEAP_OF_TOLERANCE);
-                let most = (TOLERANCE * wanted.result * left).min(FIRST_TOLERANCE);
-                self.runner.tolerance = short((self.runner.tolerance * factor).clamp(FINEST, most));
+            // Where the mesh errs more, what is seen of the steps is not yet what they do on a finer one.
+            let ratio = time / (AIM * wanted.result);
+            steps = ratio > 1.0 && time >= errors.result;
+            if steps {
+                let factor = ratio.powf(-POWER.recip()).max(LEAP_OF_TOLERANCE.recip());
+                self.runner.tolerance = short((self.runner.tolerance * factor).max(FINEST));
             }
         }
         if steps && (times <= 1.0 || round.cells == 0) {

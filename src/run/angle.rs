@@ -3,30 +3,32 @@
 use crate::assembly::{DiscretizedBeam, Node, nodes};
 use crate::system::unfold;
 
-/// By how much the node of a beam nearest to `s` has turned between two states. One load step may
-/// wind a beam up by whole turns. But some node, such as a clamped one, has turned by less than
-/// half a turn, and the turns of the others follow from cell to cell.
-pub(super) fn turn(part: &DiscretizedBeam, s: f64, before: &[f64], now: &[f64]) -> f64 {
+/// By how much the nodes of a beam have turned between two states. One load step may wind a beam up
+/// by whole turns. But some node, such as a clamped one, has turned by less than half a turn, and
+/// the turns of the others follow from cell to cell.
+pub(super) fn turns(part: &DiscretizedBeam, before: &[f64], now: &[f64]) -> Vec<f64> {
     let first = 4 * part.first_node;
-    let angles = |q: &'_ [f64]| {
-        let nodes = nodes(&q[first..first + 4 * part.basis.nodes().len()]);
-        nodes.map(|Node { gradient: [x, y], .. }| y.atan2(x)).collect::<Vec<_>>()
-    };
-    let folded: Vec<f64> = angles(before)
-        .into_iter()
-        .zip(angles(now))
-        .map(|(before, now)| unfold(now - before, Some(0.0)))
-        .collect();
-    let sizes = folded.iter().map(|turn| turn.abs()).enumerate();
+    let all = first..first + 4 * part.basis.nodes().len();
+    let angle = |Node { gradient: [x, y], .. }: Node| y.atan2(x);
+    let pairs = nodes(&before[all.clone()]).zip(nodes(&now[all]));
+    let mut turns: Vec<f64> =
+        pairs.map(|(before, now)| unfold(angle(now) - angle(before), Some(0.0))).collect();
+    let sizes = turns.iter().map(|turn| turn.abs()).enumerate();
     let still = sizes.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(node, _)| node);
-    let distances = part.basis.nodes().iter().map(|node| (node - s).abs()).enumerate();
-    let target = distances.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(node, _)| node);
-    let follow = |turn: f64, next: &f64| unfold(*next, Some(turn));
-    if target >= still {
-        folded[still + 1..=target].iter().fold(folded[still], follow)
-    } else {
-        folded[target..still].iter().rev().fold(folded[still], follow)
+    for node in still + 1..turns.len() {
+        turns[node] = unfold(turns[node], Some(turns[node - 1]));
     }
+    for node in (0..still).rev() {
+        turns[node] = unfold(turns[node], Some(turns[node + 1]));
+    }
+    turns
+}
+
+/// The node of a beam that is nearest to `s` \[m\].
+pub(super) fn nearest(part: &DiscretizedBeam, s: f64) -> usize {
+    let nodes = part.basis.nodes();
+    let after = nodes.partition_point(|node| *node < s).min(nodes.len() - 1);
+    after.checked_sub(1).filter(|before| s - nodes[*before] <= nodes[after] - s).unwrap_or(after)
 }
 
 #[cfg(test)]
@@ -65,10 +67,10 @@ mod tests {
             (-3.0, 1.5, 0.0, -3.0),
             (0.25, 0.0, 0.6, 0.25),
         ] {
-            let now = turned(start, each);
-            let found = turn(&system.beams()[1], s, &still, &now);
+            let (now, beam) = (turned(start, each), &system.beams()[1]);
+            let found = turns(beam, &still, &now)[nearest(beam, s)];
             assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
-            let back = turn(&system.beams()[1], s, &now, &still);
+            let back = turns(beam, &now, &still)[nearest(beam, s)];
             assert!((back + expected).abs() < 1e-12, "{back} instead of {}", -expected);
         }
     }

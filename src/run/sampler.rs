@@ -204,7 +204,8 @@ impl<'a> Sampler<'a> {
     }
 
     pub(super) fn empty(&self, analysis: AnalysisKind) -> Trajectory {
-        let reference = self.system.reference();
+        let undeformed = self.shape(self.system.reference());
+        let last = undeformed.clone();
         let run = Run {
             title: self.model.title.clone(),
             analysis,
@@ -212,13 +213,13 @@ impl<'a> Sampler<'a> {
             degrees_of_freedom: self.system.degrees_of_freedom(),
             warnings: self.left_out(analysis).into_iter().chain(strings::couples(self.model)).collect(),
             settings: self.settings(),
-            undeformed: self.shape(reference),
+            undeformed,
             outlines: self.outlines(),
             ..Run::default()
         };
         Trajectory {
             run,
-            last: self.shape(reference),
+            last,
             probes: self
                 .probes
                 .iter()
@@ -509,6 +510,7 @@ impl<'a> Sampler<'a> {
         if self.model.outputs.effects {
             self.record_effects(trajectory, parameter, q, (velocity, variables));
         }
+        let mut turns = vec![None; self.system.beams().len()];
         for (probe, (ProbePoint { beam, view, measure, reference_strain, .. }, series)) in
             self.probes.iter().zip(&mut trajectory.probes).enumerate()
         {
@@ -520,7 +522,10 @@ impl<'a> Sampler<'a> {
                 }
                 History::Before(before) => {
                     let part = &self.system.beams()[*beam];
-                    let turned = before.map_or(0.0, |before| angle::turn(part, view.s()[0], before, q));
+                    let turned = before.map_or(0.0, |before| {
+                        let turns = turns[*beam].get_or_insert_with(|| angle::turns(part, before, q));
+                        turns[angle::nearest(part, view.s()[0])]
+                    });
                     unfold(fields.angle(), series.samples.last().map(|s| s.angle + turned))
                 }
             };
