@@ -16,7 +16,7 @@
 
 use super::density::lane_of;
 use super::{Actions, CompiledFor, Density, Gradient, Hessian, Integral, Kind, Workspace};
-use crate::lanes::{Lanes, Pair, Points};
+use crate::lanes::{Lanes, Pair};
 use crate::linear::Matrix;
 
 /// A dissipation function per unit of arc length that depends on `M` local fields and their rates.
@@ -30,15 +30,15 @@ pub trait Dissipation<const M: usize>: Send + Sync {
     /// ∂R/∂ż at quadrature point number `point`.
     fn force(&self, point: usize, z: &Gradient<M>, rate: &Gradient<M>) -> Gradient<M>;
 
-    /// Whether [`Self::forces`] is faster than four times [`Self::force`].
+    /// Whether it is the same function at all points, and [`Self::forces`] faster than four times
+    /// [`Self::force`].
     const BY_FOURS: bool = false;
 
-    /// ∂R/∂ż at four points.
+    /// ∂R/∂ż at four points of a function that is the same at all.
     #[inline(always)]
-    fn forces(&self, points: Points, z: &[Pair<Lanes>; M], rate: &[Pair<Lanes>; M]) -> [Pair<Lanes>; M] {
-        let numbers = points.numbers();
+    fn forces(&self, z: &[Pair<Lanes>; M], rate: &[Pair<Lanes>; M]) -> [Pair<Lanes>; M] {
         let forces: [Gradient<M>; 4] =
-            std::array::from_fn(|lane| self.force(numbers[lane], &lane_of(z, lane), &lane_of(rate, lane)));
+            std::array::from_fn(|lane| self.force(0, &lane_of(z, lane), &lane_of(rate, lane)));
         let part = |m: usize, d: usize| Lanes::new(std::array::from_fn(|lane| forces[lane][m][d]));
         std::array::from_fn(|m| std::array::from_fn(|d| part(m, d)))
     }

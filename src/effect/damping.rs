@@ -7,7 +7,7 @@
 use super::{CouplingDamping, Engineering, Green, Strain, bend};
 use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
 use crate::beam::{Along, StrainMeasure};
-use crate::lanes::{Lanes, Pair, Points, Real, dot};
+use crate::lanes::{Lanes, Pair, Real, dot};
 use nalgebra::{Matrix2, Vector2};
 
 /// Damping proportional to mass: R = ½ c ṙ·ṙ with c = α ρA \[N s/m²\].
@@ -28,7 +28,7 @@ impl Dissipation<1> for MassDamping {
     const BY_FOURS: bool = true;
 
     #[inline(always)]
-    fn forces(&self, _: Points, _: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
+    fn forces(&self, _: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
         [rate[0].map(|rate| rate * Lanes::splat(self.coefficient))]
     }
 
@@ -71,7 +71,7 @@ impl<S: Strain> Dissipation<1> for StretchDamping<S> {
     const BY_FOURS: bool = true;
 
     #[inline(always)]
-    fn forces(&self, _: Points, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
+    fn forces(&self, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
         [self.force_at(z[0], rate[0])]
     }
 
@@ -115,7 +115,7 @@ impl Dissipation<2> for BendDamping {
     const BY_FOURS: bool = true;
 
     #[inline(always)]
-    fn forces(&self, _: Points, z: &[Pair<Lanes>; 2], rate: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
+    fn forces(&self, z: &[Pair<Lanes>; 2], rate: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
         self.force_at(z, *rate)
     }
 

@@ -4,7 +4,7 @@ use super::DeadForce;
 use crate::assembly::{Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part};
 use crate::basis::Quadrature;
 use crate::beam::Along;
-use crate::lanes::{Lanes, Pair, Points, Real, dot};
+use crate::lanes::{Lanes, Pair, Real, dot};
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
 
@@ -143,7 +143,7 @@ impl Dissipation<2> for DragForce {
     const BY_FOURS: bool = true;
 
     #[inline(always)]
-    fn forces(&self, _: Points, z: &[Pair<Lanes>; 2], rate: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
+    fn forces(&self, z: &[Pair<Lanes>; 2], rate: &[Pair<Lanes>; 2]) -> [Pair<Lanes>; 2] {
         [self.force_at(z[1], rate[0]), [Lanes::ZERO; 2]]
     }
 

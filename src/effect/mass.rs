@@ -16,7 +16,7 @@ use super::Inertia;
 use super::direction;
 use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
 use crate::beam::{Along, Place};
-use crate::lanes::{Lanes, Pair, Points, Real, cross, dot};
+use crate::lanes::{Lanes, Pair, Real, cross, dot};
 
 /// A mass at a point: T = ½ m ṙ·ṙ + ½ J θ̇².
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,7 +103,7 @@ impl Dissipation<1> for RotaryInertia {
     const BY_FOURS: bool = true;
 
     #[inline(always)]
-    fn forces(&self, _: Points, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
+    fn forces(&self, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
         [self.force_at(z[0], rate[0])]
     }
 
@@ -142,7 +142,7 @@ impl Dissipation<1> for Gyration {
     const BY_FOURS: bool = true;
 
     #[inline(always)]
-    fn forces(&self, _: Points, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
+    fn forces(&self, z: &[Pair<Lanes>; 1], rate: &[Pair<Lanes>; 1]) -> [Pair<Lanes>; 1] {
         [self.force_at(z[0], rate[0])]
     }
 

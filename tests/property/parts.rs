@@ -94,9 +94,8 @@ fn rates<D: Dissipation<M>, const M: usize>(
         }
     }
     let ((states, z_lanes), (rates, rate_lanes)) = (of_four(&z), of_four(&rate));
-    let points = Points { first: 0, stride: 0 };
     let each = std::array::from_fn(|k| density.force(0, &states[k], &rates[k]));
-    four_are_each(density.forces(points, &z_lanes, &rate_lanes), each);
+    four_are_each(density.forces(&z_lanes, &rate_lanes), each);
     let constant: Vec<Field> = rate.iter().map(|r| [Dual::from(r.x), Dual::from(r.y)]).collect();
     let value = function(&constant).re;
     derivatives(&AtState(density, z, value), rate, function);
@@ -231,7 +230,7 @@ proptest! {
         let gyration = Gyration(RotaryInertia { inertia: 0.6 });
         let ((states, z_lanes), (velocities, lanes)) = (of_four(&[g]), of_four(&[w]));
         let each = std::array::from_fn(|k| gyration.force(0, &states[k], &velocities[k]));
-        four_are_each(gyration.forces(Points { first: 0, stride: 0 }, &z_lanes, &lanes), each);
+        four_are_each(gyration.forces(&z_lanes, &lanes), each);
         let follower = FollowerForce::new([0.7, -1.2], &[c, g, v, w]);
         let (states, lanes) = of_four(&[r, g]);
         let each = std::array::from_fn(|k| follower.gradient(k, &states[k]).map(|force| force * 0.4));

@@ -3,7 +3,7 @@
 use super::CABLE;
 use super::force::{fields_of_four, sums_of_points};
 use crate::assembly::{Density, Dissipation, Gradient, Integral, Rayleigh};
-use crate::lanes::{self, Lanes, Points};
+use crate::lanes::{self, Lanes};
 
 impl<D: Density<M>, const M: usize> Integral<D, M> {
     /// `f += ∫ Σ_m N⁽ᵒᵐ⁾ g_m(z, ż) ds`, where z are the fields of `q`, ż those of `v`, and g is
@@ -81,9 +81,8 @@ impl<D: Dissipation<M>, const M: usize> Integral<Rayleigh<D>, M> {
             for p in 0..P {
                 let rows = &rows[p * M..(p + 1) * M];
                 let (z, rate) = (fields_of_four(rows, &here), fields_of_four(rows, &rates));
-                let points = Points { first: cell * P + p, stride: P };
                 let weight = Lanes::splat(weights[p]);
-                gradients[p] = self.density.0.forces(points, &z, &rate).map(|g| g.map(|g| g * weight));
+                gradients[p] = self.density.0.forces(&z, &rate).map(|g| g.map(|g| g * weight));
             }
             lanes::scatter(&sums_of_points::<M, CABLE, P>(rows, &gradients), &mut f[range]);
         }
