@@ -301,7 +301,12 @@ fn of_layers(
         .help(format!("leave `{key}` out")));
     }
     let rows = layers.get();
-    let Some(first) = rows.first() else {
+    let sum = |terms: &[Along]| terms.iter().cloned().reduce(|sum, term| sum.plus(&term));
+    let mut heights = Vec::with_capacity(rows.len());
+    for row in rows {
+        heights.push(along(&row.get().height, "height", length)?);
+    }
+    let (Some(first), Some(total)) = (rows.first(), sum(&heights)) else {
         return Err(Fault::new(layers.span(), "a section without any layer").help("give one layer or more"));
     };
     let has_density = first.get().density.is_some();
@@ -313,13 +318,7 @@ fn of_layers(
         return Err(Fault::new(row.span(), "some layers have what this one has not, or the other way round")
             .help("give `density` and `offset` for every layer, or for none"));
     }
-    let mut heights = Vec::with_capacity(rows.len());
-    for row in rows {
-        heights.push(along(&row.get().height, "height", length)?);
-    }
-    let sum = |terms: &[Along]| terms.iter().cloned().reduce(|sum, term| sum.plus(&term));
-    let zero = Along::Constant(0.0);
-    let mut bottom = sum(&heights).map_or_else(|| zero.clone(), |total| total.times(-0.5));
+    let mut bottom = total.times(-0.5);
     let mut stiffness = [const { Vec::new() }; 3];
     let mut inertia = [const { Vec::new() }; 2];
     let mut made = Vec::with_capacity(rows.len());
@@ -356,16 +355,17 @@ fn of_layers(
     let usable = |key: &str, along: Option<Along>| {
         along.map(|along| usable(label, key, (along, layers.span()), length)).transpose()
     };
-    let coupling = sum(&stiffness[1]).unwrap_or(zero);
-    let neutral = places(&coupling, length).all(|(s, value)| {
-        // Round-off of layers that lie evenly about the centreline.
-        let scale = stiffness[1].iter().map(|term| term.at(s, s).abs()).sum::<f64>();
-        value.abs() <= 8.0 * f64::EPSILON * scale
-    });
+    let neutral = |coupling: &Along| {
+        places(coupling, length).all(|(s, value)| {
+            // Round-off of layers that lie evenly about the centreline.
+            let scale = stiffness[1].iter().map(|term| term.at(s, s).abs()).sum::<f64>();
+            value.abs() <= 8.0 * f64::EPSILON * scale
+        })
+    };
     Ok(Section {
         axial_stiffness: usable("axial_stiffness", sum(&stiffness[0]))?,
         bending_stiffness: usable("bending_stiffness", sum(&stiffness[2]))?,
-        coupling: (!neutral).then_some(coupling),
+        coupling: sum(&stiffness[1]).filter(|coupling| !neutral(coupling)),
         mass_per_length: usable("mass_per_length", sum(&inertia[0]))?,
         rotary_inertia: sum(&inertia[1]),
         layers: made,
