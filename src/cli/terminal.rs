@@ -697,15 +697,18 @@ mod tests {
             },
             parameter: vec![0.0, 0.75],
             probes: vec![ProbeSeries { name: "tip".into(), samples: vec![ProbeSample::default(), sample] }],
-            energy: vec![Energy {
-                stretch: 0.125,
-                bend: 0.5,
-                stored: 0.25,
-                kinetic: 2.0,
-                potential: -4.0,
-                work: 8.0,
-                lost: 16.0,
-            }],
+            energy: vec![
+                Energy::default(),
+                Energy {
+                    stretch: 0.125,
+                    bend: 0.5,
+                    stored: 0.25,
+                    kinetic: 2.0,
+                    potential: -4.0,
+                    work: 8.0,
+                    lost: 16.0,
+                },
+            ],
             events: vec![
                 Event::Probe { time: 0.5, probe: "tip".into(), quantity: "y", value: -0.125, turns: None },
                 Event::Contact { time: 0.625, contact: "arm.1".into(), touches: true, impulse: None },

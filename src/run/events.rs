@@ -91,3 +91,41 @@ impl Sampler<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::Needs;
+    use crate::system::System;
+
+    /// Elements of 0.5 m in a rectangle of 0.25 m by 0.5 m of 800 Pa: EA = 100 N, EI = 25/12 N m², and N/A + M/W on
+    /// a face, of the largest force and moment of round-off, whatever their signs.
+    #[test]
+    fn round_off_of_forces_is_that_of_positions_in_an_element() {
+        let text =
+            "beam.bar = { start = [0, 0], end = [2, 0], youngs_modulus = 800, basis.ancf.elements = 4, \
+             section.rectangle = { height = 0.5, width = 0.25 } }
+            support = [{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }]
+            probe = [{ name = 'end', beam = 'bar', at = 'end' }]
+            analysis.static = {}";
+        let scene = crate::scene::parse("bar.toml", text).expect("a scene");
+        let system = System::build(scene.model(), Needs { inertia: false, motion: false }).expect("a system");
+        let sampler = Sampler::new(scene.model(), &system, [0, 2]).expect("a sampler");
+        let position = f64::EPSILON * 2.0;
+        let axial = position * 100.0 / 0.5;
+        let across = position * (12.0 * 25.0 / 12.0 / 0.125 + 100.0 / 0.5 / 16.0);
+        let stress = axial / 0.125 + across * 0.5 / (0.25 * 0.25 / 6.0);
+        for (quantity, expected) in [
+            (ProbeQuantity::AxialForce, axial),
+            (ProbeQuantity::ShearForce, across),
+            (ProbeQuantity::BendingMoment, across * 0.5),
+            (ProbeQuantity::StressBottom, stress),
+            (ProbeQuantity::StressTop, stress),
+            (ProbeQuantity::Y, 0.0),
+            (ProbeQuantity::Speed, 0.0),
+        ] {
+            let found = sampler.round_off(0, quantity);
+            assert!((found - expected).abs() <= 1e-12 * expected, "{quantity:?}: {found} for {expected}");
+        }
+    }
+}

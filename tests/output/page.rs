@@ -3,7 +3,8 @@
 use super::made_up::{all, buckling, rise, sample, step, vibrations};
 use super::{snapshot, written};
 use ancf::results::{
-    AnalysisKind, BucklingMode, CriticalLoads, ProbeSample, Results, Run, Seconds, Shape, Statistics,
+    AnalysisKind, BucklingMode, CriticalLoads, LayerStress, ProbeSample, ProbeSeries, Reaction,
+    ReactionSeries, Results, Run, Seconds, SectionForces, SectionSeries, Shape, Statistics, Tension,
     Trajectory, Vibration, Vibrations,
 };
 
@@ -154,6 +155,78 @@ fn captions_say_when_and_how_much() {
         "<caption>Energies at load factor 1.23457</caption>",
     ] {
         assert!(page.contains(caption), "{caption} in {page}");
+    }
+}
+
+/// Forces with seven digits, stresses with five; where only one of two sections tells its shape, the
+/// other's stresses are dashes.
+#[test]
+fn sections_stresses_reactions_and_tensions_have_their_digits() {
+    let mut trajectory = rise(2);
+    let probe = trajectory.probes[0].clone();
+    trajectory.probes =
+        ["plain", "end"].map(|name| ProbeSeries { name: name.into(), ..probe.clone() }).to_vec();
+    let plain = SectionForces {
+        axial_force: 1.234_567_89,
+        shear_force: -23.456_789_1,
+        bending_moment: 345.678_912_3,
+        stress_bottom: None,
+        stress_top: None,
+    };
+    let stressed =
+        SectionForces { stress_bottom: Some(-4_567.891_23), stress_top: Some(0.567_891_234), ..plain };
+    let series = |(name, samples): (&str, Vec<SectionForces>)| SectionSeries { name: name.into(), samples };
+    trajectory.sections =
+        [("plain", vec![stressed, plain]), ("end", vec![plain, stressed])].map(series).to_vec();
+    let force = Reaction { fx: -1.234_567_89, fy: 23.456_789_1, moment: 0.034_567_891_23 };
+    let samples = vec![Reaction::default(), force];
+    trajectory.reactions = vec![ReactionSeries { name: "support1".into(), samples }];
+    trajectory.run.tensions = vec![Tension { beam: "arm".into(), tension: 67.891_234_5 }];
+    let (bottom, top) = (vec![0.0, -2.0, 1.0], vec![1.0, 3.0, -7.891_234_56]);
+    let length = 0.912_345_678;
+    for shape in &mut trajectory.last {
+        shape.s = vec![0.0, 0.5, length];
+        let idle = LayerStress { bottom: vec![0.0; 3], top: vec![0.0; 3] };
+        shape.stress = vec![idle, LayerStress { bottom: bottom.clone(), top: top.clone() }];
+    }
+    let page = written(&trajectory)["report.html"].clone();
+    for (caption, expected) in [
+        (
+            "Sections at the probes",
+            &[
+                ("section at", "plain"),
+                ("N [N]", "1.234568"),
+                ("Q [N]", "−23.45679"),
+                ("M [N m]", "345.6789"),
+                ("σ bottom [Pa]", "–"),
+                ("σ top [Pa]", "–"),
+            ][..],
+        ),
+        (
+            "Largest stresses",
+            &[
+                ("largest stress in", "arm"),
+                ("σ [Pa]", "−7.8912"),
+                ("s [m]", "0.912346"),
+                ("layer", "2"),
+                ("face", "top"),
+            ],
+        ),
+        (
+            "Reactions",
+            &[
+                ("reaction of", "support1"),
+                ("fx [N]", "−1.234568"),
+                ("fy [N]", "23.45679"),
+                ("moment [N m]", "0.03456789"),
+            ],
+        ),
+        ("Tendons of given length", &[("tendon of", "arm"), ("tension [N]", "67.89123")]),
+    ] {
+        assert_eq!(first_row(&page, &format!("{caption} at 0.125 s")), pairs(expected), "{caption}");
+    }
+    for stress in ["<td>−4567.9</td>", "<td>0.56789</td>"] {
+        assert_eq!(page.matches(stress).count(), 1, "{stress}");
     }
 }
 

@@ -251,3 +251,24 @@ fn held_actuation_presses_with_the_opposite_sign() {
         found.ends("energy.csv", &[("stretch", 1e-3), ("bend", 0.2)], 1e-8);
     }
 }
+
+/// A tapered bar that is damped in proportion to its stiffness creeps everywhere at the same rate: its end
+/// moves by F ∫ ds/EA (1 − exp(−t/η)) and turns by M ∫ ds/EI (1 − exp(−t/η)), with ∫ ds/(1 + s) = ln 2.
+///
+/// Would catch a coefficient that is taken from another place of the bar.
+#[test]
+fn a_tapered_bar_creeps_everywhere_at_the_same_rate() {
+    let text = format!(
+        "beam.bar = {{ start = [0, 0], end = [1, 0], axial_stiffness.polynomial = [1e3, 1e3], bending_stiffness.polynomial = [10, 10], \
+         mass_per_length = 1e-5, basis.ancf.elements = 4 }}
+         support = [{{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }}]
+         effect.force = [{{ beam = 'bar', at = 'end', value = [0.01, 0] }}]
+         effect.moment = [{{ beam = 'bar', at = 'end', value = 1e-3 }}]
+         effect.damping = [{{ beam = 'bar', stiffness_proportional = 0.5 }}]
+         probe = [{{ name = 'end', beam = 'bar', at = 'end' }}]\n{SECOND}"
+    );
+    let found = Written::of(&text);
+    let part = 2.0_f64.ln() * (1.0 - f64::exp(-2.0));
+    near((found.last("probes.csv", "end.x") - 1.0) / 1e-5, part, 2e-3, &text);
+    near(found.last("probes.csv", "end.angle") / 1e-4, part, 2e-3, &text);
+}

@@ -85,6 +85,25 @@ fn an_electrode_has_a_side() {
     let wrong = plate(HELD, "", "analysis.static = {}").replace("normal = [0, 2]", "normal = [0, -2]");
     let said = parse("scene.toml", &wrong).expect_err("behind the electrode").to_string();
     assert!(said.contains("begins") && said.contains("behind the electrode at s = 0 m"), "{said}");
+    // Aslant, the gap 0.6 (x + 10 µm) − 0.8 (y + 10 µm) grows from −2 to 598 µm along the plate, and falls the
+    // other way round.
+    let aslant = |normal: &str| {
+        let wrong = plate(HELD, "", "analysis.static = {}").replace("normal = [0, 2]", normal);
+        let wrong = wrong.replace("point = [0,", "point = ['-10 µm',");
+        let said = parse("scene.toml", &wrong).expect_err("behind the electrode").to_string();
+        let number = |before: &str| {
+            let word = said.split_once(before).and_then(|(_, rest)| rest.split(' ').next());
+            word.and_then(|word| word.parse::<f64>().ok()).unwrap_or_else(|| panic!("{said}"))
+        };
+        [number("begins "), number("at s = ")]
+    };
+    let [behind, s] = aslant("normal = [3, -4]");
+    near(behind, 2e-6, 1e-18, "at the start");
+    near(s, 0.0, 0.0, "s");
+    // Looked at from 5 to 5 µm, the plate is first behind it at s = 5 µm, by 0.6 · 15 − 0.8 · 10 = 1 µm.
+    let [behind, s] = aslant("normal = [-3, 4]");
+    near(behind, 1e-6, 1e-18, "after the start");
+    near(s, 5e-6, 1e-18, "s");
     let thick = plate(HELD, ", half_thickness = '10 µm'", "analysis.static = {}");
     assert!(parse("scene.toml", &thick).is_err());
     let pulled = plate(HELD, "", "analysis.static = {}").replace("'10 V'", "'60 V'");

@@ -121,6 +121,12 @@ fn a_force_has_maxima() {
         (9.0 * quarter, 1.0),
     ];
     expect(text, &expected, 1e-4, "force");
+    // The stress on a face of 0.25 m by 0.5 m is eight times the force.
+    let stiff = "section.rectangle = { height = 0.5, width = 0.25 }, youngs_modulus = 800";
+    let stressed = text
+        .replace("axial_stiffness = 100, bending_stiffness = 1", stiff)
+        .replace("'axial_force'", "'stress_top'");
+    expect(&stressed, &expected.map(|(time, force)| (time, 8.0 * force)), 8e-4, "stress");
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use super::{Written, near};
 use ancf::output::{OutputOptions, write};
 use ancf::results::Results;
-use ancf::run::{Options, solve_stages};
+use ancf::run::{Options, model_of_stage, solve_stages};
 use ancf::scene::{Scene, parse};
 use std::f64::consts::PI;
 
@@ -484,5 +484,26 @@ fn a_support_that_was_moved_stays_moved() {
         let end = *results.states().probes[0].samples.last().expect("an end");
         near(end.x, 1.01, 1e-12, "x");
         near(end.y, 0.2, 1e-12, "y");
+    }
+}
+
+/// What is built of a stage that goes on: in statics supports bring what they move to its place, which
+/// they have done in the stage before; in a motion only what is new, or what a law moves, is elsewhere than
+/// where it was.
+#[test]
+fn a_stage_is_built_with_what_its_supports_have_moved() {
+    let text = "beam.bar = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 8 }
+        support = [
+            { beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'], move.y = 0.1 },
+            { beam = 'bar', at = 0.5, fix = ['x'], move = { x = 0.2, in_time.polynomial = [1] } },
+            { beam = 'bar', at = 'end', fix = ['y'], move.y = 0.3, stage = 'second' },
+        ]
+        stage = [{ name = 'first', analysis.static = {} }, { name = 'second', analysis.KIND }]";
+    for (kind, expected) in [("static = {}", [0.1, 0.2, 0.3]), ("dynamic.duration = 1", [0.0, 0.2, 0.3])] {
+        let scene = scene(&text.replace("KIND", kind));
+        let (model, _) = model_of_stage(scene.stages(), 1);
+        let moved: Vec<f64> =
+            model.supports.iter().map(|support| support.displacement.x + support.displacement.y).collect();
+        assert_eq!(moved, expected, "{kind}");
     }
 }

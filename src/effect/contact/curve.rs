@@ -420,3 +420,20 @@ impl Cells {
         size_of_val(&self.cells[..]) + size_of_val(&self.rows[..]) + size_of_val(&self.products[..])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::basis::{Discretization, Nodes};
+
+    /// A basis has the degree that its shape functions need, however long its beam is; rows of gradients
+    /// have the unit of a length.
+    #[test]
+    fn the_degree_of_the_cells_does_not_depend_on_the_unit_of_length() {
+        for length in [1e-9, 1.0, 1e9] {
+            let cable = Discretization::Ancf { nodes: Nodes::Uniform(3) };
+            let cells = Basis::new(&cable, length).and_then(|basis| Cells::new(&basis, 0)).expect("cells");
+            assert_eq!((cells.degree(), cells.count()), (3, 2), "{length}");
+        }
+    }
+}
