@@ -153,16 +153,62 @@ def test_what_was_chosen_says_that_functions_are_missing() -> None:
 
 def test_tangents_of_functions_lead_as_fast_as_those_of_the_scene() -> None:
     """With a wrong tangent Newton's method ends at the same place, but takes more iterations."""
-    follower = {"force": [{"beam": "arm", "at": "end", "value": [-1.0, 4.0], "follower": True}]}
-    turned = ancf.Scene(arm(effect={}))
-    turned.add_force(
-        "arm",
-        "end",
-        lambda x, y, angle: (-math.cos(angle) - 4.0 * math.sin(angle), -math.sin(angle) + 4.0 * math.cos(angle)),
-    )
-    bent = ancf.Scene(arm(effect={}))
-    bent.add_force("arm", "end", lambda x, y, angle: (0.0, 0.0, 2.2))
-    moment = {"moment": [{"beam": "arm", "at": "end", "value": 2.2}]}
-    for own, named in [(turned, ancf.Scene(arm(effect=follower))), (bent, ancf.Scene(arm(effect=moment)))]:
-        found = [scene.run().statistics["newton_iterations"] for scene in (own, named)]
-        assert found[0] == found[1] > 0
+    # With and without a pull that lengthens the bar by a quarter, so that r' is no unit vector.
+    pull = {"force": [{"beam": "arm", "at": "end", "value": [5.0, 0.0]}]}
+    for stiffness, more in [(1e4, {}), (20.0, pull)]:
+        force = {"beam": "arm", "at": "end", "value": [-1.0, 4.0], "follower": True}
+        moment = {"moment": [{"beam": "arm", "at": "end", "value": 2.2}]}
+
+        def scene(effect: dict[str, Any], stiffness: float = stiffness) -> ancf.Scene:
+            table = arm(effect=effect)
+            table["beam"]["arm"]["axial_stiffness"] = stiffness
+            return ancf.Scene(table)
+
+        turned, bent = scene(more), scene(more)
+        turned.add_force(
+            "arm",
+            "end",
+            lambda x, y, angle: (-math.cos(angle) - 4.0 * math.sin(angle), -math.sin(angle) + 4.0 * math.cos(angle)),
+        )
+        bent.add_force("arm", "end", lambda x, y, angle: (0.0, 0.0, 2.2))
+        named = [scene({**more, "force": [*more.get("force", []), force]}), scene({**more, **moment})]
+        for own, other in zip([turned, bent], named, strict=True):
+            found = [scene.run() for scene in (own, other)]
+            counts = [result.statistics["newton_iterations"] for result in found]
+            assert counts[0] == counts[1] > 0
+            assert tip(own) == pytest.approx(tip(other), abs=1e-8)
+
+
+def braked(place: float, effect: dict[str, Any], coupling: float | None = None, told: float | None = None) -> ancf.Result:
+    """A rod that moves and turns until a dashpot stops it: one that the scene names, or one by a function whose
+    velocities along and across have a share in its couple, and which tells `told` for this share."""
+
+    def matrix(coupling: float) -> np.ndarray:
+        return np.array([[3.0, 0.0, 1.5 * coupling], [0.0, 3.0, -2.0 * coupling], [1.5 * coupling, -2.0 * coupling, 2.0]])
+
+    motion = {"dynamic": {"duration": 0.1, "output_every": 0.1, "radau": {"step": 0.01}}}
+    moving = [{"beam": "arm", "value": [0.01, 0.02], "rotation": 0.03}]
+    table = falling(support=[], effect=effect, initial_velocity=moving, analysis=motion)
+    table["beam"]["arm"].update(start=[3, 2], end=[3.8, 2.6])
+    scene = ancf.Scene(table)
+    if coupling is not None:
+        derivative = None if told is None else lambda *_: -matrix(told)
+        scene.add_force("arm", place, lambda *z: -matrix(coupling) @ z[3:], derivative=derivative, rates=True)
+    return scene.run()
+
+
+@pytest.mark.parametrize("place", [0.4, 1.0])
+def test_matrices_of_dashpots_lead_as_fast_as_those_of_the_scene(place: float) -> None:
+    spring = {"beam": "arm", "at": place, "damping": 3.0}
+    named = braked(place, {"spring": [spring], "torsion_spring": [{**spring, "damping": 2.0}]})
+    for own in (braked(place, {}, 0.0), braked(place, {}, 0.0, told=0.0)):
+        assert own.statistics["newton_iterations"] == named.statistics["newton_iterations"]
+        assert own.energy.lost[-1] == pytest.approx(named.energy.lost[-1], rel=1e-9)
+    # A function that tells of no coupling, or of the opposite one, leads astray by as much, whichever it has.
+    counts = [
+        [braked(place, {}, coupling, told).statistics["newton_iterations"] for told in (coupling, 0.0, -coupling)]
+        for coupling in (1.0, -1.0)
+    ]
+    for right, less, wrong in counts:
+        assert 2 * right < less < wrong
+    assert counts[0][0] == braked(place, {}, 1.0).statistics["newton_iterations"]
