@@ -241,7 +241,7 @@ fn finish_stages(
     destination: Destination,
 ) -> Result<(), Failure> {
     let StagesRun { mut results, failure } = run;
-    let interrupted = results.last().is_some_and(|results| !results.run().complete) && failure.is_none();
+    let interrupted = results.last().is_some_and(|results| !results.run().complete);
     let failure = match failure {
         Some(error) => Some(Failure::run(scene.name(), error)),
         None => interrupted.then(|| Failure::interrupted(scene, destination.path())),

@@ -130,6 +130,33 @@ fn an_interrupted_path_leaves_what_it_computed() {
     assert!(written["last"].as_f64().expect("a load factor") > 0.0);
 }
 
+/// Of a scene with stages those before stay as they are, and the one that was interrupted is the last.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_stage_leaves_what_it_computed() {
+    let folder = folder(
+        "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 8 }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.force = [{ beam = 'arm', at = 'end', value = [0, 3], until = 'swing' }]
+        stage = [{ name = 'bend', analysis.static = {} }, \
+        { name = 'swing', analysis.dynamic = { duration = 1000, output_every = 0.1, radau.step = 0.001 } }, \
+        { name = 'rest', analysis.static = {} }]\n",
+    );
+    let output = interrupted(folder.path(), 1);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    let said = "error: scene.toml: interrupted; what was computed until then is in out/scene";
+    assert!(stderr(&output).contains(said), "{}", stderr(&output));
+    let written = summary(folder.path());
+    assert_eq!(written["complete"], false);
+    let told = |stage: usize| {
+        (written["stages"][stage]["name"].as_str(), written["stages"][stage]["complete"].as_bool())
+    };
+    assert_eq!((told(0), told(1)), ((Some("bend"), Some(true)), (Some("swing"), Some(false))), "{written}");
+    assert_eq!(told(2), (None, None));
+    let page = fs::read_to_string(folder.path().join("out/scene/report.html")).expect("a page");
+    assert!(page.contains("<h2>Incomplete</h2>") && page.contains("scene.toml: interrupted"));
+}
+
 #[cfg(unix)]
 #[test]
 fn a_second_interrupt_ends_the_program_at_once() {
