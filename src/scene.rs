@@ -90,13 +90,10 @@ impl Scene {
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, SceneError> {
         let name = path.display().to_string();
         let unreadable = |reason: String| SceneError::Unreadable { path: path.to_owned(), reason };
-        let mut bytes = Vec::new();
-        std::fs::File::open(path)
-            .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
-            .map_err(|error| unreadable(error.to_string()))?;
-        if bytes.len() as u64 > LONGEST {
-            return Err(unreadable(format!("it is longer than {} MiB", LONGEST >> 20)));
-        }
+        let bytes = std::fs::File::open(path)
+            .and_then(|file| whole(file, LONGEST))
+            .map_err(|error| unreadable(error.to_string()))?
+            .ok_or_else(|| unreadable(format!("it is longer than {} MiB", LONGEST >> 20)))?;
         match String::from_utf8(bytes) {
             Ok(text) => Self::read(&name, &text, overrides),
             Err(error) => {
@@ -246,6 +243,13 @@ pub fn parse(name: &str, text: &str) -> Result<Scene, SceneError> {
     Scene::read(name, text, &[])
 }
 
+/// All bytes of a source; none if there are more than `longest`.
+fn whole(source: impl Read, longest: u64) -> std::io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    source.take(longest + 1).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= longest).then_some(bytes))
+}
+
 /// Reads a positive time such as `"60 s"` or `"2 min"` \[s\].
 ///
 /// # Errors
@@ -283,4 +287,19 @@ fn tables(name: &str, text: &str) -> Result<Scene, Fault> {
         output,
         added: 0,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch a file that is cut off without a word.
+    #[test]
+    fn sources_are_read_whole_or_not_at_all() {
+        for (length, whole_one) in [(0, true), (7, true), (8, true), (9, false), (100, false)] {
+            let source = vec![b'#'; length];
+            let found = whole(&source[..], 8).expect("no source fails");
+            assert_eq!(found, whole_one.then_some(source), "{length}");
+        }
+    }
 }

@@ -161,3 +161,61 @@ fn visit_value(value: &DeValue<'_>, path: &mut Vec<String>, see: See<'_>) {
         _ => {}
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(words: &[&str]) -> Vec<String> {
+        words.iter().map(|word| (*word).to_owned()).collect()
+    }
+
+    /// Of several words that are like what was found the likest is asked for, and none where all differ.
+    #[test]
+    fn the_likest_of_the_legal_words_is_asked_for() {
+        let legal = words(&["start", "stiffness", "stiffness_proportional", "stop"]);
+        let all = "legal keys: start, stiffness, stiffness_proportional, stop";
+        for (found, guess) in [
+            ("stifness", "did you mean `stiffness`? "),
+            ("STIFFNESS", "did you mean `stiffness`? "),
+            ("stiffnes_proportionl", "did you mean `stiffness_proportional`? "),
+            ("stpo", "did you mean `stop`? "),
+            ("voltage", ""),
+        ] {
+            assert_eq!(choices("legal keys", found, &legal), format!("{guess}{all}"));
+        }
+        assert_eq!(choices("legal keys", "x", &[]), "legal keys: ");
+    }
+
+    #[test]
+    fn lists_have_a_last_word() {
+        for (of, text) in [
+            (&[][..], "nothing"),
+            (&["a"], "`a`"),
+            (&["a", "b"], "`a` or `b`"),
+            (&["a", "b", "c"], "`a`, `b` or `c`"),
+        ] {
+            assert_eq!(list(&words(of), '`'), text);
+        }
+        assert_eq!(quoted("key `a` is none of `b`, `c`"), ("a".to_owned(), words(&["b", "c"])));
+    }
+
+    /// The innermost of tables, lists and values that cover a place; a key belongs to its value.
+    #[test]
+    fn a_place_has_the_path_of_the_innermost_value() {
+        let text = "a = 1\n[b]\nc = [10, { d = 20 }]\n[[e]]\nf = 3\n[[e]]\nf = 4\n";
+        let document = DeTable::parse(text).expect("a document").into_inner();
+        for (at, path) in [
+            ("1", "a"),
+            ("10", "b.c.0"),
+            ("20", "b.c.1.d"),
+            ("d = 20", "b.c.1"),
+            ("c", "b.c"),
+            ("3", "e.0.f"),
+            ("4", "e.1.f"),
+        ] {
+            let start = text.find(at).expect("a place");
+            assert_eq!(path_at(&document, &(start..start + at.len())).join("."), path, "{at}");
+        }
+    }
+}
