@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import ancf
 import numpy as np
@@ -72,6 +73,45 @@ def test_stresses_are_those_of_the_files(tmp_path: Path) -> None:
     plain = ancf.Scene.parse(arm("axial_stiffness = 1e4, bending_stiffness = 1")).run()
     with pytest.raises(ValueError, match="the stress in `arm` is not known"):
         _ = plain.shape().stress
+
+
+def test_every_column_of_the_files_is_an_array(tmp_path: Path) -> None:
+    """Of a motion that has all columns: forces that bend, stretch, damp and do work, layers, a joint, two beams."""
+    layers = "{ youngs_modulus = 1e7, width = 0.02, height = 0.01 }, { youngs_modulus = 3e7, width = 0.02, height = 0.02 }"
+    section = "section.layers = [" + layers.replace(" }", ", density = 2e3 }") + "]"
+    result = ancf.Scene.parse(f"""
+        beam.arm = {{ start = [0, 0], end = [1, 0], basis.ancf.elements = 3, {section} }}
+        beam.leg = {{ start = [1, 0], end = [1, -0.5], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, \
+            basis.ancf.elements = 2 }}
+        support = [{{ beam = "arm", at = "start", fix = ["x", "y", "angle"] }}]
+        joint = [{{ type = "weld", first = {{ beam = "arm", at = "end" }}, second = {{ beam = "leg", at = "start" }} }}]
+        probe = [{{ name = "tip", beam = "arm", at = "end" }}, {{ name = "knee", beam = "leg", at = 0.25 }}]
+        output = {{ reactions = true, effects = true, section_forces = true }}
+        analysis.dynamic = {{ duration = 0.1, output_every = 0.05 }}
+        [effect]
+        gravity.acceleration = [1, -9.81]
+        spring = [{{ beam = "leg", at = "end", stiffness = 50, damping = 2, anchor = [1.5, 0.2] }}]
+        force = [{{ beam = "arm", at = 0.5, value = [1, 3], follower = true }}]
+    """).run()
+    result.save(tmp_path)
+    files: dict[str, dict[str, Any]] = {
+        "probes": dict(result.probes),
+        "energy": {"": result.energy},
+        "reactions": result.reactions,
+        "effects": result.effects,
+    }
+    for file, arrays in files.items():
+        table = read(tmp_path / f"{file}.csv")
+        assert np.array_equal(result.time, table.pop("time"))
+        # What is not known of one probe has a column without numbers, and no array.
+        table = {column: values for column, values in table.items() if not np.isnan(values).all()}
+        for column, values in table.items():
+            name, quantity = column.rsplit(".", 1) if "." in column else ("", column)
+            assert np.array_equal(arrays[name][quantity], values, equal_nan=True), column
+        assert sum(len(list(columns)) for columns in arrays.values()) == len(table), file
+        # But for resultants of what adds up to nothing all tell something.
+        idle = [column for column, values in table.items() if not values.any()]
+        assert all(column.endswith((".fx", ".fy")) for column in idle), idle
 
 
 def test_shapes_between_records_blend_their_neighbours(pendulum: ancf.Scene) -> None:
