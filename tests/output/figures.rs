@@ -1,9 +1,12 @@
 //! Which pictures a trajectory has, and what is in them.
 
 use super::made_up::{all, beam, buckling, level, path, rejected, rise, step, swing, vibrations};
-use super::picture::{Picture, digest};
+use super::picture::{Element, Picture, digest};
 use super::{show, snapshot, written};
-use ancf::results::{AnalysisKind, Energy, ProbeSeries, Results, Run, StepRecord, Trajectory};
+use ancf::results::{
+    AnalysisKind, BeamErrors, Energy, ErrorEstimate, Errors, ProbeErrors, ProbeSample, ProbeSeries, Results,
+    Run, StepRecord, Trajectory,
+};
 
 /// The colours of series, strongest first.
 const COLOURS: [&str; 8] =
@@ -228,6 +231,48 @@ fn probes_have_their_colours_and_two_lines_each() {
         (found.text("end.vx").word("fill"), found.text("end.vy").word("fill")),
         ("#282828", "#282828")
     );
+}
+
+/// About the lines of a probe lie bands from the value less its error to the value with it; along the beam
+/// errors have an axis of powers of ten.
+#[test]
+fn errors_are_drawn_about_the_values_and_along_the_beam() {
+    let mut trajectory = rise(3);
+    let errors = [0.002, 0.003, 0.004];
+    let samples = errors.map(|y| ProbeSample { x: 2.0 * y, y, ..ProbeSample::default() }).to_vec();
+    let (s, position) = (vec![0.0, 0.5, 1.0], vec![1e-6, 1e-4, 2e-3]);
+    let along =
+        BeamErrors { beam: "arm".into(), s: s.clone(), position: position.clone(), curvature: vec![0.0; 3] };
+    trajectory.run.error = Some(Box::new(ErrorEstimate {
+        estimated: Errors { result: 2e-3, ..Errors::default() },
+        probes: vec![ProbeErrors { name: "end".into(), samples }],
+        beams: vec![along],
+        ..ErrorEstimate::default()
+    }));
+    let found = picture(&trajectory, "position.svg");
+    let bands: Vec<_> = found.named("polygon").map(Element::points).collect();
+    assert_eq!(bands.len(), 2);
+    let near = |found: [f64; 2], expected: [f64; 2]| {
+        assert!((0..2).all(|k| (found[k] - expected[k]).abs() < 3.0), "{found:?} for {expected:?}");
+    };
+    for (band, height, factor) in [(&bands[0], [1.0; 3], 2.0), (&bands[1], [0.0, 0.01, 0.02], 1.0)] {
+        let side = |sign: f64| {
+            let place = move |i: usize| [0.125 * i as f64, height[i] + sign * factor * errors[i]];
+            (0..3).map(place).collect::<Vec<_>>()
+        };
+        let round: Vec<_> = side(-1.0).into_iter().chain(side(1.0).into_iter().rev()).collect();
+        for (point, [time, value]) in band.iter().zip(round) {
+            near(*point, [found.place(0, false, time), found.place(1, false, value)]);
+        }
+    }
+    let mut one = rise(1);
+    one.run.error = trajectory.run.error;
+    let found = picture(&one, "error.svg");
+    let line = found.lines(COLOURS[0])[0].points();
+    assert_eq!(line.len(), 3);
+    for ((point, s), error) in line.iter().zip(s).zip(position) {
+        near(*point, [found.place(0, false, s), found.place(1, true, error)]);
+    }
 }
 
 /// Would catch a round-off that looks like a signal, and a small signal that is taken for one.

@@ -99,6 +99,50 @@ fn a_resting_rod_sinks_and_slips_by_load_over_stiffness() {
     }
 }
 
+/// ½ k ∫ d² ds of straight rods in a box and beside it, by hand: depths d have a kink where another side is
+/// nearer, where they begin, and, at a distance of the surface, at the circles about the corners. Quadrature
+/// is exact between these.
+#[test]
+fn the_energy_in_a_box_is_the_integral_of_its_depth() {
+    let flat = |depth: f64, to: f64| depth * depth * 2.0 * (to - depth) + 2.0 * depth.powi(3) / 3.0;
+    // ∫ (g − √(u² + h²))² du from 0 to the rim, where √(u² + h²) = g.
+    let corner = {
+        let (g, h, rim) = (0.05_f64, 0.04_f64, 0.03_f64);
+        (g * g + h * h) * rim + rim.powi(3) / 3.0 - g * (rim * g + h * h * (rim / h).asinh())
+    };
+    for (half, [start, end], gap, integral) in [
+        // Along the longer side, near it and near the middle; along the shorter one.
+        ([0.3, 0.2], [[-1.0, 0.19], [1.0, 0.19]], 0.0, flat(0.01, 0.3)),
+        ([0.3, 0.2], [[-1.0, 0.05], [1.0, 0.05]], 0.0, flat(0.15, 0.3)),
+        ([0.3, 0.2], [[-0.26, -1.0], [-0.26, 1.0]], 0.0, flat(0.04, 0.2)),
+        // Through the middle aslant: 0.2 − |y|.
+        ([0.3, 0.2], [[-0.5, -0.5], [0.5, 0.5]], 0.0, 2.0_f64.sqrt() * 2.0 * 0.008 / 3.0),
+        ([0.2, 0.3], [[-0.5, -0.5], [0.5, 0.5]], 0.0, 2.0_f64.sqrt() * 2.0 * 0.008 / 3.0),
+        // Above the longer side, and beside the shorter one, at 0.04 of 0.05.
+        ([0.3, 0.2], [[-1.0, 0.24], [1.0, 0.24]], 0.05, 1e-4 * 0.6 + 2.0 * corner),
+        ([0.3, 0.2], [[0.34, -1.0], [0.34, 1.0]], 0.05, 1e-4 * 0.4 + 2.0 * corner),
+        // Across, with the gap: 0.25 − |y| at its deepest.
+        ([0.3, 0.2], [[0.0, -1.0], [0.0, 1.0]], 0.05, 2.0 * 0.25_f64.powi(3) / 3.0),
+    ] {
+        let gap = if gap > 0.0 { format!(", half_thickness = {gap}") } else { String::new() };
+        for (degrees, elements) in [(0.0_f64, 1), (35.0, 3)] {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            let turned = |[x, y]: [f64; 2]| [0.7 + cosine * x - sine * y, -0.4 + sine * x + cosine * y];
+            let text = format!(
+                "beam.rod = {{ start = {:?}, end = {:?}, axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = {elements} }}
+                 effect.contact = [{{ beam = 'rod', stiffness = 6{gap}, \
+                 box = {{ center = [0.7, -0.4], size = {:?}, angle = '{degrees} deg' }} }}]
+                 analysis.dynamic = {{ duration = 1e-6, output_every = 1e-6 }}\n",
+                turned(start),
+                turned(end),
+                half.map(|half| 2.0 * half),
+            );
+            let energy = Written::of(&text).column("energy.csv", "stored")[0];
+            near(energy, 3.0 * integral, 1e-6 * integral, &text);
+        }
+    }
+}
+
 /// A rod whose middle alone can touch sinks in by all of its load over the part's stiffness, and rests
 /// on it in balance; beyond it the rod goes through the obstacle.
 ///

@@ -2,7 +2,7 @@
 
 use super::near;
 use ancf::results::{Shape, Trajectory};
-use ancf::run::shapes_at;
+use ancf::run::{shapes_at, solve_stages};
 use ancf::scene::parse;
 use ancf::{Options, Scene};
 
@@ -48,6 +48,52 @@ fn shapes_of_statics_carry_their_share_of_the_load() {
         near(between.bending_moment[i], mean, 1e-12, "the mean of moments");
     }
     assert_eq!(format!("{:?}", at(&scene, &found, 1.0)), format!("{:?}", found.last[0]));
+}
+
+/// Statics that goes on has the load of the stage before in full, and that of its own in proportion.
+#[test]
+fn shapes_of_a_stage_carry_the_loads_before_it_in_full() {
+    let text = format!(
+        "{ARM}support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+        effect.force = [{{ beam = 'arm', at = 'end', value = [2, 0] }}, {{ beam = 'arm', at = 'end', value = [0.5, 0], stage = 'more' }}]
+        stage = [{{ name = 'pull', analysis.static = {{}} }}, {{ name = 'more', analysis.static.steps = 4 }}]\n"
+    );
+    let scene = parse("scene.toml", &text).expect("a scene");
+    let run = solve_stages(scene.stages(), Options { states: true, ..Options::default() });
+    for (stage, results) in scene.stages().iter().zip(&run.results) {
+        for load in [0.25, 0.6, 1.0] {
+            let shapes = shapes_at(&stage.model, &stage.analysis, results.states(), load, None);
+            let shape = shapes.unwrap_or_else(|error| panic!("{error}")).swap_remove(0);
+            let force = if stage.name == "pull" { 2.0 * load } else { 2.0 + 0.5 * load };
+            near(shape.axial_force[0], force, 1e-8, "N at the clamp");
+            near(shape.strain[100], force / 1e4, 1e-6 * force / 1e4, "strain");
+        }
+    }
+}
+
+/// A plate on a spring that an electrode attracts: at the limit point, a third of the gap, the load turns
+/// back. Of the two places at each load the one before counts, in balance with the spring:
+/// λ = k x (g − x)²/a.
+#[test]
+fn of_a_path_that_turns_back_the_first_passage_counts() {
+    let (scene, found) = kept(
+        "beam.plate = { start = [0, 0], end = ['1 mm', 0], axial_stiffness = 10, bending_stiffness = 1e-6, mass_per_length = 1e-6, \
+             basis.ancf.elements = 4 }
+        support = [{ beam = 'plate', at = 'start', fix = ['x', 'angle'] }]
+        effect.spring = [{ beam = 'plate', at = '0.5 mm', stiffness = 0.5 }]
+        effect.electrostatic = [{ beam = 'plate', voltage = 10, width = 1e-4, electrode = { point = [0, -1e-5], normal = [0, 1] } }]
+        probe = [{ name = 'middle', beam = 'plate', at = '0.5 mm' }]
+        analysis.static.arc_length = { until_probe = { probe = 'middle', y = '-9 um' }, max_step = 0.01 }\n",
+    );
+    let largest = found.parameter.iter().copied().fold(0.0, f64::max);
+    assert!(found.parameter.last().is_some_and(|last| *last < 0.25 * largest), "{:?}", found.parameter);
+    let a = 0.5 * 8.8541878128e-12 * 1e-4 * 1e-3 * 100.0;
+    for part in [0.1, 0.2, 0.3, 0.5, 0.8, 0.9, 0.95, 0.98] {
+        let x = -at(&scene, &found, part * largest).y[100];
+        let load = 0.5 * x * (1e-5 - x).powi(2) / a;
+        assert!(x < 1e-5 / 3.0, "{part}: {x}");
+        near(load / largest, part, 2e-3, "the load of this place");
+    }
 }
 
 /// A motion's section forces at every record: what hangs below the hinge is accelerated by them, and
