@@ -55,7 +55,8 @@ fn shapes_of_statics_carry_their_share_of_the_load() {
 fn shapes_of_a_stage_carry_the_loads_before_it_in_full() {
     let text = format!(
         "{ARM}support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
-        effect.force = [{{ beam = 'arm', at = 'end', value = [2, 0] }}, {{ beam = 'arm', at = 'end', value = [0.5, 0], stage = 'more' }}]
+        effect.distributed_force = [{{ beam = 'arm', value = [2, 0] }}]
+        effect.force = [{{ beam = 'arm', at = 'end', value = [0.5, 0], stage = 'more' }}]
         stage = [{{ name = 'pull', analysis.static = {{}} }}, {{ name = 'more', analysis.static.steps = 4 }}]\n"
     );
     let scene = parse("scene.toml", &text).expect("a scene");
@@ -64,35 +65,37 @@ fn shapes_of_a_stage_carry_the_loads_before_it_in_full() {
         for load in [0.25, 0.6, 1.0] {
             let shapes = shapes_at(&stage.model, &stage.analysis, results.states(), load, None);
             let shape = shapes.unwrap_or_else(|error| panic!("{error}")).swap_remove(0);
-            let force = if stage.name == "pull" { 2.0 * load } else { 2.0 + 0.5 * load };
-            near(shape.axial_force[0], force, 1e-8, "N at the clamp");
-            near(shape.strain[100], force / 1e4, 1e-6 * force / 1e4, "strain");
+            let [before, own] = if stage.name == "pull" { [load, 0.0] } else { [1.0, load] };
+            near(shape.axial_force[0], 2.0 * before + 0.5 * own, 1e-8, "N at the clamp");
+            near(shape.axial_force[100], before + 0.5 * own, 1e-8, "N in the middle");
         }
     }
 }
 
-/// A plate on a spring that an electrode attracts: at the limit point, a third of the gap, the load turns
-/// back. Of the two places at each load the one before counts, in balance with the spring:
-/// λ = k x (g − x)²/a.
+/// A bar that is pushed down through the line between its hinges: on the way the load turns back, pulls, and
+/// turns again. Of several places at one load the first counts, as the probe has seen it; the bar's force and
+/// the guide's hold the load there: λ = −N sin α.
 #[test]
 fn of_a_path_that_turns_back_the_first_passage_counts() {
     let (scene, found) = kept(
-        "beam.plate = { start = [0, 0], end = ['1 mm', 0], axial_stiffness = 10, bending_stiffness = 1e-6, mass_per_length = 1e-6, \
-             basis.ancf.elements = 4 }
-        support = [{ beam = 'plate', at = 'start', fix = ['x', 'angle'] }]
-        effect.spring = [{ beam = 'plate', at = '0.5 mm', stiffness = 0.5 }]
-        effect.electrostatic = [{ beam = 'plate', voltage = 10, width = 1e-4, electrode = { point = [0, -1e-5], normal = [0, 1] } }]
-        probe = [{ name = 'middle', beam = 'plate', at = '0.5 mm' }]
-        analysis.static.arc_length = { until_probe = { probe = 'middle', y = '-9 um' }, max_step = 0.01 }\n",
+        "beam.bar = { start = [0, 0], end = [1, 0.1], axial_stiffness = 1e3, bending_stiffness = 10, basis.ancf.elements = 2 }
+        support = [{ beam = 'bar', at = 'start', fix = ['x', 'y'] }, { beam = 'bar', at = 'end', fix = ['x'] }]
+        effect.force = [{ beam = 'bar', at = 'end', value = [0, -1] }]
+        probe = [{ name = 'end', beam = 'bar', at = 'end' }]
+        analysis.static.arc_length = { until_probe = { probe = 'end', y = -0.11 }, max_step = 0.02 }\n",
     );
-    let largest = found.parameter.iter().copied().fold(0.0, f64::max);
-    assert!(found.parameter.last().is_some_and(|last| *last < 0.25 * largest), "{:?}", found.parameter);
-    let a = 0.5 * 8.8541878128e-12 * 1e-4 * 1e-3 * 100.0;
-    for part in [0.1, 0.2, 0.3, 0.5, 0.8, 0.9, 0.95, 0.98] {
-        let x = -at(&scene, &found, part * largest).y[100];
-        let load = 0.5 * x * (1e-5 - x).powi(2) / a;
-        assert!(x < 1e-5 / 3.0, "{part}: {x}");
-        near(load / largest, part, 2e-3, "the load of this place");
+    let loads = &found.parameter;
+    let [least, most] = [f64::min, f64::max].map(|of| loads.iter().copied().fold(0.0, of));
+    assert!(least < -0.9 * most && most > 0.1, "{loads:?}");
+    for load in [0.3 * most, 0.9 * most, 0.99 * most, 0.1 * least, 0.5 * least, 0.99 * least] {
+        let passed = loads.windows(2).position(|pair| (pair[0] - load) * (pair[1] - load) <= 0.0);
+        let passed = passed.expect("a passage");
+        let [before, after] = [passed, passed + 1].map(|record| found.probes[0].samples[record].y);
+        let share = (load - loads[passed]) / (loads[passed + 1] - loads[passed]);
+        let shape = at(&scene, &found, load);
+        let (end, angle) = (*shape.y.last().expect("a place"), shape.angle[100]);
+        near(end, before + share * (after - before), 1e-12, "y of the end");
+        near(-shape.axial_force[100] * angle.sin(), load, 0.02 * most, "the load");
     }
 }
 
