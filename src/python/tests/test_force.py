@@ -179,6 +179,28 @@ def test_tangents_of_functions_lead_as_fast_as_those_of_the_scene() -> None:
             assert tip(own) == pytest.approx(tip(other), abs=1e-8)
 
 
+def test_each_entry_of_a_derivative_leads() -> None:
+    """A force and a couple that each depend on both coordinates and the angle: a function that tells another derivative
+    of one by one of them than it has takes more iterations."""
+    matrix = np.array([[6.0, 2.0, -3.0], [1.0, 5.0, 2.0], [-2.0, 3.0, 4.0]])
+
+    def iterations(told: np.ndarray | None) -> int:
+        table = arm(effect={})
+        table["beam"]["arm"].update(start=[3, 2], end=[3.8, 2.6], axial_stiffness=1e3)
+        scene = ancf.Scene(table)
+        derivative = None if told is None else lambda *_: -told
+        scene.add_force("arm", 0.5, lambda *z: matrix @ ([3.6, 2.75, 1.2] - np.array(z)), derivative=derivative)
+        return int(scene.run().statistics["newton_iterations"])
+
+    right = iterations(matrix)
+    assert iterations(None) == right
+    for row in range(3):
+        for column in range(3):
+            told = matrix.copy()
+            told[row, column] *= 0.4
+            assert iterations(told) > right, (row, column)
+
+
 def braked(place: float, effect: dict[str, Any], coupling: float | None = None, told: float | None = None) -> ancf.Result:
     """A rod that moves and turns until a dashpot stops it: one that the scene names, or one by a function whose
     velocities along and across have a share in its couple, and which tells `told` for this share."""
