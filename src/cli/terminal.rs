@@ -387,7 +387,7 @@ fn number(value: f64) -> String {
     if value == 0.0 {
         "0".into()
     } else if (1e-3..1e7).contains(&size) {
-        let decimals = (6 - size.log10().floor() as i32).clamp(0, 9) as usize;
+        let decimals = (6 - size.log10().floor() as i32).max(0) as usize;
         let text = format!("{value:.decimals$}");
         match text.contains('.') {
             true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
@@ -711,6 +711,13 @@ mod tests {
             ],
             events: vec![
                 Event::Probe { time: 0.5, probe: "tip".into(), quantity: "y", value: -0.125, turns: None },
+                Event::Probe {
+                    time: 0.5625,
+                    probe: "tip".into(),
+                    quantity: "angle",
+                    value: 0.75,
+                    turns: Some("maximum"),
+                },
                 Event::Contact { time: 0.625, contact: "arm.1".into(), touches: true, impulse: None },
                 Event::Contact {
                     time: 0.6875,
@@ -727,6 +734,7 @@ Arm
   tip            x = 0.25 m, y = -1.500000e-4 m, angle = 28.64789°, curvature = 3 /m, strain = 2.000000e-6, vx = 1.5 m/s, vy = -0.25 m/s
   energy         stretch 0.125 J, bend 0.5 J, springs and contacts 0.25 J, kinetic 2 J, potential -4 J, put in 8 J, lost 16 J, total 6.875 J
   event at tip   0.5 s: y = -0.125 m
+  event at tip   0.5625 s: angle = 0.75 rad, a maximum
   contact arm.1  0.625 s: begins
   contact arm.1  0.6875 s: ends, impulse (0.5, -0.25) N s, up to 32 N
   unknowns       44

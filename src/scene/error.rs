@@ -141,3 +141,27 @@ fn floor(text: &str, at: usize) -> usize {
     }
     at
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines and columns count characters, also of places within one, and of places behind the text.
+    #[test]
+    fn places_are_those_of_characters() {
+        let text = "aü\n€b";
+        for (at, place) in [
+            (0, (1, 1)),
+            (1, (1, 2)),
+            (2, (1, 2)),
+            (3, (1, 3)),
+            (4, (2, 1)),
+            (5, (2, 1)),
+            (7, (2, 2)),
+            (99, (2, 3)),
+        ] {
+            let error = Fault::new(at..at + 1, "wrong").at("a.toml", text);
+            assert_eq!(error.place().map(|(_, line, column)| (line, column)), Some(place), "{at}");
+        }
+    }
+}

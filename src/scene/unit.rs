@@ -413,6 +413,9 @@ mod tests {
             ("1e3 mm", 1.0, "m"),
             ("1 µm", 1e-6, "m"),
             ("1 ft", 0.3048, "m"),
+            // Brackets that are closed count no more; eight may be open.
+            ("2 (m)(m)(m)(m)(m)(m)(m)(m)(m)(m)", 2.0, "m^10"),
+            ("2 ((((((((m))))))))", 2.0, "m"),
         ] {
             let (got, unit) = si(text);
             assert!((got - value).abs() <= 4.0 * f64::EPSILON * value.abs(), "{text}: {got}");
