@@ -156,6 +156,25 @@ fn a_vortex_that_grows_turns_a_rod() {
     }
 }
 
+/// A guided rod moves as one under the force 3 t x of a length: the section at s carries what is beyond it less
+/// its inertia, ∫ (3 t x − ρA 2 t) dx from s to 2 m, which is 1.5 t N in the middle.
+#[test]
+fn sections_carry_a_field_that_varies_in_time() {
+    let text = rod(
+        "value = ['0', '3*t*x']",
+        &format!(
+            "{GUIDED}\noutput.section_forces = true\nanalysis.dynamic = {{ duration = 1, output_every = 0.5, radau.tolerance = 1e-7 }}"
+        ),
+    );
+    let found =
+        Written::of(&text.replace("probe = [", "probe = [{ beam = 'rod', name = 'middle', at = 1 }, "));
+    near(found.last("probes.csv", "start.vy"), 1.0, 1e-4, "t² from 6 t N on 3 kg");
+    let shears = found.column("probes.csv", "middle.shear_force");
+    for (shear, expected) in shears.iter().zip([0.0, 0.75, 1.5]) {
+        near(*shear, expected, 2e-3, "Q");
+    }
+}
+
 /// Pulses much shorter than a step of a rod at rest or in flight, whose time depends on where the rod
 /// is by then: each gives its whole momentum, and 0.5 s after the rod has met it that is a way.
 #[test]

@@ -327,10 +327,14 @@ fn tendons_of_a_length_that_cannot_be_are_refused_or_told() {
         parse("finger.toml", &held(CABLE, "offset = 0.1, shortening = 0.01", motion)).expect("a scene");
     let said = ancf::accuracy::run(&sudden, ancf::Options::default()).expect_err("a jump").to_string();
     assert!(said.contains("a tendon of beam `finger` is 1.000e-2 m too long"), "{said}");
-    let up = "effect.force = [{ beam = 'finger', at = 'end', value = [0, 1] }]\n";
-    let slack = held(CABLE, "offset = 0.1, shortening = 1e-4", &format!("{up}{STATIC}"));
-    let said = Written::of(&slack).summary()["warnings"].to_string();
-    assert!(said.contains("pushes with") && said.contains("it would be slack there"), "{said}");
+    // However small the forces are.
+    for force in [1.0, 1e-4] {
+        let up = format!("effect.force = [{{ beam = 'finger', at = 'end', value = [0, {force}] }}]\n");
+        let tendon = format!("offset = 0.1, shortening = {}", 1e-4 * force);
+        let slack = held(CABLE, &tendon, &format!("{up}{STATIC}"));
+        let said = Written::of(&slack).summary()["warnings"].to_string();
+        assert!(said.contains("pushes with") && said.contains("it would be slack there"), "{said}");
+    }
     // Twice the same length: neither tension is known.
     let one = "{ beam = 'finger', offset = 0.1, shortening = 0.01 }";
     let twice = held(CABLE, "offset = 0.1, shortening = 0.01", STATIC);
