@@ -233,6 +233,36 @@ fn probes_have_their_colours_and_two_lines_each() {
     );
 }
 
+/// A beam whose section tells its faces has a thin line on either side, and its tendon has one of its own.
+#[test]
+fn a_shape_has_the_faces_of_its_beam_and_its_tendons() {
+    let mut trajectory = rise(2);
+    for shape in &mut trajectory.last {
+        shape.angle = vec![0.0; 3];
+        shape.faces = vec![[-0.1, 0.2], [-0.1, 0.2], [-0.15, 0.25]];
+        shape.tendons = vec![vec![[0.0, 0.05], [1.0, 0.06]]];
+    }
+    let found = picture(&trajectory, "shape.svg");
+    let lines = |width: &str, colour: &'static str| -> Vec<Vec<[f64; 2]>> {
+        let own = found.lines(colour).into_iter().filter(|line| line.word("stroke-width") == width);
+        own.map(Element::points).filter(|line| line.len() > 1).collect()
+    };
+    let (faces, tendons) = (lines("9", COLOURS[0]), lines("14", GREY));
+    let at = |place: [f64; 2]| [0, 1].map(|axis| found.place(axis, false, place[axis]));
+    let expected = [
+        vec![[0.0, -0.09], [0.5, -0.09], [1.0, -0.14]],
+        vec![[0.0, 0.21], [0.5, 0.21], [1.0, 0.26]],
+        vec![[0.0, 0.05], [1.0, 0.06]],
+    ];
+    let is = |line: &Vec<[f64; 2]>, expected: &Vec<[f64; 2]>| {
+        let near = |(a, b): (&[f64; 2], [f64; 2])| (0..2).all(|k| (a[k] - b[k]).abs() < 3.0);
+        line.len() == expected.len() && line.iter().zip(expected.iter().map(|place| at(*place))).all(near)
+    };
+    assert_eq!(faces.len(), 2, "{faces:?}");
+    assert!(is(&faces[0], &expected[0]) && is(&faces[1], &expected[1]), "{faces:?}");
+    assert!(tendons.iter().any(|line| is(line, &expected[2])), "{tendons:?}");
+}
+
 /// About the lines of a probe lie bands from the value less its error to the value with it; along the beam
 /// errors have an axis of powers of ten.
 #[test]
