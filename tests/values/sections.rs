@@ -453,3 +453,19 @@ fn impossible_sections_are_refused() {
     let error = scene.model().solve(scene.analysis()).expect_err("coupled").to_string();
     assert!(error.contains("damped by different times"), "{error}");
 }
+
+/// A bent laminate is free of stress in its own shape: without a load it stays there, and has no energy.
+#[test]
+fn a_bent_laminate_rests_in_its_shape() {
+    for strain in ["green", "engineering"] {
+        let found = Written::of(&format!(
+            "beam.arch = {{ arc = {{ center = [0, 0], radius = 1, from = '180 deg', to = '0 deg' }}, strain = '{strain}', basis.ancf.elements = 8, \
+             section.layers = [{{ youngs_modulus = 1e6, width = 0.02, height = 0.01 }}, {{ youngs_modulus = 3e6, width = 0.02, height = 0.02 }}] }}
+             support = [{{ beam = 'arch', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             probe = [{{ name = 'tip', beam = 'arch', at = 'end' }}]
+             analysis.static = {{}}\n"
+        ));
+        found.ends("probes.csv", &[("tip.x", 1.0), ("tip.y", 0.0)], 1e-9);
+        found.ends("energy.csv", &[("stretch", 0.0), ("bend", 0.0), ("total", 0.0)], 1e-12);
+    }
+}
