@@ -6,7 +6,6 @@ pub mod dynamics;
 pub mod eigen;
 pub mod equilibrium;
 pub mod modal;
-pub mod near;
 pub mod newton;
 pub mod path;
 mod record;

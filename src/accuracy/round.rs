@@ -9,9 +9,8 @@ use crate::model::{
     Accuracy, Analysis, Beam, Discretization, Dynamic, Integrator, Model, Nodes, Open, RPIM_GAUSS_POINTS,
     StepControl,
 };
-use crate::results::{AnalysisKind, RecordedState, Results, RunForError};
+use crate::results::{AnalysisKind, Results, RunForError};
 use crate::run::{Options, RunError};
-use crate::solve::near::Known;
 
 /// Smallest tolerance of any run.
 pub(super) const FINEST: f64 = 1e-13;
@@ -131,9 +130,11 @@ impl<'a, 'o> Runner<'a, 'o> {
         for (beam, mesh) in model.beams.iter().zip(&mut meshes) {
             if beam.discretization != Discretization::Open {
                 let curve = Curve::new(&beam.centreline);
-                if let Some(nodes) =
-                    curve.ok().and_then(|curve| nodes_of(&beam.discretization, curve.length()))
-                {
+                let nodes = curve.ok().and_then(|curve| {
+                    let nodes = Discretization::Ancf { nodes: beam.discretization.nodes().clone() };
+                    Basis::new(&nodes, curve.length()).ok().map(|basis| basis.nodes().to_vec())
+                });
+                if let Some(nodes) = nodes {
                     *mesh = mesh.every_second_of(&nodes);
                 }
             }
@@ -196,53 +197,23 @@ impl<'a, 'o> Runner<'a, 'o> {
         settings.tolerance.is_none().then(|| short((EQUILIBRIUM * wanted).max(FINEST)))
     }
 
-    /// The equilibria of a fine run, near which those of coarser ones are; where load steps are of
-    /// any length, only the ends, as each run would choose others.
-    fn known(&self, setting: &Setting, results: &mut Results) -> Option<Known> {
-        let Analysis::Static(settings) = self.analysis else { return None };
-        let trajectory = results.states_mut();
-        let states = match self.options.states {
-            true => trajectory.states.clone(),
-            false => trajectory.states.take(),
-        };
-        let loads = trajectory.parameter.iter().copied();
-        let mut states: Vec<(f64, Vec<f64>)> = loads
-            .zip(states?.states)
-            .filter_map(|(load, state)| match state {
-                RecordedState::Equilibrium { x, .. } => Some((load, x)),
-                RecordedState::Moving { .. } => None,
-            })
-            .collect();
-        if settings.steps.is_none() && states.len() > 2 {
-            states.drain(1..states.len() - 1);
-        }
-        let beams = setting.beams.iter().zip(&self.meshes).zip(&trajectory.last);
-        let nodes = beams.map(|(((beam, _), mesh), shape)| {
-            // What breaks a beam may have added nodes to those of the scene.
-            nodes_of(beam, mesh.length()).filter(|nodes| nodes.len() == shape.nodes.len())
-        });
-        Some(Known { nodes: nodes.collect::<Option<_>>()?, states })
-    }
-
-    /// Solves the watched model with a setting, near `known` equilibria where there are some.
+    /// Solves the watched model with a setting.
     pub fn solve(
         &mut self,
         stations: &Stations,
         setting: &Setting,
         purpose: Purpose,
-        known: Option<&Known>,
     ) -> Result<Results, RunError> {
         let (model, analysis) = setting.apply(&stations.watch(self.model), self.analysis);
         let Options { start, observer, checkpoints, cache, states, frames, shape_points } = &mut self.options;
         let wanted = self.wanted.is_some_and(|w| w.curvature.is_some() || w.section_force.is_some());
-        let is_static = matches!(self.analysis, Analysis::Static(_));
         let places_tell = wanted || matches!(self.analysis, Analysis::Modal(_) | Analysis::Buckling(_));
         let options = Options {
             start: *start,
             observer: observer.as_mut().map(|observer| &mut **observer as _),
             checkpoints: *checkpoints,
             cache: *cache,
-            states: (*states || is_static) && purpose == Purpose::Results,
+            states: *states && purpose == Purpose::Results,
             frames: if purpose == Purpose::Results { *frames } else { 0 },
             shape_points: match purpose {
                 _ if places_tell => *shape_points,
@@ -251,10 +222,7 @@ impl<'a, 'o> Runner<'a, 'o> {
                 Purpose::Results => *shape_points,
             },
         };
-        let results = match &analysis {
-            Analysis::Static(settings) => settings.solve_near(known, &model, options)?.into(),
-            _ => model.solve_with(&analysis, options)?,
-        };
+        let results = model.solve_with(&analysis, options)?;
         let run = results.run();
         let cells: usize = setting.beams.iter().map(|(beam, _)| beam.nodes().count().saturating_sub(1)).sum();
         self.runs.push(RunForError {
@@ -269,24 +237,16 @@ impl<'a, 'o> Runner<'a, 'o> {
         Ok(results)
     }
 
-    /// A fine run and a coarser one; in the first round one that is still coarser, too.
+    /// A coarse run and a finer one; in the first round one that is still coarser, too. Each finds
+    /// its own way from the start: one that began where another ended would follow it to a wrong
+    /// branch.
     pub fn round(&mut self, first: bool) -> Result<Round, RunError> {
         let stations = Stations::new(self.model, &self.meshes);
-        let fine = self.runs.len();
-        let setting = self.setting(Fineness::Fine, Fineness::Fine);
-        let mut results = self.solve(&stations, &setting, Purpose::Results, None)?;
-        if !results.run().complete {
-            let difference = Err("it was interrupted".to_owned());
-            return Ok(Round { stations, results, coarse: None, setting, difference, fall: None, cells: 0 });
-        }
-        let known = self.known(&setting, &mut results);
-        let mut pair = |fineness, purpose| {
-            self.solve(&stations, &self.setting(fineness, fineness), purpose, known.as_ref())
-        };
-        let coarse = pair(Fineness::Coarse, Purpose::Shapes);
+        let mut pair = |fineness, purpose| self.solve(&stations, &self.setting(fineness, fineness), purpose);
         let coarsest = if first { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
-        // From coarse to fine.
-        self.runs[fine..].reverse();
+        let coarse = pair(Fineness::Coarse, Purpose::Shapes);
+        let setting = self.setting(Fineness::Fine, Fineness::Fine);
+        let results = self.solve(&stations, &setting, Purpose::Results)?;
         let difference = match &coarse {
             Ok(coarse) if coarse.run().complete => self.difference(&stations, coarse, &results),
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
@@ -332,12 +292,6 @@ fn every(stride: usize, places: usize) -> usize {
 /// Two digits, which is enough for a tolerance.
 pub(super) fn short(tolerance: f64) -> f64 {
     format!("{tolerance:.1e}").parse().unwrap_or(tolerance)
-}
-
-/// Arc lengths of the nodes of a beam of such a length \[m\].
-fn nodes_of(discretization: &Discretization, length: f64) -> Option<Vec<f64>> {
-    let nodes = Discretization::Ancf { nodes: discretization.nodes().clone() };
-    Basis::new(&nodes, length).ok().map(|basis| basis.nodes().to_vec())
 }
 
 /// The same kind of discretisation on fewer nodes.
@@ -429,7 +383,7 @@ pub(super) mod tests {
         let cells = |analysis: &str, wanted: f64| runner(&scene(analysis), wanted).meshes[0].cells();
         let still = "analysis.static = {}";
         assert_eq!([1e-2, 1e-3, 1.1e-3 / 16.0, 1e-7].map(|wanted| cells(still, wanted)), [4, 4, 8, 24]);
-        assert_eq!(cells(MOTION, 1e-9), 4);
+        assert_eq!(cells(MOTION, 1e-9), 8);
         assert_eq!([1e-2, 1e-3].map(|wanted| cells("analysis.modal.count = 9", wanted)), [14, 24]);
         assert_eq!(
             cells(

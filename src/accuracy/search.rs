@@ -214,7 +214,7 @@ impl<'a, 'o> Search<'a, 'o> {
             && round.tells_of_steps()
             && let Some(coarse) = &round.coarse
             // A run on the coarse mesh with the finer steps tells the errors of both apart.
-            && let Ok(between) = self.runner.solve(&round.stations, &self.runner.setting(Fineness::Coarse, Fineness::Fine), Purpose::Positions, None)
+            && let Ok(between) = self.runner.solve(&round.stations, &self.runner.setting(Fineness::Coarse, Fineness::Fine), Purpose::Positions)
             && let Ok(of_steps) = self.runner.difference(&round.stations, coarse, &between)
             && let Ok(of_mesh) = self.runner.difference(&round.stations, &between, &round.results)
         {

@@ -5,29 +5,12 @@ use super::start::{Start, told};
 use super::{Options, RunError, Solve, Stopwatch, Watch, left, memory, timed};
 use crate::model::{Analysis, Model, Static};
 use crate::results::{RecordedState, RecordedStates, Statistics, Trajectory};
-use crate::solve::near::{self, Known};
 use crate::solve::statics::{self, Target};
 
 impl Solve for Static {
     type Results = Trajectory;
 
     fn solve(&self, model: &Model, options: Options<'_>) -> Result<Trajectory, RunError> {
-        self.solve_near(None, model, options)
-    }
-}
-
-impl Static {
-    /// [`Solve::solve`], if possible by going to equilibria that are near known ones, for a
-    /// comparison with these: without a state from which others may start.
-    ///
-    /// # Errors
-    /// As there.
-    pub(crate) fn solve_near(
-        &self,
-        known: Option<&Known>,
-        model: &Model,
-        options: Options<'_>,
-    ) -> Result<Trajectory, RunError> {
         let analysis = Analysis::Static(self.clone());
         let mut stopwatch = Stopwatch::start();
         memory::check(model, &analysis)?;
@@ -43,17 +26,14 @@ impl Static {
         let mut watch = Watch { open: self.arc_length.is_some(), ..Watch::new(options.observer) };
         let report =
             &mut |load: f64, step: f64, statistics: &Statistics| watch.goes_on(load, 1.0, step, statistics);
-        let solution = known.and_then(|known| near::solve(system, self, known));
-        let solution = solution.unwrap_or_else(|| statics::solve(system, self, target.as_ref(), report));
+        let solution = statics::solve(system, self, target.as_ref(), report);
         stopwatch.solved();
         let mut outcome = match (&solution.stuck, &self.arc_length) {
             (Some(stuck), _) => Err(sampler.stuck(stuck, &solution)),
             (None, Some(arc)) if solution.out_of_points => Err(sampler.out_of_points(arc, &solution)),
             (None, _) => {
                 let mut trajectory = sampler.statics(&solution);
-                if known.is_none() {
-                    trajectory.saved = sampler.equilibrium(&solution, &trajectory, asked, start.time());
-                }
+                trajectory.saved = sampler.equilibrium(&solution, &trajectory, asked, start.time());
                 trajectory.run.settings.extend(options.start.map(told));
                 Ok(trajectory)
             }

@@ -63,7 +63,7 @@ impl Solution {
         self.work.drain(..before);
     }
 
-    pub(super) fn record(&mut self, equilibrium: &Equilibrium<'_>, load: f64, x: &[f64], work: Work) {
+    fn record(&mut self, equilibrium: &Equilibrium<'_>, load: f64, x: &[f64], work: Work) {
         self.states.push((load, x.to_vec()));
         self.work.push(work);
         self.variables.push(equilibrium.internal_variables(x));
@@ -200,7 +200,7 @@ fn is_steady(equilibrium: &mut Equilibrium<'_>, x: &[f64]) -> bool {
     linearized.is_ok() && equilibrium.unstable_directions().is_none_or(|count| count == 0)
 }
 
-pub(super) fn newton_settings(settings: &Static) -> Settings {
+fn newton_settings(settings: &Static) -> Settings {
     let mut newton = Settings { last_increment: LAST_INCREMENT, ..Settings::default() };
     if let Some(tolerance) = settings.tolerance {
         newton.tolerance = tolerance;
