@@ -5,7 +5,6 @@ use super::start::{Start, told};
 use super::{Options, RunError, Solve, Stopwatch, Watch, left, memory, timed};
 use crate::model::{Analysis, Model, Static};
 use crate::results::{RecordedState, RecordedStates, Statistics, Trajectory};
-use crate::solve::equilibrium::Equilibrium;
 use crate::solve::statics::{self, Target};
 
 impl Solve for Static {
@@ -23,11 +22,6 @@ impl Solve for Static {
             None => None,
             Some(arc) => Some(Target { arc, probe: sampler.end_of_path(arc)? }),
         };
-        let leads_on =
-            |target: &Target<'_>| target.arc.until_load.is_some() || Equilibrium::new(system).is_driven();
-        if !target.as_ref().is_none_or(leads_on) {
-            return Err(RunError::NoPath);
-        }
         stopwatch.built();
         let mut watch = Watch { open: self.arc_length.is_some(), ..Watch::new(options.observer) };
         let report =

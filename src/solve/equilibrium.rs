@@ -81,16 +81,6 @@ impl<'a> Equilibrium<'a> {
         self.system.internal_variables(&self.accepted, &x[..self.system.coordinates()])
     }
 
-    /// Whether anything that acts or holds grows with the load factor, at its start or its end.
-    pub fn is_driven(&mut self) -> bool {
-        let (x, mut rate) = (self.start(), vec![0.0; self.unknowns()]);
-        self.system.supports().moves()
-            || [0.0, 1.0].into_iter().any(|load| {
-                self.rate_right_hand_side(load, &x, &mut rate);
-                rate.iter().any(|rate| *rate != 0.0)
-            })
-    }
-
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
         self.system.coordinates() + self.system.multipliers()
