@@ -233,9 +233,10 @@ impl<'a, 'o> Search<'a, 'o> {
         let times = needed.min(if contractions[0] < promised { CAREFUL_LEAP } else { LEAP });
         let mut steps = false;
         if let Some(time) = time {
-            // Where the mesh errs more, what is seen of the steps is not yet what they do on a finer one.
+            // Where a finer mesh comes next and this one errs more, what is seen of the steps is not yet
+            // what they do there.
             let ratio = time / (AIM * wanted.result);
-            steps = ratio > 1.0 && time >= errors.result;
+            steps = ratio > 1.0 && (time >= errors.result || round.cells == 0);
             if steps {
                 let factor = ratio.powf(-POWER.recip()).max(LEAP_OF_TOLERANCE.recip());
                 self.runner.tolerance = short((self.runner.tolerance * factor).max(FINEST));

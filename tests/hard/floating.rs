@@ -79,6 +79,19 @@ fn numbers_of_any_size_give_finite_results_or_a_message() {
     }
 }
 
+/// Steps so short that 1/h² is no number any more are refused by every method.
+#[test]
+fn steps_whose_square_vanishes_are_refused() {
+    for method in ["generalized_alpha", "gauss", "radau"] {
+        let (before, _) = PENDULUM.split_once("[analysis.dynamic]").expect("an analysis");
+        let motion = format!("[analysis.dynamic]\nduration = 1e-160\n{method} = {{ step = 1e-160 }}\n");
+        let scene = parsed(&format!("{before}{motion}"));
+        let error = outcome(scene.model(), scene.analysis()).expect_err("a step of nothing");
+        let RunError::NoStep { time, step, .. } = error else { panic!("{method}: {error}") };
+        assert!(time == 0.0 && step < 1e-160, "{method}: {step:e} beyond {time:e}");
+    }
+}
+
 /// A load of the smallest number does nothing, and does it without a rejected step.
 #[test]
 fn subnormal_loads_are_no_load() {

@@ -183,7 +183,7 @@ impl<'a> GeneralizedAlpha<'a> {
     /// step length.
     fn factorize(&mut self, c: f64, d: f64) -> Result<(), Singular> {
         if let Some(kept) = &mut self.kept
-            && (kept.c - c).abs() > ROUND_OFF * c
+            && (kept.c - c).abs() > ROUND_OFF * kept.c
         {
             self.factor = Some(self.motion.factorize(c, d, self.factor.take())?);
             kept.c = c;
