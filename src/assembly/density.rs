@@ -45,9 +45,7 @@ pub trait Density<const M: usize>: Send + Sync {
     }
 
     /// W at quadrature point number `point` \[J/m\]; zero for a density without an energy.
-    fn energy(&self, _point: usize, _z: &Gradient<M>) -> f64 {
-        0.0
-    }
+    fn energy(&self, point: usize, z: &Gradient<M>) -> f64;
 
     /// ∂W/∂z.
     fn gradient(&self, point: usize, z: &Gradient<M>) -> Gradient<M>;

@@ -87,6 +87,10 @@ impl<D: Dissipation<M>, const M: usize> Density<M> for Rayleigh<D> {
     const BY_FOURS: bool = D::BY_FOURS;
     const TANGENTS_BY_FOURS: bool = false;
 
+    fn energy(&self, _: usize, _: &Gradient<M>) -> f64 {
+        0.0
+    }
+
     fn gradient(&self, point: usize, rate: &Gradient<M>) -> Gradient<M> {
         self.0.force(point, rate, rate)
     }

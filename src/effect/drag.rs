@@ -86,6 +86,10 @@ impl Density<2> for SteadyDrag {
     const SYMMETRIC: bool = false;
     const CONSERVATIVE: bool = false;
 
+    fn energy(&self, _: usize, _: &Gradient<2>) -> f64 {
+        0.0
+    }
+
     fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
         self.0.force(point, z, &[Vector2::zeros(); 2])
     }

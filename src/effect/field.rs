@@ -182,6 +182,10 @@ impl Density<1> for ComponentField {
     const CONSERVATIVE: bool = false;
     const COMPILED_FOR: CompiledFor = CompiledFor::None;
 
+    fn energy(&self, _: usize, _: &Gradient<1>) -> f64 {
+        0.0
+    }
+
     fn gradient(&self, point: usize, z: &Gradient<1>) -> Gradient<1> {
         self.gradient_at(0.0, point, z)
     }

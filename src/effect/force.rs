@@ -191,6 +191,10 @@ impl Density<2> for FollowerForce {
     const SYMMETRIC: bool = false;
     const CONSERVATIVE: bool = false;
 
+    fn energy(&self, _: usize, _: &Gradient<2>) -> f64 {
+        0.0
+    }
+
     #[inline(always)]
     fn gradient(&self, point: usize, z: &Gradient<2>) -> Gradient<2> {
         let components = self.components.each_ref().map(|list| list[point]);

@@ -51,6 +51,10 @@ impl Density<1> for Couple {
     const ORDERS: [usize; 1] = [1];
     const CONSERVATIVE: bool = false;
 
+    fn energy(&self, _: usize, _: &Gradient<1>) -> f64 {
+        0.0
+    }
+
     #[inline(always)]
     fn gradient(&self, _: usize, z: &Gradient<1>) -> Gradient<1> {
         let factor = -self.moment / z[0].norm_squared();

@@ -195,6 +195,10 @@ impl Density<2> for Acting {
     const SYMMETRIC: bool = false;
     const CONSERVATIVE: bool = false;
 
+    fn energy(&self, _: usize, _: &Gradient<2>) -> f64 {
+        0.0
+    }
+
     fn gradient(&self, _: usize, [r, d]: &Gradient<2>) -> Gradient<2> {
         let [x, y, m] = self.0.call(&[r.x, r.y, d.y.atan2(d.x)]);
         [-Vector2::new(x, y), -couple(d).0 * m]
