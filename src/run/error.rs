@@ -71,6 +71,15 @@ pub enum RunError {
         "let what comes and goes besides loads do so in a static stage of its own before this one, and let a motion come to rest"
     ))]
     Unbalanced,
+    /// A path along which nothing changes but the load factor.
+    #[error(
+        "nothing in the scene grows with the load factor, so that its path by `arc_length` leads nowhere"
+    )]
+    #[diagnostic(help(
+        "a path needs a load, a support that moves or an actuation, and in a stage one that is new or has changed; without \
+         `arc_length` the state is found as it is"
+    ))]
+    NoPath,
     /// An eigenvalue problem could not be solved.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -172,6 +181,7 @@ impl RunError {
             | Self::Restart(_)
             | Self::Undamped(_)
             | Self::Unbalanced
+            | Self::NoPath
             | Self::NoShape { .. }
             | Self::Unavailable { .. } => 2,
             Self::NoEquilibrium { .. }

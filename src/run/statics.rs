@@ -22,6 +22,10 @@ impl Solve for Static {
             None => None,
             Some(arc) => Some(Target { arc, probe: sampler.end_of_path(arc)? }),
         };
+        let leads_on = |target: &Target<'_>| target.arc.until_load.is_some() || system.is_driven();
+        if !target.as_ref().is_none_or(leads_on) {
+            return Err(RunError::NoPath);
+        }
         stopwatch.built();
         let mut watch = Watch { open: self.arc_length.is_some(), ..Watch::new(options.observer) };
         let report =

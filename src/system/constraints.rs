@@ -9,7 +9,7 @@
 //! keeps ([`super::inextensible`]), is quadratic in q: the normal of its row depends on the
 //! gradient. So does the normal of the angle between two directions, which a weld keeps.
 
-use super::prescribed::Prescribed;
+use super::prescribed::{Prescribed, ROUND_OFF};
 use crate::assembly::Action;
 use crate::basis::BasisTable;
 use nalgebra::Vector2;
@@ -265,15 +265,15 @@ impl Constraint {
         fields.sum()
     }
 
+    /// Whether the row is a length \[m\], not the component of a gradient or an angle.
+    fn is_of_length(&self) -> bool {
+        matches!(self.row, Row::Position { .. } | Row::Length { .. } | Row::Joint { order: 0, .. })
+    }
+
     /// Factor of the row that makes its entries comparable with those of the tangent: EA/L \[N/m\]
     /// for a position or a length, EA L \[N m\] for a gradient.
     pub fn scale(&self, stiffness: f64, length: f64) -> f64 {
-        match self.row {
-            Row::Position { .. } | Row::Length { .. } | Row::Joint { order: 0, .. } => stiffness / length,
-            Row::Gradient { .. } | Row::Direction(_) | Row::Joint { .. } | Row::Angle(_) => {
-                stiffness * length
-            }
-        }
+        if self.is_of_length() { stiffness / length } else { stiffness * length }
     }
 
     /// The constraint g(q, λ).
@@ -311,6 +311,14 @@ impl Constraint {
             }
         };
         if self.open == 0.0 { closing } else { closing + self.open }
+    }
+
+    /// Whether it changes with the load factor, by more than the round-off of positions in a system of
+    /// this `length` where it only closes.
+    pub fn is_driven(&self, length: f64) -> bool {
+        let (_, _, normal, value) = self.normal(0.0);
+        let unit = if self.is_of_length() { length } else { 1.0 };
+        normal != [0.0; 2] || value != 0.0 || self.open.abs() > ROUND_OFF * unit
     }
 
     /// The normal of the last field, and, for a row of gradients, the field r' itself.

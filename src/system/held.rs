@@ -19,7 +19,7 @@ impl System {
         self.held_rows().filter_map(move |(row, length)| Some((unit * *multipliers.get(row)?, length)))
     }
 
-    fn amplitude_of_length<'a>(&'a self, length: &'a HeldLength) -> &'a Amplitude {
+    pub(super) fn amplitude_of_length<'a>(&'a self, length: &'a HeldLength) -> &'a Amplitude {
         length.amplitude.as_ref().unwrap_or(&self.amplitude)
     }
 

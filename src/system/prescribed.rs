@@ -4,7 +4,7 @@
 use crate::law::Law;
 
 /// Relative difference that counts as round-off.
-const ROUND_OFF: f64 = 1e-9;
+pub(super) const ROUND_OFF: f64 = 1e-9;
 
 /// A prescribed quantity: start + change · (load factor, or law of time).
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,8 +2,7 @@
 
 use super::Energy;
 use super::System;
-use crate::assembly::Amplitude;
-use crate::assembly::{ActingLoad, Earlier, Effect, Kind, Workspace, nodes};
+use crate::assembly::{ActingLoad, Amplitude, Earlier, Effect, HeldLength, Kind, Workspace, nodes};
 use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 
@@ -46,6 +45,22 @@ impl System {
                 load.effect.add_force(factor * rate, q, f);
             }
         }
+    }
+
+    /// Whether anything changes with the load factor: a load, a support that moves, a tendon that is
+    /// pulled, or a constraint that is not met where the analysis begins.
+    /// What acts where it can move nothing counts, because only round-off tells it from what can.
+    pub fn is_driven(&self) -> bool {
+        let changes = |amplitude: &Amplitude| amplitude.rate() != 0.0;
+        let held = |tendon: &HeldLength| {
+            tendon.closes() != 0.0 || tendon.shortening != 0.0 && changes(self.amplitude_of_length(tendon))
+        };
+        let load = |load: &ActingLoad| !load.is_summed() && changes(self.amplitude_of(load));
+        self.supports.moves()
+            || changes(&self.amplitude) && self.constant_load.iter().any(|load| *load != 0.0)
+            || self.terms.loads.iter().any(load)
+            || self.terms.held.iter().any(held)
+            || self.constraints.iter().any(|row| row.is_driven(self.length))
     }
 
     fn start_with_constant_load(&self, parameter: f64, f: &mut [f64]) {

@@ -131,6 +131,60 @@ fn a_load_beyond_the_limit_is_refused_at_the_limit() {
     }
 }
 
+/// A path needs something that grows with the load factor: without it only a load factor is a target that
+/// can be reached, and a stage in which nothing is new has no path.
+#[test]
+fn paths_along_which_nothing_changes_are_refused() {
+    let load = "effect.force = [{ beam = 'arm', at = 'end', value = [0, -2] }]\n";
+    let moved = CLAMPED
+        .replace("'angle'] }", "'angle'] }, { beam = 'arm', at = 'end', fix = ['y'], move = { y = -0.2 } }");
+    let to = |target: &str| format!("analysis.static.arc_length = {{ {target}max_points = 40 }}\n");
+    let probe = "until_probe = { probe = 'tip', y = -0.1 }, ";
+    for target in [probe, ""] {
+        let error = refused(&format!("{CLAMPED}{}", to(target)));
+        assert!(matches!(error, RunError::NoPath) && error.exit_status() == 2, "{error}");
+        assert!(advice(&error).contains("a load, a support that moves or an actuation"), "{error}");
+    }
+    for (arm, target) in
+        [(&moved, probe), (&format!("{CLAMPED}{load}"), probe), (&CLAMPED.to_owned(), "until_load = 1, ")]
+    {
+        let scene = parse("scene.toml", &format!("{arm}{}", to(target))).expect("a scene");
+        let found = scene.model().solve(scene.analysis()).expect("a path").into_states();
+        let tip = found.probes[0].samples.last().expect("a point").y;
+        near(tip, if target == probe { -0.1 } else { 0.0 }, 1e-9, target);
+    }
+    let staged = |more: &str| {
+        format!(
+            "{CLAMPED}{load}stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', {} }}]\n{more}",
+            to("until_probe = { probe = 'tip', y = -0.1 }, ").trim_end()
+        )
+    };
+    let run = |text: &str| {
+        let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        ancf::run::solve_stages(scene.stages(), ancf::run::Options::default())
+    };
+    let failure = run(&staged("")).failure.expect("no path").to_string();
+    assert!(failure.contains("two") && failure.contains("leads nowhere"), "{failure}");
+    let lifted = "effect.moment = [{ beam = 'arm', at = 'end', value = 3.0, stage = 'two' }]\n";
+    assert!(run(&staged(lifted)).failure.is_none());
+    // A weld that is open by the round-off of positions in a state that was computed closes nothing.
+    let welded = "beam.leg = { start = [1, 0], end = [0.7, -0.4], axial_stiffness = 1e4, bending_stiffness = 10, \
+                  basis.ancf.elements = 3 }\njoint = [{ type = 'weld', first = { beam = 'arm', at = 'end' }, \
+                  second = { beam = 'leg', at = 'start' } }]\n";
+    let failure = run(&staged(welded)).failure.expect("no path").to_string();
+    assert!(failure.contains("leads nowhere"), "{failure}");
+    // A load where it can move nothing: whether it drives anything would be decided by round-off.
+    for angle in [0.0, 0.3f64] {
+        let held = format!(
+            "effect.force = [{{ beam = 'arm', at = 'start', value = [{}, {}] }}]\n",
+            angle.cos(),
+            angle.sin()
+        );
+        let error = refused(&format!("{CLAMPED}{held}{}", to(probe)));
+        assert!(!matches!(error, RunError::NoPath), "{error}");
+    }
+}
+
 /// Would catch the advice of another failure, the other beam, and loads of less than a newton that
 /// count for nothing.
 #[test]
