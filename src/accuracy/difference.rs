@@ -204,8 +204,11 @@ fn states(
                     let cell = k * mesh.cells() / (s.len() - 1);
                     let share = mesh.cells() as f64 / (s.len() - 1) as f64;
                     let width = share * (mesh.nodes[cell + 1] - mesh.nodes[cell]);
-                    let value = if bends { error.curvature } else { error.angle / length };
-                    now[cell] += width * value * value;
+                    let bent = if bends { error.curvature } else { error.angle / length };
+                    // A part that is longer by its strain moves what is behind it by its length, one that is
+                    // bent by its distance.
+                    let stretched = error.strain / length;
+                    now[cell] += width * (bent * bent + stretched * stretched);
                 }
             }
             squares.iter_mut().zip(now).for_each(|(most, now)| *most = larger(*most, now));

@@ -1,6 +1,7 @@
 //! What a round tells of the errors of its finer run.
 
 use super::difference::Difference;
+use super::mesh::{self, CellErrors, Mesh};
 use super::round::{LOOSER, Round, Runner};
 use crate::model::{Accuracy, Analysis, Integrator, StepControl};
 use crate::results::Errors;
@@ -51,7 +52,10 @@ impl Judged {
 
 /// What a round has seen.
 pub(super) struct Seen {
-    pub cells: usize,
+    /// The coarser meshes of the two that were compared, and where they err.
+    pub meshes: Vec<Mesh>,
+    pub cells: Vec<CellErrors>,
+    /// Of the finer run.
     pub tolerance: f64,
     pub error: f64,
     /// The largest difference in units of what is wanted of it.
@@ -62,10 +66,9 @@ pub(super) struct Seen {
 
 impl Seen {
     /// By which factor errors fall if cells are halved, as they have fallen to those of a round
-    /// with so many cells, such a tolerance and such an error; as before where that is hardly
-    /// finer.
-    pub fn fall_to(&self, cells: usize, tolerance: f64, error: f64) -> f64 {
-        let cells = cells as f64 / self.cells as f64;
+    /// with such meshes, such a tolerance and such an error; as before where that is hardly finer.
+    pub fn fall_to(&self, meshes: &[Mesh], tolerance: f64, error: f64) -> f64 {
+        let cells = mesh::refinement(&self.meshes, &self.cells, meshes);
         // A 16th of the tolerance goes with halved cells.
         let finer = cells.max((self.tolerance / tolerance).powf(LOOSER.log2().recip()));
         if finer < FINER { self.fall } else { (self.error / error).powf(finer.log2().recip()) }
@@ -213,10 +216,19 @@ mod tests {
     /// Four times the cells, and a 256th of the tolerance, are two halvings.
     #[test]
     fn a_fall_is_that_of_one_halving() {
-        let seen = Seen { cells: 8, tolerance: 256e-6, error: 1.0, excess: 1.0, fall: 7.0 };
-        assert_eq!(seen.fall_to(32, 256e-6, 1.0 / 64.0), 8.0);
-        assert_eq!(seen.fall_to(8, 1e-6, 1.0 / 64.0), 8.0);
-        assert_eq!(seen.fall_to(16, 1e-6, 1.0 / 64.0), 8.0);
-        assert_eq!(seen.fall_to(9, 200e-6, 0.1), 7.0, "hardly finer");
+        let even = |cells: usize| Mesh::of(&(0..=cells).map(|i| i as f64 / cells as f64).collect::<Vec<_>>());
+        let seen = Seen {
+            meshes: vec![even(8)],
+            cells: vec![CellErrors { squares: vec![1.0; 8], order: 2.0 }],
+            tolerance: 256e-6,
+            error: 1.0,
+            excess: 1.0,
+            fall: 7.0,
+        };
+        let fall = |cells: usize, tolerance: f64, error: f64| seen.fall_to(&[even(cells)], tolerance, error);
+        assert_eq!(fall(32, 256e-6, 1.0 / 64.0), 8.0);
+        assert_eq!(fall(8, 1e-6, 1.0 / 64.0), 8.0);
+        assert_eq!(fall(16, 1e-6, 1.0 / 64.0), 8.0);
+        assert_eq!(fall(9, 200e-6, 0.1), 7.0, "hardly finer");
     }
 }

@@ -14,7 +14,7 @@ use crate::model::{Model, Nodes};
 /// Cells with which the search begins, of the longest beam; fewer are of no use …
 const FIRST: f64 = 4.0;
 /// … for every half-wave of the modes that are wanted …
-const OF_HALF_WAVE: f64 = 2.5;
+const OF_HALF_WAVE: f64 = 1.75;
 /// … and of every beam or part of a beam between two places that must be nodes.
 const LEAST: usize = 2;
 /// Largest turn of a stress-free centreline in a cell of the first mesh \[rad\].
@@ -28,8 +28,10 @@ const GRADING: f64 = 2.0;
 const EVEN: f64 = 3.0;
 /// Where other places of as many cells would make the sum of squares this part of what it is …
 const UNEVEN: f64 = 0.1;
-/// … at most so many times the cells are taken at once.
+/// … at most so many times the cells are taken at once; and elsewhere …
 const CAREFUL: f64 = 2.0;
+/// … at least so many times.
+const MORE: f64 = 1.1;
 /// Largest relative difference of the cells of even spacing.
 const SAME: f64 = 1e-9;
 
@@ -125,6 +127,17 @@ impl Mesh {
             places.extend(nodes.last());
         }
         Self { nodes: places, fixed: self.fixed.clone() }
+    }
+
+    /// The errors of this mesh, from those of the cells of a `finer` one.
+    pub fn gathered(&self, finer: &Self, errors: &CellErrors) -> CellErrors {
+        let mut squares = vec![0.0; self.cells()];
+        for (cell, square) in finer.nodes.windows(2).zip(&errors.squares) {
+            let middle = 0.5 * (cell[0] + cell[1]);
+            let after = self.nodes.partition_point(|node| *node <= middle);
+            squares[(after.max(1) - 1).min(self.cells() - 1)] += square;
+        }
+        CellErrors { squares, order: errors.order }
     }
 
     /// As a scene says it.
@@ -241,12 +254,31 @@ pub(super) fn refined(meshes: &[Mesh], errors: &[Option<CellErrors>], times: f64
     // How fast errors fall on cells that are where they should be is only known when they are there.
     let times = if gain < UNEVEN { times.min(CAREFUL) } else { times };
     let number = cells as f64 * times * gain.powf((2.0 * order).recip());
+    // Other places alone are not enough where cells are not far from them.
+    let number = if gain < UNEVEN { number } else { number.max(MORE * cells as f64) };
     let per_cell = total / number.min(most as f64);
     let spread = |(mesh, d): (&Mesh, &Option<Vec<f64>>)| match d {
         Some(d) => mesh.spread(d, per_cell),
         None => mesh.clone(),
     };
     meshes.iter().zip(&graded).map(spread).collect()
+}
+
+/// Number of cells of the meshes `now` in a cell of those `before`, there where these erred: the
+/// geometric mean, weighted by the squares of errors; 1 where nothing erred. How many cells there are
+/// elsewhere tells nothing of how errors fall.
+pub(super) fn refinement(before: &[Mesh], errors: &[CellErrors], now: &[Mesh]) -> f64 {
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for ((before, errors), now) in before.iter().zip(errors).zip(now) {
+        for (cell, square) in before.nodes.windows(2).zip(&errors.squares) {
+            let first = now.nodes.partition_point(|node| *node <= cell[0]).saturating_sub(1);
+            let inside = now.nodes[first..].windows(2).take_while(|new| new[0] < cell[1]);
+            let part = |new: &[f64]| (new[1].min(cell[1]) - new[0].max(cell[0])) / (new[1] - new[0]);
+            sum += square * inside.map(part).sum::<f64>().log2();
+            weights += square;
+        }
+    }
+    if weights > 0.0 { (sum / weights).exp2() } else { 1.0 }
 }
 
 /// A place to a thousandth of the cells there: nobody wants to read more digits.
@@ -360,8 +392,8 @@ mod tests {
         assert!(meshes[1].is_one_part() && !meshes[0].is_one_part() && meshes[0].length() == 4.0);
         let cells =
             |waves: usize, times: f64| first(text, waves, times).iter().map(Mesh::cells).collect::<Vec<_>>();
-        // Six half-waves have 15 cells, 3¾ and 11¼ of the parts, 7½ of the other beam; twice four have 20.
-        assert_eq!((cells(6, 1.0), cells(4, 2.0)), (vec![4 + 12, 8], vec![6 + 16, 10]));
+        // Six half-waves have 10½ cells, 2¾ and 8¼ of 11 of the parts, 5¼ of the other beam; twice four have 14.
+        assert_eq!((cells(6, 1.0), cells(4, 2.0)), (vec![4 + 10, 6], vec![4 + 12, 8]));
         assert_eq!((cells(3, 1.0), cells(3, 0.1)), (vec![2 + 6, 4], vec![2 + 4, 2]));
         assert_eq!(cells(0, 4.0), [4 + 12, 8]);
     }
@@ -449,6 +481,24 @@ mod tests {
         // Where nothing tells where, cells are cut in up to four.
         let cut = |times: f64| refined_to(&[0.0, 0.5, 1.0], &[0.0, 0.0], times, 100).len() - 1;
         assert_eq!([0.5, 2.0, 2.3, 9.0].map(cut), [2, 4, 6, 8]);
+    }
+
+    /// Of four cells the first errs, in which eight new ones are, and a second one that errs as much is
+    /// halved: the mean is that of 8 and 2. A cell that reaches beyond an old one counts by its part.
+    #[test]
+    fn cells_are_smaller_by_what_they_are_where_errors_were() {
+        let before = Mesh::of(&[0.0, 1.0, 2.0, 3.0, 4.0]);
+        let now = Mesh::of(&[0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.5, 2.0, 4.0]);
+        let finer = |squares: [f64; 4]| {
+            let errors = CellErrors { squares: squares.into(), order: 2.0 };
+            refinement(std::slice::from_ref(&before), &[errors], std::slice::from_ref(&now))
+        };
+        assert_eq!(finer([1.0, 0.0, 0.0, 0.0]), 8.0);
+        assert_eq!(finer([1.0, 1.0, 0.0, 0.0]), 4.0);
+        assert_eq!([finer([0.0, 0.0, 0.0, 1.0]), finer([0.0; 4])], [0.5, 1.0]);
+        let gathered = Mesh::of(&[0.0, 3.0, 4.0])
+            .gathered(&before, &CellErrors { squares: vec![1.0, 2.0, 4.0, 8.0], order: 3.0 });
+        assert_eq!(gathered, CellErrors { squares: vec![7.0, 8.0], order: 3.0 });
     }
 
     /// Cells go to the beam that errs, from the one that does not.

@@ -1,6 +1,7 @@
 //! A round of a search: the same problem on meshes and with steps of two or three finenesses.
 
 use super::difference::{self, Difference, Stations};
+use super::judgement::{excess, scaled};
 use super::mesh::Mesh;
 use super::setting::{Family, Setting, Solver};
 use crate::basis::Basis;
@@ -9,7 +10,7 @@ use crate::model::{
     Accuracy, Analysis, Beam, Discretization, Dynamic, Integrator, Model, Nodes, Open, RPIM_GAUSS_POINTS,
     StepControl,
 };
-use crate::results::{AnalysisKind, Results, RunForError};
+use crate::results::{AnalysisKind, Errors, Results, RunForError};
 use crate::run::{Options, RunError};
 
 /// Smallest tolerance of any run.
@@ -45,6 +46,12 @@ const USUAL_IS_ENOUGH: f64 = 1e-8;
 /// … and that of others, in the wanted error.
 const EQUILIBRIUM: f64 = 1e-2;
 
+/// A finer run is not worth its price where its errors would be so many times those that are wanted, even if they fell as
+/// fast as they may …
+const HOPELESS: f64 = 1.5;
+/// … and of a motion, of which loose tolerances tell less.
+const HOPELESS_MOTION: f64 = 10.0;
+
 /// What is solved, on which meshes and with which steps.
 pub(super) struct Runner<'a, 'o> {
     pub model: &'a Model,
@@ -78,6 +85,14 @@ pub(super) enum Purpose {
     Shapes,
     /// All that was asked for.
     Results,
+}
+
+/// What became of a round.
+pub(super) enum Outcome {
+    /// A coarse run and a finer one.
+    Compared(Box<Round>),
+    /// Two coarse runs that differ so much that the finer one was not worth its price.
+    TooCoarse(Difference),
 }
 
 /// What a round found.
@@ -240,11 +255,20 @@ impl<'a, 'o> Runner<'a, 'o> {
     /// A coarse run and a finer one; in the first round one that is still coarser, too. Each finds
     /// its own way from the start: one that began where another ended would follow it to a wrong
     /// branch.
-    pub fn round(&mut self, first: bool) -> Result<Round, RunError> {
+    pub fn round(&mut self, first: bool) -> Result<Outcome, RunError> {
         let stations = Stations::new(self.model, &self.meshes);
         let mut pair = |fineness, purpose| self.solve(&stations, &self.setting(fineness, fineness), purpose);
         let coarsest = if first { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
         let coarse = pair(Fineness::Coarse, Purpose::Shapes);
+        let before = coarsest.as_ref().zip(coarse.as_ref().ok());
+        let before = before.and_then(|(a, b)| {
+            let complete = a.run().complete && b.run().complete;
+            complete.then(|| self.difference(&stations, a, b).ok()).flatten()
+        });
+        let before = match before {
+            Some(before) if self.is_too_coarse(&before) => return Ok(Outcome::TooCoarse(before)),
+            before => before,
+        };
         let setting = self.setting(Fineness::Fine, Fineness::Fine);
         let results = self.solve(&stations, &setting, Purpose::Results)?;
         let difference = match &coarse {
@@ -252,14 +276,27 @@ impl<'a, 'o> Runner<'a, 'o> {
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
             Err(error) => Err(format!("on half as many cells there is no result: {error}")),
         };
-        let before = coarsest.as_ref().zip(coarse.as_ref().ok());
-        let before = before.and_then(|(a, b)| self.difference(&stations, a, b).ok());
         let fall = before
             .zip(difference.as_ref().ok())
             .map(|(before, now)| before.errors.result / now.errors.result);
         let of_open = |(index, mesh): (usize, &Mesh)| if self.is_open(index) { mesh.cells() } else { 0 };
         let cells = self.meshes.iter().enumerate().map(of_open).sum();
-        Ok(Round { stations, results, coarse: coarse.ok(), setting, difference, fall, cells })
+        let coarse = coarse.ok();
+        Ok(Outcome::Compared(Box::new(Round { stations, results, coarse, setting, difference, fall, cells })))
+    }
+
+    /// The errors of a finer run that has not been made yet, from the difference of two runs that are
+    /// two and four times as coarse, if errors fall as fast as the methods promise.
+    pub fn foreseen(&self, before: &Difference) -> Errors {
+        scaled(before.errors, self.contractions(f64::INFINITY).map(|k| k * (k - 1.0)))
+    }
+
+    /// Whether a finer run would not be good enough even so, and better meshes can be had.
+    fn is_too_coarse(&self, before: &Difference) -> bool {
+        let moves = matches!(self.analysis, Analysis::Dynamic(_));
+        let open = self.open.beams.iter().all(|open| *open) && (self.open.integrator || !moves);
+        let foreseen = self.wanted.map_or(0.0, |wanted| excess(self.foreseen(before), wanted));
+        open && foreseen > if moves { HOPELESS_MOTION } else { HOPELESS }
     }
 
     pub fn difference(
@@ -376,6 +413,30 @@ pub(super) mod tests {
         assert_eq!((short(1.2345e-5), short(9.99e-3)), (1.2e-5, 1e-2));
     }
 
+    /// Of the difference of the coarsest two runs a 15·14th is the error of the finer one, of motions a 10·9th,
+    /// of curvatures a 4·3rd; one and a half times what is wanted is too much, of motions ten times.
+    #[test]
+    fn meshes_are_too_coarse_if_even_the_promised_fall_is_not_enough() {
+        let (still, motion) = (scene("analysis.static = {}"), scene(MOTION));
+        let too_coarse = |scene: &Scene, result: f64, curvature: f64| {
+            let errors = Errors { result, curvature: Some(curvature), section_force: None };
+            let mut runner = runner(scene, 1e-4);
+            runner.wanted = Some(Accuracy { curvature: Some(1e-2), ..Accuracy::new(1e-4) });
+            runner.is_too_coarse(&Difference { errors, ..Difference::default() })
+        };
+        assert_eq!([0.031, 0.032].map(|result| too_coarse(&still, result, 0.0)), [false, true]);
+        assert_eq!([0.17, 0.19].map(|curvature| too_coarse(&still, 0.0, curvature)), [false, true]);
+        assert_eq!([0.089, 0.091].map(|result| too_coarse(&motion, result, 0.0)), [false, true]);
+        // What the scene names cannot be made finer.
+        assert!(!too_coarse(&scene("beam.arm.basis.ancf.elements = 7\nanalysis.static = {}"), 1.0, 0.0));
+        let named = "analysis.dynamic = { duration = 1, gauss = { stages = 2, tolerance = 1e-4 } }";
+        assert!(!too_coarse(&scene(named), 1.0, 0.0));
+        let mut estimate = runner(&still, 1e-4);
+        estimate.wanted = None;
+        let large = Errors { result: 1.0, ..Errors::default() };
+        assert!(!estimate.is_too_coarse(&Difference { errors: large, ..Difference::default() }));
+    }
+
     /// The smaller an error is wanted, the more cells a search begins with: as the fourth root of the error, but
     /// no more than six times as many for an equilibrium.
     #[test]
@@ -384,13 +445,13 @@ pub(super) mod tests {
         let still = "analysis.static = {}";
         assert_eq!([1e-2, 1e-3, 1.1e-3 / 16.0, 1e-7].map(|wanted| cells(still, wanted)), [4, 4, 8, 24]);
         assert_eq!(cells(MOTION, 1e-9), 8);
-        assert_eq!([1e-2, 1e-3].map(|wanted| cells("analysis.modal.count = 9", wanted)), [14, 24]);
+        assert_eq!([1e-2, 1e-3].map(|wanted| cells("analysis.modal.count = 9", wanted)), [10, 16]);
         assert_eq!(
             cells(
                 "analysis.buckling.count = 7\neffect.force = [{ beam = 'arm', at = 'end', value = [-1, 0] }]",
                 1e-3
             ),
-            18
+            14
         );
         // Of a named mesh of seven cells the coarse run takes every second node, and the end.
         assert_eq!(cells("beam.arm.basis.ancf.elements = 7\nanalysis.static = {}", 1e-3), 4);

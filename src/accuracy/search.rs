@@ -1,8 +1,9 @@
 //! The search for a mesh and steps that are good enough.
 
+use super::difference::Difference;
 use super::judgement::{CAUTION, Judged, Seen, excess, scaled};
 use super::mesh::{self, CellErrors, Mesh};
-use super::round::{FINEST, Fineness, LOOSER, Purpose, Round, Runner, short};
+use super::round::{FINEST, Fineness, LOOSER, Outcome, Purpose, Round, Runner, short};
 use super::{Accurate, model_error, statement};
 use crate::model::{Accuracy, Analysis};
 use crate::results::{ErrorEstimate, Errors};
@@ -74,7 +75,11 @@ impl<'a, 'o> Search<'a, 'o> {
         let (mut rounds, mut stalls, mut failures, mut mute) = (0, 0, 0, 0);
         loop {
             let round = match self.runner.round(before.is_none()) {
-                Ok(round) => round,
+                Ok(Outcome::Compared(round)) => *round,
+                Ok(Outcome::TooCoarse(difference)) => {
+                    before = Some(self.begin_finer(&difference));
+                    continue;
+                }
                 // What is wrong with the model is wrong on all meshes.
                 Err(error) if error.exit_status() == 2 => return Err(error),
                 Err(error) => {
@@ -117,10 +122,11 @@ impl<'a, 'o> Search<'a, 'o> {
             let error = difference.errors.result;
             let (fall, caution) = match &before {
                 None => self.runner.first_fall(round.fall),
-                Some(before) => (before.fall_to(round.cells, self.runner.tolerance, error), 1.0),
+                Some(before) => (before.fall_to(&self.runner.meshes, self.runner.tolerance, error), 1.0),
             };
             let now = Seen {
-                cells: round.cells,
+                meshes: self.runner.meshes.clone(),
+                cells: difference.cells.clone(),
                 tolerance: self.runner.tolerance,
                 error,
                 excess: self.runner.wanted.map_or(0.0, |wanted| excess(difference.errors, wanted)),
@@ -222,13 +228,7 @@ impl<'a, 'o> Search<'a, 'o> {
             space = of_mesh;
         }
         let errors = scaled(space.errors, divide);
-        let order = (contractions[0] / CAUTION).log2().clamp(1.0, 4.0);
-        let needed = |error: Option<f64>, wanted: Option<f64>, order: f64| {
-            error.zip(wanted).map_or(0.0, |(error, wanted)| (error / (AIM * wanted)).powf(order.recip()))
-        };
-        let needed = needed(Some(errors.result), Some(wanted.result), order)
-            .max(needed(errors.curvature, wanted.curvature, 2.0))
-            .max(needed(errors.section_force, wanted.section_force, 2.0));
+        let needed = more_cells(errors, wanted, contractions[0]);
         let [promised, _] = self.runner.contractions(f64::INFINITY);
         let times = needed.min(if contractions[0] < promised { CAREFUL_LEAP } else { LEAP });
         let mut steps = false;
@@ -252,14 +252,38 @@ impl<'a, 'o> Search<'a, 'o> {
         if 2 * round.cells >= most {
             return Err(format!("more than {most} cells would be needed"));
         }
-        let errors: Vec<Option<CellErrors>> = space
-            .cells
-            .iter()
-            .enumerate()
-            .map(|(index, cells)| self.runner.is_open(index).then(|| cells.clone()))
-            .collect();
-        self.runner.meshes = mesh::refined(&self.runner.meshes, &errors, times.max(1.1), most / 2);
+        self.spread(&space.cells, times.max(1.1));
         Ok(())
+    }
+
+    /// So many times as many cells in the open beams, where `cells` err.
+    fn spread(&mut self, cells: &[CellErrors], times: f64) {
+        let of_open =
+            |(index, cells): (usize, &CellErrors)| self.runner.is_open(index).then(|| cells.clone());
+        let errors: Vec<Option<CellErrors>> = cells.iter().enumerate().map(of_open).collect();
+        self.runner.meshes = mesh::refined(&self.runner.meshes, &errors, times, self.most / 2);
+    }
+
+    /// Finer meshes in place of those with which the search began, of which two runs were enough to
+    /// tell that they do not do; what was seen of them.
+    fn begin_finer(&mut self, difference: &Difference) -> Seen {
+        let every_second: Vec<Mesh> =
+            self.runner.meshes.iter().map(|mesh| mesh.every_second_of(&mesh.nodes)).collect();
+        let [promised, _] = self.runner.contractions(f64::INFINITY);
+        let cells = every_second.iter().zip(&self.runner.meshes).zip(&difference.cells);
+        let seen = Seen {
+            cells: cells.map(|((coarser, mesh), errors)| coarser.gathered(mesh, errors)).collect(),
+            meshes: every_second,
+            tolerance: LOOSER * self.runner.tolerance,
+            error: difference.errors.result,
+            excess: f64::INFINITY,
+            fall: promised,
+        };
+        if let Some(wanted) = self.runner.wanted {
+            let needed = more_cells(self.runner.foreseen(difference), wanted, promised);
+            self.spread(&difference.cells, needed.clamp(1.1, CAREFUL_LEAP));
+        }
+        seen
     }
 
     /// Twice the cells in all open beams, and steps to match; whether there was any to refine.
@@ -321,6 +345,19 @@ impl<'a, 'o> Search<'a, 'o> {
         results.run_mut().error = Some(Box::new(estimate));
         Accurate { results, chosen }
     }
+}
+
+/// How many times as many cells make these errors half of those that are wanted, where errors of the
+/// result fall by `contraction` from one mesh to its halves, and curvatures and section forces are of
+/// second order.
+fn more_cells(errors: Errors, wanted: Accuracy, contraction: f64) -> f64 {
+    let order = (contraction / CAUTION).log2().clamp(1.0, 4.0);
+    let times = |error: Option<f64>, wanted: Option<f64>, order: f64| {
+        error.zip(wanted).map_or(0.0, |(error, wanted)| (error / (AIM * wanted)).powf(order.recip()))
+    };
+    times(Some(errors.result), Some(wanted.result), order)
+        .max(times(errors.curvature, wanted.curvature, 2.0))
+        .max(times(errors.section_force, wanted.section_force, 2.0))
 }
 
 #[cfg(test)]
@@ -402,6 +439,24 @@ mod tests {
         assert_eq!(cells(errors, promised, wanted, 4096), Ok(5), "not asked for");
         let errors = Errors { result: 0.0, curvature: None, section_force: Some(3.0 * 0.5 * 3.9) };
         assert_eq!(cells(errors, promised, Accuracy { section_force: Some(1.0), ..wanted }, 4096), Ok(8));
+    }
+
+    /// Four cells of which halves would err by 16 times what is aimed at, as fast as errors may fall, become
+    /// eight; never more than three times as many. What was seen is of every second node.
+    #[test]
+    fn too_coarse_meshes_are_made_finer_at_once() {
+        let still = scene(STILL);
+        let begun = |error: f64| {
+            let mut search = Search::new(runner(&still, 1e-3));
+            let cells = vec![CellErrors { squares: vec![1.0; 4], order: 2.0 }];
+            let errors = Errors { result: 15.0 * 14.0 * error, ..Errors::default() };
+            let seen = search.begin_finer(&Difference { errors, cells, ..Difference::default() });
+            assert_eq!(seen.cells[0].squares, [2.0, 2.0]);
+            let loose = seen.tolerance / search.runner.tolerance;
+            (search.runner.meshes[0].cells(), seen.meshes[0].cells(), loose, seen.fall)
+        };
+        assert_eq!(begun(5e-4 * 15.9), (8, 2, 16.0, 15.0));
+        assert_eq!(begun(1.0).0, 12);
     }
 
     #[test]

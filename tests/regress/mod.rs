@@ -1,6 +1,8 @@
 //! What a change of the solver would shift without breaking a tolerance: what is built for each
 //! case's scenes, and how much work they take. Accept a wanted change with `cargo insta review`.
 
+mod searches;
+
 use ancf::results::Results;
 use ancf::run::{Options, inspect, inspect_stages, solve_stages};
 use ancf::scene::Scene;

@@ -56,8 +56,10 @@ struct Task<'a> {
     member: Member,
     scene: Scene,
     settings: IndexMap<String, String>,
+    /// Of the solution, its preparation and both with all that is recorded \[s\].
     seconds: Vec<f64>,
     build: Vec<f64>,
+    whole: Vec<f64>,
     outcome: Option<Result<Found, String>>,
 }
 
@@ -105,8 +107,8 @@ pub fn measure(
                 .iter()
                 .map(|(name, value)| Ok((name.clone(), member.fill(&value.to_string())?)))
                 .collect::<Result<_, String>>()?;
-            let (seconds, build) = (Vec::new(), Vec::new());
-            tasks.push(Task { key, method, member, scene, settings, seconds, build, outcome: None });
+            let [seconds, build, whole] = [const { Vec::new() }; 3];
+            tasks.push(Task { key, method, member, scene, settings, seconds, build, whole, outcome: None });
         }
     }
     let order = alternating(&tasks.iter().map(|task| task.method.code).collect::<Vec<_>>());
@@ -195,6 +197,7 @@ impl Task<'_> {
             // no measurement.
             self.seconds.pop();
             self.build.pop();
+            self.whole.pop();
             outcome = self.run(often);
         }
         self.outcome = Some(outcome);
@@ -205,8 +208,10 @@ impl Task<'_> {
             Code::Ours => {
                 let mut last = Err("it was not run".to_owned());
                 for _ in 0..repeat {
+                    let clock = Instant::now();
                     let run = self.scene.model().solve(self.scene.analysis());
                     let results = run.map_err(|e| e.to_string())?;
+                    self.whole.push(clock.elapsed().as_secs_f64());
                     self.seconds.push(results.run().seconds.solve);
                     self.build.push(results.run().seconds.build);
                     last = Ok(results);
@@ -267,6 +272,7 @@ impl Task<'_> {
             error,
             seconds: Spread::of(&self.seconds),
             build: (!self.build.is_empty()).then(|| Spread::of(&self.build)),
+            whole: (!self.whole.is_empty()).then(|| Spread::of(&self.whole)),
             degrees_of_freedom: ours.then_some(unknowns),
             steps: statistics.steps.max(statistics.load_steps),
             newton_iterations: statistics.newton_iterations,

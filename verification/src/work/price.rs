@@ -1,8 +1,9 @@
 //! What an accuracy alone costs, beside the cheapest setting that somebody could have named who had
 //! tried them all.
 //!
-//! All runs that the choice and the estimate took count, tables and matrices included; of named
-//! settings the preparation and the solution, of other codes the solution.
+//! All runs that the choice and the estimate took count, from the tables of shape functions to the
+//! results along the beams, and so does the whole run of a named setting; of other codes the
+//! solution, and the preparation where it is known.
 
 use serde::{Deserialize, Serialize};
 
@@ -33,7 +34,8 @@ pub struct Paid {
 
 /// Prices of all accuracies that were run.
 pub fn paid(price: &Price, points: &[Point]) -> Vec<Paid> {
-    let total = |point: &Point| point.seconds.median + point.build.map_or(0.0, |build| build.median);
+    let solved = |point: &Point| point.seconds.median + point.build.map_or(0.0, |build| build.median);
+    let total = |point: &Point| point.whole.map_or_else(|| solved(point), |whole| whole.median);
     let taken = |point: &Point| Cheapest {
         setting: point.name(),
         error: point.error.get(&price.norm).copied(),
@@ -68,9 +70,9 @@ mod tests {
     use crate::work::problem::Faster;
     use crate::work::results::Spread;
 
-    fn point(code: Code, wanted: Option<f64>, error: f64, seconds: f64, build: Option<f64>) -> Point {
-        let build = build.map(|build| Spread::of(&[build]));
-        Point { wanted, build, ..Point::example(code, error, seconds) }
+    fn point(code: Code, wanted: Option<f64>, error: f64, seconds: f64, whole: Option<f64>) -> Point {
+        let whole = whole.map(|whole| Spread::of(&[whole]));
+        Point { wanted, whole, ..Point::example(code, error, seconds) }
     }
 
     #[test]
@@ -87,8 +89,8 @@ mod tests {
         let points = |error: f64, theirs: f64| {
             vec![
                 point(Code::Accuracy, Some(1e-4), error, 6.0, None),
-                point(Code::Ours, None, 2e-4, 1.0, Some(1.5)),
-                point(Code::Ours, None, 1e-4, 1.0, Some(2.0)),
+                point(Code::Ours, None, 2e-4, 1.0, Some(2.5)),
+                point(Code::Ours, None, 1e-4, 1.0, Some(3.0)),
                 point(Code::Ours, None, 3e-4, 0.1, None),
                 point(Code::Exudyn, None, 2e-4, theirs, None),
             ]

@@ -78,6 +78,9 @@ pub struct Point {
     pub seconds: Spread,
     /// Times of the preparation: shape functions, tables, patterns \[s\]; none for Exudyn.
     pub build: Option<Spread>,
+    /// Times of the whole run, with all that is recorded of it \[s\]; ours only.
+    #[serde(default)]
+    pub whole: Option<Spread>,
     /// Unknowns; ours only.
     pub degrees_of_freedom: Option<usize>,
     /// Steps in time or load.
@@ -109,6 +112,7 @@ impl Point {
             error: [("tip".to_owned(), error)].into(),
             seconds: Spread::of(&[seconds]),
             build: None,
+            whole: None,
             degrees_of_freedom: None,
             steps: 0,
             newton_iterations: 0,
