@@ -21,6 +21,10 @@
 //! runs show that errors would be too large on halved cells even if they fell as the method
 //! promises, those are not paid for: the search goes on with a finer mesh at once.
 //!
+//! Radial shape functions that a scene names may have errors that no finer mesh removes, so that all
+//! meshes agree. Where they do, elements on the same nodes are asked as well, and errors are taken to
+//! be at least the difference.
+//!
 //! The result is that of the finer run, as it would be without any estimate: the scene with what
 //! was chosen gives the same numbers.
 
@@ -29,6 +33,7 @@ mod judgement;
 mod mesh;
 mod model_error;
 mod round;
+mod saturation;
 mod search;
 pub(crate) mod setting;
 mod statement;

@@ -3,6 +3,7 @@
 use super::difference::{self, Difference, Stations};
 use super::judgement::{excess, scaled};
 use super::mesh::Mesh;
+use super::saturation::saturates;
 use super::setting::{Family, Setting, Solver};
 use crate::basis::Basis;
 use crate::centreline::Curve;
@@ -63,6 +64,10 @@ pub(super) struct Runner<'a, 'o> {
     pub meshes: Vec<Mesh>,
     /// What open beams are made of.
     pub families: Vec<Family>,
+    /// Beams that the scene gives shape functions whose errors finer meshes do not remove …
+    saturated: Vec<bool>,
+    /// … and by how much the first finer run differs from one of elements in their place.
+    pub saturation: f64,
     /// Of the finer runs of a motion whose integrator is open.
     pub tolerance: f64,
     pub runs: Vec<RunForError>,
@@ -142,6 +147,8 @@ impl<'a, 'o> Runner<'a, 'o> {
             _ => (FIRST_CELLS_DO / result).powf(0.25),
         };
         let mut meshes = Mesh::first(model, waves, times);
+        let saturated = |(beam, mesh): (&Beam, &Mesh)| saturates(&beam.discretization, mesh.length());
+        let saturated = model.beams.iter().zip(&meshes).map(saturated).collect();
         for (beam, mesh) in model.beams.iter().zip(&mut meshes) {
             if beam.discretization != Discretization::Open {
                 let curve = Curve::new(&beam.centreline);
@@ -163,7 +170,19 @@ impl<'a, 'o> Runner<'a, 'o> {
             if meshfree { MESHFREE_FAMILY } else { Family::REDUCED }
         };
         let families = model.beams.iter().zip(&meshes).map(family).collect();
-        Self { model, analysis, open, wanted, options, meshes, families, tolerance, runs: Vec::new() }
+        Self {
+            model,
+            analysis,
+            open,
+            wanted,
+            options,
+            meshes,
+            families,
+            saturated,
+            saturation: 0.0,
+            tolerance,
+            runs: Vec::new(),
+        }
     }
 
     pub fn is_open(&self, beam: usize) -> bool {
@@ -271,6 +290,9 @@ impl<'a, 'o> Runner<'a, 'o> {
         };
         let setting = self.setting(Fineness::Fine, Fineness::Fine);
         let results = self.solve(&stations, &setting, Purpose::Results)?;
+        if first && let Some(apart) = self.beside_elements(&stations, &setting, &results) {
+            self.saturation = apart;
+        }
         let difference = match &coarse {
             Ok(coarse) if coarse.run().complete => self.difference(&stations, coarse, &results),
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
@@ -283,6 +305,21 @@ impl<'a, 'o> Runner<'a, 'o> {
         let cells = self.meshes.iter().enumerate().map(of_open).sum();
         let coarse = coarse.ok();
         Ok(Outcome::Compared(Box::new(Round { stations, results, coarse, setting, difference, fall, cells })))
+    }
+
+    /// By how much the results of a `setting` differ from those of elements on the same nodes, in place of shape functions
+    /// whose errors finer meshes do not remove; `None` where there are none, or no such results.
+    fn beside_elements(&mut self, stations: &Stations, setting: &Setting, results: &Results) -> Option<f64> {
+        if !self.saturated.contains(&true) || !results.run().complete {
+            return None;
+        }
+        let mut elements = setting.clone();
+        let of_beams = elements.beams.iter_mut().zip(&self.model.beams).zip(&self.saturated);
+        for ((chosen, beam), _) in of_beams.filter(|(_, saturated)| **saturated) {
+            *chosen = Family::REDUCED.of(beam, chosen.0.nodes().clone());
+        }
+        let elements = self.solve(stations, &elements, Purpose::Positions).ok()?;
+        self.difference(stations, &elements, results).ok().map(|difference| difference.errors.result)
     }
 
     /// The errors of a finer run that has not been made yet, from the difference of two runs that are

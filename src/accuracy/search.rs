@@ -140,6 +140,10 @@ impl<'a, 'o> Search<'a, 'o> {
                 _ => 0,
             };
             let errors = judged.errors();
+            if self.runner.saturation > errors.result && errors.result > 0.0 {
+                judged.caution *= self.runner.saturation / errors.result;
+            }
+            let errors = judged.errors();
             if let Some(last) = self.runner.runs.last_mut() {
                 last.error = Some(errors.result);
             }

@@ -174,3 +174,31 @@ fn cells_go_where_strains_jump() {
     let cells = one.run().degrees_of_freedom / 4;
     assert!(cells < 1400 / 4, "{cells}");
 }
+
+/// Narrow radial functions converge to something else than the truth, on which all their meshes agree;
+/// many elements are the judge.
+#[test]
+fn errors_that_finer_meshes_do_not_remove_are_seen() {
+    let of = |basis: &str| {
+        let rest = "effect.gravity.acceleration = [0.04, 5]\nanalysis.static = {}";
+        let text = cantilever(1e4, 1.0, rest).replace("mass_per", &format!("basis = {basis}, mass_per"));
+        let scene = scene(&text);
+        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("results")
+    };
+    let exact = last(&of("{ ancf = { elements = 200 } }"));
+    for kernel in [
+        "multiquadric = { q = 0.5, shape = 2.0 }",
+        "wendland = { radius = 8.0 }",
+        "thin_plate_spline = { exponent = 5 }",
+    ] {
+        for nodes in [10, 19, 37] {
+            let results = of(&format!("{{ rpim = {{ nodes = {nodes}, kernel = {{ {kernel} }} }} }}"));
+            let found = last(&results);
+            let truth = (found.x - exact.x).hypot(found.y - exact.y);
+            let worth = error(&results).estimated.result / truth;
+            assert!((0.5..=3.0).contains(&worth), "{kernel}, {nodes}: {worth}");
+        }
+    }
+    // Wide ones are not asked.
+    assert_eq!(error(&of("{ rpim = { nodes = 10 } }")).runs.len(), 3);
+}
