@@ -15,6 +15,7 @@ impl Sampler<'_> {
             Ok(dynamics::EventWatch {
                 quantity: self.quantity(number, event.quantity),
                 round_off: self.round_off(number, event.quantity),
+                is_relative: event.quantity == ProbeQuantity::Angle,
                 when: event.when,
                 stop: event.stop,
             })
@@ -25,7 +26,7 @@ impl Sampler<'_> {
     /// Changes of a quantity at probe number `number` that are round-off of the forces, and no turns: a
     /// position is stored with the round-off ε L, from which an element of length h makes forces
     /// ε EA L/h along the beam and 12 ε EI L/h³ across. A gentle bend turns a part (h/L)² of the former
-    /// across: a larger part would hide the turns of small vibrations.
+    /// across: a larger part would hide the turns of small vibrations. Directions err by ε L/h.
     fn round_off(&self, number: usize, quantity: ProbeQuantity) -> f64 {
         let ProbePoint { beam, view, .. } = &self.probes[number];
         let (section, basis) = (&self.model.beams[*beam].section, &self.system.beams()[*beam].basis);
@@ -42,6 +43,7 @@ impl Sampler<'_> {
             signs.into_iter().flatten().map(of).fold(0.0, f64::max)
         };
         match quantity {
+            ProbeQuantity::Angle => unit,
             ProbeQuantity::AxialForce => axial,
             ProbeQuantity::ShearForce => across,
             ProbeQuantity::BendingMoment => across * h,
@@ -121,6 +123,7 @@ mod tests {
             (ProbeQuantity::BendingMoment, across * 0.5),
             (ProbeQuantity::StressBottom, stress),
             (ProbeQuantity::StressTop, stress),
+            (ProbeQuantity::Angle, position / 0.5),
             (ProbeQuantity::Y, 0.0),
             (ProbeQuantity::Speed, 0.0),
         ] {

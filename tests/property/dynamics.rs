@@ -603,7 +603,13 @@ fn events_are_located_to_the_accuracy_of_the_motion() {
         let watch = |crossing, stop| {
             let view = View::point(&system.beams()[0].basis, 0, LENGTH).expect("on the beam");
             let when = EventKind::Reaches { value: -1.0, crossing };
-            EventWatch { quantity: Quantity::Position(view, 1), round_off: 0.0, when, stop }
+            EventWatch {
+                quantity: Quantity::Position(view, 1),
+                round_off: 0.0,
+                is_relative: false,
+                when,
+                stop,
+            }
         };
         let watches =
             [watch(Crossing::Rising, true), watch(Crossing::Any, false), watch(Crossing::Falling, true)];

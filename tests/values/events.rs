@@ -151,3 +151,33 @@ fn events_that_cannot_be_are_refused() {
         assert!(said.contains(part), "{said}");
     }
 }
+
+/// A tip that a small force shakes turns back as often whichever way the beam points: what is small
+/// against the direction itself is not small against how it changes.
+#[test]
+fn turns_of_a_direction_do_not_depend_on_the_direction() {
+    let times = |turn: f64| {
+        let (sine, cosine) = turn.sin_cos();
+        let along = |x: f64, y: f64| format!("[{:e}, {:e}]", cosine * x - sine * y, sine * x + cosine * y);
+        let text = format!(
+            "beam.rod = {{ start = [0, 0], end = {}, axial_stiffness = 100, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 5 }}\n\
+             effect.force = [{{ beam = 'rod', at = 'end', value = {} }}]\n\
+             probe = [{{ name = 'tip', beam = 'rod', at = 'end' }}]\n\
+             analysis.dynamic = {{ duration = 0.1, gauss = {{ stages = 3, step = 1e-3 }}, \
+             event = [{{ probe = 'tip', maximum = 'angle' }}, {{ probe = 'tip', minimum = 'angle' }}] }}\n",
+            along(1.0, 0.0),
+            along(-0.03, -0.02),
+        );
+        events(&text).0.into_iter().map(|(time, _)| time).collect::<Vec<_>>()
+    };
+    let straight = times(0.0);
+    assert!(straight.len() > 4, "{straight:?}");
+    for turn in [1.5, 3.1, -2.0] {
+        let turned = times(turn);
+        let apart = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-6;
+        assert!(
+            turned.len() == straight.len() && straight.iter().zip(&turned).all(apart),
+            "{straight:?} {turned:?}"
+        );
+    }
+}

@@ -17,8 +17,8 @@ use crate::system::View;
 const CLOSE: f64 = 1e-8;
 /// How often a step is halved at most to represent a quantity.
 const HALVINGS: u32 = 4;
-/// Changes of velocities, strains and forces below this part of the largest value so far are errors of
-/// the integration, and no turns.
+/// Changes of velocities, directions, strains and forces below this part of the largest value so far are
+/// errors of the integration, and no turns.
 const NOISE: f64 = 1e-6;
 /// Places at which a polynomial is compared with the quantity.
 const BETWEEN: [f64; 3] = [0.2, 0.5, 0.8];
@@ -29,6 +29,8 @@ pub struct EventWatch<'t> {
     pub quantity: Quantity<'t>,
     /// Changes of it that are errors of its arithmetic, and no turns.
     pub round_off: f64,
+    /// Whether its zero is one of many, as that of a direction: its size is then that of its change.
+    pub is_relative: bool,
     /// What it has to do.
     pub when: EventKind,
     /// Whether the motion ends there.
@@ -50,6 +52,8 @@ pub enum Quantity<'t> {
 pub(super) struct Watched {
     /// Its value at the end of the last step.
     value: Option<f64>,
+    /// Its first value, from which its size is counted where its zero is one of many.
+    first: Option<f64>,
     /// Its largest magnitude so far.
     largest: f64,
     /// The sign of its slope there, or of the last slope that was not zero.
@@ -76,7 +80,9 @@ impl Driver<'_, '_> {
                 continue;
             }
             let memory = &mut self.watched[number];
-            let ends = pieces.iter().flat_map(|(_, piece)| [0.0, 1.0].map(|x| piece.at(x)[0].abs()));
+            let first = pieces.first().map_or(0.0, |(_, piece)| piece.at(0.0)[0]);
+            let zero = if watch.is_relative { *memory.first.get_or_insert(first) } else { 0.0 };
+            let ends = pieces.iter().flat_map(|(_, piece)| [0.0, 1.0].map(|x| (piece.at(x)[0] - zero).abs()));
             memory.largest = ends.fold(memory.largest, f64::max);
             let (unit, noise) = match watch.quantity {
                 Quantity::Position(..) => (self.system.length(), NEAR),
