@@ -287,6 +287,7 @@ mod tests {
             error: [("tip".to_owned(), error)].into(),
             seconds: Spread::of(&[seconds]),
             build: None,
+            whole: None,
             degrees_of_freedom: None,
             steps: 1,
             newton_iterations: 1,
