@@ -139,9 +139,10 @@ impl<'a, 'o> Search<'a, 'o> {
                 Some(before) if now.excess > STALLED * before.excess => stalls + 1,
                 _ => 0,
             };
-            let errors = judged.errors();
-            if self.runner.saturation > errors.result && errors.result > 0.0 {
-                judged.caution *= self.runner.saturation / errors.result;
+            // No error is smaller than what finer meshes do not remove.
+            let seen = judged.errors().result;
+            if seen > 0.0 {
+                judged.caution *= (self.runner.saturation / seen).max(1.0);
             }
             let errors = judged.errors();
             if let Some(last) = self.runner.runs.last_mut() {
