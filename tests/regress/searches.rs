@@ -25,6 +25,8 @@ fn tasks() -> Vec<(&'static str, String, &'static [&'static str])> {
     let elements = &named("{ ancf = { elements = 12 } }");
     let meshfree = named("{ rpim = { nodes = 9 } }");
     let narrow = named("{ rpim = { nodes = 13, kernel = { wendland = { radius = 8.0 } } } }");
+    let soft = &BEAM.replace("bending_stiffness = 1", "bending_stiffness = 0.1");
+    let stiff = &BEAM.replace("bending_stiffness = 1", "bending_stiffness = 50");
     let plain: &[&str] = &["1e-2", "1e-4", "1e-7"];
     let tables: &[&str] =
         &["{ position = 1e-3, curvature = 1e-2 }", "{ position = 1e-4, section_force = 1e-3 }"];
@@ -63,6 +65,16 @@ fn tasks() -> Vec<(&'static str, String, &'static [&'static str])> {
             &["1e-3", "1e-6"],
         ),
         ("fall", fall(BEAM, "duration = 0.5, output_every = 0.1, accuracy = {}"), &["1e-2", "1e-4", "1e-5"]),
+        (
+            "fall of a soft beam",
+            fall(soft, "duration = 0.8, output_every = 0.2, accuracy = {}"),
+            &["1e-4", "1e-5"],
+        ),
+        (
+            "fall of a stiff beam",
+            fall(stiff, "duration = 1.5, output_every = 0.5, accuracy = {}"),
+            &["1e-5", "1e-6"],
+        ),
         (
             "fall, integrator named",
             fall(
