@@ -129,6 +129,17 @@ impl Matrix {
         }
     }
 
+    /// ½ (A + Aᵀ).
+    pub fn symmetric_part(&self) -> Self {
+        let mut part = Self::zeros(self.size() / 4, self.columns(0).len() / 4, true);
+        for i in 0..self.size() {
+            // The band of a row may end within a node that no other row of its node reaches: with zeros.
+            let right = part.columns(i).filter(|j| *j >= i);
+            right.for_each(|j| part.set(i, j, 0.5 * (self.get(i, j) + self.get(j, i))));
+        }
+        part
+    }
+
     /// Bytes of the entries.
     pub fn bytes(&self) -> usize {
         match self {
@@ -428,12 +439,18 @@ impl Factor {
         }
     }
 
-    /// Whether the determinant is negative; `None` if the factorisation does not determine it.
-    pub fn determinant_is_negative(&self) -> Option<bool> {
+    /// Whether the determinant of the factorised `matrix`, restricted to motions that the rows of
+    /// `border` allow, is negative; `None` if the factorisation does not determine it.
+    pub fn determinant_is_negative(&self, matrix: &Matrix, border: &[BorderRow]) -> Option<bool> {
         match self {
             Self::Ldl(ldl) => Some(ldl.negative_pivots() % 2 == 1),
             Self::Lu(lu) => Some(lu.determinant_is_negative()),
-            _ => None,
+            Self::Interleaved(lu) => Some(lu.determinant_is_negative(border.len())),
+            Self::Bordered(_) => {
+                let lu = Interleaved::of_any_reach(matrix, border).ok()?;
+                Some(lu.determinant_is_negative(border.len()))
+            }
+            Self::BlockLu(_) | Self::Condensed(_) | Self::Chain(_) => None,
         }
     }
 

@@ -12,6 +12,7 @@ mod motion;
 mod sampler;
 mod sections;
 mod shapes;
+mod stability;
 mod stages;
 mod start;
 mod statics;

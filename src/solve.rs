@@ -12,6 +12,7 @@ mod record;
 pub mod relax;
 pub mod resume;
 pub mod retraction;
+pub mod stability;
 pub mod statics;
 mod work;
 

@@ -15,6 +15,7 @@
 use super::band::{Band, BandLu, Number};
 use super::bordered::BorderRow;
 use super::equilibrate::scales;
+use super::schur::Numbering;
 use super::{Matrix, Singular};
 
 /// LU of a bordered matrix that is a band in another order, real or complex.
@@ -64,21 +65,29 @@ impl<T: Number> Interleaved<T> {
         entry: impl Fn(usize, usize) -> T,
         border: &[BorderRow],
     ) -> Result<Self, Singular> {
+        Self::in_order(places(pattern.size(), border), pattern, entry, border)
+    }
+
+    /// As [`Self::new`], with the positions `place` of unknowns and multipliers in the band.
+    fn in_order(
+        place: Vec<usize>,
+        pattern: &Matrix,
+        entry: impl Fn(usize, usize) -> T,
+        border: &[BorderRow],
+    ) -> Result<Self, Singular> {
         let size = pattern.size();
-        let place = places(size, border);
         let scales = scales(size, |i| entry(i, i).size(), border);
         let apart = |i: usize, j: usize| place[i].abs_diff(place[j]);
-        let of_matrix = (0..size).flat_map(|i| {
-            let columns = pattern.columns(i);
-            [apart(i, columns.start), apart(i, columns.end - 1)]
-        });
+        // A band of single rows has corners beyond the blocks of its nodes: with zeros.
+        let columns = |i: usize| pattern.columns(i | 3).start..pattern.columns(i & !3).end;
+        let of_matrix = (0..size).flat_map(|i| columns(i).map(move |j| (i, j))).map(|(i, j)| apart(i, j));
         let of_rows =
             border.iter().enumerate().flat_map(|(r, row)| row.iter().map(move |(j, _)| (size + r, *j)));
         let half = of_matrix.chain(of_rows.map(|(i, j)| apart(i, j))).max().unwrap_or(0);
         let mut band = Band::<T>::zeros(place.len(), half);
         for i in 0..size {
             let scaled = |j: usize| entry(i, j) * T::from_real(scales[i] * scales[j]);
-            pattern.columns(i).for_each(|j| band.set(place[i], place[j], scaled(j)));
+            columns(i).for_each(|j| band.set(place[i], place[j], scaled(j)));
         }
         for (r, row) in border.iter().enumerate() {
             for &(j, value) in row {
@@ -102,6 +111,31 @@ impl<T: Number> Interleaved<T> {
         places().zip(&*b).for_each(|((place, scale), value)| ordered[*place] = *value * T::from_real(*scale));
         self.lu.solve(&mut ordered);
         places().zip(b).for_each(|((place, scale), value)| *value = ordered[*place] * T::from_real(*scale));
+    }
+}
+
+impl Interleaved {
+    /// Factorises a matrix that is bordered by rows of any reach, in an order in which unknowns and
+    /// multipliers with a common entry are near each other. The band may be wide.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_any_reach(matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
+        let size = matrix.size();
+        let of_nodes = (0..size).step_by(4).map(|i| (i..matrix.columns(i).end).collect());
+        let of_rows = border.iter().enumerate().map(|(r, row)| {
+            let unknowns = row.iter().map(|(i, _)| *i);
+            unknowns.chain([size + r]).collect()
+        });
+        let parts: Vec<Vec<usize>> = of_nodes.chain(of_rows).collect();
+        let place = Numbering::new(size + border.len(), &parts).places();
+        Self::in_order(place, matrix, |i, j| matrix.get(i, j), border)
+    }
+
+    /// Whether the determinant of the matrix on the motions that the rows allow is negative. It has the
+    /// sign of the bordered matrix's, times −1 for each row.
+    pub fn determinant_is_negative(&self, rows: usize) -> bool {
+        self.lu.determinant_is_negative() != (rows % 2 == 1)
     }
 }
 

@@ -65,6 +65,11 @@ impl Numbering {
         Self { new, half }
     }
 
+    /// The new number of each row.
+    pub fn places(self) -> Vec<usize> {
+        self.new
+    }
+
     /// Multiplications of a factorisation.
     pub fn work(&self) -> usize {
         self.new.len() * self.half.min(self.new.len()).pow(2)

@@ -5,6 +5,7 @@ use super::angle;
 use super::laws::Reach;
 use super::locking::Locking;
 use super::loose::Loose;
+use super::stability;
 use super::strings;
 use super::tendons::Tendons;
 use crate::assembly::{Actions, BuildError, InternalVariables, Side, TendonPath, nodes};
@@ -21,7 +22,7 @@ use crate::solve::Work;
 use crate::solve::dynamics;
 use crate::solve::newton::Failure;
 use crate::solve::path::NoStep;
-use crate::solve::statics::{Solution, UnstableMechanism};
+use crate::solve::statics::Solution;
 use crate::system::{Change, Reaction, System, View, unfold};
 use nalgebra::Vector2;
 use std::f64::consts::FRAC_PI_2;
@@ -597,33 +598,7 @@ impl<'a> Sampler<'a> {
         trajectory.run.warnings.extend(tendons.warnings());
         trajectory.history = solution.history.clone();
         trajectory.run.statistics = solution.statistics;
-        if let Some(UnstableMechanism { load, unstable, free }) = solution.pressed {
-            trajectory.run.warnings.push(format!(
-                "the load up to factor {load:.6} presses the structure so that it is unstable in {unstable} directions where it stands, and \
-                 supports and joints leave it {free} to move in: its beams buckle before it moves, and on which side it comes to rest may be \
-                 chance; reach the load in more `steps`"
-            ));
-        }
-        if let Some(load) = solution.crest {
-            trajectory.run.warnings.push(format!(
-                "at load factor {load:.6} the structure stands on a crest of its energy, from which it may come to rest in more than one \
-                 equilibrium: which of them was found is arbitrary; a small load, or a small change of the geometry, decides"
-            ));
-        }
-        for event in &solution.events {
-            let (change, advice) = if event.after > event.before {
-                ("loses", "beyond it the equilibrium found is unstable: a bifurcation or a limit point")
-            } else {
-                ("regains", "the path is back on a more stable branch")
-            };
-            trajectory.run.warnings.push(format!(
-                "the tangent {change} definiteness at load factor {:.6}: {} unstable direction{} before, {} after; {advice}",
-                event.load,
-                event.before,
-                if event.before == 1 { "" } else { "s" },
-                event.after,
-            ));
-        }
+        trajectory.run.warnings.extend(stability::warnings(solution));
         trajectory
     }
 

@@ -3,6 +3,7 @@
 
 use super::newton::{Equations, RESIDUAL_TOLERANCE};
 use super::retraction::Retraction;
+use super::stability::Stability;
 use crate::assembly::{AcceptedState, Earlier, InternalVariables, Workspace};
 use crate::lanes::Lanes;
 use crate::linear::bordered::BorderRow;
@@ -12,6 +13,9 @@ use crate::system::System;
 
 /// Residuals up to this many round-offs of the internal forces count as zero.
 const ROUND_OFFS: f64 = 100.0;
+
+/// Stiffness, as a part of that of the beams, of what moves without resistance.
+const RESISTANCE: f64 = 1e-6;
 
 /// Residual, tangent and its factorisation at one load factor. Unknowns are the system's
 /// coordinates followed by the scaled multipliers.
@@ -126,23 +130,12 @@ impl<'a> Equilibrium<'a> {
         negative: &mut [f64],
         rate: &mut [f64],
     ) -> Result<f64, Singular> {
-        let system = self.system;
-        let n = system.coordinates();
-        self.statistics.residual_evaluations += 1;
-        self.statistics.tangent_evaluations += 1;
-        self.statistics.factorizations += 1;
-        let q = &x[..n];
-        let force = &mut negative[..n];
-        system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
-        system.add_history_and_tangent(&self.accepted, q, force, &mut self.tangent, &mut self.workspace);
-        let residual = self.balanced(load, x, negative);
-        system.add_constraint_stiffness(q, &x[n..], &mut self.tangent);
-        system.supports().turn_matrix(load, &mut self.tangent);
-        self.rate_right_hand_side(load, x, rate);
-        system.supports().eliminate(load, &mut self.tangent);
-        system.border_again(load, q, &mut self.border);
-        self.factor = Some(Factor::again(self.factor.take(), &self.tangent, &self.border)?);
-        Ok(residual)
+        self.factorize(load, x, earlier, None, negative, |equilibrium| {
+            rate.fill(0.0);
+            let n = equilibrium.system.coordinates();
+            equilibrium.system.add_load_rate(-1.0, &x[..n], &mut rate[..n]);
+            equilibrium.add_rate_of_supports(load, x, rate);
+        })
     }
 
     /// Writes −R(x) to `negative` and factorises the tangent at `x` with σ times a diagonal added.
@@ -154,36 +147,66 @@ impl<'a> Equilibrium<'a> {
         load: f64,
         x: &[f64],
         earlier: Earlier<'_>,
-        (sigma, diagonal): (f64, &[f64]),
+        shift: (f64, &[f64]),
         negative: &mut [f64],
     ) -> Result<(), Singular> {
+        self.factorize(load, x, Some(earlier), Some(shift), negative, |_| ()).map(|_| ())
+    }
+
+    /// The state to which `x`, in which supports are as at load factor `from`, goes as they move to
+    /// where they are at `load`, to first order and without loads. What moves without resistance
+    /// goes no further than it must. `None` where that cannot be computed.
+    pub fn moved_with_supports(&mut self, from: f64, load: f64, x: &[f64]) -> Option<Vec<f64>> {
+        let (mut rate, mut negative) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+        let shift = (RESISTANCE, &self.system.weights()[..]);
+        self.factorize(from, x, None, Some(shift), &mut negative, |equilibrium| {
+            equilibrium.add_rate_of_supports(from, x, &mut rate);
+        })
+        .ok()?;
+        self.solve(from, &mut rate, true);
+        Some(x.iter().zip(&rate).map(|(x, rate)| x + (load - from) * rate).collect())
+    }
+
+    /// Writes −R(x) to `negative`, returns the scaled residual, and factorises the tangent with σ
+    /// times a diagonal added, if a `shift` is given. `whole` is called before the fixed coordinates
+    /// are eliminated from the tangent.
+    fn factorize(
+        &mut self,
+        load: f64,
+        x: &[f64],
+        earlier: Option<Earlier<'_>>,
+        shift: Option<(f64, &[f64])>,
+        negative: &mut [f64],
+        whole: impl FnOnce(&mut Self),
+    ) -> Result<f64, Singular> {
         let system = self.system;
         let n = system.coordinates();
-        let (q, earlier) = (&x[..n], Some(earlier));
         self.statistics.residual_evaluations += 1;
         self.statistics.tangent_evaluations += 1;
         self.statistics.factorizations += 1;
+        let q = &x[..n];
         let force = &mut negative[..n];
         system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
         system.add_history_and_tangent(&self.accepted, q, force, &mut self.tangent, &mut self.workspace);
-        self.balanced(load, x, negative);
+        let residual = self.balanced(load, x, negative);
         system.add_constraint_stiffness(q, &x[n..], &mut self.tangent);
-        self.tangent.add_diagonal(sigma, diagonal);
+        if let Some((sigma, diagonal)) = shift {
+            self.tangent.add_diagonal(sigma, diagonal);
+        }
         system.supports().turn_matrix(load, &mut self.tangent);
+        whole(self);
         system.supports().eliminate(load, &mut self.tangent);
         system.border_again(load, q, &mut self.border);
         self.factor = Some(Factor::again(self.factor.take(), &self.tangent, &self.border)?);
-        Ok(())
+        Ok(residual)
     }
 
-    /// −∂R/∂λ − K v with the prescribed rates v of fixed coordinates, which must not have been
-    /// eliminated from the tangent yet.
-    fn rate_right_hand_side(&mut self, load: f64, x: &[f64], rate: &mut [f64]) {
+    /// Adds −K v with the prescribed rates v of fixed coordinates, which must not have been eliminated
+    /// from the tangent yet, and the rates of constraints; turns `rate` into the supports' frames.
+    fn add_rate_of_supports(&mut self, load: f64, x: &[f64], rate: &mut [f64]) {
         let system = self.system;
         let n = system.coordinates();
         let q = &x[..n];
-        rate.fill(0.0);
-        system.add_load_rate(-1.0, q, &mut rate[..n]);
         for (r, constraint) in system.constraints().iter().enumerate() {
             let unit = constraint.scale(system.stiffness(), system.length());
             rate[n + r] = -unit * constraint.rate(load, q);
@@ -237,10 +260,33 @@ impl<'a> Equilibrium<'a> {
         self.factor.as_ref()?.negative_directions(&self.tangent, &self.border)
     }
 
-    /// Whether the determinant of the last tangent is negative, where the factorisation tells. Its
-    /// sign changes where an odd number of directions lose their stiffness, follower loads or not.
-    pub fn determinant_is_negative(&self) -> Option<bool> {
-        self.factor.as_ref()?.determinant_is_negative()
+    /// Number of negative eigenvalues of the symmetric part of the last tangent, on the motions that
+    /// constraints and supports allow. Where it is zero, no direction is unstable.
+    pub fn soft_directions(&self) -> Option<usize> {
+        let symmetric = self.tangent.symmetric_part();
+        let factor = Factor::new(&symmetric, &self.border).ok()?;
+        factor.negative_directions(&symmetric, &self.border)
+    }
+
+    /// Stability at the last linearised state, where the factorisation tells.
+    pub fn stability(&self) -> Option<Stability> {
+        let determinant = || {
+            let negative = self.factor.as_ref()?.determinant_is_negative(&self.tangent, &self.border)?;
+            Some(Stability::Determinant { negative })
+        };
+        self.unstable_directions().map(Stability::Directions).or_else(determinant)
+    }
+
+    /// Whether the last linearised state is known to be unstable.
+    pub fn is_unstable(&self) -> bool {
+        match self.stability() {
+            // Where the directions of a symmetric tangent cannot be counted, it is singular, and the
+            // sign of its determinant is round-off.
+            Some(Stability::Determinant { negative }) => {
+                negative && matches!(self.tangent, Matrix::General(_))
+            }
+            stability => stability.is_some_and(Stability::is_unstable),
+        }
     }
 
     /// The factorised tangent.

@@ -36,6 +36,7 @@
 
 use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
 use super::newton::{self, Failure, Iterations, Settings};
+use super::stability::Stability;
 use crate::assembly::{Earlier, Node, nodes};
 use crate::lanes::{cross, dot};
 use crate::solve::StepRecord;
@@ -50,10 +51,8 @@ pub struct Point {
     pub load: f64,
     /// Coordinates and multipliers.
     pub x: Vec<f64>,
-    /// Unstable directions, where the factorisation tells.
-    pub unstable: Option<usize>,
-    /// Whether the determinant of the tangent is negative, where the factorisation tells.
-    pub negative: Option<bool>,
+    /// Its stability, where the factorisation tells.
+    pub stability: Option<Stability>,
     /// The path's tangent (dx/dt, dλ/dt); empty where it is not known.
     pub rate: Vec<f64>,
 }
@@ -103,6 +102,8 @@ const MOST_TRIALS: usize = 60;
 /// Such a step may miss its target by this many times the tolerance where shorter steps change
 /// nothing.
 const ROUND_OFFS: f64 = 1e4;
+/// How often such a part is halved at most where two directions lose their stiffness within it.
+const HALVINGS: u32 = 20;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
 /// A step of this size in which stability is lost is accepted. The knee of an imperfect path is
@@ -163,7 +164,7 @@ impl<'e, 'a> Path<'e, 'a> {
                 x = exact;
             }
         }
-        let start = Point { parameter: 0.0, load: 0.0, x, unstable: None, negative: None, rate: Vec::new() };
+        let start = Point { parameter: 0.0, load: 0.0, x, stability: None, rate: Vec::new() };
         Ok(Self {
             equilibrium,
             settings: Settings { first_increment: LARGEST_TURN, ..settings },
@@ -311,17 +312,13 @@ impl<'e, 'a> Path<'e, 'a> {
         self.last()
     }
 
-    /// Whether a point has more unstable directions than the last one although no limit point of
-    /// the load lies between them.
+    /// Whether a point is less stable than the last one although no limit point of the load lies
+    /// between them.
     fn loses_stability(&self, point: &Point) -> bool {
         let last = self.last();
         let along = |rate: &[f64]| rate.last().is_some_and(|load| *load > 0.0);
-        let lost = match (last.unstable, point.unstable) {
-            (Some(before), Some(after)) => after > before,
-            // Under follower loads only the determinant tells of stability.
-            _ => last.negative.is_some() && point.negative.is_some() && last.negative != point.negative,
-        };
-        lost && along(&last.rate) == along(&point.rate)
+        let (Some(before), Some(after)) = (last.stability, point.stability) else { return false };
+        before.is_lost(after) && along(&last.rate) == along(&point.rate)
     }
 
     /// Whether nodes turn the other way than was predicted, as on the mirrored branch of a column.
@@ -336,24 +333,33 @@ impl<'e, 'a> Path<'e, 'a> {
     }
 
     /// Whether the determinant changes its sign twice on the way to a point, where it alone tells
-    /// of stability. It is evaluated at several states between.
+    /// of stability. It is evaluated at several states between, and where the number of directions
+    /// that lack stiffness changes by more than one, at states ever nearer to the change.
     fn crosses_twice(&mut self, point: &Point) -> bool {
         let last = self.last().clone();
         let bent = self.turn(&point.x, &last.x) >= STRAIGHT;
-        if point.unstable.is_some() || last.negative.is_none() || bent {
+        let (Some(before), Some(Stability::Determinant { .. }), false) =
+            (last.stability, point.stability, bent)
+        else {
             return false;
-        }
+        };
         let mut scratch = vec![0.0; point.x.len()];
         let mut rate = scratch.clone();
-        let differs = (1..BETWEEN).any(|k| {
-            let part = f64::from(k) / f64::from(BETWEEN);
-            let x: Vec<f64> = last.x.iter().zip(&point.x).map(|(a, b)| a + part * (b - a)).collect();
-            let load = last.load + part * (point.load - last.load);
-            self.equilibrium.linearize(load, &x, None, &mut scratch, &mut rate).is_err()
-                || self.equilibrium.determinant_is_negative() != last.negative
-        });
+        let mut look = |part: f64| -> Option<Between> {
+            let (x, load) = within(&last, point, part);
+            self.equilibrium.linearize(load, &x, None, &mut scratch, &mut rate).ok()?;
+            let crossed = before.differs(self.equilibrium.stability()?);
+            Some(Between { part, crossed, soft: self.equilibrium.soft_directions() })
+        };
+        let parts = (0..=BETWEEN).map(|k| f64::from(k) / f64::from(BETWEEN));
+        let crossed = match parts.map(&mut look).collect::<Option<Vec<_>>>() {
+            Some(looks) => {
+                looks.windows(2).any(|ends| ends[0].crossed || crosses_within(ends, &mut look, HALVINGS))
+            }
+            None => true,
+        };
         // The last factorisation must be that of the point.
-        differs || self.equilibrium.linearize(point.load, &point.x, None, &mut scratch, &mut rate).is_err()
+        crossed || look(1.0).is_none()
     }
 
     /// Determines stability at the point itself: near a critical load the last increment may still
@@ -362,8 +368,7 @@ impl<'e, 'a> Path<'e, 'a> {
         let mut scratch = vec![0.0; point.x.len()];
         let mut rate = scratch.clone();
         if self.equilibrium.linearize(point.load, &point.x, None, &mut scratch, &mut rate).is_ok() {
-            point.unstable = self.equilibrium.unstable_directions();
-            point.negative = self.equilibrium.determinant_is_negative();
+            point.stability = self.equilibrium.stability();
         }
     }
 
@@ -389,8 +394,7 @@ impl<'e, 'a> Path<'e, 'a> {
         if self.parameter == Parameter::ArcLength {
             rate = self.along(rate, None);
         }
-        self.points[0].unstable = self.equilibrium.unstable_directions();
-        self.points[0].negative = self.equilibrium.determinant_is_negative();
+        self.points[0].stability = self.equilibrium.stability();
         self.points[0].rate = rate;
         Ok(())
     }
@@ -435,7 +439,7 @@ impl<'e, 'a> Path<'e, 'a> {
         load = if self.parameter == Parameter::Load { parameter } else { load + h * rate[x.len()] };
         let n = self.equilibrium.system().coordinates();
         self.equilibrium.system().supports().impose(load, &mut x[..n]);
-        Point { parameter, load, x, unstable: None, negative: None, rate }
+        Point { parameter, load, x, stability: None, rate }
     }
 
     /// The increment of a step of length `h` along the tangent.
@@ -561,8 +565,7 @@ impl<'e, 'a> Path<'e, 'a> {
             residuals: record.residuals,
         });
         let turn = outcome?;
-        point.unstable = self.equilibrium.unstable_directions();
-        point.negative = self.equilibrium.determinant_is_negative();
+        point.stability = self.equilibrium.stability();
         Ok((point, turn))
     }
 
@@ -672,9 +675,47 @@ impl<'e, 'a> Path<'e, 'a> {
         let mut equations = AtLoad::new(self.equilibrium, load);
         let start = Earlier { q: &start, increment: &still };
         newton::solve(&mut equations, &mut x, start, &self.settings, &mut record).ok()?;
-        let unstable = self.equilibrium.unstable_directions();
-        Some(Point { parameter: load, load, x, unstable, negative: None, rate: Vec::new() })
+        let stability = self.equilibrium.stability();
+        Some(Point { parameter: load, load, x, stability, rate: Vec::new() })
     }
+}
+
+/// State and load factor on the cubic between two points with their tangents, at a part of the step. A
+/// chord would shorten a beam that turns, and so press it.
+fn within(a: &Point, b: &Point, part: f64) -> (Vec<f64>, f64) {
+    let (h, rest) = (b.parameter - a.parameter, 1.0 - part);
+    let of = |a: f64, b: f64, [from, to]: [f64; 2]| {
+        let (start, end) = (h * from - (b - a), (b - a) - h * to);
+        rest * a + part * b + part * rest * (rest * start + part * end)
+    };
+    let states = a.x.iter().zip(&b.x).zip(a.rate.iter().zip(&b.rate));
+    let x = states.map(|((a, b), (from, to))| of(*a, *b, [*from, *to])).collect();
+    let of_load = |point: &Point| point.rate.last().copied().unwrap_or_default();
+    (x, of(a.load, b.load, [of_load(a), of_load(b)]))
+}
+
+/// A state within a step.
+#[derive(Clone, Copy)]
+struct Between {
+    /// Part of the step up to it.
+    part: f64,
+    /// Whether its determinant has the other sign than at the start of the step.
+    crossed: bool,
+    /// Directions that lack stiffness there.
+    soft: Option<usize>,
+}
+
+/// Whether the determinant has the other sign somewhere between two states at which it has not.
+fn crosses_within(ends: &[Between], look: &mut impl FnMut(f64) -> Option<Between>, halvings: u32) -> bool {
+    let [a, b] = ends else { return false };
+    let count = |state: &Between| state.soft.unwrap_or(0);
+    if halvings == 0 || count(a).abs_diff(count(b)) < 2 {
+        return false;
+    }
+    let Some(middle) = look(0.5 * (a.part + b.part)) else { return true };
+    middle.crossed
+        || crosses_within(&[*a, middle], look, halvings - 1)
+        || crosses_within(&[middle, *b], look, halvings - 1)
 }
 
 /// By how much the gradient of each node differs between two states.

@@ -83,7 +83,7 @@ pub fn relax(
         let shift = if sigma < NONE { 0.0 } else { sigma };
         let earlier = Earlier { q: &before, increment: &change };
         match equilibrium.linearize_shifted(load, x, earlier, (shift, &weights), &mut increment) {
-            Ok(()) if equilibrium.unstable_directions().is_some_and(|count| count > 0) => {
+            Ok(()) if equilibrium.is_unstable() => {
                 sigma = sigma.max(NONE) * LIMITS.1;
                 on_a_crest = true;
                 continue;

@@ -5,6 +5,7 @@ use super::equilibrium::Equilibrium;
 use super::newton::{Iterations, Settings};
 use super::path::{NoStep, Parameter, Path, Point};
 use super::relax::relax;
+use super::stability::{Stability, StabilityChange};
 use crate::assembly::InternalVariables;
 use crate::model::{ArcLength, Static};
 use crate::solve::{Statistics, StepRecord, Work};
@@ -68,17 +69,6 @@ impl Solution {
         self.work.push(work);
         self.variables.push(equilibrium.internal_variables(x));
     }
-}
-
-/// The tangent lost or regained definiteness.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StabilityChange {
-    /// Load factor at which it happened.
-    pub load: f64,
-    /// Unstable directions before.
-    pub before: usize,
-    /// Unstable directions after.
-    pub after: usize,
 }
 
 /// A mechanism whose beams buckle before it moves: the smallest disturbance then decides in which
@@ -262,33 +252,39 @@ fn relaxed(
     let mut work = Work::default();
     solution.record(equilibrium, 0.0, &x, work);
     let parts = settings.steps.unwrap_or(1).max(1);
-    let mut before = 0;
+    let mut before = Stability::Directions(0);
     for part in 1..=parts {
         let load = part as f64 / parts as f64;
         if let (None, Some(free)) = (solution.pressed, equilibrium.system().rigid_motions()) {
-            let unstable = unstable(equilibrium, load, &x);
-            solution.pressed = (unstable > free).then_some(UnstableMechanism { load, unstable, free });
+            let before = (part - 1) as f64 / parts as f64;
+            let moved = if equilibrium.system().supports().moves() {
+                equilibrium.moved_with_supports(before, load, &x)
+            } else {
+                Some(x.clone())
+            };
+            let pressed = |unstable| UnstableMechanism { load, unstable, free };
+            solution.pressed = match moved.and_then(|x| stability(equilibrium, load, &x)) {
+                Some(Stability::Directions(unstable)) if unstable > free => Some(pressed(unstable)),
+                _ => None,
+            };
         }
         let start = x.clone();
         let mut record = Iterations::default();
         let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
-        if outcome.is_ok() && unstable(equilibrium, load, &x) > 0 {
+        if outcome.is_ok() && is_unstable(equilibrium, load, &x) {
             // An unstable equilibrium, such as a pendulum that stands on its head: both sides are
             // tried.
             let mut other = x.clone();
-            push(equilibrium, 1.0, &mut x);
             push(equilibrium, -1.0, &mut other);
-            let falls = equilibrium.without_trace(|equilibrium| {
-                relax(equilibrium, load, &mut other, &newton, &mut Iterations::default()).is_ok()
-            });
+            let other = rest(equilibrium, load, other, &newton);
+            push(equilibrium, 1.0, &mut x);
             outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
-            let n = equilibrium.system().coordinates();
-            let apart: Vec<f64> = x[..n].iter().zip(&other).map(|(x, other)| x - other).collect();
-            if outcome.is_ok() && falls && equilibrium.size(&apart) > SAME_SIDE {
+            if outcome.is_ok() && other.is_some_and(|other| differ(equilibrium, &x, &other)) {
                 solution.crest.get_or_insert(load);
             }
-            let after = unstable(equilibrium, load, &x);
-            if outcome.is_ok() && after > before {
+            if let (Ok(()), Some(after)) = (&outcome, stability(equilibrium, load, &x))
+                && before.is_lost(after)
+            {
                 solution.events.push(StabilityChange { load, before, after });
                 before = after;
             }
@@ -314,11 +310,36 @@ fn relaxed(
     Ok(())
 }
 
-/// Unstable directions in the state `x`, 0 where the factorisation does not tell.
-fn unstable(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> usize {
+/// Stability in the state `x`, where the factorisation tells.
+fn stability(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> Option<Stability> {
     let (mut residual, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    let linearized = equilibrium.linearize(load, x, None, &mut residual, &mut rate);
-    linearized.ok().and_then(|_| equilibrium.unstable_directions()).unwrap_or(0)
+    equilibrium.linearize(load, x, None, &mut residual, &mut rate).ok()?;
+    equilibrium.stability()
+}
+
+/// Whether the state `x` is known to be unstable.
+fn is_unstable(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
+    stability(equilibrium, load, x).is_some() && equilibrium.is_unstable()
+}
+
+/// The equilibrium to which `x` relaxes; `None` where it does not come to rest. Nothing is accepted.
+fn rest(
+    equilibrium: &mut Equilibrium<'_>,
+    load: f64,
+    mut x: Vec<f64>,
+    newton: &Settings,
+) -> Option<Vec<f64>> {
+    let rests = equilibrium.without_trace(|equilibrium| {
+        relax(equilibrium, load, &mut x, newton, &mut Iterations::default()).is_ok()
+    });
+    rests.then_some(x)
+}
+
+/// Whether two equilibria are not the same.
+fn differ(equilibrium: &Equilibrium<'_>, a: &[f64], b: &[f64]) -> bool {
+    let n = equilibrium.system().coordinates();
+    let apart: Vec<f64> = a[..n].iter().zip(b).map(|(a, b)| a - b).collect();
+    equilibrium.size(&apart) > SAME_SIDE
 }
 
 /// Perturbs every free coordinate a little and unevenly, in the same way in every run, to one side
@@ -339,15 +360,15 @@ fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
 /// Records a change of stability in the last step and locates it by bisection.
 fn notice(path: &mut Path<'_, '_>, events: &mut Vec<StabilityChange>) {
     let Some([a, b]) = path.last_two() else { return };
-    let (Some(before), Some(after)) = (a.unstable, b.unstable) else { return };
-    if before == after {
+    let (Some(before), Some(after)) = (a.stability, b.stability) else { return };
+    if !before.differs(after) {
         return;
     }
     let mut bracket = (a.load, b.load);
     for _ in 0..20 {
         let middle = 0.5 * (bracket.0 + bracket.1);
-        match path.between(middle).and_then(|p| p.unstable) {
-            Some(count) if count == before => bracket.0 = middle,
+        match path.between(middle).and_then(|p| p.stability) {
+            Some(here) if !before.differs(here) => bracket.0 = middle,
             Some(_) => bracket.1 = middle,
             None => break,
         }
@@ -396,8 +417,8 @@ fn along_arc(
                         break;
                     }
                 };
-                if let (Some(before), Some(after)) = (previous.unstable, point.unstable)
-                    && before != after
+                if let (Some(before), Some(after)) = (previous.stability, point.stability)
+                    && before.differs(after)
                 {
                     let load = if (point.load - previous.load).abs() < f64::EPSILON {
                         point.load

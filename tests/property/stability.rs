@@ -130,6 +130,37 @@ proptest! {
         prop_assert_eq!(factor.negative_directions(&k, &border), Some(expected));
     }
 
+    /// The sign of the determinant of an unsymmetric matrix on the allowed motions, whatever the
+    /// number of rows and however far they reach.
+    #[test]
+    fn the_determinant_has_the_sign_of_a_dense_one(
+        entries in proptest::collection::vec(-1.0..1.0_f64, 24 * 24),
+        rows in 0..7_usize,
+        reach in 1..24_usize,
+    ) {
+        let n = 24;
+        let mut k = Matrix::zeros(n / 4, 2, false);
+        for i in 0..n {
+            for j in k.columns(i).filter(|j| i / 4 <= j / 4 + 1 && j / 4 <= i / 4 + 1) {
+                k.add_at(i, j, entries[n * i + j]);
+            }
+        }
+        let border: Vec<BorderRow> = (0..rows)
+            .map(|r| {
+                let from = (7 * r) % (n - reach).max(1);
+                (from..=(from + reach).min(n - 1)).map(|i| (i, entries[n * r + i])).collect()
+            })
+            .collect();
+        let all: Vec<usize> = (0..n).collect();
+        let z = allowed(&border, &all);
+        prop_assume!(z.is_some());
+        let z = z.expect("independent rows");
+        let determinant = (z.transpose() * dense(&k, &all) * &z).determinant();
+        prop_assume!(determinant.abs() > 1e-9);
+        let factor = Factor::new(&k, &border).expect("regular");
+        prop_assert_eq!(factor.determinant_is_negative(&k, &border), Some(determinant < 0.0));
+    }
+
     /// A structure's frequencies are the same however many are asked for, by either method, and
     /// those of a dense solution: also with strings, which nothing resists across, and with masses
     /// and stiffnesses of all sizes.
@@ -251,14 +282,103 @@ fn a_hinged_leg_buckles_with_a_warning() {
             + &joint("hinge", ("leg", "'end'"), ("arm", "'end'"))
             + &support("leg", "'start'", PIN)
             + &support("arm", "'start'", PIN)
-            + &force("arm", [0.0, -2.0 * PI * PI])
+            + &force("arm", [0.0, -2.0 * PI * PI]);
+        // The arm hardly turns, and with it a load that follows it.
+        for (follower, said) in [
+            ("", "the tangent loses definiteness at load factor 0.50"),
+            ("follower = true\n", "the determinant of the tangent changes its sign at load factor 0.50"),
+        ] {
+            let found = solve(&format!("{text}{follower}[analysis.static]\n"));
+            assert!(found.run.warnings[0].contains(said), "{:?}", found.run.warnings);
+        }
+    }
+}
+
+/// A column between a pin and a roller, pressed along its axis by a force that turns with its end:
+/// the roller takes what it then has across, so that the critical load is Euler's, π² EI/L². Beyond
+/// it, the straight column is an unstable equilibrium.
+#[test]
+fn columns_under_follower_loads_say_where_they_become_unstable() {
+    let (ea, none) = ("bending_stiffness = 1.0\naxial_stiffness = 1e6", "bending_stiffness = 1.0");
+    for (section, basis) in [(ea, ANCF), (none, ANCF), (ea, RPIM), (none, RPIM)] {
+        let one = beam("a", [[0.0, 0.0], [1.0, 0.0]], section, basis);
+        let two = beam("b", [[0.0, 0.0], [0.4, 0.0]], section, basis)
+            + &beam("a", [[0.4, 0.0], [1.0, 0.0]], section, basis)
+            + &joint("weld", ("b", "'end'"), ("a", "'start'"));
+        for (column, foot) in [(one, "a"), (two, "b")] {
+            let found = solve(&format!(
+                "{column}{}{}{}follower = true\n[analysis.static]\n",
+                support(foot, "'start'", PIN),
+                support("a", "'end'", "['y']"),
+                force("a", [-2.5 * PI * PI, 0.0])
+            ));
+            let [warning] = &found.run.warnings[..] else {
+                panic!("{basis} {section}: {:?}", found.run.warnings)
+            };
+            assert!(
+                warning.contains("changes its sign at load factor 0.400"),
+                "{basis} {section}: {warning}"
+            );
+            assert!(warning.ends_with("unstable: a bifurcation or a limit point"), "{warning}");
+        }
+    }
+}
+
+/// Two bars in a line, hinged to each other and brought together at their ends, fold to the side of a
+/// small weight where a step of the load presses them by less than π² EI/L² of the longer one, 17.5 N;
+/// where it is more, a warning says that it may be the other. A string has nothing that buckles.
+#[test]
+fn bars_brought_together_fold_to_the_side_of_their_weight() {
+    let bar = "bending_stiffness = 1.6\naxial_stiffness = 38e3\nmass_per_length = 1.0";
+    let string = "axial_stiffness = 38e3\nmass_per_length = 1.0";
+    let ends = "[support.move]\nx = -0.1\n[effect.gravity]\nacceleration = [0.01, -0.1]\n";
+    let buckles = |warning: &String| warning.contains("its beams buckle before it moves");
+    for basis in [RPIM, "{ ancf = { elements = 5 } }"] {
+        // The strain of the whole move times EA is 2235 N.
+        for (steps, pressed) in [(1, true), (3, true), (20, true), (200, false)] {
+            let analysis = format!("[analysis.static]\nsteps = {steps}\n");
+            let bars = beam("a", [[0.0, 0.0], [0.75, 0.0]], bar, basis)
+                + &beam("b", [[0.75, 0.0], [1.7, 0.0]], bar, basis)
+                + &joint("hinge", ("a", "'end'"), ("b", "'start'"))
+                + &support("a", "'start'", PIN)
+                + &support("b", "'end'", PIN)
+                + ends
+                + &probe("a")
+                + &analysis;
+            let found = solve(&bars);
+            assert_eq!(found.run.warnings.iter().any(buckles), pressed, "{basis}, {steps} steps");
+            assert!(pressed || tip(&found)[1] < -0.1, "{basis}, {steps} steps: {:?}", tip(&found));
+        }
+        let hanging = beam("a", [[0.0, 0.0], [1.7, 0.0]], string, basis)
+            + &support("a", "'start'", PIN)
+            + &support("a", "'end'", PIN)
+            + ends
             + "[analysis.static]\n";
-        let found = solve(&text);
-        assert!(
-            found.run.warnings[0].contains("loses definiteness at load factor 0.50"),
-            "{:?}",
-            found.run.warnings
-        );
+        assert!(!solve(&hanging).run.warnings.iter().any(buckles), "{basis}");
+    }
+}
+
+/// A beam on three supports, one of them between nodes, is shortened by forty times what it buckles
+/// under, in a field of forces without a potential. Two directions lose their stiffness early in the
+/// first step, which leaves the sign of the determinant as it was; the straight state stores 18 times
+/// as much energy as the bent one.
+#[test]
+fn two_instabilities_within_a_step_are_seen_by_a_tangent_without_symmetry() {
+    for nodes in [3, 5, 9, 17] {
+        let found = solve(&format!(
+            "{}{}[support.move]\nx = 0.024\n{}{}[[effect.force_field]]\nbeam = 'a'\nvalue = ['-0.25/(1+x^2)', '-0.37*exp(-y^2/0.27)-0.25*atan(x*y)']\n[analysis.static]\n",
+            beam(
+                "a",
+                [[0.0, 0.0], [1.0, 0.0]],
+                "bending_stiffness = 1.0\naxial_stiffness = 84e3",
+                &format!("{{ ancf = {{ nodes = {nodes} }} }}")
+            ),
+            support("a", "'start'", CLAMP),
+            support("a", "'end'", PIN),
+            support("a", "0.75", "['y']"),
+        ));
+        let energy = found.energy.last().expect("an equilibrium");
+        assert!(energy.bend > 1.2 && energy.stretch < 0.02, "{nodes} nodes: {energy:?}");
     }
 }
 

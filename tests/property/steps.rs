@@ -7,6 +7,7 @@ use ancf::solve::equilibrium::Equilibrium;
 use ancf::solve::newton::Settings;
 use ancf::solve::path::{Parameter, Path, Point};
 use ancf::solve::retraction::Retraction;
+use ancf::solve::stability::Stability;
 use ancf::system::System;
 
 fn system(text: &str) -> System {
@@ -90,7 +91,7 @@ fn states_between_and_ends_are_found() {
     path.advance(1.0).expect("a step");
     for load in [0.5, 0.77, 1.0, 0.2] {
         let point = path.between(load).expect("a state");
-        assert_eq!((point.load, point.unstable), (load, Some(0)));
+        assert_eq!((point.load, point.stability), (load, Some(Stability::Directions(0))));
         near(point.x[4], 1.0 + 0.1 * load, 1e-12, "the bar's end");
     }
     assert_eq!(path.last().load, 1.0);

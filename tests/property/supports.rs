@@ -8,6 +8,7 @@ use ancf::model::{
     Analysis, Beam, Centreline, Discretization, Displacement, Fixed, FixedRotation, GaussPoints, Kernel,
     Model, Nodes, Place, Probe, Section, SideCondition, Static, StrainMeasure, Support,
 };
+use ancf::solve::stability::Stability;
 use ancf::system::{System, View};
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -127,7 +128,7 @@ fn a_bifurcation_is_reported_with_its_load() {
     let system = System::build(&column, Needs { inertia: false, motion: false }).expect("a legal model");
     let solution = ancf::solve::statics::solve(&system, &Static::default(), None, &mut |_, _, _| true);
     let [event] = solution.events[..] else { panic!("one loss of definiteness, not {:?}", solution.events) };
-    assert_eq!((event.before, event.after), (0, 1));
+    assert_eq!((event.before, event.after), (Stability::Directions(0), Stability::Directions(1)));
     assert!((event.load - 0.5).abs() < 1e-4, "at load factor {}", event.load);
     let trajectory = column.solve(&Static::default()).expect("solvable");
     assert!(
@@ -164,7 +165,8 @@ fn stability_between_constraint_rows_does_not_depend_on_units() {
         assert_eq!(system.multipliers(), 1, "the middle lies between nodes");
         let solution = ancf::solve::statics::solve(&system, &Static::default(), None, &mut |_, _, _| true);
         let first = solution.events.first().expect("the column passes its critical load");
-        assert_eq!((first.before, first.after), (0, 1), "lengths in {metre} m");
+        let counts = (Stability::Directions(0), Stability::Directions(1));
+        assert_eq!((first.before, first.after), counts, "lengths in {metre} m");
         assert!((first.load - 0.5).abs() < 1e-3, "at load factor {} with lengths in {metre} m", first.load);
     }
 }

@@ -1,0 +1,50 @@
+//! Warnings of equilibria that are unstable, or that chance decides on.
+
+use crate::solve::stability::{Stability, StabilityChange};
+use crate::solve::statics::{Solution, UnstableMechanism};
+
+/// What a static analysis has met on its way.
+pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
+    let pressed = solution.pressed.map(|UnstableMechanism { load, unstable, free }| {
+        format!(
+            "the load up to factor {load:.6} presses the structure so that it is unstable in {unstable} directions where it stands, and \
+             supports and joints leave it {free} to move in: its beams buckle before it moves, and on which side it comes to rest may be \
+             chance; reach the load in more `steps`"
+        )
+    });
+    let crest = solution.crest.map(|load| {
+        format!(
+            "at load factor {load:.6} the structure stands on a crest of its energy, from which it may come to rest in more than one \
+             equilibrium: which of them was found is arbitrary; a small load, or a small change of the geometry, decides"
+        )
+    });
+    pressed.into_iter().chain(crest).chain(solution.events.iter().map(of_change))
+}
+
+/// What is said where directions lose or regain their stiffness.
+fn of_change(change: &StabilityChange) -> String {
+    let StabilityChange { load, before, after } = *change;
+    let unstable = "beyond it the equilibrium found is unstable: a bifurcation or a limit point";
+    let (Stability::Directions(before), Stability::Directions(after)) = (before, after) else {
+        return if after.is_unstable() {
+            format!(
+                "the determinant of the tangent changes its sign at load factor {load:.6}: a direction loses its stiffness, or an odd \
+                 number of them; {unstable}"
+            )
+        } else {
+            format!(
+                "the determinant of the tangent changes its sign back at load factor {load:.6}: an odd number of directions lose or \
+                 regain their stiffness; the equilibrium found beyond it is stable only if they regain it"
+            )
+        };
+    };
+    let (verb, advice) = if after > before {
+        ("loses", unstable)
+    } else {
+        ("regains", "the path is back on a more stable branch")
+    };
+    let plural = if before == 1 { "" } else { "s" };
+    format!(
+        "the tangent {verb} definiteness at load factor {load:.6}: {before} unstable direction{plural} before, {after} after; {advice}"
+    )
+}
