@@ -23,10 +23,11 @@ impl Sampler<'_> {
         settings.events.iter().map(watch).collect()
     }
 
-    /// Changes of a quantity at probe number `number` that are round-off of the forces, and no turns: a
+    /// Changes of a quantity at probe number `number` that are round-off, and no turns: a
     /// position is stored with the round-off ε L, from which an element of length h makes forces
     /// ε EA L/h along the beam and 12 ε EI L/h³ across. A gentle bend turns a part (h/L)² of the former
-    /// across: a larger part would hide the turns of small vibrations. Directions err by ε L/h.
+    /// across: a larger part would hide the turns of small vibrations. Directions and strains err by
+    /// ε L/h, curvatures by 12 ε L/h².
     fn round_off(&self, number: usize, quantity: ProbeQuantity) -> f64 {
         let ProbePoint { beam, view, .. } = &self.probes[number];
         let (section, basis) = (&self.model.beams[*beam].section, &self.system.beams()[*beam].basis);
@@ -43,7 +44,8 @@ impl Sampler<'_> {
             signs.into_iter().flatten().map(of).fold(0.0, f64::max)
         };
         match quantity {
-            ProbeQuantity::Angle => unit,
+            ProbeQuantity::Angle | ProbeQuantity::Strain => unit,
+            ProbeQuantity::Curvature => 12.0 * unit / h,
             ProbeQuantity::AxialForce => axial,
             ProbeQuantity::ShearForce => across,
             ProbeQuantity::BendingMoment => across * h,
@@ -124,6 +126,8 @@ mod tests {
             (ProbeQuantity::StressBottom, stress),
             (ProbeQuantity::StressTop, stress),
             (ProbeQuantity::Angle, position / 0.5),
+            (ProbeQuantity::Strain, position / 0.5),
+            (ProbeQuantity::Curvature, 12.0 * position / 0.25),
             (ProbeQuantity::Y, 0.0),
             (ProbeQuantity::Speed, 0.0),
         ] {

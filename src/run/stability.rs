@@ -18,7 +18,19 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
              equilibrium: which of them was found is arbitrary; a small load, or a small change of the geometry, decides"
         )
     });
-    pressed.into_iter().chain(crest).chain(solution.events.iter().map(of_change))
+    let start = solution.unstable_start.map(|start| {
+        let directions = match start {
+            Stability::Directions(1) => "one direction".to_owned(),
+            Stability::Directions(count) => format!("{count} directions"),
+            Stability::Determinant { .. } => "an odd number of directions".to_owned(),
+        };
+        format!(
+            "the path begins in a state that is unstable in {directions}, and follows unstable equilibria as long as nothing else is said: \
+             a structure from which a support, a joint or a load has been taken away may leave it at once; a motion (`dynamic`) shows \
+             where to"
+        )
+    });
+    pressed.into_iter().chain(crest).chain(start).chain(solution.events.iter().map(of_change))
 }
 
 /// What is said where directions lose or regain their stiffness.

@@ -164,8 +164,9 @@ impl<'e, 'a> Path<'e, 'a> {
                 x = exact;
             }
         }
+        equilibrium.set_accepted(&x);
         let start = Point { parameter: 0.0, load: 0.0, x, stability: None, rate: Vec::new() };
-        Ok(Self {
+        let mut path = Self {
             equilibrium,
             settings: Settings { first_increment: LARGEST_TURN, ..settings },
             parameter,
@@ -174,7 +175,9 @@ impl<'e, 'a> Path<'e, 'a> {
             first_step: step,
             crossing: None,
             history: Vec::new(),
-        })
+        };
+        path.set_out()?;
+        Ok(path)
     }
 
     /// The last equilibrium.
@@ -223,9 +226,6 @@ impl<'e, 'a> Path<'e, 'a> {
     pub fn advance(&mut self, end: f64) -> Result<&Point, NoStep> {
         let last = &self.points[self.points.len() - 1];
         self.equilibrium.set_accepted(&last.x);
-        if last.rate.is_empty() {
-            self.set_out()?;
-        }
         let here = self.last().parameter;
         loop {
             // No sliver is left before the end.

@@ -39,6 +39,8 @@ pub struct Solution {
     pub work: Vec<Work>,
     /// Attempted steps.
     pub history: Vec<StepRecord>,
+    /// Stability of the state in which the path begins, if it is unstable.
+    pub unstable_start: Option<Stability>,
     /// Instabilities met.
     pub events: Vec<StabilityChange>,
     /// A mechanism under its loads that, before it was relaxed, had more unstable directions than
@@ -208,6 +210,7 @@ fn along_load(
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
     let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0, x)?;
+    solution.unstable_start = path.last().stability.filter(|start| start.is_unstable());
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let parts = settings.steps.unwrap_or(1).max(1);
@@ -387,6 +390,7 @@ fn along_arc(
     let system = equilibrium.system();
     let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
     let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05), x)?;
+    solution.unstable_start = path.last().stability.filter(|start| start.is_unstable());
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let mut outcome = Ok(());

@@ -5,7 +5,7 @@ use ancf::assembly::Needs;
 use ancf::linear::bordered::BorderRow;
 use ancf::linear::{Factor, Matrix};
 use ancf::results::{Results, Trajectory};
-use ancf::run::RunError;
+use ancf::run::{Options, RunError, solve_stages};
 use ancf::scene::{Scene, parse};
 use ancf::system::System;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
@@ -355,6 +355,44 @@ fn bars_brought_together_fold_to_the_side_of_their_weight() {
             + ends
             + "[analysis.static]\n";
         assert!(!solve(&hanging).run.warnings.iter().any(buckles), "{basis}");
+    }
+}
+
+/// A column between pins that its middle support alone holds straight: beyond π² EI/L², and below the
+/// 4 π² EI/L² of two half waves, it is unstable as soon as that is taken away.
+#[test]
+fn a_structure_that_is_unstable_from_the_start_is_told() {
+    for (basis, middle) in [(RPIM, 0.5), (ANCF, 0.5), (ANCF, 0.47)] {
+        for (load, follower) in
+            [(0.9, ""), (1.1, ""), (2.0, ""), (0.9, "follower = true\n"), (1.1, "follower = true\n")]
+        {
+            let text = beam(
+                "a",
+                [[0.0, 0.0], [1.0, 0.0]],
+                "bending_stiffness = 1.0\naxial_stiffness = 1e6",
+                basis,
+            ) + &support("a", "'start'", PIN)
+                + &support("a", "'end'", "['y']")
+                + &support("a", &format!("{middle:?}"), "['y']")
+                + "until = 'free'\n"
+                + &force("a", [-load * PI * PI, 0.0])
+                + follower
+                + "[[stage]]\nname = 'held'\nanalysis.static = {}\n[[stage]]\nname = 'free'\nanalysis.static = {}\n";
+            let run = solve_stages(scene(&text).stages(), Options::default());
+            assert!(run.failure.is_none(), "{:?}", run.failure);
+            let told: Vec<bool> = run
+                .results
+                .iter()
+                .map(|results| {
+                    results
+                        .run()
+                        .warnings
+                        .iter()
+                        .any(|said| said.contains("begins in a state that is unstable in"))
+                })
+                .collect();
+            assert_eq!(told, [false, load > 1.0], "{load} of the critical load, {basis}, {follower}");
+        }
     }
 }
 

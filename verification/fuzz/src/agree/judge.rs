@@ -355,9 +355,26 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
         })
     })();
     match result {
-        Ok(measured) => decide(case, way, measured, &text(), rng),
+        Ok(measured) => {
+            let measured = if matches!(way, Way::Mesh | Way::Welded | Way::Basis) {
+                beside_own_estimates(measured, [scene, &changed], frame)
+            } else {
+                measured
+            };
+            decide(case, way, measured, &text(), rng)
+        }
         Err(verdict) => verdict,
     }
+}
+
+/// A difference of two meshes that are coarse is a finding only if the program's own estimates of their
+/// errors do not tell it either. Two finer meshes may be near each other by chance.
+fn beside_own_estimates(measured: Measured, scenes: [&Table; 2], frame: &Frame) -> Measured {
+    if measured.value <= measured.allowed {
+        return measured;
+    }
+    let own: f64 = scenes.iter().filter_map(|scene| outcome::own_estimate(scene, frame)).sum();
+    Measured { allowed: measured.allowed.max(ALLOWED * own), ..measured }
 }
 
 /// Positions that must agree, or else forces.

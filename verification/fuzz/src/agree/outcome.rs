@@ -173,6 +173,18 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
     }
 }
 
+/// The error that the program itself estimates for a scene with a mesh of its own; `None` where it has
+/// no estimate.
+pub fn own_estimate(natural: &Table, frame: &Frame) -> Option<f64> {
+    let text = frame.write(natural).to_string();
+    let estimate = || {
+        let scene = scene::parse("drawn.toml", &text).ok().filter(|scene| scene.stages().is_empty())?;
+        let results = accuracy::estimate(scene.model(), scene.analysis(), run::Options::default()).ok()?;
+        results.run().error.as_ref().map(|error| error.estimated.result)
+    };
+    panic::catch_unwind(AssertUnwindSafe(estimate)).ok().flatten()
+}
+
 fn without_result(error: &RunError) -> Outcome {
     let said = first_line(&error.to_string());
     if error.exit_status() == 2 { Outcome::Refused(said) } else { Outcome::Failed(said) }
