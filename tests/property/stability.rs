@@ -358,6 +358,59 @@ fn bars_brought_together_fold_to_the_side_of_their_weight() {
     }
 }
 
+/// An arc on a pin and a slider whose far end is held at an angle until the second stage: what goes is one
+/// couple, so that the stage begins with the reactions with which the first one ended. Where the
+/// unbalanced couple was spread along a beam that keeps its length, they were three times as large, and two
+/// welded beams came to rest in an unstable equilibrium.
+#[test]
+fn a_support_that_goes_leaves_all_other_forces_as_they_were() {
+    let arc = |name: &str, [foot, head]: [f64; 2], [from, to]: [f64; 2], section: &str, basis: &str| {
+        beam(name, [[foot, 0.0], [head, 0.0]], section, basis)
+            + &format!(
+                "initial_shape.arc = {{ center = [-0.4903256903984984, 1.3182328723187474], radius = 1.4064697609001409, from = {from:?}, to = {to:?} }}\n"
+            )
+    };
+    let (start, end) = (-1.2146963267948965, -0.6458963267948965);
+    let part = 4.0 / 9.0;
+    let cut = start + part * (end - start);
+    let mut tips = Vec::new();
+    for (section, basis) in [
+        ("bending_stiffness = 1.0", RPIM),
+        ("bending_stiffness = 1.0", ANCF),
+        ("bending_stiffness = 1.0\naxial_stiffness = 1e6", ANCF),
+    ] {
+        let one = arc("a", [0.0, 0.8], [start, end], section, basis);
+        let two = arc("b", [0.0, 0.8 * part], [start, cut], section, basis)
+            + &arc("a", [0.8 * part, 0.8], [cut, end], section, basis)
+            + &joint("weld", ("b", "'end'"), ("a", "'start'"));
+        for (beams, first) in [(one, "a"), (two, "b")] {
+            let text = beams
+                + &support(first, "'start'", PIN)
+                + &support("a", "'end'", "['angle']")
+                + "until = 'two'\n"
+                + "[[joint]]\ntype = 'slider'\nalong = [0.07351, -0.9973]\nfirst = { beam = 'a', at = 'end' }\n"
+                + &format!("[[effect.moment]]\nbeam = '{first}'\nat = 'start'\nvalue = 0.8194\n")
+                + "[[effect.spring]]\nbeam = 'a'\nat = 'end'\nstiffness = 9.397\n"
+                + &probe("a")
+                + "[output]\nreactions = true\n"
+                + "[[stage]]\nname = 'one'\nanalysis.static = {}\n[[stage]]\nname = 'two'\nanalysis.static = {}\n";
+            let run = solve_stages(scene(&text).stages(), Options::default());
+            let [before, after] = &run.results[..] else { panic!("{:?}", run.failure) };
+            assert!(after.run().warnings.is_empty(), "{:?}", after.run().warnings);
+            let of = |results: &Results, last: bool| {
+                let samples = &results.states().reactions[0].samples;
+                let sample = if last { samples.last() } else { samples.first() };
+                sample.map(|sample| [sample.fx, sample.fy]).expect("a reaction")
+            };
+            let ([x, y], [u, v]) = (of(before, true), of(after, false));
+            assert!((x - u).hypot(y - v) < 1e-3 * x.hypot(y), "{section} {basis}: {x} {y}, then {u} {v}");
+            tips.push(tip(after.states()));
+        }
+    }
+    let [x, y] = tips[0];
+    assert!(tips.iter().all(|tip| (tip[0] - x).hypot(tip[1] - y) < 1e-4), "{tips:?}");
+}
+
 /// A column between pins that its middle support alone holds straight: beyond π² EI/L², and below the
 /// 4 π² EI/L² of two half waves, it is unstable as soon as that is taken away.
 #[test]
