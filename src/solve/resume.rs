@@ -20,60 +20,66 @@ const BALANCED: f64 = 1e-8;
 /// Lets an analysis of `system` begin in the state `q` with the internal `variables`. Multipliers,
 /// which no state knows, are those that balance as much as they can; what remains unbalanced fades
 /// as the load factor grows.
+pub fn resume(system: &mut System, q: &[f64], variables: &InternalVariables) {
+    system.begin_in(q, variables);
+    let (x, residual) = with_multipliers(system, q);
+    let unbalanced = (residual > RESIDUAL_TOLERANCE).then(|| system.unbalanced(&x, variables));
+    system.leave_unbalanced(&x[q.len()..], unbalanced.as_deref());
+}
+
+/// The state `q` in which `system` begins, with its multipliers, and the scaled residual.
 ///
 /// What has gone, a support or a joint, acted on few coordinates. Multipliers that make the sum of
 /// squares r·D⁻¹r of the unbalanced forces least would take a part of it over, all along a beam that
 /// keeps its length. D is therefore made smaller where little is unbalanced, in proportion to
 /// |r|^(3/2), so that the sum of √|r| becomes least and the forces gather on few coordinates
 /// (iteratively reweighted least squares; Chartrand & Yin, *Proc. ICASSP* 2008, 3869–3872).
-pub fn resume(system: &mut System, q: &[f64], variables: &InternalVariables) {
-    system.begin_in(q, variables);
-    let (x, residual) = {
-        let mut equilibrium = Equilibrium::new(system);
-        let mut x = equilibrium.start();
-        let (n, length, weights) = (q.len(), system.length(), system.weights());
-        let (mut increment, still) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-        for _ in 0..if x.len() > n { ROUNDS } else { 0 } {
-            let earlier = Earlier { q, increment: &still };
-            let shift = (SHIFT, &weights[..]);
-            // Rows that contradict each other are left to the path, which tells of them.
-            if equilibrium.linearize_shifted(0.0, &x, earlier, shift, &mut increment).is_err() {
-                break;
-            }
-            equilibrium.solve(0.0, &mut increment, false);
-            x[n..].iter_mut().zip(&increment[n..]).for_each(|(x, change)| *x += change);
+fn with_multipliers(system: &System, q: &[f64]) -> (Vec<f64>, f64) {
+    let mut equilibrium = Equilibrium::new(system);
+    let mut x = equilibrium.start();
+    let (n, weights) = (q.len(), system.weights());
+    let (mut increment, still) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    let mut residual = equilibrium.residual(0.0, &x, &mut increment);
+    for round in 0..if x.len() > n { ROUNDS + GATHERINGS } else { 0 } {
+        let gathers = round >= ROUNDS;
+        if gathers && residual <= RESIDUAL_TOLERANCE {
+            break;
         }
-        let mut residual = equilibrium.residual(0.0, &x, &mut increment);
-        for _ in 0..if x.len() > n { GATHERINGS } else { 0 } {
-            if residual <= RESIDUAL_TOLERANCE {
-                break;
-            }
-            // The unit of a force on a gradient is that of a force over the length of the structure.
-            let units = [1.0, 1.0, length, length];
-            let size = |i: usize| increment[i].abs() / units[i % 4];
-            let largest = (0..n).map(size).fold(0.0, f64::max);
-            let gathered: Vec<f64> = (0..n)
-                .map(|i| {
-                    weights[i - i % 4] * units[i % 4].powi(2) * (size(i) / largest).powf(1.5).max(BALANCED)
-                })
-                .collect();
-            let earlier = Earlier { q, increment: &still };
-            let shift = (SHIFT / BALANCED, &gathered[..]);
-            if equilibrium.linearize_shifted(0.0, &x, earlier, shift, &mut increment).is_err() {
-                break;
-            }
-            equilibrium.solve(0.0, &mut increment, false);
-            let size =
-                |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            let changes = size(&increment[n..]) > GATHERED * size(&x[n..]);
-            x[n..].iter_mut().zip(&increment[n..]).for_each(|(x, change)| *x += change);
+        let (sigma, diagonal) = if gathers {
+            (SHIFT / BALANCED, gathered(system, &weights, &increment[..n]))
+        } else {
+            (SHIFT, weights.clone())
+        };
+        let earlier = Earlier { q, increment: &still };
+        // Rows that contradict each other are left to the path, which tells of them.
+        if equilibrium.linearize_shifted(0.0, &x, earlier, (sigma, &diagonal), &mut increment).is_err() {
             residual = equilibrium.residual(0.0, &x, &mut increment);
-            if !changes {
-                break;
-            }
+            break;
         }
-        (x, residual)
+        equilibrium.solve(0.0, &mut increment, false);
+        let changes = largest(&increment[n..]) > GATHERED * largest(&x[n..]);
+        x[n..].iter_mut().zip(&increment[n..]).for_each(|(x, change)| *x += change);
+        residual = equilibrium.residual(0.0, &x, &mut increment);
+        if gathers && !changes {
+            break;
+        }
+    }
+    (x, residual)
+}
+
+/// D for unbalanced forces `force`. The unit of a force on a gradient is that of a force over the
+/// length of the structure.
+fn gathered(system: &System, weights: &[f64], force: &[f64]) -> Vec<f64> {
+    let units = [1.0, 1.0, system.length(), system.length()];
+    let sizes: Vec<f64> = force.iter().enumerate().map(|(i, force)| force.abs() / units[i % 4]).collect();
+    let all = largest(&sizes);
+    let of = |(i, size): (usize, &f64)| {
+        weights[i - i % 4] * units[i % 4].powi(2) * (size / all).powf(1.5).max(BALANCED)
     };
-    let unbalanced = (residual > RESIDUAL_TOLERANCE).then(|| system.unbalanced(&x, variables));
-    system.leave_unbalanced(&x[q.len()..], unbalanced.as_deref());
+    sizes.iter().enumerate().map(of).collect()
+}
+
+/// The largest size of a number.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
 }
