@@ -153,3 +153,27 @@ impl Dissipation<1> for Gyration {
         ([p * (inertia * rate[0].dot(&half))], [[p * half.transpose() * (2.0 * inertia)]])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector2;
+
+    /// The force J (ṙ'·∂²θ/∂r'∂r'·ṙ') p is quadratic in ṙ', so that a central difference is its
+    /// derivative; by hand, at r' = (2, 1) with ṙ' = (3, −1) and J = 5 it is −2 J·5·(−5)/25 p = 10 p with
+    /// p = (−1, 2)/5.
+    #[test]
+    fn the_matrix_of_gyration_is_the_derivative_of_its_force() {
+        let gyration = Gyration(RotaryInertia { inertia: 5.0 });
+        let (z, rate) = ([Vector2::new(2.0, 1.0)], [Vector2::new(3.0, -1.0)]);
+        let ([force], [[matrix]]) = gyration.force_and_matrix(0, &z, &rate);
+        assert!((force - Vector2::new(-2.0, 4.0)).amax() < 1e-13, "{force}");
+        assert!((force - gyration.force(0, &z, &rate)[0]).amax() < 1e-13);
+        for axis in 0..2 {
+            let mut step = Vector2::zeros();
+            step[axis] = 0.5;
+            let [above, below] = [step, -step].map(|step| gyration.force(0, &z, &[rate[0] + step])[0]);
+            assert!((matrix.column(axis) - (above - below)).amax() < 1e-13, "{matrix}");
+        }
+    }
+}
