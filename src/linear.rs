@@ -447,7 +447,7 @@ impl Factor {
             Self::Lu(lu) => Some(lu.determinant_is_negative()),
             Self::Interleaved(lu) => Some(lu.determinant_is_negative(border.len())),
             Self::Bordered(_) => {
-                let lu = Interleaved::of_any_reach(matrix, border).ok()?;
+                let lu = Interleaved::of_any_reach(matrix, border)?;
                 Some(lu.determinant_is_negative(border.len()))
             }
             Self::BlockLu(_) | Self::Condensed(_) | Self::Chain(_) => None,

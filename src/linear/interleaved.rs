@@ -18,6 +18,9 @@ use super::equilibrate::scales;
 use super::schur::Numbering;
 use super::{Matrix, Singular};
 
+/// Most multiplications for the sign of a determinant: some tenths of a second.
+const MOST_WORK: usize = 1_000_000_000;
+
 /// LU of a bordered matrix that is a band in another order, real or complex.
 #[derive(Clone, Debug)]
 pub struct Interleaved<T = f64> {
@@ -116,20 +119,27 @@ impl<T: Number> Interleaved<T> {
 
 impl Interleaved {
     /// Factorises a matrix that is bordered by rows of any reach, in an order in which unknowns and
-    /// multipliers with a common entry are near each other. The band may be wide.
-    ///
-    /// # Errors
-    /// As [`Self::new`].
-    pub fn of_any_reach(matrix: &Matrix, border: &[BorderRow]) -> Result<Self, Singular> {
+    /// multipliers with a common entry are near each other. `None` if it is singular, or if the band
+    /// would be so wide that it takes more than [`MOST_WORK`] multiplications, as the row of a tendon
+    /// along a fine mesh makes it.
+    pub fn of_any_reach(matrix: &Matrix, border: &[BorderRow]) -> Option<Self> {
         let size = matrix.size();
+        // The band is at least as wide as the longest row.
+        let longest = border.iter().map(Vec::len).max().unwrap_or(0);
+        if size * longest * longest > MOST_WORK {
+            return None;
+        }
         let of_nodes = (0..size).step_by(4).map(|i| (i..matrix.columns(i).end).collect());
         let of_rows = border.iter().enumerate().map(|(r, row)| {
             let unknowns = row.iter().map(|(i, _)| *i);
             unknowns.chain([size + r]).collect()
         });
         let parts: Vec<Vec<usize>> = of_nodes.chain(of_rows).collect();
-        let place = Numbering::new(size + border.len(), &parts).places();
-        Self::in_order(place, matrix, |i, j| matrix.get(i, j), border)
+        let numbering = Numbering::new(size + border.len(), &parts);
+        if numbering.work() > MOST_WORK {
+            return None;
+        }
+        Self::in_order(numbering.places(), matrix, |i, j| matrix.get(i, j), border).ok()
     }
 
     /// Whether the determinant of the matrix on the motions that the rows allow is negative. It has the

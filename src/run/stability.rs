@@ -30,7 +30,13 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
              where to"
         )
     });
-    pressed.into_iter().chain(crest).chain(start).chain(solution.events.iter().map(of_change))
+    let unwatched = solution.unwatched.then(|| {
+        "stability is not watched: loads turn with the structure or have no potential, and a constraint reaches over so much of a fine mesh \
+         that the sign of the determinant of the tangent would take too long; use fewer elements or nodes to see it"
+            .to_owned()
+    });
+    let others = [pressed, crest, start, unwatched].into_iter().flatten();
+    others.chain(solution.events.iter().map(of_change))
 }
 
 /// What is said where directions lose or regain their stiffness.

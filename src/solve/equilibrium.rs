@@ -277,14 +277,17 @@ impl<'a> Equilibrium<'a> {
         self.unstable_directions().map(Stability::Directions).or_else(determinant)
     }
 
+    /// Whether the tangent is symmetric.
+    pub fn is_symmetric(&self) -> bool {
+        matches!(self.tangent, Matrix::Symmetric(_))
+    }
+
     /// Whether the last linearised state is known to be unstable.
     pub fn is_unstable(&self) -> bool {
         match self.stability() {
             // Where the directions of a symmetric tangent cannot be counted, it is singular, and the
             // sign of its determinant is round-off.
-            Some(Stability::Determinant { negative }) => {
-                negative && matches!(self.tangent, Matrix::General(_))
-            }
+            Some(Stability::Determinant { negative }) => negative && !self.is_symmetric(),
             stability => stability.is_some_and(Stability::is_unstable),
         }
     }

@@ -41,6 +41,8 @@ pub struct Solution {
     pub history: Vec<StepRecord>,
     /// Stability of the state in which the path begins, if it is unstable.
     pub unstable_start: Option<Stability>,
+    /// Whether a tangent without symmetry tells nothing of the stability at the end of the path.
+    pub unwatched: bool,
     /// Instabilities met.
     pub events: Vec<StabilityChange>,
     /// A mechanism under its loads that, before it was relaxed, had more unstable directions than
@@ -240,6 +242,7 @@ fn along_load(
         solution.record(path.equilibrium, last.load, &last.x, work);
     }
     solution.history = std::mem::take(&mut path.history);
+    solution.unwatched = path.last().stability.is_none() && !path.equilibrium.is_symmetric();
     outcome
 }
 
@@ -442,6 +445,7 @@ fn along_arc(
         }
     }
     solution.history = std::mem::take(&mut path.history);
+    solution.unwatched = path.last().stability.is_none() && !path.equilibrium.is_symmetric();
     solution.out_of_points = !ends;
     outcome
 }

@@ -449,6 +449,27 @@ fn a_structure_that_is_unstable_from_the_start_is_told() {
     }
 }
 
+/// The row of a tendon of given length along all of a fine mesh would make the determinant of an
+/// unsymmetric tangent as dear as that of a dense matrix; that it is not computed is said.
+#[test]
+fn a_determinant_that_is_too_dear_is_told() {
+    for (elements, told) in [(20, false), (300, true)] {
+        let found = solve(
+            &(beam(
+                "a",
+                [[0.0, 0.0], [1.0, 0.0]],
+                "bending_stiffness = 1.0\naxial_stiffness = 1e5",
+                &format!("{{ ancf = {{ elements = {elements} }} }}"),
+            ) + &support("a", "'start'", CLAMP)
+                + "[[effect.tendon]]\nbeam = 'a'\noffset = 0.02\nshortening = 1e-4\n"
+                + &force("a", [0.0, 0.1])
+                + "follower = true\n[analysis.static]\n"),
+        );
+        let said = found.run.warnings.iter().any(|warning| warning.starts_with("stability is not watched:"));
+        assert_eq!(said, told, "{elements} elements: {:?}", found.run.warnings);
+    }
+}
+
 /// A beam on three supports, one of them between nodes, is shortened by forty times what it buckles
 /// under, in a field of forces without a potential. Two directions lose their stiffness early in the
 /// first step, which leaves the sign of the determinant as it was; the straight state stores 18 times
