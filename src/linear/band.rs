@@ -224,10 +224,9 @@ impl<T: Number> BandLu<T> {
 }
 
 impl BandLu {
-    /// Whether det A < 0.
-    pub fn determinant_is_negative(&self) -> bool {
-        let swaps = self.pivots.iter().enumerate().filter(|(k, pivot)| k != *pivot).count();
-        let negative = self.upper.chunks_exact(2 * self.half + 1).filter(|row| row[0] < 0.0).count();
-        (swaps + negative) % 2 == 1
+    /// Whether the elimination of row `k` changes the sign of the determinant, by an interchange or by a
+    /// negative pivot.
+    pub fn turns_sign(&self, k: usize) -> bool {
+        (self.pivots[k] != k) != (self.upper[k * (2 * self.half + 1)] < 0.0)
     }
 }

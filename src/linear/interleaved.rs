@@ -142,10 +142,10 @@ impl Interleaved {
         Self::in_order(numbering.places(), matrix, |i, j| matrix.get(i, j), border).ok()
     }
 
-    /// Whether the determinant of the matrix on the motions that the rows allow is negative. It has the
-    /// sign of the bordered matrix's, times −1 for each row.
-    pub fn determinant_is_negative(&self, rows: usize) -> bool {
-        self.lu.determinant_is_negative() != (rows % 2 == 1)
+    /// Whether the elimination of unknown `i`, or of a multiplier after them, changes the sign of the
+    /// determinant.
+    pub fn turns_sign(&self, i: usize) -> bool {
+        self.lu.turns_sign(self.place[i])
     }
 }
 

@@ -22,7 +22,7 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
         let directions = match start {
             Stability::Directions(1) => "one direction".to_owned(),
             Stability::Directions(count) => format!("{count} directions"),
-            Stability::Determinant { .. } => "an odd number of directions".to_owned(),
+            Stability::NegativeDeterminants(_) => "an odd number of directions".to_owned(),
         };
         format!(
             "the path begins in a state that is unstable in {directions}, and follows unstable equilibria as long as nothing else is said: \

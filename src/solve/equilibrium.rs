@@ -261,7 +261,7 @@ impl<'a> Equilibrium<'a> {
     }
 
     /// Number of negative eigenvalues of the symmetric part of the last tangent, on the motions that
-    /// constraints and supports allow. Where it is zero, no direction is unstable.
+    /// constraints and supports allow. Where it is zero, no direction has lost its stiffness.
     pub fn soft_directions(&self) -> Option<usize> {
         let symmetric = self.tangent.symmetric_part();
         let factor = Factor::new(&symmetric, &self.border).ok()?;
@@ -270,11 +270,11 @@ impl<'a> Equilibrium<'a> {
 
     /// Stability at the last linearised state, where the factorisation tells.
     pub fn stability(&self) -> Option<Stability> {
-        let determinant = || {
-            let negative = self.factor.as_ref()?.determinant_is_negative(&self.tangent, &self.border)?;
-            Some(Stability::Determinant { negative })
+        let determinants = || {
+            let count = self.factor.as_ref()?.negative_determinants(&self.tangent, &self.border)?;
+            Some(Stability::NegativeDeterminants(count))
         };
-        self.unstable_directions().map(Stability::Directions).or_else(determinant)
+        self.unstable_directions().map(Stability::Directions).or_else(determinants)
     }
 
     /// Whether the tangent is symmetric.
@@ -287,7 +287,7 @@ impl<'a> Equilibrium<'a> {
         match self.stability() {
             // Where the directions of a symmetric tangent cannot be counted, it is singular, and the
             // sign of its determinant is round-off.
-            Some(Stability::Determinant { negative }) => negative && !self.is_symmetric(),
+            Some(Stability::NegativeDeterminants(_)) if self.is_symmetric() => false,
             stability => stability.is_some_and(Stability::is_unstable),
         }
     }

@@ -96,14 +96,14 @@ const STILL: f64 = 1e-10;
 const STRAIGHT: f64 = 0.1;
 /// Number of parts of such a step at whose ends it is checked.
 const BETWEEN: u32 = 5;
+/// How often such a part is halved at most where two directions lose their stiffness within it.
+const HALVINGS: u32 = 20;
 /// Most trials for the length of a step that must end at a target: halving alone needs as many as a
 /// number has binary digits.
 const MOST_TRIALS: usize = 60;
 /// Such a step may miss its target by this many times the tolerance where shorter steps change
 /// nothing.
 const ROUND_OFFS: f64 = 1e4;
-/// How often such a part is halved at most where two directions lose their stiffness within it.
-const HALVINGS: u32 = 20;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
 /// A step of this size in which stability is lost is accepted. The knee of an imperfect path is
@@ -338,7 +338,7 @@ impl<'e, 'a> Path<'e, 'a> {
     fn crosses_twice(&mut self, point: &Point) -> bool {
         let last = self.last().clone();
         let bent = self.turn(&point.x, &last.x) >= STRAIGHT;
-        let (Some(before), Some(Stability::Determinant { .. }), false) =
+        let (Some(before), Some(Stability::NegativeDeterminants(_)), false) =
             (last.stability, point.stability, bent)
         else {
             return false;

@@ -6,41 +6,37 @@ pub enum Stability {
     /// Number of unstable directions: negative eigenvalues of a symmetric tangent on the motions
     /// that constraints and supports allow.
     Directions(usize),
-    /// Sign of the determinant of an unsymmetric tangent, as follower loads have it, on the same
-    /// motions. It changes where an odd number of directions lose their stiffness.
-    Determinant {
-        /// Whether it is negative.
-        negative: bool,
-    },
+    /// Of an unsymmetric tangent, as follower loads have it: number of the structures, among those that
+    /// nothing ties to others, whose determinant on the same motions is negative. Its sign changes
+    /// where an odd number of directions lose their stiffness.
+    NegativeDeterminants(usize),
 }
 
 impl Stability {
-    /// Whether the number of unstable directions is odd.
-    pub fn is_odd(self) -> bool {
-        match self {
-            Self::Directions(count) => count % 2 == 1,
-            Self::Determinant { negative } => negative,
-        }
+    /// Directions, or determinants.
+    fn count(self) -> usize {
+        let (Self::Directions(count) | Self::NegativeDeterminants(count)) = self;
+        count
     }
 
     /// Whether the equilibrium is known to be unstable.
     pub fn is_unstable(self) -> bool {
-        self.is_odd() || matches!(self, Self::Directions(1..))
+        self.count() > 0
     }
 
     /// Whether it differs from that of a point further on, as far as both tell.
     pub fn differs(self, after: Self) -> bool {
-        match (self, after) {
-            (Self::Directions(before), Self::Directions(after)) => before != after,
-            _ => self.is_odd() != after.is_odd(),
+        if std::mem::discriminant(&self) == std::mem::discriminant(&after) {
+            return self != after;
         }
+        self.count() % 2 != after.count() % 2
     }
 
-    /// Whether a point further on has lost stability, as far as both tell.
+    /// Whether a point further on may have lost stability, as far as both tell.
     pub fn is_lost(self, after: Self) -> bool {
         match (self, after) {
             (Self::Directions(before), Self::Directions(after)) => after > before,
-            _ => self.is_odd() != after.is_odd(),
+            _ => self.differs(after),
         }
     }
 }

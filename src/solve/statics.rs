@@ -189,9 +189,7 @@ fn is_steady(equilibrium: &mut Equilibrium<'_>, x: &[f64]) -> bool {
     if !(system.is_taken_up() || system.starts_bent()) {
         return false;
     }
-    let (mut residual, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    let linearized = equilibrium.linearize(0.0, x, None, &mut residual, &mut rate);
-    linearized.is_ok() && equilibrium.unstable_directions().is_none_or(|count| count == 0)
+    look(equilibrium, 0.0, x) && !equilibrium.is_unstable()
 }
 
 fn newton_settings(settings: &Static) -> Settings {
@@ -212,7 +210,7 @@ fn along_load(
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
     let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0, x)?;
-    solution.unstable_start = path.last().stability.filter(|start| start.is_unstable());
+    solution.unstable_start = path.last().stability.filter(|_| path.equilibrium.is_unstable());
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let parts = settings.steps.unwrap_or(1).max(1);
@@ -316,16 +314,20 @@ fn relaxed(
     Ok(())
 }
 
+/// Looks at the state `x`; whether its tangent could be factorised.
+fn look(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
+    let (mut residual, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    equilibrium.linearize(load, x, None, &mut residual, &mut rate).is_ok()
+}
+
 /// Stability in the state `x`, where the factorisation tells.
 fn stability(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> Option<Stability> {
-    let (mut residual, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    equilibrium.linearize(load, x, None, &mut residual, &mut rate).ok()?;
-    equilibrium.stability()
+    look(equilibrium, load, x).then(|| equilibrium.stability()).flatten()
 }
 
 /// Whether the state `x` is known to be unstable.
 fn is_unstable(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
-    stability(equilibrium, load, x).is_some() && equilibrium.is_unstable()
+    look(equilibrium, load, x) && equilibrium.is_unstable()
 }
 
 /// The equilibrium to which `x` relaxes; `None` where it does not come to rest. Nothing is accepted.
@@ -393,7 +395,7 @@ fn along_arc(
     let system = equilibrium.system();
     let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
     let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05), x)?;
-    solution.unstable_start = path.last().stability.filter(|start| start.is_unstable());
+    solution.unstable_start = path.last().stability.filter(|_| path.equilibrium.is_unstable());
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let mut outcome = Ok(());
