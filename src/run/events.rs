@@ -7,15 +7,23 @@ use crate::results::SectionForces;
 use crate::solve::dynamics;
 use crate::system::unfold;
 
+/// Round-offs of single positions that may add up in a quantity.
+const ROUND_OFFS: f64 = 4.0;
+/// Heights of bends below this are round-off \[beam lengths\].
+const STILL: f64 = 1e-9;
+
 impl Sampler<'_> {
     /// The events of a motion, each with the view of its probe.
     pub(super) fn watches(&self, settings: &Dynamic) -> Result<Vec<dynamics::EventWatch<'_>>, RunError> {
         let watch = |event: &EventCondition| {
             let number = self.probe_named(&event.probe)?;
+            use ProbeQuantity::{Angle, Speed, Vx, Vy};
             Ok(dynamics::EventWatch {
                 quantity: self.quantity(number, event.quantity),
+                place: self.probes[number].view.clone(),
                 round_off: self.round_off(number, event.quantity),
-                is_relative: event.quantity == ProbeQuantity::Angle,
+                is_rate: matches!(event.quantity, Vx | Vy | Speed),
+                is_relative: event.quantity == Angle,
                 when: event.when,
                 stop: event.stop,
             })
@@ -23,11 +31,12 @@ impl Sampler<'_> {
         settings.events.iter().map(watch).collect()
     }
 
-    /// Changes of a quantity at probe number `number` that are round-off, and no turns: a
-    /// position is stored with the round-off ε L, from which an element of length h makes forces
-    /// ε EA L/h along the beam and 12 ε EI L/h³ across. A gentle bend turns a part (h/L)² of the former
-    /// across: a larger part would hide the turns of small vibrations. Directions and strains err by
-    /// ε L/h, curvatures by 12 ε L/h².
+    /// Values of a quantity at probe number `number` that are round-off: a position is stored with the
+    /// round-off ε L, from which an element of length h makes forces ε EA L/h along the beam and
+    /// 12 ε EI L/h³ across. A gentle bend turns a part (h/L)² of the former across: a larger part would
+    /// hide the turns of small vibrations. Directions and strains err by ε L/h, curvatures by 12 ε L/h².
+    /// Some of these errors add up, and a beam at rest vibrates by them: so a bend by less than [`STILL`]
+    /// of its length counts as none.
     fn round_off(&self, number: usize, quantity: ProbeQuantity) -> f64 {
         let ProbePoint { beam, view, .. } = &self.probes[number];
         let (section, basis) = (&self.model.beams[*beam].section, &self.system.beams()[*beam].basis);
@@ -35,20 +44,23 @@ impl Sampler<'_> {
         let h = basis.nodes().windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         let [stretching, bending] = [&section.axial_stiffness, &section.bending_stiffness]
             .map(|along| along.as_ref().map_or(0.0, |along| along.bounds(length)[1]));
-        let unit = f64::EPSILON * length / h;
+        let unit = ROUND_OFFS * f64::EPSILON * length / h;
+        let bend = STILL / length;
         let axial = unit * stretching;
         let across = unit * 12.0 * bending / (h * h) + axial * (h / length).powi(2);
+        let moment = (across * h).max(bending * bend);
         let stress = |face: usize| {
-            let signs = [1.0, -1.0].map(|sign| section.stresses(s, s, [axial, sign * across * h], &[]));
+            let signs = [1.0, -1.0].map(|sign| section.stresses(s, s, [axial, sign * moment], &[]));
             let of = |layers: Vec<[f64; 2]>| layers.iter().fold(0.0_f64, |m, faces| m.max(faces[face].abs()));
             signs.into_iter().flatten().map(of).fold(0.0, f64::max)
         };
         match quantity {
-            ProbeQuantity::Angle | ProbeQuantity::Strain => unit,
-            ProbeQuantity::Curvature => 12.0 * unit / h,
+            ProbeQuantity::Angle => unit.max(STILL),
+            ProbeQuantity::Strain => unit,
+            ProbeQuantity::Curvature => (12.0 * unit / h).max(bend),
             ProbeQuantity::AxialForce => axial,
-            ProbeQuantity::ShearForce => across,
-            ProbeQuantity::BendingMoment => across * h,
+            ProbeQuantity::ShearForce => across.max(bending * bend / length),
+            ProbeQuantity::BendingMoment => moment,
             ProbeQuantity::StressBottom => stress(0),
             ProbeQuantity::StressTop => stress(1),
             _ => 0.0,
@@ -102,37 +114,53 @@ mod tests {
     use crate::assembly::Needs;
     use crate::system::System;
 
-    /// Elements of 0.5 m in a rectangle of 0.25 m by 0.5 m of 800 Pa: EA = 100 N, EI = 25/12 N m², and N/A + M/W on
-    /// a face, of the largest force and moment of round-off, whatever their signs.
+    /// Elements of length h in a rectangle of 0.25 m by 0.5 m of 800 Pa: EA = 100 N, EI = 25/12 N m², and N/A +
+    /// M/W on a face, of the largest force and moment of round-off, whatever their signs. Long elements
+    /// resolve bends that are too flat to count.
     #[test]
     fn round_off_of_forces_is_that_of_positions_in_an_element() {
-        let text =
-            "beam.bar = { start = [0, 0], end = [2, 0], youngs_modulus = 800, basis.ancf.elements = 4, \
-             section.rectangle = { height = 0.5, width = 0.25 } }
-            support = [{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }]
-            probe = [{ name = 'end', beam = 'bar', at = 'end' }]
-            analysis.static = {}";
-        let scene = crate::scene::parse("bar.toml", text).expect("a scene");
-        let system = System::build(scene.model(), Needs { inertia: false, motion: false }).expect("a system");
-        let sampler = Sampler::new(scene.model(), &system, [0, 2]).expect("a sampler");
-        let position = f64::EPSILON * 2.0;
-        let axial = position * 100.0 / 0.5;
-        let across = position * (12.0 * 25.0 / 12.0 / 0.125 + 100.0 / 0.5 / 16.0);
-        let stress = axial / 0.125 + across * 0.5 / (0.25 * 0.25 / 6.0);
-        for (quantity, expected) in [
-            (ProbeQuantity::AxialForce, axial),
-            (ProbeQuantity::ShearForce, across),
-            (ProbeQuantity::BendingMoment, across * 0.5),
-            (ProbeQuantity::StressBottom, stress),
-            (ProbeQuantity::StressTop, stress),
-            (ProbeQuantity::Angle, position / 0.5),
-            (ProbeQuantity::Strain, position / 0.5),
-            (ProbeQuantity::Curvature, 12.0 * position / 0.25),
-            (ProbeQuantity::Y, 0.0),
-            (ProbeQuantity::Speed, 0.0),
-        ] {
-            let found = sampler.round_off(0, quantity);
-            assert!((found - expected).abs() <= 1e-12 * expected, "{quantity:?}: {found} for {expected}");
+        let (length, bending) = (2.0, 25.0 / 12.0);
+        for (elements, flat) in [(4, true), (400, false)] {
+            let text = format!(
+                "beam.bar = {{ start = [0, 0], end = [2, 0], youngs_modulus = 800, basis.ancf.elements = {elements}, \
+                 section.rectangle = {{ height = 0.5, width = 0.25 }} }}
+                support = [{{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }}]
+                probe = [{{ name = 'end', beam = 'bar', at = 'end' }}]
+                analysis.static = {{}}"
+            );
+            let scene = crate::scene::parse("bar.toml", &text).expect("a scene");
+            let needs = Needs { inertia: false, motion: false };
+            let system = System::build(scene.model(), needs).expect("a system");
+            let sampler = Sampler::new(scene.model(), &system, [0, 2]).expect("a sampler");
+            let h = length / f64::from(elements);
+            let position = 4.0 * f64::EPSILON * length;
+            let axial = position * 100.0 / h;
+            let across = position * (12.0 * bending / h.powi(3) + 100.0 / h * (h / length).powi(2));
+            let bend = 1e-9 / length;
+            let [curvature, shear, moment] = if flat {
+                [bend, bending * bend / length, bending * bend]
+            } else {
+                [12.0 * position / (h * h), across, across * h]
+            };
+            let stress = axial / 0.125 + moment / (0.25 * 0.25 / 6.0);
+            for (quantity, expected) in [
+                (ProbeQuantity::AxialForce, axial),
+                (ProbeQuantity::ShearForce, shear),
+                (ProbeQuantity::BendingMoment, moment),
+                (ProbeQuantity::StressBottom, stress),
+                (ProbeQuantity::StressTop, stress),
+                (ProbeQuantity::Angle, 1e-9),
+                (ProbeQuantity::Strain, position / h),
+                (ProbeQuantity::Curvature, curvature),
+                (ProbeQuantity::Y, 0.0),
+                (ProbeQuantity::Speed, 0.0),
+            ] {
+                let found = sampler.round_off(0, quantity);
+                assert!(
+                    (found - expected).abs() <= 1e-9 * expected,
+                    "{elements} {quantity:?}: {found} for {expected}"
+                );
+            }
         }
     }
 }

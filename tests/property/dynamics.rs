@@ -604,8 +604,10 @@ fn events_are_located_to_the_accuracy_of_the_motion() {
             let view = View::point(&system.beams()[0].basis, 0, LENGTH).expect("on the beam");
             let when = EventKind::Reaches { value: -1.0, crossing };
             EventWatch {
-                quantity: Quantity::Position(view, 1),
+                quantity: Quantity::Position(view.clone(), 1),
+                place: view,
                 round_off: 0.0,
+                is_rate: false,
                 is_relative: false,
                 when,
                 stop,

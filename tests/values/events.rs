@@ -181,3 +181,52 @@ fn turns_of_a_direction_do_not_depend_on_the_direction() {
         );
     }
 }
+
+/// A beam that rests until a force sets in: what it does before is round-off, and an event that ends the
+/// motion must not be found in it, wherever the beam lies.
+#[test]
+fn a_beam_at_rest_has_no_events() {
+    let quantities = [
+        "x",
+        "y",
+        "angle",
+        "vx",
+        "vy",
+        "speed",
+        "strain",
+        "curvature",
+        "axial_force",
+        "shear_force",
+        "bending_moment",
+    ];
+    let event = |what: &str| format!("{{ probe = 'tip', {what} }}");
+    let of = |quantity: &str| {
+        let at_rest = match quantity {
+            // Places are where the beam lies.
+            "x" | "y" => None,
+            "angle" => Some(0.6_f64.atan2(0.8)),
+            _ => Some(0.0),
+        };
+        let turns = ["maximum", "minimum"].map(|turn| event(&format!("{turn} = '{quantity}'"))).join(", ");
+        at_rest
+            .map_or(turns.clone(), |value| format!("{turns}, {}", event(&format!("{quantity} = {value:e}"))))
+    };
+    let all = quantities.map(of).join(", ");
+    for basis in ["ancf.elements = 20", "rpim.nodes = 20"] {
+        for [x, y] in [[0.3, 0.2], [20.0, -27.3]] {
+            let text = format!(
+                "beam.rod = {{ start = [{x}, {y}], end = [{}, {}], axial_stiffness = 1e5, bending_stiffness = 1, mass_per_length = 1, basis.{basis} }}
+                support = [{{ beam = 'rod', at = 'start', fix = ['x', 'y', 'angle'] }}]
+                effect.force = [{{ beam = 'rod', at = 'end', value = [0, 1], in_time.step.start = 0.5 }}]
+                probe = [{{ name = 'tip', beam = 'rod', at = 'end' }}]
+                analysis.dynamic = {{ duration = 0.505, radau.tolerance = 1e-4, event = [{}] }}\n",
+                x + 0.8,
+                y + 0.6,
+                all,
+            );
+            let (found, _) = events(&text);
+            let early: Vec<_> = found.iter().filter(|(time, _)| *time < 0.5).collect();
+            assert!(early.is_empty() && !found.is_empty(), "{basis} from {x}, {y}: {early:?}");
+        }
+    }
+}

@@ -27,8 +27,13 @@ const BETWEEN: [f64; 3] = [0.2, 0.5, 0.8];
 pub struct EventWatch<'t> {
     /// The quantity.
     pub quantity: Quantity<'t>,
-    /// Changes of it that are errors of its arithmetic, and no turns.
+    /// The point at which it is watched.
+    pub place: View,
+    /// Values of it that are errors of its arithmetic, within a beam length of the origin. Farther away
+    /// positions have fewer digits, and errors grow with the distance.
     pub round_off: f64,
+    /// Whether it is a velocity.
+    pub is_rate: bool,
     /// Whether its zero is one of many, as that of a direction: its size is then that of its change.
     pub is_relative: bool,
     /// What it has to do.
@@ -79,6 +84,7 @@ impl Driver<'_, '_> {
                 self.solution.unseen.get_or_insert((number, self.state.time));
                 continue;
             }
+            let round_off = self.round_off(watch, new.time - self.first.time);
             let memory = &mut self.watched[number];
             let first = pieces.first().map_or(0.0, |(_, piece)| piece.at(0.0)[0]);
             let zero = if watch.is_relative { *memory.first.get_or_insert(first) } else { 0.0 };
@@ -90,10 +96,12 @@ impl Driver<'_, '_> {
             };
             let events = match watch.when {
                 EventKind::Reaches { value, crossing } => {
-                    reached(&pieces, value, crossing, NEAR * unit.max(value.abs()), memory)
+                    // What rests where it is zero does not reach zero again and again.
+                    let near = round_off.max(NEAR * unit.max(value.abs()));
+                    reached(&pieces, value, crossing, near, memory)
                 }
-                EventKind::Maximum => turned(&pieces, 1.0, watch.round_off.max(noise * unit), memory),
-                EventKind::Minimum => turned(&pieces, -1.0, watch.round_off.max(noise * unit), memory),
+                EventKind::Maximum => turned(&pieces, 1.0, round_off.max(noise * unit), memory),
+                EventKind::Minimum => turned(&pieces, -1.0, round_off.max(noise * unit), memory),
             };
             memory.value = pieces.last().map(|(_, piece)| piece.at(1.0)[0]);
             let later = events.into_iter().filter(|(at, _)| self.state.time + at * h > self.first.time);
@@ -112,6 +120,22 @@ impl Driver<'_, '_> {
             }
         }
         None
+    }
+
+    /// Values of a watched quantity that are round-off, in a motion that has lasted for `elapsed`. A
+    /// velocity is, if it neither moves its point by as much as the round-off of positions since then, nor
+    /// belongs to a slow vibration of such an amplitude.
+    fn round_off(&self, watch: &EventWatch<'_>, elapsed: f64) -> f64 {
+        let length = self.system.length();
+        let [x, y] = watch.place.at_point(&self.state.q);
+        let far = (x.hypot(y) / length).max(1.0);
+        let slow = self.system.lowest_vibration_scale().sqrt().recip();
+        let of_position = match watch.quantity {
+            Quantity::Position(..) => NEAR * length,
+            _ if watch.is_rate => NEAR * length / elapsed.max(slow),
+            _ => 0.0,
+        };
+        far * watch.round_off.max(of_position)
     }
 
     /// A watched quantity in the step to `new`.
