@@ -9,6 +9,7 @@ mod loose;
 mod memory;
 mod modes;
 mod motion;
+mod origin;
 mod sampler;
 mod sections;
 mod shapes;

@@ -49,7 +49,7 @@ use serde::{Deserialize, Serialize};
 
 pub use contact::Change;
 pub use event::{EventWatch, Quantity};
-pub use integrate::{Checkpointing, Task, solve};
+pub use integrate::{Checkpointing, STEP_PART, Task, solve};
 pub use memory::Memory;
 
 /// A state of motion.

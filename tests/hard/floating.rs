@@ -92,6 +92,29 @@ fn steps_whose_square_vanishes_are_refused() {
     }
 }
 
+/// Far from the origin positions have fewer digits, and a motion of them is not silently wrong: at 1e8 beam
+/// lengths the velocity of such a tip may err by a quarter.
+#[test]
+fn motions_far_from_the_origin_are_warned_of() {
+    let warned = |x: f64, tolerance: f64| {
+        let text = format!(
+            "beam.a = {{ start = [{x:e}, 0], end = [{:e}, 0.6], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }}
+            support = [{{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'] }}]
+            effect.force = [{{ beam = 'a', at = 'end', value = [0, -2] }}]
+            analysis.dynamic = {{ duration = 0.01, radau.tolerance = {tolerance:e} }}",
+            x + 0.8
+        );
+        let scene = parsed(&text);
+        let motion = outcome(scene.model(), scene.analysis()).expect("a motion");
+        motion.run.warnings.iter().any(|warning| warning.contains("place the origin near the beams"))
+    };
+    for (x, tolerance, expected) in
+        [(0.0, 1e-9, false), (1e3, 1e-6, false), (1e8, 1e-6, true), (1e4, 1e-9, true), (1e5, 1e-3, false)]
+    {
+        assert_eq!(warned(x, tolerance), expected, "from {x} with a tolerance of {tolerance}");
+    }
+}
+
 /// A load of the smallest number does nothing, and does it without a rejected step.
 #[test]
 fn subnormal_loads_are_no_load() {

@@ -89,7 +89,7 @@ pub struct Checkpointing<'k> {
 /// shorter than this part of the time until its end may err by its share of that time, so that
 /// steps do not depend on when the motion ends. On the soft pendulum, with all methods and
 /// tolerances from 1e-3 to 1e-6, the largest error of the tip is at most 2.7 times the tolerance.
-const STEP_PART: f64 = 1e-4;
+pub const STEP_PART: f64 = 1e-4;
 /// Longest first step in periods of the slowest vibration: where nothing moves yet, speeds set no
 /// limit.
 const FIRST_STEP: f64 = 0.01;
