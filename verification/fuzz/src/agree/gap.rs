@@ -8,27 +8,51 @@ pub struct Gap {
     /// Positions at probes and along beams \[natural lengths\], and eigenvalues \[of their size\]:
     /// the quantities to which a tolerance refers.
     pub places: f64,
+    /// Eigenvalues alone.
+    pub eigenvalues: f64,
     /// Section forces and reactions, relative to the largest force.
     pub forces: f64,
     /// The largest of all differences.
-    pub all: f64,
-    /// The quantity with the largest difference.
+    pub all: Largest,
+    /// The largest of what follows from positions: forces, strains, directions, velocities, energies.
+    pub derived: f64,
+    /// The largest of times of records and of events.
+    pub times: Largest,
+    /// Whether one of both has more events, where all records are compared.
+    pub events: bool,
+}
+
+/// The largest of some differences, and the quantity that has it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Largest {
+    pub value: f64,
     pub what: String,
+}
+
+impl Largest {
+    fn note(&mut self, what: &str, value: f64) {
+        // NaN counts as the largest difference.
+        if value.is_nan() || value > self.value {
+            *self = Self { value, what: what.to_owned() };
+        }
+    }
 }
 
 impl Gap {
     fn note(&mut self, what: &str, difference: f64, size: f64) {
         let relative = if difference == 0.0 { 0.0 } else { difference / size };
-        // NaN counts as the largest difference.
-        if relative.is_nan() || relative > self.all {
-            self.all = relative;
-            self.what = what.to_owned();
-        }
+        larger(&mut self.derived, relative);
+        self.all.note(what, relative);
+    }
+
+    fn time(&mut self, what: &str, difference: f64, end: f64) {
+        self.times.note(what, difference / end);
+        self.all.note(what, difference / end);
     }
 
     fn place(&mut self, what: &str, difference: f64) {
         larger(&mut self.places, difference);
-        self.note(what, difference, 1.0);
+        self.all.note(what, difference);
     }
 
     fn force(&mut self, what: &str, difference: f64, size: f64) {
@@ -67,9 +91,14 @@ pub fn between(a: &Seen, b: &Seen, records: Records) -> Gap {
     let staged = !a.before.is_empty() && a.before.len() == b.before.len();
     for (i, (a, b)) in a.before.iter().zip(&b.before).enumerate().filter(|_| staged) {
         let stage = between(a, b, of_stages(a));
-        gap.note(&format!("{} in stage {}", stage.what, i + 1), stage.all, 1.0);
+        for (all, of_stage) in [(&mut gap.all, &stage.all), (&mut gap.times, &stage.times)] {
+            all.note(&format!("{} in stage {}", of_stage.what, i + 1), of_stage.value);
+        }
+        gap.events |= stage.events;
         larger(&mut gap.places, stage.places);
+        larger(&mut gap.eigenvalues, stage.eigenvalues);
         larger(&mut gap.forces, stage.forces);
+        larger(&mut gap.derived, stage.derived);
     }
     let records = if a.before.is_empty() { records } else { of_stages(a) };
     one(a, b, records, &mut gap);
@@ -80,7 +109,7 @@ fn one(a: &Seen, b: &Seen, records: Records, gap: &mut Gap) {
     let pairs = match records {
         Records::All if a.parameter.len() != b.parameter.len() => {
             let n = a.parameter.len().abs_diff(b.parameter.len());
-            gap.note("number of records", n as f64, a.parameter.len().max(1) as f64);
+            gap.time("number of records", n as f64, a.parameter.len().max(1) as f64);
             last(a, b)
         }
         Records::All => (0..a.parameter.len()).map(|i| (i, i)).collect(),
@@ -89,7 +118,7 @@ fn one(a: &Seen, b: &Seen, records: Records, gap: &mut Gap) {
     };
     let end = a.parameter.last().map_or(1.0, |p| p.abs().max(1e-300));
     for &(i, j) in &pairs {
-        gap.note("load factor or time of a record", (a.parameter[i] - b.parameter[j]).abs(), end);
+        gap.time("load factor or time of a record", (a.parameter[i] - b.parameter[j]).abs(), end);
     }
     probes(a, b, &pairs, gap);
     energies(a, b, &pairs, gap);
@@ -97,10 +126,10 @@ fn one(a: &Seen, b: &Seen, records: Records, gap: &mut Gap) {
     eigenvalues(a, b, gap);
     if a.events.len() == b.events.len() {
         for (s, t) in a.events.iter().zip(&b.events) {
-            gap.note("time of an event", (s - t).abs(), end);
+            gap.time("time of an event", (s - t).abs(), end);
         }
-    } else if records == Records::All {
-        gap.note("number of events", 1.0, 1.0);
+    } else {
+        gap.events |= records == Records::All;
     }
 }
 
@@ -210,9 +239,12 @@ fn eigenvalues(a: &Seen, b: &Seen, gap: &mut Gap) {
     let n = a.eigenvalues.len().min(b.eigenvalues.len());
     let smallest = a.eigenvalues.iter().copied().map(f64::abs).find(|f| *f > 1e-3).unwrap_or(1.0);
     for (f, g) in a.eigenvalues[..n].iter().zip(&b.eigenvalues[..n]) {
-        gap.place("an eigenvalue", (f - g).abs() / f.abs().max(smallest));
+        let difference = (f - g).abs() / f.abs().max(smallest);
+        larger(&mut gap.eigenvalues, difference);
+        gap.place("an eigenvalue", difference);
     }
     if n == 0 && a.eigenvalues.len() != b.eigenvalues.len() {
+        gap.eigenvalues = 1.0;
         gap.place("number of eigenvalues", 1.0);
     }
 }

@@ -6,8 +6,8 @@ use toml::{Table, Value};
 
 use super::frame::{Frame, vector};
 use super::gap::{self, Records};
-use super::outcome::{self, Outcome};
-use super::settings;
+use super::outcome::{self, Outcome, Seen};
+use super::{settings, ways};
 
 /// Quantities of beams that neighbours have otherwise.
 const SHAKEN: [&str; 7] = [
@@ -19,6 +19,11 @@ const SHAKEN: [&str; 7] = [
     "axial_law",
     "bending_law",
 ];
+
+/// Neighbours in each frame; where chance decides, so many hardly ever agree.
+const NEIGHBOURS: usize = 5;
+/// Energies below this are round-off \[EI/L\].
+const REST: f64 = 1e-12;
 
 /// The scene with loads, stiffnesses and prescribed motions that differ by about `share`. A vector
 /// changes its direction too, so that symmetry does not hide that it can be lost.
@@ -97,10 +102,26 @@ pub fn growth(scene: &Table, frame: &Frame, rng: &mut Rng) -> Growth {
         let gap = gap::between(&here, &there, Records::Common);
         if let Growth::By { places, all } = &mut growth {
             *places = places.max(gap.places / share);
-            *all = all.max(gap.all / share);
+            *all = all.max(gap.all.value / share);
         }
     }
     growth
+}
+
+/// Whether runs whose errors, loads or stiffnesses are a little different have as many events as
+/// `here`: turns as small as the errors of a run come and go with anything that changes it.
+pub fn keeps_events(scene: &Table, frame: &Frame, here: &Seen, rng: &mut Rng) -> bool {
+    // Where nothing moves there is no event to keep.
+    if here.energy_exchanged() < REST {
+        return true;
+    }
+    let share = settings::tolerance(scene).max(1e-7);
+    let finer = ways::tighter(scene).or_else(|| ways::half_steps(scene));
+    let others = finer.into_iter().chain((0..2).map(|_| near(scene, share, rng)));
+    others.into_iter().all(|other| match outcome::run(&other, frame) {
+        Outcome::Solved(there) => !gap::between(here, &there, Records::All).events,
+        _ => false,
+    })
 }
 
 /// The growth of errors as neighbours show it.
@@ -112,17 +133,13 @@ pub enum Growth {
     Unknown,
 }
 
-/// Whether some neighbour solves and another does not: a scene at the edge of what has a solution.
+/// Whether some neighbour solves and another does not: a scene at the edge of what has a solution. If
+/// all fail in one frame and none in the other, nothing but the frame decides.
 pub fn at_the_edge(scene: &Table, frames: [&Frame; 2], rng: &mut Rng) -> bool {
-    let (mut solved, mut failed) = (0, 0);
-    for frame in frames {
-        for _ in 0..2 {
-            match outcome::run(&near(scene, 1e-9, rng), frame) {
-                Outcome::Solved(_) => solved += 1,
-                _ => failed += 1,
-            }
-        }
-    }
-    // If all fail in one frame and none in the other, nothing but the frame decides.
-    !(solved == 2 && failed == 2)
+    let mut solves = |frame| matches!(outcome::run(&near(scene, 1e-9, rng), frame), Outcome::Solved(_));
+    let all = frames.map(|frame| {
+        let first = solves(frame);
+        (1..NEIGHBOURS).all(|_| solves(frame) == first).then_some(first)
+    });
+    !matches!(all, [Some(a), Some(b)] if a != b)
 }

@@ -73,6 +73,16 @@ pub struct Seen {
     pub estimated: Option<f64>,
 }
 
+impl Seen {
+    /// The largest change of a part of the energy \[EI/L\].
+    pub fn energy_exchanged(&self) -> f64 {
+        let first = self.energy.first().copied().unwrap_or_default();
+        let changes =
+            self.energy.iter().flat_map(|parts| parts.iter().zip(first).map(|(e, f)| (e - f).abs()));
+        changes.fold(0.0, f64::max)
+    }
+}
+
 /// A sample of a probe.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sample {

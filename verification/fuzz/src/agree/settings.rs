@@ -156,6 +156,22 @@ pub fn accuracy(scene: &Table) -> Option<f64> {
     open.then(|| position.unwrap_or(1e-4))
 }
 
+/// The scene with all accuracies that it names times `factor`; none where it names none.
+pub fn looser(scene: &Table, factor: f64) -> Option<Table> {
+    let mut scene = scene.clone();
+    let kind = analysis(&scene).to_owned();
+    let loosen = |value: &mut Value| {
+        if let Value::Float(accuracy) = value {
+            *accuracy *= factor;
+        }
+    };
+    match table(&mut scene, &["analysis", &kind])?.get_mut("accuracy")? {
+        Value::Table(each) => each.iter_mut().for_each(|(_, value)| loosen(value)),
+        one => loosen(one),
+    }
+    Some(scene)
+}
+
 /// The accuracy that is asked for.
 pub fn tolerance(scene: &Table) -> f64 {
     if let Some(accuracy) = accuracy(scene) {
