@@ -23,7 +23,12 @@ pub(super) fn syntax(error: &toml::de::Error, text: &str) -> Fault {
 pub(super) fn data(error: &reader::Error, document: &DeTable<'_>) -> Fault {
     let span = error.span.clone().unwrap_or(0..0);
     // An empty span is that of the scene as a whole.
-    let path = if span.is_empty() { String::new() } else { path_at(document, &span).join(".") };
+    let mut path = if span.is_empty() { Vec::new() } else { path_at(document, &span) };
+    // A list written as a single `[[table]]` stands where its only entry does.
+    if error.message.starts_with("invalid type: sequence") && !is_list(document, &path) {
+        path.pop();
+    }
+    let path = path.join(".");
     let (first, rest) = error.message.split_once('\n').unwrap_or((&error.message, ""));
     let place = if path.is_empty() { "at the top of the scene".to_owned() } else { format!("in `{path}`") };
 
@@ -58,6 +63,12 @@ pub(super) fn data(error: &reader::Error, document: &DeTable<'_>) -> Fault {
     } else {
         first.to_owned()
     };
+    // Names of this crate's types mean nothing to whoever wrote the scene, and a map is a table there.
+    let message =
+        match message.split_once("expected struct ").or_else(|| message.split_once("expected a map")) {
+            Some((before, _)) => format!("{before}expected a table"),
+            None => message,
+        };
     let place = if path.is_empty() { String::new() } else { format!("`{path}`: ") };
     let help = list_form(&path, &message)
         .or_else(|| table_form(&path, &message))
@@ -85,14 +96,15 @@ fn list_form(path: &str, message: &str) -> Option<String> {
     Some(format!("write a list, also of one: `{key} = [{value}]`"))
 }
 
-/// How to write a table, where one is expected and a list was found. A list in place of an analysis
-/// is read as the values of its keys in turn, so that the message is about the first key.
+/// How to write a table, where one is expected and a list was found.
 fn table_form(path: &str, message: &str) -> Option<String> {
-    let listed = message == "found sequence, expected a map"
-        || path.starts_with("analysis.") && message.starts_with("found map");
-    let path = listed.then(|| path.trim_end_matches(|c: char| c == '.' || c.is_ascii_digit()))?;
+    if message != "found sequence, expected a table" {
+        return None;
+    }
+    let within_list = path.split('.').any(|part| part.parse::<usize>().is_ok());
     Some(match path {
         "beam" => "write `[beam.NAME]`, one table with a name of its own for each beam".to_owned(),
+        _ if within_list => "write a table, `{ key = value, … }`".to_owned(),
         _ => format!("write `[{path}]`, with single brackets: there is one"),
     })
 }
@@ -133,6 +145,19 @@ pub(super) fn path_at(document: &DeTable<'_>, span: &Range<usize>) -> Vec<String
         }
     });
     best.1
+}
+
+/// Whether the value at `path` is a list.
+fn is_list(document: &DeTable<'_>, path: &[String]) -> bool {
+    let Some((first, rest)) = path.split_first() else { return false };
+    let value = rest.iter().try_fold(document.get(first.as_str()), |value, part| {
+        Some(match value?.get_ref() {
+            DeValue::Table(table) => table.get(part.as_str()),
+            DeValue::Array(items) => items.get(part.parse::<usize>().ok()?),
+            _ => None,
+        })
+    });
+    value.flatten().is_some_and(|value| matches!(value.get_ref(), DeValue::Array(_)))
 }
 
 type See<'a> = &'a mut dyn FnMut(&[String], Range<usize>);

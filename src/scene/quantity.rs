@@ -137,29 +137,113 @@ pub struct Quantity<M, R = Any> {
     kind: PhantomData<(M, R)>,
 }
 
-impl<M: Measure, R: Range> Quantity<M, R> {
-    /// `a positive length: a number in m, or text with a unit such as "1.8 m"`.
-    pub fn expected() -> String {
-        let article =
-            if R::WORD.is_empty() && M::NAME.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-        if M::SI.is_empty() {
-            return format!("{article} {}{}, such as {}", R::WORD, M::NAME, M::EXAMPLE);
+/// What a value of a key must be: [`Measure`] and [`Range`] as values, so that what reads them is
+/// compiled once.
+struct Kind {
+    name: &'static str,
+    si: &'static str,
+    example: &'static str,
+    dimension: Dimension,
+    word: &'static str,
+    bound: Option<&'static str>,
+    contains: fn(f64) -> bool,
+}
+
+impl Kind {
+    fn expected(&self) -> String {
+        let Self { name, si, example, word, .. } = self;
+        let article = if word.is_empty() && name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        if si.is_empty() {
+            return format!("{article} {word}{name}, such as {example}");
         }
-        format!(
-            "{article} {}{}: a number in {}, or text with a unit such as \"{}\"",
-            R::WORD,
-            M::NAME,
-            M::SI,
-            M::EXAMPLE
-        )
+        format!("{article} {word}{name}: a number in {si}, or text with a unit such as \"{example}\"")
     }
 
-    fn check(value: f64, found: &dyn fmt::Display) -> Result<Self, String> {
-        if !value.is_finite() || !R::contains(value) {
+    fn check(&self, value: f64, found: &dyn fmt::Display) -> Result<f64, String> {
+        if !value.is_finite() || !(self.contains)(value) {
             let finite = if value.is_finite() { "" } else { "; it must be finite" };
-            return Err(format!("found {found}, expected {}{finite}", Self::expected()));
+            return Err(format!("found {found}, expected {}{finite}", self.expected()));
         }
-        Ok(Self { si: value, kind: PhantomData })
+        Ok(value)
+    }
+
+    fn parse(&self, text: &str) -> Result<f64, String> {
+        let quoted = format!("{text:?}");
+        let (number, symbol) = unit::split_number(text)
+            .map_err(|reason| format!("found {quoted}, expected {}: {reason}", self.expected()))?;
+        if symbol.is_empty() {
+            let si = self.si;
+            if si.is_empty() {
+                return self.check(number, &quoted);
+            }
+            return Err(format!(
+                "found {quoted}, which has no unit, expected {}\nwrite {number} without quotation marks for {si}, \
+                 or \"{number} {si}\"",
+                self.expected(),
+            ));
+        }
+        let unit = unit::parse_unit(symbol).map_err(|reason| {
+            format!("found {quoted}, expected {}\nin the unit: {reason}", self.expected())
+        })?;
+        if unit.dimension != self.dimension {
+            return Err(format!(
+                "found {quoted}, whose dimension is {}, not {}; expected {}",
+                unit.dimension,
+                self.dimension,
+                self.expected()
+            ));
+        }
+        self.check(number * unit.factor, &quoted)
+    }
+
+    /// The words of its range and its name, each with a capital.
+    fn schema_name(&self) -> String {
+        let mut name: String = self.word.trim_end().into();
+        for word in self.name.split(' ') {
+            name.push_str(word.get(..1).unwrap_or_default().to_uppercase().as_str());
+            name.push_str(word.get(1..).unwrap_or_default());
+        }
+        name.replace("positive", "Positive")
+    }
+
+    fn schema(&self) -> Schema {
+        let mut number = json_schema!({ "type": "number" });
+        if let Some(bound) = self.bound {
+            number.insert(bound.into(), 0.into());
+        }
+        if self.si.is_empty() {
+            number.insert("description".into(), self.expected().into());
+            return number;
+        }
+        json_schema!({
+            "description": self.expected(),
+            "anyOf": [
+                number,
+                { "type": "string", "pattern": r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\d\s]" },
+            ],
+            "examples": [self.example],
+        })
+    }
+}
+
+impl<M: Measure, R: Range> Quantity<M, R> {
+    const KIND: Kind = Kind {
+        name: M::NAME,
+        si: M::SI,
+        example: M::EXAMPLE,
+        dimension: M::DIMENSION,
+        word: R::WORD,
+        bound: R::BOUND,
+        contains: R::contains,
+    };
+
+    /// `a positive length: a number in m, or text with a unit such as "1.8 m"`.
+    pub fn expected() -> String {
+        Self::KIND.expected()
+    }
+
+    fn new(si: f64) -> Self {
+        Self { si, kind: PhantomData }
     }
 
     /// Reads `"1.8 m"`.
@@ -167,39 +251,22 @@ impl<M: Measure, R: Range> Quantity<M, R> {
     /// # Errors
     /// What was found and what is legal, in one sentence.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let expected = Self::expected;
-        let quoted = format!("{text:?}");
-        let (number, symbol) = unit::split_number(text)
-            .map_err(|reason| format!("found {quoted}, expected {}: {reason}", expected()))?;
-        if symbol.is_empty() {
-            if M::SI.is_empty() {
-                return Self::check(number, &quoted);
-            }
-            return Err(format!(
-                "found {quoted}, which has no unit, expected {}\nwrite {number} without quotation marks for {}, \
-                 or \"{number} {}\"",
-                expected(),
-                M::SI,
-                M::SI
-            ));
-        }
-        let unit = unit::parse_unit(symbol)
-            .map_err(|reason| format!("found {quoted}, expected {}\nin the unit: {reason}", expected()))?;
-        if unit.dimension != M::DIMENSION {
-            return Err(format!(
-                "found {quoted}, whose dimension is {}, not {}; expected {}",
-                unit.dimension,
-                M::DIMENSION,
-                expected()
-            ));
-        }
-        Self::check(number * unit.factor, &quoted)
+        Self::KIND.parse(text).map(Self::new)
     }
 }
 
 impl<'de, M: Measure, R: Range> Deserialize<'de> for Quantity<M, R> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Reader<M, R>(PhantomData<(M, R)>);
+
+        impl<M: Measure, R: Range> Reader<M, R> {
+            fn checked<E: serde::de::Error>(
+                value: f64,
+                found: &dyn fmt::Display,
+            ) -> Result<Quantity<M, R>, E> {
+                Quantity::<M, R>::KIND.check(value, found).map(Quantity::new).map_err(E::custom)
+            }
+        }
 
         impl<M: Measure, R: Range> Visitor<'_> for Reader<M, R> {
             type Value = Quantity<M, R>;
@@ -209,15 +276,15 @@ impl<'de, M: Measure, R: Range> Deserialize<'de> for Quantity<M, R> {
             }
 
             fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Self::Value, E> {
-                Quantity::check(value, &value).map_err(E::custom)
+                Self::checked(value, &value)
             }
 
             fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Self::Value, E> {
-                Quantity::check(value as f64, &value).map_err(E::custom)
+                Self::checked(value as f64, &value)
             }
 
             fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Self::Value, E> {
-                Quantity::check(value as f64, &value).map_err(E::custom)
+                Self::checked(value as f64, &value)
             }
 
             fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Self::Value, E> {
@@ -231,31 +298,11 @@ impl<'de, M: Measure, R: Range> Deserialize<'de> for Quantity<M, R> {
 
 impl<M: Measure, R: Range> JsonSchema for Quantity<M, R> {
     fn schema_name() -> Cow<'static, str> {
-        let mut name: String = R::WORD.trim_end().into();
-        for word in M::NAME.split(' ') {
-            name.push_str(word.get(..1).unwrap_or_default().to_uppercase().as_str());
-            name.push_str(word.get(1..).unwrap_or_default());
-        }
-        name.replace("positive", "Positive").into()
+        Self::KIND.schema_name().into()
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        let mut number = json_schema!({ "type": "number" });
-        if let Some(bound) = R::BOUND {
-            number.insert(bound.into(), 0.into());
-        }
-        if M::SI.is_empty() {
-            number.insert("description".into(), Self::expected().into());
-            return number;
-        }
-        json_schema!({
-            "description": Self::expected(),
-            "anyOf": [
-                number,
-                { "type": "string", "pattern": r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\d\s]" },
-            ],
-            "examples": [M::EXAMPLE],
-        })
+        Self::KIND.schema()
     }
 }
 

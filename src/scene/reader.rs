@@ -2,14 +2,15 @@
 //!
 //! The `toml` crate has such a view too. Its own is generic over several kinds of maps, for each of
 //! which the compiler writes out the reader of every table of `file`: a quarter of this crate's
-//! machine code. Here a table is read from one kind of map only.
+//! machine code. Here a table is read from one kind of map only, and what expects a table, a list, a
+//! word or a number is not compiled for the others.
 
 use std::fmt;
 use std::ops::Range;
 
 use serde::de::value::StrDeserializer;
 use serde::de::{
-    Deserialize, DeserializeSeed, Deserializer, Error as _, IntoDeserializer, MapAccess, SeqAccess,
+    Deserialize, DeserializeSeed, Deserializer, Error as _, Expected, IntoDeserializer, MapAccess, SeqAccess,
     Unexpected, Visitor,
 };
 use toml::Spanned;
@@ -82,6 +83,17 @@ impl<'a> Node<'a> {
         Self { input: Input::Value(value.get_ref()), span: value.span() }
     }
 
+    /// The error that something else was expected.
+    fn unlike(&self, expected: &dyn Expected) -> Error {
+        let found = match self.input {
+            Input::Key(text) => Unexpected::Str(text),
+            Input::Byte(number) => Unexpected::Unsigned(number as u64),
+            Input::Table(_) => Unexpected::Map,
+            Input::Value(value) => unexpected(value),
+        };
+        Error::invalid_type(found, expected).within(&self.span)
+    }
+
     fn text(&self) -> Option<&'a str> {
         match &self.input {
             Input::Key(text) => Some(text),
@@ -91,26 +103,62 @@ impl<'a> Node<'a> {
     }
 }
 
-/// Calls the method of a visitor that belongs to a number.
-fn visit_number<'a, V: Visitor<'a>>(value: &DeValue<'a>, visitor: V) -> Result<V::Value, Error> {
-    match value {
-        DeValue::Integer(integer) => {
-            let (digits, radix) = (integer.as_str(), integer.radix());
-            if let Ok(number) = i64::from_str_radix(digits, radix) {
-                return visitor.visit_i64(number);
+/// A number of the document.
+enum Number {
+    Signed(i64),
+    Unsigned(u64),
+    Float(f64),
+}
+
+impl Number {
+    fn read(value: &DeValue<'_>, expected: &dyn Expected) -> Result<Self, Error> {
+        match value {
+            DeValue::Integer(integer) => {
+                let (digits, radix) = (integer.as_str(), integer.radix());
+                if let Ok(number) = i64::from_str_radix(digits, radix) {
+                    return Ok(Self::Signed(number));
+                }
+                match u64::from_str_radix(digits, radix) {
+                    Ok(number) => Ok(Self::Unsigned(number)),
+                    Err(_) => Err(Error::custom("the whole number has too many digits")),
+                }
             }
-            match u64::from_str_radix(digits, radix) {
-                Ok(number) => visitor.visit_u64(number),
-                Err(_) => Err(Error::custom("the whole number has too many digits")),
-            }
+            DeValue::Float(float) => match float.as_str().parse::<f64>() {
+                Ok(number)
+                    if number.is_finite() || !float.as_str().contains(|c: char| c.is_ascii_digit()) =>
+                {
+                    Ok(Self::Float(number))
+                }
+                _ => Err(Error::custom("the number is beyond the largest one, 1.8e308")),
+            },
+            _ => Err(Error::invalid_type(unexpected(value), expected)),
         }
-        DeValue::Float(float) => match float.as_str().parse::<f64>() {
-            Ok(number) if number.is_finite() || !float.as_str().contains(|c: char| c.is_ascii_digit()) => {
-                visitor.visit_f64(number)
-            }
-            _ => Err(Error::custom("the number is beyond the largest one, 1.8e308")),
-        },
-        _ => Err(Error::invalid_type(Unexpected::Other("a date"), &visitor)),
+    }
+
+    fn visit<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self {
+            Self::Signed(number) => visitor.visit_i64(number),
+            Self::Unsigned(number) => visitor.visit_u64(number),
+            Self::Float(number) => visitor.visit_f64(number),
+        }
+    }
+}
+
+/// What a value is, in the words of serde's messages.
+fn unexpected<'a>(value: &'a DeValue<'_>) -> Unexpected<'a> {
+    let number = |value| match Number::read(value, &"a number") {
+        Ok(Number::Signed(number)) => Unexpected::Signed(number),
+        Ok(Number::Unsigned(number)) => Unexpected::Unsigned(number),
+        Ok(Number::Float(number)) => Unexpected::Float(number),
+        Err(_) => Unexpected::Other("a number that is too large"),
+    };
+    match value {
+        DeValue::Table(_) => Unexpected::Map,
+        DeValue::Array(_) => Unexpected::Seq,
+        DeValue::String(text) => Unexpected::Str(text),
+        DeValue::Boolean(value) => Unexpected::Bool(*value),
+        DeValue::Integer(_) | DeValue::Float(_) => number(value),
+        DeValue::Datetime(_) => Unexpected::Other("a date"),
     }
 }
 
@@ -127,9 +175,81 @@ impl<'de> Deserializer<'de> for Node<'de> {
             Input::Value(DeValue::Array(items)) => visitor.visit_seq(Items(items.iter())),
             Input::Value(DeValue::String(text)) => visitor.visit_borrowed_str(text),
             Input::Value(DeValue::Boolean(value)) => visitor.visit_bool(*value),
-            Input::Value(value) => visit_number(value, visitor),
+            Input::Value(value) => Number::read(value, &visitor).and_then(|number| number.visit(visitor)),
         };
         read.map_err(|error| error.within(&self.span))
+    }
+
+    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self.input {
+            Input::Value(DeValue::Boolean(value)) => {
+                visitor.visit_bool(*value).map_err(|error: Error| error.within(&self.span))
+            }
+            _ => Err(self.unlike(&visitor)),
+        }
+    }
+
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        let read = match self.input {
+            Input::Value(value @ (DeValue::Integer(_) | DeValue::Float(_))) => {
+                Number::read(value, &visitor).and_then(|number| number.visit(visitor))
+            }
+            _ => return Err(self.unlike(&visitor)),
+        };
+        read.map_err(|error| error.within(&self.span))
+    }
+
+    fn deserialize_u64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self.input {
+            Input::Byte(number) => visitor.visit_u64(number as u64),
+            _ => self.deserialize_f64(visitor),
+        }
+    }
+
+    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self.text() {
+            Some(text) => visitor.visit_borrowed_str(text).map_err(|error: Error| error.within(&self.span)),
+            None => Err(self.unlike(&visitor)),
+        }
+    }
+
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        self.deserialize_str(visitor)
+    }
+
+    fn deserialize_identifier<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        self.deserialize_str(visitor)
+    }
+
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self.input {
+            Input::Value(DeValue::Array(items)) => {
+                visitor.visit_seq(Items(items.iter())).map_err(|error| error.within(&self.span))
+            }
+            _ => Err(self.unlike(&visitor)),
+        }
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
+        self.deserialize_seq(visitor)
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self.input {
+            Input::Table(table) | Input::Value(DeValue::Table(table)) => visitor
+                .visit_map(Entries { rest: table.iter(), value: None })
+                .map_err(|error| error.within(&self.span)),
+            _ => Err(self.unlike(&visitor)),
+        }
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        self.deserialize_map(visitor)
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
@@ -144,24 +264,15 @@ impl<'de> Deserializer<'de> for Node<'de> {
         visitor.visit_newtype_struct(self)
     }
 
+    /// A value with its place: the only tuple structs of a scene.
     fn deserialize_tuple_struct<V: Visitor<'de>>(
         self,
         name: &'static str,
         _: usize,
         visitor: V,
     ) -> Result<V::Value, Error> {
-        if name == PLACE {
-            visitor.visit_seq(Place { node: self, given: 0 })
-        } else {
-            self.deserialize_any(visitor)
-        }
-    }
-
-    fn deserialize_identifier<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.text() {
-            Some(text) => visitor.visit_borrowed_str(text).map_err(|error: Error| error.within(&self.span)),
-            None => self.deserialize_any(visitor),
-        }
+        debug_assert_eq!(name, PLACE);
+        visitor.visit_seq(Place { node: self, given: 0 })
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
@@ -181,8 +292,7 @@ impl<'de> Deserializer<'de> for Node<'de> {
     }
 
     serde::forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit
-        unit_struct seq tuple map struct ignored_any
+        i8 i16 i32 i64 i128 u8 u16 u32 u128 f32 char bytes byte_buf unit unit_struct ignored_any
     }
 }
 

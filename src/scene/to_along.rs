@@ -106,11 +106,18 @@ pub(super) fn along<M: Measure, R: Range>(
         AlongBeam::Varying(varying) => varying,
     };
     match varying {
-        VaryingTable { table: Some(places), polynomial: None, pieces: None } => table(places, key, length),
-        VaryingTable { table: None, polynomial: Some(terms), pieces: None } => {
-            polynomial::<M, R>(terms, key, length)
+        VaryingTable { table: Some(places), polynomial: None, pieces: None } => {
+            let PlacesTable { s, value } = places.get();
+            table(places.span(), s, si(value.get()), key, length)
         }
-        VaryingTable { table: None, polynomial: None, pieces: Some(of) } => pieces(of, key, length),
+        VaryingTable { table: None, polynomial: Some(terms), pieces: None } => {
+            let along = polynomial(si(terms.get()), terms.span(), key)?;
+            within::<M, R>(along, terms.span(), key, length)
+        }
+        VaryingTable { table: None, polynomial: None, pieces: Some(of) } => {
+            let PiecesTable { until, value } = of.get();
+            pieces(of.span(), until, si(value.get()), key, length)
+        }
         VaryingTable { table: None, polynomial: None, pieces: None } => {
             Err(Fault::new(located.span(), format!("`{key}` is an empty table")).help(ONE))
         }
@@ -118,16 +125,20 @@ pub(super) fn along<M: Measure, R: Range>(
     }
 }
 
-fn table<M: Measure, R: Range>(
-    located: &Located<PlacesTable<M, R>>,
+fn si<M, R>(values: &[Quantity<M, R>]) -> Vec<f64> {
+    values.iter().map(|value| value.si).collect()
+}
+
+fn table(
+    span: ByteRange<usize>,
+    places: &[Located<Quantity<Length>>],
+    values: Vec<f64>,
     key: &str,
     length: f64,
 ) -> Result<Along, Fault> {
-    let PlacesTable { s: places, value } = located.get();
-    let values: Vec<f64> = value.get().iter().map(|value| value.si).collect();
     if places.len() != values.len() || places.len() < 2 {
         return Err(Fault::new(
-            located.span(),
+            span,
             format!(
                 "`{key}`: a table needs two places or more and a value for each; found {} places and {} values",
                 places.len(),
@@ -162,38 +173,42 @@ fn table<M: Measure, R: Range>(
     Ok(Along::Table { s, value: values })
 }
 
-fn polynomial<M: Measure, R: Range>(
-    located: &Located<Vec<Quantity<M>>>,
+fn polynomial(terms: Vec<f64>, span: ByteRange<usize>, key: &str) -> Result<Along, Fault> {
+    if terms.is_empty() {
+        return Err(Fault::new(span, format!("`{key}`: a polynomial without coefficients"))
+            .help("such as `polynomial = [3.0, -2.0]` for 3 − 2 s"));
+    }
+    Ok(Along::Polynomial(terms))
+}
+
+/// The polynomial, unless it leaves the range of its quantity on a beam of the given length.
+fn within<M: Measure, R: Range>(
+    along: Along,
+    span: ByteRange<usize>,
     key: &str,
     length: f64,
 ) -> Result<Along, Fault> {
-    let terms: Vec<f64> = located.get().iter().map(|term| term.si).collect();
-    if terms.is_empty() {
-        return Err(Fault::new(located.span(), format!("`{key}`: a polynomial without coefficients"))
-            .help("such as `polynomial = [3.0, -2.0]` for 3 − 2 s"));
-    }
-    let along = Along::Polynomial(terms);
-    let [low, high] = along.bounds(length);
-    if let Some(bad) = [low, high].into_iter().find(|bound| !R::contains(*bound) || !bound.is_finite()) {
-        return Err(Fault::new(
-            located.span(),
+    let beyond = |bound: &f64| !R::contains(*bound) || !bound.is_finite();
+    match along.bounds(length).into_iter().find(beyond) {
+        None => Ok(along),
+        Some(bad) => Err(Fault::new(
+            span,
             format!(
                 "`{key}`: this polynomial reaches {bad:.4e} {} on the beam, which is {length} m long",
                 M::SI
             ),
         )
-        .help(format!("it must be a {}{} from s = 0 to s = {length} m", R::WORD, M::NAME)));
+        .help(format!("it must be a {}{} from s = 0 to s = {length} m", R::WORD, M::NAME))),
     }
-    Ok(along)
 }
 
-fn pieces<M: Measure, R: Range>(
-    located: &Located<PiecesTable<M, R>>,
+fn pieces(
+    span: ByteRange<usize>,
+    places: &[Located<Quantity<Length>>],
+    values: Vec<f64>,
     key: &str,
     length: f64,
 ) -> Result<Along, Fault> {
-    let PiecesTable { until: places, value } = located.get();
-    let values: Vec<f64> = value.get().iter().map(|value| value.si).collect();
     rising(places, key)?;
     let slack = ROUND_OFF * length;
     let inside: Vec<f64> = places.iter().map(|s| s.get().si).take_while(|s| *s < length - slack).collect();
@@ -210,7 +225,7 @@ fn pieces<M: Measure, R: Range>(
     }
     if values.len() != inside.len() + 1 {
         return Err(Fault::new(
-            located.span(),
+            span,
             format!(
                 "`{key}`: {} pieces on the beam, which is {length} m long, and {} values",
                 inside.len() + 1,

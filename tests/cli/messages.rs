@@ -57,6 +57,13 @@ const CASES: &[(&str, &str, &str)] = &[
     ("one bracket within a table", "[[effect.force]]", "[effect.force]"),
     ("one bracket about a probe", "[[probe]]", "[probe]"),
     ("two brackets about a beam", "[beam.arm]", "[[beam]]"),
+    ("two brackets about a named beam", "[beam.arm]", "[[beam.arm]]"),
+    ("values without keys", "[analysis.static]", "[analysis]\nstatic = [1e-9]"),
+    (
+        "values without keys in a list",
+        "fix = [\"x\", \"y\", \"angle\"]",
+        "fix = [\"x\", \"y\", \"angle\"]\nmove = [0.0, 0.0, 1.0]",
+    ),
     ("two brackets about an analysis", "[analysis.static]", "[[analysis.static]]"),
     ("a word for a list", "fix = [\"x\", \"y\", \"angle\"]", "fix = \"x\""),
     ("a number for a list", "end = [\"1.8 m\", 0.0]", "points = 3"),

@@ -109,50 +109,55 @@ impl<M: Measure, R: Range> JsonSchema for AlongBeam<M, R> {
         let constant = generator.subschema_for::<Quantity<M, R>>();
         let coefficient = generator.subschema_for::<Quantity<M>>();
         let place = generator.subschema_for::<Quantity<Length>>();
-        let places = |description: &str| json_schema!({ "type": "array", "items": place.clone(), "description": description });
-        let values =
-            json_schema!({ "type": "array", "items": constant.clone(), "description": "A value for each." });
-        json_schema!({
-            "description": "A value, or how it varies along the arc length of the beam.",
-            "anyOf": [
-                constant,
-                {
-                    "type": "object",
-                    "additionalProperties": false,
-                    "minProperties": 1,
-                    "maxProperties": 1,
-                    "properties": {
-                        "table": {
-                            "description": "Linear between values at arc lengths.",
-                            "type": "object",
-                            "additionalProperties": false,
-                            "required": ["s", "value"],
-                            "properties": {
-                                "s": places("Arc lengths, rising from the beam's start to its end."),
-                                "value": values.clone(),
-                            },
+        schema(constant, coefficient, place)
+    }
+}
+
+/// The schema of a quantity of which those of a value, a coefficient and an arc length are given.
+fn schema(constant: Schema, coefficient: Schema, place: Schema) -> Schema {
+    let places = |description: &str| json_schema!({ "type": "array", "items": place.clone(), "description": description });
+    let values =
+        json_schema!({ "type": "array", "items": constant.clone(), "description": "A value for each." });
+    json_schema!({
+        "description": "A value, or how it varies along the arc length of the beam.",
+        "anyOf": [
+            constant,
+            {
+                "type": "object",
+                "additionalProperties": false,
+                "minProperties": 1,
+                "maxProperties": 1,
+                "properties": {
+                    "table": {
+                        "description": "Linear between values at arc lengths.",
+                        "type": "object",
+                        "additionalProperties": false,
+                        "required": ["s", "value"],
+                        "properties": {
+                            "s": places("Arc lengths, rising from the beam's start to its end."),
+                            "value": values.clone(),
                         },
-                        "polynomial": {
-                            "description": "Coefficients of 1, s, s², …, with s in metres.",
-                            "type": "array",
-                            "minItems": 1,
-                            "items": coefficient,
-                        },
-                        "pieces": {
-                            "description": "Constant by pieces.",
-                            "type": "object",
-                            "additionalProperties": false,
-                            "required": ["until", "value"],
-                            "properties": {
-                                "until": places("Arc lengths at which pieces end, rising; the end of the last one may be left out."),
-                                "value": values,
-                            },
+                    },
+                    "polynomial": {
+                        "description": "Coefficients of 1, s, s², …, with s in metres.",
+                        "type": "array",
+                        "minItems": 1,
+                        "items": coefficient,
+                    },
+                    "pieces": {
+                        "description": "Constant by pieces.",
+                        "type": "object",
+                        "additionalProperties": false,
+                        "required": ["until", "value"],
+                        "properties": {
+                            "until": places("Arc lengths at which pieces end, rising; the end of the last one may be left out."),
+                            "value": values,
                         },
                     },
                 },
-            ],
-        })
-    }
+            },
+        ],
+    })
 }
 
 /// The components of a vector, each of which may vary along a beam.
