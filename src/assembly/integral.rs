@@ -398,12 +398,10 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
     }
 
     fn add_forces(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes], scratch: &mut [Vec<f64>; 2]) {
-        let points = self.table.points_per_cell;
-        let by_fours = points <= *POINTS_BY_FOURS.end() && (Self::COMMON || matches!(points, 2 | 3));
         match self.table.width {
-            4 if Self::CABLES && by_fours => self.forces_in_lanes::<4>(factors, q, f),
-            8 if Self::COMMON && by_fours => self.forces_in_lanes::<8>(factors, q, f),
-            12 if Self::COMMON && by_fours => self.forces_in_lanes::<12>(factors, q, f),
+            4 if Self::CABLES => self.forces_in_lanes::<4>(factors, q, f),
+            8 if Self::COMMON => self.forces_in_lanes::<8>(factors, q, f),
+            12 if Self::COMMON => self.forces_in_lanes::<12>(factors, q, f),
             _ => {
                 let factors = factors.to_array();
                 lanes::one_by_one(q, f, scratch, |lane, q, f| self.add_force(factors[lane], q, f));

@@ -90,14 +90,16 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
 
     /// The forces of all cells in four states, one per lane.
     pub(super) fn forces_in_lanes<const W: usize>(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes]) {
-        match self.table.points_per_cell {
-            2 => self.forces_in_lanes_of::<W, 2>(factors, q, f),
-            3 => self.forces_in_lanes_of::<W, 3>(factors, q, f),
-            1 if Self::COMMON => self.forces_in_lanes_of::<W, 1>(factors, q, f),
-            4 if Self::COMMON => self.forces_in_lanes_of::<W, 4>(factors, q, f),
-            5 if Self::COMMON => self.forces_in_lanes_of::<W, 5>(factors, q, f),
-            points => unreachable!("no sum over {points} points is compiled"),
+        if D::BY_FOURS {
+            match self.table.points_per_cell {
+                2 => return self.forces_in_lanes_of::<W, 2>(factors, q, f),
+                3 => return self.forces_in_lanes_of::<W, 3>(factors, q, f),
+                4 if Self::COMMON => return self.forces_in_lanes_of::<W, 4>(factors, q, f),
+                5 if Self::COMMON => return self.forces_in_lanes_of::<W, 5>(factors, q, f),
+                _ => {}
+            }
         }
+        self.forces_in_lanes_by_points::<W>(factors, q, f);
     }
 
     fn forces_in_lanes_of<const W: usize, const P: usize>(
@@ -111,10 +113,39 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let range = first..first + 2 * W;
             let Some(here) = q[range.clone()].as_chunks::<2>().0.first_chunk::<W>() else { continue };
             let sums = self.sums_of_four::<W, P>(cell, 0, 1.0, here);
-            for (f, sum) in f[range].as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
-                *f = [factors.mul_add(sum[0], f[0]), factors.mul_add(sum[1], f[1])];
-            }
+            add_sums(factors, &sums, &mut f[range]);
         }
+    }
+
+    /// The same for any number of points, one after the other.
+    fn forces_in_lanes_by_points<const W: usize>(&self, factors: Lanes, q: &[Lanes], f: &mut [Lanes]) {
+        for (cell, entry) in self.table.cells.iter().enumerate() {
+            let first = self.first(cell);
+            let range = first..first + 2 * W;
+            let Some(here) = q[range.clone()].as_chunks::<2>().0.first_chunk::<W>() else { continue };
+            let (weights, rows) = self.table.block(*entry);
+            let mut sums = [[Lanes::ZERO; 2]; W];
+            for (p, (weight, rows)) in weights.iter().zip(rows.as_chunks::<W>().0.chunks_exact(M)).enumerate()
+            {
+                let points = Points { first: cell * weights.len() + p, stride: 0 };
+                let gradients = self.density.gradients(*weight, points, &fields_of_four(rows, here));
+                for (row, g) in rows.iter().zip(&gradients) {
+                    for (n, sum) in row.iter().zip(&mut sums) {
+                        let n = Lanes::splat(*n);
+                        *sum = [n.mul_add(g[0], sum[0]), n.mul_add(g[1], sum[1])];
+                    }
+                }
+            }
+            add_sums(factors, &sums, &mut f[range]);
+        }
+    }
+}
+
+/// Adds the forces on a cell's coefficients in four states, each times its factor.
+#[inline(always)]
+fn add_sums<const W: usize>(factors: Lanes, sums: &[Pair<Lanes>; W], f: &mut [Lanes]) {
+    for (f, sum) in f.as_chunks_mut::<2>().0.iter_mut().zip(sums) {
+        *f = [factors.mul_add(sum[0], f[0]), factors.mul_add(sum[1], f[1])];
     }
 }
 

@@ -68,8 +68,10 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         workspace: &mut Workspace,
     ) {
         let points = self.table.points_per_cell;
+        // Arrays of known lengths: the compiler then drops the checks of bounds in the loops.
         let products = &mut workspace.lanes;
-        products.resize(points * 2 * M * (W / 2), Lanes::ZERO);
+        products.resize(points * M * W, Lanes::ZERO);
+        let products = products.as_chunks_mut::<W>().0;
         let (weights, rows) = self.table.block(self.table.cells[cell]);
         let rows = rows.as_chunks::<W>().0;
         let first = self.first(cell);
@@ -79,7 +81,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             [coefficients::<W>(&q[range.clone()]), coefficients(&increment[range.clone()])]
         });
         let mut sums = [[0.0; 2]; W];
-        let by_point = weights.iter().zip(rows.chunks_exact(M)).zip(products.chunks_exact_mut(M * W));
+        let by_point = weights.iter().zip(rows.as_chunks::<M>().0).zip(products.as_chunks_mut::<M>().0);
         for (p, ((weight, rows), products)) in by_point.enumerate() {
             let weight = factor * weight;
             let z = fields::<M, W>(rows, &here);
@@ -101,14 +103,13 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
                         let (x, y) = (weight * hessian[m][n][(d, 0)], weight * hessian[m][n][(d, 1)]);
                         Lanes::new([x, y, x, y])
                     });
-                    let out = &mut products[(2 * m + d) * (W / 2)..(2 * m + d + 1) * (W / 2)];
                     for b in 0..W / 2 {
                         let mut sum = Lanes::ZERO;
                         for n in 0..M {
                             let [one, other] = [rows[n][2 * b], rows[n][2 * b + 1]];
                             sum = h[n].mul_add(Lanes::new([one, one, other, other]), sum);
                         }
-                        out[b] = sum;
+                        products[m][d * (W / 2) + b] = sum;
                     }
                 }
             }
@@ -116,9 +117,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         for (f, sum) in f[range].as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
             *f = [f[0] + sum[0], f[1] + sum[1]];
         }
-        for_tiles::<W>(k, |k, a, b| {
-            add_tile(k, first / 4 + a, first / 4 + b, &tile::<M, W>(rows, products, a, b))
-        });
+        for_tiles::<W>(k, |k, a, b| add_tile(k, first / 4 + a, first / 4 + b, &tile(rows, products, a, b)));
     }
 
     /// The cable elements that are grouped by four, with `P` points in each.
@@ -224,14 +223,9 @@ fn add_to(target: &mut [f64], values: Lanes) {
 
 /// The tile in the rows of node `a` and the columns of node `b`: Σ_points Σ_m N_a⁽ᵒᵐ⁾ P_md.
 #[inline(always)]
-fn tile<const M: usize, const W: usize>(
-    rows: &[[f64; W]],
-    products: &[Lanes],
-    a: usize,
-    b: usize,
-) -> [Lanes; 4] {
+fn tile<const W: usize>(rows: &[[f64; W]], products: &[[Lanes; W]], a: usize, b: usize) -> [Lanes; 4] {
     let mut tile = [Lanes::ZERO; 4];
-    for (row, products) in rows.iter().zip(products.chunks_exact(W)) {
+    for (row, products) in rows.iter().zip(products) {
         let (one, other) = (Lanes::splat(row[2 * a]), Lanes::splat(row[2 * a + 1]));
         for d in 0..2 {
             let product = products[d * (W / 2) + b];
