@@ -118,6 +118,8 @@ impl View {
         self.combine(0, 0, vector)
     }
 
+    // Without the hint a call of its own in every loop over places.
+    #[inline]
     fn combine(&self, point: usize, row: usize, q: &[f64]) -> [f64; 2] {
         let width = self.table.width;
         let (_, rows) = self.table.block(self.table.cells[point]);
