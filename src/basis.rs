@@ -29,6 +29,7 @@ mod lu;
 mod moments;
 mod multiprecision;
 mod nodes;
+mod profile;
 mod quadrature;
 mod rpim;
 mod table;
@@ -42,11 +43,14 @@ pub use table::{BasisTable, Cell};
 use cache::{Request, Tables};
 use cells::{Supports, distinct_cells};
 use even::Even;
-use interpolation::{Interpolation, Quality, Wanted};
+use interpolation::{Amount, Interpolation, Quality, Wanted};
 use rpim::{Interpolant, Precisions};
 
 /// Distance at which a point is taken to coincide with a node, as a fraction of the beam's length.
 const NODE_SNAP: f64 = 16.0 * f64::EPSILON;
+
+/// From so many different ξ on, polynomials of the rows of evenly spaced cells are worth their price.
+const MANY: usize = 100;
 
 /// Part of a cell that is too short to be a piece of its own.
 const SLIVER: f64 = 1e-9;
@@ -299,7 +303,8 @@ impl Basis {
                     table.s.push(self.nodes[number] + xi * h);
                     let start = table.rows.len();
                     table.rows.resize(start + table.row_stride(), 0.0);
-                    self.fill(number, xi, orders, &mut table.rows[start..], &mut precisions);
+                    let wanted = Wanted { xi, orders, stride: self.width, amount: Amount::Few };
+                    self.fill(number, wanted, &mut table.rows[start..], &mut precisions);
                 }
                 from = to;
             }
@@ -334,7 +339,8 @@ impl Basis {
             for (xi, w) in xi.iter().zip(&w) {
                 table.weights.push(h * w);
                 if let Some(rows) = rows.next() {
-                    self.fill(cell as usize, *xi, orders, rows, &mut precisions);
+                    let wanted = Wanted { xi: *xi, orders, stride: self.width, amount: Amount::Few };
+                    self.fill(cell as usize, wanted, rows, &mut precisions);
                 }
             }
         }
@@ -373,30 +379,39 @@ impl Basis {
             rows: vec![0.0; s.len() * orders.len() * self.width],
             s: Vec::with_capacity(s.len()),
         };
-        let stride = table.row_stride();
+        let places = s.iter().map(|s| self.place(*s)).collect::<Result<Vec<_>, _>>()?;
+        let mut different: Vec<u64> = places.iter().map(|(_, xi)| xi.to_bits()).collect();
+        different.sort_unstable();
+        different.dedup();
+        let amount = if different.len() < MANY { Amount::Few } else { Amount::Many };
         let mut precisions = Precisions::default();
-        let mut rows = table.rows.chunks_exact_mut(stride.max(1));
-        for (block, &s) in s.iter().enumerate() {
-            let slack = NODE_SNAP * self.length;
-            if !(-slack..=self.length + slack).contains(&s) {
-                return Err(BasisError::OffBeam { s, length: self.length });
-            }
-            let last = self.shape_of.len() - 1;
-            let (cell, xi) = match self.node_at(s) {
-                Some(node) if node > last => (last, 1.0),
-                Some(node) => (node, 0.0),
-                None => {
-                    let cell = self.nodes.partition_point(|&node| node <= s).saturating_sub(1).min(last);
-                    (cell, ((s - self.nodes[cell]) / self.spacing(cell)).clamp(0.0, 1.0))
-                }
-            };
+        let stride = table.row_stride().max(1);
+        let mut rows = table.rows.chunks_exact_mut(stride);
+        for (block, (&s, (cell, xi))) in s.iter().zip(places).enumerate() {
             table.cells.push(Cell { first: self.first(cell), block: block as u32 });
             table.s.push(s.clamp(0.0, self.length));
             if let Some(rows) = rows.next() {
-                self.fill(cell, xi, orders, rows, &mut precisions);
+                self.fill(cell, Wanted { xi, orders, stride: self.width, amount }, rows, &mut precisions);
             }
         }
         Ok(table)
+    }
+
+    /// The cell of an arc length, and ξ ∈ [0, 1] in it.
+    fn place(&self, s: f64) -> Result<(usize, f64), BasisError> {
+        let slack = NODE_SNAP * self.length;
+        if !(-slack..=self.length + slack).contains(&s) {
+            return Err(BasisError::OffBeam { s, length: self.length });
+        }
+        let last = self.shape_of.len() - 1;
+        Ok(match self.node_at(s) {
+            Some(node) if node > last => (last, 1.0),
+            Some(node) => (node, 0.0),
+            None => {
+                let cell = self.nodes.partition_point(|&node| node <= s).saturating_sub(1).min(last);
+                (cell, ((s - self.nodes[cell]) / self.spacing(cell)).clamp(0.0, 1.0))
+            }
+        })
     }
 
     /// How well the shape functions satisfy the conditions that define them.
@@ -435,7 +450,8 @@ impl Basis {
     }
 
     /// Fills the zeroed rows of one point, ξ ∈ [0, 1] of a cell.
-    fn fill(&self, cell: usize, xi: f64, orders: &[usize], rows: &mut [f64], precisions: &mut Precisions) {
+    fn fill(&self, cell: usize, wanted: Wanted<'_>, rows: &mut [f64], precisions: &mut Precisions) {
+        let Wanted { xi, orders, .. } = wanted;
         match &self.shapes {
             Shapes::Ancf => {
                 let h = self.spacing(cell);
@@ -454,7 +470,6 @@ impl Basis {
                 let padding = 2 * self.supports.padding(cell);
                 let place = rpim::place(&self.nodes, here, solved);
                 if let Some(rows) = rows.get_mut(padding..) {
-                    let wanted = Wanted { xi, orders, stride: self.width };
                     match shape {
                         Solved::Even(even) => even.rows(precisions, wanted, rows),
                         Solved::Uneven(shape) => shape.rows(interpolation, place, precisions, wanted, rows),

@@ -8,9 +8,10 @@
 //!
 //! What is kept are constants of mathematics: no result depends on what was asked for before.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::interpolation::{Interpolation, Place, Quality, Wanted};
+use super::interpolation::{Amount, Interpolation, Place, Quality, Wanted};
+use super::profile::Profile;
 use super::rpim::{Interpolant, Precisions};
 
 /// Most cells that are kept; the oldest goes first.
@@ -31,6 +32,8 @@ struct EvenCell {
     shape: Interpolant,
     /// ξ, and the rows there, one order after the other.
     rows: Mutex<Vec<(f64, Arc<Vec<f64>>)>>,
+    /// The rows at any point, where a polynomial gives them.
+    profile: OnceLock<Option<Profile>>,
 }
 
 /// A cell of evenly spaced nodes.
@@ -79,8 +82,8 @@ impl Even {
         let interpolation = Interpolation { length, spacings, ..*interpolation };
         let places: Vec<f64> = (0..nodes).map(|node| node as f64).collect();
         let shape = Interpolant::solve(&interpolation, Place { nodes: &places, left }, precisions)?;
-        let rows = Mutex::default();
-        let cell = Arc::new(EvenCell { interpolation, nodes: places, left, shape, rows });
+        let (rows, profile) = (Mutex::default(), OnceLock::new());
+        let cell = Arc::new(EvenCell { interpolation, nodes: places, left, shape, rows, profile });
         let mut kept = lock();
         if kept.len() >= CELLS {
             kept.remove(0);
@@ -98,7 +101,10 @@ impl Even {
     pub fn rows(&self, precisions: &mut Precisions, wanted: Wanted<'_>, rows: &mut [f64]) {
         let width = 2 * self.cell.nodes.len();
         let xi = if self.mirrored { 1.0 - wanted.xi } else { wanted.xi };
-        let here = self.cell.rows_at(xi, precisions);
+        let here = match wanted.amount {
+            Amount::Few => self.cell.rows_at(xi, precisions),
+            Amount::Many => self.cell.rows_of_many(xi, precisions),
+        };
         for (&order, row) in wanted.orders.iter().zip(rows.chunks_mut(wanted.stride.max(1))) {
             let value = self.spacing.powi(-(order as i32));
             let slope = self.spacing.powi(1 - order as i32);
@@ -119,17 +125,30 @@ impl EvenCell {
         if let Some((_, rows)) = lock().iter().find(|(at, _)| *at == xi) {
             return Arc::clone(rows);
         }
-        let width = 2 * self.nodes.len();
-        let mut rows = vec![0.0; ORDERS.len() * width];
-        let place = Place { nodes: &self.nodes, left: self.left };
-        let wanted = Wanted { xi, orders: &ORDERS, stride: width };
-        self.shape.rows(&self.interpolation, place, precisions, wanted, &mut rows);
-        let rows = Arc::new(rows);
+        let rows = Arc::new(self.solved_at(xi, precisions));
         let mut kept = lock();
         if kept.len() >= POINTS {
             kept.remove(0);
         }
         kept.push((xi, Arc::clone(&rows)));
+        rows
+    }
+
+    /// The same where so many points are wanted that a polynomial is worth its price.
+    fn rows_of_many(&self, xi: f64, precisions: &mut Precisions) -> Arc<Vec<f64>> {
+        let width = 2 * self.nodes.len();
+        match self.profile.get_or_init(|| Profile::new(width, |xi| self.solved_at(xi, precisions))) {
+            Some(profile) => Arc::new(profile.at(xi)),
+            None => self.rows_at(xi, precisions),
+        }
+    }
+
+    fn solved_at(&self, xi: f64, precisions: &mut Precisions) -> Vec<f64> {
+        let width = 2 * self.nodes.len();
+        let mut rows = vec![0.0; ORDERS.len() * width];
+        let place = Place { nodes: &self.nodes, left: self.left };
+        let wanted = Wanted { xi, orders: &ORDERS, stride: width, amount: Amount::Few };
+        self.shape.rows(&self.interpolation, place, precisions, wanted, &mut rows);
         rows
     }
 }
@@ -159,7 +178,7 @@ mod tests {
             let place = rpim::place(&nodes, 0..6, cell);
             let shape = Interpolant::solve(&interpolation, place, &mut precisions).unwrap();
             for xi in [0.0, 0.2, 0.7] {
-                let wanted = Wanted { xi, orders: &[2, 0, 1], stride: 12 };
+                let wanted = Wanted { xi, orders: &[2, 0, 1], stride: 12, amount: Amount::Few };
                 let [mut found, mut expected] = [[0.0; 36]; 2];
                 even.rows(&mut precisions, wanted, &mut found);
                 shape.rows(&interpolation, place, &mut precisions, wanted, &mut expected);
@@ -170,6 +189,16 @@ mod tests {
                         "cell {cell}, ξ = {xi}, {i}: {found:e} {expected:e}"
                     );
                 }
+            }
+            let mut of_many = [0.0; 36];
+            let wanted = |amount| Wanted { xi: 0.4321, orders: &[2, 0, 1], stride: 12, amount };
+            let mut found = [0.0; 36];
+            even.rows(&mut precisions, wanted(Amount::Few), &mut found);
+            even.rows(&mut precisions, wanted(Amount::Many), &mut of_many);
+            assert!(even.cell.profile.get().is_some_and(Option::is_some));
+            for (found, of_many) in found.iter().zip(&of_many) {
+                let error = (found - of_many).abs();
+                assert!(error < 1e-12 * found.abs().max(1.0), "cell {cell}: {found:e} {of_many:e}");
             }
             let again = Even::find(&interpolation, 6, cell, &mut precisions).unwrap();
             assert!(Arc::ptr_eq(&even.cell, &again.cell));

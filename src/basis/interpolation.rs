@@ -35,6 +35,17 @@ pub struct Wanted<'a> {
     pub orders: &'a [usize],
     /// Distance in memory from the start of one row to the start of the next.
     pub stride: usize,
+    /// At how many points of the beam rows are wanted.
+    pub amount: Amount,
+}
+
+/// At how many points rows are wanted: whether what makes each cheaper is worth its own price.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Amount {
+    /// At the points of a quadrature, or at some places.
+    Few,
+    /// Along the whole beam, as for a picture of its shape.
+    Many,
 }
 
 /// How accurate the rows of one cell are.

@@ -162,6 +162,7 @@ pub fn place(nodes: &[f64], support: Range<usize>, cell: usize) -> Place<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::interpolation::Amount;
     use super::super::{Kernel, SideCondition};
     use super::*;
     use proptest::prelude::*;
@@ -174,7 +175,7 @@ mod tests {
         let mut rows = Vec::new();
         for xi in [0.11, 0.5, 0.93] {
             let mut point = vec![0.0; 3 * width];
-            let wanted = Wanted { xi, orders: &[0, 1, 2], stride: width };
+            let wanted = Wanted { xi, orders: &[0, 1, 2], stride: width, amount: Amount::Few };
             shape.rows(interpolation, place, &mut precisions, wanted, &mut point);
             rows.extend(point);
         }

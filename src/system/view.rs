@@ -108,7 +108,8 @@ impl View {
     }
 
     fn fields_at(&self, point: usize, q: &[f64]) -> Fields {
-        let [position, gradient, second] = [0, 1, 2].map(|row| self.combine(point, row, q));
+        let row = |row: usize| self.combine(point, row, q);
+        let (position, gradient, second) = (row(0), row(1), row(2));
         Fields { position, gradient, second }
     }
 
@@ -118,8 +119,8 @@ impl View {
         self.combine(0, 0, vector)
     }
 
-    // Without the hint a call of its own in every loop over places.
-    #[inline]
+    // The row is a constant in each caller; as a call of its own it takes twice the instructions.
+    #[inline(always)]
     fn combine(&self, point: usize, row: usize, q: &[f64]) -> [f64; 2] {
         let width = self.table.width;
         let (_, rows) = self.table.block(self.table.cells[point]);
