@@ -4,7 +4,7 @@
 //! polynomial through their values at n Chebyshev points therefore converges like ρ⁻ⁿ, where ρ grows
 //! with the distance of the nearest singularity (Trefethen, *Approximation Theory and Approximation
 //! Practice*, SIAM 2013, ch. 8); for a multiquadric of α node spacings ρ is about 4 α. A row from the
-//! polynomial takes a hundredth of the work that a solution in extended precision takes. It is
+//! polynomial takes a tenth of the work that a solution in extended precision takes. It is
 //! compared with such solutions between the points, and of functions with kinks there is none.
 
 use std::f64::consts::PI;

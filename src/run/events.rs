@@ -3,7 +3,7 @@
 use super::RunError;
 use super::sampler::{ProbePoint, Sampler};
 use crate::model::{Dynamic, EventCondition, ProbeQuantity};
-use crate::results::SectionForces;
+use crate::results::{ProbeSeries, SectionForces, Trajectory};
 use crate::solve::dynamics;
 use crate::system::unfold;
 
@@ -11,6 +11,8 @@ use crate::system::unfold;
 const ROUND_OFFS: f64 = 4.0;
 /// Heights of bends below this are round-off \[beam lengths\].
 const STILL: f64 = 1e-9;
+/// What a probe at rest is moved by round-off at most \[beam lengths\].
+const REST: f64 = 1e-13;
 
 impl Sampler<'_> {
     /// The events of a motion, each with the view of its probe.
@@ -29,6 +31,30 @@ impl Sampler<'_> {
             })
         };
         settings.events.iter().map(watch).collect()
+    }
+
+    /// Warnings about probes that are watched and move, but by no more than what counts as round-off: no
+    /// event was found there, however the quantity turned.
+    pub(super) fn hardly_moving(&self, settings: &Dynamic, trajectory: &Trajectory) -> Vec<String> {
+        let length = self.system.length();
+        let watched = |name: &String| settings.events.iter().any(|event| event.probe == *name);
+        let moved = |probe: &ProbeSeries| {
+            let first = probe.samples.first()?;
+            let far = (first.x.hypot(first.y) / length).max(1.0);
+            let distances = probe.samples.iter().map(|at| (at.x - first.x).hypot(at.y - first.y) / length);
+            let moved = distances.fold(0.0, f64::max);
+            (moved > REST * far && moved < STILL * far).then_some(moved)
+        };
+        let warning = |probe: &ProbeSeries| {
+            moved(probe).map(|moved| {
+                format!(
+                    "probe `{}` moves by {moved:.1e} beam lengths at most: events of so small a motion cannot be told from round-off \
+                     and are not looked for; with a larger load they are",
+                    probe.name
+                )
+            })
+        };
+        trajectory.probes.iter().filter(|probe| watched(&probe.name)).filter_map(warning).collect()
     }
 
     /// Values of a quantity at probe number `number` that are round-off: a position is stored with the

@@ -774,6 +774,8 @@ impl<'a> Sampler<'a> {
         let least = LEAST_ENERGY * self.system.stiffness() * self.system.length();
         trajectory.run.warnings.extend(unbalanced(&trajectory.energy, least));
         trajectory.run.warnings.extend(self.far_from_origin(settings, &solution.states));
+        let unwatched = self.hardly_moving(settings, &trajectory);
+        trajectory.run.warnings.extend(unwatched);
         if let Some(state) = solution.states.last() {
             trajectory.last = match &solution.end {
                 Some(balance) => self.loaded(&state.q, &self.system.actions(balance.view())),

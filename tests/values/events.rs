@@ -230,3 +230,24 @@ fn a_beam_at_rest_has_no_events() {
         }
     }
 }
+
+/// A vibration that is smaller than what counts as round-off has no events, and says so.
+#[test]
+fn motions_too_small_for_events_are_told() {
+    let warned = |force: f64| {
+        let text = format!(
+            "beam.rod = {{ start = [0.3, 0.2], end = [1.1, 0.8], axial_stiffness = 1e5, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }}
+            support = [{{ beam = 'rod', at = 'start', fix = ['x', 'y', 'angle'] }}]
+            effect.force = [{{ beam = 'rod', at = 'end', value = [{:e}, {:e}] }}]
+            probe = [{{ name = 'tip', beam = 'rod', at = 'end' }}]
+            analysis.dynamic = {{ duration = 4, radau.tolerance = 1e-4, event = [{{ probe = 'tip', maximum = 'y' }}] }}\n",
+            -0.6 * force,
+            0.8 * force,
+        );
+        let summary = Written::of(&text).summary();
+        let told = summary["warnings"].to_string().contains("moves by");
+        (told, summary["events"].as_array().is_none_or(Vec::is_empty))
+    };
+    // Twice the static deflection F L³/(3 EI): 2e-6, 2e-10, and nothing.
+    assert_eq!([3e-6, 3e-10, 0.0].map(warned), [(false, false), (true, true), (false, true)]);
+}
