@@ -83,7 +83,7 @@
 
 use super::State;
 use super::memory::{CollocationMemory, Memory, TangentMemory};
-use super::method::Method;
+use super::method::{Allowed, Method};
 use super::motion::{Acceleration, Motion, Rates, StageState};
 use super::stages::{self, Mixture, Stages};
 use super::tableau::{Block, Tableau};
@@ -100,18 +100,11 @@ use nalgebra::{Complex, DMatrix, RowDVector};
 /// Tolerance of the stages in steps of given length, relative to the displacement in the step; the
 /// velocity has the same relative error.
 const TOLERANCE: f64 = 1e-11;
-/// Tolerance of the stages relative to the error that a step may make, for methods that do not damp
-/// and for those that do. Increments are the largest of any node, gradients included, whereas the
-/// error of a step is a mean of positions, so that a loose tolerance is enough. It is tighter for
-/// Gauss' methods, whose stage errors add up in a stiff rotating rod.
-const TOLERANCE_OF_ERROR: [f64; 2] = [1.0, 10.0];
 /// Factor between the error of a vibration in a step and its estimate from the defect.
 const ERROR_OF_DEFECT: f64 = 0.1;
 /// Weight of the errors due to the damping at the ends of steps: they have the same sign in every
 /// step.
 const ERRORS_OF_DAMPING: f64 = 3.0;
-/// The tolerance of the stages is relative to the allowed error of a step, but at most to this.
-const LARGEST_ERROR: f64 = 1e-6;
 /// Smallest tolerance of the stages in beam lengths: without it a beam that nothing moves yet would
 /// be solved to the round-off of zero.
 const REST: f64 = 1e-26;
@@ -634,7 +627,7 @@ impl Method for Collocation<'_> {
         &mut self,
         state: &State,
         end: f64,
-        accuracy: Option<f64>,
+        allowed: Option<Allowed>,
         to: &mut State,
         record: &mut Iterations,
     ) -> Result<f64, Failure> {
@@ -646,7 +639,7 @@ impl Method for Collocation<'_> {
         let start = self.motion.unknowns_of(state);
         let (from, h) = (&*start, end - state.time);
         self.end = end;
-        self.smooth |= accuracy.is_none();
+        self.smooth |= allowed.is_none();
         self.predict(from, h);
         self.stages.measure_displacements(from);
         let [.., displacement] = self.motion.sizes(&self.stages.residual);
@@ -654,10 +647,8 @@ impl Method for Collocation<'_> {
             self.predict_as_a_whole(from, h);
         }
         let tight = (TOLERANCE * displacement).max(REST);
-        let of_error = TOLERANCE_OF_ERROR[usize::from(self.tableau.damps())];
-        let allowed = |accuracy: f64| (of_error * accuracy.min(LARGEST_ERROR)).max(tight);
-        let tolerance = accuracy.map_or(tight, allowed);
-        let solved = self.solve_stages(from, h, tolerance, accuracy.is_some(), record);
+        let tolerance = allowed.map_or(tight, |allowed| allowed.iteration.max(tight));
+        let solved = self.solve_stages(from, h, tolerance, allowed.is_some(), record);
         self.astray = match &solved {
             Ok(()) => false,
             Err(Failure::Diverging { last } | Failure::TooSlow { last, .. }) => *last > FAR,
@@ -676,7 +667,7 @@ impl Method for Collocation<'_> {
         }
         to.time = self.end;
         let mut unseen = 0.0;
-        if accuracy.is_some() {
+        if allowed.is_some() {
             if !self.tableau.damps() {
                 unseen += self.damp(from, to);
             }
@@ -684,7 +675,7 @@ impl Method for Collocation<'_> {
         }
         self.motion.carry(to);
         self.motion.project(to)?;
-        let Some(_) = accuracy else { return Ok(0.0) };
+        let Some(_) = allowed else { return Ok(0.0) };
         Ok(self.error(from, h) + unseen)
     }
 

@@ -30,7 +30,7 @@
 
 use super::State;
 use super::memory::{GeneralizedAlphaMemory, Memory, TangentMemory};
-use super::method::Method;
+use super::method::{Allowed, Method};
 use super::motion::{Acceleration, Motion, Rates, StageState};
 use super::turns::Turns;
 use crate::assembly::Earlier;
@@ -42,8 +42,6 @@ use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
 /// tolerance is smaller in proportion to the displacement: the velocity has the same relative
 /// error.
 const RELATIVE_TOLERANCE: f64 = 10.0;
-/// Newton's tolerance as a part of the error that a step may make.
-const TOLERANCE_OF_ERROR: f64 = 0.02;
 
 /// Rate of convergence beyond which the next step takes a new tangent.
 const KEEP: f64 = 0.006;
@@ -364,7 +362,7 @@ impl Method for GeneralizedAlpha<'_> {
         &mut self,
         state: &State,
         end: f64,
-        accuracy: Option<f64>,
+        allowed: Option<Allowed>,
         to: &mut State,
         record: &mut Iterations,
     ) -> Result<f64, Failure> {
@@ -413,7 +411,7 @@ impl Method for GeneralizedAlpha<'_> {
         let moved = self.motion.size_of_change(&from.q, &self.x);
         let tight = self.newton_tolerance * (RELATIVE_TOLERANCE * moved).min(1.0);
         let settings = Settings {
-            tolerance: accuracy.map_or(tight, |allowed| (TOLERANCE_OF_ERROR * allowed).max(tight)),
+            tolerance: allowed.map_or(tight, |allowed| allowed.iteration.max(tight)),
             // The tangent is exact, and inertia makes it well conditioned: the increments alone
             // tell convergence.
             residual_tolerance: f64::INFINITY,
@@ -434,10 +432,10 @@ impl Method for GeneralizedAlpha<'_> {
         self.motion.release(physical);
         self.trial.multipliers.copy_from_slice(&self.x[n..]);
         to.time = end;
-        let unseen = if accuracy.is_some() { self.make_up(state, to, c) } else { 0.0 };
+        let unseen = if allowed.is_some() { self.make_up(state, to, c) } else { 0.0 };
         self.motion.carry(to);
         self.motion.project(to)?;
-        Ok(if accuracy.is_some() { self.error(h, c) + unseen } else { 0.0 })
+        Ok(if allowed.is_some() { self.error(h, c) + unseen } else { 0.0 })
     }
 
     fn accept(&mut self) {

@@ -7,6 +7,15 @@ use crate::linear::Singular;
 use crate::solve::Statistics;
 use crate::solve::newton::{Failure, Iterations};
 
+/// Errors that a step may make, in beam lengths.
+#[derive(Clone, Copy, Debug)]
+pub struct Allowed {
+    /// Of the positions at its end, as the method estimates it.
+    pub step: f64,
+    /// Of the positions, because its equations are solved by an iteration that stops.
+    pub iteration: f64,
+}
+
 /// A method of time integration, with the quantities that it carries from step to step
 /// (accelerations, last stages).
 pub trait Method {
@@ -26,9 +35,8 @@ pub trait Method {
     fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular>;
 
     /// Tries a step from `from` to the time `end` and writes the state that it leads to; loads and
-    /// supports are smooth between. `accuracy` is the error that the step may make, relative to the
-    /// beam length, where the caller controls it; the method then returns an estimate of it, and
-    /// otherwise zero.
+    /// supports are smooth between. `allowed` are the errors that the step may make, where the
+    /// caller controls them; the method then returns an estimate of its own, and otherwise zero.
     ///
     /// # Errors
     /// [`Failure`] where the equations of the step could not be solved; `record` says how the
@@ -37,7 +45,7 @@ pub trait Method {
         &mut self,
         from: &State,
         end: f64,
-        accuracy: Option<f64>,
+        allowed: Option<Allowed>,
         to: &mut State,
         record: &mut Iterations,
     ) -> Result<f64, Failure>;
