@@ -169,3 +169,26 @@ fn tolerances_are_kept_with_strong_damping() {
         }
     }
 }
+
+/// An attempt whose iteration diverges leaves a tension of any size of the tendon. A shorter attempt
+/// that began with it stalled at once, and its steps were taken for solved: the motion erred by 4000
+/// tolerances. The reference has steps of given length.
+#[test]
+fn a_step_that_failed_leaves_no_forces_of_constraints_behind() {
+    let scene = "beam.a = { axial_stiffness = 125, bending_stiffness = 9e-9, mass_per_length = 8e-4, basis.rpim.nodes = 11, arc = { center = [0.0733, 0], radius = 0.0733, from = 3.141592653589793, to = 1.3725926535897932 } }
+        effect.damping = [{ beam = 'a', curvature = 0.0064 }]
+        effect.tendon = [{ beam = 'a', offset = -0.00325, shortening = 0.00083, in_time.smooth_ramp.duration = 1.07 }]
+        initial_velocity = [{ beam = 'a', rotation = 0.0106, about = [0, 0] }]
+        effect.force = [{ beam = 'a', at = 'end', value = [-7.85e-8, 1.0476e-6] }]
+        probe = [{ name = 'tip', beam = 'a', at = 'end' }]
+        analysis.dynamic = { duration = 0.1, INTEGRATOR }\n";
+    let length = 0.0733 * 1.769;
+    let reference = moved(scene, "radau = { stages = 3, step = 1e-4 }").expect("a reference");
+    for (text, tolerance) in [("1e-6", 1e-6), ("1e-7", 1e-7), ("3e-8", 3e-8)] {
+        let found = moved(scene, &format!("radau = {{ stages = 3, tolerance = {text} }}")).expect("a motion");
+        let pairs = positions(&found).zip(positions(&reference));
+        let (a, b) = pairs.last().expect("the end");
+        let error = (a[0] - b[0]).hypot(a[1] - b[1]) / length;
+        assert!(error < 3.0 * tolerance, "{text}: errs by {error:.2e} lengths");
+    }
+}

@@ -162,8 +162,9 @@ enum BlockFactor {
 pub struct Collocation<'a> {
     motion: Motion<'a>,
     tableau: Tableau,
-    /// Q̈_i of the last accepted step, and its length.
+    /// Q̈_i of the last accepted step, its multipliers, and its length.
     accelerations: Vec<Lanes>,
+    multipliers: Vec<Lanes>,
     last_step: f64,
     /// Whether the iteration of the last attempt diverged.
     astray: bool,
@@ -187,6 +188,7 @@ impl<'a> Collocation<'a> {
         let (n, unknowns, s) = (motion.coordinates(), motion.unknowns(), tableau.stages());
         Self {
             accelerations: vec![Lanes::ZERO; n],
+            multipliers: vec![Lanes::ZERO; unknowns - n],
             last_step: 0.0,
             astray: false,
             trial_step: 0.0,
@@ -219,16 +221,14 @@ impl<'a> Collocation<'a> {
         a_squared * DMatrix::from_rows(&continued.collect::<Vec<_>>()) * (h * h)
     }
 
-    /// Predicts the displacements of all stages.
+    /// Predicts the displacements of all stages; the multipliers are those of the last accepted step,
+    /// because an attempt that failed leaves numbers of any size.
     fn predict(&mut self, from: &State, h: f64) {
         let mixture = Mixture::new(&self.extrapolation(h, self.smooth), 1.0);
         let (displacement, multipliers) = self.stages.displacement.split_at_mut(self.motion.coordinates());
         displacement.iter_mut().zip(&self.accelerations).for_each(|(y, a)| *y = mixture.of(*a));
         self.motion.release(displacement);
-        // A failed iteration may have left numbers that are not finite.
-        for mu in multipliers.iter_mut().filter(|mu| !mu.to_array().into_iter().all(f64::is_finite)) {
-            *mu = Lanes::ZERO;
-        }
+        multipliers.copy_from_slice(&self.multipliers);
         self.place(from, h);
     }
 
@@ -617,8 +617,10 @@ impl Method for Collocation<'_> {
         let unknowns = self.motion.unknowns_of(state);
         self.motion.acceleration(&unknowns, &mut acceleration)?;
         self.accelerations.iter_mut().zip(&acceleration).for_each(|(all, a)| *all = Lanes::splat(*a));
-        let multipliers = self.stages.displacement[acceleration.len()..].iter_mut();
-        multipliers.zip(self.motion.multipliers()).for_each(|(all, mu)| *all = Lanes::splat(*mu));
+        self.multipliers
+            .iter_mut()
+            .zip(self.motion.multipliers())
+            .for_each(|(all, mu)| *all = Lanes::splat(*mu));
         (self.last_step, self.kept, self.smooth) = (0.0, None, true);
         Ok(acceleration)
     }
@@ -688,13 +690,13 @@ impl Method for Collocation<'_> {
         let mixture = Mixture::new(&self.tableau.inverse_squared, (h * h).recip());
         let displacements = &self.stages.displacement;
         self.accelerations.iter_mut().zip(displacements).for_each(|(a, y)| *a = mixture.of(*y));
+        self.multipliers.copy_from_slice(&displacements[self.accelerations.len()..]);
         self.last_step = h;
     }
 
     fn pass(&mut self, before: f64, state: &mut State) -> Result<Vec<f64>, Singular> {
         let jump = self.motion.pass(before, state)?;
-        let multipliers = &mut self.stages.displacement[self.accelerations.len()..];
-        for (all, jump) in self.accelerations.iter_mut().chain(multipliers).zip(&jump) {
+        for (all, jump) in self.accelerations.iter_mut().chain(&mut self.multipliers).zip(&jump) {
             *all += Lanes::splat(*jump);
         }
         Ok(jump)
@@ -730,9 +732,8 @@ impl Method for Collocation<'_> {
 
     fn end_rates(&self) -> Vec<f64> {
         let shares = self.tableau.lagrange(1.0);
-        let multipliers = &self.stages.displacement[self.motion.coordinates()..];
         let of = |stages: &Lanes| shares.iter().zip(stages.to_array()).map(|(share, a)| share * a).sum();
-        self.accelerations.iter().chain(multipliers).map(of).collect()
+        self.accelerations.iter().chain(&self.multipliers).map(of).collect()
     }
 
     fn last_increment(&self) -> &[f64] {
@@ -744,7 +745,7 @@ impl Method for Collocation<'_> {
     }
 
     fn memory(&self) -> Memory {
-        let (n, s) = (self.motion.coordinates(), self.tableau.stages());
+        let s = self.tableau.stages();
         let (tangent, tangent_step) = self.kept.as_ref().map_or((None, 0.0), |kept| {
             let FactoredTangent { at, multipliers, step, rate, .. } = kept;
             let (State { time, q, v, .. }, multipliers) = (at.clone(), multipliers.clone());
@@ -754,7 +755,7 @@ impl Method for Collocation<'_> {
             last_step: self.last_step,
             smooth: self.smooth,
             accelerations: (0..s).map(|i| stages::lane(&self.accelerations, i)).collect(),
-            multipliers: (0..s).map(|i| stages::lane(&self.stages.displacement[n..], i)).collect(),
+            multipliers: (0..s).map(|i| stages::lane(&self.multipliers, i)).collect(),
             tangent,
             tangent_step,
         })
@@ -770,7 +771,7 @@ impl Method for Collocation<'_> {
             return false;
         }
         stages::gather(&memory.accelerations, &mut self.accelerations);
-        stages::gather(&memory.multipliers, &mut self.stages.displacement[n..]);
+        stages::gather(&memory.multipliers, &mut self.multipliers);
         (self.last_step, self.smooth) = (memory.last_step, memory.smooth);
         // Before the first step there is no tangent.
         let Some(TangentMemory { time, q, v, multipliers: with, rate }) = memory.tangent else { return true };
