@@ -668,6 +668,18 @@ impl<'e, 'a> Path<'e, 'a> {
             x = led(share * h);
             x.iter_mut().zip(b.x.iter().zip(&end)).for_each(|(x, (b, end))| *x += share * share * (b - end));
         }
+        self.solved(load, x)
+    }
+
+    /// The equilibrium at load factor `load`, starting on the straight line between the states `a` and
+    /// `b` at two others; the path itself is not changed.
+    pub fn near(&mut self, [(from, a), (to, b)]: [(f64, &[f64]); 2], load: f64) -> Option<Point> {
+        let share = (load - from) / (to - from);
+        self.solved(load, a.iter().zip(b).map(|(a, b)| a + share * (b - a)).collect())
+    }
+
+    /// The equilibrium at load factor `load` that Newton's method finds from `x`.
+    fn solved(&mut self, load: f64, mut x: Vec<f64>) -> Option<Point> {
         let (start, still) = (x.clone(), vec![0.0; x.len()]);
         let n = self.equilibrium.system().coordinates();
         self.equilibrium.system().supports().impose(load, &mut x[..n]);

@@ -27,19 +27,30 @@ pub struct Work {
     slope: Option<f64>,
 }
 
-/// P at a load factor.
-type Sample = (f64, f64);
+/// P in a state of the path.
+#[derive(Clone, Debug)]
+struct Sample {
+    load: f64,
+    power: f64,
+    x: Vec<f64>,
+}
+
+impl Sample {
+    fn of(system: &System, load: f64, x: &[f64]) -> Self {
+        Self { load, power: system.actuators_rate(load, &x[..system.coordinates()]), x: x.to_vec() }
+    }
+}
 
 impl Work {
     /// Adds the work of the path's last step along the load factor.
     pub fn add_step(&mut self, path: &mut Path<'_, '_>) {
         let system = path.equilibrium.system();
         let Some([a, b]) = path.last_two().filter(|_| system.has_actuators()) else { return };
-        let (from, to) = (sample(system, a.load, &a.x), sample(system, b.load, &b.x));
-        self.size += unyielding(system, from.0, to.0);
-        match between(path, from, to) {
-            Some(middle) => self.add_piece(path, [from, middle, to], HALVINGS),
-            None => self.add_straight(from, to),
+        let (from, to) = (Sample::of(system, a.load, &a.x), Sample::of(system, b.load, &b.x));
+        self.size += unyielding(system, from.load, to.load);
+        match between(path, &from, &to) {
+            Some(middle) => self.add_piece(path, [&from, &middle, &to], HALVINGS),
+            None => self.add_straight(&from, &to),
         }
     }
 
@@ -48,28 +59,27 @@ impl Work {
     pub fn add_states(&mut self, system: &System, (from, x): (f64, &[f64]), (to, y): (f64, &[f64])) {
         if system.has_actuators() {
             self.size += unyielding(system, from, to);
-            self.add_straight(sample(system, from, x), sample(system, to, y));
+            self.add_straight(&Sample::of(system, from, x), &Sample::of(system, to, y));
         }
     }
 
-    fn add_straight(&mut self, from: Sample, to: Sample) {
-        let (step, change) = (to.0 - from.0, to.1 - from.1);
-        self.value += 0.5 * (from.1 + to.1) * step;
+    fn add_straight(&mut self, from: &Sample, to: &Sample) {
+        let (step, change) = (to.load - from.load, to.power - from.power);
+        self.value += trapezoid(from, to);
         // The rule errs by a twelfth of P'' h³, and P'' h is the change of slope from step to step.
         let slope = if step == 0.0 { 0.0 } else { change / step };
         self.error += (step * step * (slope - self.slope.unwrap_or(0.0))).abs() / 12.0;
         self.slope = Some(slope);
     }
 
-    fn add_piece(&mut self, path: &mut Path<'_, '_>, [from, middle, to]: [Sample; 3], halvings: usize) {
+    fn add_piece(&mut self, path: &mut Path<'_, '_>, [from, middle, to]: [&Sample; 3], halvings: usize) {
         let whole = simpson([from, middle, to]);
-        let halves = (between(path, from, middle), between(path, middle, to));
-        let (Some(first), Some(second)) = halves else {
+        let (Some(first), Some(second)) = (between(path, from, middle), between(path, middle, to)) else {
             self.value += whole;
-            self.error += (whole - 0.5 * (from.1 + to.1) * (to.0 - from.0)).abs();
+            self.error += (whole - trapezoid(from, to)).abs();
             return;
         };
-        let halves = [[from, first, middle], [middle, second, to]];
+        let halves = [[from, &first, middle], [middle, &second, to]];
         let sum: f64 = halves.iter().copied().map(simpson).sum();
         if (sum - whole).abs() <= CHANGE * self.size || halvings == 0 {
             self.value += sum;
@@ -80,22 +90,26 @@ impl Work {
     }
 }
 
-fn sample(system: &System, load: f64, x: &[f64]) -> Sample {
-    (load, system.actuators_rate(load, &x[..system.coordinates()]))
-}
-
 /// The work from one load factor to another if the beams were rigid.
 fn unyielding(system: &System, from: f64, to: f64) -> f64 {
     0.5 * (system.actuators_size(from) + system.actuators_size(to)) * (to - from).abs()
 }
 
-fn between(path: &mut Path<'_, '_>, from: Sample, to: Sample) -> Option<Sample> {
-    let point = path.between(0.5 * (from.0 + to.0))?;
-    Some(sample(path.equilibrium.system(), point.load, &point.x))
+/// The state halfway. Where the one between the ends of the whole step does not lead there, the
+/// nearer ones do.
+fn between(path: &mut Path<'_, '_>, from: &Sample, to: &Sample) -> Option<Sample> {
+    let load = 0.5 * (from.load + to.load);
+    let ends = [(from.load, &from.x[..]), (to.load, &to.x[..])];
+    let point = path.between(load).or_else(|| path.near(ends, load))?;
+    Some(Sample::of(path.equilibrium.system(), point.load, &point.x))
 }
 
-fn simpson([from, middle, to]: [Sample; 3]) -> f64 {
-    (to.0 - from.0) / 6.0 * (from.1 + 4.0 * middle.1 + to.1)
+fn trapezoid(from: &Sample, to: &Sample) -> f64 {
+    0.5 * (from.power + to.power) * (to.load - from.load)
+}
+
+fn simpson([from, middle, to]: [&Sample; 3]) -> f64 {
+    (to.load - from.load) / 6.0 * (from.power + 4.0 * middle.power + to.power)
 }
 
 #[cfg(test)]
@@ -106,6 +120,10 @@ mod tests {
     use crate::solve::equilibrium::Equilibrium;
     use crate::solve::newton::Settings;
     use crate::solve::path::Parameter;
+
+    fn sample((load, power): (f64, f64), x: Vec<f64>) -> Sample {
+        Sample { load, power, x }
+    }
 
     /// For P = λ² from 0 to 6 Simpson's rule gives 72 J, the trapezoidal rule 108 J. Where no more
     /// states are found between, as on a path of one state, the work may err by the difference.
@@ -118,9 +136,13 @@ mod tests {
         let system = System::build(&model, Needs::default()).unwrap();
         let mut equilibrium = Equilibrium::new(&system);
         let x = equilibrium.start();
+        let n = x.len();
         let mut path = Path::new(&mut equilibrium, Parameter::Load, Settings::default(), 1.0, x).unwrap();
         let mut work = Work::default();
-        work.add_piece(&mut path, [(0.0, 0.0), (3.0, 9.0), (6.0, 36.0)], HALVINGS);
+        // From nowhere no iteration leads anywhere.
+        let [from, middle, to] =
+            [(0.0, 0.0), (3.0, 9.0), (6.0, 36.0)].map(|at| sample(at, vec![f64::NAN; n]));
+        work.add_piece(&mut path, [&from, &middle, &to], HALVINGS);
         assert_eq!((work.value, work.error), (72.0, 36.0));
     }
 
@@ -129,13 +151,13 @@ mod tests {
     #[test]
     fn trapezoids_may_err_by_the_change_of_slope() {
         let mut work = Work::default();
-        work.add_straight((0.0, 0.0), (2.0, 4.0));
+        work.add_straight(&sample((0.0, 0.0), vec![]), &sample((2.0, 4.0), vec![]));
         assert_eq!(work.value, 4.0);
         assert!((work.error - 4.0 * 2.0 / 12.0).abs() < 1e-15, "{work:?}");
-        work.add_straight((2.0, 4.0), (4.0, 4.0));
+        work.add_straight(&sample((2.0, 4.0), vec![]), &sample((4.0, 4.0), vec![]));
         assert_eq!(work.value, 12.0);
         assert!((work.error - 4.0 * (2.0 + 2.0) / 12.0).abs() < 1e-15, "{work:?}");
-        work.add_straight((4.0, 4.0), (4.0, 9.0));
+        work.add_straight(&sample((4.0, 4.0), vec![]), &sample((4.0, 9.0), vec![]));
         assert!(work.value == 12.0 && work.error.is_finite(), "{work:?}");
     }
 }
