@@ -18,13 +18,14 @@
 use crate::assembly::InternalVariables;
 use crate::model::{Along, Beam, Displacement, Integrator, Model};
 use crate::solve::dynamics::{Checkpoint, State};
+use crate::solve::resume::Holding;
 use crate::system::System;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 /// Version of the format.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 /// A state with the beams to which it belongs.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,6 +59,10 @@ struct Saved {
     history_of: [Vec<usize>; 2],
     /// The state, and the integrator's data.
     checkpoint: Checkpoint,
+    /// The forces that held it, where they are known, and a checksum of the supports, joints and tendons
+    /// that these are of.
+    holding: Option<Holding>,
+    rows: String,
 }
 
 /// The data of a beam that must be the same where a state is taken up.
@@ -207,6 +212,13 @@ fn checksums<T: std::fmt::Debug>(all: &[T]) -> Vec<String> {
     all.iter().map(|one| sha256(format!("{one:?}").as_bytes())).collect()
 }
 
+/// A checksum of all that makes rows of constraints.
+fn rows(model: &Model) -> String {
+    let Model { supports, joints, parts, .. } = model;
+    let tendons: Vec<_> = parts.iter().filter(|part| part.tendon().is_some()).collect();
+    sha256(format!("{supports:?} {joints:?} {tendons:?}").as_bytes())
+}
+
 /// Per entry of `now`, the index of the same entry of `before`, each of which is found once.
 fn matches(before: &[String], now: &[String]) -> Vec<Option<usize>> {
     let mut left: Vec<Option<&String>> = before.iter().map(Some).collect();
@@ -248,7 +260,13 @@ impl Saved {
 
 impl SavedState {
     /// `motion` is the [`fingerprint`] of the motion, empty where there was none.
-    pub(crate) fn new(model: &Model, system: &System, motion: String, checkpoint: Checkpoint) -> Self {
+    pub(crate) fn new(
+        model: &Model,
+        system: &System,
+        motion: String,
+        checkpoint: Checkpoint,
+        holding: Option<Holding>,
+    ) -> Self {
         let saved = Saved {
             beams: layout(model, system),
             motion,
@@ -257,8 +275,19 @@ impl SavedState {
             held: checksums(&model.supports),
             history_of: system.history_of().map(<[usize]>::to_vec),
             checkpoint,
+            holding,
+            rows: rows(model),
         };
         Self { saved }
+    }
+
+    /// What held it, as far as that is known: of rows only if those of `model` are the same.
+    pub(crate) fn holding(&self, model: &Model) -> Option<Holding> {
+        let mut holding = self.saved.holding.clone()?;
+        if self.saved.rows != rows(model) {
+            holding.multipliers.clear();
+        }
+        Some(holding)
     }
 
     /// Its time \[s\].

@@ -56,6 +56,7 @@ use crate::model::freedom::Freedom;
 use crate::model::{Along, Centreline, Discretization, Joint, Model, Place};
 use constraints::Constraint;
 use imbalance::Start;
+pub use imbalance::Unbalanced;
 use lengths::Lengths;
 use polar::Polar;
 use reaction::Source;

@@ -7,6 +7,7 @@ use crate::model::{Analysis, Dynamic, Model};
 use crate::restart::{self, SavedState};
 use crate::results::{RecordedState, RecordedStates, Statistics, TakenUp, Trajectory};
 use crate::solve::dynamics::{self, Checkpoint, start};
+use crate::solve::resume::Holding;
 use crate::system::System;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -27,6 +28,7 @@ impl Solve for Dynamic {
             model: Arc::new(model.clone()),
             q: start.state.q.clone(),
             variables: start.state.variables.clone(),
+            holding: None,
         });
         let sampler = Sampler::new(model, &system, options.detail())?;
         stopwatch.built();
@@ -36,7 +38,7 @@ impl Solve for Dynamic {
         let keep = options.checkpoints;
         let take = |checkpoint| {
             if let Some(keep) = keep {
-                (keep.take)(&SavedState::new(asked, &system, motion.clone(), checkpoint));
+                (keep.take)(&SavedState::new(asked, &system, motion.clone(), checkpoint, None));
             }
         };
         let task = dynamics::Task {
@@ -56,7 +58,11 @@ impl Solve for Dynamic {
         let mut solution = dynamics::solve(&system, &task, report);
         stopwatch.solved();
         let saved = solution.checkpoint.take();
-        let saved = saved.map(|checkpoint| SavedState::new(asked, &system, motion.clone(), checkpoint));
+        let saved = saved.map(|checkpoint| {
+            let end = solution.end.as_ref().filter(|end| end.state.time == checkpoint.reached().time);
+            let holding = end.map(|end| Holding::new(&end.support_forces, &end.multipliers));
+            SavedState::new(asked, &system, motion.clone(), checkpoint, holding)
+        });
         let kept = (options.states || model.outputs.section_forces).then(|| {
             let states = solution.states.iter().cloned().zip(std::mem::take(&mut solution.forces));
             let states = states.map(|(state, forces)| RecordedState::Moving { state, forces });

@@ -22,6 +22,7 @@ use crate::solve::Work;
 use crate::solve::dynamics;
 use crate::solve::newton::Failure;
 use crate::solve::path::NoStep;
+use crate::solve::resume::Holding;
 use crate::solve::statics::Solution;
 use crate::system::{Change, Reaction, System, View, unfold};
 use nalgebra::Vector2;
@@ -617,7 +618,9 @@ impl<'a> Sampler<'a> {
         state.variables = solution.variables.last().cloned().unwrap_or_default();
         state.angles = seen.probes.iter().filter_map(|p| p.samples.last()).map(|s| s.angle).collect();
         let checkpoint = dynamics::Checkpoint { state, ..dynamics::Checkpoint::default() };
-        Some(SavedState::new(asked, self.system, String::new(), checkpoint))
+        let supports = self.system.static_support_forces(1.0, x, &checkpoint.state.variables);
+        let holding = Holding::new(&supports, &x[self.system.coordinates()..]);
+        Some(SavedState::new(asked, self.system, String::new(), checkpoint, Some(holding)))
     }
 
     /// The points whose directions are watched: those of the probes.

@@ -6,7 +6,7 @@ use crate::model::{Analysis, Model};
 use crate::restart::SavedState;
 use crate::results::TakenUp;
 use crate::solve::dynamics::State;
-use crate::solve::resume::resume;
+use crate::solve::resume::{Holding, resume};
 use crate::system::System;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -18,6 +18,8 @@ pub(super) struct Start<'m> {
     pub system: System,
     /// The state.
     pub state: Option<State>,
+    /// What held it, where that is known.
+    holding: Option<Holding>,
 }
 
 impl<'m> Start<'m> {
@@ -28,14 +30,15 @@ impl<'m> Start<'m> {
     ) -> Result<Self, RunError> {
         let Some(saved) = options.start else {
             let system = System::build_with(model, needs(analysis), options.cache)?;
-            return Ok(Self { model: Cow::Borrowed(model), system, state: None });
+            return Ok(Self { model: Cow::Borrowed(model), system, state: None, holding: None });
         };
+        let holding = saved.holding(model);
         let model = saved.gone_on(model);
         let mut system = System::build_with(&model, needs(analysis), options.cache)?;
         let (checkpoint, _) = saved.take_up(&model, &system, "")?;
         let state = checkpoint.state;
-        resume(&mut system, &state.q, &state.variables);
-        Ok(Self { model: Cow::Owned(model), system, state: Some(state) })
+        resume(&mut system, &state.q, &state.variables, holding.as_ref());
+        Ok(Self { model: Cow::Owned(model), system, state: Some(state), holding })
     }
 
     /// What a later look at the states of the run needs to know of the state.
@@ -45,6 +48,7 @@ impl<'m> Start<'m> {
             model,
             q: q.clone(),
             variables: variables.clone(),
+            holding: self.holding.clone(),
         })
     }
 
@@ -68,7 +72,7 @@ pub(super) fn again(
     let mut system = System::build_with(&taken_up.model, needs(analysis), cache)?;
     match analysis {
         Analysis::Dynamic(_) => system.freeze(&taken_up.q),
-        _ => resume(&mut system, &taken_up.q, &taken_up.variables),
+        _ => resume(&mut system, &taken_up.q, &taken_up.variables, taken_up.holding.as_ref()),
     }
     Ok(system)
 }

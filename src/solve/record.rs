@@ -1,6 +1,7 @@
 //! Records that solvers leave: attempted steps, counts of work, impulses of contacts.
 
 use super::dynamics::{RecordedForces, State};
+use super::resume::Holding;
 use crate::assembly::InternalVariables;
 use crate::model::Model;
 use serde::Serialize;
@@ -86,4 +87,6 @@ pub struct TakenUp {
     pub q: Vec<f64>,
     /// Its internal variables.
     pub variables: InternalVariables,
+    /// What held it, where that is known.
+    pub holding: Option<Holding>,
 }

@@ -3,7 +3,26 @@
 use super::equilibrium::Equilibrium;
 use super::newton::RESIDUAL_TOLERANCE;
 use crate::assembly::{Earlier, InternalVariables};
-use crate::system::System;
+use crate::system::{System, Unbalanced};
+use serde::{Deserialize, Serialize};
+
+/// What held a state, as far as a saved state knows it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Holding {
+    /// The generalised forces of supports on the coordinates that they fixed, in fixed axes.
+    pub supports: Vec<(usize, f64)>,
+    /// The scaled multipliers of all rows; empty where the rows are others now.
+    pub multipliers: Vec<f64>,
+}
+
+impl Holding {
+    /// Of the forces on all coordinates those that are not zero.
+    pub fn new(forces: &[f64], multipliers: &[f64]) -> Self {
+        let supports = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
+        Self { supports, multipliers: multipliers.to_vec() }
+    }
+}
 
 /// σ of the shifted tangent K + σ D that finds multipliers: it outweighs every stiffness but that
 /// against stretch, and keeps the sum definite.
@@ -17,14 +36,24 @@ const GATHERED: f64 = 1e-6;
 /// The smallest part of D that a coordinate without an unbalanced force keeps.
 const BALANCED: f64 = 1e-8;
 
-/// Lets an analysis of `system` begin in the state `q` with the internal `variables`. Multipliers,
-/// which no state knows, are those that balance as much as they can; what remains unbalanced fades
-/// as the load factor grows.
-pub fn resume(system: &mut System, q: &[f64], variables: &InternalVariables) {
+/// Lets an analysis of `system` begin in the state `q` with the internal `variables`. Supports and
+/// rows begin with the forces of `holding`; rows of which it knows none with those that balance as
+/// much as they can. What remains unbalanced fades as the load factor grows.
+pub fn resume(system: &mut System, q: &[f64], variables: &InternalVariables, holding: Option<&Holding>) {
     system.begin_in(q, variables);
-    let (x, residual) = with_multipliers(system, q);
-    let unbalanced = (residual > RESIDUAL_TOLERANCE).then(|| system.unbalanced(&x, variables));
-    system.leave_unbalanced(&x[q.len()..], unbalanced.as_deref());
+    let known = holding.map(|holding| [q, &holding.multipliers].concat());
+    let known = known.filter(|x| x.len() == q.len() + system.multipliers());
+    let (x, residual) = match known {
+        Some(x) => {
+            let residual = Equilibrium::new(system).residual(0.0, &x, &mut vec![0.0; x.len()]);
+            (x, residual)
+        }
+        None => with_multipliers(system, q),
+    };
+    let supports = holding.map(|holding| &holding.supports[..]);
+    let Unbalanced { force, on_fixed } = system.unbalanced(&x, variables, supports);
+    let left = (residual > RESIDUAL_TOLERANCE || on_fixed > RESIDUAL_TOLERANCE).then_some(&force[..]);
+    system.leave_unbalanced(&x[q.len()..], left);
 }
 
 /// The state `q` in which `system` begins, with its multipliers, and the scaled residual.

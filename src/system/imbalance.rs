@@ -7,7 +7,7 @@
 
 use super::System;
 use crate::assembly::{
-    ActingLoad, Action, Actions, Amplitude, Earlier, Effect, InternalVariables, Kind, Workspace,
+    ActingLoad, Action, Actions, Amplitude, Earlier, Effect, InternalVariables, Kind, Workspace, nodes,
 };
 use crate::linear::Matrix;
 use std::ops::Range;
@@ -158,17 +158,48 @@ impl System {
         (multipliers, self.start.as_ref().map(of).unwrap_or_default())
     }
 
-    /// The forces R = f(q) + Bᵀ μ in statics at load factor 0 that no support takes up, in fixed
-    /// axes; `x` holds the coordinates and the scaled multipliers, and `variables` are the internal
-    /// variables.
-    pub fn unbalanced(&self, x: &[f64], variables: &InternalVariables) -> Vec<f64> {
+    /// What is left of the forces R = f(q) + Bᵀ μ in statics at load factor 0, in fixed axes, if
+    /// supports at nodes take up as much as the state knows that they did: `supports` are coordinates
+    /// and forces on them. Where that is not known, they take up all. `x` holds the coordinates and the
+    /// scaled multipliers, and `variables` are the internal variables.
+    pub fn unbalanced(
+        &self,
+        x: &[f64],
+        variables: &InternalVariables,
+        supports: Option<&[(usize, f64)]>,
+    ) -> Unbalanced {
         let (q, multipliers) = x.split_at(self.coordinates());
         let mut force = vec![0.0; q.len()];
         self.force(0.0, q, &mut force);
         self.add_known_history(variables, q, &mut force);
         self.add_constraint_forces(0.0, q, multipliers, &mut force);
-        self.supports.to_frames(0.0, &mut force);
-        self.supports.from_frames(0.0, &mut force);
-        force
+        let mut taken = force.clone();
+        self.supports.keep_fixed(0.0, &mut taken);
+        let mut on_fixed = 0.0;
+        if let Some(supports) = supports {
+            let mut before = vec![0.0; q.len()];
+            supports.iter().for_each(|(i, force)| before[*i] = *force);
+            self.supports.keep_fixed(0.0, &mut before);
+            taken.iter_mut().zip(&before).for_each(|(taken, before)| *taken -= before);
+            let left = self.largest(&taken);
+            on_fixed = if left > STRESSED * self.round_off { left / self.largest(&force) } else { 0.0 };
+            taken = before;
+        }
+        force.iter_mut().zip(&taken).for_each(|(force, taken)| *force -= taken);
+        Unbalanced { force, on_fixed }
     }
+
+    /// The largest generalised force on a coordinate \[N\]; those on gradients count by the length of
+    /// the structure.
+    fn largest(&self, force: &[f64]) -> f64 {
+        nodes(force).fold(0.0, |largest: f64, node| largest.max(node.shift()).max(node.slope() / self.length))
+    }
+}
+
+/// Forces that nothing takes up in the state in which statics begins.
+pub struct Unbalanced {
+    /// On all coordinates.
+    pub force: Vec<f64>,
+    /// The largest on coordinates that supports fix, in the largest of all forces.
+    pub on_fixed: f64,
 }

@@ -89,12 +89,7 @@ impl System {
     }
 
     /// Forces of supports on the fixed coordinates in equilibrium, in fixed axes.
-    pub(super) fn static_support_forces(
-        &self,
-        load: f64,
-        x: &[f64],
-        variables: &InternalVariables,
-    ) -> Vec<f64> {
+    pub fn static_support_forces(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<f64> {
         let (q, multipliers) = x.split_at(self.coordinates());
         let mut force = vec![0.0; q.len()];
         self.force(load, q, &mut force);

@@ -507,3 +507,49 @@ fn a_stage_is_built_with_what_its_supports_have_moved() {
         assert_eq!(moved, expected, "{kind}");
     }
 }
+
+/// Where the weight of a frame, and a force on its foot, leave, its supports carry (1 − λ) of them:
+/// their forces and those of joints begin with what they were. A first part of a motion leaves
+/// forces of inertia, too, which fade with the rest.
+#[test]
+fn supports_and_joints_begin_with_the_forces_that_they_had() {
+    let (weight, foot) = (9.81 * (0.5 + 0.3 * 0.5), 0.7);
+    let leaving = format!(
+        "gravity = {{ acceleration = [0, -9.81], until = 'two' }}\n\
+         force = [{{ beam = 'leg', at = 'end', value = [0, -{foot}], until = 'two' }}]\n"
+    );
+    let moved = "stage = [{ name = 'one', analysis.dynamic = { duration = 0.05, output_every = 0.01, radau.tolerance = 1e-6 } }, \
+                 { name = 'two', analysis.static = { steps = 2 } }]";
+    let still =
+        "stage = [{ name = 'one', analysis.static = {} }, { name = 'two', analysis.static = { steps = 2 } }]";
+    let bent = "stage = [{ name = 'one', analysis.static = {} }, { name = 'two', analysis.static.arc_length.until_load = 1 }]";
+    for joint in ["hinge", "weld"] {
+        for analysis in [still, bent, moved] {
+            let joint = format!(
+                "{{ type = '{joint}', first = {{ beam = 'arm', at = 'end' }}, second = {{ beam = 'leg', at = 'start' }} }}"
+            );
+            let found = stages(&with("", &joint, &leaving, analysis));
+            for column in [
+                "support1.fx",
+                "support1.fy",
+                "support1.moment",
+                "support2.fx",
+                "support2.fy",
+                "support2.moment",
+                "joint1.fx",
+                "joint1.fy",
+            ] {
+                let before = found[0].last("reactions.csv", column);
+                let after = found[1].column("reactions.csv", column)[0];
+                near(after, before, 1e-6 * weight, &format!("{joint}, {column}"));
+            }
+            if analysis == moved {
+                continue;
+            }
+            let of = |column| found[1].column("reactions.csv", column);
+            for ((load, a), b) in of("load").iter().zip(of("support1.fy")).zip(of("support2.fy")) {
+                near(a + b, (1.0 - load) * (weight + foot), 1e-6 * weight, &format!("{joint} at {load}"));
+            }
+        }
+    }
+}
