@@ -59,10 +59,18 @@ struct Saved {
     history_of: [Vec<usize>; 2],
     /// The state, and the integrator's data.
     checkpoint: Checkpoint,
-    /// The forces that held it, where they are known, and a checksum of the supports, joints and tendons
-    /// that these are of.
-    holding: Option<Holding>,
-    rows: String,
+    /// The forces that hold it, where they are known.
+    holding: Option<SavedHolding>,
+}
+
+/// The forces that hold a state.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedHolding {
+    /// Coordinates that supports fix, and the generalised forces on them, in fixed axes.
+    supports: Vec<(usize, f64)>,
+    /// Checksums of what makes rows, and the forces \[N\] and moments \[N m\] of these.
+    rows: Vec<(String, Vec<f64>)>,
 }
 
 /// The data of a beam that must be the same where a state is taken up.
@@ -212,11 +220,12 @@ fn checksums<T: std::fmt::Debug>(all: &[T]) -> Vec<String> {
     all.iter().map(|one| sha256(format!("{one:?}").as_bytes())).collect()
 }
 
-/// A checksum of all that makes rows of constraints.
-fn rows(model: &Model) -> String {
-    let Model { supports, joints, parts, .. } = model;
-    let tendons: Vec<_> = parts.iter().filter(|part| part.tendon().is_some()).collect();
-    sha256(format!("{supports:?} {joints:?} {tendons:?}").as_bytes())
+/// Checksums of all that makes rows of constraints, in the order of [`System::forces_of_rows`].
+fn rows(model: &Model, system: &System) -> Vec<String> {
+    let tendons = system.parts_of_tendons().iter().map(|part| &model.parts[*part]);
+    let mut rows = [checksums(&model.supports), checksums(&model.joints), vec!["lengths".into()]].concat();
+    rows.extend(checksums(&tendons.collect::<Vec<_>>()));
+    rows
 }
 
 /// Per entry of `now`, the index of the same entry of `before`, each of which is found once.
@@ -275,19 +284,28 @@ impl SavedState {
             held: checksums(&model.supports),
             history_of: system.history_of().map(<[usize]>::to_vec),
             checkpoint,
-            holding,
-            rows: rows(model),
+            holding: holding.map(|Holding { supports, multipliers }| {
+                let supports = supports.into_iter().enumerate().filter(|(_, force)| *force != 0.0);
+                let rows = rows(model, system).into_iter().zip(system.forces_of_rows(&multipliers));
+                let rows = rows.filter(|(_, forces)| !forces.is_empty());
+                SavedHolding { supports: supports.collect(), rows: rows.collect() }
+            }),
         };
         Self { saved }
     }
 
-    /// What held it, as far as that is known: of rows only if those of `model` are the same.
-    pub(crate) fn holding(&self, model: &Model) -> Option<Holding> {
-        let mut holding = self.saved.holding.clone()?;
-        if self.saved.rows != rows(model) {
-            holding.multipliers.clear();
+    /// The forces that held it and that what holds in `model` takes over, where they are known. What
+    /// is new begins without any.
+    pub(crate) fn holding(&self, model: &Model, system: &System) -> Option<Holding> {
+        let SavedHolding { supports: known, rows: before } = self.saved.holding.as_ref()?;
+        let mut supports = vec![0.0; system.coordinates()];
+        for (coordinate, force) in known {
+            *supports.get_mut(*coordinate)? = *force;
         }
-        Some(holding)
+        let names: Vec<String> = before.iter().map(|(name, _)| name.clone()).collect();
+        let same = matches(&names, &rows(model, system)).into_iter();
+        let forces = same.map(|there| there.map(|there| &before[there].1[..]));
+        Some(Holding { supports, multipliers: system.multipliers_of(forces) })
     }
 
     /// Its time \[s\].

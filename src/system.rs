@@ -100,6 +100,8 @@ pub struct System {
     start: Option<Start>,
     /// Per friction and per torsion spring: the number of its part in the model.
     history_of: [Vec<usize>; 2],
+    /// Per tendon of given length, the number of its part.
+    parts_of_tendons: Vec<usize>,
     length: f64,
     stiffness: f64,
     round_off: f64,
@@ -189,6 +191,7 @@ impl System {
             reference,
             start: start.map(Start::given),
             history_of: [Vec::new(), Vec::new()],
+            parts_of_tendons: Vec::new(),
             length,
             stiffness,
             round_off,
@@ -209,6 +212,7 @@ impl System {
             for (of, count) in system.history_of.iter_mut().zip(assembly.histories()) {
                 of.resize(count, number);
             }
+            system.parts_of_tendons.resize(assembly.tendons(), number);
         }
         if !needs.motion {
             assembly.set_amplitude(Some(Amplitude::Fading));
@@ -361,6 +365,11 @@ impl System {
     /// its part in the model.
     pub fn history_of(&self) -> [&[usize]; 2] {
         self.history_of.each_ref().map(|of| &of[..])
+    }
+
+    /// Per tendon of given length, the number of its part in the model.
+    pub fn parts_of_tendons(&self) -> &[usize] {
+        &self.parts_of_tendons
     }
 
     /// Length of the longest beam \[m\]: the scale of positions.

@@ -54,6 +54,11 @@ impl<'a> Assembly<'a> {
         [self.terms.friction.len(), self.terms.windings.len()]
     }
 
+    /// How many tendons of given length there are so far.
+    pub(crate) fn tendons(&self) -> usize {
+        self.terms.held.len()
+    }
+
     /// All beams.
     pub fn beams(&self) -> &'a [Beam] {
         self.beams

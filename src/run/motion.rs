@@ -60,7 +60,10 @@ impl Solve for Dynamic {
         let saved = solution.checkpoint.take();
         let saved = saved.map(|checkpoint| {
             let end = solution.end.as_ref().filter(|end| end.state.time == checkpoint.reached().time);
-            let holding = end.map(|end| Holding::new(&end.support_forces, &end.multipliers));
+            let holding = end.map(|end| Holding {
+                supports: end.support_forces.clone(),
+                multipliers: end.multipliers.clone(),
+            });
             SavedState::new(asked, &system, motion.clone(), checkpoint, holding)
         });
         let kept = (options.states || model.outputs.section_forces).then(|| {

@@ -619,7 +619,7 @@ impl<'a> Sampler<'a> {
         state.angles = seen.probes.iter().filter_map(|p| p.samples.last()).map(|s| s.angle).collect();
         let checkpoint = dynamics::Checkpoint { state, ..dynamics::Checkpoint::default() };
         let supports = self.system.static_support_forces(1.0, x, &checkpoint.state.variables);
-        let holding = Holding::new(&supports, &x[self.system.coordinates()..]);
+        let holding = Holding { supports, multipliers: x[self.system.coordinates()..].to_vec() };
         Some(SavedState::new(asked, self.system, String::new(), checkpoint, Some(holding)))
     }
 

@@ -32,11 +32,12 @@ impl<'m> Start<'m> {
             let system = System::build_with(model, needs(analysis), options.cache)?;
             return Ok(Self { model: Cow::Borrowed(model), system, state: None, holding: None });
         };
-        let holding = saved.holding(model);
+        let asked = model;
         let model = saved.gone_on(model);
         let mut system = System::build_with(&model, needs(analysis), options.cache)?;
         let (checkpoint, _) = saved.take_up(&model, &system, "")?;
         let state = checkpoint.state;
+        let holding = saved.holding(asked, &system);
         resume(&mut system, &state.q, &state.variables, holding.as_ref());
         Ok(Self { model: Cow::Owned(model), system, state: Some(state), holding })
     }

@@ -4,24 +4,15 @@ use super::equilibrium::Equilibrium;
 use super::newton::RESIDUAL_TOLERANCE;
 use crate::assembly::{Earlier, InternalVariables};
 use crate::system::{System, Unbalanced};
-use serde::{Deserialize, Serialize};
 
-/// What held a state, as far as a saved state knows it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// The forces that hold a state.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Holding {
-    /// The generalised forces of supports on the coordinates that they fixed, in fixed axes.
-    pub supports: Vec<(usize, f64)>,
-    /// The scaled multipliers of all rows; empty where the rows are others now.
+    /// The generalised forces of supports on the coordinates that they fix, in fixed axes; others are
+    /// zero.
+    pub supports: Vec<f64>,
+    /// The scaled multipliers of all rows.
     pub multipliers: Vec<f64>,
-}
-
-impl Holding {
-    /// Of the forces on all coordinates those that are not zero.
-    pub fn new(forces: &[f64], multipliers: &[f64]) -> Self {
-        let supports = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
-        Self { supports, multipliers: multipliers.to_vec() }
-    }
 }
 
 /// σ of the shifted tangent K + σ D that finds multipliers: it outweighs every stiffness but that
@@ -37,14 +28,13 @@ const GATHERED: f64 = 1e-6;
 const BALANCED: f64 = 1e-8;
 
 /// Lets an analysis of `system` begin in the state `q` with the internal `variables`. Supports and
-/// rows begin with the forces of `holding`; rows of which it knows none with those that balance as
+/// rows begin with the forces of `holding`, or, where these are not known, with those that balance as
 /// much as they can. What remains unbalanced fades as the load factor grows.
 pub fn resume(system: &mut System, q: &[f64], variables: &InternalVariables, holding: Option<&Holding>) {
     system.begin_in(q, variables);
-    let known = holding.map(|holding| [q, &holding.multipliers].concat());
-    let known = known.filter(|x| x.len() == q.len() + system.multipliers());
-    let (x, residual) = match known {
-        Some(x) => {
+    let (x, residual) = match holding {
+        Some(holding) => {
+            let x = [q, &holding.multipliers].concat();
             let residual = Equilibrium::new(system).residual(0.0, &x, &mut vec![0.0; x.len()]);
             (x, residual)
         }

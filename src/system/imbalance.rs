@@ -159,14 +159,14 @@ impl System {
     }
 
     /// What is left of the forces R = f(q) + Bᵀ μ in statics at load factor 0, in fixed axes, if
-    /// supports at nodes take up as much as the state knows that they did: `supports` are coordinates
-    /// and forces on them. Where that is not known, they take up all. `x` holds the coordinates and the
+    /// supports at nodes take up as much as they did: `supports` are forces on coordinates. Where
+    /// that is not known, they take up all. `x` holds the coordinates and the
     /// scaled multipliers, and `variables` are the internal variables.
     pub fn unbalanced(
         &self,
         x: &[f64],
         variables: &InternalVariables,
-        supports: Option<&[(usize, f64)]>,
+        supports: Option<&[f64]>,
     ) -> Unbalanced {
         let (q, multipliers) = x.split_at(self.coordinates());
         let mut force = vec![0.0; q.len()];
@@ -177,8 +177,7 @@ impl System {
         self.supports.keep_fixed(0.0, &mut taken);
         let mut on_fixed = 0.0;
         if let Some(supports) = supports {
-            let mut before = vec![0.0; q.len()];
-            supports.iter().for_each(|(i, force)| before[*i] = *force);
+            let mut before = supports.to_vec();
             self.supports.keep_fixed(0.0, &mut before);
             taken.iter_mut().zip(&before).for_each(|(taken, before)| *taken -= before);
             let left = self.largest(&taken);

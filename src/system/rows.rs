@@ -5,11 +5,13 @@ use super::constraints::Constraint;
 use super::held::{dot, rate_of};
 use super::lengths::Lengths;
 use super::polar::Polar;
+use super::reaction::Source;
 use super::{BuildError, System};
 use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
 use crate::linear::bordered::BorderRow;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 impl System {
     /// Scaled rows of ∂g/∂q in the supports' frames, without fixed coordinates. Entries of
@@ -79,6 +81,42 @@ impl System {
             rows[row].extend(coordinates.map(|i| (i, gradient[i])));
             in_frames(&mut rows[row], true);
         }
+    }
+
+    /// What all rows do, as forces \[N\] and moments \[N m\] from the scaled multipliers: those of each
+    /// support and then of each joint, in the model's order, of the lengths of beams, and of each
+    /// tendon of given length.
+    pub fn forces_of_rows(&self, multipliers: &[f64]) -> Vec<Vec<f64>> {
+        let of = |row: usize| multipliers[row] * self.unit_of_row(row);
+        self.groups_of_rows().into_iter().map(|rows| rows.map(of).collect()).collect()
+    }
+
+    /// The scaled multipliers whose groups are such forces; zero where a group has none.
+    pub fn multipliers_of<'f>(&self, forces: impl Iterator<Item = Option<&'f [f64]>>) -> Vec<f64> {
+        let mut multipliers = vec![0.0; self.multipliers()];
+        for (rows, forces) in self.groups_of_rows().into_iter().zip(forces) {
+            if let Some(forces) = forces.filter(|forces| forces.len() == rows.len()) {
+                rows.zip(forces).for_each(|(row, force)| multipliers[row] = force / self.unit_of_row(row));
+            }
+        }
+        multipliers
+    }
+
+    fn groups_of_rows(&self) -> Vec<Range<usize>> {
+        let rows = |source: &Source| match source {
+            Source::Rows(rows) => rows.clone(),
+            Source::Node { .. } => 0..0,
+        };
+        let mut groups: Vec<Range<usize>> = self.sources.iter().map(rows).collect();
+        let lengths = groups.iter().map(|rows| rows.end).max().unwrap_or(0);
+        groups.push(lengths..self.constraints.len());
+        groups.extend(self.held_rows().map(|(row, _)| row..row + 1));
+        groups
+    }
+
+    fn unit_of_row(&self, row: usize) -> f64 {
+        let constraint = self.constraints.get(row);
+        constraint.map_or(self.unit_of_lengths(), |row| row.scale(self.stiffness, self.length))
     }
 
     /// Factor of the rows of lengths.

@@ -553,3 +553,51 @@ fn supports_and_joints_begin_with_the_forces_that_they_had() {
         }
     }
 }
+
+/// What holds on does so with the force that it had, whatever goes beside it: a prop at a welded knee,
+/// a load of a chain, weight on a beam that keeps its length and is bent by a tendon of given length.
+#[test]
+fn what_holds_on_keeps_its_force_whatever_goes() {
+    let prop = ", { beam = 'arm', at = 'end', fix = ['y'], until = 'two' }";
+    let weld =
+        "{ type = 'weld', first = { beam = 'arm', at = 'end' }, second = { beam = 'leg', at = 'start' } }";
+    let stages_of =
+        "stage = [{ name = 'one', analysis.static = {} }, { name = 'two', analysis.static = { steps = 2 } }]";
+    let frame = with(prop, weld, &format!("{WEIGHT}{LOAD}"), stages_of);
+    let chain = format!(
+        "beam.chain = {{ points = [[0, 0], [0.4, -0.25], [0.8, 0]], mass_per_length = 0.2, basis.ancf.elements = 6 }}
+        support = [{{ beam = 'chain', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'chain', at = 'end', fix = ['x', 'y'] }}]
+        effect.gravity.acceleration = [0, -9.81]
+        effect.force = [{{ beam = 'chain', at = 0.5, value = [0.3, -0.5], until = 'two' }}]
+        output.reactions = true
+        {stages_of}\n"
+    );
+    let bent = format!(
+        "beam.arm = {{ start = [0, 0], end = [1, 0], bending_stiffness = 2, mass_per_length = 0.5, basis.ancf.elements = 6 }}
+        beam.leg = {{ start = [1, 0], end = [1, -0.5], bending_stiffness = 1, mass_per_length = 0.3, basis.ancf.elements = 4 }}
+        support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+        joint = [{weld}]
+        effect.gravity = {{ acceleration = [0, -9.81], until = 'two' }}
+        effect.tendon = [{{ beam = 'arm', offset = 0.05, shortening = 0.01 }}]
+        output.reactions = true
+        {stages_of}\n"
+    );
+    for (name, scene) in [("frame", frame), ("chain", chain), ("bent", bent)] {
+        let found = stages(&scene);
+        let text = std::fs::read_to_string(found[1].0.path().join("reactions.csv")).expect("reactions");
+        let columns = text.lines().next().expect("a header").split(',').skip(1);
+        let sizes = columns.clone().map(|column| found[0].last("reactions.csv", column).abs());
+        let largest = sizes.fold(0.0, f64::max);
+        for column in columns {
+            let before = found[0].last("reactions.csv", column);
+            near(
+                found[1].column("reactions.csv", column)[0],
+                before,
+                1e-6 * largest,
+                &format!("{name}, {column}"),
+            );
+        }
+        let energy = |stage: &Written, at: usize| stage.column("energy.csv", "bend")[at];
+        assert!(name == "chain" || energy(&found[1], 0) > 0.0, "{name}");
+    }
+}

@@ -361,11 +361,13 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
                 // Other steps make other errors: of forces, which no tolerance bounds, and of all
                 // where steps are fixed and the first part ends within one. A smaller tolerance,
                 // or steps of half the length, tells how large these are.
-                let finer = ways::tighter(scene).or_else(|| ways::half_steps(scene));
-                if let Some(finer) = finer.filter(|_| measured.value > measured.allowed) {
-                    let errors = gap::between(base, &*other(&finer, frame, way)?, records);
-                    let error = if measured.places { errors.places } else { errors.forces };
-                    measured.allowed = measured.allowed.max(ALLOWED * error);
+                for (run, scene) in [(base, scene), (&*seen, &changed)] {
+                    let finer = ways::tighter(scene).or_else(|| ways::half_steps(scene));
+                    if let Some(finer) = finer.filter(|_| measured.value > measured.allowed) {
+                        let errors = gap::between(run, &*other(&finer, frame, way)?, records);
+                        let error = if measured.places { errors.places } else { errors.forces };
+                        measured.allowed = measured.allowed.max(ALLOWED * error);
+                    }
                 }
                 measured
             }
