@@ -1,9 +1,10 @@
 //! Forces that the state in which statics begins leaves unbalanced.
 //!
 //! Where an analysis starts from a state that other supports, joints or effects have held, the
-//! forces of what has left, R₀ = f(q₀) + B₀ᵀ μ₀, keep it where it is. They act on as −(1 − λ) R₀,
-//! dead forces at the nodes that fade as the load factor grows, so that the path leads from that
-//! state to the equilibrium of what is there now.
+//! forces of what has left, R₀ = f(q₀) + B₀ᵀ μ₀ − r₀, keep it where it is, where r₀ and μ₀ are what
+//! those supports and joints did that are still there. They act on as −(1 − λ) R₀, dead forces at
+//! the nodes, held ones included, that fade as the load factor grows: the path leads from that state
+//! to the equilibrium of what is there now, and reactions begin with what they were.
 
 use super::System;
 use crate::assembly::{
