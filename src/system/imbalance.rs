@@ -161,8 +161,8 @@ impl System {
 
     /// What is left of the forces R = f(q) + Bᵀ μ in statics at load factor 0, in fixed axes, if
     /// supports at nodes take up as much as they did: `supports` are forces on coordinates. Where
-    /// that is not known, they take up all. `x` holds the coordinates and the
-    /// scaled multipliers, and `variables` are the internal variables.
+    /// that is not known, they take up all. `x` holds the coordinates and the scaled multipliers, and
+    /// `variables` are the internal variables.
     pub fn unbalanced(
         &self,
         x: &[f64],

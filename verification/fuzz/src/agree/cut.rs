@@ -39,7 +39,8 @@ pub fn cut(scene: &Table) -> Option<Table> {
     let whole = ["arc", "basis", "section", "axial_law", "bending_law", "initial_shape"];
     let quantities = beam.iter().filter(|(key, _)| !whole.contains(&key.as_str()));
     let varies = quantities.into_iter().any(|(_, value)| value.is_table());
-    let layered = beam.get("section").is_some_and(|section| section.to_string().contains("table"));
+    let section = beam.get("section").map(Value::to_string).unwrap_or_default();
+    let layered = ["table", "polynomial", "pieces"].iter().any(|varying| section.contains(varying));
     let effects = scene.get("effect").and_then(Value::as_table);
     let on_a_stretch = |item: &Value| {
         let varies = item.get("offset").is_some_and(Value::is_table);
