@@ -56,8 +56,8 @@ pub struct Model {
     /// already, as indices of [parts](Self::parts). In statics their loads act in full from the
     /// beginning, where all others grow with the load factor. Joints may be open in the state.
     pub standing: Option<Vec<usize>>,
-    /// Tendons that acted in that state and have gone: in statics they fade as the load factor grows.
-    pub fading: Vec<Arc<dyn Part>>,
+    /// What acted in that state and has gone, if it [fades](Part::fades), with the time of the state \[s\].
+    pub fading: Vec<(Arc<dyn Part>, f64)>,
     /// The numbers by which results name the supports and the joints, where these are not 1, 2, 3, …:
     /// those of the scene, of which a stage may have fewer.
     pub numbers: [Vec<usize>; 2],

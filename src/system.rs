@@ -47,7 +47,7 @@ pub use view::{Change, Fields, View, unfold};
 
 use std::sync::Arc;
 
-use crate::assembly::{Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Terms, nodes};
+use crate::assembly::{Acting, Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Terms, nodes};
 use crate::basis::{Basis, BasisCache};
 use crate::centreline::Curve;
 use crate::effect;
@@ -206,20 +206,21 @@ impl System {
             effect::of_section(beam).iter().try_for_each(|part| part.add_to(&mut assembly))?;
         }
         for (number, part) in model.parts.iter().enumerate() {
-            let standing = !needs.motion && model.stands(number);
-            assembly.set_amplitude(standing.then_some(Amplitude::Full));
+            let already = !needs.motion && model.stands(number);
+            assembly.set_acting(if already { Acting::Already } else { Acting::Not });
             part.add_to(&mut assembly)?;
             for (of, count) in system.history_of.iter_mut().zip(assembly.histories()) {
                 of.resize(count, number);
             }
             system.parts_of_tendons.resize(assembly.tendons(), number);
         }
-        if !needs.motion {
-            assembly.set_amplitude(Some(Amplitude::Fading));
-            model.fading.iter().try_for_each(|part| part.add_to(&mut assembly))?;
+        let fading = if needs.motion { &[][..] } else { &model.fading[..] };
+        for (part, time) in fading {
+            assembly.set_acting(Acting::NoLonger { time: *time });
+            part.add_to(&mut assembly)?;
         }
         system.terms = assembly.finish();
-        system.actuated = actuation::actuated(model, &system);
+        system.actuated = actuation::actuated(model, fading, &system);
         system.constant_load = vec![0.0; system.coordinates()];
         for load in system.terms.loads.iter().filter(|load| load.is_summed()) {
             load.effect.add_force(1.0, &system.reference, &mut system.constant_load);

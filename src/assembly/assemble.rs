@@ -2,7 +2,7 @@
 
 use super::part::places;
 use super::{
-    ActingLoad, Amplitude, BuildError, ContactEffect, Damping, Density, DiscretizedBeam, Dissipation, Effect,
+    Acting, ActingLoad, BuildError, ContactEffect, Damping, Density, DiscretizedBeam, Dissipation, Effect,
     Extent, FrictionEffect, HeldLength, Integral, Kind, Needs, Rayleigh, TendonPath, Terms, TimedDensity,
     TimedIntegral, TimedLoad, Turning, Weighted, Winding,
 };
@@ -19,8 +19,7 @@ pub struct Assembly<'a> {
     reference: &'a [f64],
     masses: Vec<(Place, f64)>,
     needs: Needs,
-    /// Amplitude of loads without a law; `None` for that of the system.
-    amplitude: Option<Amplitude>,
+    acting: Acting,
     terms: Terms,
 }
 
@@ -35,7 +34,7 @@ impl<'a> Assembly<'a> {
         masses: Vec<(Place, f64)>,
         needs: Needs,
     ) -> Self {
-        Self { beams, discretized, reference, masses, needs, amplitude: None, terms: Terms::default() }
+        Self { beams, discretized, reference, masses, needs, acting: Acting::Not, terms: Terms::default() }
     }
 
     /// The terms that the parts have added.
@@ -43,10 +42,13 @@ impl<'a> Assembly<'a> {
         self.terms
     }
 
-    /// Gives the loads without a law that are added from now on an amplitude of their own, or that
-    /// of all such loads.
-    pub fn set_amplitude(&mut self, amplitude: Option<Amplitude>) {
-        self.amplitude = amplitude;
+    /// Says how the parts that are added from now on act in the state with which the analysis begins.
+    pub fn set_acting(&mut self, acting: Acting) {
+        self.acting = acting;
+    }
+
+    fn has_gone(&self) -> bool {
+        matches!(self.acting, Acting::NoLonger { .. })
     }
 
     /// How many frictions and windings there are so far, which are numbered in this order.
@@ -107,7 +109,11 @@ impl<'a> Assembly<'a> {
         density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
     ) -> Result<(), BuildError> {
         let effect = self.effect(kind, &extent, density)?;
-        self.terms.internal.push(effect);
+        if self.has_gone() {
+            self.terms.loads.push(ActingLoad { effect, amplitude: self.acting.amplitude(None) });
+        } else {
+            self.terms.internal.push(effect);
+        }
         Ok(())
     }
 
@@ -123,12 +129,11 @@ impl<'a> Assembly<'a> {
         law: Option<&Law>,
         density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
     ) -> Result<(), BuildError> {
-        if law.is_some() && !self.needs.motion {
+        if law.is_some() && !self.needs.motion && !self.has_gone() {
             return Err(BuildError::NoTime { what: "a load" });
         }
         let effect = self.effect(kind, &extent, density)?;
-        let amplitude = law.cloned().map(Amplitude::Law).or_else(|| self.amplitude.clone());
-        self.terms.loads.push(ActingLoad { effect, amplitude });
+        self.terms.loads.push(ActingLoad { effect, amplitude: self.acting.amplitude(law) });
         Ok(())
     }
 
@@ -192,7 +197,7 @@ impl<'a> Assembly<'a> {
         if self.needs.motion {
             let effect = self.dissipative(kind, &extent, density)?;
             self.terms.damping.push(effect);
-        } else {
+        } else if !self.has_gone() {
             self.terms.left_out.push((kind, extent.beam()));
         }
         Ok(())
@@ -234,7 +239,7 @@ impl<'a> Assembly<'a> {
             self.effect(Kind::Tendon, &centreline.0, |_| centreline.1)?,
             self.effect(Kind::Tendon, &extent, detour)?,
         ];
-        let amplitude = law.cloned().map(Amplitude::Law).or_else(|| self.amplitude.clone());
+        let amplitude = self.acting.amplitude(law);
         self.terms.held.push(HeldLength::new(sums, path.clone(), shortening, amplitude, self.reference));
         Ok(())
     }

@@ -10,8 +10,13 @@ pub enum Amplitude {
     Proportional,
     /// One, at all times.
     Full,
-    /// One less the load factor.
-    Fading,
+    /// A factor, times one less the load factor.
+    Fading {
+        /// The factor.
+        factor: f64,
+        /// Whether it is the value of a law of time.
+        by_law: bool,
+    },
     /// A law of time.
     Law(Law),
 }
@@ -22,7 +27,7 @@ impl Amplitude {
         match self {
             Self::Proportional => parameter,
             Self::Full => 1.0,
-            Self::Fading => 1.0 - parameter,
+            Self::Fading { factor, .. } => factor * (1.0 - parameter),
             Self::Law(law) => law.at(parameter)[0],
         }
     }
@@ -47,8 +52,37 @@ impl Amplitude {
     pub fn rate(&self) -> f64 {
         match self {
             Self::Proportional => 1.0,
-            Self::Fading => -1.0,
+            Self::Fading { factor, .. } => -factor,
             Self::Full | Self::Law(_) => 0.0,
+        }
+    }
+}
+
+/// How a part acts in the state with which an analysis begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Acting {
+    /// Not yet.
+    Not,
+    /// As it goes on to act.
+    Already,
+    /// It acted at this time \[s\], and has gone.
+    NoLonger {
+        /// The time.
+        time: f64,
+    },
+}
+
+impl Acting {
+    /// The amplitude of a load that follows `law`; `None` for that of the system.
+    pub fn amplitude(self, law: Option<&Law>) -> Option<Amplitude> {
+        match (self, law) {
+            (Self::NoLonger { time }, Some(law)) => {
+                Some(Amplitude::Fading { factor: law.at(time)[0], by_law: true })
+            }
+            (Self::NoLonger { .. }, None) => Some(Amplitude::Fading { factor: 1.0, by_law: false }),
+            (_, Some(law)) => Some(Amplitude::Law(law.clone())),
+            (Self::Already, None) => Some(Amplitude::Full),
+            (Self::Not, None) => None,
         }
     }
 }
@@ -67,9 +101,14 @@ impl ActingLoad {
         self.amplitude.is_none() && self.effect.is_constant()
     }
 
-    /// Whether its work is the difference of a potential. For a load that follows a law of time it
-    /// is not.
+    /// Whether its work is the difference of a potential. For a load that follows a law of time, or
+    /// has followed one before it went, it is not.
     pub fn has_potential(&self) -> bool {
-        matches!(self.amplitude, None | Some(Amplitude::Full)) && self.effect.is_conservative()
+        let by_law = match self.amplitude {
+            Some(Amplitude::Law(_)) => true,
+            Some(Amplitude::Fading { by_law, .. }) => by_law,
+            Some(Amplitude::Proportional | Amplitude::Full) | None => false,
+        };
+        !by_law && self.effect.is_conservative()
     }
 }

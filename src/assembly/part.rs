@@ -18,6 +18,12 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
     /// [`BuildError`] where the part does not fit the model.
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError>;
 
+    /// Whether it fades as it is where it has gone in a later static analysis: one that acts in an
+    /// equilibrium by loads and energies alone. What another part has done fades as forces on nodes.
+    fn fades(&self) -> bool {
+        false
+    }
+
     /// What an actuation imposes on beam `beam`.
     fn actuation(&self, _beam: usize) -> Option<Imposed<'_>> {
         None

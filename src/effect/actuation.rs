@@ -70,6 +70,10 @@ impl Part for Actuation {
         moments.into_iter().flatten().try_for_each(|moment| self.add_pre_curvature(assembly, bend, &moment))
     }
 
+    fn fades(&self) -> bool {
+        true
+    }
+
     fn actuation(&self, beam: usize) -> Option<Imposed<'_>> {
         let [strain, curvature] =
             [&self.strain, &self.curvature].map(|value| value.as_ref().unwrap_or(&NOTHING));

@@ -38,6 +38,10 @@ impl Part for Drag {
         }
         Ok(())
     }
+
+    fn fades(&self) -> bool {
+        true
+    }
 }
 
 impl Drag {
@@ -185,5 +189,9 @@ impl Part for Buoyancy {
         assembly.load(Kind::Buoyancy, extent, self.law.as_ref(), |z: Vec<[Vector2<f64>; 1]>| {
             DeadForce::new(force, z.into_iter().map(|[r]| r).collect())
         })
+    }
+
+    fn fades(&self) -> bool {
+        true
     }
 }

@@ -64,6 +64,10 @@ impl Part for Electrostatic {
             Plate { normal, offset, strength, fringe, start }
         })
     }
+
+    fn fades(&self) -> bool {
+        true
+    }
 }
 
 /// W = −a (1/g − 1/g₀) + b ln(g/g₀), with the gap g₀ of the stress-free state.

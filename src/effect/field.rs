@@ -117,6 +117,10 @@ impl Part for ForceField {
         }
     }
 
+    fn fades(&self) -> bool {
+        !self.field.depends_on_time()
+    }
+
     fn resists(&self) -> Vec<Resistance> {
         let start = Place { beam: self.beam, s: 0.0 };
         let axes = [[1.0, 0.0], [0.0, 1.0]].map(|axis| Resistance::Displacement(start, axis));

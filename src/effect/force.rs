@@ -38,6 +38,10 @@ impl Part for Force {
         add_force(assembly, Kind::Force, Extent::Point(self.at), self.value, self.follower, self.law.as_ref())
     }
 
+    fn fades(&self) -> bool {
+        true
+    }
+
     fn point(&self) -> Option<Place> {
         Some(self.at)
     }
@@ -79,6 +83,10 @@ impl Part for DistributedForce {
             add(extent, value)?;
         }
         Ok(())
+    }
+
+    fn fades(&self) -> bool {
+        true
     }
 }
 

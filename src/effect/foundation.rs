@@ -27,6 +27,10 @@ impl Part for Foundation {
         Ok(())
     }
 
+    fn fades(&self) -> bool {
+        true
+    }
+
     fn resists(&self) -> Vec<Resistance> {
         let start = Place { beam: self.beam, s: 0.0 };
         let axes = [[1.0, 0.0], [0.0, 1.0]].into_iter().zip(&self.stiffness);

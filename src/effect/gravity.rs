@@ -38,4 +38,8 @@ impl Part for Gravity {
             add_dead_force(assembly, Kind::Gravity, extent, force, self.law.as_ref())
         })
     }
+
+    fn fades(&self) -> bool {
+        true
+    }
 }

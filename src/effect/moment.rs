@@ -31,6 +31,10 @@ impl Part for Moment {
         assembly.load(Kind::Moment, Extent::Point(self.at), self.law.as_ref(), couple)
     }
 
+    fn fades(&self) -> bool {
+        true
+    }
+
     fn couple(&self) -> Option<Place> {
         Some(self.at)
     }

@@ -31,11 +31,13 @@ pub struct Tendon {
 }
 
 impl Tendon {
-    /// The same tendon, pulled with a tension \[N\] in place of its length.
+    /// The same tendon, pulled with a tension \[N\] in place of its length. A law that is always one
+    /// says that it has no potential, as it had none while its length was given.
     #[must_use]
     pub fn pulled_with(&self, tension: f64) -> Self {
         let path = TendonPath { tension, ..self.path.clone() };
-        Self { path, shortening: None, law: None, ..self.clone() }
+        let law = Some(Law::Polynomial(vec![1.0]));
+        Self { path, shortening: None, law, ..self.clone() }
     }
 
     /// Whether it is fixed at the ends of a beam of length `length` \[m\].
@@ -79,6 +81,10 @@ impl Part for Tendon {
                 assembly.load(Kind::Tendon, extent, law, detour)
             }
         }
+    }
+
+    fn fades(&self) -> bool {
+        true
     }
 
     fn jumps(&self) -> Vec<Place> {

@@ -54,17 +54,32 @@ pub fn inspect_stages(
     Ok(stages.iter().map(|stage| stage.name.as_str()).zip(inventories).collect())
 }
 
-/// For a tendon one that pulls as it does in the state that was reached; none for other parts, and for a
-/// tendon whose tension follows a law of time. `tensions` are those of the tendons of given length, in
-/// turn.
-fn pull(part: &Arc<dyn Part>, tensions: &mut impl Iterator<Item = f64>) -> Option<Arc<dyn Part>> {
+/// The part that fades where `part` has gone, if there is one: of a tendon of given length one that pulls
+/// as it does in the state that was reached. `tensions` are those of the tendons of given length, in turn.
+fn fading(part: &Arc<dyn Part>, tensions: &mut impl Iterator<Item = f64>) -> Option<Arc<dyn Part>> {
     let any: &dyn Any = part.as_ref();
-    let tendon = any.downcast_ref::<Tendon>()?;
-    match (tendon.shortening, &tendon.law) {
-        (Some(_), _) => tensions.next().map(|tension| Arc::new(tendon.pulled_with(tension)) as Arc<dyn Part>),
-        (None, None) => Some(Arc::clone(part)),
-        (None, Some(_)) => None,
+    match any.downcast_ref::<Tendon>() {
+        Some(tendon) if tendon.shortening.is_some() => {
+            tensions.next().map(|tension| Arc::new(tendon.pulled_with(tension)) as Arc<dyn Part>)
+        }
+        _ => part.fades().then(|| Arc::clone(part)),
     }
+}
+
+/// Those parts of `acted` that have gone where `parts` go on, as they fade.
+fn gone(acted: &[Arc<dyn Part>], parts: &[Arc<dyn Part>], tensions: &[f64]) -> Vec<Arc<dyn Part>> {
+    let (mut tensions, mut going_on) = (tensions.iter().copied(), parts.iter().collect::<Vec<_>>());
+    let of = |part: &Arc<dyn Part>| {
+        let fading = fading(part, &mut tensions);
+        match going_on.iter().position(|other| *other == part) {
+            Some(same) => {
+                going_on.swap_remove(same);
+                None
+            }
+            None => fading,
+        }
+    };
+    acted.iter().filter_map(of).collect()
 }
 
 /// Solves `stages`, the first from the start that `options` give. The others start where the one
@@ -87,13 +102,9 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
             observer: Some(&mut watch),
             ..options.copied()
         };
-        let mut tensions = held.iter().copied();
-        // A tendon's forces turn with its beam, which those of other things that have gone do not.
-        let gone = |part: &Arc<dyn Part>| {
-            let pull = pull(part, &mut tensions)?;
-            (!model.parts.contains(part)).then_some(pull)
-        };
-        let fading: Vec<_> = acted.iter().filter_map(gone).collect();
+        let time = reached.as_ref().map_or(0.0, SavedState::time);
+        let gone = gone(acted, &model.parts, &held).into_iter();
+        let fading: Vec<_> = gone.map(|part| (part, time)).collect();
         let model = if fading.is_empty() {
             Cow::Borrowed(model)
         } else {

@@ -12,8 +12,9 @@
 //! changes, the actuator supplies the power −∫ N ε̇₀ ds − ∫ M κ̇₀ ds.
 
 use super::System;
-use crate::assembly::{Actions, Amplitude, DiscretizedBeam, Imposed, Kind};
+use crate::assembly::{Acting, Actions, Amplitude, DiscretizedBeam, Imposed, Kind, Part};
 use crate::model::{Along, Beam, Model};
+use std::sync::Arc;
 
 /// The actuations of a beam.
 #[derive(Debug)]
@@ -29,15 +30,20 @@ pub(super) struct Actuated {
     own: [Vec<Vec<f64>>; 2],
 }
 
-/// Collects the actuations of the model's parts by beam.
-pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
+/// Collects the actuations of the model's parts and of those that are `fading` by beam.
+pub(super) fn actuated(model: &Model, fading: &[(Arc<dyn Part>, f64)], system: &System) -> Vec<Actuated> {
     let of_beam = |(index, (beam, part)): (usize, (&Beam, &DiscretizedBeam))| {
-        let numbered = model.parts.iter().enumerate();
-        let parts: Vec<_> = numbered
-            .filter_map(|(number, part)| {
+        let standing =
+            model.parts.iter().enumerate().map(|(number, part)| {
+                (part, if model.stands(number) { Acting::Already } else { Acting::Not })
+            });
+        let gone = fading.iter().map(|(part, time)| (part, Acting::NoLonger { time: *time }));
+        let parts: Vec<_> = standing
+            .chain(gone)
+            .filter_map(|(part, acting)| {
                 let imposed = part.actuation(index)?;
-                let standing = model.stands(number).then_some(Amplitude::Full);
-                Some((imposed, imposed.law.cloned().map(Amplitude::Law).or(standing)))
+                let amplitude = acting.amplitude(imposed.law);
+                Some((imposed, amplitude))
             })
             .collect();
         let length = part.basis.length();
@@ -97,12 +103,17 @@ pub(super) fn actuated(model: &Model, system: &System) -> Vec<Actuated> {
 }
 
 impl System {
+    /// a_i, of one of [`Actuated::amplitudes`] or of a load.
+    fn amplitude_or_own<'a>(&'a self, amplitude: &'a Option<Amplitude>) -> &'a Amplitude {
+        amplitude.as_ref().unwrap_or(&self.amplitude)
+    }
+
     /// ½ Σ a_i a_j G_ij of one of the matrices of [`Actuated::own`], and its derivative with respect
-    /// to the amplitude of all loads without a law.
+    /// to the load factor.
     fn square(&self, actuated: &Actuated, part: usize, parameter: f64) -> (f64, f64) {
-        let amplitude = |law: &Option<Amplitude>| match law {
-            Some(law) => (law.at(parameter), 0.0),
-            None => (self.amplitude.at(parameter), 1.0),
+        let amplitude = |law: &Option<Amplitude>| {
+            let amplitude = self.amplitude_or_own(law);
+            (amplitude.at(parameter), amplitude.rate())
         };
         let amplitudes: Vec<(f64, f64)> = actuated.amplitudes.iter().map(amplitude).collect();
         let mut sums = (0.0, 0.0);
@@ -114,20 +125,18 @@ impl System {
         sums
     }
 
-    /// −∫ EA ε₀ᵢ ε ds (part 0) or −∫ EI κ₀ᵢ κ ds (part 1), relative to the stress-free shape: the sum
-    /// over actuations with a law of time, times their amplitudes, and the sum over those without a
-    /// law, without their amplitude.
-    fn potential_of(&self, actuated: &Actuated, part: usize, parameter: f64, q: &[f64]) -> [f64; 2] {
+    /// −∫ EA ε₀ᵢ ε ds (part 0) or −∫ EI κ₀ᵢ κ ds (part 1), relative to the stress-free shape, of all
+    /// actuations of a beam, each with its amplitude, if it has one of its own.
+    fn potentials<'a>(
+        &'a self,
+        actuated: &'a Actuated,
+        part: usize,
+        q: &'a [f64],
+    ) -> impl Iterator<Item = (&'a Option<Amplitude>, f64)> {
         let kind = [Kind::PreStrain, Kind::PreCurvature][part];
         let loads = self.terms.loads.iter();
-        let of = loads.filter(|load| load.effect.kind() == kind && load.effect.beam() == actuated.beam);
-        of.fold([0.0; 2], |[by_law, others], load| {
-            let energy = load.effect.energy(q) - load.effect.energy(&self.reference);
-            match &load.amplitude {
-                Some(law) => [by_law + law.at(parameter) * energy, others],
-                None => [by_law, others + energy],
-            }
-        })
+        let of = loads.filter(move |load| load.effect.kind() == kind && load.effect.beam() == actuated.beam);
+        of.map(|load| (&load.amplitude, load.effect.energy(q) - load.effect.energy(&self.reference)))
     }
 
     /// The terms that actuation adds to the energies of stretch and of bending \[J\], and the part
@@ -136,11 +145,17 @@ impl System {
         let (mut energy, mut put_in) = ([0.0; 2], 0.0);
         for actuated in &self.actuated {
             for (part, energy) in energy.iter_mut().enumerate() {
-                let [by_law, others] = self.potential_of(actuated, part, parameter, q);
+                let (mut own, mut common) = (0.0, 0.0);
+                for (amplitude, potential) in self.potentials(actuated, part, q) {
+                    match amplitude {
+                        Some(amplitude) => own += amplitude.at(parameter) * potential,
+                        None => common += potential,
+                    }
+                }
                 let square = self.square(actuated, part, parameter).0;
-                *energy += by_law + self.amplitude.at(parameter) * others + square;
+                *energy += own + self.amplitude.at(parameter) * common + square;
                 if self.amplitude == Amplitude::Full {
-                    put_in += by_law + square - self.square(actuated, part, 0.0).0;
+                    put_in += own + square - self.square(actuated, part, 0.0).0;
                 }
             }
         }
@@ -151,7 +166,7 @@ impl System {
     pub(super) fn add_layer_strains(&self, parameter: f64, actions: &mut [Actions]) {
         for Actuated { beam, layers, .. } in &self.actuated {
             for (layer, strain, amplitude) in layers {
-                let factor = amplitude.as_ref().unwrap_or(&self.amplitude).at(parameter);
+                let factor = self.amplitude_or_own(amplitude).at(parameter);
                 actions[*beam].add_layer_strain(factor, *layer, strain);
             }
         }
@@ -162,7 +177,7 @@ impl System {
     pub fn imposed_force(&self, beam: usize, s: f64, inside: f64, parameter: f64) -> f64 {
         let of_beam = self.actuated.iter().filter(|actuated| actuated.beam == beam);
         let forces = of_beam.flat_map(|actuated| &actuated.forces);
-        let at = |amplitude: &Option<Amplitude>| amplitude.as_ref().unwrap_or(&self.amplitude).at(parameter);
+        let at = |amplitude| self.amplitude_or_own(amplitude).at(parameter);
         forces.map(|(force, amplitude)| at(amplitude) * force.at(s, inside)).sum()
     }
 
@@ -183,11 +198,12 @@ impl System {
     /// Derivative of the actuators' work with respect to the load factor \[J\]: −∫ N ε₀ ds − ∫ M κ₀
     /// ds in the state `q`.
     pub fn actuators_rate(&self, load: f64, q: &[f64]) -> f64 {
-        let rate = |actuated: &Actuated| {
-            let of =
-                |part| self.potential_of(actuated, part, load, q)[1] + self.square(actuated, part, load).1;
-            of(0) + of(1)
+        let of = |actuated: &Actuated, part: usize| {
+            let potentials = self.potentials(actuated, part, q);
+            let loads = potentials.map(|(amplitude, of)| self.amplitude_or_own(amplitude).rate() * of);
+            loads.sum::<f64>() + self.square(actuated, part, load).1
         };
+        let rate = |actuated: &Actuated| of(actuated, 0) + of(actuated, 1);
         self.actuated.iter().map(rate).sum()
     }
 }

@@ -1,14 +1,16 @@
 //! Forces that the state in which statics begins leaves unbalanced.
 //!
 //! Where an analysis starts from a state that other supports, joints or effects have held, the
-//! forces of what has left, R₀ = f(q₀) + B₀ᵀ μ₀ − r₀, keep it where it is, where r₀ and μ₀ are what
-//! those supports and joints did that are still there. They act on as −(1 − λ) R₀, dead forces at
-//! the nodes, held ones included, that fade as the load factor grows: the path leads from that state
-//! to the equilibrium of what is there now, and reactions begin with what they were.
+//! forces of what has left and does not fade by itself, R₀ = f(q₀) + B₀ᵀ μ₀ − r₀, keep it where it is,
+//! where r₀ and μ₀ are what those supports and joints did that are still there. They act on as
+//! −(1 − λ) R₀, dead forces at the nodes, held ones included, that fade as the load factor grows: the
+//! path leads from that state to the equilibrium of what is there now, and reactions begin with what
+//! they were.
 
 use super::System;
 use crate::assembly::{
-    ActingLoad, Action, Actions, Amplitude, Earlier, Effect, InternalVariables, Kind, Workspace, nodes,
+    Acting, ActingLoad, Action, Actions, Amplitude, Earlier, Effect, InternalVariables, Kind, Workspace,
+    nodes,
 };
 use crate::linear::Matrix;
 use std::ops::Range;
@@ -124,7 +126,8 @@ impl System {
             let force: Vec<f64> = unbalanced[range.clone()].iter().map(|force| -force).collect();
             if force.iter().any(|force| *force != 0.0) {
                 let effect = Box::new(Imbalance { beam, nodes, range, force });
-                self.terms.loads.push(ActingLoad { effect, amplitude: Some(Amplitude::Fading) });
+                let amplitude = Acting::NoLonger { time: 0.0 }.amplitude(None);
+                self.terms.loads.push(ActingLoad { effect, amplitude });
             }
         }
     }
@@ -144,7 +147,7 @@ impl System {
 
     /// Whether anything fades as the load factor grows.
     pub fn is_fading(&self) -> bool {
-        self.terms.loads.iter().any(|load| load.amplitude == Some(Amplitude::Fading))
+        self.terms.loads.iter().any(|load| matches!(load.amplitude, Some(Amplitude::Fading { .. })))
     }
 
     /// Whether an analysis begins in a state that another one has left.

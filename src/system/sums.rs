@@ -268,9 +268,10 @@ impl System {
         };
         let actuates = |load: &ActingLoad| matches!(load.effect.kind(), Kind::PreStrain | Kind::PreCurvature);
         let with_potential = self.terms.loads.iter().filter(|load| load.has_potential() && !actuates(load));
-        let (standing, growing): (Vec<_>, Vec<_>) = with_potential.partition(|load| load.amplitude.is_some());
-        let [standing, potential] =
-            [standing, growing].map(|loads| loads.iter().map(|load| load.effect.energy(q)).sum::<f64>());
+        let (own, common): (Vec<_>, Vec<_>) = with_potential.partition(|load| load.amplitude.is_some());
+        let common: f64 = common.iter().map(|load| load.effect.energy(q)).sum();
+        let own = own.iter().map(|load| self.amplitude_of(load).at(parameter) * load.effect.energy(q));
+        let own: f64 = own.sum();
         let ([stretch, bend], work) = self.actuation_energy(parameter, q);
         Energy {
             stretch: sum(&self.terms.internal, Kind::Stretch, q) + stretch,
@@ -282,7 +283,7 @@ impl System {
                 let turning = self.turning_energies(q, v).map(|(.., energy)| energy);
                 self.terms.inertia.iter().map(|e| e.energy(v)).chain(turning).sum()
             }),
-            potential: self.amplitude.at(parameter) * potential + standing,
+            potential: self.amplitude.at(parameter) * common + own,
             work,
             lost: 0.0,
         }

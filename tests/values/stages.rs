@@ -602,3 +602,118 @@ fn what_holds_on_keeps_its_force_whatever_goes() {
         }
     }
 }
+
+/// A cantilever with `effects`, whose state is looked at inside an element.
+fn cantilever(effects: &str, stages: &str) -> Vec<Written> {
+    self::stages(&format!(
+        "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 0.3, \
+         basis.ancf.elements = 4 }}
+        support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+        probe = [{{ name = 'mid', beam = 'arm', at = 0.55 }}]
+        output = {{ reactions = true, section_forces = true }}
+        stage = [{stages}]
+        {effects}\n"
+    ))
+}
+
+/// The columns of `file` but the load factor, by name and with their values.
+fn columns(written: &Written, file: &str) -> Vec<(String, Vec<f64>)> {
+    let text = std::fs::read_to_string(written.0.path().join(file)).expect("a file");
+    let names = text.lines().next().expect("a header").split(',').skip(1).map(str::to_owned);
+    names.map(|name| (name.clone(), written.column(file, &name))).collect()
+}
+
+/// What goes takes the way back on which it came: where it has faded to a quarter, positions, forces in
+/// sections, reactions and energies are those of a quarter of it.
+#[test]
+fn what_goes_takes_the_way_back_on_which_it_came() {
+    let two = "{ name = 'on', analysis.static.steps = 4 }, { name = 'off', analysis.static.steps = 4 }";
+    for effect in [
+        "distributed_force = [{ beam = 'arm', value = [0.2, -1.5]",
+        "distributed_force = [{ beam = 'arm', value = [0.2, -1.5], follower = true",
+        "force = [{ beam = 'arm', at = 0.4, value = [0.3, -1.5]",
+        "force = [{ beam = 'arm', at = 'end', value = [0.3, -1.5], follower = true",
+        "moment = [{ beam = 'arm', at = 0.4, value = 2.5",
+        "gravity = { acceleration = [0, -9.81]",
+        "tendon = [{ beam = 'arm', offset = 0.1, tension = 3",
+        "tendon = [{ beam = 'arm', offset = 0.1, shortening = 0.05",
+        "actuation = [{ beam = 'arm', curvature = 1.2, strain = 0.01",
+        "drag = [{ beam = 'arm', normal = 1, tangential = 0.1, flow = [0, 1.2]",
+        "force_field = [{ beam = 'arm', potential = '0.5*x^2 + y'",
+        "electrostatic = [{ beam = 'arm', electrode = { point = [0, -0.2], normal = [0, 1] }, width = 1, voltage = 4e4",
+    ] {
+        let close = if effect.contains('[') && !effect.starts_with("gravity") { "}]" } else { "}" };
+        let found = cantilever(&format!("effect.{effect}, until = 'off' {close}"), two);
+        for file in ["probes.csv", "reactions.csv", "energy.csv"] {
+            let pairs = columns(&found[0], file).into_iter().zip(columns(&found[1], file));
+            for ((name, there), (_, mut back)) in pairs {
+                // The work of actuators counts from the start of each stage.
+                if effect.starts_with("actuation") && ["work", "total"].contains(&&name[..]) {
+                    continue;
+                }
+                back.reverse();
+                let largest = there.iter().fold(0.01, |largest: f64, value| largest.max(value.abs()));
+                assert_eq!(there.len(), 5);
+                for (a, b) in there.iter().zip(&back) {
+                    near(*b, *a, 1e-6 * largest, &format!("{effect}: {name}"));
+                }
+            }
+        }
+    }
+}
+
+/// A foundation gets softer where it goes: half-way it is one of half the stiffness.
+#[test]
+fn a_foundation_that_goes_gets_softer() {
+    let stages = "{ name = 'on', analysis.static.steps = 2 }, { name = 'off', analysis.static.steps = 2 }";
+    let effects = |stiffness: f64, until: &str| {
+        format!(
+            "effect.foundation = [{{ beam = 'arm', stiffness = [3, {stiffness}]{until} }}]
+            effect.force = [{{ beam = 'arm', at = 'end', value = [0, -3] }}]"
+        )
+    };
+    let going = cantilever(&effects(90.0, ", until = 'off'"), stages);
+    let effect = "effect.foundation = [{ beam = 'arm', stiffness = [1.5, 45] }]
+        effect.force = [{ beam = 'arm', at = 'end', value = [0, -3] }]";
+    let half = cantilever(effect, "{ name = 'on', analysis.static = {} }");
+    for (name, of_half) in columns(&half[0], "probes.csv") {
+        let there = going[1].column("probes.csv", &name)[1];
+        near(there, of_half[1], 1e-7 * of_half[1].abs().max(1.0), &name);
+    }
+}
+
+/// A load that followed a law fades from where the law had brought it, and one that stands twice in the
+/// scene and goes once fades once.
+#[test]
+fn loads_fade_from_what_they_were() {
+    let stages = "{ name = 'on', analysis.static = {} }, \
+        { name = 'rest', analysis.dynamic = { duration = 0.1, output_every = 0.1, radau.tolerance = 1e-8 } }, \
+        { name = 'off', analysis.static.steps = 4 }";
+    let load = |rest: &str| format!("{{ beam = 'arm', value = [0, -1.5]{rest} }}");
+    let of = |value: f64| {
+        let load = format!("{{ beam = 'arm', value = [0, {value}], until = 'off' }}");
+        cantilever(&format!("effect.distributed_force = [{load}]"), stages)
+    };
+    let half = of(-0.75);
+    let by_law = [
+        "{ beam = 'arm', value = [0, -0.75], until = 'rest' }".to_owned(),
+        load(", in_time.polynomial = [0.5], stage = 'rest', until = 'off'"),
+    ];
+    let by_law = cantilever(&format!("effect.distributed_force = [{}]", by_law.join(", ")), stages);
+    let twice = [load(", until = 'off'"), load("")].join(", ");
+    let twice = cantilever(&format!("effect.distributed_force = [{twice}]"), stages);
+    for (name, expected) in columns(&half[2], "probes.csv") {
+        let found = by_law[2].column("probes.csv", &name);
+        let largest = expected.iter().fold(0.01, |largest: f64, value| largest.max(value.abs()));
+        for (a, b) in found.iter().zip(&expected) {
+            near(*a, *b, 1e-6 * largest, &format!("by law: {name}"));
+        }
+    }
+    // Of two, one remains: half-way there are one and a half.
+    let more = of(-2.25);
+    for (name, expected) in columns(&more[0], "probes.csv") {
+        let expected = expected.last().expect("a value");
+        let there = twice[2].column("probes.csv", &name)[2];
+        near(there, *expected, 1e-6 * expected.abs().max(0.01), &format!("one remains: {name}"));
+    }
+}
