@@ -360,11 +360,16 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
                 let mut measured = places_or_forces(&gap, plain, scene);
                 // Other steps make other errors: of forces, which no tolerance bounds, and of all
                 // where steps are fixed and the first part ends within one. A smaller tolerance,
-                // or steps of half the length, tells how large these are.
+                // or steps of half the length, tells how large these are. Where the steps are those
+                // of a load, only the second time makes them others.
                 for (run, scene) in [(base, scene), (&*seen, &changed)] {
-                    let finer = ways::tighter(scene).or_else(|| ways::half_steps(scene));
-                    if let Some(finer) = finer.filter(|_| measured.value > measured.allowed) {
-                        let errors = gap::between(run, &*other(&finer, frame, way)?, records);
+                    let mut finer = Some(scene.clone());
+                    for _ in 0..2 {
+                        finer = finer.and_then(|of| ways::tighter(&of).or_else(|| ways::half_steps(&of)));
+                        let Some(finer) = finer.as_ref().filter(|_| measured.value > measured.allowed) else {
+                            break;
+                        };
+                        let errors = gap::between(run, &*other(finer, frame, way)?, records);
                         let error = if measured.places { errors.places } else { errors.forces };
                         measured.allowed = measured.allowed.max(ALLOWED * error);
                     }
