@@ -215,7 +215,10 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
     let free_end = settings::get(scene, &["analysis", "static", "arc_length"])
         .and_then(Value::as_table)
         .is_some_and(|path| !path.contains_key("until_load") && !path.contains_key("until_probe"));
-    if free_end && !same {
+    let factors = [a, b].map(|seen| seen.parameter.last().copied().unwrap_or(0.0));
+    let elsewhere = (factors[0] - factors[1]).abs() > FORCES * factors[0].abs();
+    // Round-off may change the last of its steps.
+    if free_end && (!same || elsewhere) {
         return Verdict::NotApplicable;
     }
     let motion = settings::motion(scene);
