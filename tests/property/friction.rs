@@ -31,7 +31,7 @@ proptest! {
     /// and the same force from the slips that a state leaves.
     #[test]
     fn the_tangent_is_that_of_the_mapping(
-        rpim in any::<bool>(), which in 0..3_usize, push in -0.02..0.02_f64, noise in prop::collection::vec(-1.0..1.0_f64, 40),
+        rpim in any::<bool>(), which in 0..5_usize, push in -0.02..0.02_f64, noise in prop::collection::vec(-1.0..1.0_f64, 40),
     ) {
         let discretization = if rpim {
             Discretization::Rpim {
@@ -46,9 +46,13 @@ proptest! {
         };
         let obstacle = [
             Obstacle::HalfPlane { point: [0.0, 0.05], normal: [-0.6, 0.8] },
+            Obstacle::Circle { center: [0.5, -0.3], radius: 0.9, inside: false },
+            Obstacle::Circle { center: [0.5, 1.0], radius: 0.6, inside: true },
+            // These touch a part of the beam.
             Obstacle::Circle { center: [0.4, -0.7], radius: 0.8, inside: false },
             Obstacle::Circle { center: [0.5, 0.2], radius: 0.4, inside: true },
         ][which];
+        let edges = which > 2;
         let friction = Some(Friction { coefficient: 0.4, stiffness: 30.0 });
         let contact = Contact { beam: 0, obstacle, stiffness: 20.0, half_thickness: 0.01, friction, between: None };
         let beam = Beam {
@@ -86,14 +90,15 @@ proptest! {
         let step = |h: f64| -> Vec<f64> { q.iter().zip(&direction).map(|(q, d)| q + h * d).collect() };
         let mut product = vec![0.0; q.len()];
         k.multiply_add(1.0, &direction, &mut product);
-        let h = 1e-7;
+        let h = 1e-9;
         let (after, before) = (force(&step(h)), force(&step(-h)));
         let largest = product.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
         for ((p, a), b) in product.iter().zip(after).zip(before) {
             let difference = (a - b) / (2.0 * h);
-            // Points at the edges of a contact have come to touch, and take the secant: those have
-            // a tenth of the stiffness here.
-            prop_assert!((p - difference).abs() <= 0.15 * largest + 1e-6, "{p}, not {difference} of {largest}");
+            // Points at the edges of a contact have come to touch, and take the secant. They carry
+            // little, but here they have up to a third of the stiffness.
+            let off = if edges { 0.5 } else { 1e-5 };
+            prop_assert!((p - difference).abs() <= off * largest + 1e-5, "{p}, not {difference} of {largest}");
         }
         // What is remembered of a state gives its force.
         let mut again = vec![0.0; q.len()];
