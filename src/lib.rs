@@ -44,17 +44,18 @@
 //! | module | subject | imports |
 //! |---|---|---|
 //! | `lanes` | four numbers side by side, multiply–add | – |
-//! | `linear` | block-banded LDLᵀ, real and complex, also with rows of neighbouring nodes; banded LU, also with constraint rows; bordered sparse LU; inertia | `lanes` |
+//! | `threads` | loops over the nodes of long chains, on several threads | – |
+//! | `linear` | block-banded LDLᵀ, real and complex, also with rows of neighbouring nodes; banded LU, also with constraint rows; bordered sparse LU; inertia | `lanes`, `threads` |
 //! | `numeric` | Gauss' rules with few points, cubic splines, formulas | – |
 //! | [`centreline`] | stress-free curves | `numeric` |
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | – |
 //! | [`law`] | laws of time | `numeric` |
 //! | [`beam`] | a beam with its section and discretisation, and places along it | [`centreline`], [`basis`] |
-//! | [`assembly`] | densities, their sums over tables, and the assembly of a model's parts into terms of the equations | `lanes`, `linear`, `numeric`, [`centreline`], [`basis`], [`law`], [`beam`] |
+//! | [`assembly`] | densities, their sums over tables, and the assembly of a model's parts into terms of the equations | `lanes`, `threads`, `linear`, `numeric`, [`centreline`], [`basis`], [`law`], [`beam`] |
 //! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part by which a model contains it | `lanes`, `linear`, `numeric`, [`basis`], [`law`], [`beam`], [`assembly`] |
 //! | [`model`] | the continuous problem: beams, supports, joints, parts, probes, analyses | [`centreline`], [`basis`], [`law`], [`beam`], [`assembly`] |
-//! | [`system`] | coordinates, supports, joints, sums over effects, inventory | `lanes`, `linear`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`] |
-//! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `linear`, [`assembly`], `numeric`, [`model`], [`system`] |
+//! | [`system`] | coordinates, supports, joints, sums over effects, inventory | `lanes`, `threads`, `linear`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`] |
+//! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `threads`, `linear`, [`assembly`], `numeric`, [`model`], [`system`] |
 //! | [`restart`] | a saved state from which another analysis can go on | [`assembly`], [`model`], [`system`], `solve` |
 //! | [`results`] | the results of an analysis | [`system`], `solve`, [`restart`] |
 //! | [`run`](mod@run) | one model, one analysis; or several one after the other | `linear`, [`basis`], [`law`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
@@ -214,6 +215,7 @@ pub mod scene;
 pub mod solve;
 pub mod sweep;
 pub mod system;
+mod threads;
 
 pub use model::{
     About, Analysis, Beam, Buckling, Centreline, Discretization, Dynamic, Fixed, GaussPoints, Integrator,

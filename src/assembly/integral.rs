@@ -56,6 +56,8 @@ pub struct Integral<D, const M: usize> {
     /// [`BasisTable::by_fours`] finds them; `singles` are all other cells.
     pub(super) fours: Vec<u32>,
     pub(super) singles: Vec<u32>,
+    /// All cells, where forces are summed by fours and tangents are not.
+    tangents_by_ones: Vec<u32>,
     pub(super) density: D,
 }
 
@@ -97,7 +99,9 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         } else {
             (Vec::new(), (0..table.cells.len() as u32).collect())
         };
-        Self { kind, beam, offset, table, fours, singles, density }
+        let by_ones = !fours.is_empty() && !(D::TANGENTS_BY_FOURS && table.width == CABLE);
+        let tangents_by_ones = if by_ones { (0..table.cells.len() as u32).collect() } else { Vec::new() };
+        Self { kind, beam, offset, table, fours, singles, tangents_by_ones, density }
     }
 
     fn width<const W: usize>(&self) -> usize {

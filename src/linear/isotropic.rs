@@ -8,6 +8,7 @@
 use super::Matrix;
 use super::symmetric::SymmetricBand;
 use crate::lanes::{self, Lanes};
+use crate::threads;
 
 /// The upper half of a band c ⊗ 1₂.
 #[derive(Clone, Debug)]
@@ -62,25 +63,24 @@ impl IsotropicBand {
     /// `y += factor · A x`.
     pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         let x = x.as_chunks::<4>().0;
-        self.multiply_add_seen(factor, |node| x[node], y, |_| ());
+        self.multiply_add_seen(factor, |node| x[node], (0, y.as_chunks_mut().0), |_| ());
     }
 
-    /// The same product, with x given node by node. `see` is called for each node with the entries
-    /// of y before the addition.
+    /// The rows of the same product that belong to the nodes of y from number `first` on, with x given
+    /// node by node. `see` is called for each node with the entries of y before the addition.
     #[inline(always)]
     pub fn multiply_add_seen(
         &self,
         factor: f64,
         x: impl Fn(usize) -> [f64; 4],
-        y: &mut [f64],
+        (first, y): (usize, &mut [[f64; 4]]),
         see: impl FnMut([f64; 4]),
     ) {
-        let y = y.as_chunks_mut::<4>().0;
         match self.blocks {
-            2 => self.add_rows::<2>(factor, x, y, see),
-            4 => self.add_rows::<4>(factor, x, y, see),
-            6 => self.add_rows::<6>(factor, x, y, see),
-            _ => self.add_rows_any(factor, x, y, see),
+            2 => self.add_rows::<2>(factor, x, (first, y), see),
+            4 => self.add_rows::<4>(factor, x, (first, y), see),
+            6 => self.add_rows::<6>(factor, x, (first, y), see),
+            _ => self.add_rows_any(factor, x, (first, y), see),
         }
     }
 
@@ -107,26 +107,29 @@ impl IsotropicBand {
         &self,
         factor: f64,
         x: impl Fn(usize) -> [f64; 4],
-        y: &mut [[f64; 4]],
+        (first, y): (usize, &mut [[f64; 4]]),
         mut see: impl FnMut([f64; 4]),
     ) {
-        let at = |node| if node < self.nodes { halves(x(node)) } else { [Lanes::ZERO; 2] };
-        let mut window = [[Lanes::ZERO; 2]; BLOCKS];
-        window.iter_mut().enumerate().for_each(|(node, window)| *window = at(node));
+        let (nodes, factor) = (self.nodes, Lanes::splat(factor));
+        let at = |node| if node < nodes { halves(x(node)) } else { [Lanes::ZERO; 2] };
+        let rows = self.data.as_chunks::<BLOCKS>().0;
+        // What the rows before the first contribute.
+        let from = first.saturating_sub(BLOCKS - 1);
+        let mut window: [_; BLOCKS] = std::array::from_fn(|ahead| at(from + ahead));
         let mut left = [Lanes::ZERO; BLOCKS];
-        for (node, (row, y)) in self.data.as_chunks::<BLOCKS>().0.iter().zip(y).enumerate() {
+        for (node, row) in (from..).zip(&rows[from..first]) {
+            contribute(row, window[0], &mut left);
+            slide(&mut window, at(node + BLOCKS));
+        }
+        for (node, (row, y)) in (first..).zip(rows[first..].iter().zip(y)) {
             see(*y);
             let mut sum = product(row[0], window[0], left[0]);
             for b in 1..BLOCKS {
                 sum = product(row[b], window[b], sum);
-                let before = if b + 1 < BLOCKS { left[b] } else { Lanes::ZERO };
-                left[b - 1] = product(transpose(row[b]), window[0], before);
             }
-            *y = sum.mul_add(Lanes::splat(factor), Lanes::new(*y)).to_array();
-            for b in 1..BLOCKS {
-                window[b - 1] = window[b];
-            }
-            window[BLOCKS - 1] = at(node + BLOCKS);
+            contribute(row, window[0], &mut left);
+            *y = sum.mul_add(factor, Lanes::new(*y)).to_array();
+            slide(&mut window, at(node + BLOCKS));
         }
     }
 
@@ -134,11 +137,11 @@ impl IsotropicBand {
         &self,
         factor: f64,
         x: impl Fn(usize) -> [f64; 4],
-        y: &mut [[f64; 4]],
+        (first, y): (usize, &mut [[f64; 4]]),
         mut see: impl FnMut([f64; 4]),
     ) {
         let block = |row: usize, ahead: usize| self.data[row * self.blocks + ahead];
-        for (node, y) in y.iter_mut().enumerate() {
+        for (node, y) in (first..).zip(y) {
             see(*y);
             let mut sum = product(block(node, 0), halves(x(node)), Lanes::ZERO);
             for ahead in 1..self.blocks {
@@ -152,6 +155,24 @@ impl IsotropicBand {
             *y = sum.mul_add(Lanes::splat(factor), Lanes::new(*y)).to_array();
         }
     }
+}
+
+/// What a row adds to later ones, in turn: `left` holds what those before it have added.
+#[inline(always)]
+fn contribute<const BLOCKS: usize>(row: &[[f64; 4]; BLOCKS], x: [Lanes; 2], left: &mut [Lanes; BLOCKS]) {
+    for b in 1..BLOCKS {
+        let before = if b + 1 < BLOCKS { left[b] } else { Lanes::ZERO };
+        left[b - 1] = product(transpose(row[b]), x, before);
+    }
+}
+
+/// Drops the first and appends the `next`.
+#[inline(always)]
+fn slide<const BLOCKS: usize>(window: &mut [[Lanes; 2]; BLOCKS], next: [Lanes; 2]) {
+    for b in 1..BLOCKS {
+        window[b - 1] = window[b];
+    }
+    window[BLOCKS - 1] = next;
 }
 
 fn transpose([a, b, c, d]: [f64; 4]) -> [f64; 4] {
@@ -214,16 +235,33 @@ impl Inertia {
         }
     }
 
-    /// `y += M x` with x given node by node. `see` is called for each node with the entries of y
-    /// before the addition.
+    /// `y += M x` with x given node by node. Returns what `see` makes of the entries of y before the
+    /// addition, node by node from `begin` on, merged where several threads have seen a part each.
     #[inline(always)]
-    pub fn multiply_add_seen(&self, x: impl Fn(usize) -> [f64; 4], y: &mut [f64], see: impl FnMut([f64; 4])) {
+    pub fn multiply_add_seen<S: Copy + Send + Sync>(
+        &self,
+        x: impl Fn(usize) -> [f64; 4] + Sync,
+        y: &mut [f64],
+        begin: S,
+        see: impl Fn(&mut S, [f64; 4]) + Sync,
+        merge: impl Fn(S, S) -> S + Sync,
+    ) -> S {
         match self {
-            Self::Isotropic(band) => band.multiply_add_seen(1.0, x, y, see),
+            Self::Isotropic(band) => threads::over(
+                [y.as_chunks_mut::<4>().0],
+                &|range, [y]| {
+                    let mut seen = begin;
+                    band.multiply_add_seen(1.0, &x, (range.start, y), |y| see(&mut seen, y));
+                    seen
+                },
+                &merge,
+            ),
             Self::Any(matrix) => {
-                y.as_chunks::<4>().0.iter().copied().for_each(see);
+                let mut seen = begin;
+                y.as_chunks::<4>().0.iter().for_each(|y| see(&mut seen, *y));
                 let x: Vec<f64> = (0..y.len() / 4).flat_map(x).collect();
                 matrix.multiply_add(1.0, &x, y);
+                seen
             }
         }
     }
@@ -262,7 +300,8 @@ mod tests {
             let x: Vec<f64> = (0..28).map(|i| f64::from(i * i % 11) - 3.0).collect();
             let (mut y, mut expected) = (vec![0.25; 28], vec![0.25; 28]);
             let mut seen = Vec::new();
-            band.multiply_add_seen(-0.5, |node| x.as_chunks().0[node], &mut y, |before| seen.push(before));
+            let nodes = (0, y.as_chunks_mut().0);
+            band.multiply_add_seen(-0.5, |node| x.as_chunks().0[node], nodes, |before| seen.push(before));
             assert_eq!(seen, [[0.25; 4]; 7]);
             matrix.multiply_add(-0.5, &x, &mut expected);
             for (y, expected) in y.iter().zip(&expected) {

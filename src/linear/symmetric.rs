@@ -18,6 +18,7 @@ use super::band::Band;
 use super::order::Order;
 use crate::lanes::Lanes;
 use crate::lanes::fma;
+use crate::threads::{self, ByNodes, LONG};
 
 /// Upper half of a symmetric matrix that is a band of blocks.
 #[derive(Clone, Debug)]
@@ -61,6 +62,11 @@ impl SymmetricBand {
     pub fn panel_mut(&mut self, node: usize) -> &mut [f64] {
         let length = 16 * self.blocks;
         &mut self.data[node * length..(node + 1) * length]
+    }
+
+    /// The panels of all nodes.
+    pub fn panels_mut(&mut self) -> Panels<'_> {
+        Panels { first: 0, stride: self.stride(), data: &mut self.data }
     }
 
     /// The block in the rows of `node` and the columns of the node that is `block` nodes further
@@ -230,6 +236,35 @@ impl SymmetricBand {
     }
 }
 
+/// The panels of some nodes of a [`SymmetricBand`], one after the other.
+#[derive(Debug)]
+pub struct Panels<'m> {
+    first: usize,
+    stride: usize,
+    data: &'m mut [f64],
+}
+
+impl Panels<'_> {
+    /// The four rows of node `node`, from its own columns on, with the length of each.
+    #[inline(always)]
+    pub fn panel_mut(&mut self, node: usize) -> (&mut [f64], usize) {
+        let (from, length) = (node - self.first, 4 * self.stride);
+        (&mut self.data[from * length..(from + 1) * length], self.stride)
+    }
+}
+
+impl ByNodes for Panels<'_> {
+    fn nodes(&self) -> usize {
+        self.data.len() / (4 * self.stride)
+    }
+
+    fn cut(self, node: usize) -> (Self, Self) {
+        let Self { first, stride, data } = self;
+        let (before, behind) = data.split_at_mut(4 * stride * node);
+        (Self { first, stride, data: before }, Self { first: first + node, stride, data: behind })
+    }
+}
+
 /// A block of 4 × 4 numbers, row by row.
 pub(super) type Block = [Lanes; 4];
 
@@ -312,7 +347,7 @@ impl Ldl {
     ) -> Result<(), Singular> {
         let blocks = if BLOCKS == 0 { self.blocks } else { BLOCKS };
         let order = Order::new(matrix.nodes, FROM_BOTH_ENDS);
-        for (position, panel) in self.rows.chunks_exact_mut(blocks).enumerate() {
+        let fill = |position: usize, panel: &mut [Block]| {
             for (b, target) in panel.iter_mut().enumerate() {
                 let (node, turned) = order.source(position, b);
                 let mut block = matrix.block(node, b);
@@ -322,6 +357,14 @@ impl Ldl {
                 }
                 *target = if turned { Lanes::transpose(block) } else { block };
             }
+        };
+        if BLOCKS == 2 {
+            threads::each([self.rows.as_chunks_mut::<2>().0], &|range, [panels]| {
+                range.zip(panels).for_each(|(position, panel)| fill(position, panel));
+            });
+        } else {
+            let panels = self.rows.chunks_exact_mut(blocks).enumerate();
+            panels.for_each(|(position, panel)| fill(position, panel));
         }
         self.negative = 0;
         for position in 0..matrix.nodes {
@@ -440,10 +483,13 @@ pub(super) fn substitute<const FROM_BOTH_ENDS: bool>(
     rows: &[Block],
     transposed: &[Block],
     blocks: usize,
-    pivots: impl Fn(usize, &Block, [f64; 4]) -> [f64; 4],
+    pivots: impl Fn(usize, &Block, [f64; 4]) -> [f64; 4] + Sync,
     b: &mut [f64],
 ) {
     let x = b.as_chunks_mut::<4>().0;
+    if FROM_BOTH_ENDS && x.len() >= LONG && rayon::current_num_threads() > 1 {
+        return from_both_ends(rows.as_chunks().0, transposed, pivots, x);
+    }
     let order = Order::new(x.len(), FROM_BOTH_ENDS);
     for (position, panel) in rows.chunks_exact(blocks).enumerate() {
         let here = x[order.node(position)];
@@ -461,6 +507,62 @@ pub(super) fn substitute<const FROM_BOTH_ENDS: bool>(
             here = subtract(w, x[order.node(next)], here);
         }
         x[order.node(position)] = here;
+    }
+}
+
+/// The same by two threads, each from one end of a chain to its middle and back.
+fn from_both_ends(
+    rows: &[[Block; 2]],
+    transposed: &[Block],
+    pivots: impl Fn(usize, &Block, [f64; 4]) -> [f64; 4] + Sync,
+    x: &mut [[f64; 4]],
+) {
+    let last = x.len() - 1;
+    let (front, rest) = x.split_at_mut(last.div_ceil(2));
+    let Some((middle, back)) = rest.split_first_mut() else { return };
+    let (of_front, of_back) = ((0..last).step_by(2), (1..last).step_by(2));
+    let (a, b) = rayon::join(
+        || eliminate(of_front.clone().zip(front.iter_mut()), rows, &pivots),
+        || eliminate(of_back.clone().zip(back.iter_mut().rev()), rows, &pivots),
+    );
+    // The last but one position comes last.
+    let ends = if last.is_multiple_of(2) { [a, b] } else { [b, a] };
+    let here = ends.into_iter().flatten().fold(*middle, |node, (w, before)| subtract(w, before, node));
+    *middle = pivots(last, &rows[last][0], here);
+    rayon::join(
+        || put_in(of_front.rev().zip(front.iter_mut().rev()), transposed, *middle),
+        || put_in(of_back.rev().zip(back.iter_mut()), transposed, *middle),
+    );
+}
+
+/// Eliminates nodes at positions, each coupled with the next. Returns the last as it was before it was
+/// divided by its pivots, with the block by which it is coupled.
+#[inline(always)]
+fn eliminate<'r, 'x>(
+    nodes: impl Iterator<Item = (usize, &'x mut [f64; 4])>,
+    rows: &'r [[Block; 2]],
+    pivots: impl Fn(usize, &Block, [f64; 4]) -> [f64; 4],
+) -> Option<(&'r Block, [f64; 4])> {
+    let mut before: Option<(&Block, [f64; 4])> = None;
+    for (position, node) in nodes {
+        let [pivot, next] = &rows[position];
+        let here = before.map_or(*node, |(w, before)| subtract(w, before, *node));
+        *node = pivots(position, pivot, here);
+        before = Some((next, here));
+    }
+    before
+}
+
+/// Puts the solution at a node, `later`, into the one before it, and so on.
+#[inline(always)]
+fn put_in<'x>(
+    nodes: impl Iterator<Item = (usize, &'x mut [f64; 4])>,
+    transposed: &[Block],
+    mut later: [f64; 4],
+) {
+    for (position, node) in nodes {
+        *node = subtract(&transposed[position], later, *node);
+        later = *node;
     }
 }
 

@@ -10,6 +10,7 @@ use crate::linear::bordered::BorderRow;
 use crate::linear::{Factor, Matrix, NOT_FACTORISED, Singular};
 use crate::solve::Statistics;
 use crate::system::System;
+use crate::threads;
 
 /// Residuals up to this many round-offs of the internal forces count as zero.
 const ROUND_OFFS: f64 = 100.0;
@@ -114,7 +115,7 @@ impl<'a> Equilibrium<'a> {
         let mut scale = Largest::force(self.system);
         negative[..self.system.coordinates()].as_chunks().0.iter().for_each(|f| scale.see(f));
         let scale = balance(self.system, load, x, scale.size(), negative);
-        negate(self.system, scale, negative, |_| ())
+        negate(self.system, scale, negative, |_, _| ())
     }
 
     /// The same as [`Self::residual`]; also factorises the tangent at `x`, and to `rate` writes the
@@ -308,18 +309,30 @@ pub(super) fn balance(system: &System, load: f64, x: &[f64], scale: f64, r: &mut
     scale
 }
 
-/// Negates the R that [`balance`] left; `turn` may then turn it node by node. Returns the residual
-/// scaled by the largest force. Constraints do not count: Newton's method satisfies those that are
+/// Negates the R that [`balance`] left; `turn` may then turn the force on the node of a number. Returns
+/// the residual scaled by the largest force. Constraints do not count: Newton's method satisfies those that are
 /// linear in q to round-off at once, and lengths as soon as its increments vanish.
 #[inline(always)]
-pub(super) fn negate(system: &System, scale: f64, r: &mut [f64], mut turn: impl FnMut(&mut [f64; 4])) -> f64 {
+pub(super) fn negate(
+    system: &System,
+    scale: f64,
+    r: &mut [f64],
+    turn: impl Fn(usize, &mut [f64; 4]) + Sync,
+) -> f64 {
     let (force, gaps) = r.split_at_mut(system.coordinates());
-    let mut largest = Largest::force(system);
-    for force in force.as_chunks_mut().0 {
-        largest.see(force);
-        *force = force.map(|force| -force);
-        turn(force);
-    }
+    let largest = threads::over(
+        [force.as_chunks_mut().0],
+        &|nodes, [force]| {
+            let mut largest = Largest::force(system);
+            for (node, force) in nodes.zip(force) {
+                largest.see(force);
+                *force = force.map(|force| -force);
+                turn(node, force);
+            }
+            largest
+        },
+        &Largest::of_both,
+    );
     gaps.iter_mut().for_each(|gap| *gap = -*gap);
     let residual = largest.size();
     if residual == 0.0 { 0.0 } else { residual / (scale + floor(system)) }
@@ -370,6 +383,12 @@ impl Largest {
         self.sizes = sizes.fast_max(self.sizes);
         // Times zero, ∞ and NaN give NaN, which a maximum might drop.
         self.not_finite += sizes * Lanes::ZERO;
+    }
+
+    /// Of what either has seen.
+    pub fn of_both(self, other: Self) -> Self {
+        let not_finite = self.not_finite + other.not_finite;
+        Self { sizes: self.sizes.fast_max(other.sizes), not_finite, ..self }
     }
 
     /// The largest so far; NaN if one was not finite.

@@ -10,6 +10,8 @@
 
 use crate::assembly::{Earlier, Node, nodes};
 use crate::linear::Singular;
+use crate::threads;
+use std::ops::Range;
 
 /// A nonlinear system of equations.
 pub trait Equations {
@@ -222,9 +224,13 @@ const CRUSHED: f64 = 0.05;
 /// # Errors
 /// [`Failure::Crushed`] with the first such node.
 pub fn not_crushed(q: &[f64]) -> Result<(), Failure> {
-    let square = |Node { gradient: [x, y], .. }: &Node| x * x + y * y;
-    match nodes(q).enumerate().find(|(_, node)| square(node) < CRUSHED * CRUSHED) {
-        Some((node, crushed)) => Err(Failure::Crushed { stretch: crushed.slope(), node }),
+    let crushed = |[.., x, y]: &[f64; 4]| x * x + y * y < CRUSHED * CRUSHED;
+    let nodes = q.as_chunks::<4>().0;
+    let find = |range: Range<usize>, [nodes]: [&[[f64; 4]]; 1]| {
+        nodes.iter().position(crushed).map(|node| range.start + node)
+    };
+    match threads::over([nodes], &find, &Option::or) {
+        Some(node) => Err(Failure::Crushed { stretch: nodes[node][2].hypot(nodes[node][3]), node }),
         None => Ok(()),
     }
 }

@@ -5,6 +5,7 @@ use super::System;
 use crate::assembly::{ActingLoad, Amplitude, Earlier, Effect, HeldLength, Kind, Workspace, nodes};
 use crate::lanes::{self, Lanes};
 use crate::linear::Matrix;
+use crate::threads;
 
 impl System {
     /// `f = f_int(q) + f_load(q)` at the load factor or time `parameter`.
@@ -65,7 +66,10 @@ impl System {
 
     fn start_with_constant_load(&self, parameter: f64, f: &mut [f64]) {
         let factor = self.amplitude.at(parameter);
-        f.iter_mut().zip(&self.constant_load).for_each(|(f, load)| *f = factor * load);
+        let load = self.constant_load.as_chunks::<4>().0;
+        threads::each([f.as_chunks_mut::<4>().0], &|range, [f]| {
+            f.iter_mut().zip(&load[range]).for_each(|(f, load)| *f = load.map(|load| factor * load));
+        });
     }
 
     fn add_constant_load(&self, factor: f64, f: &mut [f64]) {

@@ -36,6 +36,7 @@ mod steps;
 mod strings;
 mod supports;
 mod surfaces;
+mod threads;
 mod turning;
 mod weld;
 mod winding;

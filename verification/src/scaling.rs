@@ -33,8 +33,12 @@ const ELEMENTS: [usize; 4] = [100, 1_000, 10_000, 100_000];
 const STEPS: usize = 40;
 const FIRST: usize = 10;
 const LEAST: Duration = Duration::from_secs(2);
+/// Chains of so many elements are worked on by several threads.
+const SEVERAL_THREADS: usize = 20_000;
 /// Elements whose numbers stay in the caches.
 const IN_CACHE: usize = 100;
+/// One thread and two take turns so often.
+const TURNS: usize = 3;
 /// Newton's tolerance with which steps take fewer iterations.
 const LOOSE: f64 = 1e-7;
 
@@ -88,6 +92,10 @@ pub struct Row {
     /// Bytes that a step moves per element, if no cache holds anything.
     #[serde(default)]
     pub bytes: f64,
+    /// The time of a step by one thread, in that by two, in turn; for chains that are long enough for
+    /// several.
+    #[serde(default)]
+    pub two_threads: Option<f64>,
 }
 
 /// Prints the bytes per element that a code takes in an analysis.
@@ -113,20 +121,22 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
         memory: Vec::new(),
     };
     eprintln!(
-        "{:>9} {:>16} {:>17} {:>8} {:>17} {:>18} {:>9}",
+        "{:>9} {:>16} {:>17} {:>8} {:>17} {:>18} {:>9} {:>11}",
         "elements",
         "µs/element/step",
         "µs/element before",
         "MB",
         "iterations a step",
         "bytes/element/step",
-        "of stream"
+        "of stream",
+        "two threads"
     );
     for elements in ELEMENTS {
         let discretization = Discretization::Ancf { nodes: Nodes::Uniform(elements + 1) };
         let model = chain(scene.model(), elements, discretization);
         let before = peak(true);
-        let Timed { step, start, iterations } = time(&model, scene.analysis())?;
+        let (timed, two_threads) = by_threads(&model, scene.analysis(), elements)?;
+        let Timed { step, start, iterations } = timed;
         let row = Row {
             elements,
             seconds: step / elements as f64,
@@ -134,15 +144,17 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
             megabytes: before.zip(peak(false)).map(|(before, peak)| peak - before),
             iterations,
             bytes: floor::work(&model.beams[0]).map_or(0.0, |work| work.step(iterations).bytes),
+            two_threads,
         };
         let megabytes = row.megabytes.map_or("–".to_owned(), |m| format!("{m:.0}"));
         eprintln!(
-            "{elements:>9} {:>16.3} {:>17.3} {megabytes:>8} {:>17.1} {:>18.0} {:>9.2}",
+            "{elements:>9} {:>16.3} {:>17.3} {megabytes:>8} {:>17.1} {:>18.0} {:>9.2} {:>11}",
             1e6 * row.seconds,
             1e6 * row.start,
             row.iterations,
             row.bytes,
-            row.of_stream(best)
+            row.of_stream(best),
+            row.gain()
         );
         result.rows.push(row);
     }
@@ -194,6 +206,32 @@ struct Timed {
     start: f64,
     /// Iterations a step.
     iterations: f64,
+}
+
+/// The times of one thread, and, for long chains, how many times as fast two are.
+fn by_threads(
+    model: &Model,
+    analysis: &Analysis,
+    elements: usize,
+) -> Result<(Timed, Option<f64>), Failure> {
+    let pool = |threads: usize| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())
+    };
+    let [one, two] = [pool(1)?, pool(2)?];
+    let on = |pool: &rayon::ThreadPool| {
+        pool.install(|| time(model, analysis).map_err(|error| error.to_string()))
+    };
+    let mut timed = on(&one)?;
+    if elements < SEVERAL_THREADS {
+        return Ok((timed, None));
+    }
+    let mut by_two = on(&two)?.step;
+    for _ in 1..TURNS {
+        timed.step = timed.step.min(on(&one)?.step);
+        by_two = by_two.min(on(&two)?.step);
+    }
+    let gain = timed.step / by_two;
+    Ok((timed, Some(gain)))
 }
 
 fn time(model: &Model, analysis: &Analysis) -> Result<Timed, Failure> {
@@ -248,6 +286,11 @@ fn floors(beam: &str, model: &Model, analysis: &Analysis) -> Result<[Floor; 2], 
 }
 
 impl Row {
+    /// How many times as fast two threads are, in words.
+    pub fn gain(&self) -> String {
+        self.two_threads.map_or("–".to_owned(), |gain| format!("{gain:.2} ×"))
+    }
+
     /// The time in which the machine could move the bytes of a step, as a part of that it takes.
     pub fn of_stream(&self, best: Machine) -> f64 {
         self.bytes / (best.bytes * self.seconds)

@@ -8,22 +8,68 @@
 use crate::assembly::{Density, Gradient, Integral};
 use crate::lanes::fma;
 use crate::lanes::{self, Lanes, Pair, Points};
+use crate::threads::{self, BLOCK, LONG};
 use nalgebra::Vector2;
+use std::ops::Range;
 
 impl<D: Density<M>, const M: usize> Integral<D, M> {
     pub(super) fn force_within<const W: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+        if self.table.cells.len() < LONG {
+            return self.forces_of::<W>([&self.fours, &self.singles], factor, q, f, 0);
+        }
+        // Cells that reach from one block of nodes into the next come after all others.
+        let nodes = f.as_chunks_mut::<4>().0;
+        threads::each([nodes], &|range, [nodes]| {
+            let range = 4 * range.start..4 * range.end;
+            let cells = [(&self.fours, 2 * W + 12), (&self.singles, 2 * W)]
+                .map(|(cells, width)| self.inside(cells, width, range.clone()));
+            let (q, f) = (&q[range.clone()], nodes.as_flattened_mut());
+            self.forces_of::<W>(cells, factor, q, f, range.start);
+        });
+        for end in (4 * BLOCK..f.len()).step_by(4 * BLOCK) {
+            let cells = [(&self.fours, 2 * W + 12), (&self.singles, 2 * W)]
+                .map(|(cells, width)| self.across(cells, width, end));
+            self.forces_of::<W>(cells, factor, q, f, 0);
+        }
+    }
+
+    /// Those of the rising `cells` whose `width` coordinates all lie within `range`.
+    pub(super) fn inside<'c>(&self, cells: &'c [u32], width: usize, range: Range<usize>) -> &'c [u32] {
+        let from = cells.partition_point(|cell| self.first(*cell as usize) < range.start);
+        let to = cells.partition_point(|cell| self.first(*cell as usize) + width <= range.end);
+        &cells[from..to.max(from)]
+    }
+
+    /// Those of the rising `cells` whose `width` coordinates lie before and behind `end`.
+    pub(super) fn across<'c>(&self, cells: &'c [u32], width: usize, end: usize) -> &'c [u32] {
+        let from = cells.partition_point(|cell| self.first(*cell as usize) + width <= end);
+        let to = cells.partition_point(|cell| self.first(*cell as usize) < end);
+        &cells[from..to.max(from)]
+    }
+
+    /// Adds the forces of cells by fours and of single ones to `f`, which begins with coordinate number
+    /// `start`, as `q` does.
+    #[inline(always)]
+    fn forces_of<const W: usize>(
+        &self,
+        [fours, singles]: [&[u32]; 2],
+        factor: f64,
+        q: &[f64],
+        f: &mut [f64],
+        start: usize,
+    ) {
         if D::BY_FOURS {
             match self.table.points_per_cell {
-                2 => self.forces_of_fours::<W, 2>(factor, q, f),
-                3 => self.forces_of_fours::<W, 3>(factor, q, f),
-                4 if Self::COMMON => self.forces_of_fours::<W, 4>(factor, q, f),
-                5 if Self::COMMON => self.forces_of_fours::<W, 5>(factor, q, f),
+                2 => self.forces_of_fours::<W, 2>(fours, factor, q, f, start),
+                3 => self.forces_of_fours::<W, 3>(fours, factor, q, f, start),
+                4 if Self::COMMON => self.forces_of_fours::<W, 4>(fours, factor, q, f, start),
+                5 if Self::COMMON => self.forces_of_fours::<W, 5>(fours, factor, q, f, start),
                 _ => {}
             }
         }
-        for &cell in &self.singles {
+        for &cell in singles {
             let cell = cell as usize;
-            let first = self.first(cell);
+            let first = self.first(cell) - start;
             let range = first..first + 2 * W;
             self.force_of_cell::<W>(cell, factor, &q[range.clone()], &mut f[range]);
         }
@@ -51,11 +97,18 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         }
     }
 
-    /// The forces of all cells that are grouped by four, with `P` points in each.
-    fn forces_of_fours<const W: usize, const P: usize>(&self, factor: f64, q: &[f64], f: &mut [f64]) {
-        for &cell in &self.fours {
+    /// The forces of cells that are grouped by four, with `P` points in each.
+    fn forces_of_fours<const W: usize, const P: usize>(
+        &self,
+        fours: &[u32],
+        factor: f64,
+        q: &[f64],
+        f: &mut [f64],
+        start: usize,
+    ) {
+        for &cell in fours {
             let cell = cell as usize;
-            let first = self.first(cell);
+            let first = self.first(cell) - start;
             let range = first..first + 2 * W + 12;
             let here = lanes::gather::<W>(&q[range.clone()]);
             let sums = self.sums_of_four::<W, P>(cell, P, factor, &here);

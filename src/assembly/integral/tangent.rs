@@ -22,6 +22,9 @@ use crate::assembly::{Density, Earlier, Integral, Workspace};
 use crate::lanes::fma;
 use crate::lanes::{self, Lanes, Pair, Points};
 use crate::linear::Matrix;
+use crate::linear::band::Band;
+use crate::linear::symmetric::Panels;
+use crate::threads::{self, BLOCK, LONG};
 use nalgebra::Vector2;
 
 impl<D: Density<M>, const M: usize> Integral<D, M> {
@@ -34,37 +37,75 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        // A condition on a constant alone: for other densities the loops by fours are not compiled.
-        #[expect(clippy::collapsible_if, reason = "together they would not be such a condition")]
-        if D::TANGENTS_BY_FOURS {
-            if W == CABLE && !self.fours.is_empty() {
-                match self.table.points_per_cell {
-                    2 => self.tangents_of_fours::<2>(factor, q, earlier, f, k, workspace),
-                    3 => self.tangents_of_fours::<3>(factor, q, earlier, f, k, workspace),
-                    4 if Self::COMMON => self.tangents_of_fours::<4>(factor, q, earlier, f, k, workspace),
-                    5 if Self::COMMON => self.tangents_of_fours::<5>(factor, q, earlier, f, k, workspace),
-                    _ => {}
-                }
-                for &cell in &self.singles {
-                    self.tangent_of_cell::<W>(cell as usize, factor, q, earlier, f, k, workspace);
-                }
-                return;
+        let [fours, singles] = if self.tangents_by_ones.is_empty() {
+            [&self.fours[..], &self.singles[..]]
+        } else {
+            [&[][..], &self.tangents_by_ones[..]]
+        };
+        let at = At { factor, q, earlier };
+        let k = match k {
+            Matrix::Symmetric(band) if self.table.cells.len() >= LONG => band,
+            Matrix::Symmetric(band) => {
+                let (f, k) = ((f, 0), &mut Rows::Panels(band.panels_mut()));
+                return self.tangents_of::<W>([fours, singles], at, f, k, workspace);
             }
-        }
-        for cell in 0..self.table.cells.len() {
-            self.tangent_of_cell::<W>(cell, factor, q, earlier, f, k, workspace);
+            Matrix::General(band) => {
+                return self.tangents_of::<W>([fours, singles], at, (f, 0), &mut Rows::Band(band), workspace);
+            }
+        };
+        // As for the forces alone.
+        threads::each(([f.as_chunks_mut::<4>().0], k.panels_mut()), &|range, ([f], panels)| {
+            let range = 4 * range.start..4 * range.end;
+            let cells = [
+                self.inside(fours, 2 * CABLE + 12, range.clone()),
+                self.inside(singles, 2 * W, range.clone()),
+            ];
+            let f = (f.as_flattened_mut(), range.start);
+            self.tangents_of::<W>(cells, at, f, &mut Rows::Panels(panels), &mut Workspace::default());
+        });
+        for end in (4 * BLOCK..f.len()).step_by(4 * BLOCK) {
+            let cells = [self.across(fours, 2 * CABLE + 12, end), self.across(singles, 2 * W, end)];
+            self.tangents_of::<W>(cells, at, (&mut *f, 0), &mut Rows::Panels(k.panels_mut()), workspace);
         }
     }
 
-    #[allow(clippy::too_many_arguments)]
+    /// Adds the forces and the tangents of cells by fours, and of single ones. `f` begins with the
+    /// coordinate of the given number.
+    #[inline(always)]
+    fn tangents_of<const W: usize>(
+        &self,
+        [fours, singles]: [&[u32]; 2],
+        at: At<'_>,
+        (f, start): (&mut [f64], usize),
+        k: &mut Rows<'_>,
+        workspace: &mut Workspace,
+    ) {
+        // A condition on a constant alone: for other densities the loops by fours are not compiled.
+        #[expect(clippy::collapsible_if, reason = "together they would not be such a condition")]
+        if D::TANGENTS_BY_FOURS {
+            if W == CABLE {
+                match self.table.points_per_cell {
+                    2 => self.tangents_of_fours::<2>(fours, at, (f, start), k, workspace),
+                    3 => self.tangents_of_fours::<3>(fours, at, (f, start), k, workspace),
+                    4 if Self::COMMON => self.tangents_of_fours::<4>(fours, at, (f, start), k, workspace),
+                    5 if Self::COMMON => self.tangents_of_fours::<5>(fours, at, (f, start), k, workspace),
+                    _ => {}
+                }
+            }
+        }
+        for &cell in singles {
+            let first = self.first(cell as usize) - start;
+            self.tangent_of_cell::<W>(cell as usize, at, &mut f[first..first + 2 * W], k, workspace);
+        }
+    }
+
+    /// `f` is the part of the vector that belongs to the cell.
     fn tangent_of_cell<const W: usize>(
         &self,
         cell: usize,
-        factor: f64,
-        q: &[f64],
-        earlier: Option<Earlier<'_>>,
+        At { factor, q, earlier }: At<'_>,
         f: &mut [f64],
-        k: &mut Matrix,
+        k: &mut Rows<'_>,
         workspace: &mut Workspace,
     ) {
         let points = self.table.points_per_cell;
@@ -114,26 +155,25 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
                 }
             }
         }
-        for (f, sum) in f[range].as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
+        for (f, sum) in f.as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
             *f = [f[0] + sum[0], f[1] + sum[1]];
         }
         for_tiles::<W>(k, |k, a, b| add_tile(k, first / 4 + a, first / 4 + b, &tile(rows, products, a, b)));
     }
 
-    /// The cable elements that are grouped by four, with `P` points in each.
+    /// Cable elements that are grouped by four, with `P` points in each.
     fn tangents_of_fours<const P: usize>(
         &self,
-        factor: f64,
-        q: &[f64],
-        earlier: Option<Earlier<'_>>,
-        f: &mut [f64],
-        k: &mut Matrix,
+        fours: &[u32],
+        At { factor, q, earlier }: At<'_>,
+        (f, start): (&mut [f64], usize),
+        k: &mut Rows<'_>,
         workspace: &mut Workspace,
     ) {
         let products = &mut workspace.pairs;
         products.resize(P * M * 2 * CABLE, [Lanes::ZERO; 2]);
         let products = products.as_chunks_mut::<CABLE>().0.as_chunks_mut::<2>().0.as_chunks_mut::<M>().0;
-        for &cell in &self.fours {
+        for &cell in fours {
             let cell = cell as usize;
             let first = self.first(cell);
             let range = first..first + 2 * CABLE + 12;
@@ -171,7 +211,8 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
                     }
                 }
             }
-            lanes::scatter(&sums_of_points::<M, CABLE, P>(rows, &gradients), &mut f[range]);
+            let f = &mut f[range.start - start..range.end - start];
+            lanes::scatter(&sums_of_points::<M, CABLE, P>(rows, &gradients), f);
             for_tiles::<CABLE>(k, |k, a, b| {
                 let mut tiles = [[Lanes::ZERO; 4]; 4];
                 tiles_of_four::<M, CABLE, P>(rows, products, [a, b], &mut tiles);
@@ -183,11 +224,27 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
     }
 }
 
+/// Where forces and tangents are taken.
+#[derive(Clone, Copy)]
+struct At<'v> {
+    factor: f64,
+    q: &'v [f64],
+    earlier: Option<Earlier<'v>>,
+}
+
+/// Rows of a matrix under assembly.
+enum Rows<'k> {
+    /// Of some nodes, of a symmetric one.
+    Panels(Panels<'k>),
+    /// All, of another.
+    Band(&'k mut Band),
+}
+
 /// Calls `add` for each tile of a cell that `k` needs, with the indices of its two nodes within the
 /// cell.
 #[inline(always)]
-fn for_tiles<const W: usize>(k: &mut Matrix, mut add: impl FnMut(&mut Matrix, usize, usize)) {
-    let below = matches!(k, Matrix::General(_));
+fn for_tiles<'k, const W: usize>(k: &mut Rows<'k>, mut add: impl FnMut(&mut Rows<'k>, usize, usize)) {
+    let below = matches!(k, Rows::Band(_));
     for a in 0..W / 2 {
         for b in if below { 0 } else { a }..W / 2 {
             add(k, a, b);
@@ -197,16 +254,16 @@ fn for_tiles<const W: usize>(k: &mut Matrix, mut add: impl FnMut(&mut Matrix, us
 
 /// Adds a tile to the rows of node `a` and the columns of node `b`.
 #[inline(always)]
-fn add_tile(k: &mut Matrix, a: usize, b: usize, tile: &[Lanes; 4]) {
+fn add_tile(k: &mut Rows<'_>, a: usize, b: usize, tile: &[Lanes; 4]) {
     match k {
-        Matrix::Symmetric(matrix) => {
-            let stride = matrix.stride();
-            let columns = &mut matrix.panel_mut(a)[4 * (b - a)..];
+        Rows::Panels(panels) => {
+            let (panel, stride) = panels.panel_mut(a);
+            let columns = &mut panel[4 * (b - a)..];
             for (r, values) in tile.iter().enumerate() {
                 add_to(&mut columns[r * stride..], *values);
             }
         }
-        Matrix::General(matrix) => {
+        Rows::Band(matrix) => {
             for (r, values) in tile.iter().enumerate() {
                 add_to(matrix.row_mut(4 * a + r, 4 * b, 4), *values);
             }

@@ -3,8 +3,8 @@
 
 use super::State;
 use super::integrate::Driver;
-use crate::assembly::nodes;
 use crate::solve::newton::Failure;
+use crate::threads;
 
 /// A step of fixed length that turns a node by more than this is checked for a gain of energy
 /// \[rad\].
@@ -18,11 +18,17 @@ const LARGEST_GAIN: f64 = 1e-3;
 impl Driver<'_, '_> {
     /// Refuses a coarse step to `new` that gains energy.
     pub(super) fn without_gain(&mut self, new: &State) -> Result<(), Failure> {
-        let turns = nodes(&new.q).zip(nodes(&self.state.q)).map(|(new, old)| {
-            let ([x, y], [x0, y0]) = (new.gradient, old.gradient);
-            (x - x0).powi(2) + (y - y0).powi(2)
-        });
-        if turns.fold(0.0, f64::max).sqrt() <= COARSE_TURN {
+        let states = [&new.q, &self.state.q].map(|q| q.as_chunks::<4>().0);
+        let turn = threads::over(
+            states,
+            &|_, [new, old]| {
+                let turn =
+                    |([.., x, y], [.., x0, y0]): (&[f64; 4], &[f64; 4])| (x - x0).powi(2) + (y - y0).powi(2);
+                new.iter().zip(old).map(turn).fold(0.0, f64::max)
+            },
+            &f64::max,
+        );
+        if turn.sqrt() <= COARSE_TURN {
             return Ok(());
         }
         let energy = |state: &State| self.system.energy(state.time, &state.q, Some(&state.v));

@@ -34,9 +34,11 @@ use super::method::{Allowed, Method};
 use super::motion::{Acceleration, Motion, Rates, StageState};
 use super::turns::Turns;
 use crate::assembly::Earlier;
+use crate::lanes::Lanes;
 use crate::linear::{Factor, NOT_FACTORISED, Singular};
 use crate::solve::Statistics;
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
+use crate::threads;
 
 /// In a step that moves the beam by less than the reciprocal of this, in beam lengths, Newton's
 /// tolerance is smaller in proportion to the displacement: the velocity has the same relative
@@ -133,14 +135,24 @@ pub struct GeneralizedAlpha<'a> {
 /// The tangent that the factorisation holds.
 #[derive(Clone, Debug)]
 struct FactoredTangent {
-    /// Where it was taken.
-    at: State,
+    /// Where it was taken: time, positions and velocities.
+    time: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
     /// The multipliers with which it was taken.
     multipliers: Vec<f64>,
     /// c of the factorised K + cM; 0 before there is one.
     c: f64,
     /// The factor by which an iteration shrinks the increments.
     rate: f64,
+}
+
+impl FactoredTangent {
+    /// None yet, of states such as `state`.
+    fn new(state: &State) -> Self {
+        let (q, v) = (state.q.clone(), state.v.clone());
+        Self { time: state.time, q, v, multipliers: Vec::new(), c: 0.0, rate: 1.0 }
+    }
 }
 
 impl<'a> GeneralizedAlpha<'a> {
@@ -174,7 +186,12 @@ impl<'a> GeneralizedAlpha<'a> {
     /// Takes the tangent at `at`.
     fn keep(&mut self, at: &State, multipliers: Vec<f64>, rate: f64) {
         self.motion.tangent_at(at, &multipliers);
-        self.kept = Some(FactoredTangent { at: at.clone(), multipliers, c: 0.0, rate });
+        let mut kept = self.kept.take().unwrap_or_else(|| FactoredTangent::new(at));
+        (kept.time, kept.multipliers, kept.c, kept.rate) = (at.time, multipliers, 0.0, rate);
+        // In the memory of the one before: to clear new memory takes longer than to copy.
+        kept.q.copy_from_slice(&at.q);
+        kept.v.copy_from_slice(&at.v);
+        self.kept = Some(kept);
     }
 
     /// Factorises K + dD + cM, unless the present factors are those, up to the round-off of the
@@ -208,7 +225,7 @@ impl<'a> GeneralizedAlpha<'a> {
             // The rate of an earlier step may no longer hold: steps of one iteration do not measure
             // it again.
             let mut rate = kept.rate.max(KEEP);
-            self.turns.measure(&kept.at.q, &self.x[..n]);
+            self.turns.measure(&kept.q, &self.x[..n]);
             let mut last = 0.0;
             for _ in 0..ITERATIONS {
                 let rates = self.rule.at(&self.x, damped);
@@ -307,6 +324,16 @@ impl<'a> GeneralizedAlpha<'a> {
     }
 }
 
+/// Coordinates by nodes.
+fn by_nodes(coordinates: &[f64]) -> &[[f64; 4]] {
+    coordinates.as_chunks().0
+}
+
+/// Coordinates by nodes.
+fn by_nodes_mut(coordinates: &mut [f64]) -> &mut [[f64; 4]] {
+    coordinates.as_chunks_mut().0
+}
+
 /// Equilibrium at the end of a step.
 struct AtEnd<'s, 'a> {
     motion: &'s mut Motion<'a>,
@@ -381,7 +408,6 @@ impl Method for GeneralizedAlpha<'_> {
         let d = gamma * h * a_per_q;
         (self.rule.time, self.rule.c, self.rule.d) = (end, c, d);
         let Accelerations { physical, algorithmic, multipliers } = &self.last;
-        // Slices of one length: loops over them are free of checks and vectorised.
         let (q, v, algorithmic, physical) = (&from.q[..n], &from.v[..n], &algorithmic[..n], &physical[..n]);
         let (e, x) = (&mut self.rule.e[..n], &mut self.x[..n]);
         let (ratio, before) = match &self.before {
@@ -391,18 +417,30 @@ impl Method for GeneralizedAlpha<'_> {
         let (of_algorithmic, of_physical) = (alpha_m / (1.0 - alpha_f), alpha_f / (1.0 - alpha_f));
         // The known part of the position at the end. It is computed where it is needed, because
         // storing it would cost one more pass over memory.
-        let known = |q: f64, v: f64, a: f64| q + h * (v + h * (0.5 - beta) * a);
-        for i in 0..n {
-            let a = algorithmic[i];
-            let known = known(q[i], v[i], a);
-            e[i] = of_algorithmic * a - of_physical * physical[i] - c * known;
-            x[i] = known + h * h * beta * (a + ratio * (a - before[i]));
-        }
+        let splat = Lanes::splat;
+        let known = |q: Lanes, v: Lanes, a: Lanes| q + splat(h) * (v + splat(h * (0.5 - beta)) * a);
+        let given = [q, v, algorithmic, physical, before].map(by_nodes);
+        threads::each(([e, x].map(by_nodes_mut), given), &|_,
+                                                           (
+            [e, x],
+            [q, v, algorithmic, physical, before],
+        )| {
+            let states = q.iter().zip(v).zip(algorithmic).zip(physical).zip(before);
+            for ((e, x), ((((q, v), a), physical), before)) in e.iter_mut().zip(x).zip(states) {
+                let [q, v, a, physical, before] = [q, v, a, physical, before].map(|of| Lanes::new(*of));
+                let known = known(q, v, a);
+                let rest = splat(of_algorithmic) * a - splat(of_physical) * physical - splat(c) * known;
+                *e = rest.to_array();
+                let extrapolated = a + splat(ratio) * (a - before);
+                *x = (known + splat(h * h * beta) * extrapolated).to_array();
+            }
+        });
         if self.motion.needs_velocity() {
             let o = &mut self.rule.o[..n];
             for i in 0..n {
                 let a = algorithmic[i];
-                o[i] = v[i] + h * (1.0 - gamma) * a - d * known(q[i], v[i], a);
+                let known = q[i] + h * (v[i] + h * (0.5 - beta) * a);
+                o[i] = v[i] + h * (1.0 - gamma) * a - d * known;
             }
         }
         self.x[n..].copy_from_slice(multipliers);
@@ -422,12 +460,20 @@ impl Method for GeneralizedAlpha<'_> {
         let (q, v, e, x) = (&from.q[..n], &from.v[..n], &self.rule.e[..n], &self.x[..n]);
         let (last, now) = (&self.last.algorithmic[..n], &mut self.trial.algorithmic[..n]);
         let (to_q, to_v, physical) = (&mut to.q[..n], &mut to.v[..n], &mut self.trial.physical[..n]);
-        for i in 0..n {
-            now[i] = (x[i] - known(q[i], v[i], last[i])) * a_per_q;
-            to_q[i] = x[i];
-            to_v[i] = v[i] + h * ((1.0 - gamma) * last[i] + gamma * now[i]);
-            physical[i] = c * x[i] + e[i];
-        }
+        let written = [&mut *now, to_q, to_v, &mut *physical].map(by_nodes_mut);
+        let given = [q, v, e, x, last].map(by_nodes);
+        threads::each((written, given), &|_, ([now, to_q, to_v, physical], [q, v, e, x, last])| {
+            let written = now.iter_mut().zip(to_q).zip(to_v).zip(physical);
+            let states = q.iter().zip(v).zip(e).zip(x).zip(last);
+            for ((((now, to_q), to_v), physical), ((((q, v), e), x), last)) in written.zip(states) {
+                let [q, v, e, x, last] = [q, v, e, x, last].map(|of| Lanes::new(*of));
+                let a = (x - known(q, v, last)) * splat(a_per_q);
+                *now = a.to_array();
+                *to_q = x.to_array();
+                *to_v = (v + splat(h) * (splat(1.0 - gamma) * last + splat(gamma) * a)).to_array();
+                *physical = (splat(c) * x + e).to_array();
+            }
+        });
         self.motion.release(now);
         self.motion.release(physical);
         self.trial.multipliers.copy_from_slice(&self.x[n..]);
@@ -489,8 +535,8 @@ impl Method for GeneralizedAlpha<'_> {
     fn memory(&self) -> Memory {
         let Accelerations { physical, algorithmic, multipliers } = self.last.clone();
         let (tangent, c) =
-            self.kept.clone().map_or((None, 0.0), |FactoredTangent { at, multipliers, c, rate }| {
-                (Some(TangentMemory { time: at.time, q: at.q, v: at.v, multipliers, rate }), c)
+            self.kept.clone().map_or((None, 0.0), |FactoredTangent { time, q, v, multipliers, c, rate }| {
+                (Some(TangentMemory { time, q, v, multipliers, rate }), c)
             });
         Memory::GeneralizedAlpha(GeneralizedAlphaMemory {
             physical,

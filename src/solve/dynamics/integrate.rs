@@ -66,6 +66,7 @@ use crate::model::{Integrator, StepControl};
 use crate::solve::newton::{Failure, Iterations, not_crushed};
 use crate::solve::{Statistics, StepRecord};
 use crate::system::{System, View, unfold};
+use crate::threads;
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
@@ -448,7 +449,9 @@ impl<'t, 'a> Driver<'t, 'a> {
                 StepControl::Tolerance(tolerance) => Some(self.allowed(tolerance, until)),
             };
             let mut record = Iterations::default();
-            let result = self.method.attempt(&self.state, until, allowed, new, &mut record);
+            let (method, state) = (&mut self.method, &self.state);
+            let attempt = || method.attempt(state, until, allowed, new, &mut record);
+            let result = threads::within(state.q.len() / 4, attempt);
             self.support_powers.clear();
             self.damping_powers.clear();
             new.time = until;

@@ -18,7 +18,7 @@ pub struct Allowed {
 
 /// A method of time integration, with the quantities that it carries from step to step
 /// (accelerations, last stages).
-pub trait Method {
+pub trait Method: Send {
     /// Order p: the local error is of the order p + 1.
     fn order(&self) -> f64;
 

@@ -49,7 +49,9 @@ use crate::linear::{Factor, Matrix, NOT_FACTORISED, Singular};
 use crate::solve::Statistics;
 use crate::solve::equilibrium::{self, Largest, balance, negate};
 use crate::system::System;
+use crate::threads;
 use faer::c64;
+use std::borrow::Cow;
 
 /// Velocities and accelerations of the unknowns at a time.
 #[derive(Clone, Copy, Debug)]
@@ -270,7 +272,7 @@ impl<'a> Motion<'a> {
     /// Replaces the forces of [`Self::free_forces`] by the accelerations of the unknowns and
     /// multipliers.
     fn accelerate(&mut self, state: &State, forces: &mut [f64]) -> Result<(), Singular> {
-        let mut fixed = std::borrow::Cow::Borrowed(state);
+        let mut fixed = Cow::Borrowed(state);
         if self.carries {
             self.carry(fixed.to_mut());
         }
@@ -313,7 +315,7 @@ impl<'a> Motion<'a> {
     /// residual.
     pub fn residual(&mut self, x: &[f64], rates: Rates<'_>, negative: &mut [f64]) -> f64 {
         let scale = self.balance(x, rates, negative);
-        negate(self.system, scale, negative, |_| ())
+        negate(self.system, scale, negative, |_, _| ())
     }
 
     /// [`Self::residual`], turned back node by node.
@@ -325,12 +327,8 @@ impl<'a> Motion<'a> {
         negative: &mut [f64],
     ) -> f64 {
         let scale = self.balance(x, rates, negative);
-        let mut turns = turns.iter();
-        negate(self.system, scale, negative, |force| {
-            if let Some(turn) = turns.next() {
-                turn.back(force);
-            }
-        })
+        let turns = turns.of_nodes();
+        negate(self.system, scale, negative, |node, force| turns[node].back(force))
     }
 
     /// Writes M a + f(q) + Bᵀμ and g; returns the largest force apart from inertia.
@@ -363,7 +361,7 @@ impl<'a> Motion<'a> {
         if !self.carries {
             self.assemble(x, Some(earlier), rates, &mut negative[..n]);
             let scale = self.finish(x, rates, negative);
-            return negate(self.system, scale, negative, |_| ());
+            return negate(self.system, scale, negative, |_, _| ());
         }
         let mut before = earlier.q.to_vec();
         let mut idle = vec![0.0; n];
@@ -375,15 +373,17 @@ impl<'a> Motion<'a> {
             motion.assemble(x, Some(earlier), rates, &mut negative[..n]);
             motion.finish(x, rates, negative)
         });
-        negate(self.system, scale, negative, |_| ())
+        negate(self.system, scale, negative, |_, _| ())
     }
 
     /// The tangent ∂f/∂q in the state `state` of unknowns, with the scaled `multipliers`, and the
     /// mass and the constraints' rows there.
     pub fn tangent_at(&mut self, state: &State, multipliers: &[f64]) {
         let rates = Rates { time: state.time, v: &state.v, a: Acceleration::constant(&state.v) };
-        let mut x = state.q.clone();
-        x.extend_from_slice(multipliers);
+        let mut x = Cow::Borrowed(&state.q[..]);
+        if !multipliers.is_empty() {
+            x.to_mut().extend_from_slice(multipliers);
+        }
         let mut force = std::mem::take(&mut self.force);
         if self.carries {
             self.with_carried(&x, rates, |motion, x, rates| motion.assemble(x, None, rates, &mut force));
@@ -454,8 +454,13 @@ impl<'a> Motion<'a> {
             let (q, rest) = (Lanes::new(q[node]), Lanes::new(rest[node]));
             q.mul_add(Lanes::splat(factor), rest).to_array()
         };
-        let mut scale = Largest::force(self.system);
-        self.mass.multiply_add_seen(acceleration, &mut r[..n], |force| scale.see(&force));
+        let scale = self.mass.multiply_add_seen(
+            acceleration,
+            &mut r[..n],
+            Largest::force(self.system),
+            |scale, force| scale.see(&force),
+            Largest::of_both,
+        );
         if self.system.has_turning_inertia() {
             let a: Vec<f64> = (0..n / 4).flat_map(acceleration).collect();
             self.system.add_turning_force(&x[..n], rates.v, &a, &mut r[..n]);
@@ -556,7 +561,7 @@ impl<'a> Motion<'a> {
     }
 
     /// The unknowns and their velocities of a state in fixed axes.
-    pub fn unknowns_of<'s>(&self, state: &'s State) -> std::borrow::Cow<'s, State> {
+    pub fn unknowns_of<'s>(&self, state: &'s State) -> Cow<'s, State> {
         if !self.system.turns() {
             return std::borrow::Cow::Borrowed(state);
         }
@@ -631,10 +636,18 @@ impl<'a> Motion<'a> {
 
     /// [`Self::size`] of the change from `start` to `end`.
     pub fn size_of_change(&self, start: &[f64], end: &[f64]) -> f64 {
-        let mut largest = Largest::change(self.system);
-        for (start, end) in start.as_chunks::<4>().0.iter().zip(end.as_chunks::<4>().0) {
-            largest.see(&std::array::from_fn(|i| end[i] - start[i]));
-        }
+        let states = [start, &end[..start.len()]].map(|state| state.as_chunks::<4>().0);
+        let largest = threads::over(
+            states,
+            &|_, [start, end]| {
+                let mut largest = Largest::change(self.system);
+                for (start, end) in start.iter().zip(end) {
+                    largest.see(&std::array::from_fn(|i| end[i] - start[i]));
+                }
+                largest
+            },
+            &Largest::of_both,
+        );
         largest.size()
     }
 
@@ -644,13 +657,20 @@ impl<'a> Motion<'a> {
         // Turns in the plane commute: the order does not matter.
         self.from_frames(increment);
         let n = self.coordinates();
-        let mut largest = Largest::change(self.system);
-        let nodes = increment[..n].as_chunks_mut::<4>().0.iter_mut().zip(x[..n].as_chunks_mut::<4>().0);
-        for ((d, x), turn) in nodes.zip(turns.iter()) {
-            turn.forth(d);
-            largest.see(d);
-            *x = (Lanes::new(*x) + Lanes::new(*d)).to_array();
-        }
+        let nodes = [&mut increment[..n], &mut x[..n]].map(|vector| vector.as_chunks_mut::<4>().0);
+        let largest = threads::over(
+            nodes,
+            &|range, [increment, x]| {
+                let mut largest = Largest::change(self.system);
+                for ((d, x), turn) in increment.iter_mut().zip(x).zip(&turns.of_nodes()[range]) {
+                    turn.forth(d);
+                    largest.see(d);
+                    *x = (Lanes::new(*x) + Lanes::new(*d)).to_array();
+                }
+                largest
+            },
+            &Largest::of_both,
+        );
         x[n..].iter_mut().zip(&increment[n..]).for_each(|(x, d)| *x += d);
         largest.size()
     }

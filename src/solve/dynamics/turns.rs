@@ -7,6 +7,7 @@
 //! the old factorisation, and the increment is turned forth by R.
 
 use crate::lanes::{Pair, Real, cross, dot};
+use crate::threads;
 
 /// A turn of a node, in one state or in four.
 #[derive(Clone, Copy, Debug)]
@@ -65,18 +66,20 @@ impl Turns {
 
     /// Measures the turns from `q0` to `q`.
     pub fn measure(&mut self, q0: &[f64], q: &[f64]) {
-        let nodes = q.as_chunks::<4>().0.iter().zip(q0.as_chunks::<4>().0);
-        for (turn, (x, start)) in self.turns.iter_mut().zip(nodes) {
-            *turn = Turn::between([start[2], start[3]], [x[2], x[3]]);
-        }
+        let (q, q0) = (q.as_chunks::<4>().0, q0.as_chunks::<4>().0);
+        threads::each([&mut self.turns[..]], &|range, [turns]| {
+            for (turn, (x, start)) in turns.iter_mut().zip(q[range.clone()].iter().zip(&q0[range])) {
+                *turn = Turn::between([start[2], start[3]], [x[2], x[3]]);
+            }
+        });
         for &node in &self.still {
             self.turns[node] = Turn::none();
         }
     }
 
     /// The turns, node by node.
-    pub fn iter(&self) -> std::slice::Iter<'_, Turn<f64>> {
-        self.turns.iter()
+    pub fn of_nodes(&self) -> &[Turn<f64>] {
+        &self.turns
     }
 
     /// R v.

@@ -16,8 +16,9 @@ const WANTED: f64 = 1.5;
 #[template(path = "scaling.html")]
 struct Body<'a> {
     measured: Option<&'a Scaling>,
-    /// Elements, time of a step and before it, memory, iterations, bytes moved and their share.
-    rows: Vec<[String; 7]>,
+    /// Elements, time of a step and before it, memory, iterations, bytes moved and their share, gain of a
+    /// second thread.
+    rows: Vec<[String; 8]>,
     /// Bytes and operations a nanosecond at best.
     best: Option<[String; 2]>,
     /// Beam, what is timed, operations, time, share of the best.
@@ -76,6 +77,7 @@ pub fn page(file: &Path) -> Result<Page, Failure> {
                         format!("{:.1}", row.iterations),
                         format!("{:.0}", row.bytes),
                         share(row),
+                        row.gain(),
                     ]
                 })
                 .collect(),
