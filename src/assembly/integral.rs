@@ -99,8 +99,11 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         } else {
             (Vec::new(), (0..table.cells.len() as u32).collect())
         };
-        let by_ones = !fours.is_empty() && !(D::TANGENTS_BY_FOURS && table.width == CABLE);
-        let tangents_by_ones = if by_ones { (0..table.cells.len() as u32).collect() } else { Vec::new() };
+        let by_fours = D::TANGENTS_BY_FOURS && table.width == CABLE;
+        let tangents_by_ones = match fours.is_empty() || by_fours {
+            true => Vec::new(),
+            false => (0..table.cells.len() as u32).collect(),
+        };
         Self { kind, beam, offset, table, fours, singles, tangents_by_ones, density }
     }
 

@@ -209,18 +209,13 @@ struct Timed {
 }
 
 /// The times of one thread, and, for long chains, how many times as fast two are.
-fn by_threads(
-    model: &Model,
-    analysis: &Analysis,
-    elements: usize,
-) -> Result<(Timed, Option<f64>), Failure> {
+fn by_threads(model: &Model, analysis: &Analysis, elements: usize) -> Result<(Timed, Option<f64>), Failure> {
     let pool = |threads: usize| {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())
     };
     let [one, two] = [pool(1)?, pool(2)?];
-    let on = |pool: &rayon::ThreadPool| {
-        pool.install(|| time(model, analysis).map_err(|error| error.to_string()))
-    };
+    let on =
+        |pool: &rayon::ThreadPool| pool.install(|| time(model, analysis).map_err(|error| error.to_string()));
     let mut timed = on(&one)?;
     if elements < SEVERAL_THREADS {
         return Ok((timed, None));
