@@ -309,9 +309,10 @@ pub(super) fn balance(system: &System, load: f64, x: &[f64], scale: f64, r: &mut
     scale
 }
 
-/// Negates the R that [`balance`] left; `turn` may then turn the force on the node of a number. Returns
-/// the residual scaled by the largest force. Constraints do not count: Newton's method satisfies those that are
-/// linear in q to round-off at once, and lengths as soon as its increments vanish.
+/// Negates the R that [`balance`] left; `turn` may then turn the force on the node of a number.
+/// Returns the residual scaled by the largest force. Constraints do not count: Newton's method
+/// satisfies those that are linear in q to round-off at once, and lengths as soon as its increments
+/// vanish.
 #[inline(always)]
 pub(super) fn negate(
     system: &System,

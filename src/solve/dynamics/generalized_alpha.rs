@@ -420,11 +420,8 @@ impl Method for GeneralizedAlpha<'_> {
         let splat = Lanes::splat;
         let known = |q: Lanes, v: Lanes, a: Lanes| q + splat(h) * (v + splat(h * (0.5 - beta)) * a);
         let given = [q, v, algorithmic, physical, before].map(by_nodes);
-        threads::each(([e, x].map(by_nodes_mut), given), &|_,
-                                                           (
-            [e, x],
-            [q, v, algorithmic, physical, before],
-        )| {
+        threads::each(([e, x].map(by_nodes_mut), given), &|_, ([e, x], given)| {
+            let [q, v, algorithmic, physical, before] = given;
             let states = q.iter().zip(v).zip(algorithmic).zip(physical).zip(before);
             for ((e, x), ((((q, v), a), physical), before)) in e.iter_mut().zip(x).zip(states) {
                 let [q, v, a, physical, before] = [q, v, a, physical, before].map(|of| Lanes::new(*of));
