@@ -135,13 +135,15 @@ pub fn print(suite: &Suite) -> Result<bool, Failure> {
         let discretization = Discretization::Ancf { nodes: Nodes::Uniform(elements + 1) };
         let model = chain(scene.model(), elements, discretization);
         let before = peak(true);
-        let (timed, two_threads) = by_threads(&model, scene.analysis(), elements)?;
-        let Timed { step, start, iterations } = timed;
+        let Timed { step, start, iterations } = by_threads(1, &model, scene.analysis())?;
+        let megabytes = before.zip(peak(false)).map(|(before, peak)| peak - before);
+        let several = elements >= SEVERAL_THREADS;
+        let two_threads = several.then(|| gain_of_two(&model, scene.analysis())).transpose()?;
         let row = Row {
             elements,
             seconds: step / elements as f64,
             start: start / elements as f64,
-            megabytes: before.zip(peak(false)).map(|(before, peak)| peak - before),
+            megabytes,
             iterations,
             bytes: floor::work(&model.beams[0]).map_or(0.0, |work| work.step(iterations).bytes),
             two_threads,
@@ -208,25 +210,21 @@ struct Timed {
     iterations: f64,
 }
 
-/// The times of one thread, and, for long chains, how many times as fast two are.
-fn by_threads(model: &Model, analysis: &Analysis, elements: usize) -> Result<(Timed, Option<f64>), Failure> {
-    let pool = |threads: usize| {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())
-    };
-    let [one, two] = [pool(1)?, pool(2)?];
-    let on =
-        |pool: &rayon::ThreadPool| pool.install(|| time(model, analysis).map_err(|error| error.to_string()));
-    let mut timed = on(&one)?;
-    if elements < SEVERAL_THREADS {
-        return Ok((timed, None));
+/// The times of so many threads.
+fn by_threads(threads: usize, model: &Model, analysis: &Analysis) -> Result<Timed, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    Ok(pool.install(|| time(model, analysis).map_err(|error| error.to_string()))?)
+}
+
+/// How many times as fast two threads are as one, which take turns.
+fn gain_of_two(model: &Model, analysis: &Analysis) -> Result<f64, Failure> {
+    let mut shortest = [f64::INFINITY; 2];
+    for _ in 0..TURNS {
+        for (threads, shortest) in [1, 2].into_iter().zip(&mut shortest) {
+            *shortest = shortest.min(by_threads(threads, model, analysis)?.step);
+        }
     }
-    let mut by_two = on(&two)?.step;
-    for _ in 1..TURNS {
-        timed.step = timed.step.min(on(&one)?.step);
-        by_two = by_two.min(on(&two)?.step);
-    }
-    let gain = timed.step / by_two;
-    Ok((timed, Some(gain)))
+    Ok(shortest[0] / shortest[1])
 }
 
 fn time(model: &Model, analysis: &Analysis) -> Result<Timed, Failure> {
