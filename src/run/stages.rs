@@ -103,7 +103,9 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
             ..options.copied()
         };
         let time = reached.as_ref().map_or(0.0, SavedState::time);
-        let gone = gone(acted, &model.parts, &held).into_iter();
+        // A follower load that has gone would make the equations of vibrations unsymmetric.
+        let fades = |part: &Arc<dyn Part>| matches!(analysis, Analysis::Static(_)) || part.tendon().is_some();
+        let gone = gone(acted, &model.parts, &held).into_iter().filter(fades);
         let fading: Vec<_> = gone.map(|part| (part, time)).collect();
         let model = if fading.is_empty() {
             Cow::Borrowed(model)
