@@ -54,7 +54,8 @@ pub enum Control {
     Stop,
 }
 
-/// Called after every step.
+/// Called after every step, and after every iteration where a structure without stiffness comes to
+/// rest: [`Progress::parameter`] is then that of the step before.
 pub type Observer<'o> = &'o mut dyn FnMut(&Progress) -> Control;
 
 fn needs(analysis: &Analysis) -> Needs {
@@ -98,7 +99,7 @@ pub struct Options<'o> {
     /// of that state. Supports without a law of time hold a beam where it is in the state, and those
     /// that are new move it from there.
     pub start: Option<&'o SavedState>,
-    /// Called after every step.
+    /// Called on the way.
     pub observer: Option<Observer<'o>>,
     /// Leaves states on the way, from which a motion can go on.
     pub checkpoints: Option<Checkpointing<'o>>,

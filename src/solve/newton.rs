@@ -156,6 +156,9 @@ pub enum Failure {
         /// The last scaled increment.
         last: f64,
     },
+    /// The observer ended the analysis.
+    #[error("it was stopped")]
+    Stopped,
 }
 
 /// Increments that no longer shrink count as converged below this size: they are round-off.

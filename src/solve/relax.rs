@@ -19,6 +19,7 @@
 use super::equilibrium::Equilibrium;
 use super::newton::{Failure, Iterations, ROUND_OFF, Settings};
 use crate::assembly::Earlier;
+use crate::solve::Statistics;
 use crate::system::System;
 
 /// Largest change of an iterate: positions in beam lengths, gradients as they are.
@@ -39,16 +40,18 @@ const ITERATIONS: usize = 2000;
 
 /// Relaxes `x` to an equilibrium at load factor `load`: a minimum of the energy, or an unstable
 /// equilibrium in which it begins. K + σ D is kept definite, so that every increment leads
-/// downhill.
+/// downhill. `goes_on` is called with the counts after every iteration and ends the search by
+/// returning false.
 ///
 /// # Errors
-/// [`Failure`] where it does not come to rest.
+/// [`Failure`] where it does not come to rest, or is ended before.
 pub fn relax(
     equilibrium: &mut Equilibrium<'_>,
     load: f64,
     x: &mut [f64],
     settings: &Settings,
     record: &mut Iterations,
+    goes_on: &mut dyn FnMut(&Statistics) -> bool,
 ) -> Result<(), Failure> {
     let n = equilibrium.system().coordinates();
     let mut increment = vec![0.0; x.len()];
@@ -116,6 +119,9 @@ pub fn relax(
         let stalled = shift == 0.0 && size <= ROUND_OFF && size >= last;
         if (size <= settings.tolerance || stalled) && settled && residual <= settings.residual_tolerance {
             return Ok(());
+        }
+        if !goes_on(&equilibrium.statistics) {
+            return Err(Failure::Stopped);
         }
     }
     Err(Failure::TooSlow { iterations: ITERATIONS, last: size })

@@ -2,7 +2,7 @@
 //! points.
 
 use super::equilibrium::Equilibrium;
-use super::newton::{Iterations, Settings};
+use super::newton::{Failure, Iterations, Settings};
 use super::path::{NoStep, Parameter, Path, Point};
 use super::relax::relax;
 use super::stability::{Stability, StabilityChange};
@@ -140,12 +140,13 @@ impl EndCondition<'_> {
     }
 }
 
-/// Called with (load factor, step, counts) after every step; returns whether to go on.
+/// Called with (load factor, step, counts) after every step, and after every iteration of a search
+/// for a place of rest (the load factor is then that of the last equilibrium); returns whether to
+/// go on.
 pub type Observer<'o> = &'o mut dyn FnMut(f64, f64, &Statistics) -> bool;
 
 /// Solves for the full loads by adaptive load steps, or follows the path by arc length to `target`.
-/// `observe` is called with (load factor, step, counts) after every step and ends the analysis by
-/// returning false.
+/// `observe` ends the analysis by returning false.
 pub fn solve(
     system: &System,
     settings: &Static,
@@ -155,7 +156,7 @@ pub fn solve(
     let mut equilibrium = Equilibrium::new(system);
     let mut solution = Solution::default();
     let newton = newton_settings(settings);
-    let outcome = settled(&mut equilibrium, newton).and_then(|x| match target {
+    let outcome = settled(&mut equilibrium, newton, observe).and_then(|x| match target {
         None if system.is_floppy() && !is_steady(&mut equilibrium, &x) => {
             relaxed(&mut equilibrium, x, settings, newton, &mut solution, observe)
         }
@@ -163,18 +164,23 @@ pub fn solve(
         Some(target) => along_arc(&mut equilibrium, x, target, newton, &mut solution, observe),
     });
     solution.statistics = equilibrium.statistics;
-    solution.stuck = outcome.err();
+    solution.stuck = outcome.err().filter(|stuck| stuck.failure != Failure::Stopped);
     solution
 }
 
 /// The state at load factor 0: where a given shape, or one in which springs are stretched, comes to
 /// rest.
-fn settled(equilibrium: &mut Equilibrium<'_>, newton: Settings) -> Result<Vec<f64>, NoStep> {
+fn settled(
+    equilibrium: &mut Equilibrium<'_>,
+    newton: Settings,
+    observe: Observer<'_>,
+) -> Result<Vec<f64>, NoStep> {
     let mut x = equilibrium.start();
     let system = equilibrium.system();
     let stressed = || !system.is_taken_up() && !system.is_floppy() && system.is_prestressed();
     if system.starts_bent() || stressed() {
-        let rest = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default());
+        let goes_on = &mut |counts: &Statistics| observe(0.0, 0.0, counts);
+        let rest = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default(), goes_on);
         let at = system.place_of(0);
         rest.map_err(|failure| NoStep { load: 0.0, step: 0.0, failure, at })?;
         equilibrium.set_accepted(&x);
@@ -259,6 +265,12 @@ fn relaxed(
     let mut before = Stability::Directions(0);
     for part in 1..=parts {
         let load = part as f64 / parts as f64;
+        let step = 1.0 / parts as f64;
+        let mut stopped = false;
+        let goes_on = &mut |counts: &Statistics| {
+            stopped = stopped || !observe(load - step, step, counts);
+            !stopped
+        };
         if let (None, Some(free)) = (solution.pressed, equilibrium.system().rigid_motions()) {
             let before = (part - 1) as f64 / parts as f64;
             let moved = if equilibrium.system().supports().moves() {
@@ -274,15 +286,15 @@ fn relaxed(
         }
         let start = x.clone();
         let mut record = Iterations::default();
-        let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
+        let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record, goes_on);
         if outcome.is_ok() && is_unstable(equilibrium, load, &x) {
             // An unstable equilibrium, such as a pendulum that stands on its head: both sides are
             // tried.
             let mut other = x.clone();
             push(equilibrium, -1.0, &mut other);
-            let other = rest(equilibrium, load, other, &newton);
+            let other = rest(equilibrium, load, other, &newton, goes_on);
             push(equilibrium, 1.0, &mut x);
-            outcome = relax(equilibrium, load, &mut x, &newton, &mut record);
+            outcome = relax(equilibrium, load, &mut x, &newton, &mut record, goes_on);
             if outcome.is_ok() && other.is_some_and(|other| differ(equilibrium, &x, &other)) {
                 solution.crest.get_or_insert(load);
             }
@@ -294,7 +306,6 @@ fn relaxed(
             }
         }
         let at = equilibrium.system().place_of(0);
-        let step = 1.0 / parts as f64;
         solution.history.push(StepRecord {
             parameter: load,
             step,
@@ -307,7 +318,7 @@ fn relaxed(
         work.add_states(equilibrium.system(), (load - step, &start), (load, &x));
         solution.record(equilibrium, load, &x, work);
         equilibrium.set_accepted(&x);
-        if !observe(load, step, &equilibrium.statistics) {
+        if stopped || !observe(load, step, &equilibrium.statistics) {
             break;
         }
     }
@@ -336,9 +347,10 @@ fn rest(
     load: f64,
     mut x: Vec<f64>,
     newton: &Settings,
+    goes_on: &mut dyn FnMut(&Statistics) -> bool,
 ) -> Option<Vec<f64>> {
     let rests = equilibrium.without_trace(|equilibrium| {
-        relax(equilibrium, load, &mut x, newton, &mut Iterations::default()).is_ok()
+        relax(equilibrium, load, &mut x, newton, &mut Iterations::default(), goes_on).is_ok()
     });
     rests.then_some(x)
 }

@@ -99,6 +99,34 @@ fn a_run_ends_where_its_observer_stops_it() {
     assert!(found.run().complete && found.eigenvalues().len() == 2);
 }
 
+/// A search for a place of rest, which may take thousands of iterations, can be stopped in each of
+/// them: from load factor 0, where a shape is given, or on the way to the full load.
+#[test]
+fn a_search_for_a_place_of_rest_can_be_stopped() {
+    let slack = "beam.line = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, mass_per_length = 1, basis.ancf.elements = 20 }
+        support = [{ beam = 'line', at = 'start', fix = ['x', 'y'] }, { beam = 'line', at = 'end', fix = ['x', 'y'], move.x = -0.2 }]
+        effect.gravity.acceleration = [0, -9.81]
+        analysis.static.steps = 2\n";
+    let (found, seen) = watched(slack, |_| false);
+    assert!(found.run().complete && seen.len() > 10, "{seen:?}");
+    let counts: Vec<usize> = seen.iter().map(|progress| progress.newton_iterations).collect();
+    assert!(counts.windows(2).all(|pair| pair[1] <= pair[0] + 1), "{counts:?}");
+    for (parameter, records) in [(0.0, 1), (0.5, 2)] {
+        let (found, seen) = watched(slack, |progress| progress.parameter >= parameter);
+        assert!(!found.run().complete && found.states().saved.is_none());
+        assert_eq!(
+            (seen.last().map(|now| now.parameter), found.states().parameter.len()),
+            (Some(parameter), records)
+        );
+    }
+    let bent =
+        "initial_shape.arc = { center = [0, 0.5], radius = 0.5, from = '-90 deg', to = '24.6 deg' }, basis";
+    let bent = format!("{ARM}analysis.static = {{}}\n").replace("basis", bent);
+    let (found, _) = watched(&bent, |_| true);
+    assert!(!found.run().complete && found.states().parameter.is_empty());
+    assert!(watched(&bent, |_| false).0.run().complete);
+}
+
 /// The parts of a run's time are no longer than the run.
 #[test]
 fn the_times_of_a_run_add_up_to_no_more_than_it_took() {

@@ -717,3 +717,23 @@ fn loads_fade_from_what_they_were() {
         near(there, *expected, 1e-6 * expected.abs().max(0.01), &format!("one remains: {name}"));
     }
 }
+
+/// Vibrations do not know of loads that have gone before them, not even of those whose direction turns
+/// with the beam or which have no potential.
+#[test]
+fn vibrations_know_nothing_of_a_load_that_has_gone() {
+    let stages = "{ name = 'on', analysis.static = {} }, { name = 'tones', analysis.modal.count = 3 }";
+    let stays = "force = [{ beam = 'arm', at = 'end', value = [0.5, -1] }]";
+    let frequencies = |effects: &str| cantilever(effects, stages)[1].column("frequencies.csv", "frequency");
+    let expected = frequencies(&format!("effect.{stays}"));
+    for goes in [
+        "moment = [{ beam = 'arm', at = 'end', value = 0.5",
+        "distributed_force = [{ beam = 'arm', value = [2, -1], follower = true",
+        "drag = [{ beam = 'arm', normal = 2, flow = [0, 1]",
+    ] {
+        let found = frequencies(&format!("effect.{stays}\neffect.{goes}, until = 'tones' }}]"));
+        for (found, expected) in found.iter().zip(&expected) {
+            near(*found, *expected, 1e-7 * expected, goes);
+        }
+    }
+}
