@@ -17,6 +17,8 @@
 //! thinner than a cell changes little from one mesh to the next. So a third run on half the coarse
 //! mesh comes first, and k is three quarters of the factor by which the differences of the three
 //! fall, later by which they fall from round to round; but no more than the method promises.
+//! Where the mesh and the steps of a motion do not fall alike, a run on the coarse mesh with the finer
+//! steps tells their errors apart: each has its own k, and what is stated is the sum of both.
 //! Curvatures and section forces are of second order: their k is 4, or less. Where these first two
 //! runs show that errors would be too large on halved cells even if they fell as the method
 //! promises, those are not paid for: the search goes on with a finer mesh at once.

@@ -3,6 +3,7 @@
 use crate::model::{Analysis, Model, Place, Probe};
 use crate::results::{BeamErrors, Errors, ModeShape, ProbeErrors, ProbeSample, Results, Shape, Trajectory};
 
+use super::judgement::scaled;
 use super::mesh::{CellErrors, Mesh};
 
 /// Records belong together when their parameters differ by less, relative to the last one.
@@ -92,6 +93,68 @@ pub(super) struct Difference {
     pub beams: Vec<BeamErrors>,
     /// Of the cells of the coarse meshes, per beam.
     pub cells: Vec<CellErrors>,
+}
+
+impl Difference {
+    /// Divided by these: positions, angles, velocities and values by the first, curvatures, strains and forces by
+    /// the second.
+    #[must_use]
+    pub fn divided(mut self, by: [f64; 2]) -> Self {
+        let [result, curvature] = by;
+        self.errors = scaled(self.errors, by);
+        self.eigenvalues.iter_mut().for_each(|error| *error /= result);
+        self.records.iter_mut().for_each(|error| *error /= result);
+        for sample in self.probes.iter_mut().flat_map(|probe| &mut probe.samples) {
+            sample.x /= result;
+            sample.y /= result;
+            sample.angle /= result;
+            sample.strain /= curvature;
+            sample.curvature /= curvature;
+            sample.vx = sample.vx.map(|v| v / result);
+            sample.vy = sample.vy.map(|v| v / result);
+        }
+        for beam in &mut self.beams {
+            beam.position.iter_mut().for_each(|error| *error /= result);
+            beam.curvature.iter_mut().for_each(|error| *error /= curvature);
+        }
+        self
+    }
+
+    /// The errors of both together, in the cells of this one; `None` where they are not of as many records.
+    pub fn plus(&self, other: &Self) -> Option<Self> {
+        if self.records.len() != other.records.len() {
+            return None;
+        }
+        let of = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a + b);
+        let (mine, others) = (self.errors, other.errors);
+        let mut sum = self.clone();
+        sum.errors = Errors {
+            result: mine.result + others.result,
+            curvature: of(mine.curvature, others.curvature),
+            section_force: of(mine.section_force, others.section_force),
+        };
+        let add = |a: &mut [f64], b: &[f64]| a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
+        add(&mut sum.eigenvalues, &other.eigenvalues);
+        add(&mut sum.records, &other.records);
+        for (a, b) in sum.probes.iter_mut().zip(&other.probes) {
+            for (a, b) in a.samples.iter_mut().zip(&b.samples) {
+                *a = ProbeSample {
+                    x: a.x + b.x,
+                    y: a.y + b.y,
+                    angle: a.angle + b.angle,
+                    curvature: a.curvature + b.curvature,
+                    strain: a.strain + b.strain,
+                    vx: of(a.vx, b.vx),
+                    vy: of(a.vy, b.vy),
+                };
+            }
+        }
+        for (a, b) in sum.beams.iter_mut().zip(&other.beams) {
+            add(&mut a.position, &b.position);
+            add(&mut a.curvature, &b.curvature);
+        }
+        Some(sum)
+    }
 }
 
 /// The difference of two runs of `model`, both watched at `stations`.
@@ -417,6 +480,61 @@ mod tests {
 
     fn meshes() -> [Mesh; 2] {
         [Mesh::of(&[0.0, 0.5, 2.0]), Mesh::of(&[0.0, 4.0])]
+    }
+
+    /// Each kind of value by its own factor, and the sum of every one.
+    #[test]
+    fn differences_are_divided_and_added_value_by_value() {
+        let of = |k: f64| Difference {
+            errors: Errors { result: k, curvature: Some(3.0 * k), section_force: Some(6.0 * k) },
+            eigenvalues: vec![2.0 * k],
+            probes: vec![ProbeErrors {
+                name: "tip".into(),
+                samples: vec![ProbeSample {
+                    x: k,
+                    y: 2.0 * k,
+                    angle: 3.0 * k,
+                    curvature: 6.0 * k,
+                    strain: 9.0 * k,
+                    vx: Some(4.0 * k),
+                    vy: None,
+                }],
+            }],
+            records: vec![5.0 * k],
+            beams: vec![BeamErrors {
+                beam: "arm".into(),
+                s: vec![0.5],
+                position: vec![7.0 * k],
+                curvature: vec![12.0 * k],
+            }],
+            cells: vec![CellErrors { squares: vec![k], order: 2.0 }],
+        };
+        let same = |found: &Difference, [first, second]: [f64; 2]| {
+            let errors =
+                Errors { result: first, curvature: Some(3.0 * second), section_force: Some(6.0 * second) };
+            assert_eq!(found.errors, errors);
+            assert_eq!((found.eigenvalues[0], found.records[0]), (2.0 * first, 5.0 * first));
+            let sample = ProbeSample {
+                x: first,
+                y: 2.0 * first,
+                angle: 3.0 * first,
+                curvature: 6.0 * second,
+                strain: 9.0 * second,
+                vx: Some(4.0 * first),
+                vy: None,
+            };
+            assert_eq!(found.probes[0].samples, [sample]);
+            assert_eq!(found.beams[0].s, [0.5]);
+            assert_eq!(
+                (found.beams[0].position[0], found.beams[0].curvature[0]),
+                (7.0 * first, 12.0 * second)
+            );
+            assert_eq!(found.cells[0].squares, [8.0], "cells are told apart by size only");
+        };
+        let divided = of(8.0).divided([2.0, 4.0]);
+        same(&divided, [4.0, 2.0]);
+        same(&divided.plus(&of(1.0)).expect("as many records"), [5.0, 3.0]);
+        assert!(divided.plus(&Difference::default()).is_none(), "an event has ended one of the motions");
     }
 
     /// Two stations in a cell, or one where there are more than 32 cells, and one at the end.

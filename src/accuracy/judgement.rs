@@ -15,6 +15,8 @@ const CONTRACTION_OF_MOTION: f64 = 10.0;
 const CONTRACTION_OF_CONTACT: f64 = 6.0;
 /// … of curvatures and section forces, and of all results of a method of second order …
 const CONTRACTION_OF_CURVATURE: f64 = 4.0;
+/// … of steps, of which nothing is known yet but that large ones err less regularly …
+const FALL_OF_STEPS: f64 = 6.0;
 /// … and at least, however slowly it was seen to fall.
 const LEAST_CONTRACTION: f64 = 1.5;
 /// Errors are larger by this than three coarse meshes alone tell.
@@ -29,24 +31,63 @@ const FINER: f64 = 1.5;
 /// A round with what is known of its errors.
 pub(super) struct Judged {
     pub round: Round,
-    pub difference: Option<Difference>,
-    pub contractions: [f64; 2],
-    /// By how much errors are taken to be larger than the difference and the contractions tell.
+    /// Of the finer run; `None` where nothing is known.
+    pub estimate: Option<Estimate>,
+    /// By how much errors are taken to be larger.
     pub caution: f64,
     /// The largest error in units of what was wanted.
     pub excess: f64,
 }
 
+/// The errors of a finer run, told from differences.
+pub(super) struct Estimate {
+    /// All of them.
+    pub whole: Difference,
+    /// Those of the mesh; all of them where those of the steps are not known apart from them.
+    pub mesh: Difference,
+    /// By which factor these fall with halved cells.
+    pub contraction: f64,
+    /// The largest of positions that the steps make, where they are known apart.
+    pub steps: Option<f64>,
+}
+
 impl Judged {
     /// Nothing is known.
     pub fn unknown(round: Round) -> Self {
-        Self {
-            round,
-            difference: None,
-            contractions: [LEAST_CONTRACTION; 2],
-            caution: 1.0,
-            excess: f64::INFINITY,
-        }
+        Self { round, estimate: None, caution: 1.0, excess: f64::INFINITY }
+    }
+
+    /// The errors of the finer run; infinite where nothing is known.
+    pub fn errors(&self) -> Errors {
+        let unknown = Errors { result: f64::INFINITY, ..Errors::default() };
+        self.estimate.as_ref().map_or(unknown, |estimate| self.with_caution(estimate.whole.errors))
+    }
+
+    /// Errors as they are taken to be.
+    pub fn with_caution(&self, errors: Errors) -> Errors {
+        scaled(errors, [self.caution.recip(); 2])
+    }
+}
+
+/// By which factor a difference is believed to fall from one pair of runs to the next.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fall {
+    /// The difference of positions or values.
+    pub difference: f64,
+    pub factor: f64,
+}
+
+impl Fall {
+    /// That of the steps of motions before anything is known of it.
+    pub fn of_steps(difference: f64) -> Self {
+        Self { difference, factor: FALL_OF_STEPS / CAUTION }
+    }
+
+    /// That to a `difference` of runs in which all is so many times finer; as before where that is
+    /// hardly finer.
+    pub fn to(self, finer: f64, difference: f64) -> Self {
+        let fallen = || (self.difference / difference).powf(finer.log2().recip());
+        Self { difference, factor: if finer < FINER { self.factor } else { fallen() } }
     }
 }
 
@@ -57,31 +98,33 @@ pub(super) struct Seen {
     pub cells: Vec<CellErrors>,
     /// Of the finer run.
     pub tolerance: f64,
-    pub error: f64,
     /// The largest difference in units of what is wanted of it.
     pub excess: f64,
-    /// By which factor errors were believed to fall.
-    pub fall: f64,
+    /// Of both together.
+    pub whole: Fall,
+    /// Of the mesh and of the steps, where they were told apart.
+    pub apart: Option<[Fall; 2]>,
 }
 
 impl Seen {
-    /// By which factor errors fall if cells are halved, as they have fallen to those of a round
-    /// with such meshes, such a tolerance and such an error; as before where that is hardly finer.
-    pub fn fall_to(&self, meshes: &[Mesh], tolerance: f64, error: f64) -> f64 {
+    /// How many times finer such meshes and such a tolerance are, in halvings of cells: a 16th of the
+    /// tolerance goes with one.
+    pub fn finer(&self, meshes: &[Mesh], tolerance: f64) -> [f64; 2] {
         let cells = mesh::refinement(&self.meshes, &self.cells, meshes);
-        // A 16th of the tolerance goes with halved cells.
-        let finer = cells.max((self.tolerance / tolerance).powf(LOOSER.log2().recip()));
-        if finer < FINER { self.fall } else { (self.error / error).powf(finer.log2().recip()) }
+        [cells, (self.tolerance / tolerance).powf(LOOSER.log2().recip())]
     }
 }
 
 impl Runner<'_, '_> {
     /// The fall of errors that is believed of the first three runs, and the caution with which:
     /// where the coarsest was of no use at all, its difference tells nothing, and little is taken.
-    pub fn first_fall(&self, seen: Option<f64>) -> (f64, f64) {
-        let unknown = (CONTRACTION_OF_CURVATURE / CAUTION, 1.0);
+    pub fn first_fall(&self, seen: Option<f64>, difference: f64) -> (Fall, f64) {
+        let of = |factor| Fall { difference, factor };
         let [promised, _] = self.contractions(f64::INFINITY);
-        seen.filter(|fall| *fall <= TOO_FAST * promised).map_or(unknown, |fall| (fall, FIRST))
+        match seen.filter(|factor| *factor <= TOO_FAST * promised) {
+            None => (of(CONTRACTION_OF_CURVATURE / CAUTION), 1.0),
+            Some(factor) => (of(factor), FIRST),
+        }
     }
 
     /// Factors by which errors fall from a coarse run to a finer one: as the methods promise, and
@@ -103,20 +146,6 @@ impl Runner<'_, '_> {
         let result = if self.model.has_contact() { result.min(CONTRACTION_OF_CONTACT) } else { result };
         let seen = if seen.is_nan() { result } else { CAUTION * seen };
         [result.min(seen).max(LEAST_CONTRACTION), CONTRACTION_OF_CURVATURE]
-    }
-}
-
-impl Judged {
-    /// By what differences of the coarse run are divided to give errors of the finer one: of
-    /// positions and values, and of curvatures and forces.
-    pub fn divide(&self) -> [f64; 2] {
-        self.contractions.map(|contraction| (contraction - 1.0) / self.caution)
-    }
-
-    /// The errors of the finer run; infinite where nothing is known.
-    pub fn errors(&self) -> Errors {
-        let unknown = Errors { result: f64::INFINITY, ..Errors::default() };
-        self.difference.as_ref().map_or(unknown, |difference| scaled(difference.errors, self.divide()))
     }
 }
 
@@ -189,9 +218,14 @@ mod tests {
     fn three_runs_are_believed_with_caution_or_not_at_all() {
         let scene = scene("analysis.static = {}");
         let runner = runner(&scene, 1e-4);
-        assert_eq!(runner.first_fall(Some(37.5)), (37.5, 1.5));
+        let of = |seen: Option<f64>| {
+            let (fall, caution) = runner.first_fall(seen, 2e-3);
+            assert_eq!(fall.difference, 2e-3);
+            (fall.factor, caution)
+        };
+        assert_eq!(of(Some(37.5)), (37.5, 1.5));
         let unknown = (4.0 / 0.75, 1.0);
-        assert_eq!([Some(37.6), None].map(|seen| runner.first_fall(seen)), [unknown; 2]);
+        assert_eq!([Some(37.6), None].map(of), [unknown; 2]);
     }
 
     #[test]
@@ -200,14 +234,9 @@ mod tests {
         let runner = runner(&scene, 1e-4);
         let round = || round(&runner, run(AnalysisKind::Static, 1, 0), None);
         let errors = Errors { result: 8.0, curvature: Some(6.0), section_force: None };
-        let judged = Judged {
-            round: round(),
-            difference: Some(Difference { errors, ..Difference::default() }),
-            contractions: [7.0, 4.0],
-            caution: 1.5,
-            excess: 0.0,
-        };
-        assert_eq!(judged.divide(), [4.0, 2.0]);
+        let whole = Difference { errors, ..Difference::default() }.divided([6.0, 3.0]);
+        let estimate = Estimate { mesh: whole.clone(), whole, contraction: 7.0, steps: None };
+        let judged = Judged { round: round(), estimate: Some(estimate), caution: 1.5, excess: 0.0 };
         assert_eq!(judged.errors(), Errors { result: 2.0, curvature: Some(3.0), section_force: None });
         let unknown = Judged::unknown(round());
         assert_eq!((unknown.errors().result, unknown.excess), (f64::INFINITY, f64::INFINITY));
@@ -221,14 +250,16 @@ mod tests {
             meshes: vec![even(8)],
             cells: vec![CellErrors { squares: vec![1.0; 8], order: 2.0 }],
             tolerance: 256e-6,
-            error: 1.0,
             excess: 1.0,
-            fall: 7.0,
+            whole: Fall { difference: 1.0, factor: 7.0 },
+            apart: None,
         };
-        let fall = |cells: usize, tolerance: f64, error: f64| seen.fall_to(&[even(cells)], tolerance, error);
-        assert_eq!(fall(32, 256e-6, 1.0 / 64.0), 8.0);
-        assert_eq!(fall(8, 1e-6, 1.0 / 64.0), 8.0);
-        assert_eq!(fall(16, 1e-6, 1.0 / 64.0), 8.0);
-        assert_eq!(fall(9, 200e-6, 0.1), 7.0, "hardly finer");
+        assert_eq!(seen.finer(&[even(32)], 256e-6), [4.0, 1.0]);
+        assert_eq!(seen.finer(&[even(16)], 1e-6), [2.0, 4.0]);
+        let fall = |finer: f64, difference: f64| seen.whole.to(finer, difference);
+        let found = fall(4.0, 1.0 / 64.0);
+        assert_eq!((found.difference, found.factor), (1.0 / 64.0, 8.0));
+        assert_eq!(fall(2.0, 0.25).factor, 4.0);
+        assert_eq!(fall(1.4, 0.1).factor, 7.0, "hardly finer");
     }
 }

@@ -107,6 +107,8 @@ pub(super) struct Round {
     pub results: Results,
     pub coarse: Option<Results>,
     pub setting: Setting,
+    /// Number of the finer run among all.
+    pub run: usize,
     pub difference: Result<Difference, String>,
     /// By which factor the difference has fallen, where there was a third run.
     pub fall: Option<f64>,
@@ -290,6 +292,7 @@ impl<'a, 'o> Runner<'a, 'o> {
         };
         let setting = self.setting(Fineness::Fine, Fineness::Fine);
         let results = self.solve(&stations, &setting, Purpose::Results)?;
+        let run = self.runs.len() - 1;
         if first && let Some(apart) = self.beside_elements(&stations, &setting, &results) {
             self.saturation = apart;
         }
@@ -304,7 +307,8 @@ impl<'a, 'o> Runner<'a, 'o> {
         let of_open = |(index, mesh): (usize, &Mesh)| if self.is_open(index) { mesh.cells() } else { 0 };
         let cells = self.meshes.iter().enumerate().map(of_open).sum();
         let coarse = coarse.ok();
-        Ok(Outcome::Compared(Box::new(Round { stations, results, coarse, setting, difference, fall, cells })))
+        let round = Round { stations, results, coarse, setting, run, difference, fall, cells };
+        Ok(Outcome::Compared(Box::new(round)))
     }
 
     /// By how much the results of a `setting` differ from those of elements on the same nodes, in place of shape functions
@@ -409,7 +413,8 @@ pub(super) mod tests {
         let stations = Stations::new(runner.model, &runner.meshes);
         let setting = runner.setting(Fineness::Fine, Fineness::Fine);
         let cells = runner.meshes.iter().map(Mesh::cells).sum();
-        Round { stations, results, coarse, setting, difference: Err(String::new()), fall: None, cells }
+        let difference = Err(String::new());
+        Round { stations, results, coarse, setting, run: 0, difference, fall: None, cells }
     }
 
     const MOTION: &str = "analysis.dynamic = { duration = 1 }";

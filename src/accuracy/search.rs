@@ -1,7 +1,7 @@
 //! The search for a mesh and steps that are good enough.
 
 use super::difference::Difference;
-use super::judgement::{CAUTION, Judged, Seen, excess, scaled};
+use super::judgement::{CAUTION, Estimate, Fall, Judged, Seen, excess};
 use super::mesh::{self, CellErrors, Mesh};
 use super::round::{FINEST, Fineness, LOOSER, Outcome, Purpose, Round, Runner, short};
 use super::{Accurate, model_error, statement};
@@ -33,6 +33,8 @@ const LEAP: f64 = 6.0;
 const CAREFUL_LEAP: f64 = 3.0;
 /// Most times the tolerance is changed by at once.
 const LEAP_OF_TOLERANCE: f64 = 200.0;
+/// Differences that fall by this factor at least tell all errors well enough together.
+const FELL_WELL: f64 = 4.0;
 /// Errors of motions go with this power of the tolerance.
 const POWER: f64 = 0.75;
 /// Most cells of all beams …
@@ -119,22 +121,7 @@ impl<'a, 'o> Search<'a, 'o> {
                 return Ok(self.finished(Judged::unknown(round), Some(MUTE_STEPS.to_owned())));
             }
             rounds += 1;
-            let error = difference.errors.result;
-            let (fall, caution) = match &before {
-                None => self.runner.first_fall(round.fall),
-                Some(before) => (before.fall_to(&self.runner.meshes, self.runner.tolerance, error), 1.0),
-            };
-            let now = Seen {
-                meshes: self.runner.meshes.clone(),
-                cells: difference.cells.clone(),
-                tolerance: self.runner.tolerance,
-                error,
-                excess: self.runner.wanted.map_or(0.0, |wanted| excess(difference.errors, wanted)),
-                fall,
-            };
-            let contractions = self.runner.contractions(fall);
-            let mut judged =
-                Judged { round, difference: Some(difference), contractions, caution, excess: 0.0 };
+            let (now, mut judged) = self.judged(round, difference, before.as_ref());
             stalls = match &before {
                 Some(before) if now.excess > STALLED * before.excess => stalls + 1,
                 _ => 0,
@@ -145,8 +132,8 @@ impl<'a, 'o> Search<'a, 'o> {
                 judged.caution *= (self.runner.saturation / seen).max(1.0);
             }
             let errors = judged.errors();
-            if let Some(last) = self.runner.runs.last_mut() {
-                last.error = Some(errors.result);
+            if let Some(run) = self.runner.runs.get_mut(judged.round.run) {
+                run.error = Some(errors.result);
             }
             judged.excess = self.runner.wanted.map_or(0.0, |wanted| excess(errors, wanted));
             if judged.excess <= 1.0 && mute < MUTE && !judged.round.tells_of_steps() {
@@ -188,16 +175,79 @@ impl<'a, 'o> Search<'a, 'o> {
         }
     }
 
+    /// What a round has seen, and what it tells of the errors of its finer run.
+    fn judged(&mut self, round: Round, difference: Difference, before: Option<&Seen>) -> (Seen, Judged) {
+        let excess_of =
+            |runner: &Runner<'_, '_>, errors| runner.wanted.map_or(0.0, |wanted| excess(errors, wanted));
+        let finer = before.map(|before| (before, before.finer(&self.runner.meshes, self.runner.tolerance)));
+        let all = difference.errors.result;
+        let (whole, mut caution) = match finer {
+            None => self.runner.first_fall(round.fall, all),
+            Some((before, [cells, steps])) => (before.whole.to(cells.max(steps), all), 1.0),
+        };
+        let mut now = Seen {
+            meshes: self.runner.meshes.clone(),
+            cells: difference.cells.clone(),
+            tolerance: self.runner.tolerance,
+            excess: excess_of(&self.runner, difference.errors),
+            whole,
+            apart: None,
+        };
+        let errors = |runner: &Runner<'_, '_>, difference: Difference, fall: Fall| {
+            let contractions = runner.contractions(fall.factor);
+            (difference.divided(contractions.map(|contraction| contraction - 1.0)), contractions[0])
+        };
+        let (errors_of_both, contraction) = errors(&self.runner, difference, whole);
+        let enough = excess_of(&self.runner, errors_of_both.errors) * caution <= 1.0;
+        let mut estimate =
+            Estimate { whole: errors_of_both.clone(), mesh: errors_of_both, contraction, steps: None };
+        // Another run is not worth its price where two are enough and what they differ by has fallen well.
+        let parts = if enough && contraction >= FELL_WELL { None } else { self.apart(&round) };
+        if let Some([mesh, steps]) = parts {
+            let differences = [&mesh, &steps].map(|difference| difference.errors.result);
+            let falls = match finer.and_then(|(before, finer)| Some((before.apart?, finer))) {
+                None => [Fall { difference: differences[0], ..whole }, Fall::of_steps(differences[1])],
+                Some(([mesh, steps], finer)) => {
+                    [mesh.to(finer[0], differences[0]), steps.to(finer[1], differences[1])]
+                }
+            };
+            let (mesh, contraction) = errors(&self.runner, mesh, falls[0]);
+            let (steps, _) = errors(&self.runner, steps, falls[1]);
+            let mesh = mesh.divided([caution.recip(); 2]);
+            if let Some(whole) = mesh.plus(&steps) {
+                caution = 1.0;
+                estimate = Estimate { whole, mesh, contraction, steps: Some(steps.errors.result) };
+                now.apart = Some(falls);
+            }
+        }
+        (now, Judged { round, estimate: Some(estimate), caution, excess: 0.0 })
+    }
+
+    /// By how much the steps and the mesh of a round err apart from each other: a run on the coarse mesh
+    /// with the finer steps lies between those that were compared. `None` where not both can be changed,
+    /// or there is no such run.
+    fn apart(&mut self, round: &Round) -> Option<[Difference; 2]> {
+        let moves = matches!(self.runner.analysis, Analysis::Dynamic(_));
+        if !moves || !self.runner.open.integrator || !round.tells_of_steps() {
+            return None;
+        }
+        let coarse = round.coarse.as_ref()?;
+        let setting = self.runner.setting(Fineness::Coarse, Fineness::Fine);
+        let between = self.runner.solve(&round.stations, &setting, Purpose::Shapes).ok()?;
+        let of_steps = self.runner.difference(&round.stations, coarse, &between).ok()?;
+        let of_mesh = self.runner.difference(&round.stations, &between, &round.results).ok()?;
+        between.run().complete.then_some([of_mesh, of_steps])
+    }
+
     /// Why no steps are small enough for a motion whose errors grow with time: as fast as they grew
     /// from what is wanted to what tells nothing any more, they would have to begin below all
     /// tolerances.
     fn outgrown(&self, judged: &Judged, wanted: Accuracy) -> Option<String> {
         let Analysis::Dynamic(_) = self.runner.analysis else { return None };
-        let difference = judged.difference.as_ref()?;
+        let records = &judged.estimate.as_ref()?.whole.records;
         let times = &judged.round.results.states().parameter;
-        let [divide, _] = judged.divide();
         let passes = |level: f64| {
-            let first = difference.records.iter().position(|error| error / divide > level)?;
+            let first = records.iter().position(|error| error * judged.caution > level)?;
             times.get(first).copied()
         };
         let (good, lost, end) = (passes(wanted.result)?, passes(LOST)?, *times.last()?);
@@ -217,27 +267,16 @@ impl<'a, 'o> Search<'a, 'o> {
     /// Finer meshes where cells err and smaller steps where steps err, so that the next round is
     /// good enough; why this cannot be.
     fn improve(&mut self, judged: &Judged, wanted: Accuracy) -> Result<(), String> {
-        let Judged { round, difference, contractions, .. } = judged;
-        let (contractions, divide) = (*contractions, judged.divide());
-        let mut space = difference.clone().unwrap_or_default();
-        let mut time = None;
-        if self.runner.open.integrator
-            && round.tells_of_steps()
-            && let Some(coarse) = &round.coarse
-            // A run on the coarse mesh with the finer steps tells the errors of both apart.
-            && let Ok(between) = self.runner.solve(&round.stations, &self.runner.setting(Fineness::Coarse, Fineness::Fine), Purpose::Positions)
-            && let Ok(of_steps) = self.runner.difference(&round.stations, coarse, &between)
-            && let Ok(of_mesh) = self.runner.difference(&round.stations, &between, &round.results)
-        {
-            time = Some(scaled(of_steps.errors, divide).result);
-            space = of_mesh;
-        }
-        let errors = scaled(space.errors, divide);
-        let needed = more_cells(errors, wanted, contractions[0]);
+        let (round, Some(estimate)) = (&judged.round, &judged.estimate) else {
+            return Err("nothing is known of the errors".to_owned());
+        };
+        let errors = judged.with_caution(estimate.mesh.errors);
+        let needed = more_cells(errors, wanted, estimate.contraction);
         let [promised, _] = self.runner.contractions(f64::INFINITY);
-        let times = needed.min(if contractions[0] < promised { CAREFUL_LEAP } else { LEAP });
+        let times = needed.min(if estimate.contraction < promised { CAREFUL_LEAP } else { LEAP });
         let mut steps = false;
-        if let Some(time) = time {
+        if let Some(time) = estimate.steps {
+            let time = judged.caution * time;
             // Where a finer mesh comes next and this one errs more, what is seen of the steps is not yet
             // what they do there.
             let ratio = time / (AIM * wanted.result);
@@ -257,7 +296,7 @@ impl<'a, 'o> Search<'a, 'o> {
         if 2 * round.cells >= most {
             return Err(format!("more than {most} cells would be needed"));
         }
-        self.spread(&space.cells, times.max(1.1));
+        self.spread(&estimate.mesh.cells, times.max(1.1));
         Ok(())
     }
 
@@ -280,9 +319,9 @@ impl<'a, 'o> Search<'a, 'o> {
             cells: cells.map(|((coarser, mesh), errors)| coarser.gathered(mesh, errors)).collect(),
             meshes: every_second,
             tolerance: LOOSER * self.runner.tolerance,
-            error: difference.errors.result,
             excess: f64::INFINITY,
-            fall: promised,
+            whole: Fall { difference: difference.errors.result, factor: promised },
+            apart: None,
         };
         if let Some(wanted) = self.runner.wanted {
             let needed = more_cells(self.runner.foreseen(difference), wanted, promised);
@@ -306,8 +345,7 @@ impl<'a, 'o> Search<'a, 'o> {
 
     /// The results of a round with what is known of their errors.
     fn finished(self, judged: Judged, reason: Option<String>) -> Accurate {
-        let divide = judged.divide();
-        let Judged { round, difference, .. } = judged;
+        let Judged { round, estimate: errors, caution, .. } = judged;
         let Round { stations, mut results, setting, .. } = round;
         let lengths: Vec<f64> = self.runner.meshes.iter().map(Mesh::length).collect();
         let largest = model_error::largest(stations.of_beams(results.states()), results.states());
@@ -329,14 +367,11 @@ impl<'a, 'o> Search<'a, 'o> {
             estimated: unknown,
             ..ErrorEstimate::default()
         };
-        if let Some(difference) = difference {
-            estimate.estimated = scaled(difference.errors, divide);
-            estimate.eigenvalues = difference.eigenvalues.iter().map(|error| error / divide[0]).collect();
-            estimate.records = difference.records.iter().map(|error| error / divide[0]).collect();
-            estimate.probes =
-                difference.probes.into_iter().map(|probe| statement::of_probe(probe, divide)).collect();
-            estimate.beams =
-                difference.beams.into_iter().map(|beam| statement::of_beam(beam, divide)).collect();
+        if let Some(Estimate { whole, .. }) = errors {
+            let Difference { errors, eigenvalues, probes, records, beams, .. } =
+                whole.divided([caution.recip(); 2]);
+            estimate.probes = probes.into_iter().map(statement::of_probe).collect();
+            estimate = ErrorEstimate { estimated: errors, eigenvalues, records, beams, ..estimate };
             estimate.met = self.runner.wanted.is_none_or(|wanted| excess(estimate.estimated, wanted) <= 1.0);
         }
         if let Some(wanted) = self.runner.wanted
@@ -380,11 +415,15 @@ mod tests {
         let results = run(AnalysisKind::Static, 1, 0);
         Judged {
             round: round(&search.runner, results, None),
-            difference: Some(difference),
-            contractions,
+            estimate: Some(estimate(difference, contractions)),
             caution: 1.0,
             excess: 2.0,
         }
+    }
+
+    fn estimate(difference: Difference, contractions: [f64; 2]) -> Estimate {
+        let whole = difference.divided(contractions.map(|contraction| contraction - 1.0));
+        Estimate { mesh: whole.clone(), whole, contraction: contractions[0], steps: None }
     }
 
     /// Errors that were e^{λt}: from 1e-4 to 0.2 within a second, by λ = 7.6/s. A tolerance of 3e-4 may fall
@@ -458,10 +497,43 @@ mod tests {
             let seen = search.begin_finer(&Difference { errors, cells, ..Difference::default() });
             assert_eq!(seen.cells[0].squares, [2.0, 2.0]);
             let loose = seen.tolerance / search.runner.tolerance;
-            (search.runner.meshes[0].cells(), seen.meshes[0].cells(), loose, seen.fall)
+            (search.runner.meshes[0].cells(), seen.meshes[0].cells(), loose, seen.whole.factor)
         };
         assert_eq!(begun(5e-4 * 15.9), (8, 2, 16.0, 15.0));
         assert_eq!(begun(1.0).0, 12);
+    }
+
+    /// The mesh errs by a tenth of what is wanted and the steps by ten times as much: a twentieth of the errors
+    /// that are now is the aim, and errors go with the power 3/4 of the tolerance. Where the mesh errs more,
+    /// the tolerance stays.
+    #[test]
+    fn what_errs_more_is_made_finer() {
+        let motion = scene(MOTION);
+        let improved = |mesh: f64, steps: f64, caution: f64| {
+            let mut search = Search::new(runner(&motion, 1e-4));
+            let before = (search.runner.meshes[0].cells(), search.runner.tolerance);
+            let cells = vec![CellErrors { squares: vec![1.0; before.0], order: 2.0 }];
+            let errors = Errors { result: mesh, ..Errors::default() };
+            let mut judged = judged(&search, Difference { errors, cells, ..Difference::default() }, [2.0; 2]);
+            judged.caution = caution;
+            judged.round.results.run_mut().analysis = AnalysisKind::Dynamic;
+            judged.estimate.as_mut().expect("an estimate").steps = Some(steps);
+            search.improve(&judged, Accuracy::new(1e-4)).expect("what can be finer");
+            let (cells, tolerance) = (search.runner.meshes[0].cells(), search.runner.tolerance);
+            (cells as f64 / before.0 as f64, tolerance / before.1)
+        };
+        let (cells, tolerance) = improved(1e-5, 1e-3, 1.0);
+        assert!(
+            cells == 1.0 && (tolerance - 20.0_f64.powf(-4.0 / 3.0)).abs() < 1e-2 * tolerance,
+            "{tolerance}"
+        );
+        let (cells, tolerance) = improved(5e-6, 5e-4, 2.0);
+        assert!(
+            cells == 1.0 && (tolerance - 20.0_f64.powf(-4.0 / 3.0)).abs() < 1e-2 * tolerance,
+            "{tolerance}"
+        );
+        let (cells, tolerance) = improved(1e-3, 9e-4, 1.0);
+        assert!(cells > 2.0 && tolerance == 1.0, "{cells}");
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! Errors of single records and places, as they are stated.
 
-use crate::results::{BeamErrors, ProbeErrors, ProbeSample};
+use crate::results::{ProbeErrors, ProbeSample};
 
 /// The records around one whose errors count for it, on either side, as a part of the run.
 const WINDOW: usize = 20;
 
 /// Errors oscillate, and a moment at which two runs agree by chance is no better than those around
 /// it: the largest within a twentieth of the run on either side.
-pub(super) fn of_probe(mut probe: ProbeErrors, [result, curvature]: [f64; 2]) -> ProbeErrors {
+pub(super) fn of_probe(mut probe: ProbeErrors) -> ProbeErrors {
     let reach = probe.samples.len() / WINDOW;
     let around: Vec<ProbeSample> = (0..probe.samples.len())
         .map(|i| {
@@ -33,23 +33,7 @@ pub(super) fn of_probe(mut probe: ProbeErrors, [result, curvature]: [f64; 2]) ->
         })
         .collect();
     probe.samples = around;
-    for sample in &mut probe.samples {
-        sample.x /= result;
-        sample.y /= result;
-        sample.angle /= result;
-        sample.strain /= curvature;
-        sample.curvature /= curvature;
-        sample.vx = sample.vx.map(|v| v / result);
-        sample.vy = sample.vy.map(|v| v / result);
-    }
     probe
-}
-
-/// Errors along a beam from their differences.
-pub(super) fn of_beam(mut beam: BeamErrors, [result, curvature]: [f64; 2]) -> BeamErrors {
-    beam.position.iter_mut().for_each(|error| *error /= result);
-    beam.curvature.iter_mut().for_each(|error| *error /= curvature);
-    beam
 }
 
 #[cfg(test)]
@@ -64,21 +48,13 @@ mod tests {
             ProbeSample { x: 4.0, y: 6.0, angle: 8.0, curvature: 9.0, strain: 12.0, vx: Some(2.0), vy: None };
         samples[39].y = 10.0;
         samples[20].x = f64::NAN;
-        let found = of_probe(ProbeErrors { name: "tip".into(), samples }, [2.0, 3.0]).samples;
+        let found = of_probe(ProbeErrors { name: "tip".into(), samples }).samples;
         let x = |value: f64| found.iter().enumerate().filter(move |(_, s)| s.x == value).map(|(i, _)| i);
-        assert_eq!(x(2.0).collect::<Vec<_>>(), [8, 9, 10, 11, 12]);
+        assert_eq!(x(4.0).collect::<Vec<_>>(), [8, 9, 10, 11, 12]);
         let around =
-            ProbeSample { x: 2.0, y: 3.0, angle: 4.0, curvature: 3.0, strain: 4.0, vx: Some(1.0), vy: None };
+            ProbeSample { x: 4.0, y: 6.0, angle: 8.0, curvature: 9.0, strain: 12.0, vx: Some(2.0), vy: None };
         assert_eq!((found[8], found[12]), (around, around));
-        assert_eq!([36, 37, 38, 39].map(|i| found[i].y), [0.0, 5.0, 5.0, 5.0]);
+        assert_eq!([36, 37, 38, 39].map(|i| found[i].y), [0.0, 10.0, 10.0, 10.0]);
         assert!(found[20].x.is_nan() && found[19].x == 0.0, "of a record nothing may be known");
-    }
-
-    #[test]
-    fn errors_along_a_beam_are_differences_by_how_much_they_fall() {
-        let (beam, s) = ("arm".to_owned(), vec![0.0, 1.0]);
-        let differences = BeamErrors { beam, s, position: vec![1.0, 4.0], curvature: vec![3.0, 9.0] };
-        let found = of_beam(differences, [2.0, 3.0]);
-        assert_eq!((found.position, found.curvature), (vec![0.5, 2.0], vec![1.0, 3.0]));
     }
 }

@@ -847,6 +847,9 @@ impl<'a> Sampler<'a> {
             _ if stuck.failure == Failure::NotFinite && stuck.step == 0.0 => {
                 "a velocity, a load or a stiffness is beyond what its products leave room for: start from another state, or use other units"
             }
+            _ if stuck.failure == Failure::StepsErr => {
+                "the tolerance is below the round-off of these positions, or the motion jumps here: give a larger `tolerance`"
+            }
             StepControl::Fixed(_) => {
                 "give `tolerance` instead of `step`, so that steps are as short as the motion needs them; a smaller `step`; \
                  or more nodes where the beam bends most"

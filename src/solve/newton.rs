@@ -156,6 +156,9 @@ pub enum Failure {
         /// The last scaled increment.
         last: f64,
     },
+    /// Steps of a motion err by as much, however short they are.
+    #[error("ever shorter steps err no less")]
+    StepsErr,
     /// The observer ended the analysis.
     #[error("it was stopped")]
     Stopped,

@@ -92,6 +92,26 @@ fn steps_whose_square_vanishes_are_refused() {
     }
 }
 
+/// Steps of a stiff blade err by its round-off, however short they are: the motion ends with the tolerance as
+/// the cause, and with all that is right until there.
+#[test]
+fn tolerances_below_round_off_are_told() {
+    let motion = |tolerance: &str| {
+        let text = format!(
+            "beam.blade = {{ start = [0, 0], end = [10, 0], axial_stiffness = 2.8e7, bending_stiffness = 1.4e4, mass_per_length = 1.2, basis.ancf.elements = 16 }}
+            support = [{{ beam = 'blade', at = 'start', fix = ['x', 'y', 'angle'], move.spin_up = {{ speed = 6, duration = 1 }} }}]
+            analysis.dynamic = {{ duration = 0.1, output_every = 0.001, radau = {{ stages = 3, tolerance = {tolerance} }} }}\n"
+        );
+        let scene = parsed(&text);
+        outcome(scene.model(), scene.analysis())
+    };
+    assert!(motion("1e-9").is_ok());
+    let mut error = motion("1e-13").expect_err("less than round-off");
+    let message = format!("{error} {error:?}");
+    assert!(message.contains("err no less") && message.contains("larger `tolerance`"), "{message}");
+    assert!(error.partial().is_some_and(|found| !found.run.complete && found.parameter.len() > 1));
+}
+
 /// Far from the origin positions have fewer digits, and a motion of them is not silently wrong: at 1e8 beam
 /// lengths the velocity of such a tip may err by a quarter.
 #[test]

@@ -535,8 +535,11 @@ impl<'t, 'a> Driver<'t, 'a> {
                 }
                 (Ok(_), _) => {
                     self.step = h * (SAFETY * ratio.powf(-power)).clamp(LIMITS.0, SAFETY);
-                    if self.step.is_nan() || self.step < SMALLEST_STEP * self.task.duration {
+                    if self.step.is_nan() {
                         return Err(stuck(&*self.method, Failure::NotFinite));
+                    }
+                    if self.step < SMALLEST_STEP * self.task.duration {
+                        return Err(stuck(&*self.method, Failure::StepsErr));
                     }
                 }
             }
