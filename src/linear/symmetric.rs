@@ -366,21 +366,24 @@ impl Ldl {
             let panels = self.rows.chunks_exact_mut(blocks).enumerate();
             panels.for_each(|(position, panel)| fill(position, panel));
         }
+        let scale = |node: usize, r: usize| {
+            let of = |matrix: &SymmetricBand| matrix.get(4 * node + r, 4 * node + r);
+            of(matrix) + shift.map_or(0.0, |(c, m)| c * of(m))
+        };
+        if FROM_BOTH_ENDS && matrix.nodes >= LONG && rayon::current_num_threads() > 1 {
+            return self.eliminate_from_both_ends(&scale);
+        }
         self.negative = 0;
         for position in 0..matrix.nodes {
             let (panel, later) = self.rows[position * blocks..].split_at_mut(blocks);
             let reciprocal = &mut self.reciprocal[position];
             let node = order.node(position);
             let singular = |r| Singular { row: 4 * node + r };
-            let scale = |r| {
-                matrix.get(4 * node + r, 4 * node + r)
-                    + shift.map_or(0.0, |(c, m)| c * m.get(4 * node + r, 4 * node + r))
-            };
             *reciprocal = [
-                reduce::<0>(panel, scale(0)).ok_or_else(|| singular(0))?,
-                reduce::<1>(panel, scale(1)).ok_or_else(|| singular(1))?,
-                reduce::<2>(panel, scale(2)).ok_or_else(|| singular(2))?,
-                reduce::<3>(panel, scale(3)).ok_or_else(|| singular(3))?,
+                reduce::<0>(panel, scale(node, 0)).ok_or_else(|| singular(0))?,
+                reduce::<1>(panel, scale(node, 1)).ok_or_else(|| singular(1))?,
+                reduce::<2>(panel, scale(node, 2)).ok_or_else(|| singular(2))?,
+                reduce::<3>(panel, scale(node, 3)).ok_or_else(|| singular(3))?,
             ];
             self.negative += reciprocal.iter().filter(|d| **d < 0.0).count();
             for a in 1..blocks {
@@ -389,11 +392,7 @@ impl Ldl {
                 let mut l = panel[a];
                 l.iter_mut().zip(&*reciprocal).for_each(|(l, d)| *l *= Lanes::splat(*d));
                 for (target, u) in later.iter_mut().zip(&panel[a..]) {
-                    for (r, target) in target.iter_mut().enumerate() {
-                        let [l0, l1, l2, l3] = l.map(|l| Lanes::splat(l.to_array()[r]));
-                        let sum = l1.mul_neg_add(u[1], l0.mul_neg_add(u[0], *target));
-                        *target = l3.mul_neg_add(u[3], l2.mul_neg_add(u[2], sum));
-                    }
+                    update(target, &l, u);
                 }
             }
             if let Some((pivots, right)) = panel.split_first_mut() {
@@ -407,6 +406,36 @@ impl Ldl {
                 }
             }
         }
+        Ok(())
+    }
+
+    /// Eliminates the nodes of a long chain by two threads, each from one end of it to the node before
+    /// its middle. `scale` gives the diagonal entry in row r of a node.
+    fn eliminate_from_both_ends(
+        &mut self,
+        scale: &(impl Fn(usize, usize) -> f64 + Sync),
+    ) -> Result<(), Singular> {
+        let (order, nodes) = (self.order(), self.reciprocal.len());
+        let last = nodes.saturating_sub(1);
+        let panels = self.rows.as_chunks_mut::<2>().0.iter_mut().zip(&mut self.transposed);
+        let mut chains = [(); 2].map(|()| Vec::with_capacity(nodes.div_ceil(2)));
+        for (position, ((panel, transposed), reciprocal)) in panels.zip(&mut self.reciprocal).enumerate() {
+            let node = order.node(position);
+            chains[position % 2].push(Link { node, panel, transposed, reciprocal });
+        }
+        let Some(mut middle) = chains[last % 2].pop() else { return Ok(()) };
+        let [front, back] = chains;
+        let (front, back) = rayon::join(|| eliminate_links(front, scale), || eliminate_links(back, scale));
+        // The last but one position comes last.
+        let ends = if last.is_multiple_of(2) { [front, back] } else { [back, front] };
+        self.negative = 0;
+        for end in ends {
+            let (before, negative) = end?;
+            before.iter().for_each(|(l, u)| update(&mut middle.panel[0], l, u));
+            self.negative += negative;
+        }
+        middle.eliminate(scale)?;
+        self.negative += middle.negative();
         Ok(())
     }
 
@@ -472,6 +501,67 @@ impl Ldl {
     /// Number of negative pivots, which is the number of negative eigenvalues.
     pub fn negative_pivots(&self) -> usize {
         self.negative
+    }
+}
+
+/// A node of a chain that is eliminated from both ends.
+struct Link<'l> {
+    node: usize,
+    panel: &'l mut [Block; 2],
+    transposed: &'l mut Block,
+    reciprocal: &'l mut [f64; 4],
+}
+
+impl Link<'_> {
+    /// Eliminates the node; returns by what the next one changes, as for [`update`].
+    #[inline(always)]
+    fn eliminate(&mut self, scale: &impl Fn(usize, usize) -> f64) -> Result<(Block, Block), Singular> {
+        let (node, panel) = (self.node, &mut self.panel[..]);
+        let singular = |r| Singular { row: 4 * node + r };
+        *self.reciprocal = [
+            reduce::<0>(panel, scale(node, 0)).ok_or_else(|| singular(0))?,
+            reduce::<1>(panel, scale(node, 1)).ok_or_else(|| singular(1))?,
+            reduce::<2>(panel, scale(node, 2)).ok_or_else(|| singular(2))?,
+            reduce::<3>(panel, scale(node, 3)).ok_or_else(|| singular(3))?,
+        ];
+        let [pivots, right] = &mut *self.panel;
+        let (mut l, u) = (*right, *right);
+        l.iter_mut().zip(&*self.reciprocal).for_each(|(l, d)| *l *= Lanes::splat(*d));
+        *right = divide_by_pivots(pivots, self.reciprocal, u);
+        *self.transposed = Lanes::transpose(*right);
+        *pivots = inverse(pivots, self.reciprocal);
+        Ok((l, u))
+    }
+
+    fn negative(&self) -> usize {
+        self.reciprocal.iter().filter(|d| **d < 0.0).count()
+    }
+}
+
+/// Eliminates nodes each of which is coupled with the next. Returns by what the one behind them
+/// changes, and the number of negative pivots.
+fn eliminate_links(
+    links: Vec<Link<'_>>,
+    scale: &impl Fn(usize, usize) -> f64,
+) -> Result<(Option<(Block, Block)>, usize), Singular> {
+    let (mut before, mut negative) = (None, 0);
+    for mut link in links {
+        if let Some((l, u)) = &before {
+            update(&mut link.panel[0], l, u);
+        }
+        before = Some(link.eliminate(scale)?);
+        negative += link.negative();
+    }
+    Ok((before, negative))
+}
+
+/// Subtracts lᵀ u from the block of a later node.
+#[inline(always)]
+fn update(target: &mut Block, l: &Block, u: &Block) {
+    for (r, target) in target.iter_mut().enumerate() {
+        let [l0, l1, l2, l3] = l.map(|l| Lanes::splat(l.to_array()[r]));
+        let sum = l1.mul_neg_add(u[1], l0.mul_neg_add(u[0], *target));
+        *target = l3.mul_neg_add(u[3], l2.mul_neg_add(u[2], sum));
     }
 }
 

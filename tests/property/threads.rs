@@ -2,6 +2,7 @@
 
 use ancf::assembly::{Needs, Workspace};
 use ancf::linear::Matrix;
+use ancf::linear::symmetric::{Ldl, SymmetricBand};
 use ancf::model::{Analysis, Discretization, Dynamic, Model, Nodes};
 use ancf::run::Options;
 use ancf::scene::parse;
@@ -87,12 +88,57 @@ fn meshfree_on(nodes: Nodes) -> Discretization {
     }
 }
 
+fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(work)
+}
+
+/// A long chain is eliminated by two threads as by one, to the last bit: with an even and an odd number of
+/// nodes, with negative pivots at either end and in the middle, and up to a node without a pivot.
+#[test]
+fn factors_do_not_depend_on_the_number_of_threads() {
+    let chain = |nodes: usize, lost: Option<usize>| {
+        let [mut k, mut m] = [(); 2].map(|()| SymmetricBand::zeros(nodes, 2));
+        for i in 0..4 * nodes {
+            let node = i / 4;
+            let turned = [1, nodes / 2, nodes - 2].contains(&node) && i % 4 == 2;
+            k.set(i, i, if turned { -30.0 } else { 20.0 + (i as f64).sin() });
+            m.set(i, i, 7.0);
+            for j in i + 1..(4 * (node + 2)).min(4 * nodes) {
+                k.set(i, j, (0.7 * (i * j) as f64).cos());
+            }
+        }
+        if let Some(node) = lost {
+            let row = 4 * node + 1;
+            k.columns(row).for_each(|j| k.set(row, j, 0.0));
+            m.set(row, row, 0.0);
+        }
+        Ldl::again(None, &k, Some((0.5, &m)))
+    };
+    for nodes in [LONG, LONG + 1] {
+        let solved = |threads: usize| {
+            on_threads(threads, || {
+                let factor = chain(nodes, None).expect("pivots");
+                let mut x: Vec<f64> = (0..4 * nodes).map(|i| (0.3 * i as f64).sin()).collect();
+                factor.solve(&mut x);
+                (factor.negative_pivots(), x)
+            })
+        };
+        let one = solved(1);
+        assert_eq!(one.0, 3);
+        assert!(one == solved(2), "{nodes} nodes");
+        for lost in [3, nodes / 2, nodes - 3] {
+            let found = [1, 2]
+                .map(|threads| on_threads(threads, || chain(nodes, Some(lost)).expect_err("no pivot").row));
+            assert_eq!(found, [4 * lost + 1; 2]);
+        }
+    }
+}
+
 /// What the probes of a motion see at its end, on so many threads.
 fn seen(elements: usize, threads: usize) -> Vec<[f64; 5]> {
     let (model, analysis) = chain(elements);
     let Analysis::Dynamic(Dynamic { .. }) = analysis else { panic!("a motion") };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    pool.install(|| {
+    on_threads(threads, || {
         let results = model.solve_with(&analysis, Options::default()).expect("results");
         let last = results.states().probes.iter().filter_map(|probe| probe.samples.last());
         let seen = last.map(|seen| [Some(seen.x), Some(seen.y), Some(seen.angle), seen.vx, seen.vy]);
