@@ -78,7 +78,7 @@ fn score(score: Score) -> [String; 5] {
 
 fn row(scene: &SceneWorth) -> Row<'_> {
     let cell = |run: &Result<Judged, String>| match run {
-        Err(why) => [why.clone(), String::new(), String::new()],
+        Err(why) => [why.clone(), String::new(), "why".to_owned()],
         Ok(run) => {
             let class = match () {
                 () if run.met && run.told && run.error > run.wanted => "fails",
@@ -150,7 +150,8 @@ mod tests {
         std::fs::write(&file, serde_json::to_string(&worth).expect("JSON")).expect("a file");
         let page = page(&file).expect("a page");
         assert_eq!(page.pass, Some(false), "one run in four errs by more than it was asked to");
-        for text in ["2026-01-02", "#tip-load", "2 of 3", "fails", "beyond", "≤ 1.0e−13", "given up", "<svg"]
+        for text in
+            ["2026-01-02", "#tip-load", "2 of 3", "fails", "beyond", "≤ 1.0e−13", "why\">given up", "<svg"]
         {
             assert!(page.body.contains(text), "`{text}` is missing in {}", page.body);
         }

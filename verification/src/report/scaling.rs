@@ -23,8 +23,8 @@ struct Body<'a> {
     best: Option<[String; 2]>,
     /// Beam, what is timed, operations, time, share of the best.
     floors: Vec<[String; 5]>,
-    /// Code, analysis, bytes per element or why they are not known.
-    memory: Vec<[String; 3]>,
+    /// Code, analysis, bytes per element or why they are not known, class of that.
+    memory: Vec<[String; 4]>,
     growth: String,
     wanted: f64,
     drawing: Result<String, String>,
@@ -53,11 +53,11 @@ pub fn page(file: &Path) -> Result<Page, Failure> {
         ]
     };
     let memory = |memory: &Memory| {
-        let bytes = match &memory.bytes {
-            Ok(bytes) => format!("{bytes:.0}"),
-            Err(why) => why.clone(),
+        let (bytes, class) = match &memory.bytes {
+            Ok(bytes) => (format!("{bytes:.0}"), ""),
+            Err(why) => (why.clone(), "why"),
         };
-        [memory.code.name().to_owned(), memory.analysis.clone(), bytes]
+        [memory.code.name().to_owned(), memory.analysis.clone(), bytes, class.to_owned()]
     };
     Ok(Page {
         id: "scaling".into(),
