@@ -245,7 +245,7 @@ fn check_needs(
                     beam.name
                 ),
             )
-            .help("give `bending_stiffness`, use `[analysis.static]` with `steps`, or a spring in place of the string"));
+            .help("give `bending_stiffness`, use `[analysis.static]` with `steps`, load the string in a `[[stage]]` before, or take a spring in its place"));
         }
     }
     Ok(())
