@@ -271,20 +271,26 @@ fn relaxed(
             stopped = stopped || !observe(load - step, step, counts);
             !stopped
         };
+        let moved = if equilibrium.system().supports().moves() {
+            equilibrium.moved_with_supports(load - step, load, &x)
+        } else {
+            Some(x.clone())
+        };
         if let (None, Some(free)) = (solution.pressed, equilibrium.system().rigid_motions()) {
-            let before = (part - 1) as f64 / parts as f64;
-            let moved = if equilibrium.system().supports().moves() {
-                equilibrium.moved_with_supports(before, load, &x)
-            } else {
-                Some(x.clone())
-            };
             let pressed = |unstable| UnstableMechanism { load, unstable, free };
-            solution.pressed = match moved.and_then(|x| stability(equilibrium, load, &x)) {
+            solution.pressed = match moved.as_ref().and_then(|x| stability(equilibrium, load, x)) {
                 Some(Stability::Directions(unstable)) if unstable > free => Some(pressed(unstable)),
                 _ => None,
             };
         }
         let start = x.clone();
+        // Between supports that come together or part, all cells share the change of their distance: left to
+        // the cells beside the supports, it would fold these back.
+        if equilibrium.system().shared_move(load, &x) == [0.0; 2]
+            && let Some(moved) = moved
+        {
+            x = moved;
+        }
         let mut record = Iterations::default();
         let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record, goes_on);
         if outcome.is_ok() && is_unstable(equilibrium, load, &x) {

@@ -135,6 +135,48 @@ fn a_folded_string_is_named() {
     }
 }
 
+/// A straight cable of many cells whose ends are brought together at once hangs as an elastic catenary
+/// (Irvine, *Cable Structures*, 1981): half of the span is H l/EA + H/w asinh(V/H), the sag
+/// V²/(2 EA w) + H/w (√(1 + V²/H²) − 1), with half of the length l and half of the weight V = w l.
+#[test]
+fn a_cable_of_many_cells_that_is_brought_together_hangs() {
+    let (stiffness, weight, half, span) = (1e3, 9.81, 0.5, 0.8);
+    let load = weight * half;
+    let mut bracket = (1e-3_f64, 100.0_f64);
+    for _ in 0..100 {
+        let h = 0.5 * (bracket.0 + bracket.1);
+        let wide = h * half / stiffness + h / weight * (load / h).asinh();
+        *(if wide < 0.5 * span { &mut bracket.0 } else { &mut bracket.1 }) = h;
+    }
+    let h = bracket.0;
+    let sag =
+        load * load / (2.0 * stiffness * weight) + h / weight * ((1.0 + (load / h).powi(2)).sqrt() - 1.0);
+    for cells in [100, 300] {
+        let mut model =
+            one(vec![support(0.0, FixedRotation::Free), support(1.0, FixedRotation::Free)], vec![]);
+        model.beams = vec![beam("cable", [0.0; 2], [1.0, 0.0], ancf(cells))];
+        model.beams[0].section = Section {
+            axial_stiffness: Some(stiffness.into()),
+            bending_stiffness: None,
+            mass_per_length: Some(1.0.into()),
+            ..Default::default()
+        };
+        model.supports[1].displacement = Displacement { x: span - 1.0, ..Displacement::default() };
+        model.parts = vec![Arc::new(Gravity::new([0.0, -weight]))];
+        model.probes = tip(0, half);
+        let trajectory = model.solve(&Static::default()).expect("an equilibrium");
+        let middle = trajectory.probes[0].samples.last().expect("a record");
+        // Even cells err by their length to the fourth power.
+        assert!(
+            (middle.x - 0.5 * span).abs() < 1e-7 && (middle.y + sag).abs() < 1e-6,
+            "{middle:?}, sag {sag}"
+        );
+        assert!(trajectory.run.warnings.is_empty(), "{:?}", trajectory.run.warnings);
+        let pull = trajectory.reactions[1].samples.last().expect("a record").fx;
+        assert!((pull - h).abs() < 1e-3 * h, "{pull} N, not {h} N");
+    }
+}
+
 /// A string of few uneven cells that should fold up to its supports' line holds itself in another
 /// shape, by thrusts of a thousand newtons that a load of hundredths cannot cause: it is told. A
 /// cable that hangs between its supports is not.
