@@ -20,6 +20,9 @@ const LAST_INCREMENT: f64 = 1e-6;
 /// lengths, gradients as they are.
 const PUSH: f64 = 1e-3;
 
+/// Largest turn of a support in a step of a structure that is relaxed \[rad\].
+const LARGEST_TURN: f64 = 0.5;
+
 /// Two equilibria that differ by less are the same: positions in beam lengths, gradients as they
 /// are.
 const SAME_SIDE: f64 = 1e-5;
@@ -261,7 +264,11 @@ fn relaxed(
 ) -> Result<(), NoStep> {
     let mut work = Work::default();
     solution.record(equilibrium, 0.0, &x, work);
-    let parts = settings.steps.unwrap_or(1).max(1);
+    // A support that turns far at once may as well turn the other way: steps that are not recorded lie between.
+    let of_turns = (equilibrium.system().largest_turn() / LARGEST_TURN).ceil() as usize;
+    let recorded = settings.steps.unwrap_or(1).max(1);
+    let between = of_turns.div_ceil(recorded).max(1);
+    let parts = recorded.saturating_mul(between);
     let mut before = Stability::Directions(0);
     for part in 1..=parts {
         let load = part as f64 / parts as f64;
@@ -322,7 +329,9 @@ fn relaxed(
         outcome.map_err(|failure| NoStep { load: load - step, step, failure, at })?;
         equilibrium.statistics.load_steps += 1;
         work.add_states(equilibrium.system(), (load - step, &start), (load, &x));
-        solution.record(equilibrium, load, &x, work);
+        if part.is_multiple_of(between) {
+            solution.record(equilibrium, load, &x, work);
+        }
         equilibrium.set_accepted(&x);
         if stopped || !observe(load, step, &equilibrium.statistics) {
             break;

@@ -143,6 +143,15 @@ impl Constraint {
         }
     }
 
+    /// For a support that fixes a direction: by how much it turns this \[rad\].
+    pub fn turn(&self) -> Option<f64> {
+        match &self.row {
+            Row::Gradient { rotation, .. } => Some(rotation.change),
+            Row::Direction(angle) => Some(angle.change),
+            _ => None,
+        }
+    }
+
     /// Whether it is a slider: a single point on a fixed line.
     pub fn is_slider(&self) -> bool {
         matches!((&self.row, &self.fields[..]), (Row::Joint { .. }, [_]))

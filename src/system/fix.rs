@@ -35,6 +35,12 @@ impl System {
         }
         shared.map(Option::unwrap_or_default)
     }
+
+    /// The largest turn of a support \[rad\].
+    pub fn largest_turn(&self) -> f64 {
+        let between = self.constraints.iter().filter_map(Constraint::turn);
+        self.supports.turns().chain(between).fold(0.0, |largest, turn| turn.abs().max(largest))
+    }
 }
 
 /// Makes the eliminated supports, the constraint rows, and per support the place where it acts.

@@ -175,6 +175,15 @@ impl Supports {
         })
     }
 
+    /// By how much supports turn directions \[rad\].
+    pub fn turns(&self) -> impl Iterator<Item = f64> {
+        self.pairs.iter().filter_map(|RestrainedPair { restraint, .. }| match restraint {
+            Restraint::Position(_) => None,
+            Restraint::Gradient { rotation, .. } => Some(rotation.change),
+            Restraint::Direction(angle) => Some(angle.change),
+        })
+    }
+
     /// Fixes quantities that no law moves at the values that they have in the state `q`; `length`
     /// is the scale of lengths.
     pub fn freeze(&mut self, q: &[f64], length: f64) {

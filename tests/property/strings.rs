@@ -177,6 +177,38 @@ fn a_cable_of_many_cells_that_is_brought_together_hangs() {
     }
 }
 
+/// A clamp that turns by 200° brings the arm and the cable that hangs from it to the same place in one step
+/// as in twenty. Turned at once, they came to rest on the other side of the clamp, in an equilibrium to which
+/// no turning leads.
+#[test]
+fn a_clamp_turns_the_way_that_it_is_told() {
+    let text = |turn: f64, steps: &str| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 5, mass_per_length = 1, basis.ancf.elements = 8 }}
+            beam.cable = {{ start = [1, 0], end = [2, 0], axial_stiffness = 1e3, mass_per_length = 1, basis.ancf.elements = 6 }}
+            joint = [{{ type = 'hinge', first = {{ beam = 'arm', at = 'end' }}, second = {{ beam = 'cable', at = 'start' }} }}]
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'], move.angle = {turn} }}]
+            effect.gravity.acceleration = [0, -9.81]
+            probe = [{{ name = 'end', beam = 'cable', at = 'end' }}]
+            analysis.static{steps}\n"
+        )
+    };
+    let found = |turn: f64, steps: &str| {
+        let text = text(turn, steps);
+        let scene = ancf::scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
+        let found = scene.model().solve(scene.analysis()).expect("an equilibrium");
+        let seen = found.states().probes[0].samples.last().expect("a record");
+        (found.states().parameter.len(), [seen.x, seen.y])
+    };
+    let (_, expected) = found(3.5, ".steps = 20");
+    for (steps, records) in [(" = {}", 2), (".steps = 1", 2), (".steps = 3", 4)] {
+        let (count, end) = found(3.5, steps);
+        assert_eq!(count, records, "{steps}");
+        assert!((0..2).all(|i| (end[i] - expected[i]).abs() < 1e-6), "{steps}: {end:?}, not {expected:?}");
+    }
+    assert!(expected[0] < -0.5, "{expected:?}");
+}
+
 /// A string of few uneven cells that should fold up to its supports' line holds itself in another
 /// shape, by thrusts of a thousand newtons that a load of hundredths cannot cause: it is told. A
 /// cable that hangs between its supports is not.
