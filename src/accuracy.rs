@@ -21,7 +21,8 @@
 //! steps tells their errors apart: each has its own k, and what is stated is the sum of both.
 //! Curvatures and section forces are of second order: their k is 4, or less. Where these first two
 //! runs show that errors would be too large on halved cells even if they fell as the method
-//! promises, those are not paid for: the search goes on with a finer mesh at once.
+//! promises, or that equilibria are a tenth of a beam length apart, those are not paid for: the
+//! search goes on with a finer mesh at once.
 //!
 //! Radial shape functions that a scene names may have errors that no finer mesh removes, so that all
 //! meshes agree. Where they do, elements on the same nodes are asked as well, and errors are taken to
@@ -41,7 +42,7 @@ pub(crate) mod setting;
 mod statement;
 
 use crate::model::{Accuracy, Analysis, Model, Open};
-use crate::results::Results;
+use crate::results::{LazyText, Results};
 use crate::run::{Options, RunError, StagesRun, solve_stages};
 use crate::scene::Scene;
 use round::{Fineness, Runner};
@@ -77,17 +78,7 @@ pub fn run(scene: &Scene, options: Options<'_>) -> Result<Results, RunError> {
         solve(scene.model(), scene.analysis(), scene.open(), wanted, options)?;
     if let Some(error) = &mut results.run_mut().error {
         error.usual = !scene.names_accuracy();
-    }
-    match scene.chosen(&chosen) {
-        Ok(chosen) => {
-            if let Some(error) = &mut results.run_mut().error {
-                error.chosen = Some(chosen);
-            }
-        }
-        Err(error) => {
-            let warning = format!("the scene with what was chosen cannot be written: {}", error.brief());
-            results.run_mut().warnings.push(warning);
-        }
+        error.chosen = Some(LazyText::new(scene.chosen_later(chosen)));
     }
     Ok(results)
 }

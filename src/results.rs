@@ -6,7 +6,7 @@ mod modes;
 mod shape;
 mod trajectory;
 
-pub use estimate::{BeamErrors, ErrorEstimate, Errors, ProbeErrors, RunForError};
+pub use estimate::{BeamErrors, ErrorEstimate, Errors, LazyText, ProbeErrors, RunForError};
 pub use modes::{BucklingMode, CriticalLoads, ModeShape, Vibration, Vibrations};
 pub use shape::{Frame, LargestStress, LayerStress, Shape};
 pub use trajectory::{

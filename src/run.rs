@@ -113,6 +113,23 @@ pub struct Options<'o> {
     /// Number of places, evenly spread, at which the last shape of each beam is known, with its
     /// section forces: [`SHAPE_POINTS`] by default, and two at least.
     pub shape_points: usize,
+    /// Per beam, arc lengths \[m\] at which every record is kept, as [`Trajectory::stations`]; none
+    /// by default.
+    pub stations: &'o [Vec<f64>],
+    /// Whether the end is kept as a state from which another run can start, [`Trajectory::saved`]: it
+    /// is by default.
+    pub saved: bool,
+}
+
+/// How much of the states of a run is kept.
+#[derive(Clone, Copy)]
+struct Detail<'o> {
+    /// How many centrelines.
+    frames: usize,
+    /// Places of the last shapes.
+    shape_points: usize,
+    /// Per beam, arc lengths \[m\] at which every record is kept.
+    stations: &'o [Vec<f64>],
 }
 
 impl Default for Options<'_> {
@@ -125,6 +142,8 @@ impl Default for Options<'_> {
             states: false,
             frames: PICTURES,
             shape_points: SHAPE_POINTS,
+            stations: &[],
+            saved: true,
         }
     }
 }
@@ -132,13 +151,13 @@ impl Default for Options<'_> {
 impl<'o> Options<'o> {
     /// The same options, without an observer.
     fn copied(&self) -> Self {
-        let Self { start, observer: _, checkpoints, cache, states, frames, shape_points } = *self;
-        Self { start, observer: None, checkpoints, cache, states, frames, shape_points }
+        let Self { start, observer: _, checkpoints, cache, states, frames, shape_points, stations, saved } =
+            *self;
+        Self { start, observer: None, checkpoints, cache, states, frames, shape_points, stations, saved }
     }
 
-    /// How many centrelines are kept, and how many places of the last shapes are known.
-    fn detail(&self) -> [usize; 2] {
-        [self.frames, self.shape_points]
+    fn detail(&self) -> Detail<'o> {
+        Detail { frames: self.frames, shape_points: self.shape_points, stations: self.stations }
     }
 
     /// Refuses a saved state for an analysis that starts from the stress-free one.

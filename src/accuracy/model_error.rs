@@ -55,30 +55,23 @@ pub(super) fn notes(model: &Model, lengths: &[f64], largest: &[[f64; 2]]) -> Vec
     notes
 }
 
-/// Per beam the largest strain and curvature that the given probes saw.
-pub(super) fn largest<'t>(
-    of_beams: impl Iterator<Item = &'t [crate::results::ProbeSeries]>,
-    t: &Trajectory,
-) -> Vec<[f64; 2]> {
-    of_beams
-        .enumerate()
-        .map(|(beam, stations)| {
-            let samples = stations.iter().flat_map(|station| &station.samples);
-            let seen = samples.fold([0.0_f64; 2], |[strain, curvature], sample| {
-                [strain.max(sample.strain.abs()), curvature.max(sample.curvature.abs())]
-            });
-            t.last.get(beam).map_or(seen, |shape| {
-                let most = |values: &[f64], start: f64| values.iter().fold(start, |m, v| m.max(v.abs()));
-                [most(&shape.strain, seen[0]), most(&shape.curvature, seen[1])]
-            })
+/// The largest strain and curvature of each of so many beams, at the stations of all records and in
+/// the last shape.
+pub(super) fn largest(beams: usize, t: &Trajectory) -> Vec<[f64; 2]> {
+    let most = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let of = |beam: usize| {
+        let shapes = t.stations.iter().chain([&t.last]).filter_map(|beams| beams.get(beam));
+        shapes.fold([0.0_f64; 2], |[strain, curvature], shape| {
+            [strain.max(most(&shape.strain)), curvature.max(most(&shape.curvature))]
         })
-        .collect()
+    };
+    (0..beams).map(of).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{ProbeSample, ProbeSeries, Shape};
+    use crate::results::Shape;
     use crate::scene::parse;
 
     /// A beam whose stiffnesses are those of a rectangle of 0.6 m, or of 0.1 m where its section is
@@ -120,19 +113,17 @@ mod tests {
     /// Of all records of the stations of a beam, and of all places of the last.
     #[test]
     fn the_largest_strain_and_curvature_are_those_of_all_that_was_seen() {
-        let sample =
-            |strain: f64, curvature: f64| ProbeSample { strain, curvature, ..ProbeSample::default() };
-        let station = |samples: &[ProbeSample]| ProbeSeries { name: String::new(), samples: samples.into() };
-        let stations = [
-            station(&[sample(0.1, 0.0), sample(-0.4, 1.0)]),
-            station(&[sample(0.2, -3.0), sample(0.0, 2.0)]),
-            station(&[sample(0.0, 5.0)]),
+        let shape = |strain: &[f64], curvature: &[f64]| Shape {
+            strain: strain.into(),
+            curvature: curvature.into(),
+            ..Shape::default()
+        };
+        let stations = vec![
+            vec![shape(&[0.1, 0.2], &[0.0, -3.0]), shape(&[0.0], &[5.0])],
+            vec![shape(&[-0.4, 0.0], &[1.0, 2.0])],
         ];
-        let last = vec![Shape { strain: vec![0.0, -0.5], curvature: vec![2.0, -1.0], ..Shape::default() }];
-        let found = largest(
-            [&stations[..2], &stations[2..]].into_iter(),
-            &Trajectory { last, ..Trajectory::default() },
-        );
+        let last = vec![shape(&[0.0, -0.5], &[2.0, -1.0])];
+        let found = largest(2, &Trajectory { stations, last, ..Trajectory::default() });
         assert_eq!(found, [[0.5, 3.0], [0.0, 5.0]]);
     }
 }

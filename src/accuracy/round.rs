@@ -1,6 +1,6 @@
 //! A round of a search: the same problem on meshes and with steps of two or three finenesses.
 
-use super::difference::{self, Difference, Stations};
+use super::difference::{self, Difference, stations};
 use super::judgement::{excess, scaled};
 use super::mesh::Mesh;
 use super::saturation::saturates;
@@ -53,6 +53,9 @@ const HOPELESS: f64 = 1.5;
 /// … and of a motion, of which loose tolerances tell less.
 const HOPELESS_MOTION: f64 = 10.0;
 
+/// Positions of two equilibria, in beam lengths, beyond which they do not show the same shape.
+const APART: f64 = 0.1;
+
 /// What is solved, on which meshes and with which steps.
 pub(super) struct Runner<'a, 'o> {
     pub model: &'a Model,
@@ -102,7 +105,8 @@ pub(super) enum Outcome {
 
 /// What a round found.
 pub(super) struct Round {
-    pub stations: Stations,
+    /// Where its runs are compared: per beam, arc lengths \[m\].
+    pub stations: Vec<Vec<f64>>,
     /// Of the finer run, stations included, as of the coarse one.
     pub results: Results,
     pub coarse: Option<Results>,
@@ -233,17 +237,18 @@ impl<'a, 'o> Runner<'a, 'o> {
         settings.tolerance.is_none().then(|| short((EQUILIBRIUM * wanted).max(FINEST)))
     }
 
-    /// Solves the watched model with a setting.
+    /// Solves the model with a setting, and keeps what is at the `stations`.
     pub fn solve(
         &mut self,
-        stations: &Stations,
+        stations: &[Vec<f64>],
         setting: &Setting,
         purpose: Purpose,
     ) -> Result<Results, RunError> {
-        let (model, analysis) = setting.apply(&stations.watch(self.model), self.analysis);
-        let Options { start, observer, checkpoints, cache, states, frames, shape_points } = &mut self.options;
+        let (model, analysis) = setting.apply(self.model, self.analysis);
+        let Options { start, observer, checkpoints, cache, states, frames, shape_points, stations: _, saved } =
+            &mut self.options;
         let wanted = self.wanted.is_some_and(|w| w.curvature.is_some() || w.section_force.is_some());
-        let places_tell = wanted || matches!(self.analysis, Analysis::Modal(_) | Analysis::Buckling(_));
+        let modes = matches!(self.analysis, Analysis::Modal(_) | Analysis::Buckling(_));
         let options = Options {
             start: *start,
             observer: observer.as_mut().map(|observer| &mut **observer as _),
@@ -252,11 +257,18 @@ impl<'a, 'o> Runner<'a, 'o> {
             states: *states && purpose == Purpose::Results,
             frames: if purpose == Purpose::Results { *frames } else { 0 },
             shape_points: match purpose {
-                _ if places_tell => *shape_points,
+                _ if wanted => *shape_points,
+                Purpose::Positions | Purpose::Shapes if modes => {
+                    let few = every(COARSER, *shape_points);
+                    let cells = self.meshes.iter().map(Mesh::cells).max().unwrap_or(0);
+                    if 2 * cells < few { few } else { *shape_points }
+                }
                 Purpose::Positions => 2,
                 Purpose::Shapes => every(COARSER, *shape_points),
                 Purpose::Results => *shape_points,
             },
+            stations,
+            saved: *saved && purpose == Purpose::Results,
         };
         let results = model.solve_with(&analysis, options)?;
         let run = results.run();
@@ -277,14 +289,14 @@ impl<'a, 'o> Runner<'a, 'o> {
     /// its own way from the start: one that began where another ended would follow it to a wrong
     /// branch.
     pub fn round(&mut self, first: bool) -> Result<Outcome, RunError> {
-        let stations = Stations::new(self.model, &self.meshes);
+        let stations = stations(&self.meshes);
         let mut pair = |fineness, purpose| self.solve(&stations, &self.setting(fineness, fineness), purpose);
         let coarsest = if first { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
         let coarse = pair(Fineness::Coarse, Purpose::Shapes);
         let before = coarsest.as_ref().zip(coarse.as_ref().ok());
         let before = before.and_then(|(a, b)| {
             let complete = a.run().complete && b.run().complete;
-            complete.then(|| self.difference(&stations, a, b).ok()).flatten()
+            complete.then(|| self.difference(a, b).ok()).flatten()
         });
         let before = match before {
             Some(before) if self.is_too_coarse(&before) => return Ok(Outcome::TooCoarse(before)),
@@ -297,7 +309,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             self.saturation = apart;
         }
         let difference = match &coarse {
-            Ok(coarse) if coarse.run().complete => self.difference(&stations, coarse, &results),
+            Ok(coarse) if coarse.run().complete => self.difference(coarse, &results),
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
             Err(error) => Err(format!("on half as many cells there is no result: {error}")),
         };
@@ -313,7 +325,12 @@ impl<'a, 'o> Runner<'a, 'o> {
 
     /// By how much the results of a `setting` differ from those of elements on the same nodes, in place of shape functions
     /// whose errors finer meshes do not remove; `None` where there are none, or no such results.
-    fn beside_elements(&mut self, stations: &Stations, setting: &Setting, results: &Results) -> Option<f64> {
+    fn beside_elements(
+        &mut self,
+        stations: &[Vec<f64>],
+        setting: &Setting,
+        results: &Results,
+    ) -> Option<f64> {
         if !self.saturated.contains(&true) || !results.run().complete {
             return None;
         }
@@ -323,7 +340,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             *chosen = Family::REDUCED.of(beam, chosen.0.nodes().clone());
         }
         let elements = self.solve(stations, &elements, Purpose::Positions).ok()?;
-        self.difference(stations, &elements, results).ok().map(|difference| difference.errors.result)
+        self.difference(&elements, results).ok().map(|difference| difference.errors.result)
     }
 
     /// The errors of a finer run that has not been made yet, from the difference of two runs that are
@@ -332,21 +349,22 @@ impl<'a, 'o> Runner<'a, 'o> {
         scaled(before.errors, self.contractions(f64::INFINITY).map(|k| k * (k - 1.0)))
     }
 
+    /// Whether neither of two runs knows an equilibrium, so that what they differ by foretells nothing.
+    pub fn is_apart(&self, before: &Difference) -> bool {
+        matches!(self.analysis, Analysis::Static(_)) && before.errors.result > APART
+    }
+
     /// Whether a finer run would not be good enough even so, and better meshes can be had.
     fn is_too_coarse(&self, before: &Difference) -> bool {
         let moves = matches!(self.analysis, Analysis::Dynamic(_));
         let open = self.open.beams.iter().all(|open| *open) && (self.open.integrator || !moves);
-        let foreseen = self.wanted.map_or(0.0, |wanted| excess(self.foreseen(before), wanted));
-        open && foreseen > if moves { HOPELESS_MOTION } else { HOPELESS }
+        let Some(wanted) = self.wanted.filter(|_| open) else { return false };
+        let most = if moves { HOPELESS_MOTION } else { HOPELESS };
+        excess(self.foreseen(before), wanted) > most || self.is_apart(before)
     }
 
-    pub fn difference(
-        &self,
-        stations: &Stations,
-        coarse: &Results,
-        fine: &Results,
-    ) -> Result<Difference, String> {
-        difference::between(self.model, self.analysis, (stations, &self.meshes), coarse, fine)
+    pub fn difference(&self, coarse: &Results, fine: &Results) -> Result<Difference, String> {
+        difference::between(self.model, self.analysis, &self.meshes, coarse, fine)
     }
 }
 
@@ -410,7 +428,7 @@ pub(super) mod tests {
 
     /// A round of which no more is told than the statistics of its runs.
     pub fn round(runner: &Runner<'_, '_>, results: Results, coarse: Option<Results>) -> Round {
-        let stations = Stations::new(runner.model, &runner.meshes);
+        let stations = stations(&runner.meshes);
         let setting = runner.setting(Fineness::Fine, Fineness::Fine);
         let cells = runner.meshes.iter().map(Mesh::cells).sum();
         let difference = Err(String::new());
@@ -460,15 +478,19 @@ pub(super) mod tests {
     #[test]
     fn meshes_are_too_coarse_if_even_the_promised_fall_is_not_enough() {
         let (still, motion) = (scene("analysis.static = {}"), scene(MOTION));
-        let too_coarse = |scene: &Scene, result: f64, curvature: f64| {
+        let too_coarse_for = |scene: &Scene, wanted: f64, result: f64, curvature: f64| {
             let errors = Errors { result, curvature: Some(curvature), section_force: None };
-            let mut runner = runner(scene, 1e-4);
-            runner.wanted = Some(Accuracy { curvature: Some(1e-2), ..Accuracy::new(1e-4) });
+            let mut runner = runner(scene, wanted);
+            runner.wanted = Some(Accuracy { curvature: Some(1e-2), ..Accuracy::new(wanted) });
             runner.is_too_coarse(&Difference { errors, ..Difference::default() })
         };
+        let too_coarse = |scene: &Scene, result, curvature| too_coarse_for(scene, 1e-4, result, curvature);
         assert_eq!([0.031, 0.032].map(|result| too_coarse(&still, result, 0.0)), [false, true]);
         assert_eq!([0.17, 0.19].map(|curvature| too_coarse(&still, 0.0, curvature)), [false, true]);
         assert_eq!([0.089, 0.091].map(|result| too_coarse(&motion, result, 0.0)), [false, true]);
+        // Equilibria a tenth of the length apart are of different shapes, whatever is wanted; motions may be.
+        assert_eq!([0.099, 0.101].map(|result| too_coarse_for(&still, 1e-2, result, 0.0)), [false, true]);
+        assert!(!too_coarse_for(&motion, 1e-2, 0.101, 0.0));
         // What the scene names cannot be made finer.
         assert!(!too_coarse(&scene("beam.arm.basis.ancf.elements = 7\nanalysis.static = {}"), 1.0, 0.0));
         let named = "analysis.dynamic = { duration = 1, gauss = { stages = 2, tolerance = 1e-4 } }";
@@ -487,13 +509,13 @@ pub(super) mod tests {
         let still = "analysis.static = {}";
         assert_eq!([1e-2, 1e-3, 1.1e-3 / 16.0, 1e-7].map(|wanted| cells(still, wanted)), [4, 4, 8, 24]);
         assert_eq!(cells(MOTION, 1e-9), 8);
-        assert_eq!([1e-2, 1e-3].map(|wanted| cells("analysis.modal.count = 9", wanted)), [10, 16]);
+        assert_eq!([1e-2, 1e-3].map(|wanted| cells("analysis.modal.count = 9", wanted)), [10, 14]);
         assert_eq!(
             cells(
                 "analysis.buckling.count = 7\neffect.force = [{ beam = 'arm', at = 'end', value = [-1, 0] }]",
                 1e-3
             ),
-            14
+            12
         );
         // Of a named mesh of seven cells the coarse run takes every second node, and the end.
         assert_eq!(cells("beam.arm.basis.ancf.elements = 7\nanalysis.static = {}", 1e-3), 4);

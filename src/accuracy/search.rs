@@ -234,8 +234,8 @@ impl<'a, 'o> Search<'a, 'o> {
         let coarse = round.coarse.as_ref()?;
         let setting = self.runner.setting(Fineness::Coarse, Fineness::Fine);
         let between = self.runner.solve(&round.stations, &setting, Purpose::Shapes).ok()?;
-        let of_steps = self.runner.difference(&round.stations, coarse, &between).ok()?;
-        let of_mesh = self.runner.difference(&round.stations, &between, &round.results).ok()?;
+        let of_steps = self.runner.difference(coarse, &between).ok()?;
+        let of_mesh = self.runner.difference(&between, &round.results).ok()?;
         between.run().complete.then_some([of_mesh, of_steps])
     }
 
@@ -325,7 +325,8 @@ impl<'a, 'o> Search<'a, 'o> {
         };
         if let Some(wanted) = self.runner.wanted {
             let needed = more_cells(self.runner.foreseen(difference), wanted, promised);
-            self.spread(&difference.cells, needed.clamp(1.1, CAREFUL_LEAP));
+            let least = if self.runner.is_apart(difference) { 2.0 } else { 1.1 };
+            self.spread(&difference.cells, needed.clamp(least, CAREFUL_LEAP));
         }
         seen
     }
@@ -346,11 +347,11 @@ impl<'a, 'o> Search<'a, 'o> {
     /// The results of a round with what is known of their errors.
     fn finished(self, judged: Judged, reason: Option<String>) -> Accurate {
         let Judged { round, estimate: errors, caution, .. } = judged;
-        let Round { stations, mut results, setting, .. } = round;
+        let Round { mut results, setting, .. } = round;
         let lengths: Vec<f64> = self.runner.meshes.iter().map(Mesh::length).collect();
-        let largest = model_error::largest(stations.of_beams(results.states()), results.states());
+        let largest = model_error::largest(lengths.len(), results.states());
         let notes = model_error::notes(self.runner.model, &lengths, &largest);
-        stations.strip(&mut results);
+        results.states_mut().stations.clear();
         let solver = self.runner.open.integrator || self.runner.static_tolerance().is_some();
         let chosen = setting.toml_of(self.runner.model, |beam| self.runner.is_open(beam), solver);
         let wanted = self.runner.wanted.map(|wanted| Errors {

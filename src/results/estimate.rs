@@ -2,6 +2,9 @@
 
 use super::{AnalysisKind, ProbeSample};
 use serde::Serialize;
+use std::fmt;
+use std::ops::Deref;
+use std::sync::{Arc, LazyLock};
 
 /// How wrong the results of a run are, as far as the run itself can tell.
 #[derive(Clone, Debug, Default)]
@@ -31,9 +34,34 @@ pub struct ErrorEstimate {
     /// Per beam: where the error is.
     pub beams: Vec<BeamErrors>,
     /// The scene with everything that was chosen, which gives the same results.
-    pub chosen: Option<String>,
+    pub chosen: Option<LazyText>,
     /// The runs that were made to choose the mesh and to know the errors, in their order.
     pub runs: Vec<RunForError>,
+}
+
+/// A text that is made when it is first read.
+#[derive(Clone)]
+pub struct LazyText(Arc<LazyLock<String, Box<dyn FnOnce() -> String + Send + Sync>>>);
+
+impl LazyText {
+    /// The text that `make` returns.
+    pub fn new(make: impl FnOnce() -> String + Send + Sync + 'static) -> Self {
+        Self(Arc::new(LazyLock::new(Box::new(make))))
+    }
+}
+
+impl Deref for LazyText {
+    type Target = str;
+
+    fn deref(&self) -> &str {
+        &self.0
+    }
+}
+
+impl fmt::Debug for LazyText {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(&**self, f)
+    }
 }
 
 impl ErrorEstimate {
@@ -140,6 +168,20 @@ mod tests {
             estimated: errors(result, curvature),
             ..ErrorEstimate::default()
         }
+    }
+
+    /// Made once, when it is first read, and for all copies.
+    #[test]
+    fn a_lazy_text_is_made_when_it_is_read() {
+        let (sender, made) = std::sync::mpsc::channel();
+        let text = LazyText::new(move || {
+            sender.send(()).expect("a receiver");
+            "chosen".to_owned()
+        });
+        let copy = text.clone();
+        assert!(made.try_recv().is_err());
+        assert_eq!((&*text, &*copy, format!("{copy:?}")), ("chosen", "chosen", "\"chosen\"".to_owned()));
+        assert!(made.try_recv().is_ok() && made.try_recv().is_err());
     }
 
     #[test]

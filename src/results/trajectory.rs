@@ -30,6 +30,9 @@ pub struct Trajectory {
     /// Per frame and beam what the sections carry, where it was asked for.
     #[serde(skip)]
     pub along: Vec<Vec<BeamSections>>,
+    /// Per record all beams at the places of [`crate::Options::stations`], without section forces.
+    #[serde(skip)]
+    pub stations: Vec<Vec<Shape>>,
     /// The last state of each beam, with section forces.
     pub last: Vec<Shape>,
     /// All recorded states, where they were asked for ([`crate::Options::states`]): shapes at any

@@ -138,6 +138,7 @@ impl Sampler<'_> {
 mod tests {
     use super::*;
     use crate::assembly::Needs;
+    use crate::run::Options;
     use crate::system::System;
 
     /// Elements of length h in a rectangle of 0.25 m by 0.5 m of 800 Pa: EA = 100 N, EI = 25/12 N m², and N/A +
@@ -157,7 +158,8 @@ mod tests {
             let scene = crate::scene::parse("bar.toml", &text).expect("a scene");
             let needs = Needs { inertia: false, motion: false };
             let system = System::build(scene.model(), needs).expect("a system");
-            let sampler = Sampler::new(scene.model(), &system, [0, 2]).expect("a sampler");
+            let sampler =
+                Sampler::new(scene.model(), &system, Options::default().detail()).expect("a sampler");
             let h = length / f64::from(elements);
             let position = 4.0 * f64::EPSILON * length;
             let axial = position * 100.0 / h;

@@ -136,11 +136,10 @@ impl Sampler<'_> {
             ));
         }
         let q = self.coordinates_of(x);
-        let vibration = |(frequency, mode): (&f64, &Vec<f64>)| Vibration {
-            frequency: *frequency,
-            shape: self.mode_shape(&equilibrium.last, q, mode),
-        };
-        let modes = modes.frequencies.iter().zip(&modes.shapes).map(vibration).collect();
+        let shapes: Vec<&[f64]> = modes.shapes.iter().map(Vec::as_slice).collect();
+        let shapes = self.mode_shapes(&equilibrium.last, q, &shapes);
+        let vibrations = modes.frequencies.iter().zip(shapes);
+        let modes = vibrations.map(|(&frequency, shape)| Vibration { frequency, shape }).collect();
         Ok(Vibrations { equilibrium, modes })
     }
 
@@ -154,13 +153,16 @@ impl Sampler<'_> {
         unloaded.run.warnings.extend(beyond_the_linear(modes));
         let corners = at_corners(self.model, &unloaded.last, &unloaded.run.undeformed);
         unloaded.run.warnings.extend(corners);
-        let mode = |(load_factor, mode): (&f64, &Vec<f64>)| {
+        let scaled = |mode: &Vec<f64>| -> Vec<f64> {
             let largest = nodes(mode).map(|node| node.shift()).fold(0.0, f64::max);
-            let scaled: Vec<f64> = mode.iter().map(|change| change / largest).collect();
-            let mode = if largest > 0.0 { &scaled } else { mode };
-            BucklingMode { load_factor: *load_factor, shape: self.mode_shape(&unloaded.last, q, mode) }
+            let by = if largest > 0.0 { largest } else { 1.0 };
+            mode.iter().map(|change| change / by).collect()
         };
-        let modes = modes.load_factors.iter().zip(&modes.shapes).map(mode).collect();
+        let scaled: Vec<Vec<f64>> = modes.shapes.iter().map(scaled).collect();
+        let shapes: Vec<&[f64]> = scaled.iter().map(Vec::as_slice).collect();
+        let shapes = self.mode_shapes(&unloaded.last, q, &shapes);
+        let loads = modes.load_factors.iter().zip(shapes);
+        let modes = loads.map(|(&load_factor, shape)| BucklingMode { load_factor, shape }).collect();
         CriticalLoads { unloaded, modes }
     }
 
@@ -170,9 +172,14 @@ impl Sampler<'_> {
         self.loaded(reference, &self.system.static_actions(0.0, reference, &InternalVariables::default()))
     }
 
-    /// A mode of the state `q`, at the arc lengths of its `shapes`.
-    fn mode_shape(&self, shapes: &[Shape], q: &[f64], mode: &[f64]) -> Vec<ModeShape> {
-        shapes.iter().enumerate().map(|(beam, shape)| self.change(beam, &shape.s, q, mode)).collect()
+    /// Each of the modes of the state `q`, at the arc lengths of its `shapes`.
+    fn mode_shapes(&self, shapes: &[Shape], q: &[f64], modes: &[&[f64]]) -> Vec<Vec<ModeShape>> {
+        let mut all = vec![Vec::with_capacity(shapes.len()); modes.len()];
+        for (beam, shape) in shapes.iter().enumerate() {
+            let of_beam = self.changes(beam, &shape.s, q, modes);
+            all.iter_mut().zip(of_beam).for_each(|(mode, shape)| mode.push(shape));
+        }
+        all
     }
 }
 

@@ -57,7 +57,7 @@ impl Solve for Dynamic {
             &mut |time: f64, step: f64, statistics: &Statistics| watch.goes_on(time, end, step, statistics);
         let mut solution = dynamics::solve(&system, &task, report);
         stopwatch.solved();
-        let saved = solution.checkpoint.take();
+        let saved = solution.checkpoint.take().filter(|_| options.saved);
         let saved = saved.map(|checkpoint| {
             let end = solution.end.as_ref().filter(|end| end.state.time == checkpoint.reached().time);
             let holding = end.map(|end| Holding {

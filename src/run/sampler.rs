@@ -1,6 +1,5 @@
 //! Evaluates states of a system: probes, shapes, frames, and the trajectories made of them.
 
-use super::RunError;
 use super::angle;
 use super::laws::Reach;
 use super::locking::Locking;
@@ -8,6 +7,7 @@ use super::loose::Loose;
 use super::stability;
 use super::strings;
 use super::tendons::Tendons;
+use super::{Detail, RunError};
 use crate::assembly::{Actions, BuildError, InternalVariables, Side, TendonPath, nodes};
 use crate::linear::Singular;
 use crate::model::{
@@ -24,7 +24,7 @@ use crate::solve::newton::Failure;
 use crate::solve::path::NoStep;
 use crate::solve::resume::Holding;
 use crate::solve::statics::Solution;
-use crate::system::{Change, Reaction, System, View, unfold};
+use crate::system::{Change, Fields, Reaction, System, View, unfold};
 use nalgebra::Vector2;
 use std::f64::consts::FRAC_PI_2;
 
@@ -56,6 +56,8 @@ pub(super) struct Sampler<'a> {
     pub(super) model: &'a Model,
     pub(super) system: &'a System,
     shapes: Vec<View>,
+    /// Of each beam, where every record is kept; none where that was not asked for.
+    stations: Vec<View>,
     pub(super) probes: Vec<ProbePoint>,
     locking: Locking,
     loose: Loose,
@@ -158,7 +160,7 @@ impl<'a> Sampler<'a> {
     pub(super) fn new(
         model: &'a Model,
         system: &'a System,
-        [frames, shape_points]: [usize; 2],
+        Detail { frames, shape_points, stations }: Detail<'_>,
     ) -> Result<Self, RunError> {
         let view = |beam: usize, s: &[f64]| {
             let part = &system.beams()[beam];
@@ -167,6 +169,8 @@ impl<'a> Sampler<'a> {
         let shapes = (0..system.beams().len())
             .map(|beam| view(beam, &evenly(system.beams()[beam].basis.length(), shape_points.max(2))))
             .collect::<Result<_, BuildError>>()?;
+        let stations = stations.iter().take(system.beams().len()).enumerate();
+        let stations = stations.map(|(beam, s)| view(beam, s)).collect::<Result<_, BuildError>>()?;
         let probes = model
             .probes
             .iter()
@@ -184,7 +188,7 @@ impl<'a> Sampler<'a> {
             .collect::<Result<_, BuildError>>()?;
         let locking = Locking::new(model, system)?;
         let loose = Loose::new(model, system)?;
-        Ok(Self { model, system, shapes, probes, locking, loose, frames, angles: Vec::new() })
+        Ok(Self { model, system, shapes, stations, probes, locking, loose, frames, angles: Vec::new() })
     }
 
     /// The probe at which a path is to end, as (view, axis, value).
@@ -304,8 +308,26 @@ impl<'a> Sampler<'a> {
 
     /// One beam in the state `q`, as `view` sees it.
     fn shape_of(&self, beam: usize, view: &View, q: &[f64]) -> Shape {
+        let part = &self.system.beams()[beam];
+        let first = 4 * part.first_node;
+        let nodes = nodes(&q[first..first + 4 * part.basis.nodes().len()]);
+        Shape { nodes: nodes.map(|node| node.position).collect(), ..self.seen(beam, view, q) }
+    }
+
+    /// [`Self::shape_of`] without the nodes.
+    fn seen(&self, beam: usize, view: &View, q: &[f64]) -> Shape {
         let (part, beam) = (&self.system.beams()[beam], &self.model.beams[beam]);
-        let mut shape = Shape { beam: beam.name.clone(), s: view.s().to_vec(), ..Shape::default() };
+        let places = || Vec::with_capacity(view.s().len());
+        let mut shape = Shape {
+            beam: beam.name.clone(),
+            s: view.s().to_vec(),
+            x: places(),
+            y: places(),
+            angle: places(),
+            strain: places(),
+            curvature: places(),
+            ..Shape::default()
+        };
         let mut angle = None;
         for fields in view.all(q) {
             shape.x.push(fields.position[0]);
@@ -316,9 +338,6 @@ impl<'a> Sampler<'a> {
             shape.strain.push(fields.strain(beam.strain));
             shape.curvature.push(fields.curvature());
         }
-        let first = 4 * part.first_node;
-        let nodes = nodes(&q[first..first + 4 * part.basis.nodes().len()]);
-        shape.nodes = nodes.map(|node| node.position).collect();
         // The stress-free shape of a curved beam has a strain by its interpolation, which does not
         // count.
         if !part.straight {
@@ -330,25 +349,38 @@ impl<'a> Sampler<'a> {
         shape
     }
 
-    /// The change of one beam by a mode of the state `q`, at the arc lengths `s`.
-    pub(super) fn change(&self, beam: usize, s: &[f64], q: &[f64], mode: &[f64]) -> ModeShape {
+    /// The changes of one beam by modes of the state `q`, at the arc lengths `s`.
+    pub(super) fn changes(&self, beam: usize, s: &[f64], q: &[f64], modes: &[&[f64]]) -> Vec<ModeShape> {
         let part = &self.system.beams()[beam];
-        let (name, measure) = (self.model.beams[beam].name.clone(), self.model.beams[beam].strain);
+        let (name, measure) = (&self.model.beams[beam].name, self.model.beams[beam].strain);
         let view = View::points(&part.basis, part.offset(), s);
         let view = view.as_ref().unwrap_or(&self.shapes[beam]);
-        let mut shape = ModeShape { beam: name, s: view.s().to_vec(), ..ModeShape::default() };
-        for (fields, by) in view.all(q).zip(view.all(mode)) {
-            shape.x.push(by.position[0]);
-            shape.y.push(by.position[1]);
-            let Change { angle, strain, curvature } = fields.change(&by, measure);
-            shape.angle.push(angle);
-            shape.strain.push(strain);
-            shape.curvature.push(curvature);
-        }
+        let state: Vec<Fields> = view.all(q).collect();
         let first = 4 * part.first_node;
-        let nodes = nodes(&mode[first..first + 4 * part.basis.nodes().len()]);
-        shape.nodes = nodes.map(|node| node.position).collect();
-        shape
+        let coordinates = first..first + 4 * part.basis.nodes().len();
+        let shape = |mode: &&[f64]| {
+            let places = || Vec::with_capacity(state.len());
+            let mut shape = ModeShape {
+                beam: name.clone(),
+                s: view.s().to_vec(),
+                x: places(),
+                y: places(),
+                angle: places(),
+                strain: places(),
+                curvature: places(),
+                nodes: nodes(&mode[coordinates.clone()]).map(|node| node.position).collect(),
+            };
+            for (fields, by) in state.iter().zip(view.all(mode)) {
+                shape.x.push(by.position[0]);
+                shape.y.push(by.position[1]);
+                let Change { angle, strain, curvature } = fields.change(&by, measure);
+                shape.angle.push(angle);
+                shape.strain.push(strain);
+                shape.curvature.push(curvature);
+            }
+            shape
+        };
+        modes.iter().map(shape).collect()
     }
 
     /// [`Self::shape`] with section forces, from the forces that act on each beam. A point where a
@@ -430,6 +462,9 @@ impl<'a> Sampler<'a> {
         let Beam { section, strain: measure, .. } = &self.model.beams[beam];
         let bends = section.bending_stiffness.is_some();
         let length = self.system.beams()[beam].basis.length();
+        for forces in [&mut shape.axial_force, &mut shape.shear_force, &mut shape.bending_moment] {
+            forces.reserve_exact(sides.len());
+        }
         for (i, side) in sides.iter().enumerate() {
             let before = actions.until(shape.s[i], *side, length);
             let (r, (sine, cosine)) = (Vector2::new(shape.x[i], shape.y[i]), shape.angle[i].sin_cos());
@@ -509,6 +544,10 @@ impl<'a> Sampler<'a> {
     ) {
         trajectory.parameter.push(parameter);
         trajectory.energy.push(energy);
+        if !self.stations.is_empty() {
+            let beams = self.stations.iter().enumerate();
+            trajectory.stations.push(beams.map(|(beam, view)| self.seen(beam, view, q)).collect());
+        }
         if self.model.outputs.effects {
             self.record_effects(trajectory, parameter, q, (velocity, variables));
         }

@@ -37,7 +37,9 @@ impl Solve for Static {
             (None, Some(arc)) if solution.out_of_points => Err(sampler.out_of_points(arc, &solution)),
             (None, _) => {
                 let mut trajectory = sampler.statics(&solution);
-                trajectory.saved = sampler.equilibrium(&solution, &trajectory, asked, start.time());
+                if options.saved {
+                    trajectory.saved = sampler.equilibrium(&solution, &trajectory, asked, start.time());
+                }
                 trajectory.run.settings.extend(options.start.map(told));
                 Ok(trajectory)
             }

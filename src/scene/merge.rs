@@ -16,7 +16,7 @@ impl Scene {
     /// # Errors
     /// Where `lines` are not TOML, or the result is not a legal scene.
     pub fn merged(&self, lines: &str) -> Result<Self, SceneError> {
-        Self::read(&self.name, &self.with_lines(lines)?.to_string(), &[])
+        Self::read(&self.name, &with_lines((&self.name, &self.text), lines)?.to_string(), &[])
     }
 
     /// The text of this scene with `lines` merged and without the accuracy for which they were
@@ -26,14 +26,17 @@ impl Scene {
     /// # Errors
     /// Where `lines` are not TOML.
     pub fn chosen(&self, lines: &str) -> Result<String, SceneError> {
-        let mut scene = self.with_lines(lines)?;
-        each(&mut scene, "analysis", |analysis| drop(analysis.remove("accuracy")));
-        let text = scene.to_string();
-        match self.added {
-            0 => Ok(text),
-            parts => {
-                Ok(format!("# Without what was added to the scene by code: {parts} of its parts.\n{text}"))
-            }
+        chosen((&self.name, &self.text), self.added, lines)
+    }
+
+    /// [`Self::chosen`] for later, when the scene may be gone; where there is no such text, lines of it
+    /// say why.
+    pub(crate) fn chosen_later(&self, lines: String) -> impl FnOnce() -> String + Send + Sync + use<> {
+        let (name, text, added) = (self.name.clone(), self.text.clone(), self.added);
+        move || {
+            chosen((&name, &text), added, &lines).unwrap_or_else(|error| {
+                format!("# These lines cannot be merged into the scene: {}\n{lines}", error.brief())
+            })
         }
     }
 
@@ -53,13 +56,24 @@ impl Scene {
         });
         Self::read(&self.name, &scene.to_string(), &[])
     }
+}
 
-    fn with_lines(&self, lines: &str) -> Result<DocumentMut, SceneError> {
-        let lines = document("lines to merge", lines)?;
-        let mut scene = document(&self.name, &self.text)?;
-        merge(scene.as_table_mut(), lines.as_table(), &mut Vec::new());
-        Ok(scene)
+/// The text of a scene of this name with `lines` merged and without an accuracy.
+fn chosen(scene: (&str, &str), added: usize, lines: &str) -> Result<String, SceneError> {
+    let mut scene = with_lines(scene, lines)?;
+    each(&mut scene, "analysis", |analysis| drop(analysis.remove("accuracy")));
+    let text = scene.to_string();
+    match added {
+        0 => Ok(text),
+        parts => Ok(format!("# Without what was added to the scene by code: {parts} of its parts.\n{text}")),
     }
+}
+
+fn with_lines((name, text): (&str, &str), lines: &str) -> Result<DocumentMut, SceneError> {
+    let lines = document("lines to merge", lines)?;
+    let mut scene = document(name, text)?;
+    merge(scene.as_table_mut(), lines.as_table(), &mut Vec::new());
+    Ok(scene)
 }
 
 fn document(name: &str, text: &str) -> Result<DocumentMut, SceneError> {

@@ -3,6 +3,7 @@
 
 use super::near;
 use ancf::results::Trajectory;
+use ancf::run::Options;
 use ancf::scene::parse;
 use std::f64::consts::PI;
 
@@ -237,5 +238,60 @@ fn angles_count_turns_of_any_beam_in_any_direction() {
                 near(sample.angle, angle, 2e-3, &format!("{} clamped at its {at}, load {load}", probe.name));
             }
         }
+    }
+}
+
+/// A bent beam on a hinge whose stress-free shape is an arc, and a string; in statics and in motion. What is kept at
+/// places of each is what probes there see, record by record; without places nothing is kept, and without the
+/// wish to go on no state.
+#[test]
+fn runs_keep_every_record_where_they_are_asked_to() {
+    let text = |probes: bool, analysis: &str| {
+        let places = if probes {
+            "probe = [{ name = 'a', beam = 'bow', at = 0.3 }, { name = 'b', beam = 'bow', at = 1.5 }, { name = 'c', beam = 'rope', at = 0.45 }]\n"
+        } else {
+            ""
+        };
+        format!(
+            "beam.bow = {{ arc = {{ center = [0, 0], radius = 1, from = 0, to = 1.5 }}, axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 6 }}\n\
+             beam.rope = {{ start = [0, 2], end = [1, 2], axial_stiffness = 10, mass_per_length = 1, basis.ancf.elements = 5 }}\n\
+             support = [{{ beam = 'bow', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'rope', at = 'start', fix = ['x', 'y'] }}, \
+             {{ beam = 'rope', at = 'end', fix = ['x', 'y'] }}]\n\
+             effect.gravity = {{ acceleration = [0, -2] }}\n{places}{analysis}\n"
+        )
+    };
+    let stations = [vec![0.3, 1.5], vec![0.45]];
+    for analysis in [
+        "analysis.static.steps = 3",
+        "analysis.dynamic = { duration = 0.3, output_every = 0.1, radau.tolerance = 1e-5 }",
+    ] {
+        let options = || Options { stations: &stations, saved: false, ..Options::default() };
+        let run = |probes: bool, options: Options<'_>| {
+            let scene = parse("kept.toml", &text(probes, analysis)).expect("a scene");
+            scene.model().solve_with(scene.analysis(), options).expect("an end").into_states()
+        };
+        let (kept, seen) = (run(false, options()), run(true, Options::default()));
+        assert!(kept.saved.is_none() && seen.saved.is_some() && seen.stations.is_empty());
+        assert_eq!((kept.parameter.len(), kept.stations.len()), (4, 4), "{analysis}");
+        for (record, beams) in kept.stations.iter().enumerate() {
+            assert_eq!(beams.iter().map(|shape| &shape.beam[..]).collect::<Vec<_>>(), ["bow", "rope"]);
+            let places = beams.iter().flat_map(|shape| (0..shape.s.len()).map(move |k| (shape, k)));
+            for ((shape, k), probe) in places.zip(&seen.probes) {
+                let sample = probe.samples[record];
+                let found = [shape.x[k], shape.y[k], shape.angle[k], shape.strain[k], shape.curvature[k]];
+                let expected = [sample.x, sample.y, sample.angle, sample.strain, sample.curvature];
+                for (found, expected) in found.into_iter().zip(expected) {
+                    assert!(
+                        (found - expected).abs() < 1e-12,
+                        "{analysis}, {record}, {}: {found:?} {expected:?}",
+                        probe.name
+                    );
+                }
+            }
+        }
+        assert!(
+            kept.stations[3][1].y[0] < 2.0 - 1e-3 && kept.stations[3][0].curvature[0].abs() > 0.1,
+            "it moves"
+        );
     }
 }

@@ -335,7 +335,12 @@ fn parts_added_by_code_are_not_in_the_text() {
     let angle = |scene: &Scene| {
         let solved =
             ancf::accuracy::run(scene, ancf::Options::default()).unwrap_or_else(|error| panic!("{error}"));
-        let chosen = solved.run().error.as_ref().and_then(|error| error.chosen.clone()).unwrap_or_default();
+        let chosen = solved
+            .run()
+            .error
+            .as_ref()
+            .and_then(|error| error.chosen.as_deref().map(str::to_owned))
+            .unwrap_or_default();
         (solved.states().probes[0].samples.last().map_or(f64::NAN, |tip| tip.angle), chosen)
     };
     let mut added = read();
