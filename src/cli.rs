@@ -123,7 +123,7 @@ struct InspectArguments {
 #[derive(Debug, Args)]
 struct Overrides {
     /// Set one value of the scene, such as beam.arm.basis.ancf.elements=9 or
-    /// effect.moment.0.value="3 kN m"; repeatable
+    /// effect.moment.0.value="3 kN m"; beam.*.strain=green sets it for all beams; repeatable
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
 }

@@ -83,7 +83,8 @@ pub struct Output {
 impl Scene {
     /// Reads the scene file at `path`, with `overrides` of the form `PATH=VALUE`: a dotted path
     /// whose list entries go by number (`effect.moment.0.value=12.5`), and a TOML value, or else
-    /// text.
+    /// text. `*` stands for all names of a table and all entries of a list
+    /// (`beam.*.basis.ancf.elements=9`).
     ///
     /// # Errors
     /// Where the file cannot be read, an override has no place in it, or the scene is not legal.

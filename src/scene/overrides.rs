@@ -12,7 +12,8 @@ use super::error::{Fault, SceneError};
 /// A scene's text before and after each override.
 pub(super) struct Overridden<'a> {
     name: &'a str,
-    overrides: &'a [String],
+    /// Those that were given, each with `*` in its path as many as it stands for.
+    overrides: Vec<String>,
     /// The texts: one more than overrides; the last one is read.
     texts: Vec<String>,
     /// Paths that were set.
@@ -21,12 +22,16 @@ pub(super) struct Overridden<'a> {
 
 impl<'a> Overridden<'a> {
     /// Applies `overrides` in order to the scene `text`, which must be TOML.
-    pub fn apply(name: &'a str, text: &str, overrides: &'a [String]) -> Result<Self, SceneError> {
-        let mut this = Self { name, overrides, texts: vec![text.to_owned()], paths: Vec::new() };
-        for option in overrides {
-            let (text, path) = set(this.text(), option).map_err(|fault| on_option(fault, option))?;
-            this.texts.push(text);
-            this.paths.push(path);
+    pub fn apply(name: &'a str, text: &str, overrides: &[String]) -> Result<Self, SceneError> {
+        let mut this = Self { name, overrides: Vec::new(), texts: vec![text.to_owned()], paths: Vec::new() };
+        for given in overrides {
+            let all = expanded(this.text(), given).map_err(|fault| on_option(fault, given))?;
+            for option in all {
+                let (text, path) = set(this.text(), &option).map_err(|fault| on_option(fault, &option))?;
+                this.texts.push(text);
+                this.paths.push(path);
+                this.overrides.push(option);
+            }
         }
         Ok(this)
     }
@@ -48,7 +53,7 @@ impl<'a> Overridden<'a> {
         if let Some(setter) = self.paths.iter().rposition(|set| path.starts_with(set)) {
             return value_of(fault, &self.overrides[setter]);
         }
-        for (pair, option) in self.texts.windows(2).zip(self.overrides).rev() {
+        for (pair, option) in self.texts.windows(2).zip(&self.overrides).rev() {
             let [before, after] = pair else { continue };
             let Some(start) = origin(before, after, &fault.span) else { return value_of(fault, option) };
             fault.span = start..start.saturating_add(fault.span.len());
@@ -77,6 +82,31 @@ fn origin(before: &str, after: &str, span: &Range<usize>) -> Option<usize> {
     } else {
         None
     }
+}
+
+/// The overrides that `option` stands for: with `*` in the place of a key one for each entry that the
+/// scene `text` has there.
+fn expanded(text: &str, option: &str) -> Result<Vec<String>, Fault> {
+    let path = option.split('=').next().unwrap_or_default();
+    let star = match path.find(".*") {
+        Some(dot) if matches!(path.as_bytes().get(dot + 2), None | Some(b'.')) => dot,
+        _ => return Ok(vec![option.to_owned()]),
+    };
+    let (before, after) = (&option[..star], &option[star + 2..]);
+    let entries = match value(text, before)? {
+        Some(serde_json::Value::Object(table)) => table.keys().map(|key| Key::new(key).to_string()).collect(),
+        Some(serde_json::Value::Array(entries)) => {
+            (0..entries.len()).map(|index| index.to_string()).collect()
+        }
+        _ => Vec::new(),
+    };
+    if entries.is_empty() {
+        let message = format!("`{before}` has no entries for which `*` could stand");
+        return Err(Fault::new(star + 1..star + 2, message)
+            .help("`*` stands for all names of a table, or numbers of a list"));
+    }
+    let each = entries.iter().map(|entry: &String| expanded(text, &format!("{before}.{entry}{after}")));
+    Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 /// The text with one override applied, and the path that it sets.

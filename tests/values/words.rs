@@ -310,6 +310,57 @@ fn overrides_in_turn_build_on_each_other() {
     assert_ne!(analysis.analysis(), scene().analysis());
 }
 
+/// `*` stands for every entry of a table or a list, also twice in a path and beside names that need quotes.
+#[test]
+fn a_star_sets_every_entry() {
+    let text = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1, bending_stiffness = 1, basis.ancf.elements = 2 }\n\
+                beam.'second arm' = { start = [1, 0], end = [2, 0], axial_stiffness = 2, bending_stiffness = 2, basis.rpim.nodes = 4 }\n\
+                joint = [{ type = 'weld', first = { beam = 'arm', at = 'end' }, second = { beam = 'second arm', at = 'start' } }]\n\
+                support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'second arm', at = 'end', fix = ['x', 'y'] }]\n\
+                effect.force = [{ beam = 'arm', at = 'end', value = [1, 1] }, { beam = 'second arm', at = 'end', value = [2, 2] }]\n\
+                analysis.static = {}\n";
+    let scene = parse("two.toml", text).expect("a scene");
+    let with = |options: &[&str]| {
+        let options: Vec<String> = options.iter().map(|option| (*option).to_owned()).collect();
+        scene.with(&options)
+    };
+    for (stars, single) in [
+        (
+            &["beam.*.basis={ ancf = { elements = 7 } }"][..],
+            &[
+                "beam.arm.basis={ ancf = { elements = 7 } }",
+                "beam.'second arm'.basis={ ancf = { elements = 7 } }",
+            ][..],
+        ),
+        (
+            &["effect.force.*.value.*=5", "beam.arm.strain=green"],
+            &[
+                "effect.force.0.value.0=5",
+                "effect.force.0.value.1=5",
+                "effect.force.1.value.0=5",
+                "effect.force.1.value.1=5",
+                "beam.arm.strain=green",
+            ],
+        ),
+        (&["title=a.*=b"], &["title=\"a.*=b\""]),
+    ] {
+        let [stars, single] =
+            [stars, single].map(|options| with(options).unwrap_or_else(|error| panic!("{error}")));
+        assert_eq!((stars.model(), stars.text()), (single.model(), single.text()));
+    }
+    for (option, column, told) in [
+        ("probe.*.at=0", 7, "`probe` has no entries for which `*` could stand"),
+        ("beam.arm.start.0.*=0", 18, "`beam.arm.start.0` has no entries for which `*` could stand"),
+        ("beam.*.basis.ancf.elements=0", 28, "beam.arm.basis.ancf.elements=0"),
+    ] {
+        let error = with(&[option]).map(drop).expect_err(option);
+        let (_, _, found) = error.place().expect("a place");
+        let text = error.to_string();
+        assert!(text.contains(told), "{text}");
+        assert!(found == column || option.starts_with("beam.*"), "{found}: {text}");
+    }
+}
+
 /// A value is what the scene says at its path, as its overrides write it.
 #[test]
 fn values_are_read_by_the_paths_that_set_them() {
