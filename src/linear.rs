@@ -38,6 +38,7 @@ pub mod interleaved;
 pub mod isotropic;
 mod order;
 mod schur;
+mod sparse_ldl;
 mod structures;
 pub mod symmetric;
 pub mod unsymmetric;
@@ -48,6 +49,7 @@ use bordered::{BorderRow, Bordered};
 use chain::Chain;
 use condensed::Condensed;
 use interleaved::Interleaved;
+use sparse_ldl::SparseLdl;
 use structures::structures;
 use symmetric::{Ldl, SymmetricBand};
 use unsymmetric::BlockLu;
@@ -65,7 +67,7 @@ pub enum Matrix {
 /// program.
 pub(crate) const NOT_FACTORISED: &str = "a tangent is factorised before it is solved with";
 
-/// Factor of the weights with which the signs of a chain's pivots are counted a second time: without
+/// Factor of the weights with which the signs of pivots are counted a second time: without
 /// pivoting, a small pivot may amplify round-off to the size of entries eliminated after it.
 const OTHER_WEIGHTS: f64 = 30.0;
 
@@ -277,6 +279,8 @@ pub enum Factor {
     Chain(Box<Chain>),
     /// LU of a bordered band whose constraint rows are numbered among the unknowns.
     Interleaved(Box<Interleaved>),
+    /// Sparse LDLᵀ of a symmetric band that is bordered by any rows.
+    SparseLdl(Box<SparseLdl>),
     /// Sparse LU of a bordered band.
     Bordered(Box<Bordered>),
 }
@@ -317,10 +321,11 @@ impl Factor {
         Hint { definite, shift }: Hint<'_>,
         border: &[BorderRow],
     ) -> Result<Self, Singular> {
-        let (kept, earlier) = match earlier {
-            Some(Self::Chain(chain)) => (Some(*chain), None),
-            Some(Self::Bordered(bordered)) => (None, Some(*bordered)),
-            _ => (None, None),
+        let (kept, earlier, sparse) = match earlier {
+            Some(Self::Chain(chain)) => (Some(*chain), None, None),
+            Some(Self::Bordered(bordered)) => (None, Some(*bordered), None),
+            Some(Self::SparseLdl(ldl)) => (None, None, Some(ldl)),
+            _ => (None, None, None),
         };
         let symmetric = match (matrix, shift) {
             (Matrix::Symmetric(k), Some((c, Matrix::Symmetric(m)))) => Some((k, Some((c, m)))),
@@ -340,6 +345,13 @@ impl Factor {
         if interleaved::fits(&sum, border) {
             let lu = Interleaved::new(&sum, |i, j| sum.get(i, j), border)?;
             return Ok(Self::Interleaved(Box::new(lu)));
+        }
+        for factor in [1.0, OTHER_WEIGHTS] {
+            if let Ok(ldl) = SparseLdl::new(sparse.as_deref(), &sum, border, factor)
+                && ldl.is_sound(&sum)
+            {
+                return Ok(Self::SparseLdl(Box::new(ldl)));
+            }
         }
         Ok(Self::Bordered(Box::new(Bordered::new(&sum, border, earlier)?)))
     }
@@ -429,6 +441,7 @@ impl Factor {
             Self::Condensed(condensed) => condensed.solve(b),
             Self::Chain(chain) => chain.solve(b),
             Self::Interleaved(interleaved) => interleaved.solve(b),
+            Self::SparseLdl(ldl) => ldl.solve(b),
             Self::Bordered(bordered) => bordered.solve(b),
         }
     }
@@ -452,7 +465,9 @@ impl Factor {
                 let lu = Interleaved::of_any_reach(matrix, border)?;
                 Some(negative_determinants(matrix, border, |i| lu.turns_sign(i)))
             }
-            Self::Ldl(_) | Self::BlockLu(_) | Self::Condensed(_) | Self::Chain(_) => None,
+            Self::Ldl(_) | Self::BlockLu(_) | Self::Condensed(_) | Self::Chain(_) | Self::SparseLdl(_) => {
+                None
+            }
         }
     }
 
@@ -468,7 +483,8 @@ impl Factor {
         {
             return Some(count);
         }
-        inertia::negative_directions(matrix, border)
+        let known = if let Self::SparseLdl(ldl) = self { Some(&**ldl) } else { None };
+        inertia::negative_directions(matrix, border, known)
     }
 }
 

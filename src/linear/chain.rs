@@ -805,7 +805,7 @@ mod tests {
             let (k, border) = example(8, mass);
             let Matrix::Symmetric(band) = &k else { unreachable!() };
             let chain = Chain::new(None, band, None, false, &border).unwrap();
-            let expected = super::super::inertia::negative_directions(&k, &border);
+            let expected = super::super::inertia::negative_directions(&k, &border, None);
             assert_eq!(chain.negative_directions(), expected, "{mass}");
             assert_eq!(chain.negative_directions_again(30.0, band, &border), expected, "{mass}");
         }

@@ -155,7 +155,8 @@ impl System {
                     "banded LDLᵀ, constraints among the unknowns"
                 }
                 (false, _) if fits(&matrix, &border) => "banded LU, constraints among the unknowns",
-                (false, _) => "sparse LU (faer)",
+                (false, true) => "sparse LDLᵀ (faer)",
+                (false, false) => "sparse LU (faer)",
                 (true, true) => "banded LDLᵀ",
                 (true, false) => "banded LU",
             },
