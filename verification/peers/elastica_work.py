@@ -63,6 +63,8 @@ class TipForce(ea.NoForces):
 def rod(given, chosen, static):
     """The rod, where it is held, the length of its elements and the longest stable step."""
     (beam,), (support,) = given["beams"], given["supports"]
+    if given["joints"]:
+        raise ValueError("beams must not be joined")
     if beam["axial_damping"] or beam["bending_damping"] or np.any(beam["velocities"]):
         raise ValueError("beams must start at rest and be without damping")
     if support["moved"] or support["node"] or not (support["x"] and support["y"]):

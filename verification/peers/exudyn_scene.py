@@ -6,6 +6,8 @@ supports and loads at nodes, and one analysis. Nothing is decided here that is n
 - A support is one linear constraint on the four coordinates [x, y, x', y'] of a node, so that the direction of a
   gradient can be held at any inclination of the beam: n . r' = 0 with n across the beam. The constraint is on the
   coordinates themselves, reference included, although those of Exudyn's nodes are counted from the reference.
+- A hinge is two linear constraints on the coordinates of both nodes; a weld is Exudyn's joint between the frames of both nodes, which
+  turn with the directions of their gradients.
 - A follower's components are along and across the tangent; ours are those of the fixed frame in the undeformed state.
 - A moment acts through the node's orientation, atan2(y', x'), as ours does.
 - Loads grow with the load factor, in statics only; in a motion they are multiplied by the factors
@@ -47,6 +49,8 @@ class Cables:
             self.add_beam(beam)
         for support in given["supports"]:
             self.add_support(**support)
+        for joint in given["joints"]:
+            self.add_joint(**joint)
         for force in given["forces"]:
             self.add_force(force)
         for moment in given["moments"]:
@@ -121,6 +125,21 @@ class Cables:
                 "jacobianUserFunction": rows_then,
             }
         mbs.AddObject(item.ObjectConnectorCoordinateVector(markerNumbers=markers, **options))
+
+    def add_joint(self, first, second, weld):
+        mbs = self.mbs
+        nodes = [self.nodes[beam][node] for beam, node in (first, second)]
+        if not weld:
+            markers = [mbs.AddMarker(item.MarkerNodeCoordinates(nodeNumber=node)) for node in nodes]
+            rows = np.eye(2, 4)
+            options = {"scalingMarker0": rows, "scalingMarker1": rows, "offset": np.zeros(2)}
+            mbs.AddObject(item.ObjectConnectorCoordinateVector(markerNumbers=markers, **options))
+            return
+        markers = [mbs.AddMarker(item.MarkerNodeRigid(nodeNumber=node)) for node in nodes]
+        a, b = (self.given["beams"][beam]["tangent"] for beam, _ in (first, second))
+        along, across = np.dot(a, b), b[0] * a[1] - b[1] * a[0]  # what turns the second frame into the first
+        turn = [[along, -across, 0], [across, along, 0], [0, 0, 1]]
+        mbs.AddObject(item.GenericJoint(markerNumbers=markers, constrainedAxes=[1, 1, 0, 0, 0, 1], rotationMarker1=turn))
 
     def step_at(self, time):
         """Number of the step that ends at a time."""

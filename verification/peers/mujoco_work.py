@@ -29,6 +29,8 @@ class Chain:
 
     def __init__(self, given, chosen):
         (beam,), (support,) = given["beams"], given["supports"]
+        if given["joints"]:
+            raise ValueError("beams must not be joined")
         self.static, self.beam = "static" in given["analysis"], beam
         if beam["axial_damping"] or beam["bending_damping"] or np.any(beam["velocities"]):
             raise ValueError("beams must start at rest and be without damping")

@@ -7,6 +7,7 @@ chord, and bending that is small against it. `element` says which one.
 - Timed is the call of `analyze`, or of `eigen`, alone. Nothing is recorded: nodes are asked between two calls.
 - Its nodes have places and rotations and no gradients. That of a node is given the direction of its rotation, and as length the
   stretch of the elements beside it, in the mean: what an ANCF element through the same nodes would have.
+- Welded nodes are one node, and those on a hinge share their displacements.
 - The weight acts at the nodes, as OpenSees' load along an element turns with it. That and lumped mass err in the second order of an
   element's length, as the elements themselves do.
 """
@@ -84,8 +85,16 @@ class Beams:
         ops.model("basic", "-ndm", 2, "-ndf", 3)
         ops.geomTransf("Corotational", TRANSFORMATION)
         self.nodes, self.elements = [], 0
+        self.one, self.tags = {}, {}  # places that are the node of another place, and the nodes of all others
+        for joint in given["joints"]:
+            first, second = (self.place_of(joint[which]) for which in ("first", "second"))
+            if joint["weld"] and first != second:
+                self.one[second] = first
         for beam in given["beams"]:
             self.add_beam(beam)
+        for joint in given["joints"]:
+            if not joint["weld"]:
+                ops.equalDOF(*(self.nodes[beam][node] for beam, node in (joint["first"], joint["second"])), X, Y)
         for support in given["supports"]:
             if support["moved"]:
                 raise ValueError("supports must stay")
@@ -101,13 +110,13 @@ class Beams:
             raise ValueError("beams must be without damping")
         if np.any(beam["velocities"]):
             raise ValueError("beams must start at rest")
-        first = sum(map(len, self.nodes)) + 1
-        nodes = list(range(first, first + len(beam["nodes"])))
+        nodes, new = self.tags_of(len(self.nodes), len(beam["nodes"]))
         turn = np.radians(float(self.chosen["reference"]))
         places = np.array(beam["nodes"])
         turned = places[0] + (places - places[0]) @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
         for tag, place in zip(nodes, turned):
-            ops.node(tag, *place)
+            if tag in new:
+                ops.node(tag, *place)
         element, section = self.chosen["element"], [1.0, beam["axial_stiffness"], beam["bending_stiffness"]]
         mass = ["-mass", beam["mass_per_length"]]
         if self.chosen["mass"] == "consistent":
@@ -126,10 +135,28 @@ class Beams:
             else:
                 ops.element(element, self.elements, a, b, TRANSFORMATION, number, *mass)
         # After the elements, which would take what they find for their undeformed state.
-        for tag, back in zip(nodes, places - turned):
+        for tag, back in zip(nodes, places - turned) if turn else ():
             for freedom, value in ((X, back[0]), (Y, back[1]), (ANGLE, -turn)):
                 ops.setNodeDisp(tag, freedom, value, "-commit")
         self.nodes.append(nodes)
+
+    def place_of(self, place):
+        """Beam and node of the first place that is welded to this one."""
+        place = tuple(place)
+        while place in self.one:
+            place = self.one[place]
+        return place
+
+    def tags_of(self, beam, count):
+        """The nodes of a beam, and those among them that are not there yet."""
+        nodes, new = [], set()
+        for node in range(count):
+            place = self.place_of((beam, node))
+            if place not in self.tags:
+                self.tags[place] = len(self.tags) + 1
+                new.add(self.tags[place])
+            nodes.append(self.tags[place])
+        return nodes, new
 
     def add_loads(self):
         given = self.given
@@ -157,7 +184,7 @@ class Beams:
     def prepare(self, *method):
         chosen = self.chosen
         ops.constraints("Plain")
-        ops.numberer("Plain")  # a chain is numbered well as it is
+        ops.numberer("RCM" if self.given["joints"] else "Plain")  # a chain is numbered well as it is
         ops.system(chosen["solver"])
         ops.test(chosen["test"], float(chosen["tolerance"]), int(chosen["iterations"]), 0)
         ops.algorithm(*ALGORITHM[chosen["newton"]])

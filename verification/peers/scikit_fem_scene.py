@@ -20,6 +20,8 @@ class Beam:
 
     def __init__(self, given):
         (self.beam,) = given["beams"]
+        if given["joints"]:
+            raise ValueError("beams must not be joined")
         if self.beam["tangent"] != [1, 0]:
             raise ValueError("the beam must be along x")
         if np.any(self.beam["velocities"]):

@@ -9,8 +9,8 @@ use ancf::basis::Basis;
 use ancf::centreline::Curve;
 use ancf::effect::{self, BeamDamping, Gravity};
 use ancf::model::{
-    About, Along, Analysis, Beam, Centreline, Discretization, FixedRotation, Integrator, Law, Modal, Model,
-    Place, StepControl, StrainMeasure,
+    About, Along, Analysis, Beam, Centreline, Discretization, FixedRotation, Integrator, Joint, Law, Modal,
+    Model, Place, StepControl, StrainMeasure,
 };
 use serde::Serialize;
 
@@ -22,6 +22,7 @@ const LOAD_STEPS: usize = 20;
 pub struct Description {
     beams: Vec<Cable>,
     supports: Vec<Support>,
+    joints: Vec<Joined>,
     forces: Vec<Force>,
     moments: Vec<Moment>,
     gravity: [f64; 2],
@@ -57,6 +58,14 @@ struct Support {
     /// The displacements of the fixed quantities, x \[m\], y \[m\], angle \[rad\], at the start and
     /// at the end of every step.
     moved: Option<Vec<[f64; 3]>>,
+}
+
+/// Two nodes at the same place, each as beam and node; a weld keeps the angle between their directions.
+#[derive(Debug, PartialEq, Serialize)]
+struct Joined {
+    first: [usize; 2],
+    second: [usize; 2],
+    weld: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -112,6 +121,7 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
             .map(|(beam, basis)| cable(beam, basis))
             .collect::<Result<_, _>>()?,
         supports: Vec::new(),
+        joints: Vec::new(),
         forces: Vec::new(),
         moments: Vec::new(),
         gravity: [0.0; 2],
@@ -119,8 +129,14 @@ pub fn describe(model: &Model, analysis: &Analysis) -> Result<Description, Strin
         analysis: question(analysis)?,
     };
     let times = times(&description.analysis);
-    if let Some(joint) = model.joints.first() {
-        return Err(none(&format!("{joint:?}")));
+    for joint in &model.joints {
+        let (first, second, weld) = match joint {
+            Joint::Hinge { first, second } => (first, second, false),
+            Joint::Weld { first, second } => (first, second, true),
+            other => return Err(none(&format!("{other:?}"))),
+        };
+        let of = |at: &Place| Ok::<_, String>([at.beam, node("a joint", at)?]);
+        description.joints.push(Joined { first: of(first)?, second: of(second)?, weld });
     }
     for support in &model.supports {
         let by = support.displacement;
@@ -367,6 +383,29 @@ at = "end"
             error.starts_with("no counterpart for a support that is moved, by the trapezoidal rule"),
             "{error}"
         );
+    }
+
+    /// A joint that is lost or joins other nodes leaves another structure.
+    #[test]
+    fn joints_are_said_by_the_nodes_that_they_join() {
+        let second = SCENE.replace(
+            "[beam.b]\nstart = [0.0, 0.0]\nend = [0.0, 2.0]",
+            "[beam.c]\nstart = [0.0, 2.0]\nend = [1.0, 2.0]",
+        );
+        let beam = second.split("[[support]]").next().expect("a beam");
+        let joint = |kind: &str, at: &str| {
+            format!(
+                "{beam}[[joint]]\ntype = \"{kind}\"\nfirst = {{ beam = \"b\", at = {at} }}\n\
+                 second = {{ beam = \"c\", at = \"start\" }}\n[[support]]"
+            )
+        };
+        for (kind, weld) in [("weld", true), ("hinge", false)] {
+            let description = with("[[support]]", &joint(kind, "\"end\"")).expect("a counterpart");
+            assert_eq!(description.joints, [Joined { first: [0, 4], second: [1, 0], weld }]);
+        }
+        let slider = "[[joint]]\ntype = \"slider\"\npoint = { beam = \"b\", at = \"end\" }\nalong = [1, 0]\n[[support]]";
+        let error = with("[[support]]", slider).expect_err("no word");
+        assert!(error.starts_with("no counterpart for Slider"), "{error}");
     }
 
     /// Another code takes the coefficients themselves, c = η EA and η EI; without them its beam
