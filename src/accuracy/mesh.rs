@@ -14,9 +14,7 @@ use crate::model::{Model, Nodes};
 /// Cells with which the search begins, of the longest beam; fewer are of no use …
 const FIRST: f64 = 4.0;
 /// … for every half-wave of the modes that are wanted …
-const OF_HALF_WAVE: f64 = 1.5;
-/// … and never less.
-const LEAST_OF_HALF_WAVE: f64 = 1.0;
+const OF_HALF_WAVE: f64 = 1.75;
 /// … and of every beam or part of a beam between two places that must be nodes.
 const LEAST: usize = 2;
 /// Largest turn of a stress-free centreline in a cell of the first mesh \[rad\].
@@ -78,10 +76,8 @@ impl Mesh {
                 }
             }
             fixed.push(length);
-            let waves = waves as f64;
-            let of_longest =
-                (times * FIRST.max(OF_HALF_WAVE * waves)).max(FIRST).max(LEAST_OF_HALF_WAVE * waves);
-            let straight = (of_longest * length / longest).ceil() as usize;
+            let straight = ((times * FIRST.max(OF_HALF_WAVE * waves as f64)).max(FIRST) * length / longest)
+                .ceil() as usize;
             let turns = (turning(curve) / TURN).ceil() as usize;
             let cells = straight.max(turns).max(LEAST);
             let spread = |part: &[f64]| {
@@ -396,11 +392,9 @@ mod tests {
         assert!(meshes[1].is_one_part() && !meshes[0].is_one_part() && meshes[0].length() == 4.0);
         let cells =
             |waves: usize, times: f64| first(text, waves, times).iter().map(Mesh::cells).collect::<Vec<_>>();
-        // Six half-waves have 9 cells, 2¼ and 6¾ of the parts, 4½ of the other beam; twice four have 12.
-        assert_eq!((cells(6, 1.0), cells(4, 2.0)), (vec![4 + 8, 6], vec![4 + 10, 6]));
-        // Twelve have a cell each at least.
-        assert_eq!(cells(12, 0.1), [4 + 10, 6]);
-        assert_eq!((cells(3, 1.0), cells(3, 0.1)), (vec![2 + 4, 4], vec![2 + 4, 2]));
+        // Six half-waves have 10½ cells, 2¾ and 8¼ of 11 of the parts, 5¼ of the other beam; twice four have 14.
+        assert_eq!((cells(6, 1.0), cells(4, 2.0)), (vec![4 + 10, 6], vec![4 + 12, 8]));
+        assert_eq!((cells(3, 1.0), cells(3, 0.1)), (vec![2 + 6, 4], vec![2 + 4, 2]));
         assert_eq!(cells(0, 4.0), [4 + 12, 8]);
     }
 
