@@ -216,7 +216,9 @@ fn states<'t>(
         for &(i, j) in &pairs {
             let mut now = vec![0.0_f64; mesh.cells()];
             let at = |t: &'t Trajectory, record: usize| t.stations.get(record)?.get(index);
-            let (Some(a), Some(b)) = (at(coarse, i), at(fine, j)) else { continue };
+            let (Some(a), Some(b)) = (at(coarse, i), at(fine, j)) else {
+                return Err(format!("beam `{}` was not kept at record {j}", beam.name));
+            };
             for (k, (a, b)) in samples(a).zip(samples(b)).enumerate() {
                 let error = differ(&a, &b);
                 along.position[k] = larger(along.position[k], error.x / length);
