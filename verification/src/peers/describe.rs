@@ -396,14 +396,14 @@ at = "end"
         let joint = |kind: &str, at: &str| {
             format!(
                 "{beam}[[joint]]\ntype = \"{kind}\"\nfirst = {{ beam = \"b\", at = {at} }}\n\
-                 second = {{ beam = \"c\", at = \"start\" }}\n[[support]]"
+                 second = {{ beam = \"c\", at = \"start\" }}\n[[support]]\nbeam = \"c\"\nat = \"end\"\nfix = [\"y\"]\n[[support]]"
             )
         };
         for (kind, weld) in [("weld", true), ("hinge", false)] {
             let description = with("[[support]]", &joint(kind, "\"end\"")).expect("a counterpart");
             assert_eq!(description.joints, [Joined { first: [0, 4], second: [1, 0], weld }]);
         }
-        let slider = "[[joint]]\ntype = \"slider\"\npoint = { beam = \"b\", at = \"end\" }\nalong = [1, 0]\n[[support]]";
+        let slider = "[[joint]]\ntype = \"slider\"\nfirst = { beam = \"b\", at = \"end\" }\nalong = [1, 0]\n[[support]]";
         let error = with("[[support]]", slider).expect_err("no word");
         assert!(error.starts_with("no counterpart for Slider"), "{error}");
     }
