@@ -69,7 +69,7 @@ pub use history::{AcceptedState, ContactPiece, InternalVariables};
 pub use integral::{Integral, Workspace};
 pub(crate) use integral::{add_tiles, multiply_rows};
 pub use kind::Kind;
-pub use load::{Acting, ActingLoad, Amplitude};
+pub use load::{Acting, ActingLoad, Amplitude, remaining};
 pub use node::{Node, nodes};
 pub use part::{Extent, Imposed, Part, Resistance};
 pub use tendon::TendonPath;

@@ -1,6 +1,6 @@
 //! Lengths of tendons that are kept, as constraints with a Lagrange multiplier each.
 
-use super::{Amplitude, Effect, TendonPath, Workspace};
+use super::{Amplitude, Effect, TendonPath, Workspace, remaining};
 use crate::linear::Matrix;
 
 /// The length of the line of a tendon, which is kept at that of the stress-free state less a shortening:
@@ -57,12 +57,12 @@ impl HeldLength {
 
     /// What g is to be at the load factor `load` \[m\].
     pub fn remains_open(&self, load: f64) -> f64 {
-        if self.open == 0.0 { 0.0 } else { (1.0 - load) * self.open }
+        remaining(load)[0] * self.open
     }
 
     /// The derivative of [`Self::remains_open`] by the load factor.
-    pub fn closes(&self) -> f64 {
-        -self.open
+    pub fn closes(&self, load: f64) -> f64 {
+        remaining(load)[1] * self.open
     }
 
     /// `f += factor · ∂g/∂q`.

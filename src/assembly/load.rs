@@ -10,7 +10,7 @@ pub enum Amplitude {
     Proportional,
     /// One, at all times.
     Full,
-    /// A factor, times one less the load factor.
+    /// A factor, times what is [`remaining`].
     Fading {
         /// The factor.
         factor: f64,
@@ -27,7 +27,7 @@ impl Amplitude {
         match self {
             Self::Proportional => parameter,
             Self::Full => 1.0,
-            Self::Fading { factor, .. } => factor * (1.0 - parameter),
+            Self::Fading { factor, .. } => factor * remaining(parameter)[0],
             Self::Law(law) => law.at(parameter)[0],
         }
     }
@@ -49,13 +49,21 @@ impl Amplitude {
     }
 
     /// Its derivative with respect to the load factor, which laws of time do not depend on.
-    pub fn rate(&self) -> f64 {
+    pub fn rate(&self, load: f64) -> f64 {
         match self {
             Self::Proportional => 1.0,
-            Self::Fading { factor, .. } => -factor,
+            Self::Fading { factor, .. } => factor * remaining(load)[1],
             Self::Full | Self::Law(_) => 0.0,
         }
     }
+}
+
+/// What is left at a load factor of that which fades, or closes, as the load factor goes from 0 to 1,
+/// with its derivative, at 0 and 1 that of the way ahead. A path goes on beyond 1, and what has
+/// faded does not come back with the opposite sign.
+pub fn remaining(load: f64) -> [f64; 2] {
+    let rate = if (0.0..1.0).contains(&load) { -1.0 } else { 0.0 };
+    [1.0 - load.clamp(0.0, 1.0), rate]
 }
 
 /// How a part acts in the state with which an analysis begins.

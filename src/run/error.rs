@@ -55,6 +55,21 @@ pub enum RunError {
         /// The results until then.
         partial: Box<Trajectory>,
     },
+    /// A path along which things come and go, as they do until load factor 1, and nothing else changes.
+    #[error(
+        "the path leads nowhere beyond load factor 1, before {target}: what comes and goes in this stage has done so, and nothing else \
+         grows"
+    )]
+    #[diagnostic(help(
+        "let a load, a support that moves or an actuation be new in this stage, or end it where all has come and gone, without \
+         `arc_length`"
+    ))]
+    NothingGrows {
+        /// Which place of a probe was to be reached.
+        target: String,
+        /// The results until then.
+        partial: Box<Trajectory>,
+    },
     /// A setting refers to a probe that does not exist.
     #[error("there is no probe `{probe}`; the probes are: {known}")]
     NoSuchProbe {
@@ -186,6 +201,7 @@ impl RunError {
             | Self::Unavailable { .. } => 2,
             Self::NoEquilibrium { .. }
             | Self::OutOfPoints { .. }
+            | Self::NothingGrows { .. }
             | Self::NoStep { .. }
             | Self::Eigen(_)
             | Self::Memory { .. } => 1,
@@ -203,6 +219,7 @@ impl RunError {
         match self {
             Self::NoEquilibrium { partial, .. }
             | Self::OutOfPoints { partial, .. }
+            | Self::NothingGrows { partial, .. }
             | Self::NoStep { partial, .. } => Some(partial),
             Self::InStage { cause, .. } => cause.partial(),
             _ => None,

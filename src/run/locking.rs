@@ -35,6 +35,8 @@ const JAMMED: f64 = 10.0;
 const JAMMED_WORK: f64 = 1e-5;
 /// Strain up to which the stretch of a string counts as round-off.
 const LEAST_STRAIN: f64 = 1e-9;
+/// Strain within the cells of a beam that round-off of positions makes.
+const ROUND_OFF: f64 = 1e-12;
 /// Part of a beam's whole elastic energy up to which locking does not matter.
 const IRRELEVANT: f64 = 1e-3;
 
@@ -54,6 +56,8 @@ struct LockingBeam {
     axial_stiffness: Along,
     /// EI \[N m²\]; `None` for a string.
     bending_stiffness: Option<Along>,
+    /// \[m\]
+    length: f64,
     offset: usize,
     /// r' at the points for stretching, r' and r'' at those for bending.
     tables: [BasisTable; 2],
@@ -90,6 +94,7 @@ impl Locking {
                 measure: beam.strain,
                 axial_stiffness,
                 bending_stiffness: beam.section.bending_stiffness.clone(),
+                length: part.basis.nodes().last().copied().unwrap_or(0.0),
                 offset: part.offset(),
                 tables,
                 reference: [Vec::new(), Vec::new()],
@@ -123,9 +128,7 @@ impl Locking {
                 0.25 * (s[1] - s[0]) * (n[0] * n[0] + n[1] * n[1]) / stiffness
             });
             let balanced = energies.sum::<f64>();
-            let length = *shape.s.last()?;
-            let stiffness = beam.axial_stiffness.mean(length);
-            let least = 0.5 * stiffness * length * LEAST_STRAIN * LEAST_STRAIN;
+            let least = beam.of_strain(LEAST_STRAIN);
             (stretch > JAMMED * balanced && stretch > least.max(JAMMED_WORK * scale)).then(|| {
                 format!(
                     "string `{}` holds itself: its stretch takes {stretch:.1e} J, and its section forces account for {balanced:.1e} J, so that \
@@ -217,11 +220,18 @@ impl LockingBeam {
         energies
     }
 
+    /// The energy of a strain that is the same everywhere \[J\].
+    fn of_strain(&self, strain: f64) -> f64 {
+        0.5 * self.axial_stiffness.mean(self.length) * self.length * strain * strain
+    }
+
     fn warning(&self) -> Option<String> {
         self.bending_stiffness.as_ref()?;
+        let least = self.of_strain(ROUND_OFF);
         let most = self.seen.iter().fold(0.0_f64, |most, [bend, ..]| most.max(*bend));
         let bent = self.seen.iter().filter(|[bend, ..]| *bend > STRAIGHT * most);
-        let relevant = bent.filter(|[bend, stretch, locked]| *locked > IRRELEVANT * (bend + stretch));
+        let relevant =
+            bent.filter(|[bend, stretch, locked]| *locked > least.max(IRRELEVANT * (bend + stretch)));
         let too_stiff = relevant.fold(0.0_f64, |worst, [bend, _, locked]| worst.max(locked / bend));
         if too_stiff <= TOLERATED {
             return None;
@@ -318,6 +328,9 @@ mod tests {
             (&[[2.0, 1.0, 0.0], [0.21, 0.1, 0.1]], Some("47.6 %")),
             (&[[2.0, 28.1, 0.03]], None),
             (&[[2.0, 27.9, 0.03]], Some("1.5 %")),
+            // Strains of 1e-12 take 3e-24 J.
+            (&[[2.9e-24, 0.0, 2.9e-24]], None),
+            (&[[3.1e-24, 0.0, 3.1e-24]], Some("100.0 %")),
         ] {
             let found = told(&mut locking, seen);
             assert_eq!(found.is_some(), percent.is_some(), "{seen:?}: {found:?}");

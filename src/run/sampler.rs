@@ -8,7 +8,7 @@ use super::stability;
 use super::strings;
 use super::tendons::Tendons;
 use super::{Detail, RunError};
-use crate::assembly::{Actions, BuildError, InternalVariables, Side, TendonPath, nodes};
+use crate::assembly::{Actions, BuildError, InternalVariables, Side, TendonPath, nodes, remaining};
 use crate::linear::Singular;
 use crate::model::{
     ArcLength, Beam, Dynamic, EventCondition, EventKind, Model, ProbeTarget, StepControl, StrainMeasure,
@@ -23,7 +23,7 @@ use crate::solve::dynamics;
 use crate::solve::newton::Failure;
 use crate::solve::path::NoStep;
 use crate::solve::resume::Holding;
-use crate::solve::statics::Solution;
+use crate::solve::statics::{Solution, Unreached};
 use crate::system::{Change, Fields, Reaction, System, View, unfold};
 use nalgebra::Vector2;
 use std::f64::consts::FRAC_PI_2;
@@ -642,6 +642,16 @@ impl<'a> Sampler<'a> {
         trajectory
     }
 
+    /// The message on a path that ends while things come and go.
+    pub(super) fn on_the_way(&self, solution: &Solution) -> Option<String> {
+        let (load, _) = solution.states.last().filter(|(load, _)| self.system.is_between(*load))?;
+        Some(format!(
+            "the last state, at load factor {load:.4}, lies on the way to load factor 1, where all that goes with this stage has gone \
+             and all that comes has come: {:.0} % of it is still as it was before",
+            100.0 * remaining(*load)[0]
+        ))
+    }
+
     /// The last state, if it is the equilibrium under the full loads.
     /// `asked` is the model before it went on from another state, and `time` that of this state.
     pub(super) fn equilibrium(
@@ -746,16 +756,17 @@ impl<'a> Sampler<'a> {
     }
 
     /// The error of a path that has not reached its target.
-    pub(super) fn out_of_points(&self, arc: &ArcLength, solution: &Solution) -> RunError {
+    pub(super) fn unreached(&self, why: Unreached, arc: &ArcLength, solution: &Solution) -> RunError {
         let load = arc.until_load.map(|load| format!("load factor {load}"));
         let probe = arc.until_probe.as_ref().map(|ProbeTarget { probe, axis, value }| {
             format!("{} = {value} m of probe `{probe}`", if *axis == 0 { "x" } else { "y" })
         });
-        RunError::OutOfPoints {
-            points: arc.max_points,
-            load: solution.states.last().map_or(0.0, |(load, _)| *load),
-            target: load.into_iter().chain(probe).collect::<Vec<_>>().join(" or "),
-            partial: Box::new(incomplete(self.statics(solution))),
+        let target = load.into_iter().chain(probe).collect::<Vec<_>>().join(" or ");
+        let load = solution.states.last().map_or(0.0, |(load, _)| *load);
+        let partial = Box::new(incomplete(self.statics(solution)));
+        match why {
+            Unreached::OutOfPoints => RunError::OutOfPoints { points: arc.max_points, load, target, partial },
+            Unreached::NothingGrows => RunError::NothingGrows { target, partial },
         }
     }
 
@@ -763,7 +774,7 @@ impl<'a> Sampler<'a> {
     /// with the loads, so that there is nothing to converge to.
     fn limited_by_round_off(&self, failure: &Failure) -> bool {
         let mut loads = vec![0.0; self.system.coordinates()];
-        self.system.add_load_rate(1.0, self.system.reference(), &mut loads);
+        self.system.add_load_rate(1.0, 0.0, self.system.reference(), &mut loads);
         let length = self.system.length();
         let total: f64 = nodes(&loads).map(|f| f.shift().max(f.slope() / length)).sum();
         matches!(failure, Failure::TooSlow { last, .. } if *last < STALLED)

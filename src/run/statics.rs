@@ -22,7 +22,7 @@ impl Solve for Static {
             None => None,
             Some(arc) => Some(Target { arc, probe: sampler.end_of_path(arc)? }),
         };
-        let leads_on = |target: &Target<'_>| target.arc.until_load.is_some() || system.is_driven();
+        let leads_on = |target: &Target<'_>| target.arc.until_load.is_some() || system.is_driven(0.0);
         if !target.as_ref().is_none_or(leads_on) {
             return Err(RunError::NoPath);
         }
@@ -32,11 +32,13 @@ impl Solve for Static {
             &mut |load: f64, step: f64, statistics: &Statistics| watch.goes_on(load, 1.0, step, statistics);
         let solution = statics::solve(system, self, target.as_ref(), report);
         stopwatch.solved();
-        let mut outcome = match (&solution.stuck, &self.arc_length) {
+        let unreached = solution.unreached.zip(self.arc_length.as_ref());
+        let mut outcome = match (&solution.stuck, unreached) {
             (Some(stuck), _) => Err(sampler.stuck(stuck, &solution)),
-            (None, Some(arc)) if solution.out_of_points => Err(sampler.out_of_points(arc, &solution)),
-            (None, _) => {
+            (None, Some((why, arc))) => Err(sampler.unreached(why, arc, &solution)),
+            (None, None) => {
                 let mut trajectory = sampler.statics(&solution);
+                trajectory.run.warnings.extend(sampler.on_the_way(&solution));
                 if options.saved {
                     trajectory.saved = sampler.equilibrium(&solution, &trajectory, asked, start.time());
                 }

@@ -102,7 +102,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let mut pairs = largest_reciprocals(&pencil, count)?;
     // A load that compresses nothing gives reciprocals that are round-off alone.
     let mut load = vec![0.0; n];
-    system.add_load_rate(1.0, q, &mut load);
+    system.add_load_rate(1.0, 0.0, q, &mut load);
     let least = ROUND_OFF * system.norm(&load) / system.stiffness();
     // The standard deviation of 1/λ = φᵀ B φ, with φᵀ A φ = 1, due to the round-off of both
     // matrices.

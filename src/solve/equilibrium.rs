@@ -134,7 +134,7 @@ impl<'a> Equilibrium<'a> {
         self.factorize(load, x, earlier, None, negative, |equilibrium| {
             rate.fill(0.0);
             let n = equilibrium.system.coordinates();
-            equilibrium.system.add_load_rate(-1.0, &x[..n], &mut rate[..n]);
+            equilibrium.system.add_load_rate(-1.0, load, &x[..n], &mut rate[..n]);
             equilibrium.add_rate_of_supports(load, x, rate);
         })
     }
@@ -212,7 +212,7 @@ impl<'a> Equilibrium<'a> {
             let unit = constraint.scale(system.stiffness(), system.length());
             rate[n + r] = -unit * constraint.rate(load, q);
         }
-        system.held_load_rates(q, None, &mut rate[n..]);
+        system.held_load_rates(load, q, None, &mut rate[n..]);
         system.supports().rate(load, q, &mut self.prescribed_rate);
         if system.supports().moves() {
             system.supports().to_frames(load, &mut rate[..n]);
@@ -225,7 +225,7 @@ impl<'a> Equilibrium<'a> {
                 rate[n + r] -=
                     unit * constraint.gradient(load, q).map(|(i, value)| value * global[i]).sum::<f64>();
             }
-            system.held_load_rates(q, Some(&global), &mut rate[n..]);
+            system.held_load_rates(load, q, Some(&global), &mut rate[n..]);
         }
         system.supports().to_frames(load, &mut rate[..n]);
     }

@@ -58,8 +58,17 @@ pub struct Solution {
     pub statistics: Statistics,
     /// Why the path ends before its target, if it does.
     pub stuck: Option<NoStep>,
-    /// Whether the path has reached its largest number of points before its target.
-    pub out_of_points: bool,
+    /// Why a path by arc length has not reached its target, where no step has failed.
+    pub unreached: Option<Unreached>,
+}
+
+/// Why a path by arc length ends before its target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unreached {
+    /// It has its largest number of points.
+    OutOfPoints,
+    /// Nothing changes any more as the load factor grows.
+    NothingGrows,
 }
 
 impl Solution {
@@ -426,13 +435,14 @@ fn along_arc(
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let mut outcome = Ok(());
-    let mut ends = target.arc.until_load.is_none() && target.probe.is_none();
+    let aims = target.arc.until_load.is_some() || target.probe.is_some();
+    let mut unreached = aims.then_some(Unreached::OutOfPoints);
     for _ in 0..target.arc.max_points {
         path.limit_step(largest);
         let previous = path.last().clone();
         match path.advance(f64::INFINITY) {
             Err(stuck) => {
-                (outcome, ends) = (Err(stuck), true);
+                (outcome, unreached) = (Err(stuck), None);
                 break;
             }
             Ok(point) => {
@@ -449,7 +459,7 @@ fn along_arc(
                 let point = match last {
                     Ok(point) => point,
                     Err(stuck) => {
-                        (outcome, ends) = (Err(stuck), true);
+                        (outcome, unreached) = (Err(stuck), None);
                         break;
                     }
                 };
@@ -467,7 +477,12 @@ fn along_arc(
                 solution.record(path.equilibrium, point.load, &point.x, work);
                 let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
                 if reached || !go_on {
-                    ends = true;
+                    unreached = None;
+                    break;
+                }
+                // What comes and what goes has done so at load factor 1.
+                if target.arc.until_load.is_none() && !system.is_driven(point.load) {
+                    unreached = aims.then_some(Unreached::NothingGrows);
                     break;
                 }
             }
@@ -475,6 +490,6 @@ fn along_arc(
     }
     solution.history = std::mem::take(&mut path.history);
     solution.unwatched = path.last().stability.is_none() && !path.equilibrium.is_symmetric();
-    solution.out_of_points = !ends;
+    solution.unreached = unreached;
     outcome
 }

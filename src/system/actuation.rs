@@ -113,7 +113,7 @@ impl System {
     fn square(&self, actuated: &Actuated, part: usize, parameter: f64) -> (f64, f64) {
         let amplitude = |law: &Option<Amplitude>| {
             let amplitude = self.amplitude_or_own(law);
-            (amplitude.at(parameter), amplitude.rate())
+            (amplitude.at(parameter), amplitude.rate(parameter))
         };
         let amplitudes: Vec<(f64, f64)> = actuated.amplitudes.iter().map(amplitude).collect();
         let mut sums = (0.0, 0.0);
@@ -200,7 +200,7 @@ impl System {
     pub fn actuators_rate(&self, load: f64, q: &[f64]) -> f64 {
         let of = |actuated: &Actuated, part: usize| {
             let potentials = self.potentials(actuated, part, q);
-            let loads = potentials.map(|(amplitude, of)| self.amplitude_or_own(amplitude).rate() * of);
+            let loads = potentials.map(|(amplitude, of)| self.amplitude_or_own(amplitude).rate(load) * of);
             loads.sum::<f64>() + self.square(actuated, part, load).1
         };
         let rate = |actuated: &Actuated| of(actuated, 0) + of(actuated, 1);

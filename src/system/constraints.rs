@@ -10,7 +10,7 @@
 //! gradient. So does the normal of the angle between two directions, which a weld keeps.
 
 use super::prescribed::{Prescribed, ROUND_OFF};
-use crate::assembly::Action;
+use crate::assembly::{Action, remaining};
 use crate::basis::BasisTable;
 use nalgebra::Vector2;
 use std::ops::Range;
@@ -287,8 +287,7 @@ impl Constraint {
 
     /// The constraint g(q, λ).
     pub fn value(&self, load: f64, q: &[f64]) -> f64 {
-        let value = self.value_of_row(load, q);
-        if self.open == 0.0 { value } else { value - (1.0 - load) * self.open }
+        self.value_of_row(load, q) - remaining(load)[0] * self.open
     }
 
     /// Lets the row be open in the state `q` at load factor 0.
@@ -319,15 +318,21 @@ impl Constraint {
                 self.combine(|_| n, q) - c
             }
         };
-        if self.open == 0.0 { closing } else { closing + self.open }
+        closing - remaining(load)[1] * self.open
     }
 
-    /// Whether it changes with the load factor, by more than the round-off of positions in a system of
+    /// Whether it changes with the load factor from `load` on, by more than the round-off of positions in a system of
     /// this `length` where it only closes.
-    pub fn is_driven(&self, length: f64) -> bool {
-        let (_, _, normal, value) = self.normal(0.0);
+    pub fn is_driven(&self, load: f64, length: f64) -> bool {
+        let (_, _, normal, value) = self.normal(load);
+        normal != [0.0; 2] || value != 0.0 || remaining(load)[1] != 0.0 && self.begins_open(length)
+    }
+
+    /// Whether it is open at load factor 0, by more than the round-off of positions in a system of this
+    /// `length`.
+    pub fn begins_open(&self, length: f64) -> bool {
         let unit = if self.is_of_length() { length } else { 1.0 };
-        normal != [0.0; 2] || value != 0.0 || self.open.abs() > ROUND_OFF * unit
+        self.open.abs() > ROUND_OFF * unit
     }
 
     /// The normal of the last field, and, for a row of gradients, the field r' itself.

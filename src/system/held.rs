@@ -64,12 +64,12 @@ impl System {
 
     /// Writes −∂g/∂λ − ∂g/∂q·v, scaled, into the rows of tendons, where `v` are the rates that supports
     /// prescribe.
-    pub fn held_load_rates(&self, q: &[f64], v: Option<&[f64]>, rates: &mut [f64]) {
+    pub fn held_load_rates(&self, load: f64, q: &[f64], v: Option<&[f64]>, rates: &mut [f64]) {
         let unit = self.unit_of_lengths();
         for (row, length) in self.held_rows() {
             let along = v.map_or(0.0, |v| rate_of(length, q, v));
-            let rate = self.amplitude_of_length(length).rate();
-            rates[row] = -unit * (length.shortening * rate - length.closes() + along);
+            let rate = self.amplitude_of_length(length).rate(load);
+            rates[row] = -unit * (length.shortening * rate - length.closes(load) + along);
         }
     }
 

@@ -10,7 +10,7 @@
 use super::System;
 use crate::assembly::{
     Acting, ActingLoad, Action, Actions, Amplitude, Earlier, Effect, InternalVariables, Kind, Workspace,
-    nodes,
+    nodes, remaining,
 };
 use crate::linear::Matrix;
 use std::ops::Range;
@@ -148,6 +148,14 @@ impl System {
     /// Whether anything fades as the load factor grows.
     pub fn is_fading(&self) -> bool {
         self.terms.loads.iter().any(|load| matches!(load.amplitude, Some(Amplitude::Fading { .. })))
+    }
+
+    /// Whether at the load factor `load` something that has gone still acts, or something that is to
+    /// hold is still open.
+    pub fn is_between(&self, load: f64) -> bool {
+        let rows = || self.constraints.iter().any(|row| row.begins_open(self.length));
+        let lengths = || self.terms.held.iter().any(|length| length.remains_open(load) != 0.0);
+        remaining(load)[0] > 0.0 && (self.is_fading() || rows() || lengths())
     }
 
     /// Whether an analysis begins in a state that another one has left.

@@ -37,31 +37,32 @@ impl System {
         }
     }
 
-    /// `f += factor · ∂f/∂λ`, for loads that are proportional to the load factor λ.
-    pub fn add_load_rate(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+    /// `f += factor · ∂f/∂λ` at the load factor λ = `load`.
+    pub fn add_load_rate(&self, factor: f64, load: f64, q: &[f64], f: &mut [f64]) {
         self.add_constant_load(factor, f);
-        for load in self.terms.loads.iter().filter(|load| !load.is_summed()) {
-            let rate = self.amplitude_of(load).rate();
+        for acting in self.terms.loads.iter().filter(|acting| !acting.is_summed()) {
+            let rate = self.amplitude_of(acting).rate(load);
             if rate != 0.0 {
-                load.effect.add_force(factor * rate, q, f);
+                acting.effect.add_force(factor * rate, q, f);
             }
         }
     }
 
-    /// Whether anything changes with the load factor: a load, a support that moves, a tendon that is
-    /// pulled, or a constraint that is not met where the analysis begins.
+    /// Whether anything changes with the load factor from `load` on: a load, a support that moves, a
+    /// tendon that is pulled, or a constraint that closes.
     /// What acts where it can move nothing counts, because only round-off tells it from what can.
-    pub fn is_driven(&self) -> bool {
-        let changes = |amplitude: &Amplitude| amplitude.rate() != 0.0;
+    pub fn is_driven(&self, load: f64) -> bool {
+        let changes = |amplitude: &Amplitude| amplitude.rate(load) != 0.0;
         let held = |tendon: &HeldLength| {
-            tendon.closes() != 0.0 || tendon.shortening != 0.0 && changes(self.amplitude_of_length(tendon))
+            tendon.closes(load) != 0.0
+                || tendon.shortening != 0.0 && changes(self.amplitude_of_length(tendon))
         };
-        let load = |load: &ActingLoad| !load.is_summed() && changes(self.amplitude_of(load));
+        let varies = |load: &ActingLoad| !load.is_summed() && changes(self.amplitude_of(load));
         self.supports.moves()
             || changes(&self.amplitude) && self.constant_load.iter().any(|load| *load != 0.0)
-            || self.terms.loads.iter().any(load)
+            || self.terms.loads.iter().any(varies)
             || self.terms.held.iter().any(held)
-            || self.constraints.iter().any(|row| row.is_driven(self.length))
+            || self.constraints.iter().any(|row| row.is_driven(load, self.length))
     }
 
     fn start_with_constant_load(&self, parameter: f64, f: &mut [f64]) {

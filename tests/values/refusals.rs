@@ -62,6 +62,8 @@ fn numbers_in_refusals_can_be_read() {
         path.to_string(),
         "the path ends after `max_points = 7` at load factor 0.250000, before y = 3 m"
     );
+    let nowhere = RunError::NothingGrows { target: "y = 3 m".into(), partial: records(0) };
+    assert!(nowhere.to_string().starts_with("the path leads nowhere beyond load factor 1, before y = 3 m: "));
     let gib = 1024.0 * 1024.0 * 1024.0;
     let memory = RunError::Memory { needed: 3.0 * gib, free: 1.5 * gib };
     assert_eq!(memory.to_string(), "this needs about 3.000 GiB of memory, and 1.500 GiB are free");
@@ -74,6 +76,7 @@ fn refusals_have_their_status_and_what_is_left() {
     let probe = RunError::NoSuchProbe { probe: "nose".into(), known: "tip".into() };
     let version = RunError::Unavailable { what: "this", instead: "that" };
     let path = || RunError::OutOfPoints { points: 7, load: 0.25, target: String::new(), partial: records(2) };
+    let nowhere = || RunError::NothingGrows { target: String::new(), partial: records(2) };
     let step = |count: usize| RunError::NoStep {
         time: 0.0,
         step: 1.0,
@@ -84,9 +87,15 @@ fn refusals_have_their_status_and_what_is_left() {
         partial: records(count),
     };
     let memory = || RunError::Memory { needed: 2.0, free: 1.0 };
-    for (error, status) in
-        [(probe, 2), (version, 2), (path(), 1), (step(2), 1), (stuck(0.5, 0.0, records(2)), 1), (memory(), 1)]
-    {
+    for (error, status) in [
+        (probe, 2),
+        (version, 2),
+        (path(), 1),
+        (nowhere(), 1),
+        (step(2), 1),
+        (stuck(0.5, 0.0, records(2)), 1),
+        (memory(), 1),
+    ] {
         assert_eq!(error.exit_status(), status, "{error}");
     }
     for (mut error, left) in [
@@ -94,6 +103,7 @@ fn refusals_have_their_status_and_what_is_left() {
         (step(1), None),
         (step(2), Some(2)),
         (path(), Some(2)),
+        (nowhere(), Some(2)),
         (stuck(0.5, 0.0, records(1)), None),
         (stuck(0.5, 0.0, records(3)), Some(3)),
         (memory(), None),

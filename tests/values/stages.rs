@@ -72,35 +72,34 @@ fn states_agree(first: &Results, second: &Results, within: f64, what: &str) {
     }
 }
 
+/// Effects of all kinds that may come and go.
+const EFFECTS: [(&str, &str); 15] = [
+    ("force", "{ beam = 'arm', at = 'end', value = [1, -0.7], follower = true }"),
+    ("moment", "{ beam = 'arm', at = 0.5, value = 1.5 }"),
+    ("spring", "{ beam = 'arm', at = 0.75, stiffness = 40 }"),
+    ("spring", "{ beam = 'arm', at = 0.75, anchor = [0.75, 1], length = 0.9, stiffness = 40 }"),
+    ("torsion_spring", "{ beam = 'arm', at = 0.5, stiffness = 7 }"),
+    ("foundation", "{ beam = 'arm', stiffness = [3, 30] }"),
+    ("actuation", "{ beam = 'arm', strain = 1e-4, curvature = 0.8 }"),
+    ("tendon", "{ beam = 'arm', offset = 0.05, tension = 20, from = 0.25 }"),
+    ("tendon", "{ beam = 'arm', offset = 0.05, shortening = 1e-3, from = 0.25 }"),
+    ("drag", "{ beam = 'leg', normal = 2, flow = [1.5, 0] }"),
+    (
+        "electrostatic",
+        "{ beam = 'arm', voltage = 400, width = 0.5, permittivity = 1e-6, electrode = { point = [0, -0.8], normal = [0, 1] } }",
+    ),
+    ("force_field", "{ beam = 'leg', value = ['-y', '3*(x-1)'] }"),
+    ("buoyancy", "{ beam = 'arm', displaced_mass_per_length = 0.9 }"),
+    ("point_mass", "{ beam = 'arm', at = 0.5, mass = 0.2 }"),
+    ("contact", "{ beam = 'arm', half_plane = { point = [0, -0.05], normal = [0, 1] }, stiffness = 1e4 }"),
+];
+
 /// Whatever comes in the second of three static stages leads to the equilibrium that a single
 /// analysis with it finds, and when it goes, back to the one without it.
 #[test]
 fn what_comes_and_goes_leads_to_the_same_equilibria() {
-    let lists = [
-        ("force", "{ beam = 'arm', at = 'end', value = [1, -0.7], follower = true }"),
-        ("moment", "{ beam = 'arm', at = 0.5, value = 1.5 }"),
-        ("spring", "{ beam = 'arm', at = 0.75, stiffness = 40 }"),
-        ("spring", "{ beam = 'arm', at = 0.75, anchor = [0.75, 1], length = 0.9, stiffness = 40 }"),
-        ("torsion_spring", "{ beam = 'arm', at = 0.5, stiffness = 7 }"),
-        ("foundation", "{ beam = 'arm', stiffness = [3, 30] }"),
-        ("actuation", "{ beam = 'arm', strain = 1e-4, curvature = 0.8 }"),
-        ("tendon", "{ beam = 'arm', offset = 0.05, tension = 20, from = 0.25 }"),
-        ("tendon", "{ beam = 'arm', offset = 0.05, shortening = 1e-3, from = 0.25 }"),
-        ("drag", "{ beam = 'leg', normal = 2, flow = [1.5, 0] }"),
-        (
-            "electrostatic",
-            "{ beam = 'arm', voltage = 400, width = 0.5, permittivity = 1e-6, electrode = { point = [0, -0.8], normal = [0, 1] } }",
-        ),
-        ("force_field", "{ beam = 'leg', value = ['-y', '3*(x-1)'] }"),
-        ("buoyancy", "{ beam = 'arm', displaced_mass_per_length = 0.9 }"),
-        ("point_mass", "{ beam = 'arm', at = 0.5, mass = 0.2 }"),
-        (
-            "contact",
-            "{ beam = 'arm', half_plane = { point = [0, -0.05], normal = [0, 1] }, stiffness = 1e4 }",
-        ),
-    ];
     let mut scenes = Vec::new();
-    for (kind, table) in lists {
+    for (kind, table) in EFFECTS {
         let [plain, staged] = in_second(table);
         let of = |table: String| {
             move |analysis: &str| with("", "", &format!("{WEIGHT}{kind} = [{table}]\n{LOAD}"), analysis)
@@ -147,6 +146,86 @@ fn what_comes_and_goes_leads_to_the_same_equilibria() {
     let found = solved(&with("", "", &format!("gravity = {staged}\n{LOAD}"), THREE));
     states_agree(&found[1], &without, 1e-7, "gravity");
     states_agree(&found[2], &solved_alone(&with("", "", LOAD, ALONE)), 1e-7, "gravity");
+}
+
+/// A path by arc length beyond load factor 1 leads to the equilibria under what is new, so many times
+/// over: what has gone does not come back with the opposite sign, and what has come holds as it is.
+#[test]
+fn what_has_come_or_gone_stays_so_beyond_load_factor_one() {
+    let push = |times: f64, when: &str| {
+        let list = format!("}}, {{ beam = 'leg', value = [{}, {}]{when} }}]", -2.0 * times, 0.5 * times);
+        format!("{WEIGHT}{}", LOAD.replace("}]", &list))
+    };
+    let one = "{ name = 'one', analysis.static = {} }";
+    let two = format!("stage = [{one}, {{ name = 'two', analysis.static.arc_length.until_load = 2.5 }}]");
+    let alone =
+        |supports: &str, joints: &str, effects: &str| solved_alone(&with(supports, joints, effects, ALONE));
+    let last = |text: &str| solved(text).pop().expect("two stages");
+    let parts = |list: &str, table: &str| match list {
+        "support" => (format!(", {table}"), String::new(), String::new()),
+        "joint" => (String::new(), table.to_owned(), String::new()),
+        _ => (String::new(), String::new(), format!("{list} = [{table}]\n")),
+    };
+    let weld =
+        "{ type = 'weld', first = { beam = 'arm', at = 'end' }, second = { beam = 'leg', at = 'start' } }";
+    let held = "{ beam = 'arm', at = 'end', fix = ['y'] }";
+    let without = alone("", "", &push(2.5, ""));
+    for (list, table) in EFFECTS.into_iter().chain([("joint", weld), ("support", held)]) {
+        let when =
+            |key: &str| table.trim_end().trim_end_matches('}').to_owned() + &format!(", {key} = 'two' }}");
+        let (supports, joints, effects) = parts(list, &when("until"));
+        let gone = last(&with(&supports, &joints, &(effects + &push(1.0, ", stage = 'two'")), &two));
+        states_agree(&gone, &without, 1e-7, &format!("{list} that goes"));
+        // A load that comes would grow, and a support holds what has moved before.
+        if ["spring", "torsion_spring", "foundation", "contact", "joint"].contains(&list) {
+            let (supports, joints, effects) = parts(list, &when("stage"));
+            let come = last(&with(&supports, &joints, &(effects + &push(1.0, ", stage = 'two'")), &two));
+            let (supports, joints, effects) = parts(list, table);
+            let there = alone(&supports, &joints, &(effects + &push(2.5, "")));
+            states_agree(&come, &there, 1e-7, &format!("{list} that comes"));
+        }
+    }
+}
+
+/// A path that ends before load factor 1 says what is still as it was, and one along which nothing else
+/// than what comes and goes changes ends where that has come and gone.
+#[test]
+fn paths_tell_what_has_not_come_or_gone() {
+    let of = |value: f64, stays: &str| {
+        let goes = "force = [{ beam = 'arm', at = 'end', value = [0, 2], until = 'two' }]\n";
+        let path = format!(
+            "stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', analysis.static.arc_length.until_probe = {{ probe = 'tip', y = {value} }} }}]"
+        );
+        let run =
+            solve_stages(scene(&with("", "", &format!("{goes}{stays}"), &path)).stages(), Options::default());
+        (run.results, run.failure.map(|error| error.to_string()))
+    };
+    let tip = |results: &Results| results.states().probes[0].samples.last().expect("a sample").y;
+    let (results, failure) = of(0.1, "");
+    assert_eq!(failure, None);
+    let load = *results[1].states().parameter.last().expect("a state");
+    near(tip(&results[1]), 0.1, 1e-9, "tip");
+    assert!((0.0..1.0).contains(&load), "{load}");
+    let left = format!("{:.0} % of it is still as it was before", 100.0 * (1.0 - load));
+    let told = &results[1].run().warnings;
+    assert!(told.iter().any(|warning| warning.ends_with(&left)), "{told:?}");
+    assert!(results[0].run().warnings.is_empty(), "{:?}", results[0].run().warnings);
+    let (results, failure) = of(-0.1, "");
+    let why = failure.expect("nothing pushes the tip down");
+    assert!(
+        why.starts_with(
+            "stage `two`: the path leads nowhere beyond load factor 1, before y = -0.1 m of probe `tip`"
+        ),
+        "{why}"
+    );
+    near(tip(&results[1]), 0.0, 1e-9, "tip of the beam without a load");
+    // With a load that grows the path goes on.
+    let new = "moment = [{ beam = 'arm', at = 'end', value = -0.1, stage = 'two' }]\n";
+    let (results, failure) = of(-0.1, new);
+    assert_eq!(failure, None);
+    near(tip(&results[1]), -0.1, 1e-9, "tip under a moment");
+    assert!(*results[1].states().parameter.last().expect("a state") > 1.0);
+    assert!(results[1].run().warnings.is_empty(), "{:?}", results[1].run().warnings);
 }
 
 const ALONE: &str = "analysis.static = {}";
