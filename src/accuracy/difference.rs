@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 use super::judgement::scaled;
 use super::mesh::{CellErrors, Mesh};
 
-/// Records belong together when their parameters differ by less, relative to the last one.
+/// Parameters of records, and places along a beam, are the same when they differ by less, relative to
+/// the last one.
 const SAME: f64 = 1e-9;
 /// Most places of a beam that are watched, unless it has more cells.
 const STATIONS: usize = 64;
@@ -337,7 +338,7 @@ fn section_forces(coarse: &[Shape], fine: &[Shape]) -> Option<f64> {
         for (a, b) in coarse.iter().zip(fine) {
             largest = kind(b).iter().fold(largest, |largest, value| largest.max(value.abs()));
             for (k, (s, value)) in a.s.iter().zip(kind(a)).enumerate() {
-                let after = a.s.get(k + 1) != Some(s);
+                let after = a.s.get(k + 1).is_none_or(|next| next - s > same_place(&a.s));
                 if let Some(other) = interpolated(&b.s, kind(b), *s, after) {
                     error = larger(error, (value - other).abs());
                 }
@@ -355,14 +356,21 @@ fn section_forces(coarse: &[Shape], fine: &[Shape]) -> Option<f64> {
     })
 }
 
+/// Arc lengths \[m\] that are nearer to each other are one place, to which a finer mesh gives other last
+/// digits.
+fn same_place(places: &[f64]) -> f64 {
+    SAME * places.last().copied().unwrap_or(0.0)
+}
+
 /// The value at `s`; where a place is there twice, behind it with `after`.
 fn interpolated(places: &[f64], values: &[f64], s: f64, after: bool) -> Option<f64> {
-    let right = if after { places.partition_point(|p| *p <= s) } else { places.partition_point(|p| *p < s) };
-    if after && right > 0 && places[right - 1] == s {
-        return values.get(right - 1).copied();
-    }
-    if places.get(right) == Some(&s) {
-        return values.get(right).copied();
+    let (before, behind) = (s - same_place(places), s + same_place(places));
+    let right = places.partition_point(|p| if after { *p <= behind } else { *p < before });
+    let here = if after { right.checked_sub(1) } else { Some(right) };
+    if let Some(here) = here
+        && places.get(here).is_some_and(|p| (before..=behind).contains(p))
+    {
+        return values.get(here).copied();
     }
     let left = right.checked_sub(1)?;
     let (a, b) = (*places.get(left)?, *places.get(right)?);
@@ -774,6 +782,18 @@ mod tests {
         let bent = [shape([0.0, 0.0], [0.0, 1.0], [0.0, 20.0])];
         let other = shape([0.0, 0.5], [0.0, 1.0], [0.0, 20.0]);
         assert_eq!(section_forces(&[other], &bent), Some(0.05));
+        // The same jump, at places that differ by their last digits.
+        let jump = |s: f64| Shape {
+            s: vec![0.0, s, s, 2.0],
+            axial_force: vec![3.0, 3.0, -5.0, -5.0],
+            shear_force: vec![0.0; 4],
+            bending_moment: vec![0.0; 4],
+            ..Shape::default()
+        };
+        for s in [1.0_f64.next_down(), 1.0, 1.0_f64.next_up()] {
+            assert_eq!(section_forces(&[jump(s)], &[jump(1.0)]), Some(0.0), "{s:?}");
+        }
+        assert!(section_forces(&[jump(1.001)], &[jump(1.0)]) > Some(1.0));
         let nothing = [shape([0.0; 2], [0.0; 2], [0.0; 2])];
         assert_eq!(section_forces(&nothing, &nothing), None);
     }
