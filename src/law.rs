@@ -509,7 +509,10 @@ mod tests {
             Law::Harmonic { frequency: 300.0, phase: 0.7 },
             Law::Harmonic { frequency: 280.0, phase: 0.1 },
         ]);
-        for law in laws().into_iter().chain(fast).chain([beat]) {
+        // A pulse that six points do not see, within a sum within a product.
+        let pulse = written("exp(-((t - 0.345)/0.01)^2)", Vec::new());
+        let hidden = Law::Product(vec![Law::Sum(vec![pulse, Law::Polynomial(vec![0.5])]), fast[1].clone()]);
+        for law in laws().into_iter().chain(fast).chain([beat, hidden]) {
             for (start, end) in [(0.1, 0.3), (0.31, 0.38), (0.71, 1.4), (2.1, 2.9)] {
                 let n = 400_000;
                 let sums = (0..n).fold([0.0; 2], |[mean, moment], i| {

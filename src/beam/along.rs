@@ -340,6 +340,25 @@ mod tests {
         assert_eq!(table().times(2.0).at(0.5, 0.5), 6.0);
     }
 
+    /// As tables of an inventory show it.
+    #[test]
+    fn it_is_written_as_it_is_given() {
+        for (along, text) in [
+            (Along::Constant(2.5), "2.5"),
+            (table(), "table(s = [0.0, 1.0, 3.0], value = [2.0, 4.0, 1.0])"),
+            (Along::Polynomial(vec![1.0, 2.0]), "polynomial([1.0, 2.0])"),
+            (pieces(), "pieces(until = [1.0], value = [5.0, 7.0])"),
+            (
+                Along::Product(vec![table(), 3.0.into()]),
+                "(table(s = [0.0, 1.0, 3.0], value = [2.0, 4.0, 1.0])) * (3)",
+            ),
+            (Along::Sum(vec![1.0.into(), 2.0.into(), 4.0.into()]), "(1) + (2) + (4)"),
+            (Along::Quotient(Box::new([1.0.into(), 2.0.into()])), "(1) / (2)"),
+        ] {
+            assert_eq!(along.to_string(), text);
+        }
+    }
+
     /// Slopes are those of secants a little to either side.
     #[test]
     fn slopes_are_those_of_secants() {

@@ -225,4 +225,29 @@ mod tests {
         assert!((y / x - 4.0 / 3.0).abs() < 1e-15, "{slides:?}");
         assert_eq!(slides.origin(0), [0.0, 0.0]);
     }
+
+    /// An obstacle holds what springs press against it, and alone nothing.
+    #[test]
+    fn contacts_hold_where_springs_may_press() {
+        let scene = |effects: &str| {
+            let text = format!(
+                "beam.rod = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 1 }}\n\
+                 analysis.modal.count = 1\n[effect]\n{effects}"
+            );
+            crate::scene::parse("scene", &text)
+                .unwrap_or_else(|error| panic!("{error}\n{text}"))
+                .model()
+                .clone()
+        };
+        let contact = "contact = [{ beam = 'rod', half_plane = { point = [0, -1], normal = [0, 1] }, stiffness = 1 }]\n";
+        let spring = "torsion_spring = [{ beam = 'rod', at = 'start', stiffness = 1 }]\n";
+        for (effects, motions) in
+            [(String::new(), 3), (contact.into(), 3), (spring.into(), 2), (format!("{contact}{spring}"), 0)]
+        {
+            let model = scene(&effects);
+            let mut freedom = Freedom::new(&model, 2.0, position);
+            freedom.resist(&model, position);
+            assert_eq!(freedom.motions().len(), motions, "{effects}");
+        }
+    }
 }

@@ -379,6 +379,7 @@ mod tests {
                 measure: StrainMeasure::Engineering,
                 axial_stiffness: Along::Constant(3e4),
                 bending_stiffness: None,
+                length: 2.0,
                 offset: 0,
                 tables: [BasisTable::default(), BasisTable::default()],
                 reference: [Vec::new(), Vec::new()],

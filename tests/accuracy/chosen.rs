@@ -25,6 +25,20 @@ fn the_chosen_scene_gives_the_same_bits() {
     }
 }
 
+/// Where a scene asks for no accuracy the model of the first run is its own, and one whose mesh is
+/// chosen gets it.
+#[test]
+fn the_first_model_is_that_of_the_scene_where_nothing_is_chosen() {
+    let force = "effect.force = [{ beam = 'arm', at = 0.3, value = [0, 9] }]\n";
+    let open = cantilever(1e4, 1.0, &format!("{force}analysis.static = {{ accuracy = 1e-6 }}"));
+    let plain = cantilever(1e4, 1.0, &format!("{force}analysis.static = {{}}"))
+        .replace("bending_stiffness", "basis.ancf.elements = 7, bending_stiffness");
+    let first = |text: &str| ancf::accuracy::first(&scene(text)).0.beams[0].discretization.clone();
+    assert_eq!(first(&plain), Discretization::Ancf { nodes: Nodes::Uniform(8) });
+    assert_eq!(scene(&open).model().beams[0].discretization, Discretization::Open);
+    assert_ne!(first(&open), Discretization::Open);
+}
+
 /// A basis that the scene names stays, as does an integrator; the other beam's basis is chosen.
 #[test]
 fn what_the_scene_names_is_kept() {

@@ -45,6 +45,22 @@ fn the_usual_accuracy_is_said_to_be_that() {
     }
 }
 
+/// Stages have no accuracy, and neither option passes over them in silence.
+#[test]
+fn stages_have_no_errors_to_estimate() {
+    let force = "effect.force = [{ beam = 'arm', at = 'end', value = [0, 1] }]\n";
+    let stages = "stage = [{ name = 'one', analysis.static = {} }, { name = 'two', analysis.static = {} }]\n";
+    let arm = ARM.replace("mass_per_length = 1 }", "mass_per_length = 1, basis.ancf.elements = 4 }");
+    let folder = folder(&format!("{arm}{force}{stages}"));
+    for option in [&["--error"][..], &["--accuracy", "1e-3"]] {
+        let output = ancf(folder.path(), &[&["run", "scene.toml"], option].concat());
+        assert_eq!(status(&output), 2, "{option:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains("stages"), "{option:?}: {}", stderr(&output));
+    }
+    let output = ancf(folder.path(), &["run", "scene.toml"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+}
+
 /// No double has fourteen digits more than it needs: the results are written, with what they are
 /// worth.
 #[test]

@@ -84,6 +84,39 @@ fn a_wrong_override_ends_with_2() {
     assert_eq!(entries(folder.path()), ["scene.toml"]);
 }
 
+/// A file that is no TOML is at fault, and not what is set in it.
+#[test]
+fn a_broken_file_is_told_before_its_overrides() {
+    let folder = folder(&ROLL_UP.replace("elements = 3 ", "elements = = 3 "));
+    let set = "beam.cantilever.basis.ancf.elements=4";
+    let [plain, with] = [&[][..], &["--set", set]].map(|more| {
+        let output = ancf(folder.path(), &[&["run", "scene.toml"], more].concat());
+        assert_eq!(status(&output), 2, "{}", stderr(&output));
+        stderr(&output)
+    });
+    assert!(plain.contains("scene.toml:14:12: "), "{plain}");
+    assert_eq!(plain, with);
+}
+
+/// Why stages end early stands beside the results of the last.
+#[test]
+fn a_stage_that_fails_is_told_with_the_one_before() {
+    // A bar that is pushed flat, in the end by more than it resists.
+    let text = "beam.bar = { start = [0, 0], end = [1, 0.3], axial_stiffness = 1e4, bending_stiffness = 1e3, basis.ancf.elements = 2 }
+        support = [{ beam = 'bar', at = 'start', fix = ['x', 'y'] }, { beam = 'bar', at = 'end', fix = ['x'] }]
+        effect.force = [{ beam = 'bar', at = 'end', value = [0, -1] }, { beam = 'bar', at = 'end', value = [0, -100], stage = 'three' }]
+        stage = [{ name = 'one', analysis.static = {} }, { name = 'two', analysis.static = {} }, { name = 'three', analysis.static = {} }]";
+    let folder = folder(text);
+    let output = ancf(folder.path(), &["run", "scene.toml", "-o", "out"]);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    let told = |stage: &str| {
+        let summary = fs::read_to_string(folder.path().join("out").join(stage).join("summary.json")).unwrap();
+        summary.contains("stage `three`")
+    };
+    // What the third has reached is written, too.
+    assert_eq!(["one", "two", "three"].map(told), [false, false, true], "{}", stderr(&output));
+}
+
 #[test]
 fn an_unwritable_destination_ends_with_2_before_solving() {
     let folder = folder(ROLL_UP);

@@ -134,6 +134,41 @@ fn shapes_of_motions_carry_weight_and_inertia() {
     }
 }
 
+/// A rod that flies and turns with 6 rad/s, between records on either side of half a turn, where
+/// directions begin anew: its direction is the mean of both, but for whole turns. It vibrates by 0.006 rad.
+#[test]
+fn directions_between_records_take_the_short_way() {
+    let (scene, found) = kept(&format!(
+        "{ARM}initial_velocity = [{{ beam = 'arm', rotation = 6 }}]
+        analysis.dynamic = {{ duration = 2, output_every = 0.1, radau.tolerance = 1e-6 }}\n"
+    ));
+    let mut widest = 0.0_f64;
+    for pair in found.parameter.windows(2) {
+        let [before, after] = [pair[0], pair[1]].map(|time| at(&scene, &found, time).angle[0]);
+        widest = widest.max((after - before).abs());
+        let time = 0.5 * (pair[0] + pair[1]);
+        let turns = (at(&scene, &found, time).angle[0] - 6.0 * time) / std::f64::consts::TAU;
+        near(turns, turns.round(), 0.01, "turns beyond ω t");
+    }
+    assert!(widest > 5.0, "no direction begins anew: {widest}");
+}
+
+/// The line of a tendon goes from where it begins to where it ends, beside the beam.
+#[test]
+fn tendons_have_lines_beside_their_beams() {
+    let (_, found) = kept(&format!(
+        "{ARM}support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+        effect.tendon = [{{ beam = 'arm', offset = 0.1, tension = 1e-6 }}]\nanalysis.static = {{}}\n"
+    ));
+    let [line] = &found.last[0].tendons[..] else { panic!("{:?}", found.last[0].tendons) };
+    for (point, x) in [(line.first(), 0.0), (line.last(), 1.0)] {
+        let point = point.expect("a point");
+        near(point[0], x, 1e-6, "x of an end");
+        near(point[1], 0.1, 1e-6, "y of an end");
+    }
+    assert_eq!(line.len(), found.last[0].s.len());
+}
+
 #[test]
 fn shapes_that_no_record_knows_are_refused() {
     let text = format!(
