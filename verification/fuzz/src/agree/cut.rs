@@ -43,7 +43,12 @@ pub fn cut(scene: &Table) -> Option<Table> {
     let layered = ["table", "polynomial", "pieces"].iter().any(|varying| section.contains(varying));
     let effects = scene.get("effect").and_then(Value::as_table);
     let on_a_stretch = |item: &Value| {
-        let varies = item.get("offset").is_some_and(Value::is_table);
+        let along = |value: &Value| {
+            ["table", "polynomial", "pieces"].iter().any(|kind| value.get(kind).is_some())
+                || value.as_array().is_some_and(|both| both.iter().any(Value::is_table))
+        };
+        let varies =
+            item.as_table().into_iter().flatten().any(|(key, value)| key != "in_time" && along(value));
         item.get("from").is_some() || item.get("to").is_some() || varies
     };
     let mut items = effects.into_iter().flatten().filter_map(|(_, list)| list.as_array()).flatten();

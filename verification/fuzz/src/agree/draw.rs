@@ -178,6 +178,44 @@ impl Draw<'_> {
         }
     }
 
+    /// Lets what a table gives for a whole beam vary along it, sometimes.
+    fn perhaps_vary(&mut self, table: &mut Table, keys: &[&str]) {
+        let name = table.get("beam").and_then(Value::as_str);
+        let Some(length) = self.beams.iter().find(|beam| Some(&*beam.name) == name).map(|beam| beam.length)
+        else {
+            return;
+        };
+        if !self.chance(0.25) {
+            return;
+        }
+        for key in keys {
+            match table.get_mut(*key) {
+                Some(Value::Array(both)) => both.iter_mut().for_each(|value| self.vary(value, length)),
+                Some(value) => self.vary(value, length),
+                None => {}
+            }
+        }
+    }
+
+    /// Lets a vector vary along a beam of this `length`, sometimes: both components at the same places.
+    fn perhaps_vary_vector(&mut self, vector: &mut Value, length: f64) {
+        let Some([x, y]) = super::frame::vector(vector).filter(|[x, _]| *x != 0.0) else { return };
+        if !self.chance(0.25) {
+            return;
+        }
+        let mut first = Value::Float(x);
+        self.vary(&mut first, length);
+        let mut second = first.clone();
+        for list in second.as_table_mut().into_iter().flat_map(super::frame::values_along) {
+            for value in list.iter_mut() {
+                if let Value::Float(v) = value {
+                    *v *= y / x * self.even(0.7, 1.3);
+                }
+            }
+        }
+        *vector = Value::Array(vec![first, second]);
+    }
+
     /// A table that names a point of a beam; its arc length.
     fn of_point(&mut self) -> (usize, f64, Table) {
         let (beam, mut table) = self.of_beam();

@@ -150,6 +150,10 @@ impl Frame {
             (Nature::Vector(d), value) => {
                 if let Some(v) = vector(value) {
                     *value = list(self.direction(v).map(|v| v * self.unit(d)));
+                } else if let Value::Array(both) = value
+                    && let [Value::Table(x), Value::Table(y)] = &mut both[..]
+                {
+                    self.vector_along(x, y, d);
                 }
             }
             (Nature::Point, value) => {
@@ -219,6 +223,29 @@ impl Frame {
             }
             for (key, list) in value.as_table_mut().into_iter().flatten() {
                 self.quantity(if key == "value" { nature } else { length }, list);
+            }
+        }
+    }
+
+    /// Converts a vector that varies along a beam, of which both components are given at the same
+    /// places.
+    fn vector_along(&self, x: &mut Table, y: &mut Table, dimension: Dimension) {
+        let (of_powers, length) = (x.contains_key("polynomial"), Nature::Scalar([1, 0, 0]));
+        for table in [&mut *x, &mut *y] {
+            for (key, places) in table.iter_mut().filter_map(|(_, below)| below.as_table_mut()).flatten() {
+                if key != "value" {
+                    self.quantity(length, places);
+                }
+            }
+        }
+        for (xs, ys) in values_along(x).zip(values_along(y)) {
+            for (power, (x, y)) in (0..).zip(xs.iter_mut().zip(ys)) {
+                let (Value::Float(a), Value::Float(b)) = (&*x, &*y) else { continue };
+                let lower = if of_powers { power } else { 0 };
+                let [of_length, mass, time] = dimension;
+                let unit = self.unit([of_length - lower, mass, time]);
+                let turned = self.direction([*a, *b]).map(|v| Value::Float(v * unit));
+                [*x, *y] = turned;
             }
         }
     }
@@ -409,6 +436,14 @@ pub fn vector(value: &Value) -> Option<[f64; 2]> {
         [x, y] => Some([x.as_float()?, y.as_float()?]),
         _ => None,
     }
+}
+
+/// The lists of values, or of coefficients, of a quantity that varies along a beam.
+pub fn values_along(quantity: &mut Table) -> impl Iterator<Item = &mut Vec<Value>> {
+    quantity.iter_mut().filter_map(|(_, below)| match below {
+        Value::Array(coefficients) => Some(coefficients),
+        below => below.get_mut("value")?.as_array_mut(),
+    })
 }
 
 /// A list of numbers.

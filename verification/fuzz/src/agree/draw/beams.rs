@@ -359,7 +359,8 @@ impl Draw<'_> {
 
     /// Lets some of the beam's quantities vary along it.
     fn variation(&mut self, table: &mut Table, length: f64) {
-        if !self.chance(0.12) {
+        let share = if table.contains_key("section") { 0.3 } else { 0.12 };
+        if !self.chance(share) {
             return;
         }
         let keys = [
@@ -385,7 +386,7 @@ impl Draw<'_> {
                     one => vec![one],
                 };
                 for shape in shapes.into_iter().filter_map(Value::as_table_mut) {
-                    for (_, value) in shape.iter_mut().filter(|(key, _)| *key != "offset") {
+                    for (_, value) in shape.iter_mut() {
                         if self.chance(0.4) {
                             self.vary(value, length);
                         }
@@ -396,7 +397,7 @@ impl Draw<'_> {
     }
 
     /// Makes a number one that varies along a beam, by a factor of two at most.
-    fn vary(&mut self, value: &mut Value, length: f64) {
+    pub(super) fn vary(&mut self, value: &mut Value, length: f64) {
         let Value::Float(v) = *value else { return };
         let numbers = |list: &[f64]| Value::Array(list.iter().copied().map(Value::Float).collect());
         let mut varying = Table::new();

@@ -85,8 +85,10 @@ impl Draw<'_> {
     fn distributed(&mut self, size: f64, sure: bool) {
         let share = if sure { 1.0 } else { 0.12 };
         if self.chance(share) {
-            let (_, mut table) = self.of_beam();
-            table.insert("value".into(), self.vector(0.1 * size, 20.0 * size));
+            let (beam, mut table) = self.of_beam();
+            let mut value = self.vector(0.1 * size, 20.0 * size);
+            self.perhaps_vary_vector(&mut value, self.beams[beam].length);
+            table.insert("value".into(), value);
             self.perhaps_follower(&mut table);
             self.perhaps_in_time(&mut table, 0.4);
             self.perhaps_stretch(&mut table);
@@ -109,6 +111,7 @@ impl Draw<'_> {
         if self.chance(0.2) {
             let (_, mut table) = self.of_beam();
             table.insert("displaced_mass_per_length".into(), self.log(0.1, 1.5).into());
+            self.perhaps_vary(&mut table, &["displaced_mass_per_length"]);
             self.perhaps_stretch(&mut table);
             self.push(&["effect", "buoyancy"], table);
         }
@@ -135,6 +138,10 @@ impl Draw<'_> {
             }
             _ => {}
         }
+        self.perhaps_vary(
+            &mut table,
+            &["mass_proportional", "stiffness_proportional", "curvature", "strain"],
+        );
         self.perhaps_stretch(&mut table);
         self.push(&["effect", "damping"], table);
     }
@@ -184,6 +191,7 @@ impl Draw<'_> {
         if self.chance(0.08) {
             let (_, mut table) = self.of_beam();
             table.insert("per_length".into(), self.log(1e-6, 1e-2).into());
+            self.perhaps_vary(&mut table, &["per_length"]);
             self.push(&["effect", "rotary_inertia"], table);
         }
     }
@@ -194,6 +202,7 @@ impl Draw<'_> {
             let k = self.log(1.0, 1000.0);
             let both = if self.chance(0.6) { [k, k] } else { [0.0, k] };
             table.insert("stiffness".into(), list(both));
+            self.perhaps_vary(&mut table, &["stiffness"]);
             self.perhaps_stretch(&mut table);
             self.push(&["effect", "foundation"], table);
         }
@@ -222,6 +231,7 @@ impl Draw<'_> {
         if bends && !layer && (table.len() == 1 || self.chance(0.5)) {
             table.insert("curvature".into(), self.signed(1e-2, 5.0).into());
         }
+        self.perhaps_vary(&mut table, &["strain", "curvature"]);
         self.perhaps_in_time(&mut table, 0.5);
         self.perhaps_stretch(&mut table);
         self.push(&["effect", "actuation"], table);
@@ -277,6 +287,7 @@ impl Draw<'_> {
         if table.len() == 1 {
             table.insert("normal".into(), self.log(0.01, 3.0).into());
         }
+        self.perhaps_vary(&mut table, &["normal", "tangential", "viscous_normal", "viscous_tangential"]);
         if !self.is_motion() || self.chance(0.5) {
             table.insert("flow".into(), self.vector(0.1, 2.0));
         }
