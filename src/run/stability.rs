@@ -35,7 +35,14 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
          that the sign of the determinant of the tangent would take too long; use fewer elements or nodes to see it"
             .to_owned()
     });
-    let others = [pressed, crest, start, unwatched].into_iter().flatten();
+    let softened = solution.softened.map(|load| {
+        format!(
+            "at load factor {load:.6} several directions lose their stiffness at once, so that the determinant of the tangent, by which \
+             loads without a potential are watched, keeps its sign: the equilibria found beyond may be unstable; reach the load in more \
+             `steps`, or add a small imperfection"
+        )
+    });
+    let others = [pressed, crest, start, unwatched, softened].into_iter().flatten();
     others.chain(solution.events.iter().map(of_change))
 }
 
@@ -65,4 +72,20 @@ fn of_change(change: &StabilityChange) -> String {
     format!(
         "the tangent {verb} definiteness at load factor {load:.6}: {before} unstable direction{plural} before, {after} after; {advice}"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn several_directions_at_once_are_told() {
+        let solution = Solution { softened: Some(0.25), ..Solution::default() };
+        let told: Vec<String> = warnings(&solution).collect();
+        assert!(
+            told.len() == 1 && told[0].starts_with("at load factor 0.250000 several directions lose"),
+            "{told:?}"
+        );
+        assert_eq!(warnings(&Solution::default()).count(), 0);
+    }
 }

@@ -269,6 +269,12 @@ impl<'a> Equilibrium<'a> {
         factor.negative_directions(&symmetric, &self.border)
     }
 
+    /// [`Self::soft_directions`] where the tangent has no symmetry, and the sign of its determinant is
+    /// all that is known of stability.
+    pub fn soft_beside_determinant(&self) -> Option<usize> {
+        if self.is_symmetric() { None } else { self.soft_directions() }
+    }
+
     /// Stability at the last linearised state, where the factorisation tells.
     pub fn stability(&self) -> Option<Stability> {
         let determinants = || {

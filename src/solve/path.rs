@@ -53,6 +53,9 @@ pub struct Point {
     pub x: Vec<f64>,
     /// Its stability, where the factorisation tells.
     pub stability: Option<Stability>,
+    /// Directions in which the symmetric part of the tangent lacks stiffness, where the sign of the
+    /// determinant alone tells of stability.
+    pub soft: Option<usize>,
     /// The path's tangent (dx/dt, dλ/dt); empty where it is not known.
     pub rate: Vec<f64>,
 }
@@ -138,6 +141,9 @@ pub struct Path<'e, 'a> {
     crossing: Option<(Point, f64)>,
     /// Attempted steps so far.
     pub history: Vec<StepRecord>,
+    /// Load factor at which several directions lost their stiffness within one step, and the
+    /// determinant kept its sign.
+    pub softened: Option<f64>,
 }
 
 impl<'e, 'a> Path<'e, 'a> {
@@ -165,7 +171,7 @@ impl<'e, 'a> Path<'e, 'a> {
             }
         }
         equilibrium.set_accepted(&x);
-        let start = Point { parameter: 0.0, load: 0.0, x, stability: None, rate: Vec::new() };
+        let start = Point { parameter: 0.0, load: 0.0, x, stability: None, soft: None, rate: Vec::new() };
         let mut path = Self {
             equilibrium,
             settings: Settings { first_increment: LARGEST_TURN, ..settings },
@@ -175,6 +181,7 @@ impl<'e, 'a> Path<'e, 'a> {
             first_step: step,
             crossing: None,
             history: Vec::new(),
+            softened: None,
         };
         path.set_out()?;
         Ok(path)
@@ -303,6 +310,11 @@ impl<'e, 'a> Path<'e, 'a> {
     fn accept(&mut self, point: Point, step: f64, turn: f64) -> &Point {
         let factor = (WANTED_TURN / turn.max(1e-12)).sqrt();
         self.step = self.step.max(step) * factor.clamp(0.4, 2.5);
+        let told =
+            self.last().stability.zip(point.stability).is_some_and(|(before, after)| before.differs(after));
+        if !told && softens(self.last(), &point) {
+            self.softened = self.softened.or(Some(point.load));
+        }
         self.points.push(point);
         if self.points.len() > MEMORY {
             self.points.remove(0);
@@ -334,15 +346,18 @@ impl<'e, 'a> Path<'e, 'a> {
 
     /// Whether the determinant changes its sign twice on the way to a point, where it alone tells
     /// of stability. It is evaluated at several states between, and where the number of directions
-    /// that lack stiffness changes by more than one, at states ever nearer to the change.
+    /// that lack stiffness changes by more than one, at states ever nearer to the change. In a step
+    /// that bends the beams states between would be compressed, as chords are; there the number at
+    /// both ends has to do.
     fn crosses_twice(&mut self, point: &Point) -> bool {
         let last = self.last().clone();
-        let bent = self.turn(&point.x, &last.x) >= STRAIGHT;
-        let (Some(before), Some(Stability::NegativeDeterminants(_)), false) =
-            (last.stability, point.stability, bent)
+        let (Some(before), Some(Stability::NegativeDeterminants(_))) = (last.stability, point.stability)
         else {
             return false;
         };
+        if self.turn(&point.x, &last.x) >= STRAIGHT {
+            return softens(&last, point);
+        }
         let mut scratch = vec![0.0; point.x.len()];
         let mut rate = scratch.clone();
         let mut look = |part: f64| -> Option<Between> {
@@ -395,6 +410,7 @@ impl<'e, 'a> Path<'e, 'a> {
             rate = self.along(rate, None);
         }
         self.points[0].stability = self.equilibrium.stability();
+        self.points[0].soft = self.equilibrium.soft_beside_determinant();
         self.points[0].rate = rate;
         Ok(())
     }
@@ -439,7 +455,7 @@ impl<'e, 'a> Path<'e, 'a> {
         load = if self.parameter == Parameter::Load { parameter } else { load + h * rate[x.len()] };
         let n = self.equilibrium.system().coordinates();
         self.equilibrium.system().supports().impose(load, &mut x[..n]);
-        Point { parameter, load, x, stability: None, rate }
+        Point { parameter, load, x, stability: None, soft: None, rate }
     }
 
     /// The increment of a step of length `h` along the tangent.
@@ -566,6 +582,7 @@ impl<'e, 'a> Path<'e, 'a> {
         });
         let turn = outcome?;
         point.stability = self.equilibrium.stability();
+        point.soft = self.equilibrium.soft_beside_determinant();
         Ok((point, turn))
     }
 
@@ -688,7 +705,7 @@ impl<'e, 'a> Path<'e, 'a> {
         let start = Earlier { q: &start, increment: &still };
         newton::solve(&mut equations, &mut x, start, &self.settings, &mut record).ok()?;
         let stability = self.equilibrium.stability();
-        Some(Point { parameter: load, load, x, stability, rate: Vec::new() })
+        Some(Point { parameter: load, load, x, stability, soft: None, rate: Vec::new() })
     }
 }
 
@@ -715,6 +732,12 @@ struct Between {
     crossed: bool,
     /// Directions that lack stiffness there.
     soft: Option<usize>,
+}
+
+/// Whether several directions lose their stiffness between two states, so that the determinant may
+/// have the same sign in both.
+fn softens(before: &Point, after: &Point) -> bool {
+    before.soft.zip(after.soft).is_some_and(|(before, after)| after >= before + 2)
 }
 
 /// Whether the determinant has the other sign somewhere between two states at which it has not.

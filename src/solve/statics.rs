@@ -46,6 +46,9 @@ pub struct Solution {
     pub unstable_start: Option<Stability>,
     /// Whether a tangent without symmetry tells nothing of the stability at the end of the path.
     pub unwatched: bool,
+    /// Load factor at which several directions lost their stiffness at once, where only the sign of
+    /// the determinant is watched.
+    pub softened: Option<f64>,
     /// Instabilities met.
     pub events: Vec<StabilityChange>,
     /// A mechanism under its loads that, before it was relaxed, had more unstable directions than
@@ -259,6 +262,7 @@ fn along_load(
     }
     solution.history = std::mem::take(&mut path.history);
     solution.unwatched = path.last().stability.is_none() && !path.equilibrium.is_symmetric();
+    solution.softened = path.softened;
     outcome
 }
 
@@ -490,6 +494,7 @@ fn along_arc(
     }
     solution.history = std::mem::take(&mut path.history);
     solution.unwatched = path.last().stability.is_none() && !path.equilibrium.is_symmetric();
+    solution.softened = path.softened;
     solution.unreached = unreached;
     outcome
 }

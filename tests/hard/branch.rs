@@ -6,8 +6,8 @@ use crate::property::generators::clamp;
 use ancf::assembly::Part;
 use ancf::effect::{DistributedForce, Force, Moment};
 use ancf::model::{
-    ArcLength, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Place, Probe, Section,
-    SideCondition, Static, StrainMeasure,
+    Analysis, ArcLength, Beam, Centreline, Discretization, GaussPoints, Kernel, Model, Nodes, Place, Probe,
+    Section, SideCondition, Static, StrainMeasure,
 };
 use ancf::results::{ProbeSample, Trajectory};
 use ancf::run::RunError;
@@ -180,5 +180,44 @@ proptest! {
     #[test]
     fn chosen_steps_end_where_small_steps_end_on_meshes_that_do_not_lock(model in resolved_cantilever()) {
         ends_agree(&model)?;
+    }
+}
+
+/// A column that is made shorter by 5 % in one step, far beyond many of its critical loads, while its
+/// clamp turns: it bends, and does not stay straight under a thousand times its critical load. A
+/// follower force of a millionth of that, or dry friction of an obstacle that it does not touch,
+/// changes nothing, although only the sign of a determinant is then known of its stability.
+#[test]
+fn what_has_no_potential_does_not_hide_that_a_column_buckles() {
+    let column = |basis: &str, effects: &str| {
+        let text = format!(
+            "beam.column = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1, {basis} }}
+            probe = [{{ name = 'middle', beam = 'column', at = 0.5 }}]
+            support = [{{ beam = 'column', at = 'start', fix = ['x', 'y', 'angle'], move = {{ x = 0.05, angle = -0.2 }} }}, {{ beam = 'column', at = 'end', fix = ['x'] }}]
+            analysis.static = {{}}\n[effect]\ndistributed_force = [{{ beam = 'column', value = [0, 0.07] }}]\n{effects}"
+        );
+        let scene = ancf::scene::parse("column", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let Analysis::Static(settings) = scene.analysis() else { panic!("statics") };
+        let found =
+            analysis(scene.model(), settings.clone()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let stretch = found.energy.last().expect("an energy").stretch;
+        (last(&found)[0].y, stretch, found.run.warnings.len())
+    };
+    for basis in [
+        "basis.ancf.elements = 8",
+        "basis.ancf.elements = 16",
+        "basis.ancf.elements = 32",
+        "basis.rpim.nodes = 12",
+    ] {
+        let (plain, _, _) = column(basis, "");
+        assert!(plain < -0.05, "{basis}: {plain}");
+        for effects in [
+            "force = [{ beam = 'column', at = 'end', value = [0, 1e-6], follower = true }]",
+            "contact = [{ beam = 'column', stiffness = 70, circle = { center = [0.5, 0.9], radius = 0.3 }, friction.coefficient = 0.1 }]",
+        ] {
+            let (with, stretch, warnings) = column(basis, effects);
+            assert!((with - plain).abs() < 1e-5, "{basis}, {effects}: {with} in place of {plain}");
+            assert!(stretch < 1e-3 && warnings == 0, "{basis}, {effects}: {stretch} J, {warnings} warnings");
+        }
     }
 }
