@@ -269,10 +269,12 @@ impl<'a> Equilibrium<'a> {
         factor.negative_directions(&symmetric, &self.border)
     }
 
-    /// [`Self::soft_directions`] where the tangent has no symmetry, and the sign of its determinant is
-    /// all that is known of stability.
-    pub fn soft_beside_determinant(&self) -> Option<usize> {
-        if self.is_symmetric() { None } else { self.soft_directions() }
+    /// Stability at the last linearised state, where the factorisation tells, and where that is the sign
+    /// of the determinant of a tangent without symmetry, [`Self::soft_directions`] beside it.
+    pub fn stability_and_softness(&self) -> (Option<Stability>, Option<usize>) {
+        let stability = self.stability();
+        let by_sign = !self.is_symmetric() && matches!(stability, Some(Stability::NegativeDeterminants(_)));
+        (stability, by_sign.then(|| self.soft_directions()).flatten())
     }
 
     /// Stability at the last linearised state, where the factorisation tells.

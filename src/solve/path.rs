@@ -409,8 +409,7 @@ impl<'e, 'a> Path<'e, 'a> {
         if self.parameter == Parameter::ArcLength {
             rate = self.along(rate, None);
         }
-        self.points[0].stability = self.equilibrium.stability();
-        self.points[0].soft = self.equilibrium.soft_beside_determinant();
+        (self.points[0].stability, self.points[0].soft) = self.equilibrium.stability_and_softness();
         self.points[0].rate = rate;
         Ok(())
     }
@@ -581,8 +580,7 @@ impl<'e, 'a> Path<'e, 'a> {
             residuals: record.residuals,
         });
         let turn = outcome?;
-        point.stability = self.equilibrium.stability();
-        point.soft = self.equilibrium.soft_beside_determinant();
+        (point.stability, point.soft) = self.equilibrium.stability_and_softness();
         Ok((point, turn))
     }
 
