@@ -100,7 +100,7 @@ fn a_broken_file_is_told_before_its_overrides() {
 
 /// Why stages end early stands beside the results of the last.
 #[test]
-fn a_stage_that_fails_is_told_with_the_one_before() {
+fn a_stage_that_fails_is_told_in_its_own_results() {
     // A bar that is pushed flat, in the end by more than it resists.
     let text = "beam.bar = { start = [0, 0], end = [1, 0.3], axial_stiffness = 1e4, bending_stiffness = 1e3, basis.ancf.elements = 2 }
         support = [{ beam = 'bar', at = 'start', fix = ['x', 'y'] }, { beam = 'bar', at = 'end', fix = ['x'] }]

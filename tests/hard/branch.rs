@@ -185,8 +185,7 @@ proptest! {
 
 /// A column that is made shorter by 5 % in one step, far beyond many of its critical loads, while its
 /// clamp turns: it bends, and does not stay straight under a thousand times its critical load. A
-/// follower force of a millionth of that, or dry friction of an obstacle that it does not touch,
-/// changes nothing, although only the sign of a determinant is then known of its stability.
+/// follower force of 1e-6 N, or dry friction of an obstacle that it does not touch, changes nothing, although only the sign of a determinant is then known of its stability.
 #[test]
 fn what_has_no_potential_does_not_hide_that_a_column_buckles() {
     let column = |basis: &str, effects: &str| {

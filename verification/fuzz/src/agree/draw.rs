@@ -158,13 +158,15 @@ impl Draw<'_> {
         (beam, table)
     }
 
+    /// Length of the beam that a table names.
+    fn length_of_beam(&self, table: &Table) -> Option<f64> {
+        let name = table.get("beam")?.as_str()?;
+        self.beams.iter().find(|beam| beam.name == name).map(|beam| beam.length)
+    }
+
     /// Lets what acts along a whole beam act on a stretch of it, sometimes.
     fn perhaps_stretch(&mut self, table: &mut Table) {
-        let name = table.get("beam").and_then(Value::as_str);
-        let Some(length) = self.beams.iter().find(|beam| Some(&*beam.name) == name).map(|beam| beam.length)
-        else {
-            return;
-        };
+        let Some(length) = self.length_of_beam(table) else { return };
         if !self.chance(0.15) {
             return;
         }
@@ -180,11 +182,7 @@ impl Draw<'_> {
 
     /// Lets what a table gives for a whole beam vary along it, sometimes.
     fn perhaps_vary(&mut self, table: &mut Table, keys: &[&str]) {
-        let name = table.get("beam").and_then(Value::as_str);
-        let Some(length) = self.beams.iter().find(|beam| Some(&*beam.name) == name).map(|beam| beam.length)
-        else {
-            return;
-        };
+        let Some(length) = self.length_of_beam(table) else { return };
         if !self.chance(0.25) {
             return;
         }
