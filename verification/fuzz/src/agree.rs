@@ -18,6 +18,7 @@ mod neighbour;
 mod outcome;
 mod quantity;
 mod report;
+mod seldom;
 mod settings;
 mod shrink;
 mod stages;
@@ -35,6 +36,7 @@ use fastrand::Rng;
 use judge::{Case, Verdict, judge};
 use outcome::Outcome;
 use report::{Report, alike};
+use seldom::Weights;
 use ways::WAYS;
 
 /// Number of ways in which each scene is run, of those that there are.
@@ -72,6 +74,7 @@ pub struct Written {
 /// Draws and judges scenes; returns the counts, and the findings in the order of the scenes.
 pub fn campaign(task: &Task<'_>) -> (Report, Vec<Written>) {
     outcome::hear_panics();
+    let weights = Weights::survey();
     let next = AtomicUsize::new(0);
     let end = Instant::now() + task.time;
     let all = Mutex::new((Report::default(), Vec::new()));
@@ -85,7 +88,7 @@ pub fn campaign(task: &Task<'_>) -> (Report, Vec<Written>) {
                 continue;
             }
             let begin = Instant::now();
-            let (mut report, found) = scene(task, index);
+            let (mut report, found) = scene(task, &weights, index);
             report.slowest = (begin.elapsed().as_secs_f64(), index);
             for written in &found {
                 keep(task, written);
@@ -106,10 +109,10 @@ pub fn campaign(task: &Task<'_>) -> (Report, Vec<Written>) {
 }
 
 /// Draws one scene and judges it.
-fn scene(task: &Task<'_>, index: usize) -> (Report, Vec<Written>) {
+fn scene(task: &Task<'_>, weights: &Weights, index: usize) -> (Report, Vec<Written>) {
     let mut report = Report::default();
     let mut rng = Rng::with_seed(task.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ index as u64);
-    let Some(case) = legal(&mut rng, &mut report) else { return (report, Vec::new()) };
+    let Some(case) = legal(weights, &mut rng, &mut report) else { return (report, Vec::new()) };
     report.scene(&case.scene);
     let base = outcome::run(&case.scene, &case.frame);
     let kind = match &base {
@@ -158,9 +161,9 @@ fn scene(task: &Task<'_>, index: usize) -> (Report, Vec<Written>) {
 }
 
 /// A scene that the reader takes, with the frame in which it does.
-fn legal(rng: &mut Rng, report: &mut Report) -> Option<Case> {
+fn legal(weights: &Weights, rng: &mut Rng, report: &mut Report) -> Option<Case> {
     for _ in 0..DRAWS {
-        let scene = draw::scene(rng);
+        let scene = weights.draw(rng);
         let frame = draw::frame(rng, &scene);
         match outcome::check(&scene, &frame) {
             Ok(()) => return Some(Case { scene, frame, seed: rng.u64(..) }),

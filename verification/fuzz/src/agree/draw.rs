@@ -76,6 +76,8 @@ pub fn scene(rng: &mut Rng) -> Table {
     draw.analysis();
     match draw.rng.u8(0..100) {
         0..8 => draw.accuracy(),
+        // Most stages of vibrations and critical loads are refused.
+        8..20 if matches!(draw.kind, Kind::Modal | Kind::Buckling) => draw.accuracy(),
         8..40 => draw.stages(),
         _ => {}
     }
@@ -100,6 +102,11 @@ pub fn round(value: f64, digits: i32) -> f64 {
         return value;
     }
     format!("{value:.*e}", usize::try_from(digits - 1).unwrap_or(0)).parse().unwrap_or(value)
+}
+
+/// A list of numbers.
+fn numbers(list: &[f64]) -> Value {
+    Value::Array(list.iter().copied().map(Value::Float).collect())
 }
 
 impl Draw<'_> {
@@ -172,7 +179,7 @@ impl Draw<'_> {
         }
         let (from, to) = (self.even(0.05, 0.45), self.even(0.55, 0.95));
         let ends = self.rng.u8(0..3);
-        if ends != 1 {
+        if ends != 1 && !table.contains_key("from") {
             table.insert("from".into(), (length * from).into());
         }
         if ends != 0 {

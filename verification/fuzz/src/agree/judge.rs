@@ -337,6 +337,8 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
                 let next = gap::between(&seen, &finest, records);
                 estimated(&next, gap.places, plain)
             }
+            // Nodes at the jumps of a beam's quantities may make one mesh of two numbers of elements.
+            Way::Mesh if gap.places == 0.0 => return Err(Verdict::NotApplicable),
             Way::Mesh => {
                 let third = settings::finer(&changed).ok_or(Verdict::NotApplicable)?;
                 let finest = other(&third, frame, way)?;

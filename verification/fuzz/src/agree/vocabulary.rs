@@ -48,11 +48,16 @@ fn visit(root: &Json, schema: &Json, path: &str, keys: &mut BTreeSet<String>) {
     }
 }
 
-/// Counts the keys of a scene, each once.
-pub fn count(scene: &Table, counts: &mut BTreeMap<String, usize>) {
+/// The keys that a scene uses.
+pub fn used(scene: &Table) -> BTreeSet<String> {
     let mut used = BTreeSet::new();
     table("", scene, &mut used);
-    for key in used {
+    used
+}
+
+/// Counts the keys of a scene, each once.
+pub fn count(scene: &Table, counts: &mut BTreeMap<String, usize>) {
+    for key in used(scene) {
         *counts.entry(key).or_default() += 1;
     }
 }

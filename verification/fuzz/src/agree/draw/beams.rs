@@ -8,7 +8,7 @@ use toml::{Table, Value};
 
 use super::super::frame::list;
 use super::super::settings;
-use super::{Draw, Drawn, Kind, round};
+use super::{Draw, Drawn, Kind, numbers, round};
 
 impl Draw<'_> {
     pub(super) fn beams(&mut self) {
@@ -249,7 +249,7 @@ impl Draw<'_> {
             table.insert("strain".into(), self.pick(&["green", "engineering"]).into());
         }
         if let Some(axial) = axial.filter(|axial| bends && *axial >= 100.0)
-            && self.chance(0.12)
+            && self.chance(0.16)
         {
             return self.shape(table, [axial, bending, mass]);
         }
@@ -359,7 +359,7 @@ impl Draw<'_> {
 
     /// Lets some of the beam's quantities vary along it.
     fn variation(&mut self, table: &mut Table, length: f64) {
-        let share = if table.contains_key("section") { 0.3 } else { 0.12 };
+        let share = if table.contains_key("section") { 0.5 } else { 0.12 };
         if !self.chance(share) {
             return;
         }
@@ -399,19 +399,18 @@ impl Draw<'_> {
     /// Makes a number one that varies along a beam, by a factor of two at most.
     pub(super) fn vary(&mut self, value: &mut Value, length: f64) {
         let Value::Float(v) = *value else { return };
-        let numbers = |list: &[f64]| Value::Array(list.iter().copied().map(Value::Float).collect());
         let mut varying = Table::new();
         let mut factor = || v * self.even(0.75, 1.3);
         let (a, b, c) = (factor(), factor(), factor());
         let middle = round(length * self.even(0.2, 0.8), 6);
-        match self.rng.u8(0..3) {
+        match self.rng.u8(0..4) {
             0 => {
                 let mut places = Table::new();
                 places.insert("s".into(), numbers(&[0.0, middle, length]));
                 places.insert("value".into(), numbers(&[a, b, c]));
                 varying.insert("table".into(), places.into());
             }
-            1 => {
+            1..3 => {
                 varying.insert(
                     "polynomial".into(),
                     numbers(&[a, 0.3 * (b - v) / length, 0.3 * (c - v) / length.powi(2)]),

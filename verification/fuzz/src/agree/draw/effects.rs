@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 use super::super::frame::list;
-use super::{Draw, Kind, round};
+use super::{Draw, Kind, numbers, round};
 
 impl Draw<'_> {
     pub(super) fn effects(&mut self) {
@@ -108,7 +108,7 @@ impl Draw<'_> {
         if let Value::Table(effects) = effects {
             effects.insert("gravity".into(), table.into());
         }
-        if self.chance(0.2) {
+        if self.chance(0.3) {
             let (_, mut table) = self.of_beam();
             table.insert("displaced_mass_per_length".into(), self.log(0.1, 1.5).into());
             self.perhaps_vary(&mut table, &["displaced_mass_per_length"]);
@@ -244,22 +244,20 @@ impl Draw<'_> {
         }
         let (beam, mut table) = self.of_beam();
         let (length, beside) = (self.beams[beam].length, self.beams[beam].bends && !self.beams[beam].shaped);
-        let (a, b, c) = (self.even(-0.06, 0.06), self.even(-0.06, 0.06), self.even(-0.06, 0.06));
-        let offset = if !beside {
-            0.0.into()
-        } else if self.chance(0.3) {
-            let mut places = Table::new();
-            places.insert("s".into(), list([0.0, 0.5 * length, length]));
-            places.insert("value".into(), list([a, b, c]));
-            let mut varying = Table::new();
-            varying.insert("table".into(), places.into());
-            Value::Table(varying)
-        } else {
-            a.into()
-        };
+        let offset = if beside { self.offset(length, &mut table) } else { 0.0.into() };
+        let even = offset.is_float();
         table.insert("offset".into(), offset);
-        if self.chance(0.3) {
-            table.insert("shortening".into(), self.log(1e-4 * length, 1e-2 * length).into());
+        self.perhaps_stretch(&mut table);
+        if self.chance(0.4) {
+            let place = |key: &str, default: f64| table.get(key).and_then(Value::as_float).unwrap_or(default);
+            let span = place("to", length) - place("from", 0.0);
+            let by = self.log(1e-4 * span, 1e-2 * span);
+            // Beside a curved beam its length is another than the beam's.
+            if even && self.beams[beam].straight && self.chance(0.5) {
+                table.insert("length".into(), (span - by).into());
+            } else {
+                table.insert("shortening".into(), by.into());
+            }
             if self.is_motion() {
                 // A motion begins with the length of the stress-free shape.
                 let ramp = Table::from_iter([("duration".to_owned(), self.log(0.01, 1.0).into())]);
@@ -270,8 +268,27 @@ impl Draw<'_> {
             table.insert("tension".into(), self.log(0.1 * size, 5.0 * size).into());
             self.perhaps_in_time(&mut table, 0.4);
         }
-        self.perhaps_stretch(&mut table);
         self.push(&["effect", "tendon"], table);
+    }
+
+    /// Where a tendon is beside a beam of this `length`. It has no jumps: those of pieces are before it.
+    fn offset(&mut self, length: f64, tendon: &mut Table) -> Value {
+        let mut beside = || self.even(-0.06, 0.06);
+        let (a, b, c) = (beside(), beside(), beside());
+        let of = |keys: &[(&str, &[f64])]| -> Value {
+            let lists = keys.iter().map(|(key, list)| ((*key).to_owned(), numbers(list)));
+            lists.collect::<Table>().into()
+        };
+        let (kind, places) = match self.rng.u8(0..10) {
+            0..2 => ("table", of(&[("s", &[0.0, 0.5 * length, length]), ("value", &[a, b, c])])),
+            2 => ("polynomial", numbers(&[a, b / length, c / length.powi(2)])),
+            3 => {
+                tendon.insert("from".into(), (0.3 * length).into());
+                ("pieces", of(&[("until", &[0.2 * length]), ("value", &[a, b])]))
+            }
+            _ => return a.into(),
+        };
+        Table::from_iter([(kind.to_owned(), places)]).into()
     }
 
     fn drag(&mut self) {

@@ -146,7 +146,7 @@ impl Draw<'_> {
         if self.chance(share) {
             begins = self.rng.usize(0..n);
             ends = self.rng.usize(begins + 1..n + 1);
-            if self.rng.bool() {
+            if self.chance(0.35) {
                 ends = n;
             }
         }
