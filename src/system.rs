@@ -47,7 +47,9 @@ pub use view::{Change, Fields, View, unfold};
 
 use std::sync::Arc;
 
-use crate::assembly::{Acting, Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Terms, nodes};
+use crate::assembly::{
+    Acting, Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Resistance, Terms, nodes,
+};
 use crate::basis::{Basis, BasisCache};
 use crate::centreline::Curve;
 use crate::effect;
@@ -261,11 +263,7 @@ impl System {
         system.check_room()?;
         system.check_rows(model)?;
         if !needs.motion {
-            system.free_motions = system.count_free_motions(model)?;
-            let of_beams =
-                |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Coupling | Kind::Contact);
-            let resisted = !system.terms.internal.iter().all(|effect| of_beams(effect.kind()));
-            system.rigid_motions = if resisted { 0 } else { system.free_motions };
+            [system.free_motions, system.rigid_motions] = system.count_rigid_motions(model)?;
         }
         Ok(system)
     }
@@ -307,19 +305,40 @@ impl System {
         Ok(view.fields(self.start()))
     }
 
-    /// Number of rigid motions that supports and joints leave to the beams.
-    fn count_free_motions(&self, model: &Model) -> Result<usize, BuildError> {
+    /// Numbers of rigid motions that supports and joints leave to the beams, and of those that no other
+    /// part resists either.
+    fn count_rigid_motions(&self, model: &Model) -> Result<[usize; 2], BuildError> {
+        let resistances = || model.parts.iter().flat_map(|part| part.resists());
         let supports = model.supports.iter().map(|support| support.at);
         let joints = model.joints.iter().flat_map(Joint::places);
         let starts = (0..model.beams.len()).map(|beam| Place { beam, s: 0.0 });
+        let resisting = resistances().filter_map(|resistance| match resistance {
+            Resistance::Displacement(at, _) | Resistance::Direction(at) => Some(at),
+            Resistance::Contact(_) => None,
+        });
         let mut positions = Vec::new();
-        for place in supports.chain(joints).chain(starts) {
+        for place in supports.chain(joints).chain(starts).chain(resisting) {
             positions.push((place, self.fields_of(place)?.position));
         }
         let position = |place: Place| {
             positions.iter().find(|(at, _)| *at == place).map_or([0.0; 2], |(_, position)| *position)
         };
-        Ok(Freedom::new(model, self.length, position).motions().len())
+        let mut freedom = Freedom::new(model, self.length, position);
+        let free = freedom.motions().len();
+        let of_beams =
+            |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Coupling | Kind::Contact);
+        let told = |kind: Kind| matches!(kind, Kind::Spring | Kind::TorsionSpring | Kind::Foundation);
+        let kinds = || self.terms.internal.iter().map(|effect| effect.kind());
+        let left = if kinds().all(of_beams) {
+            free
+        } else if kinds().all(|kind| of_beams(kind) || told(kind)) {
+            freedom.resist(model, position);
+            freedom.motions().len()
+        } else {
+            // What another effect resists is not known.
+            0
+        };
+        Ok([free, left])
     }
 
     /// The discretised beams.

@@ -109,6 +109,10 @@ const MOST_TRIALS: usize = 60;
 const ROUND_OFFS: f64 = 1e4;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
+/// Part of a failed step that is tried next.
+const SHORTER: f64 = 0.4;
+/// Smallest step in place of one that is taken back, relative to the first one that was to be tried.
+const SHORTEST_AGAIN: f64 = 1e-3;
 /// A step of this size in which stability is lost is accepted. The knee of an imperfect path is
 /// about as wide as the imperfection to the power of 2/3 (Koiter), so that only knees of
 /// imperfections below 1e-7 are mistaken for bifurcations.
@@ -287,7 +291,7 @@ impl<'e, 'a> Path<'e, 'a> {
                         * match failure {
                             // The predictor errs by O(h²).
                             Failure::FarOff { size } => (WANTED_TURN / size).sqrt().clamp(0.05, 0.4),
-                            _ => 0.4,
+                            _ => SHORTER,
                         };
                     if self.step >= SMALLEST_STEP * self.first_step {
                         continue;
@@ -322,6 +326,25 @@ impl<'e, 'a> Path<'e, 'a> {
         self.equilibrium.statistics.steps += 1;
         self.equilibrium.statistics.load_steps += 1;
         self.last()
+    }
+
+    /// Takes the last step back, to try a shorter one in its place; returns whether it could be shorter.
+    pub fn take_back(&mut self) -> bool {
+        let Some([a, b]) = self.last_two() else { return false };
+        let step = SHORTER * (b.parameter - a.parameter);
+        if step < SHORTEST_AGAIN * self.first_step {
+            return false;
+        }
+        self.step = step;
+        self.points.pop();
+        if let Some(record) = self.history.last_mut() {
+            record.accepted = false;
+        }
+        let counts = &mut self.equilibrium.statistics;
+        counts.steps -= 1;
+        counts.load_steps -= 1;
+        counts.rejected_steps += 1;
+        true
     }
 
     /// Whether a point is less stable than the last one although no limit point of the load lies

@@ -15,6 +15,10 @@
 //! the first σ lets the load move it by some beam lengths. The axial force in K is extrapolated
 //! from the iterate before ([`crate::effect`]). Otherwise the iterations of a slack cable would
 //! grow with its EA: to 450, in place of 17, where EA is 10,000 times the weight.
+//!
+//! A structure that is stiff comes to rest so where it begins in another shape than a stress-free one. An
+//! arch may then rest on either side, and rests on the one to which the creeping motion leads: its steps
+//! are short enough to follow that.
 
 use super::equilibrium::Equilibrium;
 use super::newton::{Failure, Iterations, ROUND_OFF, Settings};
@@ -22,15 +26,26 @@ use crate::assembly::Earlier;
 use crate::solve::Statistics;
 use crate::system::System;
 
-/// Largest change of an iterate: positions in beam lengths, gradients as they are.
-const LARGEST: f64 = 0.3;
+/// How fast a structure creeps.
+struct Pace {
+    /// Largest change of an iterate: positions in beam lengths, gradients as they are.
+    largest: f64,
+    /// Change of an iterate that is aimed at.
+    wanted: f64,
+}
+
+/// Of what has no stiffness before it is loaded, which has far to go.
+const FLOPPY: Pace = Pace { largest: 0.3, wanted: 0.1 };
+/// Of what is stiff, and may rest in several places near to each other.
+const STIFF: Pace = Pace { largest: 0.03, wanted: 0.01 };
+/// The first σ grows at most by this factor until it makes the first change small enough. Gaps of
+/// constraints are closed whatever it is.
+const SLOWER: f64 = 1e6;
 /// Smallest clear part of a change that is still taken, where the whole would lead through an
 /// obstacle.
 const SHORTEST: f64 = 1e-3;
 /// σ changes at most by these factors in an iteration.
 const LIMITS: (f64, f64) = (0.3, 4.0);
-/// Change of an iterate that is aimed at.
-const WANTED: f64 = 0.1;
 /// σ below which the iteration is Newton's.
 const NONE: f64 = 1e-14;
 /// Part of the first σ below which increments measure the distance from the equilibrium.
@@ -64,6 +79,8 @@ pub fn relax(
     }
     equilibrium.system().supports().impose(load, &mut x[..n]);
     let weights = equilibrium.system().weights();
+    let floppy = equilibrium.system().is_floppy();
+    let pace = if floppy { FLOPPY } else { STIFF };
     let (mut sigma, mut first, mut on_a_crest) = (0.0, 0.0, false);
     let (mut size, mut before, mut change) = (f64::INFINITY, x.to_vec(), vec![0.0; x.len()]);
     for _ in 0..ITERATIONS {
@@ -100,12 +117,17 @@ pub fn relax(
         }
         equilibrium.solve(load, &mut increment, false);
         equilibrium.statistics.newton_iterations += 1;
-        let last = std::mem::replace(&mut size, equilibrium.size(&increment));
+        let found = equilibrium.size(&increment);
+        if !floppy && found > pace.largest && sigma < SLOWER * first {
+            sigma *= LIMITS.1;
+            continue;
+        }
+        let last = std::mem::replace(&mut size, found);
         record.residuals.push(residual);
         record.increments.push(size);
-        sigma *= (size / WANTED).clamp(LIMITS.0, LIMITS.1);
+        sigma *= (size / pace.wanted).clamp(LIMITS.0, LIMITS.1);
         before.copy_from_slice(x);
-        let mut part = if size > LARGEST { LARGEST / size } else { 1.0 };
+        let mut part = if size > pace.largest { pace.largest / size } else { 1.0 };
         if equilibrium.system().has_contacts() {
             part *= clear(equilibrium.system(), &x[..n], &increment, part)?;
         }

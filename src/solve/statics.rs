@@ -243,8 +243,10 @@ fn along_load(
             Ok(point) => point.clone(),
             Err(stuck) => break Err(stuck),
         };
+        if !work.keep_step(&mut path) {
+            continue;
+        }
         notice(&mut path, &mut solution.events);
-        work.add_step(&mut path);
         let at_end = point.load >= end;
         if settings.steps.is_none() || at_end {
             solution.record(path.equilibrium, point.load, &point.x, work);

@@ -5,7 +5,8 @@
 //! steps are long, so that P is also evaluated between their ends, until Simpson's rule no longer
 //! changes.
 
-use super::path::Path;
+use super::path::{Path, Point};
+use super::stability::Stability;
 use crate::system::System;
 
 /// Halving ends where it changes Simpson's rule by less than this, relative to the work on rigid
@@ -13,6 +14,11 @@ use crate::system::System;
 const CHANGE: f64 = 1e-7;
 /// Most halvings.
 const HALVINGS: usize = 8;
+/// P jumps where one of four parts has this share of its change.
+const JUMP: f64 = 0.9;
+/// A step in which the work may err by more than this is taken back, relative to the work on rigid
+/// beams.
+const DOUBTFUL: f64 = 1e-4;
 
 /// Work so far, with its estimated error.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,14 +48,31 @@ impl Sample {
 }
 
 impl Work {
+    /// Adds the work of the path's last step along the load factor, unless it is doubtful and shorter steps
+    /// can be tried: the step is then taken back. Returns whether it was kept.
+    pub fn keep_step(&mut self, path: &mut Path<'_, '_>) -> bool {
+        let before = *self;
+        self.add_step(path);
+        let doubtful = self.error - before.error > DOUBTFUL * (self.size - before.size);
+        if doubtful && path.take_back() {
+            *self = before;
+            return false;
+        }
+        true
+    }
+
     /// Adds the work of the path's last step along the load factor.
-    pub fn add_step(&mut self, path: &mut Path<'_, '_>) {
+    fn add_step(&mut self, path: &mut Path<'_, '_>) {
         let system = path.equilibrium.system();
         let Some([a, b]) = path.last_two().filter(|_| system.has_actuators()) else { return };
         let (from, to) = (Sample::of(system, a.load, &a.x), Sample::of(system, b.load, &b.x));
         self.size += unyielding(system, from.load, to.load);
         match between(path, &from, &to) {
-            Some(middle) => self.add_piece(path, [&from, &middle, &to], HALVINGS),
+            Some(middle) => {
+                let jump = self.add_piece(path, [&from, &middle, &to], HALVINGS);
+                // States between that are on another branch may reach anywhere in the step.
+                self.error += jump * (to.load - from.load).abs();
+            }
             None => self.add_straight(&from, &to),
         }
     }
@@ -72,22 +95,40 @@ impl Work {
         self.slope = Some(slope);
     }
 
-    fn add_piece(&mut self, path: &mut Path<'_, '_>, [from, middle, to]: [&Sample; 3], halvings: usize) {
+    /// Adds the work of a piece of a step; returns the largest jump of P in it.
+    fn add_piece(
+        &mut self,
+        path: &mut Path<'_, '_>,
+        [from, middle, to]: [&Sample; 3],
+        halvings: usize,
+    ) -> f64 {
         let whole = simpson([from, middle, to]);
         let (Some(first), Some(second)) = (between(path, from, middle), between(path, middle, to)) else {
             self.value += whole;
             self.error += (whole - trapezoid(from, to)).abs();
-            return;
+            return 0.0;
         };
         let halves = [[from, &first, middle], [middle, &second, to]];
         let sum: f64 = halves.iter().copied().map(simpson).sum();
-        if (sum - whole).abs() <= CHANGE * self.size || halvings == 0 {
+        if (sum - whole).abs() <= CHANGE * self.size {
             self.value += sum;
             self.error += (sum - whole).abs();
+            0.0
+        } else if halvings == 0 {
+            self.value += sum;
+            self.error += (sum - whole).abs();
+            jump([from, &first, middle, &second, to])
         } else {
-            halves.into_iter().for_each(|half| self.add_piece(path, half, halvings - 1));
+            halves.map(|half| self.add_piece(path, half, halvings - 1)).into_iter().fold(0.0, f64::max)
         }
     }
+}
+
+/// By how much P jumps within a short piece, zero where it only bends there.
+fn jump(samples: [&Sample; 5]) -> f64 {
+    let changes = samples.windows(2).map(|pair| (pair[1].power - pair[0].power).abs());
+    let (largest, all) = changes.fold((0.0_f64, 0.0), |(most, sum), change| (most.max(change), sum + change));
+    if largest > JUMP * all { largest } else { 0.0 }
 }
 
 /// The work from one load factor to another if the beams were rigid.
@@ -96,11 +137,20 @@ fn unyielding(system: &System, from: f64, to: f64) -> f64 {
 }
 
 /// The state halfway. Where the one between the ends of the whole step does not lead there, the
-/// nearer ones do.
+/// nearer ones do. Past a bifurcation within the step both may lead to the branch that the path has left:
+/// a state less stable than both ends of the step is on that one. It is then looked for from the later
+/// end alone, which is on the path.
 fn between(path: &mut Path<'_, '_>, from: &Sample, to: &Sample) -> Option<Sample> {
     let load = 0.5 * (from.load + to.load);
     let ends = [(from.load, &from.x[..]), (to.load, &to.x[..])];
-    let point = path.between(load).or_else(|| path.near(ends, load))?;
+    let stable = path.last_two().map_or([None; 2], |step| step.map(|point| point.stability));
+    let on_path = |point: &Point| {
+        let lost = |end: &Option<Stability>| end.zip(point.stability).is_some_and(|(e, p)| e.is_lost(p));
+        !stable.iter().all(lost)
+    };
+    let point = path.between(load).filter(on_path);
+    let point = point.or_else(|| path.near(ends, load).filter(on_path));
+    let point = point.or_else(|| path.near([(from.load, &to.x), ends[1]], load).filter(on_path))?;
     Some(Sample::of(path.equilibrium.system(), point.load, &point.x))
 }
 
@@ -144,6 +194,17 @@ mod tests {
             [(0.0, 0.0), (3.0, 9.0), (6.0, 36.0)].map(|at| sample(at, vec![f64::NAN; n]));
         work.add_piece(&mut path, [&from, &middle, &to], HALVINGS);
         assert_eq!((work.value, work.error), (72.0, 36.0));
+    }
+
+    /// Of a kink as a square root has it, the part beside it has half of the change.
+    #[test]
+    fn a_jump_is_no_kink() {
+        let all = |power: fn(f64) -> f64| {
+            let samples = [0.0, 1.0, 2.0, 3.0, 4.0].map(|load| sample((load, power(load)), vec![]));
+            jump(samples.each_ref())
+        };
+        assert_eq!(all(f64::sqrt), 0.0);
+        assert_eq!(all(|load| 1e-3 * load + if load > 2.5 { 5.0 } else { 0.0 }), 5.001);
     }
 
     /// P grows from 0 to 4 along 2, by 2 for each of λ, and stays: the trapezoids are 4 J and 8 J, and

@@ -203,9 +203,6 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
             }
             return finding(way, format!("one of both has no result: {said}"), text());
         }
-        (Outcome::Refused(said), Outcome::Failed(_)) | (Outcome::Failed(_), Outcome::Refused(said)) => {
-            return finding(way, format!("refused in one of both: {said}"), text());
-        }
         _ => return Verdict::Refused,
     };
     if !a.warnings.is_empty() || !b.warnings.is_empty() {
@@ -287,7 +284,7 @@ fn other(scene: &Table, frame: &Frame, way: Way) -> Result<Box<Seen>, Verdict> {
 
 fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
     let Case { scene, frame, .. } = case;
-    if settings::stops_at_a_turn(scene) && !matches!(way, Way::Continued | Way::AtOnce) {
+    if settings::stops_beyond_tolerance(scene) && way != Way::Continued {
         return Verdict::NotApplicable;
     }
     let tolerance = settings::tolerance(scene);
@@ -343,7 +340,18 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
                 let third = settings::finer(&changed).ok_or(Verdict::NotApplicable)?;
                 let finest = other(&third, frame, way)?;
                 let next = gap::between(&seen, &finest, records);
-                estimated(&next, gap.places, 1e-6 + plain)
+                let mut measured = estimated(&next, gap.places, 1e-6 + plain);
+                // Two meshes may be near each other by chance, and where nodes lie at the jumps of a
+                // beam's quantities they are nearly the same. The error then falls from there on.
+                if measured.value > measured.allowed
+                    && let Some(fourth) = settings::finer(&third)
+                {
+                    let rest = gap::between(&finest, &*other(&fourth, frame, way)?, records);
+                    if rest.places < 0.5 * next.places {
+                        measured.allowed = measured.allowed.max(ALLOWED * next.places);
+                    }
+                }
+                measured
             }
             Way::Welded => {
                 let fine = settings::finer(scene).ok_or(Verdict::NotApplicable)?;
@@ -430,7 +438,22 @@ fn at_once(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
     let later = Seen { before: base.before[gone..].to_vec(), ..base.clone() };
     let gap = gap::between(&later, &seen, Records::Last);
     let allowed = ALLOWED * settings::tolerance(scene) + round_off(scene);
-    let measured = places_or_forces(&gap, allowed, scene);
+    let mut measured = places_or_forces(&gap, allowed, scene);
+    // What has gone may leave nodes where it began and ended, and so another mesh.
+    for (run, scene) in [(&later, scene), (&*seen, &changed)] {
+        if measured.value <= measured.allowed {
+            break;
+        }
+        let Some(finer) = settings::finer(scene) else { continue };
+        match other(&finer, frame, way) {
+            Ok(finer) => {
+                let errors = gap::between(run, &finer, Records::Last);
+                let error = if measured.places { errors.places } else { errors.forces };
+                measured.allowed = measured.allowed.max(ALLOWED * error);
+            }
+            Err(verdict) => return verdict,
+        }
+    }
     if measured.value > measured.allowed && other_branch(case, &changed, &later, measured.allowed) {
         return Verdict::Unstable;
     }

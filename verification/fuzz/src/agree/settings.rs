@@ -48,11 +48,12 @@ pub fn items<'t>(scene: &'t Table, path: &[&str]) -> impl Iterator<Item = &'t Ta
     list.into_iter().flatten().filter_map(Value::as_table)
 }
 
-/// Whether a motion ends where a quantity turns back: a turn that is smaller than the errors of a run
-/// is there in one run and not in another, and their ends have nothing in common.
-pub fn stops_at_a_turn(scene: &Table) -> bool {
-    let turns = |event: &Table| event.contains_key("maximum") || event.contains_key("minimum");
-    items(scene, &["analysis", "dynamic", "event"]).any(|event| turns(event) && event.contains_key("stop"))
+/// Whether a motion ends by what no tolerance bounds: a turn that is smaller than the errors of a run is
+/// there in one run and not in another, and a speed or a force is reached at another time. Tolerances
+/// are those of positions.
+pub fn stops_beyond_tolerance(scene: &Table) -> bool {
+    let bounded = |event: &Table| event.contains_key("x") || event.contains_key("y");
+    items(scene, &["analysis", "dynamic", "event"]).any(|event| event.contains_key("stop") && !bounded(event))
 }
 
 /// The kind of analysis, as a scene names it.
