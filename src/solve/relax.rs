@@ -103,7 +103,7 @@ pub fn relax(
         let shift = if sigma < NONE { 0.0 } else { sigma };
         let earlier = Earlier { q: &before, increment: &change };
         match equilibrium.linearize_shifted(load, x, earlier, (shift, &weights), &mut increment) {
-            Ok(()) if equilibrium.is_unstable() => {
+            Ok(()) if is_soft(equilibrium, floppy) => {
                 sigma = sigma.max(NONE) * LIMITS.1;
                 on_a_crest = true;
                 continue;
@@ -147,6 +147,13 @@ pub fn relax(
         }
     }
     Err(Failure::TooSlow { iterations: ITERATIONS, last: size })
+}
+
+/// Whether a direction lacks stiffness. Where follower loads are part of the equations, the sign of the
+/// determinant does not see two such directions, and a stiff structure would creep uphill.
+fn is_soft(equilibrium: &Equilibrium<'_>, floppy: bool) -> bool {
+    let soft = if floppy { None } else { equilibrium.stability_and_softness().1 };
+    soft.map_or_else(|| equilibrium.is_unstable(), |directions| directions > 0)
 }
 
 /// The part of the straight path from `q`, along `part` of an increment, that is clear of

@@ -300,3 +300,41 @@ fn what_no_memory_holds_is_refused_with_what_it_would_need() {
         Scene { basis, analysis, ..PLAIN }.refused(&["scene.toml:", part]);
     }
 }
+
+/// A spring on one beam does not hold another that hangs from it by a hinge: both rest where they do
+/// without the spring, which is on a clamp and stays as it is.
+#[test]
+fn a_spring_elsewhere_does_not_hold_what_hangs() {
+    let shapes = |unit: f64, spring: &str| {
+        let (ea, ei, m) = (1e7 * unit.powi(2), 2.0 * unit.powi(3), 0.7);
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [{}, {}], axial_stiffness = {ea:?}, bending_stiffness = {ei:?}, \
+             mass_per_length = {m}, basis.rpim.nodes = 5 }}
+             beam.rod = {{ start = [{}, {}], end = [{}, {}], axial_stiffness = {ea:?}, bending_stiffness = {ei:?}, \
+             mass_per_length = {m}, basis.rpim.nodes = 7 }}
+             joint = [{{ type = 'hinge', first = {{ beam = 'arm', at = 'end' }}, second = {{ beam = 'rod', at = 'start' }} }}]
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             effect.gravity.acceleration = [0, {:?}]
+             {spring}
+             probe = [{{ name = 'end', beam = 'rod', at = 'end' }}]
+             analysis.static = {{}}\n",
+            -0.7 * unit,
+            -0.8 * unit,
+            -0.7 * unit,
+            -0.8 * unit,
+            -0.6 * unit,
+            -1.7 * unit,
+            -0.5 * unit,
+        );
+        let scene = scene::parse("scene.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let found = scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        tip(&found)
+    };
+    for unit in [1.0, 3.1, 1e-3] {
+        let free = shapes(unit, "");
+        let found = shapes(unit, "effect.torsion_spring = [{ beam = 'arm', at = 'start', stiffness = 3 }]");
+        let apart = (found[0] - free[0]).hypot(found[1] - free[1]);
+        assert!(apart < 1e-9 * unit, "{unit}: {found:?}, {free:?}");
+        assert!(free[1] < -1.5 * unit, "{free:?}");
+    }
+}

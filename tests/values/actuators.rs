@@ -113,3 +113,59 @@ fn work_that_is_not_well_known_is_told() {
         }
     }
 }
+
+/// Two pinned beams welded to each other are bent far by actuation, and other equilibria lie beside the path.
+/// What acts between the ends of a step is that of the path: the work does not depend on the steps. In a
+/// frame that is turned, round-off makes steps end elsewhere.
+#[test]
+fn the_work_of_actuators_does_not_depend_on_load_steps() {
+    let work = |analysis: &str| {
+        let found = solved(&format!(
+            "beam.a = {{ points = [[0, 0], [0.230501, 0.320982], [0.453506, 0.649543]], axial_stiffness = 232900, \
+             bending_stiffness = 1, basis.rpim.nodes = 7 }}
+             beam.b = {{ arc = {{ center = [0.6099665393854626, 2.089242335483733], radius = 1.4481761208420376, \
+             from = -1.6790473400460515, to = -1.0567473400460514 }}, axial_stiffness = 232900, bending_stiffness = 1, \
+             basis.rpim.nodes = 7 }}
+             joint = [{{ type = 'weld', first = {{ beam = 'a', at = 'end' }}, second = {{ beam = 'b', at = 'start' }} }}]
+             support = [{{ beam = 'a', at = 'start', fix = ['x', 'y'] }}, \
+             {{ beam = 'b', at = 'end', fix = ['x', 'y'], move.x = -0.1502 }}]
+             effect.moment = [{{ beam = 'a', at = 'start', value = 0.8793 }}]
+             effect.actuation = [{{ beam = 'b', strain.pieces = {{ until = [0.252156], value = [-0.02480039, -0.02422049] }}, \
+             curvature.polynomial = [2.545563, 0.07863115845539292, -0.12877404029425474] }}]
+             analysis.static{analysis}\n"
+        ));
+        assert_eq!(found.run.warnings, Vec::<String>::new());
+        found.energy.last().expect("a record").work
+    };
+    let fine = work(".steps = 100");
+    assert!(fine > 0.1, "{fine}");
+    for analysis in [" = {}", ".steps = 2", ".steps = 7"] {
+        near(work(analysis), fine, 1e-4 * fine, analysis);
+    }
+}
+
+/// A shallow arch between a hinge and a slider that actuation bends the other way is straight until it
+/// buckles. No load does work: what the actuator puts in is stored.
+#[test]
+fn actuators_put_in_what_is_stored_past_a_bifurcation() {
+    for (turn, along) in [(0.0, [0.0, -1.0]), (1.1, [1.1_f64.sin(), -(1.1_f64.cos())])] {
+        let [sine, cosine] = [f64::sin(turn), f64::cos(turn)];
+        let (x, y) = (1.2119234646657875, 7.246900345713129);
+        let found = solved(&format!(
+            "beam.a = {{ arc = {{ center = [{}, {}], radius = 7.347538574577516, from = {}, to = {} }}, \
+             axial_stiffness = 855000, bending_stiffness = 1, basis.ancf.elements = 4 }}
+             support = [{{ beam = 'a', at = 'start', fix = ['x', 'y'] }}]
+             joint = [{{ type = 'slider', along = {along:?}, first = {{ beam = 'a', at = 'end' }} }}]
+             effect.actuation = [{{ beam = 'a', curvature.pieces = {{ until = [0.3896], value = [-1.0124, -1.1403] }} }}]
+             analysis.static = {{}}\n",
+            x * cosine - y * sine,
+            x * sine + y * cosine,
+            4.5466889803846895 + turn,
+            4.41058898038469 + turn,
+        ));
+        let energy = found.energy.last().expect("a record");
+        let stored = energy.stretch + energy.bend;
+        assert!(stored > 0.05, "{stored}");
+        near(energy.work, stored, 1e-5 * stored, &format!("turned by {turn}"));
+    }
+}

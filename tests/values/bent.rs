@@ -137,3 +137,32 @@ fn initial_shapes_that_cannot_be_are_refused() {
     }
     assert!(parse("arm.toml", &scene(line, "modal = { count = 1, about = 'equilibrium' }")).is_ok());
 }
+
+/// An arch between hinges may rest on either side. Where it begins near the middle it rests on the side to
+/// which it creeps in a thick fluid, whatever its mesh. The follower load grows from zero afterwards.
+#[test]
+fn an_arch_rests_on_the_side_to_which_it_creeps() {
+    let middle = |elements: usize, rest: &str| {
+        let found = Written::of(&format!(
+            "beam.arch = {{ arc = {{ center = [-6.628431003630588, 2.451191392803341], radius = 7.06713780918728, \
+             from = -0.3542036732051035, to = -0.49570367320510345 }}, mass_per_length = 1, axial_stiffness = 9805, \
+             bending_stiffness = 1, initial_shape.points = [[0, 0], [-0.20455, -0.452915], [-0.372591, -0.919332]], \
+             basis.ancf.elements = {elements} }}
+             support = [{{ beam = 'arch', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'arch', at = 'end', fix = ['x', 'y'] }}]
+             effect.torsion_spring = [{{ beam = 'arch', at = 'end', stiffness = 0.5163 }}]
+             probe = [{{ name = 'middle', beam = 'arch', at = 0.5 }}]
+             {rest}\n"
+        ));
+        ["middle.x", "middle.y"].map(|name| found.last("probes.csv", name))
+    };
+    let creeps = "effect.damping = [{ beam = 'arch', mass_proportional = 200 }]
+        analysis.dynamic = { duration = 40, radau.tolerance = 1e-3 }";
+    let rests = "effect.distributed_force = [{ beam = 'arch', value = [1e-9, 0], follower = true }]
+        analysis.static = {}";
+    let [x, y] = middle(8, creeps);
+    for elements in [4, 8, 16, 32, 128] {
+        let found = middle(elements, rests);
+        near(found[0], x, 1e-4, &format!("x with {elements} elements"));
+        near(found[1], y, 1e-4, &format!("y with {elements} elements"));
+    }
+}
