@@ -275,7 +275,7 @@ impl Constraint {
     }
 
     /// Whether the row is a length \[m\], not the component of a gradient or an angle.
-    fn is_of_length(&self) -> bool {
+    pub(super) fn is_of_length(&self) -> bool {
         matches!(self.row, Row::Position { .. } | Row::Length { .. } | Row::Joint { order: 0, .. })
     }
 

@@ -53,9 +53,12 @@ impl System {
             beams.iter().map(|&beam| format!("the length that beam `{}` keeps", self.beams[beam].name)),
         );
         let tendons = self.held_rows().filter(|(row, _)| involved.contains(row));
-        parts.extend(
-            tendons.map(|(_, length)| format!("a tendon of beam `{}`", self.beams[length.beam()].name)),
-        );
+        let pulled: Vec<usize> = tendons.map(|(_, length)| length.beam()).collect();
+        parts.extend(pulled.iter().map(|&beam| format!("a tendon of beam `{}`", self.beams[beam].name)));
+        // Of a tendon whose row is empty, supports alone give the length.
+        if held.is_some() {
+            beams.extend(pulled);
+        }
         // The supports at the places of the joint of such a row are named, too.
         let tie = held.and_then(|row| self.joint_of(row, model));
         let ties: Vec<Place> = tie.map_or(Vec::new(), |joint| joint.places().collect());
@@ -88,14 +91,18 @@ impl System {
     /// 1; a row is empty if supports at nodes fix all of its coordinates.
     fn directions(&self) -> Vec<BorderRow> {
         let mut rows = self.border(0.0, &self.reference);
-        let scales = self.constraints.iter().map(|row| row.scale(self.stiffness, self.length));
-        let scales = scales.chain(self.terms.held.iter().map(|_| self.stiffness / self.length));
-        for (row, scale) in rows.iter_mut().zip(scales) {
+        let of_lengths = self.stiffness / self.length;
+        let usual = self.constraints.iter().map(|row| match row.scale(self.stiffness, self.length) {
+            scale if row.is_of_length() => scale,
+            scale => scale / self.length,
+        });
+        let usual = usual.chain(self.terms.held.iter().map(|_| of_lengths));
+        for (row, usual) in rows.iter_mut().zip(usual) {
             // Dividing the entries for gradients by the length gives them the unit of the entries
             // for positions: none, or an inverse length.
             row.iter_mut().filter(|(i, _)| i % 4 > 1).for_each(|(_, value)| *value /= self.length);
             let size = row.iter().map(|(_, value)| value * value).sum::<f64>().sqrt();
-            if size > SHARE * SHARE * scale / self.length {
+            if size > SHARE * SHARE * usual {
                 row.iter_mut().for_each(|(_, value)| *value /= size);
                 row.retain(|(_, value)| *value != 0.0);
             } else {

@@ -338,3 +338,31 @@ fn a_spring_elsewhere_does_not_hold_what_hangs() {
         assert!(free[1] < -1.5 * unit, "{free:?}");
     }
 }
+
+/// A tendon along a straight string between two pins has the length that they give it: its tension is not
+/// determined, in whatever units and direction.
+#[test]
+fn a_tendon_between_pins_holds_what_they_hold() {
+    for unit in [1e-6, 1.0, 1e3] {
+        for turn in [0.0_f64, 0.7, 2.9] {
+            let (sine, cosine) = turn.sin_cos();
+            let text = format!(
+                "beam.string = {{ start = [{:?}, {:?}], end = [{:?}, {:?}], axial_stiffness = 100, mass_per_length = 1e-3, \
+                 basis.ancf.elements = 9 }}
+                 support = [{{ beam = 'string', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'string', at = 'end', fix = ['x', 'y'] }}]
+                 effect.tendon = [{{ beam = 'string', offset = 0, length = {:?}, in_time.smooth_ramp.duration = 1 }}]
+                 analysis.dynamic.duration = 1e-3\n",
+                1.3 * unit,
+                -0.3 * unit,
+                (1.3 + cosine) * unit,
+                (-0.3 + sine) * unit,
+                0.999 * unit,
+            );
+            let scene = scene::parse("scene.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+            let refused = scene.model().solve(scene.analysis()).err().map(|error| error.to_string());
+            let said = refused.unwrap_or_default();
+            assert!(said.contains("hold the same motion more than once"), "{unit}, {turn}: {said}");
+            assert!(said.contains("a tendon") && said.contains("the support at"), "{said}");
+        }
+    }
+}
