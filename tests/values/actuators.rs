@@ -115,8 +115,7 @@ fn work_that_is_not_well_known_is_told() {
 }
 
 /// Two pinned beams welded to each other are bent far by actuation, and other equilibria lie beside the path.
-/// What acts between the ends of a step is that of the path: the work does not depend on the steps. In a
-/// frame that is turned, round-off makes steps end elsewhere.
+/// What acts between the ends of a step is that of the path: the work does not depend on the steps.
 #[test]
 fn the_work_of_actuators_does_not_depend_on_load_steps() {
     let work = |analysis: &str| {
@@ -145,7 +144,7 @@ fn the_work_of_actuators_does_not_depend_on_load_steps() {
 }
 
 /// A shallow arch between a hinge and a slider that actuation bends the other way is straight until it
-/// buckles. No load does work: what the actuator puts in is stored.
+/// buckles. No load does work: what the actuator puts in is stored. Turned, it takes other steps, by round-off.
 #[test]
 fn actuators_put_in_what_is_stored_past_a_bifurcation() {
     for (turn, along) in [(0.0, [0.0, -1.0]), (1.1, [1.1_f64.sin(), -(1.1_f64.cos())])] {
