@@ -154,6 +154,13 @@ impl Along {
         }
     }
 
+    /// The same quantity, which is taken not to be smooth where another one is not either, so that both
+    /// are summed over the same cells.
+    #[must_use]
+    pub fn divided_like(&self, other: &Self) -> Self {
+        self.plus(&other.times(0.0))
+    }
+
     /// It divided by another quantity, which is nowhere zero.
     #[must_use]
     pub fn over(&self, other: &Self) -> Self {

@@ -87,14 +87,22 @@ impl Section {
         jumps
     }
 
-    /// EA − EB²/EI \[N\]: the resistance to stretch of a section that is free to bend.
-    pub fn uncoupled_axial_stiffness(&self) -> Option<Along> {
-        let axial = self.axial_stiffness.as_ref()?;
-        Some(match (&self.coupling, &self.bending_stiffness) {
-            (Some(coupling), Some(bending)) => {
-                axial.plus(&coupling.product(coupling).over(bending).times(-1.0))
-            }
-            _ => axial.clone(),
+    /// EA \[N\], EB \[N m\] and EB²/EA \[N m²\] of a section whose stretch and bending are coupled. All are
+    /// smooth between the same places, and are thus summed over the same cells, as the square
+    /// EA (ε + EB/EA κ)² has to be in order to be positive.
+    pub fn coupled_stiffnesses(&self) -> Option<[Along; 3]> {
+        let (axial, coupling) = self.axial_stiffness.as_ref().zip(self.coupling.as_ref())?;
+        let moved = coupling.product(coupling).over(axial);
+        Some([axial.divided_like(coupling), coupling.divided_like(axial), moved])
+    }
+
+    /// EI − EB²/EA \[N m²\]: the bending stiffness about the neutral line, with which a section that is
+    /// free to stretch resists.
+    pub fn uncoupled_bending_stiffness(&self) -> Option<Along> {
+        let bending = self.bending_stiffness.as_ref()?;
+        Some(match self.coupled_stiffnesses() {
+            Some([.., moved]) => bending.plus(&moved.times(-1.0)),
+            None => bending.clone(),
         })
     }
 

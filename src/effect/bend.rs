@@ -21,10 +21,10 @@ impl Part for BeamBend {
             let law = Arc::clone(law);
             return assembly.elastic(Kind::Bend, extent, |z: Vec<[Vector2<f64>; 2]>| BendByLaw::new(law, &z));
         }
-        let Some(stiffness) = &beam.section.bending_stiffness else { return Ok(()) };
+        let Some(stiffness) = beam.section.uncoupled_bending_stiffness() else { return Ok(()) };
         // Only a curved beam needs to store its reference curvatures.
         let straight = assembly.discretized(self.beam).straight;
-        let (stiffness, extent) = Extent::along(self.beam, beam.gauss_points.bend_rule(), stiffness);
+        let (stiffness, extent) = Extent::along(self.beam, beam.gauss_points.bend_rule(), &stiffness);
         assembly.elastic(Kind::Bend, extent, |z| Bend::new(stiffness, if straight { &[] } else { &z }))
     }
 }

@@ -3,14 +3,18 @@
 //! The energy of such a section is ½ EA ε² + EB ε κ + ½ EI κ². It is summed as
 //!
 //! ```text
-//! ½ (EA − EB²/EI) ε²   at the points for stretch,
-//! ½ EI (κ + EB/EI ε)²  at those for bending
+//! ½ EA (ε + EB/EA κ)²    at the points for stretch,
+//! ½ (EI − EB²/EA) κ²     at those for bending
 //! ```
 //!
-//! so that it is positive at any points. The latter consists of ½ EI κ² of [`super::Bend`] and of
-//! the terms of this file.
+//! so that it is positive at any points. The first is the stretch of the neutral line; it consists of
+//! ½ EA ε² of [`super::Stretch`] and of the terms of this file.
+//!
+//! The other square, ½ EI (κ + EB/EI ε)², would serve as well in theory. But interpolated curved beams
+//! cannot bend without some strain between the points for stretch. There it would count as a curvature,
+//! divided by the distance of the neutral line, and cells would have to be as short as the beam is thick.
 
-use super::{Engineering, Green, Strain, Stretch, bend};
+use super::{Bend, Engineering, Green, Strain, bend};
 use crate::assembly::{Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part};
 use crate::beam::StrainMeasure;
 use crate::lanes;
@@ -36,17 +40,16 @@ impl Part for BeamCoupling {
 impl BeamCoupling {
     fn add<S: Strain + 'static>(self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("coupling", self.beam)?;
-        let Some(coupling) = &beam.section.coupling else { return Ok(()) };
-        let lacks = || BuildError::missing(beam, "bending stiffness", "coupling");
-        let bending = beam.section.bending_stiffness.as_ref().ok_or_else(lacks)?;
-        let rule = beam.gauss_points.bend_rule();
-        let (stiffness, extent) = Extent::along(self.beam, rule, coupling);
+        if beam.section.coupling.is_none() {
+            return Ok(());
+        }
+        let lacks = || BuildError::missing(beam, "axial stiffness", "coupling");
+        let [_, coupling, moved] = beam.section.coupled_stiffnesses().ok_or_else(lacks)?;
+        let rule = beam.gauss_points.stretch_rule();
+        let (stiffness, extent) = Extent::along(self.beam, rule, &coupling);
         assembly.elastic(Kind::Coupling, extent, |z| Coupling::<S>::new(stiffness, &z))?;
-        let square = coupling.product(coupling).over(bending);
-        let (stiffness, extent) = Extent::along(self.beam, rule, &square);
-        assembly.elastic(Kind::Stretch, extent, |z: Vec<[Vector2<f64>; 1]>| {
-            Stretch::<S>::new(stiffness, &z.into_iter().map(|[r]| r).collect::<Vec<_>>())
-        })
+        let (stiffness, extent) = Extent::along(self.beam, rule, &moved);
+        assembly.elastic(Kind::Bend, extent, |z: Vec<[Vector2<f64>; 2]>| Bend::new(stiffness, &z))
     }
 }
 

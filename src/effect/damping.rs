@@ -160,9 +160,9 @@ impl Part for BeamDamping {
             assembly.damping(Kind::Damping, extent, |_| MassDamping { coefficient })?;
         }
         if let Some(eta) = &self.strain {
-            let stiffness =
-                beam.section.uncoupled_axial_stiffness().ok_or_else(|| lacks("axial stiffness"))?;
-            let viscosity = stiffness.product(eta);
+            let coupled = beam.section.coupled_stiffnesses().map(|[axial, ..]| axial);
+            let stiffness = coupled.or_else(|| beam.section.axial_stiffness.clone());
+            let viscosity = stiffness.ok_or_else(|| lacks("axial stiffness"))?.product(eta);
             let (viscosity, extent) = Extent::along(self.beam, points.stretch_rule(), &viscosity);
             match beam.strain {
                 StrainMeasure::Green => {
@@ -173,23 +173,20 @@ impl Part for BeamDamping {
                 }
             }?;
         }
-        if let Some(coupling) = &beam.section.coupling {
+        if let Some([_, coupling, moved]) = beam.section.coupled_stiffnesses() {
             if self.strain != self.curvature {
                 return Err(BuildError::CoupledDamping { beam: beam.name.clone() });
             }
-            if let (Some(eta), Some(bending)) = (&self.strain, &beam.section.bending_stiffness) {
-                let square = coupling.product(coupling).over(bending).product(eta);
-                let (square, squares) = Extent::along(self.beam, points.bend_rule(), &square);
-                let (viscosity, extent) =
-                    Extent::along(self.beam, points.bend_rule(), &coupling.product(eta));
+            if let Some(eta) = &self.strain {
+                let rule = points.stretch_rule();
+                let (coefficient, extent) = Extent::along(self.beam, rule, &moved.product(eta));
+                assembly.damping(Kind::Damping, extent, |_| BendDamping { coefficient })?;
+                let (viscosity, extent) = Extent::along(self.beam, rule, &coupling.product(eta));
                 match beam.strain {
                     StrainMeasure::Green => {
-                        assembly.damping(Kind::Damping, squares, |_| StretchDamping::<Green>::new(square))?;
                         assembly.damping(Kind::Damping, extent, |_| CouplingDamping::<Green>::new(viscosity))
                     }
                     StrainMeasure::Engineering => {
-                        let along = |_| StretchDamping::<Engineering>::new(square);
-                        assembly.damping(Kind::Damping, squares, along)?;
                         let coupled = |_| CouplingDamping::<Engineering>::new(viscosity);
                         assembly.damping(Kind::Damping, extent, coupled)
                     }
@@ -198,7 +195,7 @@ impl Part for BeamDamping {
         }
         if let Some(eta) = &self.curvature {
             let stiffness =
-                beam.section.bending_stiffness.as_ref().ok_or_else(|| lacks("bending stiffness"))?;
+                beam.section.uncoupled_bending_stiffness().ok_or_else(|| lacks("bending stiffness"))?;
             let viscosity = stiffness.product(eta);
             let (coefficient, extent) = Extent::along(self.beam, points.bend_rule(), &viscosity);
             assembly.damping(Kind::Damping, extent, |_| BendDamping { coefficient })?;

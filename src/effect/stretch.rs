@@ -29,7 +29,8 @@ impl Part for BeamStretch {
                     .elastic(Kind::Stretch, extent, |z| StretchByLaw::<Engineering>::new(law, fields(z))),
             };
         }
-        let Some(stiffness) = beam.section.uncoupled_axial_stiffness() else { return Ok(()) };
+        let coupled = beam.section.coupled_stiffnesses().map(|[axial, ..]| axial);
+        let Some(stiffness) = coupled.or_else(|| beam.section.axial_stiffness.clone()) else { return Ok(()) };
         // Only a curved beam needs to store its reference strains.
         let straight = assembly.discretized(self.beam).straight;
         let gradients = |z: Vec<[Vector2<f64>; 1]>| -> Vec<_> {
