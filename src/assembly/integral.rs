@@ -212,7 +212,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
 
     /// `f += factor · ∫ Σ_m Σ_n N⁽ᵒᵐ⁾ H_mn v_n ds`, where H is `hessian` of the fields of `q`, and v_n are
     /// the fields of `v`.
-    pub(super) fn product_of<const W: usize>(
+    pub(super) fn product_of(
         &self,
         factor: f64,
         q: &[f64],
@@ -220,19 +220,22 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         f: &mut [f64],
         hessian: impl Fn(usize, &Gradient<M>) -> Hessian<M>,
     ) {
-        let width = self.width::<W>();
+        let width = self.table.width;
         for (cell, entry) in self.table.cells.iter().enumerate() {
             let (weights, rows) = self.table.block(*entry);
             let first = 2 * (self.offset + entry.first as usize);
             let range = first..first + 2 * width;
             let (q, v, f) = (&q[range.clone()], &v[range.clone()], &mut f[range]);
             for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
-                let (z, change) = (self.fields::<W>(rows, q), self.fields::<W>(rows, v));
+                let (z, change) = (self.fields::<0>(rows, q), self.fields::<0>(rows, v));
                 let hessian = hessian(cell * weights.len() + p, &z);
-                let product = std::array::from_fn(|m| {
-                    hessian[m].iter().zip(&change).map(|(h, change)| h * change).sum::<Vector2<f64>>()
-                });
-                self.add_gradient::<W>(factor * weight, rows, &product, f);
+                let mut product = [Vector2::zeros(); M];
+                for (product, row) in product.iter_mut().zip(&hessian) {
+                    for (h, change) in row.iter().zip(&change) {
+                        *product += h * change;
+                    }
+                }
+                self.add_gradient::<0>(factor * weight, rows, &product, f);
             }
         }
     }
@@ -258,7 +261,10 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let (weights, rows) = self.table.block(*entry);
             let first = 2 * (self.offset + entry.first as usize);
             let range = first..first + columns;
-            let earlier = earlier.map(|earlier| [earlier.q, earlier.increment].map(|q| &q[range.clone()]));
+            let earlier = match earlier {
+                Some(Earlier { q, increment }) => Some((&q[range.clone()], &increment[range.clone()])),
+                None => None,
+            };
             let (q, f) = (&q[range.clone()], &mut f[range]);
             for (p, ((weight, rows), products)) in weights
                 .iter()
@@ -268,8 +274,10 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             {
                 let weight = factor * weight;
                 let z = self.fields::<0>(rows, q);
-                let [before, change] =
-                    earlier.map_or([z, [Vector2::zeros(); M]], |q| q.map(|q| self.fields::<0>(rows, q)));
+                let [before, change] = match earlier {
+                    Some((q, increment)) => [self.fields::<0>(rows, q), self.fields::<0>(rows, increment)],
+                    None => [z, [Vector2::zeros(); M]],
+                };
                 let point = cell * weights.len() + p;
                 let (gradient, hessian) = derivatives(point, &z, &before, &change);
                 self.add_gradient::<0>(weight, rows, &gradient, f);
@@ -442,7 +450,7 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
         if D::HAS_TANGENT {
             let still = [Vector2::zeros(); M];
             let hessian = |point, z: &Gradient<M>| self.density.gradient_and_hessian(point, z, z, &still).1;
-            with_width!(self.product_of(factor, q, v, f, hessian));
+            self.product_of(factor, q, v, f, hessian);
         }
     }
 

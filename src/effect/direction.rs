@@ -1,6 +1,6 @@
 //! The direction θ = atan2(y', x') of r' and its derivatives.
 
-use crate::assembly::{Density, Gradient, Hessian};
+use crate::assembly::{CompiledFor, Density, Gradient, Hessian};
 use nalgebra::{Matrix2, Vector2};
 
 /// ∂θ/∂r' = (−y', x')/|r'|².
@@ -34,6 +34,7 @@ impl Direction {
 
 impl Density<1> for Direction {
     const ORDERS: [usize; 1] = [1];
+    const COMPILED_FOR: CompiledFor = CompiledFor::None;
 
     fn energy(&self, _: usize, z: &Gradient<1>) -> f64 {
         angle(&self.reference, &z[0])

@@ -1,6 +1,6 @@
 //! Concentrated moments.
 
-use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part};
+use crate::assembly::{Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part};
 use crate::beam::Place;
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
@@ -54,6 +54,7 @@ pub struct Couple {
 impl Density<1> for Couple {
     const ORDERS: [usize; 1] = [1];
     const CONSERVATIVE: bool = false;
+    const COMPILED_FOR: CompiledFor = CompiledFor::None;
 
     fn energy(&self, _: usize, _: &Gradient<1>) -> f64 {
         0.0

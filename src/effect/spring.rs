@@ -2,7 +2,8 @@
 
 use super::direction::{self, Direction};
 use crate::assembly::{
-    Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part, Resistance,
+    Assembly, BuildError, CompiledFor, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part,
+    Resistance,
 };
 use crate::beam::Place;
 use nalgebra::{Matrix2, Vector2};
@@ -164,6 +165,7 @@ impl Strut {
 
 impl Density<1> for Strut {
     const ORDERS: [usize; 1] = [0];
+    const COMPILED_FOR: CompiledFor = CompiledFor::None;
 
     fn energy(&self, _: usize, z: &Gradient<1>) -> f64 {
         let (_, length, _) = self.ratio(z);
@@ -207,6 +209,7 @@ pub struct Dashpot {
 
 impl Dissipation<1> for Dashpot {
     const ORDERS: [usize; 1] = [0];
+    const COMPILED_FOR: CompiledFor = CompiledFor::None;
 
     #[inline(always)]
     fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {
@@ -245,6 +248,7 @@ impl Torsion {
 
 impl Density<1> for Torsion {
     const ORDERS: [usize; 1] = [1];
+    const COMPILED_FOR: CompiledFor = CompiledFor::None;
 
     fn energy(&self, _: usize, z: &Gradient<1>) -> f64 {
         0.5 * self.stiffness * self.angle(&z[0]).powi(2)
@@ -277,6 +281,7 @@ pub struct TorsionDashpot {
 
 impl Dissipation<1> for TorsionDashpot {
     const ORDERS: [usize; 1] = [1];
+    const COMPILED_FOR: CompiledFor = CompiledFor::None;
 
     #[inline(always)]
     fn force(&self, point: usize, z: &Gradient<1>, rate: &Gradient<1>) -> Gradient<1> {

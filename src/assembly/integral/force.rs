@@ -21,15 +21,15 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         let nodes = f.as_chunks_mut::<4>().0;
         threads::each([nodes], &|range, [nodes]| {
             let range = 4 * range.start..4 * range.end;
-            let cells = [(&self.fours, 2 * W + 12), (&self.singles, 2 * W)]
-                .map(|(cells, width)| self.inside(cells, width, range.clone()));
+            let fours = self.inside(&self.fours, 2 * W + 12, range.clone());
+            let singles = self.inside(&self.singles, 2 * W, range.clone());
             let (q, f) = (&q[range.clone()], nodes.as_flattened_mut());
-            self.forces_of::<W>(cells, factor, q, f, range.start);
+            self.forces_of::<W>([fours, singles], factor, q, f, range.start);
         });
         for end in (4 * BLOCK..f.len()).step_by(4 * BLOCK) {
-            let cells = [(&self.fours, 2 * W + 12), (&self.singles, 2 * W)]
-                .map(|(cells, width)| self.across(cells, width, end));
-            self.forces_of::<W>(cells, factor, q, f, 0);
+            let fours = self.across(&self.fours, 2 * W + 12, end);
+            let singles = self.across(&self.singles, 2 * W, end);
+            self.forces_of::<W>([fours, singles], factor, q, f, 0);
         }
     }
 
@@ -49,7 +49,6 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
 
     /// Adds the forces of cells by fours and of single ones to `f`, which begins with coordinate number
     /// `start`, as `q` does.
-    #[inline(always)]
     fn forces_of<const W: usize>(
         &self,
         [fours, singles]: [&[u32]; 2],

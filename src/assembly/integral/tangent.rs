@@ -71,7 +71,6 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
 
     /// Adds the forces and the tangents of cells by fours, and of single ones. `f` begins with the
     /// coordinate of the given number.
-    #[inline(always)]
     fn tangents_of<const W: usize>(
         &self,
         [fours, singles]: [&[u32]; 2],
@@ -118,9 +117,12 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         let first = self.first(cell);
         let range = first..first + 2 * W;
         let here = coefficients::<W>(&q[range.clone()]);
-        let earlier = earlier.map(|Earlier { q, increment }| {
-            [coefficients::<W>(&q[range.clone()]), coefficients(&increment[range.clone()])]
-        });
+        let earlier = match earlier {
+            Some(Earlier { q, increment }) => {
+                Some([coefficients::<W>(&q[range.clone()]), coefficients(&increment[range])])
+            }
+            None => None,
+        };
         let mut sums = [[0.0; 2]; W];
         let by_point = weights.iter().zip(rows.as_chunks::<M>().0).zip(products.as_chunks_mut::<M>().0);
         for (p, ((weight, rows), products)) in by_point.enumerate() {
@@ -140,10 +142,11 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             }
             for m in 0..M {
                 for d in 0..2 {
-                    let h: [Lanes; M] = std::array::from_fn(|n| {
-                        let (x, y) = (weight * hessian[m][n][(d, 0)], weight * hessian[m][n][(d, 1)]);
-                        Lanes::new([x, y, x, y])
-                    });
+                    let mut h = [Lanes::ZERO; M];
+                    for (h, block) in h.iter_mut().zip(&hessian[m]) {
+                        let (x, y) = (weight * block[(d, 0)], weight * block[(d, 1)]);
+                        *h = Lanes::new([x, y, x, y]);
+                    }
                     for b in 0..W / 2 {
                         let mut sum = Lanes::ZERO;
                         for n in 0..M {
@@ -158,7 +161,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         for (f, sum) in f.as_chunks_mut::<2>().0.iter_mut().zip(&sums) {
             *f = [f[0] + sum[0], f[1] + sum[1]];
         }
-        for_tiles::<W>(k, |k, a, b| add_tile(k, first / 4 + a, first / 4 + b, &tile(rows, products, a, b)));
+        add_tiles(k, first / 4, rows, products);
     }
 
     /// Cable elements that are grouped by four, with `P` points in each.
@@ -180,9 +183,13 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let (weights, rows) = self.table.block(self.table.cells[cell]);
             let (weights, rows) = (&weights[..P], &rows.as_chunks::<CABLE>().0[..P * M]);
             let here = lanes::gather::<CABLE>(&q[range.clone()]);
-            let earlier = earlier.map(|Earlier { q, increment }| {
-                [q, increment].map(|q| lanes::gather::<CABLE>(&q[range.clone()]))
-            });
+            let earlier = match earlier {
+                Some(Earlier { q, increment }) => Some([
+                    lanes::gather::<CABLE>(&q[range.clone()]),
+                    lanes::gather(&increment[range.clone()]),
+                ]),
+                None => None,
+            };
             let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
             for p in 0..P {
                 let rows = &rows[p * M..(p + 1) * M];
@@ -213,13 +220,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             }
             let f = &mut f[range.start - start..range.end - start];
             lanes::scatter(&sums_of_points::<M, CABLE, P>(rows, &gradients), f);
-            for_tiles::<CABLE>(k, |k, a, b| {
-                let mut tiles = [[Lanes::ZERO; 4]; 4];
-                tiles_of_four::<M, CABLE, P>(rows, products, [a, b], &mut tiles);
-                for (node, tile) in (first / 4..).zip(&tiles) {
-                    add_tile(k, node + a, node + b, tile);
-                }
-            });
+            add_tiles_of_fours::<M, P>(k, first / 4, rows, products);
         }
     }
 }
@@ -238,6 +239,30 @@ enum Rows<'k> {
     Panels(Panels<'k>),
     /// All, of another.
     Band(&'k mut Band),
+}
+
+/// Adds the tiles of a cell whose first node has the given number. It is the same for all densities, and
+/// compiled once for all of them.
+#[inline(never)]
+fn add_tiles<const W: usize>(k: &mut Rows<'_>, node: usize, rows: &[[f64; W]], products: &[[Lanes; W]]) {
+    for_tiles::<W>(k, |k, a, b| add_tile(k, node + a, node + b, &tile(rows, products, a, b)));
+}
+
+/// [`add_tiles`] of four cells with `P` points each, the first of which begins with the given node.
+#[inline(never)]
+fn add_tiles_of_fours<const M: usize, const P: usize>(
+    k: &mut Rows<'_>,
+    node: usize,
+    rows: &[[f64; CABLE]],
+    products: &[[[[Pair<Lanes>; CABLE]; 2]; M]],
+) {
+    for_tiles::<CABLE>(k, |k, a, b| {
+        let mut tiles = [[Lanes::ZERO; 4]; 4];
+        tiles_of_four::<M, CABLE, P>(rows, products, [a, b], &mut tiles);
+        for (node, tile) in (node..).zip(&tiles) {
+            add_tile(k, node + a, node + b, tile);
+        }
+    });
 }
 
 /// Calls `add` for each tile of a cell that `k` needs, with the indices of its two nodes within the
