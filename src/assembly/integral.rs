@@ -212,7 +212,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
 
     /// `f += factor · ∫ Σ_m Σ_n N⁽ᵒᵐ⁾ H_mn v_n ds`, where H is `hessian` of the fields of `q`, and v_n are
     /// the fields of `v`.
-    pub(super) fn product_of(
+    pub(super) fn product_of<const W: usize>(
         &self,
         factor: f64,
         q: &[f64],
@@ -220,14 +220,14 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         f: &mut [f64],
         hessian: impl Fn(usize, &Gradient<M>) -> Hessian<M>,
     ) {
-        let width = self.table.width;
+        let width = self.width::<W>();
         for (cell, entry) in self.table.cells.iter().enumerate() {
             let (weights, rows) = self.table.block(*entry);
             let first = 2 * (self.offset + entry.first as usize);
             let range = first..first + 2 * width;
             let (q, v, f) = (&q[range.clone()], &v[range.clone()], &mut f[range]);
             for (p, (weight, rows)) in weights.iter().zip(rows.chunks_exact(M * width)).enumerate() {
-                let (z, change) = (self.fields::<0>(rows, q), self.fields::<0>(rows, v));
+                let (z, change) = (self.fields::<W>(rows, q), self.fields::<W>(rows, v));
                 let hessian = hessian(cell * weights.len() + p, &z);
                 let mut product = [Vector2::zeros(); M];
                 for (product, row) in product.iter_mut().zip(&hessian) {
@@ -235,7 +235,7 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
                         *product += h * change;
                     }
                 }
-                self.add_gradient::<0>(factor * weight, rows, &product, f);
+                self.add_gradient::<W>(factor * weight, rows, &product, f);
             }
         }
     }
@@ -450,7 +450,7 @@ impl<D: Density<M>, const M: usize> Effect for Integral<D, M> {
         if D::HAS_TANGENT {
             let still = [Vector2::zeros(); M];
             let hessian = |point, z: &Gradient<M>| self.density.gradient_and_hessian(point, z, z, &still).1;
-            self.product_of(factor, q, v, f, hessian);
+            with_width!(self.product_of(factor, q, v, f, hessian));
         }
     }
 

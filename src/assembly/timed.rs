@@ -174,7 +174,8 @@ impl<D: TimedDensity<M>, const M: usize> TimedLoad for TimedIntegral<D, M> {
 
     fn add_tangent_product(&self, time: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
         let (density, factor) = (&self.sum.density, self.factor(time));
-        self.sum.product_of(factor, q, v, f, |point, z| density.gradient_and_hessian_at(time, point, z).1);
+        self.sum
+            .product_of::<0>(factor, q, v, f, |point, z| density.gradient_and_hessian_at(time, point, z).1);
     }
 
     fn add_moments(&self, span: [f64; 2], q: &[f64], moments: [&mut [f64]; 2]) {

@@ -245,7 +245,21 @@ enum Rows<'k> {
 /// compiled once for all of them.
 #[inline(never)]
 fn add_tiles<const W: usize>(k: &mut Rows<'_>, node: usize, rows: &[[f64; W]], products: &[[Lanes; W]]) {
-    for_tiles::<W>(k, |k, a, b| add_tile(k, node + a, node + b, &tile(rows, products, a, b)));
+    match k {
+        Rows::Panels(panels) => {
+            for a in 0..W / 2 {
+                let (panel, stride) = panels.panel_mut(node + a);
+                for b in a..W / 2 {
+                    for (r, values) in tile(rows, products, a, b).iter().enumerate() {
+                        add_to(&mut panel[r * stride + 4 * (b - a)..], *values);
+                    }
+                }
+            }
+        }
+        Rows::Band(_) => {
+            for_tiles::<W>(k, |k, a, b| add_tile(k, node + a, node + b, &tile(rows, products, a, b)));
+        }
+    }
 }
 
 /// [`add_tiles`] of four cells with `P` points each, the first of which begins with the given node.
