@@ -261,10 +261,8 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let (weights, rows) = self.table.block(*entry);
             let first = 2 * (self.offset + entry.first as usize);
             let range = first..first + columns;
-            let earlier = match earlier {
-                Some(Earlier { q, increment }) => Some((&q[range.clone()], &increment[range.clone()])),
-                None => None,
-            };
+            let earlier =
+                earlier.map(|Earlier { q, increment }| (&q[range.clone()], &increment[range.clone()]));
             let (q, f) = (&q[range.clone()], &mut f[range]);
             for (p, ((weight, rows), products)) in weights
                 .iter()

@@ -117,12 +117,9 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
         let first = self.first(cell);
         let range = first..first + 2 * W;
         let here = coefficients::<W>(&q[range.clone()]);
-        let earlier = match earlier {
-            Some(Earlier { q, increment }) => {
-                Some([coefficients::<W>(&q[range.clone()]), coefficients(&increment[range])])
-            }
-            None => None,
-        };
+        let earlier = earlier.map(|Earlier { q, increment }| {
+            [coefficients::<W>(&q[range.clone()]), coefficients(&increment[range.clone()])]
+        });
         let mut sums = [[0.0; 2]; W];
         let by_point = weights.iter().zip(rows.as_chunks::<M>().0).zip(products.as_chunks_mut::<M>().0);
         for (p, ((weight, rows), products)) in by_point.enumerate() {
@@ -183,13 +180,9 @@ impl<D: Density<M>, const M: usize> Integral<D, M> {
             let (weights, rows) = self.table.block(self.table.cells[cell]);
             let (weights, rows) = (&weights[..P], &rows.as_chunks::<CABLE>().0[..P * M]);
             let here = lanes::gather::<CABLE>(&q[range.clone()]);
-            let earlier = match earlier {
-                Some(Earlier { q, increment }) => Some([
-                    lanes::gather::<CABLE>(&q[range.clone()]),
-                    lanes::gather(&increment[range.clone()]),
-                ]),
-                None => None,
-            };
+            let earlier = earlier.map(|Earlier { q, increment }| {
+                [lanes::gather::<CABLE>(&q[range.clone()]), lanes::gather(&increment[range.clone()])]
+            });
             let mut gradients = [[[Lanes::ZERO; 2]; M]; P];
             for p in 0..P {
                 let rows = &rows[p * M..(p + 1) * M];
