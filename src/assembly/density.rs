@@ -17,7 +17,7 @@ pub enum CompiledFor {
     CommonTables,
     /// Cable elements with two or three points.
     CableElements,
-    /// None: one loop serves all.
+    /// None: one loop serves all, for what acts at single points or takes little of the time.
     None,
 }
 

@@ -96,6 +96,14 @@ impl Section {
         Some([axial.divided_like(coupling), coupling.divided_like(axial), moved])
     }
 
+    /// EA \[N\], as [`Self::coupled_stiffnesses`] has it where stretch and bending are coupled.
+    pub fn summed_axial_stiffness(&self) -> Option<Along> {
+        match self.coupled_stiffnesses() {
+            Some([axial, ..]) => Some(axial),
+            None => self.axial_stiffness.clone(),
+        }
+    }
+
     /// EI − EB²/EA \[N m²\]: the bending stiffness about the neutral line, with which a section that is
     /// free to stretch resists.
     pub fn uncoupled_bending_stiffness(&self) -> Option<Along> {

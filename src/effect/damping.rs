@@ -160,9 +160,8 @@ impl Part for BeamDamping {
             assembly.damping(Kind::Damping, extent, |_| MassDamping { coefficient })?;
         }
         if let Some(eta) = &self.strain {
-            let coupled = beam.section.coupled_stiffnesses().map(|[axial, ..]| axial);
-            let stiffness = coupled.or_else(|| beam.section.axial_stiffness.clone());
-            let viscosity = stiffness.ok_or_else(|| lacks("axial stiffness"))?.product(eta);
+            let stiffness = beam.section.summed_axial_stiffness().ok_or_else(|| lacks("axial stiffness"))?;
+            let viscosity = stiffness.product(eta);
             let (viscosity, extent) = Extent::along(self.beam, points.stretch_rule(), &viscosity);
             match beam.strain {
                 StrainMeasure::Green => {

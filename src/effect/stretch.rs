@@ -29,8 +29,7 @@ impl Part for BeamStretch {
                     .elastic(Kind::Stretch, extent, |z| StretchByLaw::<Engineering>::new(law, fields(z))),
             };
         }
-        let coupled = beam.section.coupled_stiffnesses().map(|[axial, ..]| axial);
-        let Some(stiffness) = coupled.or_else(|| beam.section.axial_stiffness.clone()) else { return Ok(()) };
+        let Some(stiffness) = beam.section.summed_axial_stiffness() else { return Ok(()) };
         // Only a curved beam needs to store its reference strains.
         let straight = assembly.discretized(self.beam).straight;
         let gradients = |z: Vec<[Vector2<f64>; 1]>| -> Vec<_> {
