@@ -73,7 +73,7 @@ pub use load::{Acting, ActingLoad, Amplitude, remaining};
 pub use node::{Node, nodes};
 pub use part::{Extent, Imposed, Part, Resistance};
 pub use tendon::TendonPath;
-pub use terms::{Needs, Terms, Turning};
+pub use terms::{Needs, Owner, Owners, Terms, Turning};
 pub use timed::{TimedDensity, TimedIntegral, TimedLoad};
 pub use weighted::Weighted;
 pub use winding::Winding;

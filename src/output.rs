@@ -51,7 +51,7 @@ pub use summary::{
 use crate::restart::SavedState;
 use crate::results::{PICTURES, Results};
 pub(crate) use staged_files::StagedFiles;
-pub(crate) use tables::{cell, exact};
+pub(crate) use tables::{cell, exact, text_of_cell};
 
 /// Which of the larger files to write.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

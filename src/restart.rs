@@ -223,7 +223,7 @@ fn checksums<T: std::fmt::Debug>(all: &[T]) -> Vec<String> {
 
 /// Checksums of all that makes rows of constraints, in the order of [`System::forces_of_rows`].
 fn rows(model: &Model, system: &System) -> Vec<String> {
-    let tendons = system.parts_of_tendons().iter().map(|part| &model.parts[*part]);
+    let tendons = system.parts_of_tendons().map(|part| &model.parts[part]);
     let mut rows = [checksums(&model.supports), checksums(&model.joints), vec!["lengths".into()]].concat();
     rows.extend(checksums(&tendons.collect::<Vec<_>>()));
     rows
@@ -244,7 +244,7 @@ fn matches(before: &[String], now: &[String]) -> Vec<Option<usize>> {
 fn moved(
     variables: &InternalVariables,
     before: &[Vec<usize>; 2],
-    now: [&[usize]; 2],
+    now: &[Vec<usize>; 2],
     same: &[Option<usize>],
 ) -> InternalVariables {
     // A part may have several: the n-th of a part is the n-th of the same part before.
@@ -283,7 +283,7 @@ impl SavedState {
             directions: directions(model),
             acted: checksums(&model.parts),
             held: checksums(&model.supports),
-            history_of: system.history_of().map(<[usize]>::to_vec),
+            history_of: system.history_of(),
             checkpoint,
             holding: holding.map(|Holding { supports, multipliers }| {
                 let supports = supports.into_iter().enumerate().filter(|(_, force)| *force != 0.0);
@@ -425,7 +425,7 @@ impl SavedState {
         }
         if self.saved.motion != fingerprint {
             let same = matches(&self.saved.acted, &checksums(&model.parts));
-            let variables = moved(&state.variables, &self.saved.history_of, system.history_of(), &same);
+            let variables = moved(&state.variables, &self.saved.history_of, &system.history_of(), &same);
             let state = State { variables, ..state.clone() };
             return Ok((Checkpoint { state, ..Checkpoint::default() }, false));
         }

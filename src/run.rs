@@ -18,6 +18,7 @@ mod stages;
 mod start;
 mod statics;
 mod strings;
+mod surfaces;
 mod tendons;
 
 pub use error::RunError;

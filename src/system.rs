@@ -48,7 +48,8 @@ pub use view::{Change, Fields, View, unfold};
 use std::sync::Arc;
 
 use crate::assembly::{
-    Acting, Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Resistance, Terms, nodes,
+    Acting, Amplitude, Assembly, BuildError, DiscretizedBeam, Kind, Needs, Owner, Owners, Resistance, Terms,
+    nodes,
 };
 use crate::basis::{Basis, BasisCache};
 use crate::centreline::Curve;
@@ -100,10 +101,6 @@ pub struct System {
     reference: Vec<f64>,
     /// The state in which an analysis begins, where it is not the stress-free one.
     start: Option<Start>,
-    /// Per friction and per torsion spring: the number of its part in the model.
-    history_of: [Vec<usize>; 2],
-    /// Per tendon of given length, the number of its part.
-    parts_of_tendons: Vec<usize>,
     length: f64,
     stiffness: f64,
     round_off: f64,
@@ -114,6 +111,14 @@ pub struct System {
     rigid_motions: usize,
     /// The same, if springs and foundations did not resist any.
     free_motions: usize,
+}
+
+/// The numbers of the parts among `owners`.
+fn parts(owners: &[Owner]) -> impl Iterator<Item = usize> {
+    owners.iter().filter_map(|owner| match owner {
+        Owner::Part(number) => Some(*number),
+        Owner::Beam(_) | Owner::Gone(_) => None,
+    })
 }
 
 impl System {
@@ -192,8 +197,6 @@ impl System {
             special: Vec::new(),
             reference,
             start: start.map(Start::given),
-            history_of: [Vec::new(), Vec::new()],
-            parts_of_tendons: Vec::new(),
             length,
             stiffness,
             round_off,
@@ -206,20 +209,19 @@ impl System {
         let mut assembly = Assembly::new(&model.beams, &system.beams, &system.reference, masses, needs);
         for beam in 0..model.beams.len() {
             effect::of_section(beam).iter().try_for_each(|part| part.add_to(&mut assembly))?;
+            assembly.belong_to(Owner::Beam(beam));
         }
         for (number, part) in model.parts.iter().enumerate() {
             let already = !needs.motion && model.stands(number);
             assembly.set_acting(if already { Acting::Already } else { Acting::Not });
             part.add_to(&mut assembly)?;
-            for (of, count) in system.history_of.iter_mut().zip(assembly.histories()) {
-                of.resize(count, number);
-            }
-            system.parts_of_tendons.resize(assembly.tendons(), number);
+            assembly.belong_to(Owner::Part(number));
         }
         let fading = if needs.motion { &[][..] } else { &model.fading[..] };
-        for (part, time) in fading {
+        for (number, (part, time)) in fading.iter().enumerate() {
             assembly.set_acting(Acting::NoLonger { time: *time });
             part.add_to(&mut assembly)?;
+            assembly.belong_to(Owner::Gone(number));
         }
         system.terms = assembly.finish();
         system.actuated = actuation::actuated(model, fading, &system);
@@ -383,13 +385,14 @@ impl System {
 
     /// Per friction and per torsion spring, in the order of the internal variables: the number of
     /// its part in the model.
-    pub fn history_of(&self) -> [&[usize]; 2] {
-        self.history_of.each_ref().map(|of| &of[..])
+    pub fn history_of(&self) -> [Vec<usize>; 2] {
+        let Owners { friction, windings, .. } = &self.terms.owners;
+        [friction, windings].map(|owners| parts(owners).collect())
     }
 
     /// Per tendon of given length, the number of its part in the model.
-    pub fn parts_of_tendons(&self) -> &[usize] {
-        &self.parts_of_tendons
+    pub fn parts_of_tendons(&self) -> impl Iterator<Item = usize> {
+        parts(&self.terms.owners.held)
     }
 
     /// Length of the longest beam \[m\]: the scale of positions.

@@ -3,8 +3,8 @@
 use super::part::places;
 use super::{
     Acting, ActingLoad, BuildError, ContactEffect, Damping, Density, DiscretizedBeam, Dissipation, Effect,
-    Extent, FrictionEffect, HeldLength, Integral, Kind, Needs, Rayleigh, TendonPath, Terms, TimedDensity,
-    TimedIntegral, TimedLoad, Turning, Weighted, Winding,
+    Extent, FrictionEffect, HeldLength, Integral, Kind, Needs, Owner, Rayleigh, TendonPath, Terms,
+    TimedDensity, TimedIntegral, TimedLoad, Turning, Weighted, Winding,
 };
 use crate::basis::{Basis, BasisTable, Quadrature};
 use crate::beam::{Beam, Place};
@@ -51,14 +51,9 @@ impl<'a> Assembly<'a> {
         matches!(self.acting, Acting::NoLonger { .. })
     }
 
-    /// How many frictions and windings there are so far, which are numbered in this order.
-    pub(crate) fn histories(&self) -> [usize; 2] {
-        [self.terms.friction.len(), self.terms.windings.len()]
-    }
-
-    /// How many tendons of given length there are so far.
-    pub(crate) fn tendons(&self) -> usize {
-        self.terms.held.len()
+    /// Notes `owner` as what has added the terms since the last such call.
+    pub(crate) fn belong_to(&mut self, owner: Owner) {
+        self.terms.belong_to(owner);
     }
 
     /// All beams.

@@ -24,6 +24,41 @@ pub struct Turning {
     pub rate: Box<dyn Damping>,
 }
 
+/// What has added a term: a beam by its section, a part of the model, or one that has gone and fades; by
+/// their numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Owner {
+    /// A beam.
+    Beam(usize),
+    /// A part.
+    Part(usize),
+    /// A part that has gone.
+    Gone(usize),
+}
+
+/// Per term of the lists of [`Terms`], what has added it.
+#[derive(Default)]
+pub struct Owners {
+    /// Of [`Terms::internal`].
+    pub internal: Vec<Owner>,
+    /// Of [`Terms::loads`].
+    pub loads: Vec<Owner>,
+    /// Of [`Terms::inertia`].
+    pub inertia: Vec<Owner>,
+    /// Of [`Terms::turning`].
+    pub turning: Vec<Owner>,
+    /// Of [`Terms::damping`].
+    pub damping: Vec<Owner>,
+    /// Of [`Terms::timed_loads`].
+    pub timed_loads: Vec<Owner>,
+    /// Of [`Terms::friction`].
+    pub friction: Vec<Owner>,
+    /// Of [`Terms::windings`].
+    pub windings: Vec<Owner>,
+    /// Of [`Terms::held`].
+    pub held: Vec<Owner>,
+}
+
 /// The terms that the parts of a model have added to its equations.
 #[derive(Default)]
 pub struct Terms {
@@ -49,4 +84,26 @@ pub struct Terms {
     pub held: Vec<HeldLength>,
     /// Effects that the analysis leaves out, each with the index of its beam.
     pub left_out: Vec<(Kind, usize)>,
+    /// What has added them.
+    pub owners: Owners,
+}
+
+impl Terms {
+    /// Notes `owner` as that of all terms of which none is noted yet.
+    pub fn belong_to(&mut self, owner: Owner) {
+        let owners = &mut self.owners;
+        for (of, count) in [
+            (&mut owners.internal, self.internal.len()),
+            (&mut owners.loads, self.loads.len()),
+            (&mut owners.inertia, self.inertia.len()),
+            (&mut owners.turning, self.turning.len()),
+            (&mut owners.damping, self.damping.len()),
+            (&mut owners.timed_loads, self.timed_loads.len()),
+            (&mut owners.friction, self.friction.len()),
+            (&mut owners.windings, self.windings.len()),
+            (&mut owners.held, self.held.len()),
+        ] {
+            of.resize(count, owner);
+        }
+    }
 }

@@ -205,6 +205,34 @@ impl Along {
         }
     }
 
+    /// Arc lengths \[m\], rising, of the kinks between which it is, within a factor of `within`, what
+    /// a straight line in its logarithm says: a narrow notch of a table has three. Where it is not
+    /// positive there are none. The places are chosen as D. H. Douglas and T. K. Peucker do
+    /// (*Cartographica* 10, 1973, 112–122).
+    pub fn corners(&self, within: f64) -> Vec<f64> {
+        let (mut kinks, jumps) = (self.kinks(), self.jumps());
+        kinks.sort_by(f64::total_cmp);
+        kinks.dedup();
+        let mut corners = Vec::new();
+        let mut start = 0;
+        for end in 1..kinks.len() {
+            if end + 1 < kinks.len() && !jumps.contains(&kinks[end]) {
+                continue;
+            }
+            let smooth = &kinks[start..=end];
+            let value = |i: usize| {
+                let beside = if i == 0 { smooth[1] } else { smooth[i - 1] };
+                self.at(smooth[i], 0.5 * (smooth[i] + beside))
+            };
+            let points: Vec<[f64; 2]> = smooth.iter().enumerate().map(|(i, s)| [*s, value(i).ln()]).collect();
+            if points.iter().all(|[_, logarithm]| logarithm.is_finite()) {
+                off_the_line(&points, within.ln(), &mut corners);
+            }
+            start = end;
+        }
+        corners
+    }
+
     /// Bounds of its values on a beam of length `length` \[m\]; those of products and sums are the
     /// products, quotients and sums of bounds.
     pub fn bounds(&self, length: f64) -> [f64; 2] {
@@ -247,6 +275,19 @@ impl Along {
         });
         pieces.sum::<f64>() / length
     }
+}
+
+/// Adds the abscissae of the inner points without which straight lines would miss one by more than
+/// `tolerance`.
+fn off_the_line(points: &[[f64; 2]], tolerance: f64, found: &mut Vec<f64>) {
+    let (Some([a, first]), Some([b, last])) = (points.first(), points.last()) else { return };
+    let off = |[s, value]: &[f64; 2]| (value - first - (last - first) * (s - a) / (b - a)).abs();
+    let farthest =
+        (1..points.len().saturating_sub(1)).max_by(|i, j| off(&points[*i]).total_cmp(&off(&points[*j])));
+    let Some(middle) = farthest.filter(|i| off(&points[*i]) > tolerance) else { return };
+    off_the_line(&points[..=middle], tolerance, found);
+    found.push(points[middle][0]);
+    off_the_line(&points[middle..], tolerance, found);
 }
 
 /// Gauss' rule of five points on [−1, 1].
@@ -399,6 +440,27 @@ mod tests {
         assert_eq!((stretch.jumps(), stretch.bounds(4.0)), (vec![1.0, 2.0], [0.0, 3.0]));
         assert!((stretch.mean(4.0) - 0.75).abs() < 1e-15);
         assert_eq!(table().within([0.5, 2.0]).kinks(), [0.5, 2.0, 1.0]);
+    }
+
+    /// A notch has three corners, however many points its sides have; a taper, linear or exponential,
+    /// has none, and a jump is no corner.
+    #[test]
+    fn corners_are_where_a_line_would_miss() {
+        let notched = Along::Table {
+            s: vec![0.0, 4.0, 4.5, 5.0, 6.0, 10.0],
+            value: vec![1.0, 1.0, 0.325, 0.1, 1.0, 1.1],
+        };
+        assert_eq!(notched.corners(1.5), [4.0, 5.0, 6.0]);
+        assert_eq!(notched.corners(20.0), []);
+        assert_eq!(notched.product(&notched).corners(20.0), [4.0, 5.0, 6.0]);
+        let many: Vec<f64> = (0..=100).map(f64::from).collect();
+        let falling = many.iter().map(|s| (-0.1 * s).exp()).collect();
+        assert_eq!(Along::Table { s: many, value: falling }.corners(1.5), []);
+        let stepped = notched.product(&Along::Pieces { until: vec![5.0], value: vec![1.0, 30.0] });
+        assert_eq!(stepped.corners(1.5), [4.0, 6.0]);
+        assert_eq!([Along::Constant(2.0), pieces()].map(|along| along.corners(1.5).len()), [0, 0]);
+        let through_zero = Along::Table { s: vec![0.0, 1.0, 2.0], value: vec![1.0, 0.0, 1.0] };
+        assert_eq!(through_zero.corners(1.5), []);
     }
 
     #[test]

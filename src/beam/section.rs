@@ -79,6 +79,18 @@ impl Section {
             .flatten()
     }
 
+    /// Arc lengths \[m\] at which one of them jumps, or has a corner between which a cell would not see
+    /// what lies, such as a notch; rising.
+    pub fn breaks(&self) -> Vec<f64> {
+        /// By this factor a quantity may depart from what its ends say.
+        const SEEN: f64 = 1.5;
+        let corners = self.quantities().flat_map(|quantity| quantity.corners(SEEN));
+        let mut breaks: Vec<f64> = self.jumps().into_iter().chain(corners).collect();
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        breaks
+    }
+
     /// Arc lengths \[m\] at which one of them jumps, rising.
     pub fn jumps(&self) -> Vec<f64> {
         let mut jumps: Vec<f64> = self.quantities().flat_map(Along::jumps).collect();

@@ -91,29 +91,32 @@ impl Freedom {
     /// Adds the row Σ n·u = 0, with the displacements u of points of beams.
     fn fix_displacement(&mut self, terms: &[(usize, [f64; 2], [f64; 2])]) {
         let mut row = vec![0.0; 3 * self.origins.len()];
+        // Terms of one beam may cancel, as where its ends are joined.
+        let mut size = 0.0_f64;
         for &(beam, [x, y], n) in terms {
             let [ox, oy] = self.origins[beam];
             let lever = (n[1] * (x - ox) - n[0] * (y - oy)) / self.length;
             for (i, value) in [n[0], n[1], lever].into_iter().enumerate() {
                 row[3 * beam + i] += value;
+                size = size.max(value.abs());
             }
         }
-        self.add(row);
+        self.add(row, size);
     }
 
     /// Adds the row Σ ±ω = 0, with the rotations ω of beams.
     fn fix_turns(&mut self, terms: &[(usize, f64)]) {
         let mut row = vec![0.0; 3 * self.origins.len()];
         terms.iter().for_each(|(beam, sign)| row[3 * beam + 2] += sign);
-        self.add(row);
+        self.add(row, 1.0);
     }
 
-    fn add(&mut self, mut row: Vec<f64>) {
+    /// Adds a row whose terms have this `size`, unless it is a combination of others.
+    fn add(&mut self, mut row: Vec<f64>, size: f64) {
         let largest = |row: &[f64]| {
             let sizes = row.iter().map(|value| value.abs()).enumerate();
             sizes.fold((0, 0.0), |best, (i, size)| if size > best.1 { (i, size) } else { best })
         };
-        let (_, size) = largest(&row);
         for (column, reduced) in &self.rows {
             subtract(row[*column], reduced, &mut row);
         }
@@ -198,6 +201,16 @@ mod tests {
         // Twice the same says no more than once.
         let same = vec![held(0.5, only(false, true)), held(0.5, only(false, true))];
         assert_eq!(left(&model(1, same, vec![])).len(), 2);
+    }
+
+    /// A ring whose ends meet but for round-off moves as freely as a beam.
+    #[test]
+    fn a_beam_that_is_joined_to_itself_is_free() {
+        let ring = model(1, vec![], vec![Joint::Weld { first: at(0, 0.0), second: at(0, 1.0) }]);
+        let meet = |at: Place| [at.s * 1e-16, at.s * -2e-16];
+        assert_eq!(Freedom::new(&ring, 2.0, meet).motions().len(), 3);
+        // Ends that are apart cannot be turned about each other.
+        assert_eq!(left(&ring).len(), 2);
     }
 
     #[test]

@@ -30,6 +30,12 @@ pub(crate) fn cell(text: &str) -> Cow<'_, str> {
     if signed || text.starts_with(['=', '@', '\t', '\r']) { format!("'{text}").into() } else { text.into() }
 }
 
+/// The text of a cell that [`cell`] made.
+pub(crate) fn text_of_cell(cell: &str) -> &str {
+    let text = cell.strip_prefix('\'').filter(|text| text.starts_with(['+', '-', '=', '@', '\t', '\r']));
+    text.filter(|text| !text.ends_with('\'')).unwrap_or(cell)
+}
+
 struct CsvTable<'a>(csv::Writer<&'a mut dyn Write>);
 
 impl<'a> CsvTable<'a> {

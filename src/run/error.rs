@@ -83,7 +83,8 @@ pub enum RunError {
         "critical loads are those that are added to an equilibrium, and the state with which this analysis starts is none without its own loads"
     )]
     #[diagnostic(help(
-        "let what comes and goes besides loads do so in a static stage of its own before this one, and let a motion come to rest"
+        "let springs that pull, obstacles that press, and what comes and goes besides loads, do so in a static stage of its own before \
+         this one, and let a motion come to rest"
     ))]
     Unbalanced,
     /// A path along which nothing changes but the load factor.

@@ -26,6 +26,12 @@ const STRAIGHT: f64 = 0.1;
 const UNSURE: f64 = 1e-3;
 /// Axial strain before buckling up to which it is trusted; critical loads err by as much.
 const STRAINED: f64 = 0.05;
+/// Part of themselves by which loads may change before buckling, as those do that turn with the beam.
+const CHANGED: f64 = STRAIGHT;
+/// Part of the first critical load up to which forces of springs and obstacles in the unloaded state do
+/// not matter.
+const NEGLIGIBLE: f64 = 1e-3;
+
 impl Solve for Modal {
     type Results = Vibrations;
 
@@ -66,6 +72,9 @@ impl Solve for Buckling {
         stopwatch.built();
         let modes = buckling::solve(&start.system, self.count)?;
         stopwatch.solved();
+        if modes.prestress > NEGLIGIBLE * modes.load_factors.first().copied().unwrap_or(0.0) {
+            return Err(RunError::Unbalanced);
+        }
         let mut loads = sampler.critical_loads(&modes);
         loads.unloaded.run.seconds = stopwatch.finish();
         Ok(loads)
@@ -123,6 +132,13 @@ impl Sampler<'_> {
                     .into(),
             );
         }
+        let unbalanced = if load == 0.0 { self.system.force_at_start(buckling::STRESSING) } else { 0.0 };
+        if unbalanced > 0.0 {
+            run.warnings.push(format!(
+                "springs or obstacles act with {unbalanced:.3e} N in the stress-free state, which is no equilibrium, and what this stresses takes no part \
+                 in vibrations about it: `about = \"equilibrium\"` in [analysis.modal] finds those about the state to which they lead"
+            ));
+        }
         let about = if load == 0.0 { "the stress-free state" } else { "the equilibrium under all loads" };
         run.settings.push(("vibrations about".into(), about.into()));
         run.warnings.extend(at_corners(self.model, &equilibrium.last, &run.undeformed));
@@ -150,6 +166,13 @@ impl Sampler<'_> {
         let (_, variables) = self.system.start_history();
         unloaded.last = self.loaded(q, &self.system.static_actions(0.0, &x, &variables));
         unloaded.run.statistics.factorizations = modes.factorizations;
+        if modes.load_factors.is_empty() {
+            unloaded.run.warnings.push(
+                "no load factor makes the structure buckle: the loads compress nothing, unless they are turned round (negative factors are \
+                 not sought)"
+                    .into(),
+            );
+        }
         unloaded.run.warnings.extend(beyond_the_linear(modes));
         let corners = at_corners(self.model, &unloaded.last, &unloaded.run.undeformed);
         unloaded.run.warnings.extend(corners);
@@ -183,29 +206,36 @@ impl Sampler<'_> {
     }
 }
 
-/// The warning about critical loads at which the linear solution would turn or strain the beams by
-/// more than it may.
+/// The warning about critical loads at which the linear solution would turn or strain the beams, or
+/// change the loads, by more than it may.
 fn beyond_the_linear(modes: &buckling::Modes) -> Option<String> {
     let numbered = || modes.load_factors.iter().zip(1..);
     let (turned, number) = numbered().find(|(load, _)| *load * modes.turn > STRAIGHT).unzip();
     let (strained, second) = numbered().find(|(load, _)| *load * modes.strain > STRAINED).unzip();
+    let changed = numbered().zip(&modes.changes).find(|(_, change)| change.is_nan() || **change > CHANGED);
     let which = |number: Option<usize>| match number {
         Some(1) | None => String::new(),
         Some(number) => format!("critical loads from number {number} on are beyond the linear solution: "),
     };
-    match (turned, strained) {
-        (Some(load), _) => Some(format!(
+    match (turned, strained, changed) {
+        (Some(load), ..) => Some(format!(
             "{}the loads turn the beam by {:.2} rad before it buckles at load factor {load:.6}, by the linear solution, which holds for small turns only: \
              follow the path with `arc_length` in [analysis.static], which finds limit points and bifurcations of the bent structure",
             which(number),
             load * modes.turn,
         )),
-        (None, Some(load)) => Some(format!(
+        (None, _, Some(((load, number), change))) => Some(format!(
+            "{}loads or contacts change by {:.0} % more than the linear solution says before the beam buckles at load factor {load:.6e}: follow the \
+             path with `arc_length` in [analysis.static], which finds limit points and bifurcations as all acts on the way",
+            which(Some(number)),
+            100.0 * change,
+        )),
+        (None, Some(load), None) => Some(format!(
             "{}the loads strain the beam by {:.2} before it buckles at load factor {load:.6}, by the linear solution, which holds for small strains only, as \
              does the beam itself: give a larger `axial_stiffness`, or ask for fewer critical loads",
             which(second),
             load * modes.strain,
         )),
-        (None, None) => None,
+        (None, None, None) => None,
     }
 }

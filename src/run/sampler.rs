@@ -5,10 +5,10 @@ use super::laws::Reach;
 use super::locking::Locking;
 use super::loose::Loose;
 use super::stability;
-use super::strings;
 use super::tendons::Tendons;
 use super::{Detail, RunError};
-use crate::assembly::{Actions, BuildError, InternalVariables, Side, TendonPath, nodes, remaining};
+use super::{strings, surfaces};
+use crate::assembly::{Actions, BuildError, InternalVariables, Kind, Side, TendonPath, nodes, remaining};
 use crate::linear::Singular;
 use crate::model::{
     ArcLength, Beam, Dynamic, EventCondition, EventKind, Model, ProbeTarget, StepControl, StrainMeasure,
@@ -217,7 +217,12 @@ impl<'a> Sampler<'a> {
             analysis,
             complete: true,
             degrees_of_freedom: self.system.degrees_of_freedom(),
-            warnings: self.left_out(analysis).into_iter().chain(strings::couples(self.model)).collect(),
+            warnings: self
+                .left_out(analysis)
+                .into_iter()
+                .chain(strings::couples(self.model))
+                .chain(surfaces::couples(self.model))
+                .collect(),
             settings: self.settings(),
             undeformed,
             outlines: self.outlines(),
@@ -729,6 +734,15 @@ impl<'a> Sampler<'a> {
             }
             Failure::Crushed { .. } => TOO_SOFT,
             Failure::Crossed { .. } => PUSHED_THROUGH,
+            _ if stuck.load == 0.0 && self.system.force_at_start(&[Kind::Contact]) > 0.0 => {
+                "the structure begins inside an obstacle, which presses it before any load does: begin beside it, or let the obstacle \
+                 be softer, or a beam come to it by a support that moves"
+            }
+            _ if self.system.is_fading() => {
+                "what held the state with which this analysis starts and has gone fades on the way, that of supports, joints and \
+                 tendons of another file as forces of fixed directions: let it go in a `[[stage]]` of one file, where tendons \
+                 fade as they are, or in a damped motion, which passes states that are unstable"
+            }
             _ if self.system.is_floppy() => {
                 "strings and beams on hinges come to rest where loads of fixed direction hold them: let such a load act on all \
                  that can move, add a support, or begin nearer to the equilibrium"

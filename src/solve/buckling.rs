@@ -16,7 +16,7 @@
 
 use super::eigen::{EigenError, Pencil, largest_reciprocals, round_off};
 use super::equilibrium::Equilibrium;
-use crate::assembly::{Earlier, Workspace, nodes};
+use crate::assembly::{Earlier, Kind, Workspace, nodes};
 use crate::system::System;
 
 /// Critical loads, lowest first.
@@ -30,6 +30,12 @@ pub struct Modes {
     pub turn: f64,
     /// Largest axial strain of a node in the linear solution, per load factor.
     pub strain: f64,
+    /// Per load factor, by which part of themselves the loads change with the linear solution, or contacts
+    /// and loads that have acted before depart from it, whichever is larger.
+    pub changes: Vec<f64>,
+    /// Norm of the forces of springs and contacts that nothing balances in the state whose critical loads
+    /// these are, in that of the load.
+    pub prestress: f64,
     /// Factorisations made.
     pub factorizations: usize,
 }
@@ -41,6 +47,9 @@ const FAR_AHEAD: f64 = 1e18;
 /// Reciprocals of load factors below this, in units of the load over the structure's stiffness, may
 /// be round-off.
 const ROUND_OFF: f64 = 1e-11;
+
+/// What may act on the beams without any load.
+pub const STRESSING: &[Kind] = &[Kind::Spring, Kind::Contact];
 
 /// A reciprocal counts as different from zero if it exceeds its round-off by this many standard
 /// deviations.
@@ -126,5 +135,15 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         turn = turn.max((x * dy - y * dx).abs() / squared);
         strain = strain.max((x * dx + y * dy).abs() / squared);
     }
-    Ok(Modes { turn, strain, load_factors, shapes: shapes.collect(), factorizations: 2 })
+    let change = |factor: &f64| {
+        let step: Vec<f64> = rate[..n].iter().map(|rate| factor * rate).collect();
+        let moved: Vec<f64> = q.iter().zip(&step).map(|(q, step)| q + step).collect();
+        let mut changed: Vec<f64> = load.iter().map(|load| -load).collect();
+        system.add_load_rate(1.0, 0.0, &moved, &mut changed);
+        (system.norm(&changed) / system.norm(&load)).max(system.departure(q, &step))
+    };
+    let changes = load_factors.iter().map(change).collect();
+    let prestress =
+        if system.is_taken_up() { 0.0 } else { system.force_at_start(STRESSING) / system.norm(&load) };
+    Ok(Modes { load_factors, shapes: shapes.collect(), turn, strain, changes, prestress, factorizations: 2 })
 }

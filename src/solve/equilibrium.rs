@@ -73,6 +73,16 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
+    /// The last accepted state.
+    pub fn accepted(&self) -> &AcceptedState {
+        &self.accepted
+    }
+
+    /// Makes one that was accepted before the last accepted state again.
+    pub fn restore(&mut self, accepted: AcceptedState) {
+        self.accepted = accepted;
+    }
+
     /// Calls `solve`, and restores the last accepted state afterwards.
     pub fn without_trace<T>(&mut self, solve: impl FnOnce(&mut Self) -> T) -> T {
         let held = self.accepted.clone();
@@ -267,6 +277,14 @@ impl<'a> Equilibrium<'a> {
         let symmetric = self.tangent.symmetric_part();
         let factor = Factor::new(&symmetric, &self.border).ok()?;
         factor.negative_directions(&symmetric, &self.border)
+    }
+
+    /// Linearises at `x`, and counts the directions that have lost their stiffness: of a symmetric
+    /// tangent those that are unstable, otherwise [`Self::soft_directions`].
+    pub fn directions_at(&mut self, load: f64, x: &[f64]) -> Option<usize> {
+        let (mut residual, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+        self.linearize(load, x, None, &mut residual, &mut rate).ok()?;
+        if self.is_symmetric() { self.unstable_directions() } else { self.soft_directions() }
     }
 
     /// Stability at the last linearised state, where the factorisation tells, and where that is the sign

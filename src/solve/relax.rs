@@ -58,6 +58,11 @@ const ITERATIONS: usize = 2000;
 /// downhill. `goes_on` is called with the counts after every iteration and ends the search by
 /// returning false.
 ///
+/// Where loads have no potential, what has no stiffness before it is loaded is followed by the sign of
+/// the determinant first, which does not see two directions that lose their stiffness. If some have in
+/// the end, the motion is followed again by all directions of the symmetric part. Whether that, where it
+/// was needed, came to rest is returned: otherwise the equilibrium may be unstable.
+///
 /// # Errors
 /// [`Failure`] where it does not come to rest, or is ended before.
 pub fn relax(
@@ -67,6 +72,36 @@ pub fn relax(
     settings: &Settings,
     record: &mut Iterations,
     goes_on: &mut dyn FnMut(&Statistics) -> bool,
+) -> Result<bool, Failure> {
+    let (start, floppy) = (x.to_vec(), equilibrium.system().is_floppy());
+    let before = equilibrium.accepted().clone();
+    creep(equilibrium, load, x, settings, record, goes_on, !floppy)?;
+    if !floppy || equilibrium.is_symmetric() || equilibrium.directions_at(load, x) == Some(0) {
+        return Ok(true);
+    }
+    let (after, mut other) = (equilibrium.accepted().clone(), start);
+    equilibrium.restore(before);
+    match creep(equilibrium, load, &mut other, settings, record, goes_on, true) {
+        Ok(()) => x.copy_from_slice(&other),
+        Err(Failure::Stopped) => return Err(Failure::Stopped),
+        Err(_) => {
+            equilibrium.restore(after);
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// [`relax`], by the sign of the determinant of a tangent without symmetry, or by the directions of its
+/// symmetric part.
+fn creep(
+    equilibrium: &mut Equilibrium<'_>,
+    load: f64,
+    x: &mut [f64],
+    settings: &Settings,
+    record: &mut Iterations,
+    goes_on: &mut dyn FnMut(&Statistics) -> bool,
+    by_directions: bool,
 ) -> Result<(), Failure> {
     let n = equilibrium.system().coordinates();
     let mut increment = vec![0.0; x.len()];
@@ -103,7 +138,7 @@ pub fn relax(
         let shift = if sigma < NONE { 0.0 } else { sigma };
         let earlier = Earlier { q: &before, increment: &change };
         match equilibrium.linearize_shifted(load, x, earlier, (shift, &weights), &mut increment) {
-            Ok(()) if is_soft(equilibrium, floppy) => {
+            Ok(()) if is_soft(equilibrium, by_directions) => {
                 sigma = sigma.max(NONE) * LIMITS.1;
                 on_a_crest = true;
                 continue;
@@ -150,9 +185,9 @@ pub fn relax(
 }
 
 /// Whether a direction lacks stiffness. Where follower loads are part of the equations, the sign of the
-/// determinant does not see two such directions, and a stiff structure would creep uphill.
-fn is_soft(equilibrium: &Equilibrium<'_>, floppy: bool) -> bool {
-    let soft = if floppy { None } else { equilibrium.stability_and_softness().1 };
+/// determinant does not see two such directions, and a structure would creep uphill.
+fn is_soft(equilibrium: &Equilibrium<'_>, by_directions: bool) -> bool {
+    let soft = if by_directions { equilibrium.stability_and_softness().1 } else { None };
     soft.map_or_else(|| equilibrium.is_unstable(), |directions| directions > 0)
 }
 

@@ -6,7 +6,7 @@ use super::newton::{Failure, Iterations, Settings};
 use super::path::{NoStep, Parameter, Path, Point};
 use super::relax::relax;
 use super::stability::{Stability, StabilityChange};
-use crate::assembly::InternalVariables;
+use crate::assembly::{InternalVariables, Kind};
 use crate::model::{ArcLength, Static};
 use crate::solve::{Statistics, StepRecord, Work};
 use crate::system::{System, View};
@@ -192,7 +192,8 @@ fn settled(
 ) -> Result<Vec<f64>, NoStep> {
     let mut x = equilibrium.start();
     let system = equilibrium.system();
-    let stressed = || !system.is_taken_up() && !system.is_floppy() && system.is_prestressed();
+    let stressed =
+        || !system.is_taken_up() && !system.is_floppy() && system.force_at_start(&[Kind::Spring]) > 0.0;
     if system.starts_bent() || stressed() {
         let goes_on = &mut |counts: &Statistics| observe(0.0, 0.0, counts);
         let rest = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default(), goes_on);
@@ -300,10 +301,8 @@ fn relaxed(
         };
         if let (None, Some(free)) = (solution.pressed, equilibrium.system().rigid_motions()) {
             let pressed = |unstable| UnstableMechanism { load, unstable, free };
-            solution.pressed = match moved.as_ref().and_then(|x| stability(equilibrium, load, x)) {
-                Some(Stability::Directions(unstable)) if unstable > free => Some(pressed(unstable)),
-                _ => None,
-            };
+            let unstable = moved.as_ref().and_then(|x| equilibrium.directions_at(load, x));
+            solution.pressed = unstable.filter(|unstable| *unstable > free).map(pressed);
         }
         let start = x.clone();
         // Between supports that come together or part, all cells share the change of their distance: left to
@@ -315,7 +314,7 @@ fn relaxed(
         }
         let mut record = Iterations::default();
         let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record, goes_on);
-        if outcome.is_ok() && is_unstable(equilibrium, load, &x) {
+        if outcome.is_ok() && may_leave(equilibrium, load, &x) {
             // An unstable equilibrium, such as a pendulum that stands on its head: both sides are
             // tried.
             let mut other = x.clone();
@@ -326,7 +325,7 @@ fn relaxed(
             if outcome.is_ok() && other.is_some_and(|other| differ(equilibrium, &x, &other)) {
                 solution.crest.get_or_insert(load);
             }
-            if let (Ok(()), Some(after)) = (&outcome, stability(equilibrium, load, &x))
+            if let (Ok(_), Some(after)) = (&outcome, stability(equilibrium, load, &x))
                 && before.is_lost(after)
             {
                 solution.events.push(StabilityChange { load, before, after });
@@ -341,7 +340,10 @@ fn relaxed(
             increments: record.increments,
             residuals: record.residuals,
         });
-        outcome.map_err(|failure| NoStep { load: load - step, step, failure, at })?;
+        let sure = outcome.map_err(|failure| NoStep { load: load - step, step, failure, at })?;
+        if !sure {
+            solution.softened.get_or_insert(load);
+        }
         equilibrium.statistics.load_steps += 1;
         work.add_states(equilibrium.system(), (load - step, &start), (load, &x));
         if part.is_multiple_of(between) {
@@ -366,9 +368,14 @@ fn stability(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> Option<
     look(equilibrium, load, x).then(|| equilibrium.stability()).flatten()
 }
 
-/// Whether the state `x` is known to be unstable.
-fn is_unstable(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
-    look(equilibrium, load, x) && equilibrium.is_unstable()
+/// Whether the state `x` is known to be unstable, or, where loads have no potential, directions lack
+/// stiffness in it.
+fn may_leave(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
+    look(equilibrium, load, x)
+        && match equilibrium.stability_and_softness() {
+            (_, Some(soft)) => soft > 0,
+            _ => equilibrium.is_unstable(),
+        }
 }
 
 /// The equilibrium to which `x` relaxes; `None` where it does not come to rest. Nothing is accepted.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::SweepError;
+use crate::output::text_of_cell;
 use crate::scene::split_number;
 
 /// Most values of one axis.
@@ -102,7 +103,7 @@ impl Axis {
         let (mut values, mut lines) = (Vec::new(), Vec::new());
         for record in reader.records().take(MAX_VALUES + 1) {
             let record = record.map_err(|error| read(&error))?;
-            values.push(record.iter().map(str::to_owned).collect());
+            values.push(record.iter().map(|cell| text_of_cell(cell).to_owned()).collect());
             lines.push(line(record.position()));
         }
         let axis = Self { paths, values, lines: Lines(Some((path.to_owned(), lines))) };
@@ -239,6 +240,9 @@ mod tests {
         assert_eq!(Axis::parse("a=1,2").unwrap().lines.place(0), None);
         // A sweep is the same wherever its values come from.
         assert_eq!(axis, Axis { lines: Lines::default(), ..axis.clone() });
+        // As `sweep.csv` has them, so that it can be a list again.
+        std::fs::write(&path, "a,b,c\n'-3 N,-4,'-x'\n").unwrap();
+        assert_eq!(Axis::list(&path).unwrap().values, [["-3 N", "-4", "'-x'"]]);
         std::fs::write(&path, "a.b,c\n").unwrap();
         let empty = Axis::list(&path).unwrap_err().to_string();
         assert_eq!(empty, format!("{}: found no line below the header", path.display()));

@@ -9,8 +9,8 @@
 
 use super::System;
 use crate::assembly::{
-    Acting, ActingLoad, Action, Actions, Amplitude, Earlier, Effect, InternalVariables, Kind, Workspace,
-    nodes, remaining,
+    Acting, ActingLoad, Action, Actions, Amplitude, Earlier, Effect, InternalVariables, Kind, Owner,
+    Workspace, nodes, remaining,
 };
 use crate::linear::Matrix;
 use std::ops::Range;
@@ -130,19 +130,20 @@ impl System {
                 self.terms.loads.push(ActingLoad { effect, amplitude });
             }
         }
+        self.terms.belong_to(Owner::Gone(usize::MAX));
     }
 
-    /// Whether springs act in the state in which an analysis begins, without any load.
-    pub fn is_prestressed(&self) -> bool {
-        let mut springs =
-            self.terms.internal.iter().filter(|effect| effect.kind() == Kind::Spring).peekable();
-        if springs.peek().is_none() {
-            return false;
-        }
+    /// Norm of the forces of effects of these `kinds` on what is free in the state in which an analysis
+    /// begins, without any load \[N\]; 0 where it is round-off.
+    pub fn force_at_start(&self, kinds: &[Kind]) -> f64 {
         let mut force = vec![0.0; self.coordinates()];
-        springs.for_each(|effect| effect.add_force(1.0, self.start(), &mut force));
+        let effects = self.terms.internal.iter().filter(|effect| kinds.contains(&effect.kind()));
+        if effects.map(|effect| effect.add_force(1.0, self.start(), &mut force)).count() == 0 {
+            return 0.0;
+        }
         self.supports.to_frames(0.0, &mut force);
-        self.norm(&force) > STRESSED * self.round_off
+        force.iter_mut().zip(&self.fixed).filter(|(_, fixed)| **fixed).for_each(|(force, _)| *force = 0.0);
+        Some(self.norm(&force)).filter(|norm| *norm > STRESSED * self.round_off).unwrap_or(0.0)
     }
 
     /// Whether anything fades as the load factor grows.

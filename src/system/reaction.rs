@@ -5,7 +5,7 @@
 //! section, because δW = F'·δr' = M δθ with δr' = δθ J r', where J is the quarter turn.
 
 use super::System;
-use crate::assembly::InternalVariables;
+use crate::assembly::{InternalVariables, Kind, Owner};
 use crate::model::{FixedRotation, Support};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -99,8 +99,9 @@ impl System {
         force
     }
 
-    /// Per effect: its name (kind and beam), its energy \[J\] if it has one, and the resultant
-    /// \[N\] of its forces on the beam.
+    /// Per effect of the model: its name (kind and beam, and a number where a beam has several of a kind,
+    /// in the order of the model), its energy \[J\] if it has one, and the resultant \[N\] of its
+    /// forces on the beam.
     pub fn effects(
         &self,
         parameter: f64,
@@ -114,59 +115,79 @@ impl System {
             f.fill(0.0);
             sum
         };
-        let name =
-            |kind: crate::assembly::Kind, beam: usize| format!("{}.{}", kind.name(), self.beams[beam].name);
-        let mut out = Vec::new();
-        for effect in &self.terms.internal {
+        let (terms, owners) = (&self.terms, &self.terms.owners);
+        let mut out = Reported::default();
+        for (effect, owner) in terms.internal.iter().zip(&owners.internal) {
             effect.add_force(1.0, q, &mut f);
-            out.push((name(effect.kind(), effect.beam()), Some(effect.energy(q)), resultant(&mut f)));
+            out.add(effect.kind(), effect.beam(), *owner, Some(effect.energy(q)), resultant(&mut f));
         }
-        for load in &self.terms.loads {
+        for (load, owner) in terms.loads.iter().zip(&owners.loads) {
             let amplitude = self.amplitude_of(load).at(parameter);
             load.effect.add_force(amplitude, q, &mut f);
             let energy = load.effect.is_conservative().then(|| amplitude * load.effect.energy(q));
-            out.push((name(load.effect.kind(), load.effect.beam()), energy, resultant(&mut f)));
+            out.add(load.effect.kind(), load.effect.beam(), *owner, energy, resultant(&mut f));
         }
-        for load in &self.terms.timed_loads {
+        for (load, owner) in terms.timed_loads.iter().zip(&owners.timed_loads) {
             load.add_force(1.0, parameter, q, &mut f);
-            out.push((name(load.kind(), load.beam()), None, resultant(&mut f)));
+            out.add(load.kind(), load.beam(), *owner, None, resultant(&mut f));
         }
-        for friction in &self.terms.friction {
+        for (friction, owner) in terms.friction.iter().zip(&owners.friction) {
             friction.add_force_of(variables, q, &mut f);
-            out.push((name(crate::assembly::Kind::Friction, friction.beam()), None, resultant(&mut f)));
+            out.add(Kind::Friction, friction.beam(), *owner, None, resultant(&mut f));
         }
-        for (winding, angle) in self.terms.windings.iter().zip(&variables.angles) {
-            let kind = crate::assembly::Kind::TorsionSpring;
-            out.push((name(kind, winding.beam()), Some(winding.energy(*angle)), [0.0; 2]));
+        for ((winding, angle), owner) in terms.windings.iter().zip(&variables.angles).zip(&owners.windings) {
+            out.add(Kind::TorsionSpring, winding.beam(), *owner, Some(winding.energy(*angle)), [0.0; 2]);
         }
         if let Some(v) = velocity {
-            for effect in &self.terms.inertia {
-                out.push((name(effect.kind(), effect.beam()), Some(effect.energy(v)), [0.0; 2]));
+            for (effect, owner) in terms.inertia.iter().zip(&owners.inertia) {
+                out.add(effect.kind(), effect.beam(), *owner, Some(effect.energy(v)), [0.0; 2]);
             }
-            for (kind, beam, energy) in self.turning_energies(q, v) {
-                out.push((name(kind, beam), Some(energy), [0.0; 2]));
+            for ((kind, beam, energy), owner) in self.turning_energies(q, v).zip(&owners.turning) {
+                out.add(kind, beam, *owner, Some(energy), [0.0; 2]);
             }
-            for damping in &self.terms.damping {
+            for (damping, owner) in terms.damping.iter().zip(&owners.damping) {
                 damping.add_force(q, v, &mut f);
-                out.push((name(damping.kind(), damping.beam()), None, resultant(&mut f)));
+                out.add(damping.kind(), damping.beam(), *owner, None, resultant(&mut f));
             }
         }
-        number(&mut out);
-        out
+        out.named(|beam| &self.beams[beam].name)
     }
 }
 
-/// Appends numbers to equal names: `force.arm.1`, `force.arm.2`.
-fn number<T>(effects: &mut [(String, Option<f64>, T)]) {
-    let mut count: HashMap<String, usize> = HashMap::new();
-    for (name, ..) in effects.iter() {
-        *count.entry(name.clone()).or_default() += 1;
-    }
-    count.retain(|_, count| *count > 1);
-    for (name, ..) in effects.iter_mut().rev() {
-        if let Some(left) = count.get_mut(name) {
-            *name = format!("{name}.{left}");
-            *left -= 1;
+/// Energies and forces of effects, each of which may consist of several terms.
+#[derive(Default)]
+struct Reported {
+    effects: Vec<(&'static str, usize, Owner, Option<f64>, [f64; 2])>,
+    places: HashMap<(&'static str, usize, Owner), usize>,
+}
+
+impl Reported {
+    /// Adds a term to the effect of its kind, beam and owner.
+    fn add(&mut self, kind: Kind, beam: usize, owner: Owner, energy: Option<f64>, [fx, fy]: [f64; 2]) {
+        let end = self.effects.len();
+        let place = *self.places.entry((kind.name(), beam, owner)).or_insert(end);
+        if place == end {
+            self.effects.push((kind.name(), beam, owner, None, [0.0; 2]));
         }
+        let (.., of_all, force) = &mut self.effects[place];
+        *of_all = energy.map(|energy| energy + of_all.unwrap_or(0.0)).or(*of_all);
+        *force = [force[0] + fx, force[1] + fy];
+    }
+
+    /// Names the effects, with numbers where a beam has several of a kind: `force.arm.1`,
+    /// `force.arm.2`.
+    fn named<'n>(self, name: impl Fn(usize) -> &'n str) -> Vec<(String, Option<f64>, [f64; 2])> {
+        let mut of_a_kind: HashMap<(&str, usize), Vec<Owner>> = HashMap::new();
+        for (kind, beam, owner, ..) in &self.effects {
+            of_a_kind.entry((kind, *beam)).or_default().push(*owner);
+        }
+        of_a_kind.values_mut().for_each(|owners| owners.sort_unstable());
+        let named = |&(kind, beam, owner, energy, force): &(&'static str, usize, Owner, _, _)| {
+            let owners = &of_a_kind[&(kind, beam)];
+            let number = owners.partition_point(|other| *other <= owner);
+            let name = format!("{kind}.{}", name(beam));
+            (if owners.len() == 1 { name } else { format!("{name}.{number}") }, energy, force)
+        };
+        self.effects.iter().map(named).collect()
     }
 }

@@ -48,6 +48,30 @@ impl System {
         }
     }
 
+    /// The largest part of itself by which the force of a contact, or of a load that has acted before,
+    /// departs from its linear change along `step` from the state `q`.
+    pub fn departure(&self, q: &[f64], step: &[f64]) -> f64 {
+        /// Part of the step along which the force is taken to be linear.
+        const SMALL: f64 = 1e-6;
+        let contacts = self.terms.internal.iter().filter(|effect| effect.kind() == Kind::Contact);
+        let acts_already = |load: &&ActingLoad| matches!(load.amplitude, Some(Amplitude::Full));
+        let loads = self.terms.loads.iter().filter(acts_already).map(|load| &load.effect);
+        let of_effect = |effect: &Box<dyn Effect>| {
+            let [here, near, there] = [0.0, SMALL, 1.0].map(|part| {
+                let moved: Vec<f64> = q.iter().zip(step).map(|(q, step)| q + part * step).collect();
+                let mut force = vec![0.0; q.len()];
+                effect.add_force(1.0, &moved, &mut force);
+                force
+            });
+            let size = self.norm(&here).max(self.norm(&there));
+            let all = here.iter().zip(&near).zip(&there);
+            let apart: Vec<f64> =
+                all.map(|((here, near), there)| there - here - (near - here) / SMALL).collect();
+            if size > self.round_off { self.norm(&apart) / size } else { 0.0 }
+        };
+        contacts.chain(loads).map(of_effect).fold(0.0, f64::max)
+    }
+
     /// Whether anything changes with the load factor from `load` on: a load, a support that moves, a
     /// tendon that is pulled, or a constraint that closes.
     /// What acts where it can move nothing counts, because only round-off tells it from what can.

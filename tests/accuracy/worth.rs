@@ -202,3 +202,41 @@ fn errors_that_finer_meshes_do_not_remove_are_seen() {
     // Wide ones are not asked.
     assert_eq!(error(&of("{ rpim = { nodes = 10 } }")).runs.len(), 3);
 }
+
+/// Two notches as hinges: θ' = M/EI, and the end does not turn, so that y = −∫ (1 − s) M/EI ds. No mesh of a
+/// search may step over them.
+#[test]
+fn notches_of_a_table_are_seen() {
+    let (places, heights) = (
+        [0.0, 0.018, 0.02, 0.022, 0.078, 0.08, 0.082, 0.1],
+        [5e-3, 5e-3, 3e-4, 5e-3, 5e-3, 3e-4, 5e-3, 5e-3],
+    );
+    let (modulus, width, force) = (110e9, 0.01, 2.0);
+    // By symmetry M = −F (L/2 − s): the integral by the midpoint rule, with a millionth of a digit to spare.
+    let steps = 20_000;
+    let part = |k: usize| {
+        let (a, b) = (places[k], places[k + 1]);
+        let h = (b - a) / f64::from(steps);
+        let value = |i: i32| {
+            let s = a + (f64::from(i) + 0.5) * h;
+            let height = heights[k] + (heights[k + 1] - heights[k]) * (s - a) / (b - a);
+            (0.05 - s).powi(2) / (modulus * width * height.powi(3) / 12.0) * h
+        };
+        (0..steps).map(value).sum::<f64>()
+    };
+    let exact = -force * (0..7).map(part).sum::<f64>();
+    for wanted in [1e-3, 1e-4, 1e-5] {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [0.1, 0], youngs_modulus = {modulus:e}, \
+             section.rectangle = {{ width = {width}, height = {{ table = {{ s = {places:?}, value = {heights:?} }} }} }} }}
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'arm', at = 'end', fix = ['angle'] }}]
+             effect.force = [{{ beam = 'arm', at = 'end', value = [0, {:e}] }}]
+             probe = [{{ name = 'tip', beam = 'arm', at = 'end' }}]
+             analysis.static.accuracy = {wanted:e}",
+            -force
+        );
+        let results = run(&scene(&text));
+        // In lengths of the beam, of which it sags 2e-3: its turn of 2e-3 rad changes a millionth of that.
+        judge("notches", wanted, error(&results).estimated.result, (last(&results).y - exact).abs() / 0.1);
+    }
+}

@@ -178,3 +178,103 @@ fn springs_hold_the_motions_that_they_resist_and_no_others() {
         assert!(!found.eigenvalues().is_empty(), "{held}");
     }
 }
+
+const MAST: &str = "beam.a = { start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 20 }
+    support = [{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'] }]\n";
+const PRESS: &str = "beam = 'a', at = 'end', value = [-1, 0]";
+
+fn refused(text: &str, words: &str) {
+    let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let error = scene.model().solve(scene.analysis()).expect_err(text).to_string();
+    assert!(error.contains(words), "{error}");
+}
+
+/// A spring that pulls the end of a mast towards a point behind its foot with T presses it with T, and holds
+/// the end with T/d across, at the distance d. With z² = (λ + T) L²/EI the mast buckles where
+/// tan z = z − z³ EI/(L³ T/d). A state in which T is not balanced yet has no critical loads.
+#[test]
+fn a_spring_that_pulls_already_is_part_of_the_state_that_buckles() {
+    let spring = |more: &str| {
+        format!(
+            "{MAST}effect.spring = [{{ beam = 'a', at = 'end', anchor = [-1, 0], stiffness = 1, length = 1.5 }}]
+            effect.force = [{{ {PRESS}{more} }}]\n"
+        )
+    };
+    refused(
+        &(spring("") + "analysis.buckling.count = 1"),
+        "the state with which this analysis starts is none without its own",
+    );
+    let staged = spring(", stage = 'two'")
+        + "stage = [{ name = 'one', analysis.static = {} }, { name = 'two', analysis.buckling.count = 1 }]";
+    let scene = parse("scene.toml", &staged).unwrap_or_else(|error| panic!("{error}"));
+    let run = ancf::run::solve_stages(scene.stages(), ancf::run::Options::default());
+    assert!(run.failure.is_none());
+    let found = run.results[1].eigenvalues()[0];
+    let (tension, distance) = (0.5, 2.0);
+    let excess = |z: f64| z.tan() - z + z.powi(3) / (tension / distance);
+    // The first root lies between π/2 and 2.
+    let (mut low, mut high) = (PI / 2.0 + 1e-9, 2.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if excess(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    // The spring slackens by the 0.5 N/1e6 N by which the mast is shortened, and z itself is exact.
+    let exact = low * low - tension;
+    assert!((found / exact - 1.0).abs() < 1e-5, "{found} {exact}");
+    assert!(run.results[1].run().warnings.is_empty(), "{:?}", run.results[1].run().warnings);
+
+    // Vibrations about a state that is no equilibrium are told.
+    let modal = spring("").replace("effect.force", "probe = []\n#") + "analysis.modal.count = 1\n";
+    let scene = parse("scene.toml", &modal).unwrap_or_else(|error| panic!("{error}"));
+    let found = scene.model().solve(scene.analysis()).expect("vibrations");
+    let told = &found.run().warnings;
+    assert!(told.len() == 1 && told[0].contains("act with 5.000e-1 N in the stress-free state"), "{told:?}");
+}
+
+/// An obstacle that presses the unloaded mast bends it before it buckles; one that is left, and an
+/// electrode that comes nearer, change before.
+#[test]
+fn obstacles_and_electrodes_that_change_before_buckling_are_told() {
+    let inside = "effect.contact = [{ beam = 'a', half_plane = { point = [0, 0.001], normal = [0, 1] }, stiffness = 1000 }]\n";
+    let press = format!("effect.force = [{{ {PRESS} }}]\nanalysis.buckling.count = 1");
+    refused(
+        &format!("{MAST}{inside}{press}"),
+        "the state with which this analysis starts is none without its own",
+    );
+    let warned = |text: &str| {
+        let scene = parse("scene.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        if scene.stages().is_empty() {
+            return solve(text).run().warnings.clone();
+        }
+        let run = ancf::run::solve_stages(scene.stages(), ancf::run::Options::default());
+        assert!(run.failure.is_none(), "{text}");
+        run.results.last().expect("a stage").run().warnings.clone()
+    };
+    let before = "loads or contacts change by ";
+    // Pressed down on the ground, and then along.
+    let ground = inside.replace("0.001", "0.0");
+    let staged = format!(
+        "{MAST}{ground}effect.force = [{{ {PRESS}, stage = 'two' }}, {{ beam = 'a', at = 'end', value = [0, -1] }}]
+        stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', analysis.buckling.count = 1 }}]"
+    );
+    let told = warned(&staged);
+    assert!(told.iter().any(|warning| warning.contains(before)), "{told:?}");
+    // The linear solution closes two thirds of the gap.
+    let electrode = format!(
+        "{MAST}effect.electrostatic = [{{ beam = 'a', voltage = 1, electrode = {{ point = [0, -0.01], normal = [0, 1] }}, width = 1, permittivity = 1 }}]
+        analysis.buckling.count = 1"
+    )
+    .replace("fix = ['x', 'y', 'angle'] }", "fix = ['x', 'y', 'angle'] }, { beam = 'a', at = 'end', fix = ['y', 'angle'] }");
+    let told = warned(&electrode);
+    assert!(told.iter().any(|warning| warning.contains(before)), "{told:?}");
+    // What is pulled buckles nowhere, and on a chosen mesh neither.
+    let pulled = format!("{MAST}{press}").replace("[-1, 0]", "[1, 0]");
+    let none = "no load factor makes the structure buckle";
+    let told = warned(&pulled);
+    assert!(told.len() == 1 && told[0].starts_with(none), "{told:?}");
+    let open = pulled.replace(", basis.ancf.elements = 20", "");
+    let scene = parse("scene.toml", &open).unwrap_or_else(|error| panic!("{error}"));
+    let found = ancf::accuracy::run(&scene, ancf::Options::default()).expect("no load factor");
+    assert!(found.eigenvalues().is_empty() && found.run().warnings[0].starts_with(none));
+    assert!(found.run().error.as_ref().is_some_and(|error| error.met), "{:?}", found.run().error);
+}

@@ -368,3 +368,31 @@ fn a_loose_end_is_told() {
     }
     assert_eq!(told, [true, true, true, true, false, false, true]);
 }
+
+/// A string whose ends come together hangs, also where its tangent has no symmetry: a faint wind, a faint
+/// follower force and a rough obstacle far away change hardly anything. By the sign of the determinant
+/// alone it stood as an arch, in which an even number of directions is unstable.
+#[test]
+fn a_string_in_a_faint_wind_hangs() {
+    let sag = |more: &str| {
+        let text = format!(
+            "beam.a = {{ start = [0, 0], end = [1, 0], mass_per_length = 0.5, axial_stiffness = 200, basis.ancf.elements = 20 }}
+            support = [{{ beam = 'a', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'a', at = 'end', fix = ['x', 'y'], move.x = -0.1 }}]
+            probe = [{{ name = 'm', beam = 'a', at = 0.5 }}]
+            effect.gravity.acceleration = [0, -9.81]\n{more}\nanalysis.static = {{}}"
+        );
+        let scene = ancf::scene::parse("string.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+        let results = scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}"));
+        results.states().probes[0].samples.last().expect("a state").y
+    };
+    let still = sag("");
+    assert!(still < -0.2, "{still}");
+    for more in [
+        "effect.drag = [{ beam = 'a', normal = 1e-4, flow = [1, 0] }]",
+        "effect.distributed_force = [{ beam = 'a', value = [0, 1e-4], follower = true }]",
+        "effect.contact = [{ beam = 'a', stiffness = 1e3, half_plane = { point = [0, -5], normal = [0, 1] }, friction.coefficient = 0.3 }]",
+    ] {
+        let found = sag(more);
+        assert!((found - still).abs() < 1e-3, "{more}: {found} for {still}");
+    }
+}

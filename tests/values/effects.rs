@@ -109,7 +109,7 @@ fn springs_pull_by_what_they_are_longer() {
     // Moments about the start: 3e-3 = (7 + 12/4) θ.
     found.ends("probes.csv", &[("end.angle", 3e-4), ("end.y", 3e-4)], 1e-8);
     let expected = [
-        ("torsion_spring.bar.1.energy", 0.5 * 7.0 * 9e-8),
+        ("torsion_spring.bar.energy", 0.5 * 7.0 * 9e-8),
         ("spring.bar.energy", 0.5 * 12.0 * 2.25e-8),
         ("spring.bar.fy", -12.0 * 1.5e-4),
     ];
@@ -271,4 +271,30 @@ fn a_tapered_bar_creeps_everywhere_at_the_same_rate() {
     let part = 2.0_f64.ln() * (1.0 - f64::exp(-2.0));
     near((found.last("probes.csv", "end.x") - 1.0) / 1e-5, part, 2e-3, &text);
     near(found.last("probes.csv", "end.angle") / 1e-4, part, 2e-3, &text);
+}
+
+/// Columns belong to the effects of the scene, however many terms these consist of: a torsion spring that is
+/// wound up by θ holds ½ k θ², the second of two foundations is the second column, and a beam of layers has
+/// one bending energy.
+#[test]
+fn an_effect_has_one_column_of_each_quantity() {
+    let found = Written::of(
+        "beam.a = { start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1, basis.ancf.elements = 20 }
+        support = [{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'] }]
+        probe = [{ name = 'p', beam = 'a', at = 'end' }]
+        output.effects = true
+        analysis.static = {}
+        [effect]
+        torsion_spring = [{ beam = 'a', at = 'end', stiffness = 0.5 }]
+        moment = [{ beam = 'a', at = 'end', value = 7 }]
+        foundation = [{ beam = 'a', stiffness = [0, { pieces = { until = [0.3, 0.6], value = [1e-9, 2e-9, 1e-9] } }] }, { beam = 'a', from = 0.5, stiffness = [1e-12, 0] }]\n",
+    );
+    let angle = found.last("probes.csv", "p.angle");
+    near(found.last("effects.csv", "torsion_spring.a.energy"), 0.25 * angle * angle, 1e-9, "a spring");
+    // As exact as 20 elements that turn by 267 degrees.
+    near(angle, 7.0 / 1.5, 1e-4, "a beam and a spring");
+    let names: Vec<String> =
+        found.header("effects.csv").into_iter().filter(|n| n.ends_with(".energy")).collect();
+    let expected = ["stretch.a", "bend.a", "torsion_spring.a", "foundation.a.1", "foundation.a.2"];
+    assert_eq!(names, expected.map(|name| format!("{name}.energy")));
 }

@@ -522,3 +522,22 @@ fn a_bent_laminate_rests_in_its_shape() {
         found.ends("energy.csv", &[("stretch", 0.0), ("bend", 0.0), ("total", 0.0)], 1e-12);
     }
 }
+
+/// A table may be that of a longer beam: what it says beyond the ends is not asked for, even where
+/// the walls would overlap there.
+#[test]
+fn a_table_may_go_on_beyond_the_ends() {
+    let tip = |wall: &str| {
+        let section = format!(
+            "section.tube = {{ diameter = 0.02, wall = {wall} }}, youngs_modulus = 1e9, density = 1500"
+        );
+        let pull = "effect.force = [{ beam = 'arm', at = 'end', value = [0, -1] }]";
+        Written::of(&arm(&section, pull, "ancf.elements = 4")).said("/probes/tip/y")
+    };
+    for wall in [
+        "{ table = { s = [0, 1, 3], value = [0.002, 0.002, 0.05] } }",
+        "{ table = { s = [-2, 0, 1], value = [0.05, 0.002, 0.002] } }",
+    ] {
+        near(tip(wall), tip("0.002"), 1e-12, wall);
+    }
+}

@@ -265,7 +265,10 @@ fn what_an_analysis_leaves_out_is_told_in_one_line() {
     let velocity = "initial_velocity = [{ beam = 'arm', polynomial = { vy = [0, 0, 1] } }]\n";
     for (analysis, name) in [
         ("analysis.static = {}\n", "statics"),
-        ("analysis.buckling.count = 1\n", "a buckling analysis"),
+        (
+            "effect.force = [{ beam = 'arm', at = 'end', value = [-1, 0] }]\nanalysis.buckling.count = 1\n",
+            "a buckling analysis",
+        ),
         ("analysis.modal.count = 1\n", "a modal analysis"),
     ] {
         let rest = "which knows no velocities: [analysis.dynamic] computes the motion with all of it";

@@ -36,6 +36,9 @@ use std::sync::Arc;
 /// the last accepted state has exactly the limit, and its tangent must be that of sliding.
 const AT_LIMIT: f64 = 1e-9;
 
+/// A point that was nearer to the surface than this part of its distance from the origin touched it already.
+const ROUND_OFF: f64 = 1e-13;
+
 /// Number of parts of a cell, in each of which friction is summed and its slips are stored at two
 /// points. The division does not move with the contact; only in the parts that contain an edge of
 /// the contact, where little load is carried, do the points move with the edge.
@@ -145,7 +148,9 @@ impl FrictionIntegral {
         let away = penalty.gap_at(&start).max(0.0);
         let new = slip.is_none();
         let (share, growth) = match depth + away {
-            sum if new && sum > 0.0 => (depth / sum, normal * (-away / (sum * sum))),
+            sum if new && sum > ROUND_OFF * (r.amax() + penalty.gap) => {
+                (depth / sum, normal * (-away / (sum * sum)))
+            }
             _ => (1.0, Vector2::zeros()),
         };
         let trial = slip.unwrap_or(0.0) + share * way;

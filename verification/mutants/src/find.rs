@@ -74,10 +74,15 @@ impl Mutant {
     /// The part of `src` that it belongs to: `src/linear` of `src/linear/band.rs`, and of
     /// `src/linear.rs`.
     pub fn folder(&self) -> String {
-        let parts: Vec<&str> = self.file.split('/').take(2).collect();
-        let folder = parts.join("/");
-        folder.strip_suffix(".rs").unwrap_or(&folder).to_owned()
+        folder_of(&self.file)
     }
+}
+
+/// [`Mutant::folder`] of its file or its name.
+pub fn folder_of(name: &str) -> String {
+    let file = name.split(':').next().unwrap_or(name);
+    let folder = file.split('/').take(2).collect::<Vec<_>>().join("/");
+    folder.strip_suffix(".rs").unwrap_or(&folder).to_owned()
 }
 
 /// All mutants of a file, in the order of the source.

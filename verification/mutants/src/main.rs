@@ -10,7 +10,7 @@ use ancf_mutants::build::{self, Built, Program};
 use ancf_mutants::copy::{Workshop, sources, spliced};
 use ancf_mutants::find::{Mutant, find};
 use ancf_mutants::reasons::without_place;
-use ancf_mutants::record::{Record, head};
+use ancf_mutants::record::{Again, Record, head};
 use ancf_mutants::sample::parts;
 use ancf_mutants::trial;
 use clap::Parser;
@@ -31,7 +31,7 @@ struct Arguments {
     /// Another sample for another number
     #[arg(long, default_value_t = 1)]
     seed: u32,
-    /// Try the survivors of the record again, and record nothing
+    /// Try the survivors of the record again, and record which are caught now
     #[arg(long, conflicts_with_all = ["sample", "least", "seed", "only"])]
     again: bool,
     /// Take the sample of those only whose names hold one of these texts, and record nothing
@@ -69,7 +69,8 @@ fn run(arguments: &Arguments) -> Result<bool, Failure> {
         return Ok(true);
     }
     let path = Record::path(&root);
-    let before = Record::read(&path)?.map_or_else(Vec::new, |record| record.survivor);
+    let recorded = Record::read(&path)?;
+    let before = recorded.as_ref().map_or_else(Vec::new, |record| record.survivor.clone());
     let survivors: BTreeSet<String> = before.iter().map(|s| without_place(&s.mutant)).collect();
     // Folder by folder: how many are wanted of which candidates.
     let wanted: Vec<(usize, Vec<usize>)> = if arguments.again {
@@ -106,16 +107,24 @@ fn run(arguments: &Arguments) -> Result<bool, Failure> {
     eprintln!("{} mutants to try, {} do not compile", chosen.len(), unviable.len());
     let tests = trial::tests(&workshop, &programs, &all, fingerprint)?;
     let outcomes = trial::outcomes(&workshop, &tests, &chosen, fingerprint, arguments.jobs)?;
-    let mut record = Record::of(&all, &unviable, &outcomes, &before);
-    if !arguments.again && arguments.only.is_empty() {
-        record.date = jiff::Timestamp::now().strftime("%F").to_string();
-        record.commit = commit;
+    let date = jiff::Timestamp::now().strftime("%F").to_string();
+    let mut record = match recorded {
+        Some(mut record) if arguments.again => {
+            record.try_again(&all, &outcomes, Again { date, commit });
+            record.store(&path, &before)?;
+            record.tell();
+            return Ok(record.total.missed == record.equivalent(None));
+        }
+        _ => Record::of(&all, &unviable, &outcomes, &before),
+    };
+    if arguments.only.is_empty() {
+        (record.date, record.commit) = (date, commit);
         let (sample, least, seed) = (arguments.sample, arguments.least, arguments.seed);
         record.command = format!(".ci/mutants --sample {sample} --least {least} --seed {seed}");
         record.store(&path, &before)?;
     }
     record.tell();
-    Ok(record.total.missed == 0)
+    Ok(record.total.missed == record.equivalent(None))
 }
 
 /// Builds the copy, leaving out mutants that do not compile until all others do.

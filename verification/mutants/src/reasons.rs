@@ -15,6 +15,10 @@ pub struct Survivor {
     pub mutant: String,
     /// Why no test need catch it, or why none does.
     pub reason: String,
+    /// It gives the results of the sources in all cases, as the reason explains, so that there is
+    /// nothing to catch.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub equivalent: bool,
 }
 
 impl Survivor {
@@ -37,28 +41,26 @@ pub fn explain(missed: &[&str], before: &[Survivor]) -> Vec<Survivor> {
         *number.entry(without_place(name)).or_default() += 1;
     }
     let mut seen: HashMap<String, usize> = HashMap::new();
-    let reason = |name: &str| -> Option<String> {
+    let former = |name: &str| -> Option<&Survivor> {
         let text = without_place(name);
         let same = old.get(&text)?;
         let turn = seen.entry(text.clone()).or_default();
         *turn += 1;
-        let found = if number.get(&text) == Some(&same.len()) {
-            same.get(*turn - 1)
-        } else {
-            same.iter().find(|s| s.mutant == name).or_else(|| {
-                let first = same.first()?;
-                same.iter().all(|s| s.reason == first.reason).then_some(first)
-            })
-        };
-        found.map(|survivor| survivor.reason.clone())
+        if number.get(&text) == Some(&same.len()) {
+            return same.get(*turn - 1).copied();
+        }
+        let first = same.first()?;
+        let agree = same.iter().all(|s| (&s.reason, s.equivalent) == (&first.reason, first.equivalent));
+        same.iter().find(|s| s.mutant == name).or(agree.then_some(first)).copied()
     };
-    let reasons: Vec<Option<String>> = missed.iter().copied().map(reason).collect();
+    let former: Vec<Option<&Survivor>> = missed.iter().copied().map(former).collect();
     missed
         .iter()
-        .zip(reasons)
-        .map(|(name, reason)| Survivor {
+        .zip(former)
+        .map(|(name, former)| Survivor {
             mutant: (*name).to_owned(),
-            reason: reason.unwrap_or_else(|| UNEXPLAINED.to_owned()),
+            reason: former.map_or_else(|| UNEXPLAINED.to_owned(), |s| s.reason.clone()),
+            equivalent: former.is_some_and(|s| s.equivalent),
         })
         .collect()
 }
@@ -76,7 +78,7 @@ mod tests {
     use super::*;
 
     fn survivor(mutant: &str, reason: &str) -> Survivor {
-        Survivor { mutant: mutant.to_owned(), reason: reason.to_owned() }
+        Survivor { mutant: mutant.to_owned(), reason: reason.to_owned(), equivalent: false }
     }
 
     const A: &str = "src/solve/step/size.rs:3:5: replace < with <= in grow";
@@ -104,5 +106,12 @@ mod tests {
         // guesses.
         assert_eq!(reasons(&[20]), ["second"]);
         assert_eq!(reasons(&[25]), [UNEXPLAINED]);
+    }
+
+    #[test]
+    fn what_is_equivalent_stays_so() {
+        let before = Survivor { equivalent: true, ..survivor(B, "y is 0") };
+        let kept = explain(&[A, B], std::slice::from_ref(&before));
+        assert_eq!(kept, [survivor(A, UNEXPLAINED), before]);
     }
 }

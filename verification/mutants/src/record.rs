@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
-use crate::find::Mutant;
+use crate::find::{Mutant, folder_of};
 use crate::reasons::{Survivor, UNEXPLAINED, explain, without_place};
 use crate::trial::Outcome;
 
@@ -22,6 +22,9 @@ pub struct Record {
     pub commit: String,
     /// The command that repeats the run.
     pub command: String,
+    /// When its survivors were tried last, with tests that were written since.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub again: Option<Again>,
     /// Over all folders.
     pub total: Counts,
     /// By source folder.
@@ -29,6 +32,16 @@ pub struct Record {
     /// Missed mutants in the order of the sources.
     #[serde(default)]
     pub survivor: Vec<Survivor>,
+}
+
+/// A run with the survivors of a record.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Again {
+    /// Day of the run.
+    pub date: String,
+    /// The commit of the sources and the tests.
+    pub commit: String,
 }
 
 /// Numbers of mutants.
@@ -55,10 +68,11 @@ impl Counts {
         self.tried - self.unviable.min(self.tried)
     }
 
-    /// Part of the viable mutants that was caught, those timed out among them. None where none was
-    /// viable.
-    pub fn score(&self) -> Option<f64> {
-        (self.viable() > 0).then(|| (self.caught + self.timed_out) as f64 / self.viable() as f64)
+    /// Part of the mutants that was caught, those timed out among them, of those that could be: the
+    /// viable ones without `equivalent` survivors. None where there were none.
+    pub fn score(&self, equivalent: usize) -> Option<f64> {
+        let could = self.viable() - equivalent.min(self.viable());
+        (could > 0).then(|| (self.caught + self.timed_out) as f64 / could as f64)
     }
 }
 
@@ -75,6 +89,22 @@ impl Record {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(format!("{}: {error}", path.display()).into()),
         }
+    }
+
+    /// Survivors of a folder, or of all, with which nothing is different.
+    pub fn equivalent(&self, folder: Option<&str>) -> usize {
+        let inside = |s: &&Survivor| folder.is_none_or(|name| folder_of(&s.mutant) == name);
+        self.survivor.iter().filter(|s| s.equivalent).filter(inside).count()
+    }
+
+    /// Folders with their numbers and scores, then all.
+    pub fn scores(&self) -> impl Iterator<Item = (&str, &Counts, Option<f64>)> {
+        let of = |name, counts: &Counts| counts.score(self.equivalent(name));
+        let folders = self
+            .folder
+            .iter()
+            .map(move |(name, counts)| (name.as_str(), counts, of(Some(name.as_str()), counts)));
+        folders.chain([("all", &self.total, of(None, &self.total))])
     }
 
     /// Counts the outcomes of the mutants that were tried, and keeps the reasons of an earlier
@@ -107,12 +137,43 @@ impl Record {
         folder.sort_unstable_keys();
         let missed: Vec<&str> = missed.iter().map(String::as_str).collect();
         let (date, commit, command) = Default::default();
-        Self { date, commit, command, total, folder, survivor: explain(&missed, reasons) }
+        let survivor = explain(&missed, reasons);
+        Self { date, commit, command, again: None, total, folder, survivor }
+    }
+
+    /// Counts survivors that were tried again and are no longer missed as caught or timed out. One
+    /// that was not tried, because its line is gone or does not compile, stays a survivor.
+    pub fn try_again(&mut self, all: &[Mutant], outcomes: &BTreeMap<usize, Outcome>, again: Again) {
+        let mut caught: Vec<(String, bool)> = Vec::new();
+        let mut missed: BTreeSet<String> = BTreeSet::new();
+        for (&number, outcome) in outcomes {
+            let text = without_place(&all[number].name());
+            match outcome {
+                Outcome::Caught(_) => caught.push((text, false)),
+                Outcome::TimedOut(_) => caught.push((text, true)),
+                Outcome::Missed(_) => drop(missed.insert(text)),
+            }
+        }
+        // Several mutants of one text may lie in a function: all must be caught.
+        let found = |s: &Survivor| {
+            let text = without_place(&s.mutant);
+            caught.iter().find(|(of, _)| *of == text && !missed.contains(of)).map(|(_, late)| *late)
+        };
+        for (survivor, late) in self.survivor.iter().filter_map(|s| Some((s, found(s)?))) {
+            let folder = self.folder.get_mut(&folder_of(&survivor.mutant));
+            for counts in folder.into_iter().chain([&mut self.total]) {
+                counts.missed = counts.missed.saturating_sub(1);
+                *(if late { &mut counts.timed_out } else { &mut counts.caught }) += 1;
+            }
+        }
+        self.survivor.retain(|s| found(s).is_none());
+        self.again = Some(again);
     }
 
     /// Writes it, and says what is new of the survivors.
     pub fn store(&self, path: &Path, before: &[Survivor]) -> Result<(), Failure> {
-        let header = "# Written by `ancf-mutants`; only the reasons are to be edited.\n";
+        let header =
+            "# Written by `ancf-mutants`; only `reason` and `equivalent` of survivors are to be edited.\n";
         std::fs::write(path, header.to_owned() + &toml::to_string(self)?)
             .map_err(|e| format!("{}: {e}", path.display()))?;
         let now: Vec<String> = self.survivor.iter().map(|s| without_place(&s.mutant)).collect();
@@ -127,13 +188,15 @@ impl Record {
 
     /// Says what part was caught.
     pub fn tell(&self) {
-        for (name, counts) in self.folder.iter().filter(|(_, counts)| counts.tried > 0) {
-            let part = counts.score().map_or("–".to_owned(), |s| format!("{:.0} %", 100.0 * s));
+        for (name, counts, score) in self.scores().filter(|(_, counts, _)| counts.tried > 0) {
+            let part = score.map_or("–".to_owned(), |s| format!("{:.0} %", 100.0 * s));
             eprintln!("{name}: {part} of {} caught", counts.viable());
         }
         let Counts { exist, missed, .. } = self.total;
-        let viable = self.total.viable();
-        eprintln!("{viable} viable of {exist} mutants tried, {missed} missed");
+        let (viable, equivalent) = (self.total.viable(), self.equivalent(None));
+        eprintln!(
+            "{viable} viable of {exist} mutants tried, {missed} missed, {equivalent} of them equivalent"
+        );
     }
 }
 
@@ -183,15 +246,28 @@ mod tests {
         let reason = Survivor {
             mutant: "src/basis.rs:70:4: leave the body out in f".to_owned(),
             reason: "Equal either way.".to_owned(),
+            equivalent: true,
         };
         let record = Record::of(&all, &BTreeSet::from([2]), &outcomes, std::slice::from_ref(&reason));
         let total = Counts { exist: 5, tried: 4, caught: 1, timed_out: 1, unviable: 1, missed: 1 };
-        assert_eq!((record.total, record.total.score()), (total, Some(2.0 / 3.0)));
+        assert_eq!((record.total, record.total.score(0)), (total, Some(2.0 / 3.0)));
+        // What nobody could catch does not count.
+        let scores: Vec<_> = record.scores().map(|(name, _, score)| (name, score)).collect();
+        assert_eq!(scores, [("src/basis", Some(1.0)), ("src/solve", Some(1.0)), ("all", Some(1.0))]);
         assert_eq!(record.folder.keys().collect::<Vec<_>>(), ["src/basis", "src/solve"]);
         let basis = Counts { exist: 4, tried: 3, caught: 1, timed_out: 0, unviable: 1, missed: 1 };
         assert_eq!(record.folder["src/basis"], basis);
         let moved = "src/basis.rs:1:1: leave the body out in f".to_owned();
         assert_eq!(record.survivor, [Survivor { mutant: moved, ..reason }]);
+        // Caught by a test that was written since.
+        let mut later = record.clone();
+        let again = Again { date: "2026-01-03".to_owned(), commit: "abc".to_owned() };
+        later.try_again(&all, &BTreeMap::from([(3, Outcome::Caught("t".to_owned()))]), again.clone());
+        assert_eq!((later.total, later.survivor.len()), (Counts { caught: 2, missed: 0, ..total }, 0));
+        assert_eq!((later.folder["src/basis"].caught, later.again.as_ref()), (2, Some(&again)));
+        later = record.clone();
+        later.try_again(&all, &BTreeMap::from([(3, Outcome::Missed(2))]), again);
+        assert_eq!((later.total, &later.survivor), (record.total, &record.survivor));
         // The file reads back as it was written.
         let text = toml::to_string(&record).expect("serialisable");
         assert_eq!(toml::from_str::<Record>(&text).expect("the same format"), record);

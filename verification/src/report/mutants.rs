@@ -22,6 +22,8 @@ struct Body<'a> {
     interval: Option<[String; 2]>,
     rows: Vec<Row<'a>>,
     unexplained: usize,
+    /// Survivors with which nothing is different.
+    equivalent: usize,
 }
 
 /// A folder, or all.
@@ -35,33 +37,31 @@ struct Row<'a> {
 pub fn page(record: Option<&Record>, path: &Path) -> Result<Page, Failure> {
     let total = record.map(|r| r.total).unwrap_or_default();
     let unexplained = record.map_or(0, |r| r.survivor.iter().filter(|s| !s.explained()).count());
-    let rows = record.iter().flat_map(|record| {
-        let folders = record.folder.iter().map(|(name, counts)| (name.as_str(), counts));
-        folders.chain([("all", &record.total)])
-    });
+    let equivalent = record.map_or(0, |r| r.equivalent(None));
+    let rows = record.iter().flat_map(|record| record.scores());
     let body = Body {
         record,
         path: path.display().to_string(),
         wanted: percent(WANTED),
-        score: score(&total),
-        interval: (total.tried < total.exist).then(|| interval(&total).map(percent)),
-        rows: rows.map(|(name, counts)| Row { name, counts, score: score(counts) }).collect(),
+        score: written(total.score(equivalent)),
+        interval: (total.tried < total.exist).then(|| interval(&total, equivalent).map(percent)),
+        rows: rows.map(|(name, counts, score)| Row { name, counts, score: written(score) }).collect(),
         unexplained,
+        equivalent,
     };
     Ok(Page {
         id: "can-the-checks-fail".into(),
         title: "Can the checks fail?".into(),
         pass: record.filter(|_| total.viable() > 0).map(|record| {
-            let mut scores = record.folder.values().chain([&total]).filter_map(Counts::score);
-            scores.all(|score| score >= WANTED) && unexplained == 0
+            record.scores().filter_map(|(_, _, score)| score).all(|score| score >= WANTED) && unexplained == 0
         }),
         listed: true,
         body: body.render()?,
     })
 }
 
-fn score(counts: &Counts) -> String {
-    counts.score().map_or_else(|| "–".to_owned(), percent)
+fn written(score: Option<f64>) -> String {
+    score.map_or_else(|| "–".to_owned(), percent)
 }
 
 /// Whole percent, but 100 only for all.
@@ -71,9 +71,10 @@ fn percent(part: f64) -> String {
 
 /// The interval that covers the score of all mutants with 95 %, from a sample of them (E. B.
 /// Wilson, J. Am. Stat. Assoc. 22, 1927, 209–212).
-fn interval(sample: &Counts) -> [f64; 2] {
+fn interval(sample: &Counts, equivalent: usize) -> [f64; 2] {
     const QUANTILE: f64 = 1.96;
-    let (Some(p), n) = (sample.score(), sample.viable() as f64) else { return [0.0, 1.0] };
+    let Some(p) = sample.score(equivalent) else { return [0.0, 1.0] };
+    let n = (sample.viable() - equivalent) as f64;
     let z2 = QUANTILE * QUANTILE / n;
     let middle = (p + z2 / 2.0) / (1.0 + z2);
     let half = QUANTILE / (1.0 + z2) * (p * (1.0 - p) / n + z2 / (4.0 * n)).sqrt();
@@ -83,6 +84,7 @@ fn interval(sample: &Counts) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use ancf_mutants::reasons::Survivor;
+    use ancf_mutants::record::Again;
 
     use super::*;
 
@@ -92,23 +94,30 @@ mod tests {
             date: "2026-01-02".into(),
             commit: "abc1234".into(),
             command: ".ci/mutants --seed 9".into(),
+            again: None,
             total,
             folder: [("src/basis".to_owned(), total)].into(),
             survivor: vec![Survivor {
                 mutant: "src/basis/a.rs:1:2: replace < with <=".into(),
                 reason: "Equal either way.".into(),
+                equivalent: false,
             }],
         }
     }
 
     #[test]
     fn the_page_shows_score_date_folders_and_survivors_with_reasons() {
-        let page = page(Some(&record()), Path::new("mutants.toml")).expect("a page");
+        let mut record = record();
+        let again = Again { date: "2026-02-03".into(), commit: "def5678".into() };
+        record.again = Some(again);
+        let page = page(Some(&record), Path::new("mutants.toml")).expect("a page");
         assert_eq!(page.pass, Some(true));
         for text in [
             "95 %",
             "2026-01-02",
             "abc1234",
+            "2026-02-03",
+            "def5678",
             ".ci/mutants --seed 9",
             "src/basis",
             "Equal either way.",
@@ -133,6 +142,19 @@ mod tests {
         }
     }
 
+    /// A survivor that no test could catch counts neither as caught nor as missed.
+    #[test]
+    fn equivalent_survivors_do_not_count() {
+        let mut record = record();
+        let counts = Counts { exist: 900, tried: 11, caught: 9, missed: 2, ..Counts::default() };
+        (record.total, record.folder["src/basis"]) = (counts, counts);
+        assert_eq!(page(Some(&record), Path::new("")).expect("a page").pass, Some(false));
+        record.survivor[0].equivalent = true;
+        let page = page(Some(&record), Path::new("")).expect("a page");
+        assert_eq!(page.pass, Some(true));
+        assert!(page.body.contains("90 %") && page.body.contains("<td>equivalent</td>"), "{}", page.body);
+    }
+
     #[test]
     fn without_a_record_the_page_says_how_to_make_one() {
         let page = page(None, Path::new("mutants.toml")).expect("a page");
@@ -143,7 +165,7 @@ mod tests {
     fn wilsons_interval() {
         // 81 of 100, from the formula by hand: 0.722 … 0.875
         let [low, high] =
-            interval(&Counts { exist: 900, tried: 100, caught: 81, missed: 19, ..Counts::default() });
+            interval(&Counts { exist: 900, tried: 105, caught: 81, missed: 24, ..Counts::default() }, 5);
         assert!((low - 0.7222).abs() < 1e-3 && (high - 0.8749).abs() < 1e-3, "{low} {high}");
     }
 }
