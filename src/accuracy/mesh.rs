@@ -9,7 +9,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use crate::centreline::Curve;
-use crate::model::{Model, Nodes};
+use crate::model::{Along, Model, Nodes, Section};
 
 /// Cells with which the search begins, of the longest beam; fewer are of no use …
 const FIRST: f64 = 4.0;
@@ -17,6 +17,12 @@ const FIRST: f64 = 4.0;
 const OF_HALF_WAVE: f64 = 1.75;
 /// … and of every beam or part of a beam between two places that must be nodes.
 const LEAST: usize = 2;
+/// In a short part, the factor by which a stiffness changes from one group of so many cells to the next, and
+/// the logarithm of the change up to which that is sought.
+const CHANGE: f64 = 8.0;
+const MOST_CHANGE: f64 = 40.0;
+/// How often an interval is halved in search of a place.
+const HALVINGS: usize = 30;
 /// Largest turn of a stress-free centreline in a cell of the first mesh \[rad\].
 const TURN: f64 = FRAC_PI_4;
 /// Smallest density, relative to the mean: where nothing happens at first, something may happen
@@ -82,8 +88,11 @@ impl Mesh {
             let cells = straight.max(turns).max(LEAST);
             let spread = |part: &[f64]| {
                 let share = (cells as f64 * (part[1] - part[0]) / length).ceil() as usize;
+                if share <= LEAST {
+                    return graded(&model.beams[beam].section, [part[0], part[1]]);
+                }
                 // An even number, so that every second node makes a mesh, too.
-                even(part[0], part[1], share.next_multiple_of(2).max(LEAST))
+                even(part[0], part[1], share.next_multiple_of(2))
             };
             let mut nodes: Vec<f64> = fixed.windows(2).flat_map(spread).collect();
             nodes.push(length);
@@ -304,6 +313,31 @@ fn turning(curve: &Curve) -> f64 {
     (0..SAMPLES).map(turn).sum()
 }
 
+/// The nodes of a short part, but for its last: [`LEAST`] cells wherever a stiffness has changed by the
+/// factor [`CHANGE`], such as on the sides of a notch.
+fn graded(section: &Section, [from, to]: [f64; 2]) -> Vec<f64> {
+    let middle = 0.5 * (from + to);
+    let stiffnesses = [&section.bending_stiffness, &section.axial_stiffness].into_iter().flatten();
+    let at = |stiffness: &Along, s: f64| stiffness.at(s, middle).ln();
+    let change = |stiffness: &Along| at(stiffness, to) - at(stiffness, from);
+    let largest = stiffnesses.max_by(|a, b| change(a).abs().total_cmp(&change(b).abs()));
+    let steep = |stiffness: &&Along| (CHANGE.ln()..MOST_CHANGE).contains(&change(stiffness).abs());
+    let Some(stiffness) = largest.filter(steep) else { return even(from, to, LEAST) };
+    // Half of the change lies on either side.
+    let half = at(stiffness, from) + 0.5 * change(stiffness);
+    let (mut low, mut high) = (from, to);
+    for _ in 0..HALVINGS {
+        let s = 0.5 * (low + high);
+        let before = (at(stiffness, s) < half) == (change(stiffness) > 0.0);
+        *(if before { &mut low } else { &mut high }) = s;
+    }
+    let there = 0.5 * (low + high);
+    if there - from < SAME * (to - from) || to - there < SAME * (to - from) {
+        return even(from, to, LEAST);
+    }
+    [graded(section, [from, there]), graded(section, [there, to])].concat()
+}
+
 #[cfg(test)]
 impl Mesh {
     /// A mesh of these nodes, none of which must be.
@@ -327,6 +361,19 @@ mod tests {
         assert_eq!(fine.nodes, [0.0, 0.5, 1.0, 2.5, 4.0]);
         assert_eq!(coarse.every_second_of(&fine.nodes), coarse);
         assert_eq!(coarse.every_second_of(&[0.0, 1.0, 2.0, 4.0]).nodes, [0.0, 2.0, 4.0]);
+    }
+
+    /// On the side of a notch that is 1000 times as soft as the rest.
+    #[test]
+    fn a_short_part_has_nodes_where_its_stiffness_changes() {
+        let side = Along::Table { s: vec![2.0, 3.0], value: vec![1e-3, 1.0] };
+        let nodes = graded(&Section::new(1.0, side.clone()), [2.0, 3.0]);
+        assert!(nodes[0] == 2.0 && nodes.len() >= 8 && nodes.len().is_multiple_of(2), "{nodes:?}");
+        for pair in [nodes, vec![3.0]].concat().windows(3).step_by(2) {
+            let change = side.at(pair[2], 2.5) / side.at(pair[0], 2.5);
+            assert!(pair.is_sorted() && change > 1.0 && change <= CHANGE, "{pair:?}: {change}");
+        }
+        assert_eq!(graded(&Section::new(1.0, 2.0), [2.0, 3.0]), [2.0, 2.5]);
     }
 
     #[test]
