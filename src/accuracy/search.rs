@@ -75,11 +75,16 @@ impl<'a, 'o> Search<'a, 'o> {
         let mut before: Option<Seen> = None;
         let mut best: Option<Judged> = None;
         let (mut rounds, mut stalls, mut failures, mut mute) = (0, 0, 0, 0);
+        let mut too_coarse = false;
         loop {
-            let round = match self.runner.round(before.is_none()) {
+            let round = match self.runner.round(before.is_none(), too_coarse) {
                 Ok(Outcome::Compared(round)) => *round,
                 Ok(Outcome::TooCoarse(difference)) => {
-                    before = Some(self.begin_finer(&difference));
+                    let seen = self.begin_finer(&difference);
+                    // What meshes too coarse for any mode differ by tells nothing of how errors fall: three
+                    // finer runs do.
+                    let modes = matches!(self.runner.analysis, Analysis::Modal(_) | Analysis::Buckling(_));
+                    (before, too_coarse) = ((!modes).then_some(seen), true);
                     continue;
                 }
                 // What is wrong with the model is wrong on all meshes.
