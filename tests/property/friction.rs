@@ -286,3 +286,30 @@ fn a_belt_over_a_disc_is_held_as_a_capstan_holds_it() {
         assert!((-held.fy - expected).abs() < 2e-3 * expected, "{basis}: held by {held:?}, not {expected}");
     }
 }
+
+/// A bar that lies on a slope, with a gap that is zero but for round-off, slides down by
+/// ½ g (sin α − μ cos α) t², whatever the slope.
+#[test]
+fn a_bar_that_lies_on_a_slope_slides() {
+    for degrees in [-20.0_f64, 10.0, 25.0, 30.0, 60.0] {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let text = format!(
+            "beam.a = {{ start = [0, 0], end = [{cosine:?}, {sine:?}], axial_stiffness = 1e5, bending_stiffness = 100, mass_per_length = 2, \
+             basis.ancf.elements = 6 }}
+            probe = [{{ name = 't', beam = 'a', at = 0.5 }}]
+            effect.gravity.acceleration = [0, -9.81]
+            effect.contact = [{{ beam = 'a', stiffness = 2e5, half_plane = {{ point = [0, 0], normal = [{:?}, {cosine:?}] }}, \
+             friction = {{ coefficient = 0.05, stiffness = 1e6 }} }}]
+            analysis.dynamic = {{ duration = 0.3, output_every = 0.1 }}",
+            -sine
+        );
+        let scene = ancf::scene::parse("slope.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+        let results =
+            scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{degrees}: {error}"));
+        let end = results.states().probes[0].samples.last().expect("a state");
+        let along = (end.x - 0.5 * cosine) * cosine + (end.y - 0.5 * sine) * sine;
+        let exact = -0.5 * 9.81 * (sine.abs() - 0.05 * cosine) * 0.09 * sine.signum();
+        // The bar settles by g/k/L, and its friction stores up to μ g m/k_t, both some 1e-4 m.
+        assert!((along - exact).abs() < 5e-4, "{degrees}: {along} for {exact}");
+    }
+}

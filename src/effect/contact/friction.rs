@@ -141,7 +141,8 @@ impl FrictionIntegral {
         let Friction { coefficient, stiffness } = self.friction;
         let (start, r) = (before.at(&values), now.at(&values));
         let (distance, normal, _) = penalty.obstacle.distance(&r);
-        let depth = penalty.gap - distance;
+        // By round-off a point at the end of a piece that touches may be beside the obstacle.
+        let depth = (penalty.gap - distance).max(0.0);
         let (way, along, bend) = penalty.obstacle.travel(penalty.gap, &start, &r);
         // For a point that did not touch before: the fraction of its way on which it touches, and
         // the derivative of this fraction.
