@@ -221,7 +221,7 @@ impl<'a> Sampler<'a> {
                 .left_out(analysis)
                 .into_iter()
                 .chain(strings::couples(self.model))
-                .chain(surfaces::couples(self.model))
+                .chain(surfaces::couples(self.model, self.system))
                 .collect(),
             settings: self.settings(),
             undeformed,

@@ -154,22 +154,25 @@ impl System {
     }
 }
 
+/// The name of its kind, the beam, and what has added its terms.
+type Identity = (&'static str, usize, Owner);
+
 /// Energies and forces of effects, each of which may consist of several terms.
 #[derive(Default)]
 struct Reported {
-    effects: Vec<(&'static str, usize, Owner, Option<f64>, [f64; 2])>,
-    places: HashMap<(&'static str, usize, Owner), usize>,
+    effects: Vec<(Identity, Option<f64>, [f64; 2])>,
+    places: HashMap<Identity, usize>,
 }
 
 impl Reported {
     /// Adds a term to the effect of its kind, beam and owner.
     fn add(&mut self, kind: Kind, beam: usize, owner: Owner, energy: Option<f64>, [fx, fy]: [f64; 2]) {
-        let end = self.effects.len();
-        let place = *self.places.entry((kind.name(), beam, owner)).or_insert(end);
+        let (identity, end) = ((kind.name(), beam, owner), self.effects.len());
+        let place = *self.places.entry(identity).or_insert(end);
         if place == end {
-            self.effects.push((kind.name(), beam, owner, None, [0.0; 2]));
+            self.effects.push((identity, None, [0.0; 2]));
         }
-        let (.., of_all, force) = &mut self.effects[place];
+        let (_, of_all, force) = &mut self.effects[place];
         *of_all = energy.map(|energy| energy + of_all.unwrap_or(0.0)).or(*of_all);
         *force = [force[0] + fx, force[1] + fy];
     }
@@ -178,11 +181,11 @@ impl Reported {
     /// `force.arm.2`.
     fn named<'n>(self, name: impl Fn(usize) -> &'n str) -> Vec<(String, Option<f64>, [f64; 2])> {
         let mut of_a_kind: HashMap<(&str, usize), Vec<Owner>> = HashMap::new();
-        for (kind, beam, owner, ..) in &self.effects {
+        for ((kind, beam, owner), ..) in &self.effects {
             of_a_kind.entry((kind, *beam)).or_default().push(*owner);
         }
         of_a_kind.values_mut().for_each(|owners| owners.sort_unstable());
-        let named = |&(kind, beam, owner, energy, force): &(&'static str, usize, Owner, _, _)| {
+        let named = |&((kind, beam, owner), energy, force): &(Identity, _, _)| {
             let owners = &of_a_kind[&(kind, beam)];
             let number = owners.partition_point(|other| *other <= owner);
             let name = format!("{kind}.{}", name(beam));

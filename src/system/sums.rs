@@ -56,7 +56,7 @@ impl System {
         let contacts = self.terms.internal.iter().filter(|effect| effect.kind() == Kind::Contact);
         let acts_already = |load: &&ActingLoad| matches!(load.amplitude, Some(Amplitude::Full));
         let loads = self.terms.loads.iter().filter(acts_already).map(|load| &load.effect);
-        let of_effect = |effect: &Box<dyn Effect>| {
+        let of_effect = |effect: &dyn Effect| {
             let [here, near, there] = [0.0, SMALL, 1.0].map(|part| {
                 let moved: Vec<f64> = q.iter().zip(step).map(|(q, step)| q + part * step).collect();
                 let mut force = vec![0.0; q.len()];
@@ -69,7 +69,7 @@ impl System {
                 all.map(|((here, near), there)| there - here - (near - here) / SMALL).collect();
             if size > self.round_off { self.norm(&apart) / size } else { 0.0 }
         };
-        contacts.chain(loads).map(of_effect).fold(0.0, f64::max)
+        contacts.chain(loads).map(|effect| of_effect(effect.as_ref())).fold(0.0, f64::max)
     }
 
     /// Whether anything changes with the load factor from `load` on: a load, a support that moves, a
