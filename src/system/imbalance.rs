@@ -137,9 +137,8 @@ impl System {
     /// begins, without any load \[N\]; 0 where it is round-off.
     pub fn force_at_start(&self, kinds: &[Kind]) -> f64 {
         let mut force = vec![0.0; self.coordinates()];
-        let effects = self.terms.internal.iter().filter(|effect| kinds.contains(&effect.kind()));
-        if effects.map(|effect| effect.add_force(1.0, self.start(), &mut force)).count() == 0 {
-            return 0.0;
+        for effect in self.terms.internal.iter().filter(|effect| kinds.contains(&effect.kind())) {
+            effect.add_force(1.0, self.start(), &mut force);
         }
         self.supports.to_frames(0.0, &mut force);
         force.iter_mut().zip(&self.fixed).filter(|(_, fixed)| **fixed).for_each(|(force, _)| *force = 0.0);

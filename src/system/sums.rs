@@ -67,7 +67,13 @@ impl System {
             let all = here.iter().zip(&near).zip(&there);
             let apart: Vec<f64> =
                 all.map(|((here, near), there)| there - here - (near - here) / SMALL).collect();
-            if size > self.round_off { self.norm(&apart) / size } else { 0.0 }
+            let part = self.norm(&apart) / size;
+            match size <= self.round_off {
+                true => 0.0,
+                // Where it has moved there is no such force, as beyond an electrode.
+                false if !part.is_finite() => f64::INFINITY,
+                false => part,
+            }
         };
         contacts.chain(loads).map(|effect| of_effect(effect.as_ref())).fold(0.0, f64::max)
     }

@@ -212,7 +212,7 @@ fn notches_of_a_table_are_seen() {
         [5e-3, 5e-3, 3e-4, 5e-3, 5e-3, 3e-4, 5e-3, 5e-3],
     );
     let (modulus, width, force) = (110e9, 0.01, 2.0);
-    // By symmetry M = −F (L/2 − s): the integral by the midpoint rule, with a millionth of a digit to spare.
+    // By symmetry M = −F (L/2 − s); the integral by the midpoint rule.
     let steps = 20_000;
     let part = |k: usize| {
         let (a, b) = (places[k], places[k + 1]);

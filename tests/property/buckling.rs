@@ -218,7 +218,7 @@ fn a_spring_that_pulls_already_is_part_of_the_state_that_buckles() {
         let middle = 0.5 * (low + high);
         if excess(middle) < 0.0 { low = middle } else { high = middle }
     }
-    // The spring slackens by the 0.5 N/1e6 N by which the mast is shortened, and z itself is exact.
+    // The mast is shortened by 0.5 N/EA, by which the spring slackens: half a millionth.
     let exact = low * low - tension;
     assert!((found / exact - 1.0).abs() < 1e-5, "{found} {exact}");
     assert!(run.results[1].run().warnings.is_empty(), "{:?}", run.results[1].run().warnings);
