@@ -212,7 +212,7 @@ fn beyond_the_linear(modes: &buckling::Modes) -> Option<String> {
     let numbered = || modes.load_factors.iter().zip(1..);
     let (turned, number) = numbered().find(|(load, _)| *load * modes.turn > STRAIGHT).unzip();
     let (strained, second) = numbered().find(|(load, _)| *load * modes.strain > STRAINED).unzip();
-    let changed = numbered().zip(&modes.changes).find(|(_, change)| change.is_nan() || **change > CHANGED);
+    let changed = numbered().zip(&modes.changes).find(|(_, change)| **change > CHANGED);
     let which = |number: Option<usize>| match number {
         Some(1) | None => String::new(),
         Some(number) => format!("critical loads from number {number} on are beyond the linear solution: "),

@@ -140,7 +140,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         let moved: Vec<f64> = q.iter().zip(&step).map(|(q, step)| q + step).collect();
         let mut changed: Vec<f64> = load.iter().map(|load| -load).collect();
         system.add_load_rate(1.0, 0.0, &moved, &mut changed);
-        (system.norm(&changed) / system.norm(&load)).max(system.departure(q, &step))
+        system.relative(&changed, system.norm(&load)).max(system.departure(q, &step))
     };
     let changes = load_factors.iter().map(change).collect();
     let prestress =

@@ -48,6 +48,17 @@ impl System {
         }
     }
 
+    /// What part of forces of the norm `size` \[N\] others are: none where `size` is round-off, and an infinite
+    /// one where they are no numbers, as beyond an electrode.
+    pub fn relative(&self, forces: &[f64], size: f64) -> f64 {
+        let part = self.norm(forces) / size;
+        match size <= self.round_off {
+            true => 0.0,
+            false if part.is_nan() => f64::INFINITY,
+            false => part,
+        }
+    }
+
     /// The largest part of itself by which the force of a contact, or of a load that has acted before,
     /// departs from its linear change along `step` from the state `q`.
     pub fn departure(&self, q: &[f64], step: &[f64]) -> f64 {
@@ -67,13 +78,7 @@ impl System {
             let all = here.iter().zip(&near).zip(&there);
             let apart: Vec<f64> =
                 all.map(|((here, near), there)| there - here - (near - here) / SMALL).collect();
-            let part = self.norm(&apart) / size;
-            match size <= self.round_off {
-                true => 0.0,
-                // Where it has moved there is no such force, as beyond an electrode.
-                false if !part.is_finite() => f64::INFINITY,
-                false => part,
-            }
+            self.relative(&apart, size)
         };
         contacts.chain(loads).map(|effect| of_effect(effect.as_ref())).fold(0.0, f64::max)
     }
