@@ -225,8 +225,8 @@ fn beyond_the_linear(modes: &buckling::Modes) -> Option<String> {
             load * modes.turn,
         )),
         (None, _, Some(((load, number), change))) => Some(format!(
-            "{}loads or contacts change by {:.0} % more than the linear solution says before the beam buckles at load factor {load:.6e}: follow the \
-             path with `arc_length` in [analysis.static], which finds limit points and bifurcations as all acts on the way",
+            "{}loads, or the stiffness of loads or contacts, change by {:.0} % before the beam buckles at load factor {load:.6e}, by the linear \
+             solution, which takes them to be as they are: follow the path with `arc_length` in [analysis.static], which finds limit points and bifurcations as all acts on the way",
             which(Some(number)),
             100.0 * change,
         )),

@@ -30,8 +30,8 @@ pub struct Modes {
     pub turn: f64,
     /// Largest axial strain of a node in the linear solution, per load factor.
     pub strain: f64,
-    /// Per load factor, by which part of themselves the loads change with the linear solution, or contacts
-    /// and loads that have acted before depart from it, whichever is larger.
+    /// Per load factor, by which part of themselves the loads change with the linear solution, or the
+    /// stiffnesses of contacts and of loads that have acted before, whichever is larger.
     pub changes: Vec<f64>,
     /// Norm of the forces of springs and contacts that nothing balances in the state whose critical loads
     /// these are, in that of the load.
@@ -140,7 +140,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         let moved: Vec<f64> = q.iter().zip(&step).map(|(q, step)| q + step).collect();
         let mut changed: Vec<f64> = load.iter().map(|load| -load).collect();
         system.add_load_rate(1.0, 0.0, &moved, &mut changed);
-        system.relative(&changed, system.norm(&load)).max(system.departure(q, &step))
+        system.relative(&changed, system.norm(&load)).max(system.change_of_stiffness(q, &step))
     };
     let changes = load_factors.iter().map(change).collect();
     let prestress =

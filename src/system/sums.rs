@@ -59,26 +59,31 @@ impl System {
         }
     }
 
-    /// The largest part of itself by which the force of a contact, or of a load that has acted before,
-    /// departs from its linear change along `step` from the state `q`.
-    pub fn departure(&self, q: &[f64], step: &[f64]) -> f64 {
-        /// Part of the step along which the force is taken to be linear.
+    /// The largest part of itself by which the stiffness of a contact, or of a load that has acted before,
+    /// changes along `step` from the state `q`, as that of an electrode does that comes nearer.
+    pub fn change_of_stiffness(&self, q: &[f64], step: &[f64]) -> f64 {
+        /// Part of the step of which the force is taken to be linear.
         const SMALL: f64 = 1e-6;
+        /// A force that changes by this part of itself along the step has hardly a stiffness.
+        const SLIGHT: f64 = 1e-3;
         let contacts = self.terms.internal.iter().filter(|effect| effect.kind() == Kind::Contact);
         let acts_already = |load: &&ActingLoad| matches!(load.amplitude, Some(Amplitude::Full));
         let loads = self.terms.loads.iter().filter(acts_already).map(|load| &load.effect);
         let of_effect = |effect: &dyn Effect| {
-            let [here, near, there] = [0.0, SMALL, 1.0].map(|part| {
+            let [start, after, before, end] = [0.0, SMALL, 1.0 - SMALL, 1.0].map(|part| {
                 let moved: Vec<f64> = q.iter().zip(step).map(|(q, step)| q + part * step).collect();
                 let mut force = vec![0.0; q.len()];
                 effect.add_force(1.0, &moved, &mut force);
                 force
             });
-            let size = self.norm(&here).max(self.norm(&there));
-            let all = here.iter().zip(&near).zip(&there);
-            let apart: Vec<f64> =
-                all.map(|((here, near), there)| there - here - (near - here) / SMALL).collect();
-            self.relative(&apart, size)
+            let slope = |a: &[f64], b: &[f64]| -> Vec<f64> {
+                a.iter().zip(b).map(|(a, b)| (b - a) / SMALL).collect()
+            };
+            let (first, last) = (slope(&start, &after), slope(&before, &end));
+            let force = self.norm(&start).max(self.norm(&end));
+            let size = self.norm(&first).max(self.norm(&last));
+            let change: Vec<f64> = first.iter().zip(&last).map(|(first, last)| last - first).collect();
+            if size <= SLIGHT * force { 0.0 } else { self.relative(&change, size) }
         };
         contacts.chain(loads).map(|effect| of_effect(effect.as_ref())).fold(0.0, f64::max)
     }

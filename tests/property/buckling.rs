@@ -250,7 +250,7 @@ fn obstacles_and_electrodes_that_change_before_buckling_are_told() {
         assert!(run.failure.is_none(), "{text}");
         run.results.last().expect("a stage").run().warnings.clone()
     };
-    let before = "loads or contacts change by ";
+    let before = "loads, or the stiffness of loads or contacts, change by ";
     // Pressed down on the ground, and then along.
     let ground = inside.replace("0.001", "0.0");
     let staged = format!(
@@ -266,6 +266,16 @@ fn obstacles_and_electrodes_that_change_before_buckling_are_told() {
     )
     .replace("fix = ['x', 'y', 'angle'] }", "fix = ['x', 'y', 'angle'] }, { beam = 'a', at = 'end', fix = ['y', 'angle'] }");
     let told = warned(&electrode);
+    assert!(told.iter().any(|warning| warning.contains(before)), "{told:?}");
+    // One that acts before presses the beam towards it: the path ends at 11.6 N, where 26.9 N are found.
+    let staged = electrode.replace("width = 1,", "width = 1e-4,").replace(
+        "analysis.buckling.count = 1",
+        &format!(
+            "effect.force = [{{ {PRESS}, stage = 'two' }}]
+            stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', analysis.buckling.count = 1 }}]"
+        ),
+    );
+    let told = warned(&staged.replace("axial_stiffness = 1e6", "axial_stiffness = 1e4"));
     assert!(told.iter().any(|warning| warning.contains(before)), "{told:?}");
     // What is pulled buckles nowhere, and on a chosen mesh neither.
     let pulled = format!("{MAST}{press}").replace("[-1, 0]", "[1, 0]");
