@@ -29,17 +29,27 @@ const UNKNOWN: ProbeSample = ProbeSample {
 };
 
 /// Where all beams are compared, as arc lengths \[m\] on each: in every cell of the coarser meshes as
-/// many, and where nodes of the finer ones come to lie none, because there both are at their best.
+/// many. Where nodes of the finer ones come to lie both are at their best, and none of those is taken
+/// but the end and the nodes that must be: where something acts that makes the strain jump, elements
+/// whose strain cannot jump err most.
 pub(super) fn stations(meshes: &[Mesh]) -> Vec<Vec<f64>> {
     let of = |mesh: &Mesh| {
-        let parts: &[f64] = if mesh.cells() * 2 <= STATIONS { &[0.25, 0.75] } else { &[0.25] };
-        let inside =
-            |cell: &[f64]| parts.iter().map(|p| cell[0] + p * (cell[1] - cell[0])).collect::<Vec<_>>();
-        let mut s: Vec<f64> = mesh.nodes.windows(2).flat_map(inside).collect();
+        let parts = parts(mesh);
+        let of_cell = |cell: &[f64]| {
+            let node = mesh.must_be(cell[0]).then_some(cell[0]).filter(|s| *s > 0.0);
+            let inside = parts.iter().map(|p| cell[0] + p * (cell[1] - cell[0]));
+            node.into_iter().chain(inside).collect::<Vec<_>>()
+        };
+        let mut s: Vec<f64> = mesh.nodes.windows(2).flat_map(of_cell).collect();
         s.extend(mesh.nodes.last());
         s
     };
     meshes.iter().map(of).collect()
+}
+
+/// The stations inside of a cell, as parts of its length.
+fn parts(mesh: &Mesh) -> &'static [f64] {
+    if mesh.cells() * 2 <= STATIONS { &[0.25, 0.75] } else { &[0.25] }
 }
 
 /// How a coarse run and a finer one differ.
@@ -196,6 +206,16 @@ fn states<'t>(
         for &(i, j) in &pairs {
             let (Some(a), Some(b)) = (a.samples.get(i), b.samples.get(j)) else { continue };
             samples[j] = differ(a, b);
+            // Errors are waves along a beam: a probe that lies where one passes zero tells less than what
+            // is on both sides of it.
+            let around = |t: &'t Trajectory, record: usize| t.stations.get(record)?.get(probe.at.beam);
+            let around = around(coarse, i).zip(around(fine, j)).and_then(|(a, b)| {
+                let after = b.s.partition_point(|s| *s < probe.at.s);
+                let apart = |k: usize| Some((a.x.get(k)? - b.x.get(k)?).hypot(a.y.get(k)? - b.y.get(k)?));
+                Some(apart(after.checked_sub(1)?)?.min(apart(after)?))
+            });
+            samples[j].x = larger(samples[j].x, around.unwrap_or(0.0));
+            samples[j].y = samples[j].x;
             let error = samples[j].x / lengths[probe.at.beam];
             difference.records[j] = larger(difference.records[j], error);
             result = larger(result, error);
@@ -214,6 +234,7 @@ fn states<'t>(
             curvature: vec![0.0; s.len()],
         };
         let mut squares = vec![0.0_f64; mesh.cells()];
+        let stations_of_cell = parts(mesh).len() as f64;
         for &(i, j) in &pairs {
             let mut now = vec![0.0_f64; mesh.cells()];
             let at = |t: &'t Trajectory, record: usize| t.stations.get(record)?.get(index);
@@ -225,15 +246,15 @@ fn states<'t>(
                 along.position[k] = larger(along.position[k], error.x / length);
                 along.curvature[k] = larger(along.curvature[k], error.curvature);
                 difference.records[j] = larger(difference.records[j], error.x / length);
-                if bends {
+                let (end, node) = (k + 1 == s.len(), mesh.must_be(s[k]));
+                // At inner nodes only positions are compared: strains and curvatures may jump there.
+                if bends && (end || !node) {
                     largest = largest.max(b.curvature.abs());
                     curvature = larger(curvature, error.curvature);
                 }
-                // The last station is the end.
-                if k + 1 < s.len() {
-                    let cell = k * mesh.cells() / (s.len() - 1);
-                    let share = mesh.cells() as f64 / (s.len() - 1) as f64;
-                    let width = share * (mesh.nodes[cell + 1] - mesh.nodes[cell]);
+                if !end && !node {
+                    let cell = mesh.cell_at(s[k]);
+                    let width = (mesh.nodes[cell + 1] - mesh.nodes[cell]) / stations_of_cell;
                     let bent = if bends { error.curvature } else { within_half_a_turn(error.angle) / length };
                     // A part that is longer by its strain moves what is behind it by its length, one that is
                     // bent by its distance.
@@ -529,10 +550,16 @@ mod tests {
         assert!(divided.plus(&Difference::default()).is_none(), "an event has ended one of the motions");
     }
 
-    /// Two stations in a cell, or one where there are more than 32 cells, and one at the end.
+    /// Two stations in a cell, or one where there are more than 32 cells, one at the end, and one at each
+    /// node that must be.
     #[test]
-    fn stations_are_inside_of_cells_and_at_the_end() {
+    fn stations_are_inside_of_cells_and_at_nodes_that_must_be() {
         assert_eq!(stations(&meshes()), [vec![0.125, 0.375, 0.875, 1.625, 2.0], vec![1.0, 3.0, 4.0]]);
+        let pulled = scene("static = {}\neffect.force = [{ beam = 'arm', at = 0.5, value = [1, 0] }]");
+        let mesh = Mesh::first(pulled.model(), 0, 1.0).remove(0);
+        let nodes: Vec<f64> =
+            stations(&[mesh.clone()])[0].iter().copied().filter(|s| mesh.nodes.contains(s)).collect();
+        assert_eq!(nodes, [0.5, 2.0]);
         let of_cells = |cells: usize| {
             let nodes: Vec<f64> = (0..=cells).map(|i| i as f64).collect();
             stations(&[Mesh::of(&nodes)]).remove(0)

@@ -111,6 +111,17 @@ impl Mesh {
         self.fixed.len() == 2
     }
 
+    /// The cell that contains `s`.
+    pub fn cell_at(&self, s: f64) -> usize {
+        let after = self.nodes.partition_point(|node| *node <= s);
+        (after.max(1) - 1).min(self.cells() - 1)
+    }
+
+    /// Whether there must be a node at `s` because of the model.
+    pub fn must_be(&self, s: f64) -> bool {
+        self.fixed.iter().any(|fixed| (fixed - s).abs() <= SAME * self.length())
+    }
+
     /// Length of the beam \[m\].
     pub fn length(&self) -> f64 {
         self.nodes.last().copied().unwrap_or(0.0)
@@ -142,9 +153,7 @@ impl Mesh {
     pub fn gathered(&self, finer: &Self, errors: &CellErrors) -> CellErrors {
         let mut squares = vec![0.0; self.cells()];
         for (cell, square) in finer.nodes.windows(2).zip(&errors.squares) {
-            let middle = 0.5 * (cell[0] + cell[1]);
-            let after = self.nodes.partition_point(|node| *node <= middle);
-            squares[(after.max(1) - 1).min(self.cells() - 1)] += square;
+            squares[self.cell_at(0.5 * (cell[0] + cell[1]))] += square;
         }
         CellErrors { squares, order: errors.order }
     }

@@ -44,8 +44,9 @@ const CELLS_MORE: usize = 16;
 /// Accuracies below this are beyond what doubles and iterations leave.
 const ROUND_OFF: f64 = 1e-12;
 /// Why errors do not fall.
-const SEVERAL: &str = "finer meshes and smaller steps do not bring the results nearer to each other: there are several solutions, or \
-                       errors grow with time";
+const SEVERAL: &str = "finer meshes and smaller steps do not bring the results nearer to each other: there are several solutions, \
+                       errors grow with time, or the strain jumps where something pulls along a beam (cut it there: two beams in a `weld` \
+                       have a strain each)";
 /// Why nothing is known of a motion whose steps the tolerance does not decide about.
 const MUTE_STEPS: &str = "with a looser tolerance the motion takes hardly fewer steps, so that the errors of its steps cannot be seen; give a \
                           smaller tolerance, or leave the integrator out";

@@ -4,14 +4,17 @@ use super::laws::at_corners;
 use super::sampler::Sampler;
 use super::start::Start;
 use super::{Options, RunError, Solve, Stopwatch, Watch, memory, timed};
-use crate::assembly::{InternalVariables, nodes};
-use crate::model::{About, Analysis, Buckling, Modal, Model, Static};
+use crate::assembly::{InternalVariables, Part, nodes};
+use crate::effect::Tendon;
+use crate::model::{About, Analysis, Buckling, Displacement, Modal, Model, Static};
 use crate::results::{
     AnalysisKind, BucklingMode, CriticalLoads, ModeShape, Shape, Statistics, Trajectory, Vibration,
     Vibrations,
 };
 use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};
+use std::any::Any;
+use std::sync::Arc;
 
 /// Accuracy of the equilibrium: as far as round-off lets Newton's method come, because stress, and
 /// with it the stiffness, is a small difference of large numbers.
@@ -125,12 +128,21 @@ impl Sampler<'_> {
         count: usize,
     ) -> Result<Vibrations, RunError> {
         let run = &mut equilibrium.run;
-        if load == 0.0 && self.system.has_loads() {
-            run.warnings.push(
-                "loads take no part in vibrations about the stress-free state: `about = \"equilibrium\"` in [analysis.modal] finds those about the \
-                 equilibrium under them"
-                    .into(),
-            );
+        let left_out = [
+            (self.system.has_loads(), "loads"),
+            (
+                self.model.supports.iter().any(|support| support.displacement != Displacement::default()),
+                "`move` of supports",
+            ),
+            (self.model.parts.iter().any(shortens), "`length` or `shortening` of tendons"),
+        ];
+        if load == 0.0 {
+            run.warnings.extend(left_out.into_iter().filter(|(is, _)| *is).map(|(_, what)| {
+                format!(
+                    "{what} take no part in vibrations about the stress-free state: `about = \"equilibrium\"` in [analysis.modal] finds those about the \
+                     equilibrium under them"
+                )
+            }));
         }
         let unbalanced = if load == 0.0 { self.system.force_at_start(buckling::STRESSING) } else { 0.0 };
         if unbalanced > 0.0 {
@@ -204,6 +216,14 @@ impl Sampler<'_> {
         }
         all
     }
+}
+
+/// Whether a part is a tendon that is shorter than it would be on the stress-free beam.
+fn shortens(part: &Arc<dyn Part>) -> bool {
+    let part: &dyn Any = part.as_ref();
+    part.downcast_ref::<Tendon>()
+        .and_then(|tendon| tendon.shortening)
+        .is_some_and(|shortening| shortening != 0.0)
 }
 
 /// The warning about critical loads at which the linear solution would turn or strain the beams, or

@@ -346,12 +346,14 @@ fn tendon(t: &TendonTable, built: &[Built], beams: &[Beam]) -> Result<Tendon, Fa
             return Err(Fault::new(
                 t.offset.span(),
                 format!(
-                    "this tendon leaves the section of beam `{}` at s = {s:.6} m: its offset is {place:.4e} m there, and the                      section reaches from {low:.4e} m to {high:.4e} m",
+                    "this tendon leaves the section of beam `{}` at s = {s:.6} m: its offset is {place:.4e} m there, and the \
+                     section reaches from {low:.4e} m to {high:.4e} m",
                     t.beam.get()
                 ),
             )
             .help(
-                "offsets count to the left of the direction from the beam's start to its end; for a tendon that is held outside                  the section, give the beam its stiffnesses in place of a `section`",
+                "offsets count to the left of the direction from the beam's start to its end; for a tendon that is held outside \
+                 the section, give the beam its stiffnesses in place of a `section`",
             ));
         }
     }

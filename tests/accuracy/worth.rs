@@ -175,6 +175,39 @@ fn cells_go_where_strains_jump() {
     assert!(cells < 1400 / 4, "{cells}");
 }
 
+/// Forces along a straight bar: a point at s has moved by Σ F min(s, a)/EA. Probes lie at the forces, where
+/// elements err most, beside them and at the end, where they do not err at all.
+#[test]
+fn points_at_and_beside_jumps_of_strain_know_their_errors() {
+    let (forces, stiffness) = ([(0.439, 25.4), (0.813, -12.0)], 161.0);
+    let places = [0.052, 0.4, 0.439, 0.451, 0.47, 0.6, 0.8, 0.813, 0.84, 1.0];
+    let named = |s: f64| format!("{{ name = 'at {s}', beam = 'arm', at = {s} }}");
+    let pulled = |(s, force): (f64, f64)| format!("{{ beam = 'arm', at = {s}, value = [{force}, 0] }}");
+    for wanted in [1e-2, 1e-3, 1e-4] {
+        let text = cantilever(
+            stiffness,
+            4.0,
+            &format!(
+                "effect.force = [{}]\nanalysis.static.accuracy = {wanted:e}",
+                forces.map(pulled).join(", ")
+            ),
+        );
+        let tip = "{ name = 'tip', beam = 'arm', at = 'end' }";
+        let results = run(&scene(&text.replace(tip, &places.map(named).join(", "))));
+        let estimate = error(&results);
+        assert!(estimate.met, "{wanted:e}");
+        for ((s, series), errors) in places.iter().zip(&results.states().probes).zip(&estimate.probes) {
+            let exact = s + forces.iter().map(|(at, force)| force * s.min(*at)).sum::<f64>() / stiffness;
+            let truth = (series.samples.last().expect("a record").x - exact).abs();
+            let estimated = errors.samples.last().expect("a record").x;
+            assert!(
+                truth <= f64::min(wanted, estimated + 1e-12),
+                "{wanted:e}, s = {s}: {truth:e} for {estimated:e}"
+            );
+        }
+    }
+}
+
 /// Narrow radial functions converge to something else than the truth, on which all their meshes agree;
 /// many elements are the judge.
 #[test]

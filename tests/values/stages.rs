@@ -816,3 +816,27 @@ fn vibrations_know_nothing_of_a_load_that_has_gone() {
         }
     }
 }
+
+/// A rod of 1 kg that flies sideways with 2 m/s takes a mass of 3 kg along, whose energy is 6 J.
+#[test]
+fn a_mass_that_comes_in_a_motion_is_told_with_its_energy() {
+    let warned = |more: &str| {
+        let text = format!(
+            "beam.rod = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }}
+             initial_velocity = [{{ beam = 'rod', polynomial = {{ vy = [2] }} }}]
+             effect.point_mass = [{{ beam = 'rod', at = 0.5, mass = 3{more} }}]
+             stage = [{{ name = 'one', analysis.dynamic.duration = 0.01 }}, {{ name = 'two', analysis.dynamic.duration = 0.01 }}]"
+        );
+        let results = solved(&text);
+        let energy = |stage: usize| results[stage].states().energy.last().expect("a record").kinetic;
+        ([energy(0), energy(1)], results[1].run().warnings.clone())
+    };
+    let (energies, told) = warned(", stage = 'two'");
+    near(energies[0], 2.0, 1e-9, "the energy of the rod");
+    near(energies[1], 8.0, 1e-9, "with the mass");
+    let expected = "the motion begins with a kinetic energy of 8.000000e0 J, and the one before it ended with 2.000000e0 J";
+    assert!(told.iter().any(|warning| warning.starts_with(expected)), "{told:?}");
+    let (energies, told) = warned("");
+    near(energies[0], 8.0, 1e-9, "with the mass from the start");
+    assert!(told.is_empty(), "{told:?}");
+}

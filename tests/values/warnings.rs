@@ -281,6 +281,32 @@ fn what_an_analysis_leaves_out_is_told_in_one_line() {
     assert_eq!(solved(&format!("{arm}{velocity}{motion}")).run.warnings, Vec::<String>::new());
 }
 
+/// What stretches or bends a beam without being a load takes no part in vibrations about its stress-free
+/// state either.
+#[test]
+fn what_moves_and_pulls_takes_no_part_in_vibrations_about_the_stress_free_state() {
+    let told = |support: &str, more: &str, analysis: &str| {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }}
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'arm', at = 'end', fix = ['x', 'y'] {support} }}]
+             analysis.modal = {{ count = 1{analysis} }}\n{more}"
+        );
+        let scene = parse("scene.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+        scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}")).run().warnings.clone()
+    };
+    let (moved, tendon) =
+        (", move = { x = 0.01 }", "effect.tendon = [{ beam = 'arm', offset = 0.01, shortening = 0.001 }]");
+    for (support, more, what) in
+        [(moved, "", "`move` of supports"), ("", tendon, "`length` or `shortening` of tendons")]
+    {
+        let expected = format!("{what} take no part in vibrations about the stress-free state");
+        let found = told(support, more, "");
+        assert!(found.len() == 1 && found[0].starts_with(&expected), "{found:?}");
+        assert!(told(support, more, ", about = 'equilibrium'").is_empty(), "{what}");
+    }
+    assert!(told("", "", "").is_empty());
+}
+
 /// Loads bend a column before it buckles: by the linear solution its end turns by λ F L²/2EI.
 #[test]
 fn bending_before_buckling_is_told_with_its_angle() {
