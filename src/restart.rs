@@ -240,12 +240,13 @@ fn matches(before: &[String], now: &[String]) -> Vec<Option<usize>> {
     now.iter().map(find).collect()
 }
 
-/// The internal variables by the parts that have them now.
+/// The internal variables by the parts that have them now; springs that are new have turned by `turned`.
 fn moved(
     variables: &InternalVariables,
     before: &[Vec<usize>; 2],
     now: &[Vec<usize>; 2],
     same: &[Option<usize>],
+    turned: &[f64],
 ) -> InternalVariables {
     // A part may have several: the n-th of a part is the n-th of the same part before.
     let index = |kind: usize, i: usize| {
@@ -255,9 +256,11 @@ fn moved(
         before[kind].iter().enumerate().filter(|(_, other)| **other == there).nth(nth).map(|(j, _)| j)
     };
     let contact = |i: usize| index(0, i).and_then(|j| variables.contacts.get(j).cloned()).unwrap_or_default();
-    let angle = |i: usize| index(1, i).and_then(|j| variables.angles.get(j).copied()).unwrap_or(0.0);
+    let angle = |(i, turned): (usize, &f64)| {
+        index(1, i).and_then(|j| variables.angles.get(j).copied()).unwrap_or(*turned)
+    };
     let contacts: Vec<_> = (0..now[0].len()).map(contact).collect();
-    let angles: Vec<f64> = (0..now[1].len()).map(angle).collect();
+    let angles: Vec<f64> = turned.iter().enumerate().map(angle).collect();
     InternalVariables { contacts, angles, ..variables.clone() }
 }
 
@@ -423,9 +426,12 @@ impl SavedState {
         if !fits(state) || !fits(&checkpoint.state) {
             return mismatch("its coordinates or velocities are incomplete".into());
         }
-        if self.saved.motion != fingerprint {
+        // What statics goes on with may be other parts.
+        if fingerprint.is_empty() || self.saved.motion != fingerprint {
             let same = matches(&self.saved.acted, &checksums(&model.parts));
-            let variables = moved(&state.variables, &self.saved.history_of, &system.history_of(), &same);
+            let (before, turned) = (&self.saved.history_of, system.turned(&state.q));
+            let mut variables = moved(&state.variables, before, &system.history_of(), &same, &turned);
+            variables.winding = system.energy_of_turns(&variables.angles);
             let state = State { variables, ..state.clone() };
             return Ok((Checkpoint { state, ..Checkpoint::default() }, false));
         }

@@ -1,6 +1,5 @@
 //! One model, one analysis: build, solve, and look at the states.
 
-mod angle;
 mod error;
 mod events;
 mod laws;

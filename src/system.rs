@@ -36,6 +36,7 @@ mod redundancy;
 mod rows;
 mod sums;
 pub mod supports;
+pub mod turning;
 mod view;
 
 pub use cut::Balanced;
@@ -224,6 +225,10 @@ impl System {
             assembly.belong_to(Owner::Gone(number));
         }
         system.terms = assembly.finish();
+        if let Some(mut start) = system.start.take() {
+            start.variables = system.variables_without_path(&start.q);
+            system.start = Some(start);
+        }
         system.actuated = actuation::actuated(model, fading, &system);
         system.constant_load = vec![0.0; system.coordinates()];
         for load in system.terms.loads.iter().filter(|load| load.is_summed()) {

@@ -252,7 +252,7 @@ impl<'a> Assembly<'a> {
         direction: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
     ) -> Result<(), BuildError> {
         let direction = self.effect(kind, &Extent::Point(at), direction)?;
-        self.terms.windings.push(Winding::new(direction, stiffness, self.terms.windings.len()));
+        self.terms.windings.push(Winding::new(at, direction, stiffness, self.terms.windings.len()));
         Ok(())
     }
 

@@ -11,21 +11,28 @@
 //! which a [`Winding`] computes. It is zero until the spring has passed half a turn.
 
 use super::{AcceptedState, Actions, Effect, InternalVariables, Workspace};
+use crate::beam::Place;
 use crate::linear::Matrix;
 use std::f64::consts::TAU;
 
 /// The terms that a torsion spring adds once it has passed half a turn.
 pub struct Winding {
+    at: Place,
     direction: Box<dyn Effect>,
     stiffness: f64,
     number: usize,
 }
 
 impl Winding {
-    /// The winding of the spring with k = `stiffness` \[N m/rad\], whose angle is the density
-    /// `direction`; `number` is its index among all windings.
-    pub fn new(direction: Box<dyn Effect>, stiffness: f64, number: usize) -> Self {
-        Self { direction, stiffness, number }
+    /// The winding of the spring at the point `at` with k = `stiffness` \[N m/rad\], whose angle is the
+    /// density `direction`; `number` is its index among all windings.
+    pub fn new(at: Place, direction: Box<dyn Effect>, stiffness: f64, number: usize) -> Self {
+        Self { at, direction, stiffness, number }
+    }
+
+    /// Where the spring is.
+    pub fn at(&self) -> Place {
+        self.at
     }
 
     /// Index of the beam.
@@ -35,7 +42,11 @@ impl Winding {
 
     /// The angle θ with all turns in the state `q` \[rad\].
     pub fn angle(&self, accepted: &AcceptedState, q: &[f64]) -> f64 {
-        let known = accepted.variables.angles.get(self.number).copied().unwrap_or(0.0);
+        self.angle_near(accepted.variables.angles.get(self.number).copied().unwrap_or(0.0), q)
+    }
+
+    /// The angle θ in the state `q` that is nearest to one that is `known` \[rad\].
+    pub fn angle_near(&self, known: f64, q: &[f64]) -> f64 {
         let angle = self.direction.energy(q);
         angle + TAU * ((known - angle) / TAU).round()
     }

@@ -229,7 +229,8 @@ impl LockingBeam {
         self.bending_stiffness.as_ref()?;
         let least = self.of_strain(ROUND_OFF);
         let most = self.seen.iter().fold(0.0_f64, |most, [bend, ..]| most.max(*bend));
-        let bent = self.seen.iter().filter(|[bend, ..]| *bend > STRAIGHT * most);
+        // A curvature that round-off makes has less energy than such a strain.
+        let bent = self.seen.iter().filter(|[bend, ..]| *bend > least.max(STRAIGHT * most));
         let relevant =
             bent.filter(|[bend, stretch, locked]| *locked > least.max(IRRELEVANT * (bend + stretch)));
         let too_stiff = relevant.fold(0.0_f64, |worst, [bend, _, locked]| worst.max(locked / bend));

@@ -1,6 +1,5 @@
 //! Evaluates states of a system: probes, shapes, frames, and the trajectories made of them.
 
-use super::angle;
 use super::laws::Reach;
 use super::locking::Locking;
 use super::loose::Loose;
@@ -24,7 +23,7 @@ use crate::solve::newton::Failure;
 use crate::solve::path::NoStep;
 use crate::solve::resume::Holding;
 use crate::solve::statics::{Solution, Unreached};
-use crate::system::{Change, Fields, Reaction, System, View, unfold};
+use crate::system::{Change, Fields, Reaction, System, View, turning, unfold};
 use nalgebra::Vector2;
 use std::f64::consts::FRAC_PI_2;
 
@@ -569,8 +568,8 @@ impl<'a> Sampler<'a> {
                 History::Before(before) => {
                     let part = &self.system.beams()[*beam];
                     let turned = before.map_or(0.0, |before| {
-                        let turns = turns[*beam].get_or_insert_with(|| angle::turns(part, before, q));
-                        turns[angle::nearest(part, view.s()[0])]
+                        let turns = turns[*beam].get_or_insert_with(|| turning::turns(part, before, q));
+                        turns[turning::nearest(part, view.s()[0])]
                     });
                     unfold(fields.angle(), series.samples.last().map(|s| s.angle + turned))
                 }

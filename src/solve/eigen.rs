@@ -56,11 +56,14 @@ pub enum EigenError {
         /// Number of motions that nothing resists.
         free: usize,
     },
-    /// Follower loads or dry friction make the tangent unsymmetric.
+    /// Follower loads, fields without a potential or dry friction make the tangent unsymmetric.
     #[error(
-        "follower loads or dry friction make the tangent unsymmetric, and a {analysis} analysis needs a symmetric one"
+        "follower loads, a `force_field` that is given by its `value`, or dry friction make the tangent unsymmetric, and a {analysis} analysis \
+         needs a symmetric one"
     )]
-    #[diagnostic(help("use dead loads and contacts without friction, or a static analysis along the path"))]
+    #[diagnostic(help(
+        "use dead loads, a `potential` for a field that has one, and contacts without friction; or a static analysis along the path"
+    ))]
     NotSymmetric {
         /// The analysis.
         analysis: &'static str,

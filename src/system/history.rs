@@ -2,7 +2,8 @@
 //! and torsion springs with their full turns.
 
 use super::System;
-use crate::assembly::{AcceptedState, InternalVariables, Workspace};
+use super::turning::{nearest, turns};
+use crate::assembly::{AcceptedState, InternalVariables, Winding, Workspace};
 use crate::linear::Matrix;
 
 impl System {
@@ -60,6 +61,27 @@ impl System {
             variables.angles.push(angle);
         }
         variables
+    }
+
+    /// The internal variables of a state `q` to which no path is known.
+    pub fn variables_without_path(&self, q: &[f64]) -> InternalVariables {
+        let angles = self.turned(q);
+        InternalVariables { winding: self.energy_of_turns(&angles), angles, ..InternalVariables::default() }
+    }
+
+    /// Per torsion spring, the angle by which its point has turned in the state `q` if no path tells:
+    /// followed along the beam from where that has turned least from its stress-free direction \[rad\].
+    pub fn turned(&self, q: &[f64]) -> Vec<f64> {
+        let of = |winding: &Winding| {
+            let (at, part) = (winding.at(), &self.beams[winding.at().beam]);
+            winding.angle_near(turns(part, &self.reference, q)[nearest(part, at.s)], q)
+        };
+        self.terms.windings.iter().map(of).collect()
+    }
+
+    /// Energy of the full turns of torsion springs with these angles \[J\].
+    pub fn energy_of_turns(&self, angles: &[f64]) -> f64 {
+        self.terms.windings.iter().zip(angles).map(|(winding, angle)| winding.energy(*angle)).sum()
     }
 
     /// Energy of the full turns in the state `q`, where `accepted` is the last accepted state

@@ -166,3 +166,34 @@ fn an_arch_rests_on_the_side_to_which_it_creeps() {
         near(found[1], y, 1e-4, &format!("y with {elements} elements"));
     }
 }
+
+/// A rod that begins bent by 270 degrees has wound a spring at its end up by as much: at rest it is straight,
+/// and let go it begins with ½ k (3π/2)² in the spring, whichever end is held.
+#[test]
+fn a_spring_knows_by_how_much_a_rod_begins_bent() {
+    let length = 3.0 * PI;
+    for (held, sprung, center, from, to, rest) in [
+        ("start", "end", 0.0, "-90 deg", "180 deg", length),
+        ("end", "start", length, "0 deg", "270 deg", 0.0),
+    ] {
+        let scene = |analysis: &str| {
+            Written::of(&format!(
+                "beam.rod = {{ start = [0, 0], end = [{length}, 0], axial_stiffness = 1e5, bending_stiffness = 3, mass_per_length = 1, \
+                 basis.ancf.elements = 16, initial_shape.arc = {{ center = [{center}, 2], radius = 2, from = '{from}', to = '{to}' }} }}
+                support = [{{ beam = 'rod', at = '{held}', fix = ['x', 'y', 'angle'] }}]
+                effect.torsion_spring = [{{ beam = 'rod', at = '{sprung}', stiffness = 0.5 }}]
+                probe = [{{ name = 'free', beam = 'rod', at = '{sprung}' }}]\n{analysis}\n"
+            ))
+        };
+        let still = scene("analysis.static = {}");
+        still.ends("probes.csv", &[("free.x", rest), ("free.y", 0.0)], 1e-9);
+        still.ends("energy.csv", &[("total", 0.0)], 1e-12);
+        let let_go = scene("analysis.dynamic.duration = 0.01");
+        near(
+            let_go.column("energy.csv", "stored")[0],
+            0.25 * (1.5 * PI).powi(2),
+            1e-9,
+            "the spring's energy",
+        );
+    }
+}

@@ -840,3 +840,70 @@ fn a_mass_that_comes_in_a_motion_is_told_with_its_energy() {
     near(energies[0], 8.0, 1e-9, "with the mass from the start");
     assert!(told.is_empty(), "{told:?}");
 }
+
+/// A moment M rolls a rod up against a spring by M/(EI/L + k) = 8.1453, more than a full turn. When another
+/// spring that stands before it in the scene has gone or come, it still knows its turns. Elements of a third
+/// of a radian err by a ten-thousandth.
+#[test]
+fn springs_keep_their_turns_when_others_come_or_go() {
+    let (bending, length, moment, stiffness) = (3.0, 3.0 * PI, 3.0, 0.05);
+    let angle = moment / (bending / length + stiffness);
+    for when in ["until = 'two'", "stage = 'two'"] {
+        let text = format!(
+            "beam.rod = {{ start = [0, 0], end = [{length}, 0], axial_stiffness = 1e5, bending_stiffness = {bending}, basis.ancf.elements = 24 }}
+             support = [{{ beam = 'rod', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             probe = [{{ name = 'tip', beam = 'rod', at = 'end' }}]
+             effect.moment = [{{ beam = 'rod', at = 'end', value = {moment} }}]
+             effect.torsion_spring = [{{ beam = 'rod', at = 0.5, stiffness = 1e-9, {when} }}, {{ beam = 'rod', at = 'end', stiffness = {stiffness} }}]
+             stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', analysis.static = {{}} }}]"
+        );
+        for results in solved(&text) {
+            let states = results.states();
+            near(states.probes[0].samples.last().expect("a record").angle, angle, 2e-3, when);
+            near(states.energy.last().expect("a record").stored, 0.5 * stiffness * angle.powi(2), 1e-3, when);
+        }
+    }
+}
+
+/// A spring that catches a rod in a motion counts the turns by which the rod has been rolled up: half of the
+/// stiffness times (3π/2)².
+#[test]
+fn a_spring_that_comes_counts_the_turns_along_the_beam() {
+    let (bending, length) = (3.0, 3.0 * PI);
+    let text = format!(
+        "beam.rod = {{ start = [0, 0], end = [{length}, 0], axial_stiffness = 1e5, bending_stiffness = {bending}, mass_per_length = 1, \
+         basis.ancf.elements = 24 }}
+         support = [{{ beam = 'rod', at = 'start', fix = ['x', 'y', 'angle'] }}]
+         effect.moment = [{{ beam = 'rod', at = 'end', value = {}, until = 'two' }}]
+         effect.torsion_spring = [{{ beam = 'rod', at = 'end', stiffness = 0.5, stage = 'two' }}]
+         stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', analysis.dynamic.duration = 0.01 }}]",
+        1.5 * PI * bending / length
+    );
+    let energy = solved(&text)[1].states().energy[0];
+    near(energy.stored, 0.25 * (1.5 * PI).powi(2), 1e-3, "the spring's energy");
+}
+
+/// A bar that lies on rough ground stays where it has been pulled to, when other ground that it never
+/// touched, and that stands before it in the scene, has gone or come.
+#[test]
+fn friction_is_remembered_by_its_contact() {
+    for when in ["until = 'two'", "stage = 'two'"] {
+        let text = format!(
+            "beam.bar = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 8 }}
+             support = [{{ beam = 'bar', at = 'start', fix = ['angle'] }}]
+             probe = [{{ name = 'tip', beam = 'bar', at = 'end' }}]
+             effect.gravity.acceleration = [0, -10]
+             effect.spring = [{{ beam = 'bar', at = 'start', stiffness = 5 }}]
+             effect.force = [{{ beam = 'bar', at = 'end', value = [2, 0] }}]
+             effect.contact = [
+                 {{ beam = 'bar', stiffness = 100, half_plane = {{ point = [0, -5], normal = [0, 1] }}, friction.coefficient = 0.5, {when} }},
+                 {{ beam = 'bar', stiffness = 100, half_plane = {{ point = [0, 0], normal = [0, 1] }}, friction.coefficient = 0.5 }},
+             ]
+             stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', analysis.static = {{}} }}]"
+        );
+        let at = |results: &Results| results.states().probes[0].samples.last().expect("a record").x;
+        let found: Vec<f64> = solved(&text).iter().map(at).collect();
+        assert!(found[0] > 1.01, "it is pulled: {found:?}");
+        near(found[1], found[0], 1e-9, when);
+    }
+}

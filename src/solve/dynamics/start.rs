@@ -118,7 +118,8 @@ fn jump(system: &System, at: usize, time: f64, change: f64) -> StartError {
 /// [`StartError::Held`] where supports do not allow them, [`StartError::Jump`] where a support
 /// starts elsewhere.
 pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Checkpoint, StartError> {
-    from_state(system, State::at_rest(system.start()), velocities)
+    let (_, variables) = system.start_history();
+    from_state(system, State { variables, ..State::at_rest(system.start()) }, velocities)
 }
 
 /// A state with the given velocities added to its own. The kinetic energy that supports add by

@@ -1,12 +1,12 @@
 //! Angles that count turns: a tip that has gone round once stands at 2π, not at 0.
 
+use super::unfold;
 use crate::assembly::{DiscretizedBeam, Node, nodes};
-use crate::system::unfold;
 
 /// By how much the nodes of a beam have turned between two states. One load step may wind a beam up
 /// by whole turns. But some node, such as a clamped one, has turned by less than half a turn, and
 /// the turns of the others follow from cell to cell.
-pub(super) fn turns(part: &DiscretizedBeam, before: &[f64], now: &[f64]) -> Vec<f64> {
+pub fn turns(part: &DiscretizedBeam, before: &[f64], now: &[f64]) -> Vec<f64> {
     let first = 4 * part.first_node;
     let all = first..first + 4 * part.basis.nodes().len();
     let angle = |Node { gradient: [x, y], .. }: Node| y.atan2(x);
@@ -25,7 +25,7 @@ pub(super) fn turns(part: &DiscretizedBeam, before: &[f64], now: &[f64]) -> Vec<
 }
 
 /// The node of a beam that is nearest to `s` \[m\].
-pub(super) fn nearest(part: &DiscretizedBeam, s: f64) -> usize {
+pub fn nearest(part: &DiscretizedBeam, s: f64) -> usize {
     let nodes = part.basis.nodes();
     let after = nodes.partition_point(|node| *node < s).min(nodes.len() - 1);
     after.checked_sub(1).filter(|before| s - nodes[*before] <= nodes[after] - s).unwrap_or(after)
