@@ -79,12 +79,16 @@ impl Section {
             .flatten()
     }
 
-    /// Arc lengths \[m\] at which one of them jumps, or has a corner between which a cell would not see
-    /// what lies, such as a notch; rising.
+    /// Arc lengths \[m\] at which a quantity jumps, or a stiffness or the mass has a corner between which a
+    /// cell would not see what lies, such as a notch; rising.
     pub fn breaks(&self) -> Vec<f64> {
         /// By this factor a quantity may depart from what its ends say.
         const SEEN: f64 = 1.5;
-        let corners = self.quantities().flat_map(|quantity| quantity.corners(SEEN));
+        // The coupling of stretch and bending has a sign, and no size of its own: the bending stiffness about
+        // the neutral line tells what it does.
+        let bending = self.uncoupled_bending_stiffness();
+        let positive = [&self.axial_stiffness, &bending, &self.mass_per_length];
+        let corners = positive.into_iter().flatten().flat_map(|quantity| quantity.corners(SEEN));
         let mut breaks: Vec<f64> = self.jumps().into_iter().chain(corners).collect();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
@@ -170,6 +174,18 @@ impl Section {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A small coupling of stretch and bending that falls to a tenth and rises again changes hardly anything,
+    /// whatever its sign; a large one makes the bending stiffness about the neutral line fall likewise.
+    #[test]
+    fn sections_break_alike_on_both_sides() {
+        let breaks = |size: f64| {
+            let coupling = Along::Table { s: vec![0.0, 1.0, 2.0], value: vec![size, 0.1 * size, size] };
+            Section { coupling: Some(coupling), ..Section::new(1.0, 1.0) }.breaks()
+        };
+        assert!(breaks(0.1).is_empty() && breaks(-0.1).is_empty());
+        assert_eq!([breaks(0.9), breaks(-0.9)], [vec![1.0], vec![1.0]]);
+    }
 
     /// A bar of width 1, height h = 0.2 and E = 5: σ = N/A ∓ 6 M/h², compressed on the left where M
     /// is positive.
