@@ -557,8 +557,11 @@ mod tests {
         assert_eq!(stations(&meshes()), [vec![0.125, 0.375, 0.875, 1.625, 2.0], vec![1.0, 3.0, 4.0]]);
         let pulled = scene("static = {}\neffect.force = [{ beam = 'arm', at = 0.5, value = [1, 0] }]");
         let mesh = Mesh::first(pulled.model(), 0, 1.0).remove(0);
-        let nodes: Vec<f64> =
-            stations(&[mesh.clone()])[0].iter().copied().filter(|s| mesh.nodes.contains(s)).collect();
+        let nodes: Vec<f64> = stations(std::slice::from_ref(&mesh))[0]
+            .iter()
+            .copied()
+            .filter(|s| mesh.nodes.contains(s))
+            .collect();
         assert_eq!(nodes, [0.5, 2.0]);
         let of_cells = |cells: usize| {
             let nodes: Vec<f64> = (0..=cells).map(|i| i as f64).collect();

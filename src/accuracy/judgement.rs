@@ -21,7 +21,7 @@ const CONTRACTION_OF_CURVATURE: f64 = 2.0;
 /// … of steps, of which nothing is known yet but that large ones err less regularly …
 const FALL_OF_STEPS: f64 = 6.0;
 /// … and at least, however slowly it was seen to fall.
-const LEAST_CONTRACTION: f64 = 1.5;
+pub(super) const LEAST_CONTRACTION: f64 = 1.5;
 /// Errors are larger by this than three coarse meshes alone tell.
 const FIRST: f64 = 1.5;
 /// Errors that fall by more than so many times the promised factor begin beyond all use.
