@@ -25,7 +25,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 /// Version of the format.
-const FORMAT: u32 = 5;
+const FORMAT: u32 = 6;
 
 /// A state with the beams to which it belongs.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,6 +59,8 @@ struct Saved {
     history_of: [Vec<usize>; 2],
     /// The state, and the integrator's data.
     checkpoint: Checkpoint,
+    /// Kinetic energy of the state that was reached \[J\].
+    kinetic: f64,
     /// The forces that hold it, where they are known.
     holding: Option<SavedHolding>,
 }
@@ -280,7 +282,9 @@ impl SavedState {
         checkpoint: Checkpoint,
         holding: Option<Holding>,
     ) -> Self {
+        let reached = checkpoint.reached();
         let saved = Saved {
+            kinetic: system.energy(reached.time, &reached.q, Some(&reached.v)).kinetic,
             beams: layout(model, system),
             motion,
             directions: directions(model),
@@ -333,6 +337,11 @@ impl SavedState {
             }
         }
         model
+    }
+
+    /// Its kinetic energy \[J\].
+    pub(crate) fn kinetic(&self) -> f64 {
+        self.saved.kinetic
     }
 
     /// Whether it is an equilibrium that a static run found.
@@ -430,8 +439,8 @@ impl SavedState {
         if fingerprint.is_empty() || self.saved.motion != fingerprint {
             let same = matches(&self.saved.acted, &checksums(&model.parts));
             let (before, turned) = (&self.saved.history_of, system.turned(&state.q));
-            let mut variables = moved(&state.variables, before, &system.history_of(), &same, &turned);
-            variables.winding = system.energy_of_turns(&variables.angles);
+            let variables = moved(&state.variables, before, &system.history_of(), &same, &turned);
+            let variables = system.with_energies(variables, &state.q);
             let state = State { variables, ..state.clone() };
             return Ok((Checkpoint { state, ..Checkpoint::default() }, false));
         }

@@ -332,6 +332,8 @@ mod tests {
             // Strains of 1e-12 take 3e-24 J.
             (&[[2.9e-24, 0.0, 2.9e-24]], None),
             (&[[3.1e-24, 0.0, 3.1e-24]], Some("100.0 %")),
+            // A wave along a beam, which bends by round-off only.
+            (&[[2.9e-24, 1.0, 0.03]], None),
         ] {
             let found = told(&mut locking, seen);
             assert_eq!(found.is_some(), percent.is_some(), "{seen:?}: {found:?}");

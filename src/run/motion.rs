@@ -6,11 +6,14 @@ use super::{Options, RunError, Solve, Stopwatch, Watch, left, memory, needs, tim
 use crate::model::{Analysis, Dynamic, Model};
 use crate::restart::{self, SavedState};
 use crate::results::{RecordedState, RecordedStates, Statistics, TakenUp, Trajectory};
-use crate::solve::dynamics::{self, Checkpoint, start};
+use crate::solve::dynamics::{self, Checkpoint, State, start};
 use crate::solve::resume::Holding;
 use crate::system::System;
 use std::borrow::Cow;
 use std::sync::Arc;
+
+/// Kinetic energies that differ by less, relative to the larger one, are the same.
+const SAME_ENERGY: f64 = 1e-6;
 
 impl Solve for Dynamic {
     type Results = Trajectory;
@@ -23,7 +26,8 @@ impl Solve for Dynamic {
         let model = &*model;
         memory::check(model, &analysis)?;
         let mut system = System::build_with(model, needs(&analysis), options.cache)?;
-        let Beginning { start, end, motion, told } = beginning(model, self, &mut system, options.start)?;
+        let Beginning { start, end, motion, told, brought } =
+            beginning(model, self, &mut system, options.start)?;
         let taken_up = (options.states && options.start.is_some()).then(|| TakenUp {
             model: Arc::new(model.clone()),
             q: start.state.q.clone(),
@@ -86,6 +90,7 @@ impl Solve for Dynamic {
                 sampler.record_sections(trajectory, acted);
             }
             trajectory.states = kept.filter(|_| options.states);
+            trajectory.run.warnings.extend(brought);
             trajectory.run.settings.extend(told.map(|told| ("continued".into(), told)));
         }
         timed(outcome, |trajectory| trajectory, &watch, stopwatch)
@@ -101,6 +106,8 @@ struct Beginning {
     motion: String,
     /// A message on how a saved state was taken up.
     told: Option<String>,
+    /// A warning about kinetic energy that it has and the saved state had not.
+    brought: Option<String>,
 }
 
 /// Where a motion begins. If it starts from a saved state, supports without a law of time fix the
@@ -116,9 +123,10 @@ fn beginning(
         let start = start::from_rest(system, &model.initial_velocities)?;
         let end = settings.duration;
         start::check_jumps(system, 0.0, end)?;
-        return Ok(Beginning { start, end, motion, told: None });
+        return Ok(Beginning { start, end, motion, told: None, brought: None });
     };
     let (start, same) = saved.take_up(model, system, &motion)?;
+    let brought = if same { None } else { brought(system, &start.state, saved.kinetic()) };
     system.freeze(&start.state.q);
     let (begin, end) = (saved.time(), later(saved.time(), settings.duration));
     start::check_jumps(system, begin, end)?;
@@ -134,7 +142,19 @@ fn beginning(
         false => "from its positions and velocities alone, for the model or the integrator is another",
     };
     let told = format!("for {} s from t = {begin} s to {end} s, {how}", settings.duration);
-    Ok(Beginning { start, end, motion, told: Some(told) })
+    Ok(Beginning { start, end, motion, told: Some(told), brought })
+}
+
+/// A warning where other masses than those of the saved state, which had the energy `before` \[J\], move in `state`.
+fn brought(system: &System, state: &State, before: f64) -> Option<String> {
+    let now = system.energy(state.time, &state.q, Some(&state.v)).kinetic;
+    ((now - before).abs() > SAME_ENERGY * now.max(before)).then(|| {
+        format!(
+            "the motion begins with a kinetic energy of {now:.6e} J, and the one before it ended with {before:.6e} J: a mass that comes has the \
+             velocity of the beam where it sits, as if it had been carried along, and one that goes takes its own with it; a beam that catches \
+             a mass at rest would be slowed down, which is not computed"
+        )
+    })
 }
 
 /// The sum of two times, rounded as decimals, so that a motion in parts ends exactly when it does

@@ -5,13 +5,10 @@ use crate::assembly::Part;
 use crate::effect::Tendon;
 use crate::model::{Analysis, Displacement, Model, Stage};
 use crate::restart::SavedState;
-use crate::results::{AnalysisKind, Results, Trajectory};
+use crate::results::Results;
 use std::any::Any;
 use std::borrow::Cow;
 use std::sync::Arc;
-
-/// Kinetic energies that differ by less, relative to the larger one, are the same.
-const SAME_ENERGY: f64 = 1e-6;
 
 /// What is computed of a scene with stages.
 #[derive(Debug)]
@@ -85,20 +82,6 @@ fn gone(acted: &[Arc<dyn Part>], parts: &[Arc<dyn Part>], tensions: &[f64]) -> V
     acted.iter().filter_map(of).collect()
 }
 
-/// A message where a motion does not begin with the kinetic energy with which the one `before` it ended.
-fn momentum(before: &Trajectory, after: &Trajectory) -> Option<String> {
-    let moves = |states: &Trajectory| states.run.analysis == AnalysisKind::Dynamic;
-    let (end, start) = (before.energy.last()?.kinetic, after.energy.first()?.kinetic);
-    let changes = (start - end).abs() > SAME_ENERGY * start.max(end);
-    (moves(before) && moves(after) && changes).then(|| {
-        format!(
-            "the motion begins with a kinetic energy of {start:.6e} J, and the one before it ended with {end:.6e} J: a mass that comes has the \
-             velocity of the beam where it sits, as if it had been carried along, and one that goes takes its own with it; a beam that catches \
-             a mass at rest would be slowed down, which is not computed"
-        )
-    })
-}
-
 /// Solves `stages`, the first from the start that `options` give. The others start where the one
 /// before them ended: motions at rest after statics, and with its velocities after a motion. In
 /// statics what is new grows with the load factor, and what has gone fades. Vibrations leave the
@@ -130,10 +113,7 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
             Cow::Owned(Model { fading, ..model.clone() })
         };
         match model.solve_with(analysis, here) {
-            Ok(mut results) => {
-                let before = run.results.last().map(Results::states);
-                let told = before.and_then(|before| momentum(before, results.states()));
-                results.run_mut().warnings.extend(told);
+            Ok(results) => {
                 let complete = results.run().complete;
                 let saved = results.states().saved.clone();
                 let tensions: Vec<f64> = results.run().tensions.iter().map(|of| of.tension).collect();

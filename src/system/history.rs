@@ -65,8 +65,14 @@ impl System {
 
     /// The internal variables of a state `q` to which no path is known.
     pub fn variables_without_path(&self, q: &[f64]) -> InternalVariables {
-        let angles = self.turned(q);
-        InternalVariables { winding: self.energy_of_turns(&angles), angles, ..InternalVariables::default() }
+        self.with_energies(InternalVariables { angles: self.turned(q), ..InternalVariables::default() }, q)
+    }
+
+    /// The internal variables of a state `q`, with the energies that belong to their slips and angles.
+    pub fn with_energies(&self, variables: InternalVariables, q: &[f64]) -> InternalVariables {
+        let accepted = AcceptedState { q: q.to_vec(), variables };
+        let InternalVariables { friction, winding, .. } = self.internal_variables(&accepted, q);
+        InternalVariables { friction, winding, ..accepted.variables }
     }
 
     /// Per torsion spring, the angle by which its point has turned in the state `q` if no path tells:
@@ -77,11 +83,6 @@ impl System {
             winding.angle_near(turns(part, &self.reference, q)[nearest(part, at.s)], q)
         };
         self.terms.windings.iter().map(of).collect()
-    }
-
-    /// Energy of the full turns of torsion springs with these angles \[J\].
-    pub fn energy_of_turns(&self, angles: &[f64]) -> f64 {
-        self.terms.windings.iter().zip(angles).map(|(winding, angle)| winding.energy(*angle)).sum()
     }
 
     /// Energy of the full turns in the state `q`, where `accepted` is the last accepted state

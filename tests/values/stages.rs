@@ -839,6 +839,50 @@ fn a_mass_that_comes_in_a_motion_is_told_with_its_energy() {
     let (energies, told) = warned("");
     near(energies[0], 8.0, 1e-9, "with the mass from the start");
     assert!(told.is_empty(), "{told:?}");
+    // A scene of its own that starts from the saved state knows as much.
+    let alone = |effect: &str| {
+        let text = format!(
+            "beam.rod = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }}
+             analysis.dynamic.duration = 0.01\n{effect}"
+        );
+        scene(&text)
+    };
+    let bare = alone("initial_velocity = [{ beam = 'rod', polynomial = { vy = [2] } }]");
+    let before = ancf::accuracy::run(&bare, Options { saved: true, ..Options::default() }).expect("a motion");
+    let saved = before.states().saved.clone().expect("a state");
+    let after = |effect: &str| {
+        let options = Options { start: Some(&saved), ..Options::default() };
+        ancf::accuracy::run(&alone(effect), options).expect("a motion").run().warnings.clone()
+    };
+    let told = after("effect.point_mass = [{ beam = 'rod', at = 0.5, mass = 3 }]");
+    assert!(told.iter().any(|warning| warning.starts_with(expected)), "{told:?}");
+    let told = after("effect.spring = [{ beam = 'rod', at = 0.5, stiffness = 1 }]");
+    assert!(told.is_empty(), "{told:?}");
+}
+
+/// A stiff bar of 10 N lies on two grounds of 100 N/m², about 5 cm deep, and is held by the friction of one
+/// of them. When that one is gone, a motion begins with the energy ½ k y² of the other and of the spring: not
+/// with what the friction had stored.
+#[test]
+fn friction_takes_its_energy_with_it() {
+    let ground = "beam = 'bar', stiffness = 100, half_plane = { point = [0, 0], normal = [0, 1] }";
+    let text = format!(
+        "beam.bar = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1e4, mass_per_length = 1, basis.ancf.elements = 8 }}
+         support = [{{ beam = 'bar', at = 'start', fix = ['angle'] }}]
+         probe = [{{ name = 'start', beam = 'bar', at = 'start' }}]
+         effect.gravity.acceleration = [0, -10]
+         effect.spring = [{{ beam = 'bar', at = 'start', stiffness = 5 }}]
+         effect.force = [{{ beam = 'bar', at = 'end', value = [2, 0] }}]
+         effect.contact = [{{ {ground}, friction.coefficient = 0.5, until = 'two' }}, {{ {ground} }}]
+         stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', analysis.dynamic.duration = 0.001 }}]"
+    );
+    let results = solved(&text);
+    let states = results[1].states();
+    let (x, y) = (states.probes[0].samples[0].x, states.probes[0].samples[0].y);
+    let (ground, spring) = (50.0 * y * y, 2.5 * (x * x + y * y));
+    near(states.energy[0].stored, ground + spring, 1e-4, "the energy that is stored");
+    let held = results[0].states().energy.last().expect("a record").stored - (2.0 * ground + spring);
+    assert!(held > 1e-3, "the friction had stored {held} J");
 }
 
 /// A moment M rolls a rod up against a spring by M/(EI/L + k) = 8.1453, more than a full turn. When another
