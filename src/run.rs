@@ -21,6 +21,7 @@ mod surfaces;
 mod tendons;
 
 pub use error::RunError;
+pub(crate) use laws::stiffness_jumps;
 pub use shapes::shapes_at;
 pub use stages::{StagesRun, inspect_stages, model_of_stage, solve_stages};
 

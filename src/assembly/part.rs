@@ -122,6 +122,18 @@ impl Extent {
         }
     }
 
+    /// A density over a whole beam whose cells are divided at these arc lengths \[m\], which rise.
+    pub fn divided(beam: usize, rule: Quadrature, at: &[f64]) -> Self {
+        if at.is_empty() {
+            return Self::Beam(beam, rule);
+        }
+        Self::Weighted(
+            beam,
+            rule,
+            Arc::new(Along::Pieces { until: at.to_vec(), value: vec![1.0; at.len() + 1] }),
+        )
+    }
+
     /// The factor at each point of its table, where there is one.
     pub(super) fn factors(&self, table: &BasisTable) -> Option<Vec<f64>> {
         let Self::Weighted(_, _, factor) = self else { return None };

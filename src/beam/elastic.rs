@@ -110,6 +110,14 @@ impl Elastic {
         ((sides[1] - sides[0]).abs() > near * self.stiffness()).then_some(sides)
     }
 
+    /// The strains at which its stiffness jumps by more than this part of the largest.
+    pub fn corners(&self, by: f64) -> impl Iterator<Item = f64> + '_ {
+        let inner = self.strain.get(1..self.strain.len() - 1).unwrap_or_default();
+        let jumps =
+            move |point: &usize| (self.slope(*point) - self.slope(point - 1)).abs() > by * self.stiffness();
+        (1..=inner.len()).filter(jumps).map(|point| self.strain[point])
+    }
+
     /// The first and the last strain that it knows.
     pub fn ends(&self) -> [f64; 2] {
         [self.strain[0], self.strain[self.strain.len() - 1]]
@@ -119,6 +127,15 @@ impl Elastic {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn corners_are_where_the_stiffness_jumps() {
+        let law =
+            Elastic::new(vec![-1.0, 0.0, 0.1, 0.2, 0.3], vec![-100.0, 0.0, 10.0, 40.0, 70.0]).expect("a law");
+        assert_eq!(law.corners(1e-9).collect::<Vec<_>>(), [0.1]);
+        let straight = Elastic::new(vec![0.0, 1.0], vec![0.0, 2.0]).expect("a law");
+        assert_eq!(straight.corners(1e-9).count(), 0);
+    }
 
     /// Slack below 0, 100 up to 0.1, 300 beyond: energies by areas.
     #[test]
@@ -160,7 +177,7 @@ mod tests {
 
     /// Slopes of 1, 1 and 3 between −1, 0, 1 and 2: the one corner is at 1.
     #[test]
-    fn corners_are_where_the_stiffness_jumps() {
+    fn corners_leave_out_points_on_straight_lines() {
         let law = Elastic::new(vec![-1.0, 0.0, 1.0, 2.0], vec![-1.0, 0.0, 1.0, 4.0]).expect("a law");
         let corner = |strain: f64| law.corner(strain, 1e-3);
         assert_eq!(corner(1.0), Some([1.0, 3.0]));

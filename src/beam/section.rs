@@ -23,6 +23,9 @@ pub struct Section {
     pub axial_law: Option<Arc<Elastic>>,
     /// M of the curvature, where it is not EI κ; EI is then the largest slope.
     pub bending_law: Option<Arc<Elastic>>,
+    /// Arc lengths \[m\], rising, at which cells are divided for the sums of the axial and of the bending law,
+    /// since a stiffness jumps there.
+    pub law_jumps: [Vec<f64>; 2],
     /// EB \[N m\], where the centreline is not the neutral line of bending; it needs both
     /// stiffnesses.
     pub coupling: Option<Along>,

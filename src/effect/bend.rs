@@ -17,7 +17,8 @@ impl Part for BeamBend {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("bending", self.beam)?;
         if let Some(law) = &beam.section.bending_law {
-            let extent = Extent::Beam(self.beam, beam.gauss_points.bend_rule());
+            let extent =
+                Extent::divided(self.beam, beam.gauss_points.bend_rule(), &beam.section.law_jumps[1]);
             let law = Arc::clone(law);
             return assembly.elastic(Kind::Bend, extent, |z: Vec<[Vector2<f64>; 2]>| BendByLaw::new(law, &z));
         }

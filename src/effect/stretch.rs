@@ -18,7 +18,8 @@ impl Part for BeamStretch {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
         let beam = assembly.beam("stretch", self.beam)?;
         if let Some(law) = &beam.section.axial_law {
-            let extent = Extent::Beam(self.beam, beam.gauss_points.stretch_rule());
+            let extent =
+                Extent::divided(self.beam, beam.gauss_points.stretch_rule(), &beam.section.law_jumps[0]);
             let fields = |z: Vec<[Vector2<f64>; 1]>| z.into_iter().map(|[r]| r);
             let law = Arc::clone(law);
             return match beam.strain {

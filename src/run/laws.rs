@@ -1,7 +1,8 @@
-//! Warnings on strains beyond the tables of elastic laws, and at their corners.
+//! Strains beyond the tables of elastic laws, and where they pass corners.
 
-use crate::model::Model;
+use crate::model::{Model, Place};
 use crate::results::Shape;
+use crate::system::System;
 
 /// The strains and curvatures that beams with elastic laws have reached.
 #[derive(Clone)]
@@ -55,7 +56,7 @@ impl Reach {
                 let ([first, last], [low, high]) = (*law)?;
                 let beyond = if high > last { Some(high) } else { (low < first).then_some(low) }?;
                 Some(format!(
-                    "the {what} of beam `{name}` reaches {beyond:.4}, and its `{key}` is known from {first} to {last} only: beyond, it was taken to \
+                    "the {what} of beam `{name}` reaches {beyond:.4e}, and its `{key}` is known from {first} to {last} only: beyond, it was taken to \
                      go on as straight as at its end; give the table more points, or smaller loads"
                 ))
             })
@@ -65,6 +66,95 @@ impl Reach {
 
 /// Distance from a corner of a law, relative to the width of its table, that counts as none.
 const CORNER: f64 = 1e-9;
+
+/// Part of a cell that a place may be off a node to count as there.
+const AT_NODE: f64 = 1e-2;
+/// False positions with which a place is found.
+const POSITIONS: usize = 6;
+
+/// The model with cells divided where the section forces of a state pass those of corners of its laws, since the stiffness
+/// jumps there and a sum over fixed points takes a whole cell to be on one side or the other; `None` where there are
+/// no such places. The forces tell where, for they are continuous and known better than the strains of a cell that cannot
+/// have a corner. `forces_at` gives the axial force \[N\] and the bending moment \[N m\] at an arc length \[m\] of a beam.
+pub(super) fn divided(
+    model: &Model,
+    now: &[Shape],
+    forces_at: &dyn Fn(usize, f64) -> Option<[f64; 2]>,
+) -> Option<Model> {
+    let mut divided = model.clone();
+    for (index, (beam, shape)) in divided.beams.iter_mut().zip(now).enumerate() {
+        let section = &mut beam.section;
+        let laws =
+            [(&section.axial_law, &shape.axial_force, 0), (&section.bending_law, &shape.bending_moment, 1)];
+        section.law_jumps = laws.map(|(law, forces, kind)| {
+            let Some(law) = law else { return Vec::new() };
+            let largest = forces.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+            let of_corner = |corner: f64| {
+                let force = law.force_and_stiffness(corner).0;
+                let rows = shape.s.iter().zip(forces).map(|(s, now)| (*s, now - force));
+                // Forces that differ from it by round-off are on neither side.
+                let rows: Vec<(f64, f64)> = rows.filter(|(_, off)| off.abs() > CORNER * largest).collect();
+                let passes = |pair: &[(f64, f64)]| {
+                    let off = |s: f64| forces_at(index, s).map(|forces| forces[kind] - force);
+                    (pair[0].1 * pair[1].1 < 0.0).then(|| zero([pair[0], pair[1]], off))
+                };
+                rows.windows(2).filter_map(passes).collect::<Vec<f64>>()
+            };
+            let mut at: Vec<f64> = law.corners(CORNER).flat_map(of_corner).collect();
+            at.sort_by(f64::total_cmp);
+            at.dedup();
+            at
+        });
+    }
+    divided.beams.iter().any(|beam| beam.section.law_jumps.iter().any(|at| !at.is_empty())).then_some(divided)
+}
+
+/// Where along its beams the stiffness of a model jumps in the state `now`, as far as its rows tell.
+pub(crate) fn stiffness_jumps(model: &Model, now: &[Shape]) -> Vec<Place> {
+    divided(model, now, &|_, _| None).as_ref().map_or_else(Vec::new, jumps_of)
+}
+
+/// Where cells are divided.
+fn jumps_of(divided: &Model) -> Vec<Place> {
+    let beams = divided.beams.iter().enumerate();
+    beams
+        .flat_map(|(beam, of)| of.section.law_jumps.iter().flatten().map(move |s| Place { beam, s: *s }))
+        .collect()
+}
+
+/// Warnings on jumps of the stiffness inside of cells, whose shape functions have a curvature or a strain that does not
+/// jump with it. `system` has the nodes.
+pub(super) fn within_cells(divided: &Model, system: &System) -> Option<String> {
+    let inside = |place: &Place| {
+        let nodes = system.beams()[place.beam].basis.nodes();
+        let cell = nodes.partition_point(|node| *node <= place.s).clamp(1, nodes.len() - 1);
+        let (left, right) = (nodes[cell - 1], nodes[cell]);
+        (place.s - left).min(right - place.s) > AT_NODE * (right - left)
+    };
+    let Place { beam, s } = jumps_of(divided).into_iter().find(inside)?;
+    Some(format!(
+        "the stiffness of beam `{}` jumps at s = {s:.6} m, where its force passes a corner of its law inside a cell: frequencies err by a part \
+         of that jump that falls with the cells' length only; put a node there, or leave out the `basis` for an `accuracy`, which does",
+        divided.beams[beam].name
+    ))
+}
+
+/// The place between two others at which a function with values of either sign there vanishes, by a few false positions
+/// (the Illinois rule halves the value of an end that stays).
+fn zero([mut left, mut right]: [(f64, f64); 2], of: impl Fn(f64) -> Option<f64>) -> f64 {
+    let between = |(s, a): (f64, f64), (next, b): (f64, f64)| s + (next - s) * a / (a - b);
+    for _ in 0..POSITIONS {
+        let s = between(left, right);
+        let Some(value) = of(s).filter(|value| *value != 0.0 && left.0 != right.0) else { return s };
+        if value * right.1 < 0.0 {
+            left = right;
+        } else {
+            left.1 *= 0.5;
+        }
+        right = (s, value);
+    }
+    between(left, right)
+}
 
 /// Warnings on beams in the state `now` that are at corners of their laws, of which a linear
 /// solution about the state takes one side only; `free` is the stress-free state.

@@ -1,10 +1,10 @@
 //! Vibrations and critical loads of a model.
 
-use super::laws::at_corners;
+use super::laws::{at_corners, divided, within_cells};
 use super::sampler::Sampler;
 use super::start::Start;
 use super::{Options, RunError, Solve, Stopwatch, Watch, memory, timed};
-use crate::assembly::{InternalVariables, Part, nodes};
+use crate::assembly::{InternalVariables, Part, Side, nodes};
 use crate::effect::Tendon;
 use crate::model::{About, Analysis, Buckling, Displacement, Modal, Model, Static};
 use crate::results::{
@@ -13,6 +13,7 @@ use crate::results::{
 };
 use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};
+use crate::system::System;
 use std::any::Any;
 use std::sync::Arc;
 
@@ -52,7 +53,11 @@ impl Solve for Modal {
         let mut watch = Watch::new(options.observer);
         let outcome = match self.about {
             About::Reference => sampler.about_reference(self.count),
-            About::Equilibrium => sampler.about_equilibrium(self.count, &mut watch),
+            About::Equilibrium => {
+                // The stiffness of a cell in which it jumps is that of its parts.
+                let about = &|model: &Model| start.with_model(model, &analysis, options.cache);
+                sampler.about_equilibrium(self.count, about, &mut watch)
+            }
         };
         stopwatch.solved();
         timed(outcome, |vibrations| &mut vibrations.equilibrium, &watch, stopwatch)
@@ -91,11 +96,17 @@ impl Sampler<'_> {
         trajectory.last = self.unloaded();
         let mut x = self.system.reference().to_vec();
         x.resize(x.len() + self.system.multipliers(), 0.0);
-        self.modal(trajectory, (0.0, &x, &InternalVariables::default()), count)
+        self.modal(trajectory, self.system, (0.0, &x, &InternalVariables::default()), count)
     }
 
-    /// The `count` lowest vibrations about the equilibrium under all loads, which is found first.
-    fn about_equilibrium(&self, count: usize, watch: &mut Watch<'_>) -> Result<Vibrations, RunError> {
+    /// The `count` lowest vibrations about the equilibrium under all loads, which is found first. `equations` gives those
+    /// of another model with the same unknowns.
+    fn about_equilibrium(
+        &self,
+        count: usize,
+        equations: &dyn Fn(&Model) -> Result<System, RunError>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Vibrations, RunError> {
         let report =
             &mut |load: f64, step: f64, statistics: &Statistics| watch.goes_on(load, 1.0, step, statistics);
         let (mut parts, mut finer) = (1, FINER.into_iter());
@@ -107,10 +118,23 @@ impl Sampler<'_> {
             }
             // Only the last equilibrium matters, not the path to it.
             solution.keep_last();
-            let trajectory = self.equilibria(AnalysisKind::Modal, &solution);
+            let mut trajectory = self.equilibria(AnalysisKind::Modal, &solution);
             let variables = solution.variables.last().cloned().unwrap_or_default();
             let vibrations = match solution.states.last() {
-                Some((load, x)) if *load == 1.0 => self.modal(trajectory, (*load, x, &variables), count),
+                Some((load, x)) if *load == 1.0 => {
+                    let actions = self.system.static_actions(*load, x, &variables);
+                    let q = self.coordinates_of(x);
+                    let forces_at = |beam: usize, s: f64| {
+                        let cut = self.cut_shape(beam, &[s], &[Side::Right], q, &actions[beam]);
+                        Some([*cut.axial_force.first()?, cut.bending_moment.first().copied().unwrap_or(0.0)])
+                    };
+                    let divided = divided(self.model, &trajectory.last, &forces_at);
+                    let inside = divided.as_ref().and_then(|divided| within_cells(divided, self.system));
+                    trajectory.run.warnings.extend(inside);
+                    let system = divided.as_ref().map(equations).transpose()?;
+                    let system = system.as_ref().unwrap_or(self.system);
+                    self.modal(trajectory, system, (*load, x, &variables), count)
+                }
                 // Stopped on the way.
                 _ => Ok(Vibrations { equilibrium: trajectory, modes: Vec::new() }),
             };
@@ -124,6 +148,7 @@ impl Sampler<'_> {
     fn modal(
         &self,
         mut equilibrium: Trajectory,
+        system: &System,
         (load, x, variables): (f64, &[f64], &InternalVariables),
         count: usize,
     ) -> Result<Vibrations, RunError> {
@@ -154,7 +179,7 @@ impl Sampler<'_> {
         let about = if load == 0.0 { "the stress-free state" } else { "the equilibrium under all loads" };
         run.settings.push(("vibrations about".into(), about.into()));
         run.warnings.extend(at_corners(self.model, &equilibrium.last, &run.undeformed));
-        let modes = modal::solve(self.system, load, x, variables, count)?;
+        let modes = modal::solve(system, load, x, variables, count)?;
         run.statistics.factorizations += modes.factorizations;
         if let Some((number, change)) = modes.unsure.filter(|(_, change)| *change > UNSURE) {
             run.warnings.push(format!(

@@ -42,6 +42,20 @@ impl<'m> Start<'m> {
         Ok(Self { model: Cow::Owned(model), system, state: Some(state), holding })
     }
 
+    /// The equations of another model, with the same unknowns, from the same state.
+    pub(super) fn with_model(
+        &self,
+        model: &Model,
+        analysis: &Analysis,
+        cache: Option<&BasisCache>,
+    ) -> Result<System, RunError> {
+        let mut system = System::build_with(model, needs(analysis), cache)?;
+        if let Some(state) = &self.state {
+            resume(&mut system, &state.q, &state.variables, self.holding.as_ref());
+        }
+        Ok(system)
+    }
+
     /// What a later look at the states of the run needs to know of the state.
     pub(super) fn taken_up(&self) -> Option<TakenUp> {
         let model = Arc::new(self.model.clone().into_owned());
