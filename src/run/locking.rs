@@ -37,6 +37,10 @@ const JAMMED_WORK: f64 = 1e-5;
 const LEAST_STRAIN: f64 = 1e-9;
 /// Strain within the cells of a beam that round-off of positions makes.
 const ROUND_OFF: f64 = 1e-12;
+/// Gauss points for bending that are too few where bending strains are large …
+const FEW: usize = 2;
+/// … beyond this κ √(EI/EA).
+const HELD: f64 = 0.5;
 /// Part of a beam's whole elastic energy up to which locking does not matter.
 const IRRELEVANT: f64 = 1e-3;
 
@@ -65,6 +69,40 @@ struct LockingBeam {
     reference: [Vec<f64>; 2],
     /// Energies \[J\] of each state: of bending, of all stretch, and of that which bending causes.
     seen: Vec<[f64; 3]>,
+}
+
+/// Warnings on beams in the state `now` whose stretch nothing holds at the nodes: with M = EI κ, the energy of a length is
+/// ½ EA ε² − EI κ² ε + …, which bending outweighs at a node, where two points for bending have none, once κ √(EI/EA)
+/// is more than a half. `free` is the stress-free state.
+pub(super) fn unheld(model: &Model, now: &[Shape], free: &[Shape]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (beam, (now, free)) in model.beams.iter().zip(now.iter().zip(free)) {
+        let cable = matches!(beam.discretization, crate::model::Discretization::Ancf { .. });
+        let stiffnesses = beam.section.axial_stiffness.as_ref().zip(beam.section.bending_stiffness.as_ref());
+        let Some((stretch, bend)) = stiffnesses.filter(|_| cable && beam.gauss_points.bend <= FEW) else {
+            continue;
+        };
+        let thickness = |(s, curvature): (&f64, &f64)| {
+            let reference = free.s.partition_point(|place| place < s).min(free.s.len().saturating_sub(1));
+            let bent = curvature - free.curvature.get(reference).unwrap_or(&0.0);
+            (bent.abs() * (bend.at(*s, *s) / stretch.at(*s, *s)).sqrt(), *s)
+        };
+        let most = now
+            .s
+            .iter()
+            .zip(&now.curvature)
+            .map(thickness)
+            .fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a });
+        if most.0 > HELD {
+            warnings.push(format!(
+                "beam `{}` is bent to κ √(EI/EA) = {:.2} at s = {:.4e} m: beyond {HELD}, {} Gauss points a cell for bending let the strain at the \
+                 nodes of cable elements run away, and curvatures and section forces with it; give \
+                 `gauss_points = {{ stretch = 5, bend = 3 }}` in `basis.ancf`, or nodes without a mesh (`basis.rpim`). No beam is that thick against its radius",
+                beam.name, most.0, most.1, beam.gauss_points.bend
+            ));
+        }
+    }
+    warnings
 }
 
 impl Locking {

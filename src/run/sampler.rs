@@ -1,7 +1,7 @@
 //! Evaluates states of a system: probes, shapes, frames, and the trajectories made of them.
 
 use super::laws::Reach;
-use super::locking::Locking;
+use super::locking::{Locking, unheld};
 use super::loose::Loose;
 use super::stability;
 use super::tendons::Tendons;
@@ -635,6 +635,7 @@ impl<'a> Sampler<'a> {
         trajectory.run.warnings.extend(known.and_then(|(work, energy)| put_in(work, energy)));
         let work = trajectory.energy.last().map_or(0.0, |energy| energy.potential.abs());
         trajectory.run.warnings.extend(locking.jammed(&trajectory.last, work));
+        trajectory.run.warnings.extend(unheld(self.model, &trajectory.last, &trajectory.run.undeformed));
         trajectory.run.warnings.extend(locking.warnings());
         trajectory.run.warnings.extend(loose.warnings());
         trajectory.run.warnings.extend(reach.warnings());
@@ -878,6 +879,7 @@ impl<'a> Sampler<'a> {
                 contacts.get(*contact).cloned().unwrap_or_default()
             ));
         }
+        trajectory.run.warnings.extend(unheld(self.model, &trajectory.last, &trajectory.run.undeformed));
         trajectory.run.warnings.extend(locking.warnings());
         trajectory.run.warnings.extend(loose.warnings());
         trajectory.run.warnings.extend(reach.warnings());

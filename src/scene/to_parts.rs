@@ -239,8 +239,8 @@ fn needs(something: bool, at: &Located<String>, what: &str, keys: &str) -> Resul
 }
 
 /// Distance of the surface of a beam from its centreline \[m\], as its section tells it; zero where it
-/// does not.
-fn half_thickness(name: &Located<String>, beam: &Beam) -> Result<f64, Fault> {
+/// does not. `what` asks for it.
+fn half_thickness(name: &Located<String>, beam: &Beam, what: &str) -> Result<f64, Fault> {
     let layers = &beam.section.layers;
     if layers.is_empty() {
         return Ok(0.0);
@@ -252,11 +252,11 @@ fn half_thickness(name: &Located<String>, beam: &Beam) -> Result<f64, Fault> {
         None => Err(Fault::new(
             name.span(),
             format!(
-                "the surfaces of beam `{}` are not everywhere equally far from its centreline, and this contact does not say what touches",
+                "the surfaces of beam `{}` are not everywhere equally far from its centreline, and this {what} does not say where the surface is",
                 name.get()
             ),
         )
-        .help("give the contact a `half_thickness`")),
+        .help(format!("give the {what} a `half_thickness`"))),
     }
 }
 
@@ -265,7 +265,7 @@ fn contact(t: &ContactTable, built: &[Built], beams: &[Beam]) -> Result<Contact,
     let beam = stretch.beam;
     let half_thickness = match t.half_thickness {
         Some(given) => given.si,
-        None => half_thickness(&t.beam, &beams[beam])?,
+        None => half_thickness(&t.beam, &beams[beam], "contact")?,
     };
     let mut obstacles = Vec::new();
     if let Some(c) = &t.circle {
@@ -476,7 +476,7 @@ fn electrostatic(
     })?;
     let half_thickness = match t.half_thickness {
         Some(given) => given.si,
-        None => half_thickness(&t.beam, &beams[stretch.beam])?,
+        None => half_thickness(&t.beam, &beams[stretch.beam], "electrode")?,
     };
     let facing = stretch.indicator();
     let shape = initial_shapes.iter().find(|shape| shape.beam == stretch.beam);
