@@ -34,6 +34,7 @@
 pub(crate) mod difference;
 mod judgement;
 mod mesh;
+mod missing;
 mod model_error;
 mod round;
 mod saturation;
@@ -41,12 +42,17 @@ mod search;
 pub(crate) mod setting;
 mod statement;
 
-use crate::model::{Accuracy, Analysis, Model, Open};
+use crate::model::{About, Accuracy, Analysis, Model, Open, Place};
 use crate::results::{LazyText, Results};
-use crate::run::{Options, RunError, StagesRun, solve_stages};
+use crate::run::{self, Options, RunError, StagesRun, solve_stages};
 use crate::scene::Scene;
 use round::{Fineness, Runner};
 use search::Search;
+
+/// Accuracy of the vibrations whose equilibrium tells where nodes must be.
+const PLACES: f64 = 1e-4;
+/// Places of its shapes, between which forces are taken to be linear.
+const ROWS: usize = 2001;
 
 /// Results as accurate as was wanted, and how they were come by.
 #[derive(Clone, Debug)]
@@ -105,9 +111,42 @@ pub fn solve(
     analysis: &Analysis,
     open: &Open,
     wanted: Accuracy,
-    options: Options<'_>,
+    mut options: Options<'_>,
 ) -> Result<Accurate, RunError> {
+    let jumps = stiffness_jumps(model, analysis, open, wanted, &mut options);
+    let with_nodes = (!jumps.is_empty()).then(|| {
+        let mut model = model.clone();
+        model.nodes_at.extend(jumps);
+        model
+    });
+    let model = with_nodes.as_ref().unwrap_or(model);
     Search::new(Runner::new(model, analysis, open, Some(wanted), options)).run()
+}
+
+/// Where there must be nodes since the stiffness of open beams jumps in the equilibrium about which they vibrate: where
+/// their forces pass corners of their laws. A first search, which wants no more than [`PLACES`], finds them.
+fn stiffness_jumps(
+    model: &Model,
+    analysis: &Analysis,
+    open: &Open,
+    wanted: Accuracy,
+    options: &mut Options<'_>,
+) -> Vec<Place> {
+    let about = matches!(analysis, Analysis::Modal(settings) if settings.about == About::Equilibrium);
+    let linear = model.beams.iter().all(|beam| beam.section.is_linear());
+    if !about || linear {
+        return Vec::new();
+    }
+    let wanted = Accuracy::new(wanted.result.max(PLACES));
+    let Options { start, cache, .. } = *options;
+    let first = Options { start, cache, shape_points: ROWS, ..Options::default() };
+    // What fails here fails again, and is told then.
+    let Ok(found) = Search::new(Runner::new(model, analysis, open, Some(wanted), first)).run() else {
+        return Vec::new();
+    };
+    let mut places = run::stiffness_jumps(model, &found.results.states().last);
+    places.retain(|place| open.beams.get(place.beam) == Some(&true));
+    places
 }
 
 /// Solves `model` as it is and estimates the errors of the results by a run on half as many cells

@@ -67,6 +67,19 @@ pub(super) struct Difference {
     pub beams: Vec<BeamErrors>,
     /// Of the cells of the coarse meshes, per beam.
     pub cells: Vec<CellErrors>,
+    /// By what errors of curvatures and section forces are relative.
+    pub scales: Scales,
+}
+
+/// The largest of a finer run.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Scales {
+    /// \[1/m\], of all records.
+    pub curvature: f64,
+    /// \[N\], in the last record, M/L included.
+    pub force: f64,
+    /// \[N m\], in the last record.
+    pub moment: f64,
 }
 
 impl Difference {
@@ -293,11 +306,13 @@ fn states<'t>(
         }
     }
     let scale = lengths.iter().copied().fold(0.0, f64::max);
+    let (section_force, [force, moment]) = section_forces(&coarse.last, &fine.last);
     difference.errors = Errors {
         result,
         curvature: (largest * scale > STRAIGHT).then(|| curvature / largest),
-        section_force: section_forces(&coarse.last, &fine.last),
+        section_force,
     };
+    difference.scales = Scales { curvature: largest, force, moment };
     if result.is_finite() { Ok(difference) } else { Err("a position is not a number".into()) }
 }
 
@@ -350,8 +365,9 @@ fn within_half_a_turn(angle: f64) -> f64 {
 }
 
 /// The largest difference of axial and shear forces, relative to the largest of both and of M/L,
-/// and of bending moments, relative to the largest of these; `None` where nothing is loaded.
-fn section_forces(coarse: &[Shape], fine: &[Shape]) -> Option<f64> {
+/// and of bending moments, relative to the largest of these; `None` where nothing is loaded. With these
+/// largest ones.
+fn section_forces(coarse: &[Shape], fine: &[Shape]) -> (Option<f64>, [f64; 2]) {
     let kinds: [fn(&Shape) -> &Vec<f64>; 3] =
         [|shape| &shape.axial_force, |shape| &shape.shear_force, |shape| &shape.bending_moment];
     let error = |kind: fn(&Shape) -> &Vec<f64>| {
@@ -371,10 +387,11 @@ fn section_forces(coarse: &[Shape], fine: &[Shape]) -> Option<f64> {
     // A force that is nowhere more than a small part of the others and of M/L is round-off.
     let length = fine.iter().filter_map(|shape| shape.s.last().copied()).fold(0.0, f64::max);
     let force = n.max(q).max(m / length);
-    (force > 0.0).then(|| {
+    let error = (force > 0.0).then(|| {
         let bending = if m > STRAIGHT * force * length { bending / m } else { 0.0 };
         larger(larger(axial / force, shear / force), bending)
-    })
+    });
+    (error, [force, if m > STRAIGHT * force * length { m } else { 0.0 }])
 }
 
 /// Arc lengths \[m\] that are nearer to each other are one place, to which a finer mesh gives other last
@@ -521,6 +538,7 @@ mod tests {
                 curvature: vec![12.0 * k],
             }],
             cells: vec![CellErrors { squares: vec![k], order: 2.0 }],
+            scales: Scales::default(),
         };
         let same = |found: &Difference, [first, second]: [f64; 2]| {
             let errors =
@@ -804,7 +822,7 @@ mod tests {
             ..Shape::default()
         };
         let fine = [shape([1.0, 8.0], [0.0, -4.0], [0.0, 10.0])];
-        let error = |coarse: Shape| section_forces(&[coarse], &fine).unwrap();
+        let error = |coarse: Shape| section_forces(&[coarse], &fine).0.unwrap();
         assert_eq!(error(shape([1.0, 6.0], [0.0, -4.0], [0.0, 10.0])), 0.25);
         assert_eq!(error(shape([1.0, 8.0], [0.0, -3.0], [0.0, 10.0])), 0.125);
         assert_eq!(error(shape([1.0, 8.0], [0.0, -4.0], [5.0, 10.0])), 0.5);
@@ -812,7 +830,7 @@ mod tests {
         // Moments decide about forces where these are small.
         let bent = [shape([0.0, 0.0], [0.0, 1.0], [0.0, 20.0])];
         let other = shape([0.0, 0.5], [0.0, 1.0], [0.0, 20.0]);
-        assert_eq!(section_forces(&[other], &bent), Some(0.05));
+        assert_eq!(section_forces(&[other], &bent).0, Some(0.05));
         // The same jump, at places that differ by their last digits.
         let jump = |s: f64| Shape {
             s: vec![0.0, s, s, 2.0],
@@ -822,11 +840,11 @@ mod tests {
             ..Shape::default()
         };
         for s in [1.0_f64.next_down(), 1.0, 1.0_f64.next_up()] {
-            assert_eq!(section_forces(&[jump(s)], &[jump(1.0)]), Some(0.0), "{s:?}");
+            assert_eq!(section_forces(&[jump(s)], &[jump(1.0)]).0, Some(0.0), "{s:?}");
         }
-        assert!(section_forces(&[jump(1.001)], &[jump(1.0)]) > Some(1.0));
+        assert!(section_forces(&[jump(1.001)], &[jump(1.0)]).0 > Some(1.0));
         let nothing = [shape([0.0; 2], [0.0; 2], [0.0; 2])];
-        assert_eq!(section_forces(&nothing, &nothing), None);
+        assert_eq!(section_forces(&nothing, &nothing).0, None);
     }
 
     #[test]

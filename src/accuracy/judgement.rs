@@ -2,6 +2,7 @@
 
 use super::difference::Difference;
 use super::mesh::{self, CellErrors, Mesh};
+use super::missing::Missing;
 use super::round::{LOOSER, Round, Runner};
 use crate::model::{Accuracy, Analysis, Integrator, StepControl};
 use crate::results::Errors;
@@ -52,6 +53,18 @@ pub(super) struct Estimate {
     pub contraction: f64,
     /// The largest of positions that the steps make, where they are known apart.
     pub steps: Option<f64>,
+    /// Vibrations that are too fast for the steps.
+    pub missing: Option<Missing>,
+}
+
+impl Estimate {
+    /// With the errors that missing vibrations make.
+    #[must_use]
+    pub fn with(self, missing: Option<Missing>) -> Self {
+        let of = |missing: &Missing| self.whole.plus(&missing.errors(&self.whole));
+        let whole = missing.as_ref().and_then(of).unwrap_or_else(|| self.whole.clone());
+        Self { whole, missing, ..self }
+    }
 }
 
 impl Judged {
@@ -238,7 +251,7 @@ mod tests {
         let round = || round(&runner, run(AnalysisKind::Static, 1, 0), None);
         let errors = Errors { result: 8.0, curvature: Some(6.0), section_force: None };
         let whole = Difference { errors, ..Difference::default() }.divided([6.0, 3.0]);
-        let estimate = Estimate { mesh: whole.clone(), whole, contraction: 7.0, steps: None };
+        let estimate = Estimate { mesh: whole.clone(), whole, contraction: 7.0, steps: None, missing: None };
         let judged = Judged { round: round(), estimate: Some(estimate), caution: 1.5, excess: 0.0 };
         assert_eq!(judged.errors(), Errors { result: 2.0, curvature: Some(3.0), section_force: None });
         let unknown = Judged::unknown(round());

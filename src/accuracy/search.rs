@@ -3,6 +3,7 @@
 use super::difference::Difference;
 use super::judgement::{CAUTION, Estimate, Fall, Judged, LEAST_CONTRACTION, Seen, excess};
 use super::mesh::{self, CellErrors, Mesh};
+use super::missing::Missing;
 use super::round::{FINEST, Fineness, LOOSER, Outcome, Purpose, Round, Runner, short};
 use super::{Accurate, model_error, statement};
 use crate::model::{Accuracy, Analysis};
@@ -37,6 +38,8 @@ const LEAP_OF_TOLERANCE: f64 = 200.0;
 const FELL_WELL: f64 = 4.0;
 /// Errors of motions go with this power of the tolerance.
 const POWER: f64 = 0.75;
+/// The tolerance goes with this power of steps.
+const STEPS: f64 = 5.0;
 /// Most cells of all beams …
 const CELLS: usize = 4096;
 /// … or so many times those with which the search begins.
@@ -205,8 +208,13 @@ impl<'a, 'o> Search<'a, 'o> {
         };
         let (errors_of_both, contraction) = errors(&self.runner, difference, whole);
         let enough = excess_of(&self.runner, errors_of_both.errors) * caution <= 1.0;
-        let mut estimate =
-            Estimate { whole: errors_of_both.clone(), mesh: errors_of_both, contraction, steps: None };
+        let mut estimate = Estimate {
+            whole: errors_of_both.clone(),
+            mesh: errors_of_both,
+            contraction,
+            steps: None,
+            missing: None,
+        };
         // Another run is not worth its price where two are enough and what they differ by has fallen well.
         let parts = if enough && contraction >= FELL_WELL { None } else { self.apart(&round) };
         if let Some([mesh, steps]) = parts {
@@ -222,9 +230,14 @@ impl<'a, 'o> Search<'a, 'o> {
             let mesh = mesh.divided([caution.recip(); 2]);
             if let Some(whole) = mesh.plus(&steps) {
                 caution = 1.0;
-                estimate = Estimate { whole, mesh, contraction, steps: Some(steps.errors.result) };
+                estimate =
+                    Estimate { whole, mesh, contraction, steps: Some(steps.errors.result), missing: None };
                 now.apart = Some(falls);
             }
+        }
+        if let Some(coarse) = &round.coarse {
+            let Runner { model, analysis, meshes, .. } = &self.runner;
+            estimate = estimate.with(Missing::of(model, analysis, meshes, coarse, &round.results));
         }
         (now, Judged { round, estimate: Some(estimate), caution, excess: 0.0 })
     }
@@ -281,7 +294,13 @@ impl<'a, 'o> Search<'a, 'o> {
         let [promised, _] = self.runner.contractions(f64::INFINITY);
         let times = needed.min(if estimate.contraction < promised { CAREFUL_LEAP } else { LEAP });
         let mut steps = false;
-        if let Some(time) = estimate.steps {
+        let missing = estimate.missing.as_ref().map(|missing| missing.errors(&estimate.whole).errors);
+        let missing = missing.map_or(0.0, |errors| excess(errors, wanted) / AIM);
+        if self.runner.open.integrator && missing > 1.0 {
+            steps = true;
+            let factor = missing.powf(-STEPS).clamp(LEAP_OF_TOLERANCE.recip(), LOOSER.recip());
+            self.runner.tolerance = short((self.runner.tolerance * factor).max(FINEST));
+        } else if let Some(time) = estimate.steps {
             let time = judged.caution * time;
             // Where a finer mesh comes next and this one errs more, what is seen of the steps is not yet
             // what they do there.
@@ -377,7 +396,8 @@ impl<'a, 'o> Search<'a, 'o> {
             estimated: unknown,
             ..ErrorEstimate::default()
         };
-        if let Some(Estimate { whole, .. }) = errors {
+        if let Some(Estimate { whole, missing, .. }) = errors {
+            estimate.notes.extend(missing.and_then(|missing| missing.note()));
             let Difference { errors, eigenvalues, probes, records, beams, .. } =
                 whole.divided([caution.recip(); 2]);
             estimate.probes = probes.into_iter().map(statement::of_probe).collect();
@@ -433,7 +453,7 @@ mod tests {
 
     fn estimate(difference: Difference, contractions: [f64; 2]) -> Estimate {
         let whole = difference.divided(contractions.map(|contraction| contraction - 1.0));
-        Estimate { mesh: whole.clone(), whole, contraction: contractions[0], steps: None }
+        Estimate { mesh: whole.clone(), whole, contraction: contractions[0], steps: None, missing: None }
     }
 
     /// Errors that were e^{λt}: from 1e-4 to 0.2 within a second, by λ = 7.6/s. A tolerance of 3e-4 may fall

@@ -273,3 +273,97 @@ fn notches_of_a_table_are_seen() {
         judge("notches", wanted, error(&results).estimated.result, (last(&results).y - exact).abs() / 0.1);
     }
 }
+
+/// A column on a foot that moves aside is suddenly under its weight. A wave runs along it, up and down without
+/// an end: with T = L √(ρA/EA) its tip falls with g during T, then is slowed down as much during 2 T, and so on, and the
+/// force in its foot goes to twice its weight and back within 4 T. Steps that are large enough for the foot's
+/// motion damp that alike in all runs.
+#[test]
+fn vibrations_that_are_too_fast_for_the_steps_count_as_errors() {
+    let (g, stretch) = (9.81_f64, 1e6_f64);
+    let text = format!(
+        "beam.column = {{ start = [0, 0], end = [0, 1], axial_stiffness = {stretch:e}, bending_stiffness = 1000, mass_per_length = 1 }}\n\
+         support = [{{ beam = 'column', at = 'start', fix = ['x', 'y', 'angle'], move = {{ x = 0.5, in_time.smooth_ramp.duration = 1 }} }}]\n\
+         effect.gravity.acceleration = [0, {:?}]\n\
+         probe = [{{ name = 'tip', beam = 'column', at = 'end' }}, {{ name = 'foot', beam = 'column', at = 'start' }}]\n\
+         analysis.dynamic = {{ duration = 1, output_every = 0.0131, accuracy = 1e-4 }}",
+        -g
+    );
+    let results = run(&scene(&text));
+    let (states, estimate) = (results.states(), error(&results));
+    assert!(estimate.met);
+    assert!(
+        estimate.notes.iter().any(|note| note.starts_with("vibrations with an energy of")),
+        "{:?}",
+        estimate.notes
+    );
+    let period = 4.0 / stretch.sqrt();
+    let mut beyond_differences = 0;
+    for (record, t) in states.parameter.iter().enumerate().skip(1) {
+        let part = t.rem_euclid(period) / period;
+        let triangle = |part: f64| 1.0 - (2.0 * part - 1.0).abs();
+        let velocity = -g * period / 2.0 * (triangle((part + 0.25).rem_euclid(1.0)) - 0.5);
+        let strain = -2.0 * g / stretch * triangle(part);
+        let of =
+            |probe: usize| (states.probes[probe].samples[record], estimate.probes[probe].samples[record]);
+        let ((tip, tip_error), (foot, foot_error)) = (of(0), of(1));
+        let (v, v_error) = (tip.vy.expect("a motion"), tip_error.vy.expect("a motion"));
+        assert!((v - velocity).abs() <= 3.0 * v_error, "t = {t}: {v:e}({v_error:e}) for {velocity:e} m/s");
+        assert!(
+            (foot.strain - strain).abs() <= 3.0 * foot_error.strain,
+            "t = {t}: {:e} for {strain:e}",
+            foot.strain
+        );
+        assert!((foot_error.y, foot_error.vy) == (0.0, Some(0.0)), "what is held does not vibrate");
+        beyond_differences += usize::from((v - velocity).abs() > 1e-3);
+    }
+    assert!(2 * beyond_differences > states.parameter.len(), "{beyond_differences}");
+}
+
+/// A cantilever of 1 m and 1 kg is held up by 2.3 N at its tip, which never turns. Its moment bends it by 2 N m² up to 1 N m,
+/// and by 2/3 N m² beyond, so that the stiffness jumps at s = 0.456421 m of the equilibrium. The frequencies were found by
+/// shooting: the equilibrium θ' = κ(M), M' = −F cos θ first, then the linear equations of a beam that does not shear, in two
+/// parts, to seven digits (with EA = 10⁴ N).
+#[test]
+fn stiffnesses_that_jump_about_an_equilibrium_are_met_by_nodes() {
+    let exact = [0.601_993_2, 3.471_474_0, 10.266_812_7];
+    let text = |basis: &str, accuracy: &str| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, mass_per_length = 1, {basis}\n\
+               bending_law = {{ curvature = [-2, -0.5, 0.5, 2], moment = [-2, -1, 1, 2] }} }}\n\
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+             effect.force = [{{ beam = 'arm', at = 'end', value = [0, 2.3] }}]\n\
+             analysis.modal = {{ count = 3, about = 'equilibrium'{accuracy} }}"
+        )
+    };
+    let off = |results: &ancf::results::Results| {
+        let of = results.eigenvalues().into_iter().zip(exact).map(|(f, exact)| (f / exact - 1.0).abs());
+        of.fold(0.0, f64::max)
+    };
+    for wanted in [1e-3, 1e-4, 1e-5, 1e-6] {
+        let results = run(&scene(&text("", &format!(", accuracy = {wanted:e}"))));
+        let (truth, estimated) = (off(&results), error(&results).estimated.result);
+        assert!(error(&results).met && truth <= wanted, "errs by {truth:e} where {wanted:e} was wanted");
+        assert!(truth <= 3.0 * estimated + 1e-7, "errs by {truth:e} where {estimated:e} was estimated");
+        assert!(
+            results.run().warnings.iter().all(|warning| !warning.contains("jumps at")),
+            "{:?}",
+            results.run().warnings
+        );
+    }
+    // Cells that somebody gives meet the place by chance only, which is told.
+    let results = run(&scene(&text("basis.ancf.elements = 20,", "")));
+    let told = &results.run().warnings;
+    assert!(
+        told.iter().any(|told| told.starts_with("the stiffness of beam `arm` jumps at s = 0.456")),
+        "{told:?}"
+    );
+    assert!((1e-4..1e-2).contains(&off(&results)));
+    let part = |from: f64, to: f64, i: i32| from + (to - from) * f64::from(i) / 10.0;
+    let place = 0.456_421;
+    let nodes: Vec<f64> =
+        (0..10).map(|i| part(0.0, place, i)).chain((0..=10).map(|i| part(place, 1.0, i))).collect();
+    let results = run(&scene(&text(&format!("basis.ancf.nodes = {nodes:?},"), "")));
+    let told = &results.run().warnings;
+    assert!(told.is_empty() && off(&results) < 1e-4, "{:e}, {told:?}", off(&results));
+}
