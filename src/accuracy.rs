@@ -51,7 +51,7 @@ use search::Search;
 
 /// Accuracy of the vibrations whose equilibrium tells where nodes must be.
 const PLACES: f64 = 1e-4;
-/// Places of its shapes, between which forces are taken to be linear.
+/// At so many places of each beam its forces are known, and linear between them.
 const ROWS: usize = 2001;
 
 /// Results as accurate as was wanted, and how they were come by.
@@ -111,9 +111,9 @@ pub fn solve(
     analysis: &Analysis,
     open: &Open,
     wanted: Accuracy,
-    mut options: Options<'_>,
+    options: Options<'_>,
 ) -> Result<Accurate, RunError> {
-    let jumps = stiffness_jumps(model, analysis, open, wanted, &mut options);
+    let jumps = stiffness_jumps(model, analysis, open, wanted, &options);
     let with_nodes = (!jumps.is_empty()).then(|| {
         let mut model = model.clone();
         model.nodes_at.extend(jumps);
@@ -130,7 +130,7 @@ fn stiffness_jumps(
     analysis: &Analysis,
     open: &Open,
     wanted: Accuracy,
-    options: &mut Options<'_>,
+    options: &Options<'_>,
 ) -> Vec<Place> {
     let about = matches!(analysis, Analysis::Modal(settings) if settings.about == About::Equilibrium);
     let linear = model.beams.iter().all(|beam| beam.section.is_linear());

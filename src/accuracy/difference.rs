@@ -387,11 +387,12 @@ fn section_forces(coarse: &[Shape], fine: &[Shape]) -> (Option<f64>, [f64; 2]) {
     // A force that is nowhere more than a small part of the others and of M/L is round-off.
     let length = fine.iter().filter_map(|shape| shape.s.last().copied()).fold(0.0, f64::max);
     let force = n.max(q).max(m / length);
+    let moment = if m > STRAIGHT * force * length { m } else { 0.0 };
     let error = (force > 0.0).then(|| {
-        let bending = if m > STRAIGHT * force * length { bending / m } else { 0.0 };
+        let bending = if moment > 0.0 { bending / moment } else { 0.0 };
         larger(larger(axial / force, shear / force), bending)
     });
-    (error, [force, if m > STRAIGHT * force * length { m } else { 0.0 }])
+    (error, [force, moment])
 }
 
 /// Arc lengths \[m\] that are nearer to each other are one place, to which a finer mesh gives other last

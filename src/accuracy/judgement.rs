@@ -60,10 +60,13 @@ pub(super) struct Estimate {
 impl Estimate {
     /// With the errors that missing vibrations make.
     #[must_use]
-    pub fn with(self, missing: Option<Missing>) -> Self {
-        let of = |missing: &Missing| self.whole.plus(&missing.errors(&self.whole));
-        let whole = missing.as_ref().and_then(of).unwrap_or_else(|| self.whole.clone());
-        Self { whole, missing, ..self }
+    pub fn with(mut self, missing: Option<Missing>) -> Self {
+        if let Some(missing) = &missing
+            && let Some(whole) = self.whole.plus(&missing.errors(&self.whole))
+        {
+            self.whole = whole;
+        }
+        Self { missing, ..self }
     }
 }
 

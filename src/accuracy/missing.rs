@@ -24,10 +24,11 @@ const FEW: usize = 16;
 pub(super) struct Missing {
     /// Per record of the finer run \[J\].
     energies: Vec<f64>,
-    /// Of the energy and the motion that would have it: m \[kg\], ∫ EA ds \[N m\] and ∫ EI ds \[N m³\],
-    /// zero where there is none.
+    /// m \[kg\].
     mass: f64,
+    /// ∫ EA ds \[N m\] of the beams that resist stretch.
     axial: f64,
+    /// ∫ EI ds \[N m³\] of the beams that resist bending.
     bending: f64,
     /// The largest EA \[N\] and EI \[N m²\] of a beam.
     stiffest: [f64; 2],

@@ -122,7 +122,7 @@ fn jumps_of(divided: &Model) -> Vec<Place> {
         .collect()
 }
 
-/// Warnings on jumps of the stiffness inside of cells, whose shape functions have a curvature or a strain that does not
+/// The warning on the first jump of the stiffness inside of a cell, whose shape functions have a curvature or a strain that does not
 /// jump with it. `system` has the nodes.
 pub(super) fn within_cells(divided: &Model, system: &System) -> Option<String> {
     let inside = |place: &Place| {
@@ -133,7 +133,7 @@ pub(super) fn within_cells(divided: &Model, system: &System) -> Option<String> {
     };
     let Place { beam, s } = jumps_of(divided).into_iter().find(inside)?;
     Some(format!(
-        "the stiffness of beam `{}` jumps at s = {s:.6} m, where its force passes a corner of its law inside a cell: frequencies err by a part \
+        "the stiffness of beam `{}` jumps at s = {s:.6} m, where its force passes a corner of its law inside a cell: frequencies and critical loads err by a part \
          of that jump that falls with the cells' length only; put a node there, or leave out the `basis` for an `accuracy`, which does",
         divided.beams[beam].name
     ))

@@ -213,6 +213,8 @@ impl Sampler<'_> {
         unloaded.run.warnings.extend(beyond_the_linear(modes));
         let corners = at_corners(self.model, &unloaded.last, &unloaded.run.undeformed);
         unloaded.run.warnings.extend(corners);
+        let divided = divided(self.model, &unloaded.last, &|_, _| None);
+        unloaded.run.warnings.extend(divided.and_then(|divided| within_cells(&divided, self.system)));
         let scaled = |mode: &Vec<f64>| -> Vec<f64> {
             let largest = nodes(mode).map(|node| node.shift()).fold(0.0, f64::max);
             let by = if largest > 0.0 { largest } else { 1.0 };
