@@ -189,3 +189,28 @@ fn what_is_no_elastic_law_is_refused_with_its_place() {
     let said = scene.model().solve(scene.analysis()).expect_err("not linear").to_string();
     assert!(said.contains("stiffness that is a number"), "{said}");
 }
+
+/// A tip force of 2.3 N bends a cantilever by more than the 1 N m of a corner up to s = 0.4564 m: what follows about that state,
+/// vibrations and critical loads, says so, unless a node is there or the force is too small.
+#[test]
+fn a_stiffness_that_jumps_inside_a_cell_is_told() {
+    let told = |force: f64, basis: &str, second: &str| {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, mass_per_length = 1, basis.ancf.{basis}, \
+             bending_law = {{ curvature = [-2, -0.5, 0.5, 2], moment = [-2, -1, 1, 2] }} }}
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             effect.force = [{{ beam = 'arm', at = 'end', value = [0, {force:?}] }}, {{ beam = 'arm', at = 'end', value = [-0.1, 0], stage = 'two' }}]
+             stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', analysis.{second} }}]\n"
+        );
+        let scene = ancf::scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let run = ancf::run::solve_stages(scene.stages(), ancf::Options::default());
+        assert!(run.failure.is_none(), "{:?}", run.failure);
+        let warnings = &run.results[1].run().warnings;
+        warnings.iter().any(|warning| warning.starts_with("the stiffness of beam `arm` jumps at s = 0.4"))
+    };
+    for second in ["buckling.count = 1", "modal = { count = 1, about = 'equilibrium' }"] {
+        assert!(told(2.3, "elements = 10", second), "{second}");
+        assert!(!told(0.9, "elements = 10", second), "{second}");
+    }
+    assert!(!told(2.3, "nodes = [0, 0.2, 0.456421, 0.7, 1]", "buckling.count = 1"));
+}
