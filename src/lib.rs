@@ -46,7 +46,7 @@
 //! | `lanes` | four numbers side by side, multiply–add | – |
 //! | `threads` | loops over the nodes of long chains, on several threads | – |
 //! | `linear` | block-banded LDLᵀ, real and complex, also with rows of neighbouring nodes; banded LU, also with constraint rows; bordered sparse LDLᵀ and LU; inertia | `lanes`, `threads` |
-//! | `numeric` | Gauss' rules with few points, cubic splines, formulas | – |
+//! | `numeric` | Gauss' rules with few points, cubic splines, formulas, numbers in messages | – |
 //! | [`centreline`] | stress-free curves | `numeric` |
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | – |
 //! | [`law`] | laws of time | `numeric` |
@@ -54,11 +54,11 @@
 //! | [`assembly`] | densities, their sums over tables, and the assembly of a model's parts into terms of the equations | `lanes`, `threads`, `linear`, `numeric`, [`centreline`], [`basis`], [`law`], [`beam`] |
 //! | [`effect`] | one file per physical effect: a density of a few local fields with its derivatives, and the part by which a model contains it | `lanes`, `linear`, `numeric`, [`basis`], [`law`], [`beam`], [`assembly`] |
 //! | [`model`] | the continuous problem: beams, supports, joints, parts, probes, analyses | [`centreline`], [`basis`], [`law`], [`beam`], [`assembly`] |
-//! | [`system`] | coordinates, supports, joints, sums over effects, inventory | `lanes`, `threads`, `linear`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`] |
+//! | [`system`] | coordinates, supports, joints, sums over effects, inventory | `lanes`, `threads`, `linear`, `numeric`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`] |
 //! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `threads`, `linear`, [`assembly`], `numeric`, [`model`], [`system`] |
 //! | [`restart`] | a saved state from which another analysis can go on | [`assembly`], [`model`], [`system`], `solve` |
 //! | [`results`] | the results of an analysis | [`system`], `solve`, [`restart`] |
-//! | [`run`](mod@run) | one model, one analysis; or several one after the other | `linear`, [`basis`], [`law`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
+//! | [`run`](mod@run) | one model, one analysis; or several one after the other | `linear`, `numeric`, [`basis`], [`law`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
 //! | [`output`] | files, plots, the report page | [`restart`], [`results`] |
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`assembly`], [`effect`], [`model`] |
 //! | [`accuracy`] | everything that a scene leaves open chosen for an accuracy, and the errors of results | [`centreline`], [`basis`], [`model`], [`results`], [`run`](mod@run), [`scene`] |

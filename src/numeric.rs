@@ -1,10 +1,12 @@
 //! Small numerical tools that do not depend on beams: Gauss rules with few points, cubic splines,
-//! formulas.
+//! formulas, numbers in messages.
 
+mod decimals;
 mod formula;
 mod gauss;
 mod spline;
 
+pub use decimals::plain;
 pub use formula::Formula;
 pub use gauss::{GAUSS_2, GAUSS_3, GAUSS_6, GAUSS_10};
 pub use spline::{End, rates};

@@ -1,5 +1,6 @@
 //! One model, one analysis: build, solve, and look at the states.
 
+mod electrodes;
 mod error;
 mod events;
 mod laws;

@@ -59,6 +59,7 @@ use crate::linear::Matrix;
 use crate::model::freedom::Freedom;
 use crate::model::{Along, Centreline, Discretization, Joint, Model, Place};
 use constraints::Constraint;
+pub use constraints::Holds;
 use imbalance::Start;
 pub use imbalance::Unbalanced;
 use lengths::Lengths;

@@ -2,6 +2,7 @@
 
 use crate::assembly::BuildError;
 use crate::model::Undamped;
+use crate::numeric::plain;
 use crate::restart::RestartError;
 use crate::results::{Results, Trajectory};
 use crate::solve::dynamics::start::StartError;
@@ -230,14 +231,4 @@ impl RunError {
 
 fn gib(bytes: f64) -> f64 {
     bytes / 1024f64.powi(3)
-}
-
-/// A number with this many decimals, or with a power of ten where they would show too few digits of
-/// it or too many.
-fn plain(value: f64, decimals: usize) -> String {
-    if value == 0.0 || (1e-2..1e6).contains(&value.abs()) {
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.decimals$e}")
-    }
 }

@@ -1,6 +1,7 @@
 //! Strains beyond the tables of elastic laws, and where they pass corners.
 
 use crate::model::{Model, Place};
+use crate::numeric::plain;
 use crate::results::Shape;
 use crate::system::System;
 
@@ -133,9 +134,10 @@ pub(super) fn within_cells(divided: &Model, system: &System) -> Option<String> {
     };
     let Place { beam, s } = jumps_of(divided).into_iter().find(inside)?;
     Some(format!(
-        "the stiffness of beam `{}` jumps at s = {s:.6} m, where its force passes a corner of its law inside a cell: frequencies and critical loads err by a part \
+        "the stiffness of beam `{}` jumps at s = {} m, where its force passes a corner of its law inside a cell: frequencies and critical loads err by a part \
          of that jump that falls with the cells' length only; put a node there, or leave out the `basis` for an `accuracy`, which does",
-        divided.beams[beam].name
+        divided.beams[beam].name,
+        plain(s, 6)
     ))
 }
 

@@ -18,6 +18,7 @@ use super::locking::at_points;
 use crate::assembly::BuildError;
 use crate::basis::BasisTable;
 use crate::model::{Along, Model, StrainMeasure};
+use crate::numeric::plain;
 use crate::system::{Fields, System};
 
 /// T/K beyond which a node is loose: its own vibration takes twice its time.
@@ -93,11 +94,11 @@ impl Loose {
             let loose = beam.nodes.iter().enumerate().filter(often);
             let (node, (_, ratio)) = loose.max_by(|(_, a), (_, b)| a.1.total_cmp(&b.1))?;
             Some(format!(
-                "beam `{}` is loose at s = {:.4} m: its axial force vanishes there, so that at the points of its quadrature hardly anything but \
+                "beam `{}` is loose at s = {} m: its axial force vanishes there, so that at the points of its quadrature hardly anything but \
                  its bending stiffness resists a turn of this place, whose own vibration is at least {:.1} times too slow: use more elements, or \
                  `gauss_points = {{ stretch = 5, bend = 3 }}`",
                 beam.name,
-                beam.place(node),
+                plain(beam.place(node), 4),
                 ratio.sqrt(),
             ))
         };

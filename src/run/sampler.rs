@@ -1,5 +1,6 @@
 //! Evaluates states of a system: probes, shapes, frames, and the trajectories made of them.
 
+use super::electrodes::pulled_in;
 use super::laws::Reach;
 use super::locking::{Locking, unheld};
 use super::loose::Loose;
@@ -12,6 +13,7 @@ use crate::linear::Singular;
 use crate::model::{
     ArcLength, Beam, Dynamic, EventCondition, EventKind, Model, ProbeTarget, StepControl, StrainMeasure,
 };
+use crate::numeric::plain;
 use crate::restart::SavedState;
 use crate::results::{
     AnalysisKind, EffectSeries, Energy, Event, Frame, LayerStress, ModeShape, ProbeSample, ProbeSeries,
@@ -713,9 +715,10 @@ impl<'a> Sampler<'a> {
                 ("beam", "reach the load in smaller `steps`, begin nearer to the equilibrium, or use other nodes")
             };
             Some(format!(
-                "{what} `{}` turns by more than a right angle within its cell from s = {s:.4} m: it may have folded back, \
+                "{what} `{}` turns by more than a right angle within its cell from s = {} m: it may have folded back, \
                  which is no equilibrium of a real {what}; {advice}",
-                shape.beam
+                shape.beam,
+                plain(s, 4)
             ))
         });
         folds.collect()
@@ -723,6 +726,7 @@ impl<'a> Sampler<'a> {
 
     pub(super) fn stuck(&self, stuck: &NoStep, solution: &Solution) -> RunError {
         let (beam, s) = stuck.at;
+        let pulled_in = self.pulled_in(solution.states.last().map(|(_, q)| &q[..]));
         let advice = match stuck.failure {
             _ if self.limited_by_round_off(&stuck.failure) => {
                 "double precision cannot resolve these loads: the stiffness is so large, or nodes are so close, that the \
@@ -764,7 +768,7 @@ impl<'a> Sampler<'a> {
             cause: stuck.failure.to_string(),
             beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
             s,
-            advice: advice.into(),
+            advice: pulled_in.unwrap_or_else(|| advice.into()),
             partial: Box::new(incomplete(self.statics(solution))),
         }
     }
@@ -862,8 +866,9 @@ impl<'a> Sampler<'a> {
         if let Some((watch, time)) = solution.unseen {
             let EventCondition { probe, quantity, .. } = &settings.events[watch];
             trajectory.run.warnings.push(format!(
-                "the {} at probe `{probe}` was not known in every step from t = {time:.6} s on, so that events may have been missed",
-                quantity.name().0
+                "the {} at probe `{probe}` was not known in every step from t = {} s on, so that events may have been missed",
+                quantity.name().0,
+                plain(time, 6)
             ));
         }
         let contacts: Vec<String> = self.system.contact_names().collect();
@@ -874,9 +879,10 @@ impl<'a> Sampler<'a> {
         trajectory.events.sort_by(|a, b| a.time().total_cmp(&b.time()));
         for (contact, time) in &solution.crossings {
             trajectory.run.warnings.push(format!(
-                "contact {} gave way at t = {time:.6} s: the beam was pushed past the middle of the obstacle, which its `stiffness` \
+                "contact {} gave way at t = {} s: the beam was pushed past the middle of the obstacle, which its `stiffness` \
                  is too small to prevent",
-                contacts.get(*contact).cloned().unwrap_or_default()
+                contacts.get(*contact).cloned().unwrap_or_default(),
+                plain(*time, 6)
             ));
         }
         trajectory.run.warnings.extend(unheld(self.model, &trajectory.last, &trajectory.run.undeformed));
@@ -899,6 +905,11 @@ impl<'a> Sampler<'a> {
         trajectory
     }
 
+    /// What to try after the last state `q` that was found, if an electrode has closed its gap there.
+    fn pulled_in(&self, q: Option<&[f64]>) -> Option<String> {
+        pulled_in(self.model, &self.shape(q?), &self.shape(self.system.reference()))
+    }
+
     pub(super) fn lost(
         &self,
         settings: &Dynamic,
@@ -906,6 +917,7 @@ impl<'a> Sampler<'a> {
         solution: dynamics::Solution,
     ) -> RunError {
         let (beam, s) = stuck.at;
+        let pulled_in = self.pulled_in(solution.states.last().map(|state| &state.q[..]));
         let advice = match settings.integrator.step_control() {
             _ if matches!(stuck.failure, Failure::Crushed { .. }) => TOO_SOFT,
             _ if matches!(stuck.failure, Failure::Crossed { .. }) => PUSHED_THROUGH,
@@ -930,7 +942,7 @@ impl<'a> Sampler<'a> {
             cause: stuck.failure.to_string(),
             beam: self.model.beams.get(beam).map(|b| b.name.clone()).unwrap_or_default(),
             s,
-            advice: advice.into(),
+            advice: pulled_in.unwrap_or_else(|| advice.into()),
             partial: Box::new(incomplete(self.dynamics(settings, solution))),
         }
     }

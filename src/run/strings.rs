@@ -1,6 +1,7 @@
 //! Demands of a model on its strings that a string cannot meet.
 
 use crate::model::{FixedRotation, Joint, Model, Place};
+use crate::numeric::plain;
 
 /// A message for every place where a string, which has no bending stiffness, has a fixed direction
 /// or carries a couple. It transmits no couple: only its first cells would bend, whatever their
@@ -22,9 +23,10 @@ pub(super) fn couples(model: &Model) -> impl Iterator<Item = String> {
     let on_strings = |(what, at): (String, Place)| {
         let beam = model.beams.get(at.beam).filter(|beam| beam.section.bending_stiffness.is_none())?;
         Some(format!(
-            "beam `{}` has no `bending_stiffness`, and {what} at s = {:.6} m: a string passes no couple on and turns freely, so that \
+            "beam `{}` has no `bending_stiffness`, and {what} at s = {} m: a string passes no couple on and turns freely, so that \
              the shape there depends on the mesh; leave it out, or give the beam a bending stiffness",
-            beam.name, at.s,
+            beam.name,
+            plain(at.s, 6),
         ))
     };
     supports.chain(welds).chain(parts).filter_map(on_strings)

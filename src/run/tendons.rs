@@ -4,6 +4,7 @@ use crate::assembly::TendonPath;
 use crate::effect;
 use crate::law::Law;
 use crate::model::{Model, StrainMeasure};
+use crate::numeric::plain;
 use crate::results::{Shape, Tension};
 use std::any::Any;
 
@@ -107,22 +108,25 @@ impl<'m> Tendons<'m> {
         self.all.iter().flat_map(|Tendon { name, pushed, tensions, folded, .. }| {
             let slack = tensions.filter(|(_, least, size)| *least < -SLACK * size).map(|(at, least, _)| {
                 format!(
-                    "a tendon of beam `{name}`, whose length is given, pushes with {:.4e} N at {at:.6}, which no real tendon can: it would be \
+                    "a tendon of beam `{name}`, whose length is given, pushes with {:.4e} N at {}, which no real tendon can: it would be \
                      slack there; shorten it more, or give it a `tension`",
-                    -least
+                    -least,
+                    plain(at, 6)
                 )
             });
             let pushed = pushed.map(|(at, factor)| {
                 format!(
-                    "a tendon of beam `{name}` pushes with {:.4} times its tension at {at:.6}, which no real tendon can: let its law, or the load \
+                    "a tendon of beam `{name}` pushes with {:.4} times its tension at {}, which no real tendon can: let its law, or the load \
                      factor, not become negative",
-                    -factor
+                    -factor,
+                    plain(at, 6)
                 )
             });
             let folded = folded.map(|s| {
                 format!(
-                    "beam `{name}` is bent at s = {s:.4} m about a centre that lies between it and its tendon, where sections would cross: use a \
-                     smaller `offset` or `tension`"
+                    "beam `{name}` is bent at s = {} m about a centre that lies between it and its tendon, where sections would cross: use a \
+                     smaller `offset` or `tension`",
+                    plain(s, 4)
                 )
             });
             [pushed, slack, folded].into_iter().flatten()

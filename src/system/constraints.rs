@@ -56,6 +56,19 @@ pub enum Row {
     },
 }
 
+/// What a constraint row holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Holds {
+    /// A point, or the direction of a beam, where a support has it.
+    Place,
+    /// Points of beams, in a joint.
+    Together,
+    /// The angle between beams, in a weld.
+    Angle,
+    /// The length of an inextensible beam.
+    Length,
+}
+
 /// The shape functions of a field at one point.
 #[derive(Clone, Debug)]
 struct Field {
@@ -196,6 +209,11 @@ impl Constraint {
         self.fields.first().map_or(0, |field| field.first)
     }
 
+    /// Arc lengths of the points that it holds \[m\]; none for the length of an inextensible beam.
+    pub fn places(&self) -> &[f64] {
+        &self.places
+    }
+
     /// |g(q, λ)|: positions in units of `length`, gradients and angles unscaled.
     pub fn miss(&self, load: f64, q: &[f64], length: f64) -> f64 {
         let value = self.value(load, q).abs();
@@ -272,6 +290,16 @@ impl Constraint {
             n[0] * r[0] + n[1] * r[1]
         });
         fields.sum()
+    }
+
+    /// What the row holds.
+    pub(super) fn holds(&self) -> Holds {
+        match self.row {
+            Row::Position { .. } | Row::Gradient { .. } | Row::Direction(_) => Holds::Place,
+            Row::Joint { order: 0, .. } => Holds::Together,
+            Row::Joint { .. } | Row::Angle(_) => Holds::Angle,
+            Row::Length { .. } => Holds::Length,
+        }
     }
 
     /// Whether the row is a length \[m\], not the component of a gradient or an angle.

@@ -14,6 +14,7 @@ use super::reaction::Source;
 use super::{BuildError, System};
 use crate::linear::bordered::BorderRow;
 use crate::model::{Joint, Model, Place};
+use crate::numeric::plain;
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
@@ -113,7 +114,7 @@ impl System {
     }
 
     fn place_in_words(&self, place: Place) -> String {
-        format!("s = {:.4} m of beam `{}`", place.s, self.beams[place.beam].name)
+        format!("s = {} m of beam `{}`", plain(place.s, 4), self.beams[place.beam].name)
     }
 
     fn joint_in_words(&self, joint: Joint) -> String {

@@ -1,7 +1,7 @@
 //! The constraint rows of supports between nodes, of joints, of inextensible beams and of tendons of given
 //! length.
 
-use super::constraints::Constraint;
+use super::constraints::{Constraint, Holds};
 use super::held::{dot, rate_of};
 use super::lengths::Lengths;
 use super::polar::Polar;
@@ -173,6 +173,20 @@ impl System {
     pub fn missed(&self, parameter: f64, q: &[f64]) -> Option<(usize, f64)> {
         let missed = self.constraints.iter().map(|row| (row.first(), row.miss(parameter, q, self.length)));
         missed.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The row whose rate dg/dt the velocities `v` violate most, relative to beam lengths where it is a length: a beam that
+    /// it holds and the place there \[m\], what it holds, and the rate (m/s, or rad/s).
+    pub fn missed_rate(&self, time: f64, q: &[f64], v: &[f64]) -> Option<((usize, f64), Holds, f64)> {
+        let rates = self.constraints.iter().map(|row| {
+            let along: f64 = row.gradient(time, q).map(|(i, value)| value * v[i]).sum();
+            let rate = (along + row.rate(time, q)).abs();
+            let unit = if row.is_of_length() { self.length } else { 1.0 };
+            (row, rate, rate / unit)
+        });
+        let (row, rate, _) = rates.max_by(|a, b| a.2.total_cmp(&b.2))?;
+        let (beam, node) = self.place_of(row.first());
+        Some(((beam, row.places().first().copied().unwrap_or(node)), row.holds(), rate))
     }
 
     /// Writes −g(q), scaled.

@@ -254,3 +254,61 @@ fn what_does_not_fit_is_refused() {
     let moved = with("").replace("end = [1, 0]", "end = [0, 1]");
     assert!(go_on(&moved, &first).expect_err("another beam").to_string().contains("another centreline"));
 }
+
+/// What joints and lengths do not allow is told as theirs, with the rate at which they part, whatever the mesh.
+#[test]
+fn velocities_that_part_joints_are_refused_as_such() {
+    let chain = |joint: &str, elements: usize, axial: &str, more: &str| {
+        format!(
+            "[beam]\na = {{ start = [0, 0], end = [1, 0], {axial} bending_stiffness = 5, mass_per_length = 1, basis.ancf.elements = {elements} }}
+             b = {{ start = [1, 0], end = [2, 0], {axial} bending_stiffness = 5, mass_per_length = 1, basis.ancf.elements = {elements} }}
+             [[joint]]\ntype = '{joint}'\nfirst = {{ beam = 'a', at = 'end' }}\nsecond = {{ beam = 'b', at = 'start' }}
+             [[support]]\nbeam = 'a'\nat = 'start'\nfix = ['x', 'y']
+             [analysis]\ndynamic = {{ duration = 0.01 }}\n{more}"
+        )
+    };
+    let velocity = |beam: &str, field: &str| format!("[[initial_velocity]]\nbeam = '{beam}'\n{field}\n");
+    let turns = velocity("a", "rotation = 2");
+    let follows = velocity("b", "rotation = 3\nabout = [1, 0]\nvalue = [0, 2]");
+    let (soft, stiff) = ("axial_stiffness = 1e3,", "");
+    for elements in [4, 9] {
+        for (joint, axial, velocities, part) in [
+            (
+                "hinge",
+                soft,
+                turns.clone(),
+                Some(("parts a joint: near s = 1.000000 m of beam `a`", "2.000e0 m/s")),
+            ),
+            ("hinge", soft, format!("{turns}{follows}"), None),
+            (
+                "weld",
+                soft,
+                format!("{turns}{follows}"),
+                Some(("parts a joint: near s = 1.000000 m of beam `a`", "1.000e0 rad/s")),
+            ),
+            (
+                "hinge",
+                soft,
+                format!("{}{}", velocity("a", "value = [0, 1]"), velocity("b", "value = [0, 1]")),
+                Some(("moves what a support holds", "of beam `a`")),
+            ),
+            (
+                "hinge",
+                stiff,
+                velocity("b", "polynomial = { vx = [0, 0.3] }"),
+                Some(("stretches the inextensible beam `b`", " m/s")),
+            ),
+        ] {
+            let scene = scene(&chain(joint, elements, axial, &velocities));
+            let end = scene.model().solve(scene.analysis());
+            match part {
+                None => assert!(end.is_ok(), "{velocities}"),
+                Some((what, rate)) => {
+                    let error = end.expect_err("it parts");
+                    let text = error.to_string();
+                    assert!(text.contains(what) && text.contains(rate) && error.exit_status() == 2, "{text}");
+                }
+            }
+        }
+    }
+}

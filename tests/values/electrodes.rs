@@ -111,3 +111,23 @@ fn an_electrode_has_a_side() {
     let failed = scene.model().solve(scene.analysis()).expect_err("pulled in");
     assert!(failed.to_string().contains("no equilibrium beyond load factor"), "{failed}");
 }
+
+/// A voltage that comes all at once pulls the plate in from four fifths of the static limit on: 1/4 for 8/27 of k g³/(ε w L).
+/// Such a motion ends at the electrode, and says so.
+#[test]
+fn a_motion_that_is_pulled_in_says_so() {
+    for (factor, escapes) in [(0.95, true), (1.05, false)] {
+        let limit = (0.25 * 0.5 * GAP.powi(3) / (8.8541878128e-12 * 1e-4 * 1e-3)).sqrt();
+        let law = ", in_time.step.start = 0";
+        let text = plate(HELD, law, "analysis.dynamic = { duration = '2 ms', accuracy = 1e-3 }");
+        let text = text.replace("'10 V'", &(factor * limit).to_string());
+        let scene = parse("scene.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+        let end = ancf::accuracy::run(&scene, ancf::Options::default());
+        let text = match &end {
+            Ok(_) => String::new(),
+            Err(error) => format!("{error:?}"),
+        };
+        assert_eq!(text.contains("an electrode has pulled beam `plate` in"), !escapes, "{factor}: {text}");
+        assert_eq!(end.is_ok(), escapes, "{factor}: {text}");
+    }
+}

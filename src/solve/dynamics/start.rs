@@ -5,8 +5,9 @@ use super::{Checkpoint, State};
 use crate::assembly::nodes;
 use crate::linear::Singular;
 use crate::model::InitialVelocity;
+use crate::numeric::plain;
 use crate::solve::dynamics::motion::Motion;
-use crate::system::System;
+use crate::system::{Holds, System};
 
 /// Differences that count as round-off: between given and admissible velocities relative to the
 /// largest, and between positions in beam lengths.
@@ -22,7 +23,8 @@ const WITHIN_A_STEP: f64 = 1e-3;
 pub enum StartError {
     /// A support does not allow the velocity.
     #[error(
-        "the velocity at the start moves what a support holds: near s = {s:.6} m of beam `{beam}` the supports change it by {change:.3e} m/s"
+        "the velocity at the start moves what a support holds: near s = {} m of beam `{beam}` the supports change it by {change:.3e} m/s",
+        plain(*.s, 6)
     )]
     #[diagnostic(help(
         "let the velocity vanish where the beam is held, such as by a rotation about a hinge: `rotation = \"2 rad/s\"`, `about = [0, 0]`; \
@@ -36,9 +38,39 @@ pub enum StartError {
         /// By how much the supports change the velocity \[m/s\].
         change: f64,
     },
+    /// A joint does not allow the velocity.
+    #[error("the velocity at the start parts a joint: near s = {} m of beam `{beam}` what it holds moves apart at {rate:.3e} {unit}", plain(*.s, 6))]
+    #[diagnostic(help(
+        "let the points of a joint have one velocity, and beams of a weld one rate of turning, such as by the same `rotation` `about` the same place for \
+         every beam, or by a `rotation` of the second about the place of the joint, with the `value` that the velocity of the first has there"
+    ))]
+    Parted {
+        /// Name of one of the beams.
+        beam: String,
+        /// Arc length on it \[m\].
+        s: f64,
+        /// How fast it parts.
+        rate: f64,
+        /// Unit of the rate.
+        unit: &'static str,
+    },
+    /// An inextensible beam does not allow the velocity.
+    #[error("the velocity at the start stretches the inextensible beam `{beam}` near s = {} m, at {rate:.3e} m/s over a cell", plain(*.s, 6))]
+    #[diagnostic(help(
+        "let the beam move as a rigid body, by `value` and `rotation`, or across itself, or give it an `axial_stiffness`"
+    ))]
+    Stretched {
+        /// Name of the beam.
+        beam: String,
+        /// Arc length \[m\].
+        s: f64,
+        /// How fast a cell becomes longer \[m/s\].
+        rate: f64,
+    },
     /// A joint of the scene is open in a saved state.
     #[error(
-        "a joint or a support holds beam `{beam}` near s = {s:.6} m, where the saved state misses it by {miss:.3e} beam lengths, or rad"
+        "a joint or a support holds beam `{beam}` near s = {} m, where the saved state misses it by {miss:.3e} beam lengths, or rad",
+        plain(*.s, 6)
     )]
     #[diagnostic(help(
         "the joints of a motion that starts from a saved state must be closed in it: begin with the joints that it had, or close them in statics before, which brings what is apart together"
@@ -67,7 +99,8 @@ pub enum StartError {
     },
     /// A support jumps.
     #[error(
-        "a support moves beam `{beam}` near s = {s:.6} m by {change:.3e} (m, or rad) at t = {time} s, all at once"
+        "a support moves beam `{beam}` near s = {} m by {change:.3e} (m, or rad) at t = {time} s, all at once",
+        plain(*.s, 6)
     )]
     #[diagnostic(help(
         "what jumps has no velocity, and its energy no bound: let the law begin where the beam is and take a time, such as \
@@ -115,8 +148,8 @@ fn jump(system: &System, at: usize, time: f64, change: f64) -> StartError {
 /// The state in which the model begins, with the given velocities.
 ///
 /// # Errors
-/// [`StartError::Held`] where supports do not allow them, [`StartError::Jump`] where a support
-/// starts elsewhere.
+/// [`StartError::Held`], [`StartError::Parted`] or [`StartError::Stretched`] where supports, joints or lengths do not allow them,
+/// [`StartError::Jump`] where a support starts elsewhere.
 pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Checkpoint, StartError> {
     let (_, variables) = system.start_history();
     from_state(system, State { variables, ..State::at_rest(system.start()) }, velocities)
@@ -126,8 +159,8 @@ pub fn from_rest(system: &System, velocities: &[InitialVelocity]) -> Result<Chec
 /// moving from the first instant counts as work.
 ///
 /// # Errors
-/// [`StartError::Held`] where supports do not allow the velocities, [`StartError::Jump`] where a
-/// support is elsewhere, [`StartError::Open`] where a joint is open.
+/// [`StartError::Held`], [`StartError::Parted`] or [`StartError::Stretched`] where supports, joints or lengths do not allow the
+/// velocities, [`StartError::Jump`] where a support is elsewhere, [`StartError::Open`] where a joint is open.
 pub fn from_state(
     system: &System,
     mut state: State,
@@ -175,13 +208,33 @@ pub fn from_state(
     let (worst, change) = largest(system, |i| given[i] - admissible[i]);
     let allowed = if velocities.is_empty() { WITHIN_A_STEP } else { ROUND_OFF };
     // What is at rest until laws move it has no velocity that supports could contradict.
-    if !at_rest && change > allowed * largest(system, |i| state.v[i]).1 {
-        let (beam, s) = system.place_of(worst);
-        let change = (given[worst] - admissible[worst]).abs();
-        return Err(StartError::Held { beam: system.beams()[beam].name.clone(), s, change });
+    let allowed = allowed * largest(system, |i| state.v[i]).1;
+    if !at_rest && change > allowed {
+        return Err(refused(system, &state, allowed, (worst, (given[worst] - admissible[worst]).abs())));
     }
     let kinetic = |v: &[f64]| system.energy(state.time, &state.q, Some(v)).kinetic;
     state.work += kinetic(&admissible) - kinetic(&state.v);
     state.v = admissible;
     Ok(Checkpoint { state, ..Checkpoint::default() })
+}
+
+/// What does not allow the velocities of a state: a joint or a length whose own rate is larger than `allowed` (1/s, lengths in
+/// beam lengths), or else supports, which change the coordinate `worst` of the velocities by `change`.
+fn refused(system: &System, state: &State, allowed: f64, (worst, change): (usize, f64)) -> StartError {
+    let name = |beam: usize| system.beams()[beam].name.clone();
+    if let Some(((beam, s), holds, rate)) = system.missed_rate(state.time, &state.q, &state.v) {
+        let beam = name(beam);
+        match holds {
+            Holds::Together if rate > allowed * system.length() => {
+                return StartError::Parted { beam, s, rate, unit: "m/s" };
+            }
+            Holds::Angle if rate > allowed => return StartError::Parted { beam, s, rate, unit: "rad/s" },
+            Holds::Length if rate > allowed * system.length() => {
+                return StartError::Stretched { beam, s, rate };
+            }
+            _ => {}
+        }
+    }
+    let (beam, s) = system.place_of(worst);
+    StartError::Held { beam: name(beam), s, change }
 }
