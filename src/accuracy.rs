@@ -155,6 +155,6 @@ fn stiffness_jumps(
 /// # Errors
 /// [`RunError`], where the model cannot be solved as it is.
 pub fn estimate(model: &Model, analysis: &Analysis, options: Options<'_>) -> Result<Results, RunError> {
-    let open = Open { beams: vec![false; model.beams.len()], integrator: false };
+    let open = Open::none(model);
     Ok(Search::new(Runner::new(model, analysis, &open, None, options)).run()?.results)
 }

@@ -248,8 +248,7 @@ fn alone(runner: &Runner<'_>, reference: &Reference, target: f64) -> Option<Alon
     };
     let options = run::Options { observer: Some(observer), frames: 0, ..run::Options::default() };
     let (model, analysis) = (runner.model, runner.analysis);
-    let open =
-        Open { beams: vec![true; model.beams.len()], integrator: matches!(analysis, Analysis::Dynamic(_)) };
+    let open = Open::all(model, analysis);
     let found = accuracy::solve(model, analysis, &open, Accuracy::new(target), options).ok()?;
     let run = found.results.run();
     let error = run.error.as_ref().filter(|error| error.met && run.complete)?;

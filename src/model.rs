@@ -91,6 +91,11 @@ impl Model {
         self.parts.iter().any(touches)
     }
 
+    /// Whether some beam is held by friction, whose forces depend on the path to a state.
+    pub fn has_friction(&self) -> bool {
+        self.parts.iter().any(|part| part.has_memory())
+    }
+
     /// The arc lengths \[m\] along a beam at which there must be a node and supports of shape
     /// functions must end: at joints, where a support or a part transmits a couple, and where the
     /// section jumps or has a corner, since the curvature or the strain jumps there or nearly does. A concentrated force makes only the slope of the curvature jump,

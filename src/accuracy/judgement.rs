@@ -19,6 +19,9 @@ const CONTRACTION_OF_SECOND_ORDER: f64 = 4.0;
 /// … of curvatures and section forces, of which the largest error on a beam counts: at loads and
 /// obstacles within cells it falls with the first order …
 const CONTRACTION_OF_CURVATURE: f64 = 2.0;
+/// … of equilibria with friction, by four times as many load steps, or by twice as many of those of a scene …
+const CONTRACTION_OF_LOAD_STEPS: f64 = 4.0;
+const CONTRACTION_OF_NAMED_STEPS: f64 = 2.0;
 /// … of steps, of which nothing is known yet but that large ones err less regularly …
 const FALL_OF_STEPS: f64 = 6.0;
 /// … and at least, however slowly it was seen to fall.
@@ -139,7 +142,7 @@ impl Runner<'_, '_> {
     /// where the coarsest was of no use at all, its difference tells nothing, and little is taken.
     pub fn first_fall(&self, seen: Option<f64>, difference: f64) -> (Fall, f64) {
         let of = |factor| Fall { difference, factor };
-        let [promised, _] = self.contractions(f64::INFINITY);
+        let [promised, _] = self.contractions_with_steps(f64::INFINITY);
         match seen.filter(|factor| *factor <= TOO_FAST * promised) {
             None => (of(CONTRACTION_OF_SECOND_ORDER / CAUTION), 1.0),
             Some(factor) => (of(factor), FIRST),
@@ -165,6 +168,19 @@ impl Runner<'_, '_> {
         let result = if self.model.has_contact() { result.min(CONTRACTION_OF_CONTACT) } else { result };
         let seen = if seen.is_nan() { result } else { CAUTION * seen };
         [result.min(seen).max(LEAST_CONTRACTION), CONTRACTION_OF_CURVATURE]
+    }
+
+    /// The same where the steps of both runs differ, too.
+    pub fn contractions_with_steps(&self, seen: f64) -> [f64; 2] {
+        let [result, curvature] = self.contractions(seen);
+        let of_steps = match self.analysis {
+            Analysis::Static(_) if self.has_steps() => match self.steps_are_open() {
+                true => CONTRACTION_OF_LOAD_STEPS,
+                false => CONTRACTION_OF_NAMED_STEPS,
+            },
+            _ => result,
+        };
+        [result.min(of_steps), curvature]
     }
 }
 
@@ -230,6 +246,17 @@ mod tests {
         assert_eq!(motion(", generalized_alpha.tolerance = 1e-4"), 10.0);
         let ground = "effect.contact = [{ beam = 'arm', stiffness = 1e4, half_plane = { point = [0, -1], normal = [0, 1] } }]";
         assert_eq!(of(&format!("{ground}\n{still}"), f64::INFINITY), [6.0, 2.0]);
+        // Steps fall with first order, by four times as many that are chosen, or twice as many of those of a scene.
+        let rough = ground.replace("stiffness = 1e4", "stiffness = 1e4, friction = { coefficient = 0.1 }");
+        let with_steps = |more: &str, seen: f64| {
+            let scene = scene(more);
+            runner(&scene, 1e-4).contractions_with_steps(seen)
+        };
+        let named = "analysis.static.max_step = 0.01";
+        assert_eq!(with_steps(&format!("{rough}\n{still}"), f64::INFINITY), [4.0, 2.0]);
+        assert_eq!(with_steps(&format!("{rough}\n{still}"), 4.0), [3.0, 2.0]);
+        assert_eq!(with_steps(&format!("{rough}\n{named}"), f64::INFINITY), [2.0, 2.0]);
+        assert_eq!(with_steps(&format!("{ground}\n{still}"), f64::INFINITY), [6.0, 2.0]);
     }
 
     /// What falls 37.5 times where 15 are promised has begun beyond all use.

@@ -9,9 +9,9 @@ use crate::basis::Basis;
 use crate::centreline::Curve;
 use crate::model::{
     Accuracy, Analysis, Beam, Discretization, Dynamic, Integrator, Model, Nodes, Open, RPIM_GAUSS_POINTS,
-    StepControl,
+    Static, StepControl,
 };
-use crate::results::{AnalysisKind, Errors, Results, RunForError};
+use crate::results::{Errors, Results, RunForError};
 use crate::run::{Options, RunError};
 
 /// Smallest tolerance of any run.
@@ -42,6 +42,12 @@ const LOOSEST: f64 = 0.1;
 /// Two motions of which the finer one takes less than so many times the steps of the coarse one
 /// tell nothing of the errors of their steps.
 const MORE_STEPS: f64 = 1.2;
+/// The largest load step with friction is this, times the root of the tolerance …
+const LOAD_STEP: f64 = 0.6;
+/// … so that with so many times as many steps the tolerance is as small as that of [`LOOSER`].
+const LOAD_STEPS: f64 = 4.0;
+/// The tolerance with 2,500 load steps.
+const FINEST_OF_LOAD_STEPS: f64 = 4.5e-7;
 /// Wanted errors down to which the usual tolerance of equilibria does …
 const USUAL_IS_ENOUGH: f64 = 1e-8;
 /// … and that of others, in the wanted error.
@@ -118,17 +124,19 @@ pub(super) struct Round {
     pub fall: Option<f64>,
     /// Cells of the open beams.
     pub cells: usize,
+    /// Whether steps err, too.
+    pub steps_matter: bool,
 }
 
 impl Round {
-    /// Whether the finer run of a motion takes more steps than the coarse one.
+    /// Whether the finer run takes more steps than the coarse one, where steps matter.
     pub fn tells_of_steps(&self) -> bool {
         let steps = |results: &Results| {
             let counts = results.run().statistics;
-            (counts.steps + counts.rejected_steps) as f64
+            (counts.steps + counts.load_steps + counts.rejected_steps) as f64
         };
-        let moves = self.results.run().analysis == AnalysisKind::Dynamic;
-        !moves || self.coarse.as_ref().is_none_or(|coarse| steps(&self.results) >= MORE_STEPS * steps(coarse))
+        !self.steps_matter
+            || self.coarse.as_ref().is_none_or(|coarse| steps(&self.results) >= MORE_STEPS * steps(coarse))
     }
 }
 
@@ -224,10 +232,55 @@ impl<'a, 'o> Runner<'a, 'o> {
                     Fineness::Fine => integrator,
                 })
             }
-            Analysis::Static(_) => self.static_tolerance().map_or(Solver::Scene, Solver::Tolerance),
+            Analysis::Static(settings) => self.statics(settings, steps),
             _ => Solver::Scene,
         };
         Setting { beams: beams.collect(), solver }
+    }
+
+    /// How equilibria are found: with friction in load steps of such a fineness.
+    fn statics(&self, settings: &Static, steps: Fineness) -> Solver {
+        let tolerance = self.static_tolerance();
+        let coarser = match steps {
+            Fineness::Coarsest => 2,
+            Fineness::Coarse => 1,
+            Fineness::Fine => 0,
+        };
+        let largest = match self.model.has_friction() {
+            false => None,
+            true if self.open.load_steps => {
+                // Every load factor of a coarser run is one of the finer one.
+                let coarsest = (LOAD_STEP * self.tolerance.sqrt() * LOAD_STEPS.powi(2)).recip().ceil();
+                Some((coarsest * LOAD_STEPS.powi(2 - coarser)).recip())
+            }
+            // As the scene has it, to the last digit.
+            true if steps == Fineness::Fine => None,
+            true => Some(2.0_f64.powi(coarser) * settings.largest_step(true)),
+        };
+        match (largest, tolerance) {
+            (Some(largest), tolerance) => Solver::LoadSteps { largest, tolerance },
+            (None, Some(tolerance)) => Solver::Tolerance(tolerance),
+            (None, None) => Solver::Scene,
+        }
+    }
+
+    /// Whether errors of steps are part of those of results: of motions, and of friction.
+    pub fn has_steps(&self) -> bool {
+        match self.analysis {
+            Analysis::Dynamic(_) => true,
+            Analysis::Static(_) => self.model.has_friction(),
+            _ => false,
+        }
+    }
+
+    /// Whether a tolerance decides about the steps, and is to be chosen.
+    pub fn steps_are_open(&self) -> bool {
+        self.open.integrator || self.open.load_steps
+    }
+
+    /// The smallest tolerance that is tried.
+    pub fn finest(&self) -> f64 {
+        if self.open.load_steps { FINEST_OF_LOAD_STEPS } else { FINEST }
     }
 
     /// The tolerance of equilibria where that of the solver may not do, and the scene names none.
@@ -319,7 +372,8 @@ impl<'a, 'o> Runner<'a, 'o> {
         let of_open = |(index, mesh): (usize, &Mesh)| if self.is_open(index) { mesh.cells() } else { 0 };
         let cells = self.meshes.iter().enumerate().map(of_open).sum();
         let coarse = coarse.ok();
-        let round = Round { stations, results, coarse, setting, run, difference, fall, cells };
+        let steps_matter = self.has_steps();
+        let round = Round { stations, results, coarse, setting, run, difference, fall, cells, steps_matter };
         Ok(Outcome::Compared(Box::new(round)))
     }
 
@@ -357,7 +411,7 @@ impl<'a, 'o> Runner<'a, 'o> {
     /// Whether a finer run would not be good enough even so, and better meshes can be had.
     fn is_too_coarse(&self, before: &Difference) -> bool {
         let moves = matches!(self.analysis, Analysis::Dynamic(_));
-        let open = self.open.beams.iter().all(|open| *open) && (self.open.integrator || !moves);
+        let open = self.open.beams.iter().all(|open| *open) && (self.steps_are_open() || !self.has_steps());
         let Some(wanted) = self.wanted.filter(|_| open) else { return false };
         let most = if moves { HOPELESS_MOTION } else { HOPELESS };
         excess(self.foreseen(before), wanted) > most || self.is_apart(before)
@@ -410,7 +464,7 @@ fn coarser(discretization: &Discretization, places: Nodes) -> Discretization {
 pub(super) mod tests {
     use super::*;
     use crate::accuracy::mesh::Mesh;
-    use crate::results::Trajectory;
+    use crate::results::{AnalysisKind, Trajectory};
     use crate::scene::{Scene, parse};
 
     /// A clamped beam of 4 m whose basis is open unless it is named.
@@ -432,7 +486,8 @@ pub(super) mod tests {
         let setting = runner.setting(Fineness::Fine, Fineness::Fine);
         let cells = runner.meshes.iter().map(Mesh::cells).sum();
         let difference = Err(String::new());
-        Round { stations, results, coarse, setting, run: 0, difference, fall: None, cells }
+        let steps_matter = runner.has_steps();
+        Round { stations, results, coarse, setting, run: 0, difference, fall: None, cells, steps_matter }
     }
 
     const MOTION: &str = "analysis.dynamic = { duration = 1 }";
@@ -569,15 +624,48 @@ pub(super) mod tests {
 
     #[test]
     fn a_fifth_more_steps_tell_of_their_errors() {
-        let scene = scene(MOTION);
-        let runner = runner(&scene, 1e-4);
-        let tells = |analysis, [steps, rejected]: [usize; 2], coarse: Option<Results>| {
-            round(&runner, run(analysis, steps, rejected), coarse).tells_of_steps()
+        let ground = |friction: &str| {
+            format!(
+                "effect.contact = [{{ beam = 'arm', stiffness = 1e4, half_plane = {{ point = [0, -1], normal = [0, 1] }}{friction} }}]"
+            )
         };
         let (still, motion) = (AnalysisKind::Static, AnalysisKind::Dynamic);
-        let coarse = || Some(run(motion, 80, 20));
-        assert!(tells(motion, [100, 21], coarse()) && !tells(motion, [119, 0], coarse()));
-        assert!(tells(motion, [1, 0], None) && tells(still, [1, 0], coarse()));
+        let rough = ground(", friction = { coefficient = 0.3 }") + "\nanalysis.static = {}";
+        let smooth = ground("") + "\nanalysis.static = {}";
+        for (more, analysis, matter) in
+            [(MOTION, motion, true), (rough.as_str(), still, true), (smooth.as_str(), still, false)]
+        {
+            let scene = scene(more);
+            let runner = runner(&scene, 1e-4);
+            let tells = |[steps, rejected]: [usize; 2], coarse: bool| {
+                let coarse = coarse.then(|| run(analysis, 80, 20));
+                round(&runner, run(analysis, steps, rejected), coarse).tells_of_steps()
+            };
+            assert!(tells([100, 21], true) && tells([1, 0], false), "{more}");
+            assert_eq!(tells([119, 0], true), !matter, "{more}");
+        }
+    }
+
+    /// A quarter of the load step goes with a 16th of the tolerance, and every load factor of a coarser run is one of the finer.
+    #[test]
+    fn load_steps_follow_the_tolerance_where_there_is_friction() {
+        let ground = "effect.contact = [{ beam = 'arm', stiffness = 1e4, half_plane = { point = [0, -1], normal = [0, 1] }, friction = { coefficient = 0.3 } }]";
+        let steps = |analysis: &str, fineness: Fineness| {
+            let scene = scene(&format!("{ground}\n{analysis}"));
+            match runner(&scene, 1e-4).setting(fineness, fineness).solver {
+                Solver::LoadSteps { largest, .. } => 1.0 / largest,
+                _ => 0.0,
+            }
+        };
+        let all = |analysis: &str| {
+            [Fineness::Coarsest, Fineness::Coarse, Fineness::Fine]
+                .map(|fineness| steps(analysis, fineness).round())
+        };
+        // 0.6 √3e-4 is 1/96.
+        assert_eq!(all("analysis.static = {}"), [7.0, 28.0, 112.0]);
+        assert_eq!(all("analysis.static.max_step = 0.01"), [25.0, 50.0, 0.0]);
+        assert_eq!(all("analysis.static.arc_length = { max_points = 9 }"), [13.0, 25.0, 0.0]);
+        assert_eq!(all("analysis.static.arc_length = { max_points = 9, max_step = 0.1 }"), [3.0, 5.0, 0.0]);
     }
 
     #[test]

@@ -38,6 +38,8 @@ const LEAP_OF_TOLERANCE: f64 = 200.0;
 const FELL_WELL: f64 = 4.0;
 /// Errors of motions go with this power of the tolerance.
 const POWER: f64 = 0.75;
+/// Errors of equilibria with friction, of which load steps go with the root of the tolerance.
+const POWER_OF_LOAD_STEPS: f64 = 0.5;
 /// The tolerance goes with this power of steps.
 const STEPS: f64 = 5.0;
 /// Most cells of all beams …
@@ -50,9 +52,18 @@ const ROUND_OFF: f64 = 1e-12;
 const SEVERAL: &str = "finer meshes and smaller steps do not bring the results nearer to each other: there are several solutions, \
                        errors grow with time, or the strain jumps where something pulls along a beam (cut it there: two beams in a `weld` \
                        have a strain each)";
+/// The same with friction.
+const STICKS: &str = "finer meshes and more load steps do not bring the results nearer to each other: friction sticks and slips at single points of the \
+                      mesh and of the path, so that its errors fall irregularly; ask for less";
 /// Why nothing is known of a motion whose steps the tolerance does not decide about.
 const MUTE_STEPS: &str = "with a looser tolerance the motion takes hardly fewer steps, so that the errors of its steps cannot be seen; give a \
                           smaller tolerance, or leave the integrator out";
+/// The same of equilibria with friction.
+const MUTE_LOAD_STEPS: &str = "with twice the `max_step` there are hardly fewer load steps, so that what friction errs by in them cannot be seen; give a \
+                               smaller `max_step`, or leave it out";
+/// Why the steps of the load are not small enough.
+const TOO_MANY_LOAD_STEPS: &str =
+    "friction depends on the path, of which more than 2,500 load steps would be needed";
 /// Why nothing can be refined.
 const NAMED: &str =
     "the scene names the basis of every beam, and with it the mesh: leave it out, or give it more nodes";
@@ -126,8 +137,12 @@ impl<'a, 'o> Search<'a, 'o> {
                     return Ok(self.finished(best.unwrap_or_else(|| Judged::unknown(round)), why));
                 }
             };
-            if !self.runner.open.integrator && !round.tells_of_steps() {
-                return Ok(self.finished(Judged::unknown(round), Some(MUTE_STEPS.to_owned())));
+            if !self.runner.steps_are_open() && !round.tells_of_steps() {
+                let why = match self.runner.analysis {
+                    Analysis::Static(_) => MUTE_LOAD_STEPS,
+                    _ => MUTE_STEPS,
+                };
+                return Ok(self.finished(Judged::unknown(round), Some(why.to_owned())));
             }
             rounds += 1;
             let (now, mut judged) = self.judged(round, difference, before.as_ref());
@@ -148,7 +163,7 @@ impl<'a, 'o> Search<'a, 'o> {
             if judged.excess <= 1.0 && mute < MUTE && !judged.round.tells_of_steps() {
                 // Something else than the tolerance decides about steps: a smaller one will.
                 mute += 1;
-                self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(FINEST));
+                self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(self.runner.finest()));
                 continue;
             }
             let Some(wanted) = self.runner.wanted.filter(|_| judged.excess > 1.0) else {
@@ -156,6 +171,8 @@ impl<'a, 'o> Search<'a, 'o> {
             };
             let why = if wanted.result < ROUND_OFF {
                 Some(format!("errors below {ROUND_OFF:e} are those of round-off"))
+            } else if stalls >= STALLS && self.runner.open.load_steps {
+                Some(STICKS.to_owned())
             } else if stalls >= STALLS {
                 Some(SEVERAL.to_owned())
             } else if let Some(growth) = self.outgrown(&judged, wanted).filter(|_| rounds >= GROWN) {
@@ -202,11 +219,11 @@ impl<'a, 'o> Search<'a, 'o> {
             whole,
             apart: None,
         };
-        let errors = |runner: &Runner<'_, '_>, difference: Difference, fall: Fall| {
-            let contractions = runner.contractions(fall.factor);
+        let errors = |difference: Difference, contractions: [f64; 2]| {
             (difference.divided(contractions.map(|contraction| contraction - 1.0)), contractions[0])
         };
-        let (errors_of_both, contraction) = errors(&self.runner, difference, whole);
+        let (errors_of_both, contraction) =
+            errors(difference, self.runner.contractions_with_steps(whole.factor));
         let enough = excess_of(&self.runner, errors_of_both.errors) * caution <= 1.0;
         let mut estimate = Estimate {
             whole: errors_of_both.clone(),
@@ -225,8 +242,8 @@ impl<'a, 'o> Search<'a, 'o> {
                     [mesh.to(finer[0], differences[0]), steps.to(finer[1], differences[1])]
                 }
             };
-            let (mesh, contraction) = errors(&self.runner, mesh, falls[0]);
-            let (steps, _) = errors(&self.runner, steps, falls[1]);
+            let (mesh, contraction) = errors(mesh, self.runner.contractions(falls[0].factor));
+            let (steps, _) = errors(steps, self.runner.contractions_with_steps(falls[1].factor));
             let mesh = mesh.divided([caution.recip(); 2]);
             if let Some(whole) = mesh.plus(&steps) {
                 caution = 1.0;
@@ -246,8 +263,7 @@ impl<'a, 'o> Search<'a, 'o> {
     /// with the finer steps lies between those that were compared. `None` where not both can be changed,
     /// or there is no such run.
     fn apart(&mut self, round: &Round) -> Option<[Difference; 2]> {
-        let moves = matches!(self.runner.analysis, Analysis::Dynamic(_));
-        if !moves || !self.runner.open.integrator || !round.tells_of_steps() {
+        if !self.runner.steps_are_open() || !round.tells_of_steps() {
             return None;
         }
         let coarse = round.coarse.as_ref()?;
@@ -306,12 +322,16 @@ impl<'a, 'o> Search<'a, 'o> {
             // what they do there.
             let ratio = time / (AIM * wanted.result);
             steps = ratio > 1.0 && (time >= errors.result || round.cells == 0);
+            let power = if self.runner.open.load_steps { POWER_OF_LOAD_STEPS } else { POWER };
+            if steps && self.runner.open.load_steps && self.runner.tolerance <= self.runner.finest() {
+                return Err(TOO_MANY_LOAD_STEPS.to_owned());
+            }
             if steps {
-                let factor = ratio.powf(-POWER.recip()).max(LEAP_OF_TOLERANCE.recip());
-                self.runner.tolerance = short((self.runner.tolerance * factor).max(FINEST));
+                let factor = ratio.powf(-power.recip()).max(LEAP_OF_TOLERANCE.recip());
+                self.runner.tolerance = short((self.runner.tolerance * factor).max(self.runner.finest()));
             } else if again && estimate.contraction <= LEAST_CONTRACTION {
                 // Two meshes whose difference does not fall may differ by what the steps err on each.
-                self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(FINEST));
+                self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(self.runner.finest()));
             }
         }
         if steps && (times <= 1.0 || round.cells == 0) {
@@ -361,14 +381,14 @@ impl<'a, 'o> Search<'a, 'o> {
 
     /// Twice the cells in all open beams, and steps to match; whether there was any to refine.
     fn refine_everywhere(&mut self) -> bool {
-        let mut any = self.runner.open.integrator;
+        let mut any = self.runner.steps_are_open();
         for index in 0..self.runner.meshes.len() {
             if self.runner.is_open(index) && self.runner.meshes[index].cells() < self.most / 2 {
                 self.runner.meshes[index] = self.runner.meshes[index].halved();
                 any = true;
             }
         }
-        self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(FINEST));
+        self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(self.runner.finest()));
         any
     }
 
@@ -380,7 +400,7 @@ impl<'a, 'o> Search<'a, 'o> {
         let largest = model_error::largest(lengths.len(), results.states());
         let notes = model_error::notes(self.runner.model, &lengths, &largest);
         results.states_mut().stations.clear();
-        let solver = self.runner.open.integrator || self.runner.static_tolerance().is_some();
+        let solver = self.runner.steps_are_open() || self.runner.static_tolerance().is_some();
         let chosen = setting.toml_of(self.runner.model, |beam| self.runner.is_open(beam), solver);
         let wanted = self.runner.wanted.map(|wanted| Errors {
             result: wanted.result,

@@ -157,6 +157,13 @@ pub enum Solver {
     Scene,
     /// Equilibria to this relative accuracy.
     Tolerance(f64),
+    /// Equilibria with a largest load step, or step along a path.
+    LoadSteps {
+        /// The largest step, of the load factor or in beam lengths.
+        largest: f64,
+        /// Their relative accuracy, where it is not the scene's.
+        tolerance: Option<f64>,
+    },
     /// Motion by this integrator.
     Integrator(Integrator),
 }
@@ -166,6 +173,7 @@ impl fmt::Display for Solver {
         match self {
             Self::Scene => f.write_str("as the scene is"),
             Self::Tolerance(tolerance) => write!(f, "tolerance {tolerance:e}"),
+            Self::LoadSteps { largest, .. } => write!(f, "steps of {largest:e} of the load"),
             Self::Integrator(integrator) => integrator.fmt(f),
         }
     }
@@ -191,6 +199,13 @@ impl Setting {
         match (self.solver, &mut analysis) {
             (Solver::Tolerance(tolerance), Analysis::Static(settings)) => {
                 settings.tolerance = Some(tolerance);
+            }
+            (Solver::LoadSteps { largest, tolerance }, Analysis::Static(settings)) => {
+                settings.tolerance = tolerance.or(settings.tolerance);
+                match &mut settings.arc_length {
+                    Some(arc) => arc.max_step = Some(largest),
+                    None => settings.max_step = Some(largest),
+                }
             }
             (Solver::Integrator(integrator), Analysis::Dynamic(settings)) => settings.integrator = integrator,
             _ => {}
@@ -218,6 +233,11 @@ impl Setting {
             Solver::Scene => {}
             Solver::Tolerance(tolerance) => {
                 tables.push(format!("[analysis.static]\ntolerance = {tolerance:e}\n"));
+            }
+            Solver::LoadSteps { largest, tolerance } => {
+                let tolerance =
+                    tolerance.map_or_else(String::new, |value| format!("tolerance = {value:e}\n"));
+                tables.push(format!("[analysis.static]\nmax_step = {largest:e}\n{tolerance}"));
             }
             Solver::Integrator(integrator) => tables.push(method(&integrator)),
         }
@@ -344,6 +364,9 @@ mod tests {
         ];
         let mut solvers: Vec<_> = integrators.map(|i| (&motion, Solver::Integrator(i))).into();
         solvers.extend([(&still, Solver::Scene), (&still, Solver::Tolerance(2e-7))]);
+        let largest = 1.0 / 112.0;
+        solvers
+            .extend([None, Some(2e-7)].map(|tolerance| (&still, Solver::LoadSteps { largest, tolerance })));
         for family in Family::all().into_iter().chain([Family::Scene]) {
             for &(scene, solver) in &solvers {
                 let setting = Setting { beams: family.beams(scene.model(), 6), solver };

@@ -62,6 +62,11 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
         Vec::new()
     }
 
+    /// Whether its forces depend on the path to a state: those of friction.
+    fn has_memory(&self) -> bool {
+        false
+    }
+
     /// A mass \[kg\] on which gravity acts, and its place.
     fn mass(&self) -> Option<(Place, f64)> {
         None

@@ -35,6 +35,9 @@ pub struct Reference {
     pub seconds: f64,
 }
 
+/// Largest load step of the first pair with friction.
+const LOAD_STEP: f64 = 2.5e-3;
+
 /// The settings of a pair.
 fn pair(runner: &Runner<'_>, level: u32, target: f64) -> [(Family, usize, Setting); 2] {
     let meshfree = Family::usual(RPIM_GAUSS_POINTS.bend);
@@ -45,6 +48,10 @@ fn pair(runner: &Runner<'_>, level: u32, target: f64) -> [(Family, usize, Settin
             Solver::Integrator(Integrator::Gauss { stages: 3, step }),
             Solver::Integrator(Integrator::Radau { stages: 3, step }),
         ],
+        Analysis::Static(_) if runner.model.has_friction() => {
+            let largest = LOAD_STEP * 0.5_f64.powi(level as i32);
+            [largest, 0.5 * largest].map(|largest| Solver::LoadSteps { largest, tolerance: None })
+        }
         _ => [Solver::Scene; 2],
     };
     let [first, second] = solvers;

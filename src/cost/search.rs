@@ -215,7 +215,12 @@ fn dominated_by(trials: &[Trial], index: usize, least: f64) -> Option<usize> {
 /// Solvers that are tried, each list from the cheapest to the most accurate.
 fn other_solvers(task: &Task<'_>, mean_step: f64) -> Vec<Vec<Solver>> {
     match task.analysis {
-        Analysis::Static(_) => vec![vec![Solver::Tolerance(tolerance(0.1 * task.target))]],
+        Analysis::Static(_) => {
+            let steps = [5e-3, 1.25e-3].map(|largest| Solver::LoadSteps { largest, tolerance: None });
+            let friction = task.model.has_friction().then(|| steps.to_vec());
+            let tolerance = vec![Solver::Tolerance(tolerance(0.1 * task.target))];
+            std::iter::once(tolerance).chain(friction).collect()
+        }
         Analysis::Buckling(_) | Analysis::Modal(_) | Analysis::Stages => vec![],
         Analysis::Dynamic(settings) => {
             let by_tolerance = |method: &dyn Fn(StepControl) -> Integrator, parts: &[f64]| {
@@ -875,7 +880,7 @@ mod tests {
             };
             let cells = (nodes.count() - 1) as f64;
             let (steps, by_steps) = match setting.solver {
-                Solver::Scene | Solver::Tolerance(_) => (1.0, 0.0),
+                Solver::Scene | Solver::Tolerance(_) | Solver::LoadSteps { .. } => (1.0, 0.0),
                 Solver::Integrator(integrator) => {
                     let order = match integrator {
                         Integrator::Gauss { .. } => 6.0,

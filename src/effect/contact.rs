@@ -64,6 +64,10 @@ impl Part for Contact {
         vec![Resistance::Contact(self.beam)]
     }
 
+    fn has_memory(&self) -> bool {
+        self.friction.is_some()
+    }
+
     fn jumps(&self) -> Vec<Place> {
         self.between.into_iter().flatten().map(|s| Place::new(self.beam, s)).collect()
     }

@@ -1,6 +1,6 @@
 //! What error results may have, and what may be chosen to that end.
 
-use super::{Analysis, Discretization, Model};
+use super::{Analysis, Discretization, Model, Static};
 
 /// The largest errors that results may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,8 @@ pub struct Open {
     pub beams: Vec<bool>,
     /// Whether a motion has no integrator of its own.
     pub integrator: bool,
+    /// Whether the path of equilibria with friction has no largest load step of its own.
+    pub load_steps: bool,
 }
 
 impl Open {
@@ -44,12 +46,33 @@ impl Open {
     /// advances.
     pub fn of(model: &Model, analysis: &Analysis, integrator: bool) -> Self {
         let beams = model.beams.iter().map(|beam| beam.discretization == Discretization::Open).collect();
-        Self { beams, integrator: integrator && matches!(analysis, Analysis::Dynamic(_)) }
+        Self {
+            beams,
+            integrator: integrator && matches!(analysis, Analysis::Dynamic(_)),
+            load_steps: Self::load_steps(model, analysis),
+        }
+    }
+
+    /// Whether friction makes the results of `analysis` depend on load steps that it does not name. Those along a path by
+    /// arc length are not chosen.
+    fn load_steps(model: &Model, analysis: &Analysis) -> bool {
+        let named = |settings: &Static| settings.max_step.is_some() || settings.arc_length.is_some();
+        model.has_friction() && matches!(analysis, Analysis::Static(settings) if !named(settings))
+    }
+
+    /// Everything: all beams, and how time or the load advances.
+    pub fn all(model: &Model, analysis: &Analysis) -> Self {
+        Self { beams: vec![true; model.beams.len()], ..Self::of(model, analysis, true) }
+    }
+
+    /// Nothing.
+    pub fn none(model: &Model) -> Self {
+        Self { beams: vec![false; model.beams.len()], ..Self::default() }
     }
 
     /// Whether nothing is left to be chosen.
     pub fn is_closed(&self) -> bool {
-        !self.integrator && !self.beams.contains(&true)
+        !self.integrator && !self.load_steps && !self.beams.contains(&true)
     }
 }
 
@@ -59,9 +82,12 @@ mod tests {
 
     #[test]
     fn one_open_beam_or_integrator_leaves_something_to_be_chosen() {
-        let closed = |beams: &[bool], integrator: bool| Open { beams: beams.into(), integrator }.is_closed();
+        let closed = |beams: &[bool], integrator: bool| {
+            Open { beams: beams.into(), integrator, load_steps: false }.is_closed()
+        };
         assert!(closed(&[false, false], false) && closed(&[], false));
         assert!(!closed(&[false, true], false) && !closed(&[false], true));
+        assert!(!Open { load_steps: true, ..Open::default() }.is_closed());
         assert_eq!(Accuracy::default(), Accuracy { result: 1e-4, curvature: None, section_force: None });
     }
 }

@@ -67,9 +67,27 @@ pub struct Static {
     /// Relative accuracy of every equilibrium, as the size of the last increment per beam length.
     /// `None`: the solver's default.
     pub tolerance: Option<f64>,
+    /// Largest step of the load factor. `None`: as large as the solver can take, and
+    /// [`FRICTION_STEP`](Self::FRICTION_STEP) where there is friction, whose forces depend on the path.
+    pub max_step: Option<f64>,
     /// Whether, and how, to follow the path by arc length, through limit points. `None`: by load
     /// steps.
     pub arc_length: Option<ArcLength>,
+}
+
+impl Static {
+    /// Largest step of the load factor with friction, where none is given, and largest step along a path in beam lengths.
+    pub const FRICTION_STEP: f64 = 0.02;
+
+    /// The largest step, of the load factor or in beam lengths along a path, of a model with friction or without; infinite
+    /// where there is none.
+    pub fn largest_step(&self, friction: bool) -> f64 {
+        let given = match &self.arc_length {
+            Some(arc) => arc.max_step,
+            None => self.max_step,
+        };
+        given.unwrap_or(if friction { Self::FRICTION_STEP } else { f64::INFINITY })
+    }
 }
 
 /// Settings of arc-length continuation.

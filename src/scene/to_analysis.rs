@@ -168,12 +168,29 @@ fn statics(table: &StaticTable, model: &Model, size: Size) -> Result<Static, Fau
             "`steps` records at parts of the load, `arc_length` at points of the path; keep one of them",
         ));
     }
+    if let (Some(step), Some(_)) = (&table.max_step, &table.arc_length) {
+        return Err(Fault::new(step.span(), "`max_step` of the load factor beside `arc_length`")
+            .help("write it in the table `arc_length`, in lengths of the beam"));
+    }
     if let Some(steps) = &table.steps {
         let count = steps.get().0;
         check_memory(steps.span(), &format!("{count} load steps"), count as f64, size)?;
     }
+    if let Some(step) = &table.max_step {
+        let count = 1.0 / step.get().si;
+        let kept = if table.steps.is_some() { 1.0 } else { count };
+        check_memory(step.span(), &format!("{count:.0} load steps"), kept, size)?;
+        if count > MAX_RECORDS as f64 {
+            return Err(Fault::new(
+                step.span(),
+                format!("{count:.0} load steps, of which {MAX_RECORDS} can be taken"),
+            )
+            .help("give a larger `max_step`"));
+        }
+    }
     Ok(Static {
         steps: table.steps.as_ref().map(|n| bounded(n, "load steps")).transpose()?,
+        max_step: table.max_step.as_ref().map(|step| step.get().si),
         tolerance: table.tolerance.as_ref().map(tolerance).transpose()?,
         arc_length: table.arc_length.as_ref().map(|table| arc_length(table, model, size)).transpose()?,
     })

@@ -176,7 +176,7 @@ pub fn solve(
             relaxed(&mut equilibrium, x, settings, newton, &mut solution, observe)
         }
         None => along_load(&mut equilibrium, x, settings, newton, &mut solution, observe),
-        Some(target) => along_arc(&mut equilibrium, x, target, newton, &mut solution, observe),
+        Some(target) => along_arc(&mut equilibrium, x, (settings, target), newton, &mut solution, observe),
     });
     solution.statistics = equilibrium.statistics;
     solution.stuck = outcome.err().filter(|stuck| stuck.failure != Failure::Stopped);
@@ -235,7 +235,9 @@ fn along_load(
     solution.unstable_start = path.last().stability.filter(|_| path.equilibrium.is_unstable());
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
-    let parts = settings.steps.unwrap_or(1).max(1);
+    let recorded = settings.steps.unwrap_or(1).max(1);
+    let between = steps_between(path.equilibrium.system(), settings, recorded);
+    let parts = recorded.saturating_mul(between);
     let mut part = 1;
     let outcome = loop {
         // The last part ends at 1 exactly.
@@ -249,7 +251,7 @@ fn along_load(
         }
         notice(&mut path, &mut solution.events);
         let at_end = point.load >= end;
-        if settings.steps.is_none() || at_end {
+        if settings.steps.is_none() || at_end && part.is_multiple_of(between) {
             solution.record(path.equilibrium, point.load, &point.x, work);
         }
         part += usize::from(at_end);
@@ -269,6 +271,13 @@ fn along_load(
     outcome
 }
 
+/// Load steps from one of so many recorded states to the next, of the largest length or smaller; at least one.
+fn steps_between(system: &System, settings: &Static, recorded: usize) -> usize {
+    // A length such as 1/50, as it is written, has 50 steps.
+    let steps = (1.0 / settings.largest_step(system.has_friction()) - AT_TARGET).ceil() as usize;
+    steps.div_ceil(recorded).max(1)
+}
+
 /// The equilibria at the parts of the load, each relaxed from the one before.
 fn relaxed(
     equilibrium: &mut Equilibrium<'_>,
@@ -283,7 +292,7 @@ fn relaxed(
     // A support that turns far at once may as well turn the other way: steps that are not recorded lie between.
     let of_turns = (equilibrium.system().largest_turn() / LARGEST_TURN).ceil() as usize;
     let recorded = settings.steps.unwrap_or(1).max(1);
-    let between = of_turns.div_ceil(recorded).max(1);
+    let between = of_turns.div_ceil(recorded).max(steps_between(equilibrium.system(), settings, recorded));
     let parts = recorded.saturating_mul(between);
     let mut before = Stability::Directions(0);
     for part in 1..=parts {
@@ -436,13 +445,13 @@ fn notice(path: &mut Path<'_, '_>, events: &mut Vec<StabilityChange>) {
 fn along_arc(
     equilibrium: &mut Equilibrium<'_>,
     x: Vec<f64>,
-    target: &Target<'_>,
+    (settings, target): (&Static, &Target<'_>),
     newton: Settings,
     solution: &mut Solution,
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
     let system = equilibrium.system();
-    let largest = target.arc.max_step.unwrap_or(f64::INFINITY);
+    let largest = settings.largest_step(system.has_friction());
     let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05), x)?;
     solution.unstable_start = path.last().stability.filter(|_| path.equilibrium.is_unstable());
     let mut work = Work::default();

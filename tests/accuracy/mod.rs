@@ -3,6 +3,7 @@
 
 mod chosen;
 mod files;
+mod friction;
 mod refused;
 mod worth;
 

@@ -115,8 +115,9 @@ fn analyses_are_as_the_scene_says() {
     for (text, settings) in [
         (
             "analysis.static = { steps = 6, tolerance = 1e-9 }\n",
-            Static { steps: Some(6), tolerance: Some(1e-9), arc_length: None },
+            Static { steps: Some(6), tolerance: Some(1e-9), ..Static::default() },
         ),
+        ("analysis.static = { max_step = 0.04 }\n", Static { max_step: Some(0.04), ..Static::default() }),
         (
             "analysis.static.arc_length = { until_load = 0.8, max_points = 77, max_step = 0.03, until_probe = { probe = 'end', y = '-25 cm' } }\n",
             Static { arc_length: Some(arc), ..Static::default() },
@@ -124,6 +125,42 @@ fn analyses_are_as_the_scene_says() {
     ] {
         assert_eq!(read(text), Analysis::Static(settings), "{text}");
     }
+}
+
+/// Records are those of all load steps, or of those of `steps`, between which there may be more. With friction there are 50
+/// where nothing is said, and along a path by arc length as many for a beam length.
+#[test]
+fn load_steps_are_no_longer_than_allowed() {
+    let loads = |statics: &str, rough: &str| {
+        let contact = "effect.contact = [{ beam = 'bar', half_plane = { point = [0, -9], normal = [0, 1] }, stiffness = 1";
+        let load = format!(
+            "effect.force = [{{ beam = 'bar', at = 'end', value = [3, 0] }}]\n{contact}{rough} }}]\n"
+        );
+        let bar = BAR.replace("BASIS", "basis.ancf.elements = 1") + &load;
+        let scene =
+            parse("scene.toml", &format!("{bar}{statics}\n")).unwrap_or_else(|error| panic!("{error}"));
+        let states =
+            scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}")).into_states();
+        (states.parameter, states.run.statistics.load_steps)
+    };
+    let rough = ", friction = { coefficient = 0.5 }";
+    let parts = |count: usize| (0..=count).map(|i| i as f64 / count as f64).collect::<Vec<_>>();
+    for (statics, rough, records, steps) in [
+        ("analysis.static = { max_step = 0.25 }", "", 4, 4),
+        ("analysis.static = { max_step = 0.24 }", "", 5, 5),
+        ("analysis.static = { max_step = 0.25, steps = 2 }", "", 2, 4),
+        ("analysis.static = { max_step = 0.5, steps = 8 }", "", 8, 8),
+        ("analysis.static = {}", rough, 50, 50),
+        ("analysis.static = { steps = 3 }", rough, 3, 51),
+        ("analysis.static = { max_step = 1 }", rough, 1, 1),
+    ] {
+        let (found, taken) = loads(statics, rough);
+        let expected = parts(records);
+        assert_eq!((found.len(), taken), (records + 1, steps), "{statics}");
+        assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12), "{statics}: {found:?}");
+    }
+    let path = |rough: &str| loads("analysis.static.arc_length = { until_load = 1 }", rough).1;
+    assert!(path(rough) >= 2 * path(""), "{} {}", path(rough), path(""));
 }
 
 /// A bar whose place follows its load: a path ends where it is told to, with steps no longer than

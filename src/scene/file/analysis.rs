@@ -30,6 +30,9 @@ pub struct AnalysisTable {
 pub struct StaticTable {
     /// Record the state at this many equal parts of the load.
     pub steps: Option<Located<Count<1>>>,
+    /// Largest step of the load factor; 0.02 with friction, whose forces depend on the path, and else as large as possible
+    /// when left out.
+    pub max_step: Option<Located<Quantity<Ratio, Positive>>>,
     /// Relative accuracy of every equilibrium.
     pub tolerance: Option<Located<Quantity<Ratio, Positive>>>,
     /// Follow the path by arc length, through limit points.

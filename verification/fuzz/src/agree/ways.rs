@@ -129,6 +129,7 @@ pub fn load_steps(scene: &Table, rng: &mut Rng) -> Option<Table> {
         let mut path = Table::new();
         path.insert("until_load".into(), 1.0.into());
         table.remove("steps");
+        table.remove("max_step");
         table.insert("arc_length".into(), path.into());
     } else if steps.is_some_and(|n| n > 1 && rng.bool()) {
         table.remove("steps");

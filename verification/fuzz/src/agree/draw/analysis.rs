@@ -76,6 +76,9 @@ impl Draw<'_> {
         if self.chance(0.3) {
             table.insert("steps".into(), self.rng.i64(1..8).into());
         }
+        if self.chance(0.1) {
+            table.insert("max_step".into(), self.pick(&[0.5, 0.1, 0.02]).into());
+        }
         if self.chance(0.2) {
             table.insert("tolerance".into(), self.pick(&[1e-4, 1e-6, 1e-8]).into());
         }
