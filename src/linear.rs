@@ -256,6 +256,13 @@ impl Matrix {
         }
     }
 
+    /// A x.
+    pub fn product(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; x.len()];
+        self.multiply_add(1.0, x, &mut y);
+        y
+    }
+
     fn set(&mut self, i: usize, j: usize, value: f64) {
         match self {
             Self::Symmetric(matrix) => matrix.set(i, j, value),

@@ -210,6 +210,18 @@ impl Sampler<'_> {
                     .into(),
             );
         }
+        if let Some((number, change)) = modes.unsure.filter(|(_, change)| *change > UNSURE) {
+            unloaded.run.warnings.push(format!(
+                "round-off of the stiffness may change load factor {number} by {:.1} %: use fewer elements or nodes, and none that are close to \
+                 each other, or leave out an `axial_stiffness` that is of no interest",
+                100.0 * change
+            ));
+        }
+        if let Some(above) = modes.hidden {
+            unloaded.run.warnings.push(format!(
+                "there are fewer load factors than were asked for: above {above:.2e} the round-off of the stiffness hides them"
+            ));
+        }
         unloaded.run.warnings.extend(beyond_the_linear(modes));
         let corners = at_corners(self.model, &unloaded.last, &unloaded.run.undeformed);
         unloaded.run.warnings.extend(corners);

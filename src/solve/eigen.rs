@@ -14,6 +14,9 @@
 
 pub mod dense;
 pub mod lanczos;
+mod ritz;
+
+pub use ritz::ritz;
 
 use crate::linear::bordered::BorderRow;
 use crate::linear::{Matrix, Singular};
@@ -55,6 +58,18 @@ pub enum EigenError {
         below: f64,
         /// Number of motions that nothing resists.
         free: usize,
+    },
+    /// Critical load factors are hidden by round-off.
+    #[error(
+        "no critical load factor below {above:.2e} was found, and above it the round-off of the stiffness hides all"
+    )]
+    #[diagnostic(help(
+        "use fewer elements or nodes, and none that are close to each other, whose stiffness has less round-off, or leave out axial stiffnesses that are \
+         far beyond EI/h² with the spacing h: a beam without `axial_stiffness` keeps its length"
+    ))]
+    HiddenLoads {
+        /// The largest load factor that could have been seen.
+        above: f64,
     },
     /// Follower loads, fields without a potential or dry friction make the tangent unsymmetric.
     #[error(

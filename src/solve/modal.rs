@@ -13,12 +13,10 @@
 //! frequency that cannot be told from zero is set to zero where a motion without deformation may
 //! have it, and refused else.
 
-use super::eigen::{EigenError, Pencil, dot, largest_reciprocals, round_off};
+use super::eigen::{EigenError, Pencil, dot, largest_reciprocals, ritz, round_off};
 use crate::assembly::{InternalVariables, Workspace, nodes};
 use crate::linear::Matrix;
 use crate::system::System;
-use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
-use faer::{Mat, Par, Side};
 use std::f64::consts::TAU;
 
 /// Vibrations, lowest first.
@@ -73,7 +71,8 @@ pub fn solve(
     shifted.add(shift, &mass);
     let (border, fixed) = (system.border(load, q), system.fixed());
     let pencil = Pencil { a: &shifted, b: &mass, border: &border, fixed };
-    let pairs = largest_reciprocals(&pencil, count + GUARD)?;
+    let pairs =
+        largest_reciprocals(&pencil, count + GUARD).or_else(|_| largest_reciprocals(&pencil, count))?;
     if pairs.vectors.is_empty() {
         return Err(EigenError::NotConverged { found: 0, wanted: count });
     }
@@ -90,7 +89,8 @@ pub fn solve(
             f
         })
         .collect();
-    let mut found = ritz(&pairs.vectors, &stiff, &mass)?;
+    let heavy: Vec<Vec<f64>> = pairs.vectors.iter().map(|vector| mass.product(vector)).collect();
+    let mut found = ritz(&pairs.vectors, &stiff, &heavy)?;
     let mut modes = Modes { factorizations: 1, ..Modes::default() };
     let mut unstable = 0;
     let mut hidden = Vec::new();
@@ -130,50 +130,6 @@ const GUARD: usize = 4;
 const CERTAIN: f64 = 10.0;
 /// Least ratio of the shift to the round-off of a zero ω².
 const STAND_OUT: f64 = 1e3;
-
-/// ω² and M-orthonormal shapes of the stiffness K restricted to the span of `vectors`, of which
-/// `stiff` are the products with K (Rayleigh and Ritz); lowest first.
-fn ritz(vectors: &[Vec<f64>], stiff: &[Vec<f64>], mass: &Matrix) -> Result<Vec<(f64, Vec<f64>)>, EigenError> {
-    let c = vectors.len();
-    let heavy: Vec<Vec<f64>> = vectors
-        .iter()
-        .map(|v| {
-            let mut product = vec![0.0; v.len()];
-            mass.multiply_add(1.0, v, &mut product);
-            product
-        })
-        .collect();
-    let form = |products: &[Vec<f64>]| {
-        Mat::from_fn(c, c, |i, j| 0.5 * (dot(&vectors[i], &products[j]) + dot(&vectors[j], &products[i])))
-    };
-    let factor = form(&heavy).llt(Side::Lower).map_err(|_| EigenError::Projection)?;
-    let lower = factor.L();
-    let mut k = form(stiff);
-    solve_lower_triangular_in_place(lower, k.as_mut(), Par::Seq);
-    let mut k = k.transpose().to_owned();
-    solve_lower_triangular_in_place(lower, k.as_mut(), Par::Seq);
-    let eigen = k.self_adjoint_eigen(Side::Lower).map_err(|_| EigenError::Projection)?;
-    let mut shares = eigen.U().to_owned();
-    solve_upper_triangular_in_place(lower.transpose(), shares.as_mut(), Par::Seq);
-    let combined = |of: &[Vec<f64>], k: usize| {
-        let mut sum = vec![0.0; mass.size()];
-        for (i, vector) in of.iter().enumerate() {
-            sum.iter_mut().zip(vector).for_each(|(s, v)| *s += shares[(i, k)] * v);
-        }
-        sum
-    };
-    // The eigenvalues all have the round-off of the largest one. Rayleigh's quotients have each
-    // their own, because they err by the square of the error of the shapes.
-    let mut modes: Vec<(f64, Vec<f64>)> = (0..c)
-        .map(|k| {
-            let shape = combined(vectors, k);
-            let square = dot(&shape, &combined(stiff, k)) / dot(&shape, &combined(&heavy, k));
-            (square, shape)
-        })
-        .collect();
-    modes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(modes)
-}
 
 /// Turns the largest displacement towards positive x or y.
 fn point_up(shape: &mut [f64]) {

@@ -288,3 +288,90 @@ fn obstacles_and_electrodes_that_change_before_buckling_are_told() {
     assert!(found.eigenvalues().is_empty() && found.run().warnings[0].starts_with(none));
     assert!(found.run().error.as_ref().is_some_and(|error| error.met), "{:?}", found.run().error);
 }
+
+/// The critical force of a bar of length 1 on a torsion spring: k tan k = c/EI, P = EI k².
+fn on_torsion_spring(bending_stiffness: f64, spring: f64) -> f64 {
+    let (mut low, mut high) = (0.0, PI / 2.0);
+    for _ in 0..200 {
+        let k: f64 = 0.5 * (low + high);
+        *(if k * k.tan() < spring / bending_stiffness { &mut low } else { &mut high }) = k;
+    }
+    bending_stiffness * low * low
+}
+
+/// A stiff bar on a soft spring has a stiffness whose entries on short elements are 1e14 times as large as what resists its
+/// turn: load factors are those of the products without the matrix, and what is left is told. Of elements that
+/// are too short for that nothing is said.
+#[test]
+fn round_off_of_short_elements_hides_no_critical_load() {
+    for (bending, axial, elements) in [(1e6, 1e10, 200), (1e5, 1e10, 200), (1e3, 1e9, 1000), (1e3, 1e9, 20)] {
+        let found = solve(&format!(
+            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = {axial:e}, bending_stiffness = {bending:e}, basis.ancf.elements = {elements} }}
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y'] }}]
+             effect.torsion_spring = [{{ beam = 'b', at = 'start', stiffness = 1 }}]
+             effect.force = [{{ beam = 'b', at = 'end', value = [-1, 0] }}]
+             analysis.buckling.count = 1\n"
+        ));
+        let [load] = found.eigenvalues()[..] else { panic!("{bending:e}: {:?}", found.eigenvalues()) };
+        let miss = (load / on_torsion_spring(bending, 1.0) - 1.0).abs();
+        assert!(miss < 5e-6, "{bending:e}, {elements}: {load}, {miss:e}");
+        let told = found.run().warnings.iter().any(|text| text.contains("round-off of the stiffness"));
+        assert!(!told || elements > 20, "{:?}", found.run().warnings);
+    }
+}
+
+/// Two places that are hardly apart make cells so short that the stiffness of all others is lost beside theirs: the
+/// critical load is that of places that are one, or none is given.
+#[test]
+fn places_close_to_each_other_have_the_critical_load_of_one_place() {
+    let apart = |distance: f64| {
+        let text = format!(
+            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 1 }}
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             effect.spring = [{{ beam = 'b', at = 0.5, stiffness = 10 }}]
+             effect.torsion_spring = [{{ beam = 'b', at = {:?}, stiffness = 1 }}]
+             effect.force = [{{ beam = 'b', at = 'end', value = [-1, 0] }}]
+             analysis.buckling = {{ count = 2, accuracy = 1e-3 }}\n",
+            0.5 + distance
+        );
+        let scene = parse("scene.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+        ancf::accuracy::run(&scene, ancf::Options::default())
+    };
+    let one = apart(0.0).expect("critical loads").eigenvalues()[0];
+    for distance in [1e-4, 3e-5, 1e-5, 3e-6] {
+        let found = apart(distance).unwrap_or_else(|error| panic!("{distance:e}: {error}"));
+        let load = found.eigenvalues()[0];
+        assert!((load / one - 1.0).abs() < 1e-3, "{distance:e}: {load} for {one}");
+    }
+    for distance in [3e-7, 3e-8] {
+        if let Ok(found) = apart(distance) {
+            let (load, error) = (found.eigenvalues()[0], found.run().error.as_ref().expect("an estimate"));
+            assert!((load / one - 1.0).abs() < 1e-3 || !error.met, "{distance:e}: {load} for {one}");
+        }
+    }
+}
+
+/// Euler's column, oblique and hardly stretchable: its stress-free state has strains of round-off, and forces that
+/// compare with the critical one. What that may change is told, or the column refused.
+#[test]
+fn stresses_of_round_off_are_told() {
+    for (axial, elements) in [(1e6, 20), (1e10, 200), (1e12, 200), (1e13, 20)] {
+        let (cosine, sine) = (PI / 6.0).sin_cos();
+        let text = format!(
+            "beam.b = {{ start = [0, 0], end = [{sine}, {cosine}], axial_stiffness = {axial:e}, bending_stiffness = 1, basis.ancf.elements = {elements} }}
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             effect.force = [{{ beam = 'b', at = 'end', value = [{}, {}] }}]
+             analysis.buckling.count = 1\n",
+            -sine, -cosine
+        );
+        let scene = parse("scene.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+        let Ok(found) = scene.model().solve(scene.analysis()) else {
+            assert!(axial > 1e11, "{axial:e}");
+            continue;
+        };
+        let miss = (found.eigenvalues()[0] / (PI * PI / 4.0) - 1.0).abs();
+        let told = found.run().warnings.iter().any(|text| text.contains("round-off of the stiffness"));
+        assert!(miss < 2e-5 || told && miss < 0.1, "{axial:e}: {miss:e}");
+        assert!(!told || axial > 1e6, "{:?}", found.run().warnings);
+    }
+}
