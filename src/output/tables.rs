@@ -146,7 +146,7 @@ pub(super) fn reactions(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// `effects.csv`: the parameter, then per effect `energy` \[J\] where it has one, and the resultant
-/// `fx, fy` \[N\] of its forces on the beam.
+/// `fx, fy` \[N\] of its forces on the beam: zero of inertia, whose force would need accelerations.
 pub(super) fn effects(t: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let mut header = words(&[parameter_name(t.run.analysis)]);
     for effect in &t.effects {

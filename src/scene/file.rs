@@ -547,7 +547,7 @@ pub struct OutputTable {
     pub vtu: bool,
     /// `reactions.csv`: forces of supports and joints at every record.
     pub reactions: bool,
-    /// `effects.csv`: energy and resultant force of every effect at every record.
+    /// `effects.csv`: energy and resultant force of every effect at every record; of inertia the energy alone, its force is zero there.
     pub effects: bool,
     /// Section forces and stresses at every record: of the probes in `probes.csv`, and along the
     /// beams in `states.csv` and the VTU series.
