@@ -49,20 +49,18 @@ impl Open {
         Self {
             beams,
             integrator: integrator && matches!(analysis, Analysis::Dynamic(_)),
-            load_steps: Self::load_steps(model, analysis),
+            load_steps: follows_friction(model, analysis)
+                && matches!(analysis, Analysis::Static(Static { max_step: None, .. })),
         }
-    }
-
-    /// Whether friction makes the results of `analysis` depend on load steps that it does not name. Those along a path by
-    /// arc length are not chosen.
-    fn load_steps(model: &Model, analysis: &Analysis) -> bool {
-        let named = |settings: &Static| settings.max_step.is_some() || settings.arc_length.is_some();
-        model.has_friction() && matches!(analysis, Analysis::Static(settings) if !named(settings))
     }
 
     /// Everything: all beams, and how time or the load advances.
     pub fn all(model: &Model, analysis: &Analysis) -> Self {
-        Self { beams: vec![true; model.beams.len()], ..Self::of(model, analysis, true) }
+        Self {
+            beams: vec![true; model.beams.len()],
+            integrator: matches!(analysis, Analysis::Dynamic(_)),
+            load_steps: follows_friction(model, analysis),
+        }
     }
 
     /// Nothing.
@@ -74,6 +72,11 @@ impl Open {
     pub fn is_closed(&self) -> bool {
         !self.integrator && !self.load_steps && !self.beams.contains(&true)
     }
+}
+
+/// Whether friction makes the results of `analysis` depend on load steps. Those along a path by arc length are not chosen.
+fn follows_friction(model: &Model, analysis: &Analysis) -> bool {
+    model.has_friction() && matches!(analysis, Analysis::Static(Static { arc_length: None, .. }))
 }
 
 #[cfg(test)]
