@@ -333,9 +333,9 @@ fn over_parameter(t: &Trajectory, values: impl Iterator<Item = f64>) -> Vec<[f64
 /// Up to this many records each has a dot: the line between few records is only a guide.
 const DOTS: usize = 60;
 
-/// The chart with dots at the records, where these are few.
+/// The chart with dots at the records, where these are few, or some are unknown: no line leads to one between unknown ones.
 fn with_dots(chart: Chart, points: &[[f64; 2]], colour: Colour) -> Chart {
-    if points.len() > DOTS {
+    if points.len() > DOTS && points.iter().all(|point| point[1].is_finite()) {
         return chart;
     }
     chart.with(Series::points("", points.to_vec(), colour).size(1.8))

@@ -179,11 +179,11 @@ fn statics(table: &StaticTable, model: &Model, size: Size) -> Result<Static, Fau
     if let Some(step) = &table.max_step {
         let count = 1.0 / step.get().si;
         let kept = if table.steps.is_some() { 1.0 } else { count };
-        check_memory(step.span(), &format!("{count:.0} load steps"), kept, size)?;
+        check_memory(step.span(), &format!("{count:.3e} load steps"), kept, size)?;
         if count > MAX_RECORDS as f64 {
             return Err(Fault::new(
                 step.span(),
-                format!("{count:.0} load steps, of which {MAX_RECORDS} can be taken"),
+                format!("{count:.3e} load steps, of which {MAX_RECORDS} can be taken"),
             )
             .help("give a larger `max_step`"));
         }

@@ -223,7 +223,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let (mut unsure, mut hidden): (Option<(usize, f64)>, _) = (None, None);
     for (reciprocal, left, mut shape) in found {
         let deviation = deviation(reciprocal, left, &shape);
-        if reciprocal <= deviation {
+        if reciprocal <= deviation || deviation.is_nan() {
             // Load factors at which beams would be crushed before do not matter.
             hidden = Some(1.0 / deviation).filter(|above| above * strain < 1.0);
             break;

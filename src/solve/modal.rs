@@ -71,8 +71,7 @@ pub fn solve(
     shifted.add(shift, &mass);
     let (border, fixed) = (system.border(load, q), system.fixed());
     let pencil = Pencil { a: &shifted, b: &mass, border: &border, fixed };
-    let pairs =
-        largest_reciprocals(&pencil, count + GUARD).or_else(|_| largest_reciprocals(&pencil, count))?;
+    let pairs = largest_reciprocals(&pencil, count + GUARD)?;
     if pairs.vectors.is_empty() {
         return Err(EigenError::NotConverged { found: 0, wanted: count });
     }
