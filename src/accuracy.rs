@@ -16,7 +16,9 @@
 //! A pair alone cannot tell k, nor whether the meshes see what decides: a boundary layer that is
 //! thinner than a cell changes little from one mesh to the next. So a third run on half the coarse
 //! mesh comes first, and k is three quarters of the factor by which the differences of the three
-//! fall, later by which they fall from round to round; but no more than the method promises.
+//! fall, later by which they fall from round to round; but no more than the method promises. Where cells
+//! have moved, differences before and after do not tell how errors fall, as those of positions need not come
+//! from where curvatures err: there are three runs again.
 //! Where the mesh and the steps of a motion do not fall alike, a run on the coarse mesh with the finer
 //! steps tells their errors apart: each has its own k, and what is stated is the sum of both.
 //! Curvatures and section forces are of second order: their k is 4, or less. Where these first two

@@ -31,13 +31,13 @@ const UNKNOWN: ProbeSample = ProbeSample {
 /// Where all beams are compared, as arc lengths \[m\] on each: in every cell of the coarser meshes as
 /// many. Where nodes of the finer ones come to lie both are at their best, and none of those is taken
 /// but the end and the nodes that must be: where something acts that makes the strain jump, elements
-/// whose strain cannot jump err most.
+/// whose strain cannot jump err most. Nor are the quarters of the coarser cells: where curvatures are linear
+/// within cells, as those of elements nearly are, both err alike there.
 pub(super) fn stations(meshes: &[Mesh]) -> Vec<Vec<f64>> {
     let of = |mesh: &Mesh| {
-        let parts = parts(mesh);
         let of_cell = |cell: &[f64]| {
             let node = mesh.must_be(cell[0]).then_some(cell[0]).filter(|s| *s > 0.0);
-            let inside = parts.iter().map(|p| cell[0] + p * (cell[1] - cell[0]));
+            let inside = parts(mesh, cell).iter().map(|p| cell[0] + p * (cell[1] - cell[0]));
             node.into_iter().chain(inside).collect::<Vec<_>>()
         };
         let mut s: Vec<f64> = mesh.nodes.windows(2).flat_map(of_cell).collect();
@@ -47,9 +47,16 @@ pub(super) fn stations(meshes: &[Mesh]) -> Vec<Vec<f64>> {
     meshes.iter().map(of).collect()
 }
 
-/// The stations inside of a cell, as parts of its length.
-fn parts(mesh: &Mesh) -> &'static [f64] {
-    if mesh.cells() * 2 <= STATIONS { &[0.25, 0.75] } else { &[0.25] }
+/// The stations inside of a cell, as parts of its length. A beam that is the mirror image of itself has stations that
+/// are.
+fn parts(mesh: &Mesh, cell: &[f64]) -> &'static [f64] {
+    if mesh.cells() * 2 <= STATIONS {
+        &[0.375, 0.625]
+    } else if cell[0] + cell[1] < mesh.length() {
+        &[0.375]
+    } else {
+        &[0.625]
+    }
 }
 
 /// How a coarse run and a finer one differ.
@@ -219,16 +226,10 @@ fn states<'t>(
         for &(i, j) in &pairs {
             let (Some(a), Some(b)) = (a.samples.get(i), b.samples.get(j)) else { continue };
             samples[j] = differ(a, b);
-            // Errors are waves along a beam: a probe that lies where one passes zero tells less than what
-            // is on both sides of it.
             let around = |t: &'t Trajectory, record: usize| t.stations.get(record)?.get(probe.at.beam);
-            let around = around(coarse, i).zip(around(fine, j)).and_then(|(a, b)| {
-                let after = b.s.partition_point(|s| *s < probe.at.s);
-                let apart = |k: usize| Some((a.x.get(k)? - b.x.get(k)?).hypot(a.y.get(k)? - b.y.get(k)?));
-                Some(apart(after.checked_sub(1)?)?.min(apart(after)?))
-            });
-            samples[j].x = larger(samples[j].x, around.unwrap_or(0.0));
-            samples[j].y = samples[j].x;
+            if let Some((a, b)) = around(coarse, i).zip(around(fine, j)) {
+                samples[j] = not_by_chance(samples[j], a, b, probe.at.s);
+            }
             let error = samples[j].x / lengths[probe.at.beam];
             difference.records[j] = larger(difference.records[j], error);
             result = larger(result, error);
@@ -247,7 +248,6 @@ fn states<'t>(
             curvature: vec![0.0; s.len()],
         };
         let mut squares = vec![0.0_f64; mesh.cells()];
-        let stations_of_cell = parts(mesh).len() as f64;
         for &(i, j) in &pairs {
             let mut now = vec![0.0_f64; mesh.cells()];
             let at = |t: &'t Trajectory, record: usize| t.stations.get(record)?.get(index);
@@ -267,7 +267,8 @@ fn states<'t>(
                 }
                 if !end && !node {
                     let cell = mesh.cell_at(s[k]);
-                    let width = (mesh.nodes[cell + 1] - mesh.nodes[cell]) / stations_of_cell;
+                    let ends = &mesh.nodes[cell..=cell + 1];
+                    let width = (ends[1] - ends[0]) / parts(mesh, ends).len() as f64;
                     let bent = if bends { error.curvature } else { within_half_a_turn(error.angle) / length };
                     // A part that is longer by its strain moves what is behind it by its length, one that is
                     // bent by its distance.
@@ -348,15 +349,40 @@ fn differ(a: &ProbeSample, b: &ProbeSample) -> ProbeSample {
 
 /// What a shape holds, place by place.
 fn samples(shape: &Shape) -> impl Iterator<Item = ProbeSample> {
-    (0..shape.s.len()).map(|k| ProbeSample {
-        x: shape.x[k],
-        y: shape.y[k],
-        angle: shape.angle[k],
-        curvature: shape.curvature[k],
-        strain: shape.strain[k],
+    (0..shape.s.len()).filter_map(|k| sample(shape, k))
+}
+
+/// What a shape holds at its place of this number.
+fn sample(shape: &Shape, k: usize) -> Option<ProbeSample> {
+    Some(ProbeSample {
+        x: *shape.x.get(k)?,
+        y: *shape.y.get(k)?,
+        angle: *shape.angle.get(k)?,
+        curvature: *shape.curvature.get(k)?,
+        strain: *shape.strain.get(k)?,
         vx: None,
         vy: None,
     })
+}
+
+/// What a probe at `s` differs by, and no less than what is on both sides of it. Errors are waves along a beam:
+/// a probe that lies where one passes zero tells nothing.
+fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64) -> ProbeSample {
+    let differ_at = |k: usize| Some(differ(&sample(coarse, k)?, &sample(fine, k)?));
+    let after = fine.s.partition_point(|place| *place < s);
+    let Some((before, after)) = after.checked_sub(1).and_then(differ_at).zip(differ_at(after)) else {
+        return seen;
+    };
+    let angle = within_half_a_turn(before.angle).min(within_half_a_turn(after.angle));
+    let distance = larger(seen.x, before.x.min(after.x));
+    ProbeSample {
+        x: distance,
+        y: distance,
+        angle: larger(seen.angle, angle),
+        curvature: larger(seen.curvature, before.curvature.min(after.curvature)),
+        strain: larger(seen.strain, before.strain.min(after.strain)),
+        ..seen
+    }
 }
 
 /// The size of an angle without whole turns, which shapes do not tell.
@@ -573,7 +599,7 @@ mod tests {
     /// node that must be.
     #[test]
     fn stations_are_inside_of_cells_and_at_nodes_that_must_be() {
-        assert_eq!(stations(&meshes()), [vec![0.125, 0.375, 0.875, 1.625, 2.0], vec![1.0, 3.0, 4.0]]);
+        assert_eq!(stations(&meshes()), [vec![0.1875, 0.3125, 1.0625, 1.4375, 2.0], vec![1.5, 2.5, 4.0]]);
         let pulled = scene("static = {}\neffect.force = [{ beam = 'arm', at = 0.5, value = [1, 0] }]");
         let mesh = Mesh::first(pulled.model(), 0, 1.0).remove(0);
         let nodes: Vec<f64> = stations(std::slice::from_ref(&mesh))[0]
@@ -587,7 +613,8 @@ mod tests {
             stations(&[Mesh::of(&nodes)]).remove(0)
         };
         assert_eq!((of_cells(32).len(), of_cells(33).len()), (65, 34));
-        assert_eq!(of_cells(33)[31..], [31.25, 32.25, 33.0]);
+        assert_eq!(of_cells(33)[14..18], [14.375, 15.375, 16.625, 17.625]);
+        assert_eq!(of_cells(34)[16..18], [16.375, 17.625]);
     }
 
     #[test]
@@ -681,8 +708,16 @@ mod tests {
         assert_eq!(found.errors, Errors { result: 0.4, curvature: Some(0.5), section_force: None });
         assert_eq!(found.records, [0.0, 0.4, 0.4]);
         let tip = &found.probes[0].samples;
-        let last =
-            ProbeSample { x: 0.5, y: 0.5, angle: 0.1, strain: 0.2, vx: Some(2.0), ..ProbeSample::default() };
+        // The curvature is that of the stations beside it, which differ though the probe does not.
+        let last = ProbeSample {
+            x: 0.5,
+            y: 0.5,
+            angle: 0.1,
+            strain: 0.2,
+            curvature: 3.5,
+            vx: Some(2.0),
+            ..ProbeSample::default()
+        };
         assert_eq!((found.probes.len(), tip[0].x, tip[1], tip[2]), (1, 0.0, last, last));
         assert_eq!(found.beams[0].position, [0.0, 0.0, 0.0, 0.0, 0.4]);
         assert_eq!(found.beams[0].curvature, [3.0, 2.0, 1.0, 4.0, 3.5]);
@@ -793,6 +828,31 @@ mod tests {
             Results::from(CriticalLoads { modes, ..CriticalLoads::default() })
         };
         assert_eq!(of(&load(-3.0), &load(-4.0)).unwrap().eigenvalues, [0.25]);
+    }
+
+    /// Everything a probe sees differs at least by the smaller one of the differences on both sides of it; at the
+    /// start of a beam there is one side only.
+    #[test]
+    fn probes_differ_no_less_than_both_sides_of_them() {
+        let of = |by: f64| Shape {
+            s: vec![0.0, 1.0, 3.0],
+            x: vec![0.0; 3],
+            y: vec![0.0, by, 2.0 * by],
+            angle: vec![0.0, 3.0 * by + TAU, 4.0 * by],
+            strain: vec![0.0, 6.0 * by, 5.0 * by],
+            curvature: vec![0.0, 7.0 * by, -8.0 * by],
+            ..Shape::default()
+        };
+        let none = ProbeSample::default();
+        let at = |seen, s| not_by_chance(seen, &of(0.0), &of(0.125), s);
+        let least = ProbeSample { x: 0.125, y: 0.125, angle: 0.375, strain: 0.625, curvature: 0.875, ..none };
+        let found = at(none, 2.0);
+        assert!((found.angle - least.angle).abs() < 1e-14);
+        assert_eq!(ProbeSample { angle: least.angle, ..found }, least);
+        let more =
+            ProbeSample { x: 1.0, y: 1.0, angle: 1.0, strain: 1.0, curvature: 1.0, vx: Some(0.0), vy: None };
+        assert_eq!(at(more, 2.0), more);
+        assert_eq!((at(none, 0.0), at(none, 0.5), at(none, 3.5)), (none, none, none));
     }
 
     #[test]

@@ -32,8 +32,10 @@ const FIRST: f64 = 1.5;
 const TOO_FAST: f64 = 2.5;
 /// The factor that is taken, in the factor that was seen.
 pub(super) const CAUTION: f64 = 0.75;
-/// Cells must be so many times finer than those of the round before to tell how errors fall.
+/// Cells must be so many times finer than those of the round before to tell how errors fall …
 const FINER: f64 = 1.5;
+/// … and where errors were by the same factor as everywhere, but for this one.
+const ALIKE: f64 = 1.3;
 
 /// A round with what is known of its errors.
 pub(super) struct Judged {
@@ -100,6 +102,11 @@ pub(super) struct Fall {
 }
 
 impl Fall {
+    /// Before anything is known of it.
+    pub fn unknown(difference: f64) -> Self {
+        Self { difference, factor: CONTRACTION_OF_SECOND_ORDER / CAUTION }
+    }
+
     /// That of the steps of motions before anything is known of it.
     pub fn of_steps(difference: f64) -> Self {
         Self { difference, factor: FALL_OF_STEPS / CAUTION }
@@ -129,6 +136,15 @@ pub(super) struct Seen {
 }
 
 impl Seen {
+    /// Whether such meshes are finer by as much everywhere as where errors were. Only then the differences of both rounds
+    /// tell how errors fall: those of positions need not come from where curvatures err.
+    pub fn is_like(&self, meshes: &[Mesh]) -> bool {
+        let cells = |meshes: &[Mesh]| meshes.iter().map(Mesh::cells).sum::<usize>() as f64;
+        let everywhere = cells(meshes) / cells(&self.meshes);
+        let there = mesh::refinement(&self.meshes, &self.cells, meshes);
+        (there / everywhere).max(everywhere / there) <= ALIKE
+    }
+
     /// How many times finer such meshes and such a tolerance are, in halvings of cells: a 16th of the
     /// tolerance goes with one.
     pub fn finer(&self, meshes: &[Mesh], tolerance: f64) -> [f64; 2] {
@@ -138,14 +154,13 @@ impl Seen {
 }
 
 impl Runner<'_, '_> {
-    /// The fall of errors that is believed of the first three runs, and the caution with which:
-    /// where the coarsest was of no use at all, its difference tells nothing, and little is taken.
-    pub fn first_fall(&self, seen: Option<f64>, difference: f64) -> (Fall, f64) {
-        let of = |factor| Fall { difference, factor };
+    /// The fall of errors that is believed of three runs, and the caution with which: where the coarsest
+    /// was of no use at all, its difference tells nothing, and little is taken.
+    pub fn fall_alone(&self, seen: Option<f64>, difference: f64) -> (Fall, f64) {
         let [promised, _] = self.contractions_with_steps(f64::INFINITY);
         match seen.filter(|factor| *factor <= TOO_FAST * promised) {
-            None => (of(CONTRACTION_OF_SECOND_ORDER / CAUTION), 1.0),
-            Some(factor) => (of(factor), FIRST),
+            None => (Fall::unknown(difference), 1.0),
+            Some(factor) => (Fall { difference, factor }, FIRST),
         }
     }
 
@@ -265,7 +280,7 @@ mod tests {
         let scene = scene("analysis.static = {}");
         let runner = runner(&scene, 1e-4);
         let of = |seen: Option<f64>| {
-            let (fall, caution) = runner.first_fall(seen, 2e-3);
+            let (fall, caution) = runner.fall_alone(seen, 2e-3);
             assert_eq!(fall.difference, 2e-3);
             (fall.factor, caution)
         };
@@ -307,5 +322,27 @@ mod tests {
         assert_eq!((found.difference, found.factor), (1.0 / 64.0, 8.0));
         assert_eq!(fall(2.0, 0.25).factor, 4.0);
         assert_eq!(fall(1.4, 0.1).factor, 7.0, "hardly finer");
+    }
+
+    /// The first of two cells errs. It is cut into six and the other one into two, or both into three or four.
+    #[test]
+    fn meshes_are_alike_where_cells_are_finer_by_as_much_everywhere() {
+        let seen = Seen {
+            meshes: vec![Mesh::of(&[0.0, 1.0, 2.0])],
+            cells: vec![CellErrors { squares: vec![1.0, 0.0], order: 2.0 }],
+            tolerance: 1e-3,
+            excess: 1.0,
+            whole: Fall { difference: 1.0, factor: 7.0 },
+            apart: None,
+        };
+        let is_like = |cells: [usize; 2]| {
+            let part = |(start, cells): (usize, usize)| {
+                (0..cells).map(move |i| start as f64 + i as f64 / cells as f64)
+            };
+            let nodes = cells.into_iter().enumerate().flat_map(part).chain([2.0]).collect::<Vec<_>>();
+            seen.is_like(&[Mesh::of(&nodes)])
+        };
+        assert!(is_like([4, 4]) && is_like([4, 3]) && is_like([3, 4]));
+        assert!(!is_like([6, 2]) && !is_like([2, 6]) && !is_like([2, 4]));
     }
 }

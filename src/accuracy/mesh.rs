@@ -272,8 +272,9 @@ pub(super) fn refined(meshes: &[Mesh], errors: &[Option<CellErrors>], times: f64
     // How fast errors fall on cells that are where they should be is only known when they are there.
     let times = if gain < UNEVEN { times.min(CAREFUL) } else { times };
     let number = cells as f64 * times * gain.powf((2.0 * order).recip());
-    // Other places alone are not enough where cells are not far from them.
-    let number = if gain < UNEVEN { number } else { number.max(MORE * cells as f64) };
+    // Other places alone are not enough where cells are not far from them. Nor do they gain all of what is promised
+    // where errors are large in a part of a cell only, of which the cell tells nothing.
+    let number = number.max(if gain < UNEVEN { times.sqrt() } else { MORE } * cells as f64);
     let per_cell = total / number.min(most as f64);
     let spread = |(mesh, d): (&Mesh, &Option<Vec<f64>>)| match d {
         Some(d) => mesh.spread(d, per_cell),
@@ -527,11 +528,15 @@ mod tests {
         assert_eq!(refined_to(&[0.0, 0.5, 1.0], &squares, 3.0, 100).len(), 1 + 5);
         assert_eq!(refined_to(&[0.0, 0.5, 1.0], &squares, 40.0, 8).len(), 1 + 8);
         // All in the first of eight cells: densities of 8, 4, 2, 1, and then three tenths of their mean,
-        // 0.6. Twice the cells at once and no more, times (2.174⁵/8⁴/1.032)^{1/4}, are 5.2 cells.
+        // 0.6. Twice the cells at once and no more, times (2.174⁵/8⁴/1.032)^{1/4}, are 5.2 cells, but there are to be
+        // 8·√2 = 11.3 at least.
         let even: Vec<f64> = (0..9).map(|i| f64::from(i) / 8.0).collect();
         let found = refined_to(&even, &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 4.0, 100);
-        // ∫ d ds is 1, 1/2, 1/4, 1/8 and 0.0747 four times in the old cells, and 0.3623 in each new one.
-        let expected = [0.0, 0.045_29, 0.090_58, 0.146_73, 0.2373, 0.4365, 1.0];
+        // ∫ d ds is 1, 1/2, 1/4, 1/8 and 0.0747 four times in the old cells, and 0.1812 in each new one.
+        let expected = [
+            0.0, 0.022_64, 0.045_29, 0.067_93, 0.090_58, 0.113_22, 0.146_73, 0.192_02, 0.2373, 0.315_19,
+            0.4365, 0.6969, 1.0,
+        ];
         assert_eq!(found.len(), expected.len(), "{found:?}");
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
         // Where nothing tells where, cells are cut in up to four.

@@ -338,13 +338,13 @@ impl<'a, 'o> Runner<'a, 'o> {
         Ok(results)
     }
 
-    /// A coarse run and a finer one; in the first round one that is still coarser, too. Each finds
-    /// its own way from the start: one that began where another ended would follow it to a wrong
-    /// branch. With `hopeful` the first round goes on to the finer run even if it cannot be enough.
-    pub fn round(&mut self, first: bool, hopeful: bool) -> Result<Outcome, RunError> {
+    /// A coarse run and a finer one; `alone`, where no round before tells how errors fall, one that is still
+    /// coarser, too. Each finds its own way from the start: one that began where another ended would follow it
+    /// to a wrong branch. With `hopeful` such a round goes on to the finer run even if it cannot be enough.
+    pub fn round(&mut self, alone: bool, hopeful: bool) -> Result<Outcome, RunError> {
         let stations = stations(&self.meshes);
         let mut pair = |fineness, purpose| self.solve(&stations, &self.setting(fineness, fineness), purpose);
-        let coarsest = if first { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
+        let coarsest = if alone { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
         let coarse = pair(Fineness::Coarse, Purpose::Shapes);
         let before = coarsest.as_ref().zip(coarse.as_ref().ok());
         let before = before.and_then(|(a, b)| {
@@ -358,7 +358,7 @@ impl<'a, 'o> Runner<'a, 'o> {
         let setting = self.setting(Fineness::Fine, Fineness::Fine);
         let results = self.solve(&stations, &setting, Purpose::Results)?;
         let run = self.runs.len() - 1;
-        if first && let Some(apart) = self.beside_elements(&stations, &setting, &results) {
+        if alone && let Some(apart) = self.beside_elements(&stations, &setting, &results) {
             self.saturation = apart;
         }
         let difference = match &coarse {

@@ -13,11 +13,14 @@
 //! second-order term cancels; keeping the first alone would make a stiff beam in bending buckle at
 //! once. An effect whose tangent extrapolates its resultants ([`crate::effect`]) gives K₀ + λ K₁
 //! when it is asked for the tangent one increment λ u ahead.
+//!
+//! On short cells the entries of K₀ have lost the digits of soft motions. Shapes are therefore corrected by products with K₀
+//! that are evaluated without a matrix, and 1/λ is Rayleigh's quotient ([`super::eigen::corrected`]). What round-off may still
+//! change comes with the results; where it hides every load factor, there is an error.
 
-use super::eigen::{EigenError, Pencil, dot, largest_reciprocals, ritz, round_off};
+use super::eigen::{CERTAIN, Corrected, EigenError, Pencil, corrected, largest_reciprocals, round_off};
 use super::equilibrium::Equilibrium;
 use crate::assembly::{Earlier, Kind, Workspace, nodes};
-use crate::linear::bordered::BorderRow;
 use crate::system::System;
 
 /// Critical loads, lowest first.
@@ -57,19 +60,8 @@ const ROUND_OFF: f64 = 1e-11;
 /// What may act on the beams without any load.
 pub const STRESSING: &[Kind] = &[Kind::Spring, Kind::Contact];
 
-/// A reciprocal counts as different from zero if it exceeds its round-off by this many standard
-/// deviations.
-const CERTAIN: f64 = 10.0;
-
 /// Vectors computed beyond the wanted ones.
 const GUARD: usize = 4;
-/// Most times that shapes are corrected by what is left of their equations …
-const CORRECTIONS: usize = 12;
-/// … until what is left bounds the error of a reciprocal by this part of the largest: the error itself is of the square.
-const SETTLED: f64 = 1e-6;
-/// A correction moves constraints by this part at most of what its entries would; what moves them by more is round-off.
-const HELD: f64 = 1e-9;
-
 /// The coordinates and scaled multipliers of the state whose critical loads are found.
 pub fn base(system: &System) -> Vec<f64> {
     if system.is_taken_up() {
@@ -125,10 +117,9 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, fixed };
     let pairs =
         largest_reciprocals(&pencil, count + GUARD).or_else(|_| largest_reciprocals(&pencil, count))?;
-    // K₀ has lost digits where cells are short. Its products without a matrix have not: with them, shapes are corrected
-    // by what their equations leave, and reciprocals are Rayleigh's quotients.
-    let product = |v: &Vec<f64>| {
-        let (mut v, mut f) = (v.clone(), vec![0.0; n]);
+    // K₀ has lost digits where cells are short. Its products without a matrix have not.
+    let product = |v: &[f64]| {
+        let (mut v, mut f) = (v.to_vec(), vec![0.0; n]);
         system.supports().from_frames(0.0, &mut v);
         system.tangent_product(0.0, q, &v, &mut f);
         system.add_winding_tangent_product(&variables, q, &v, &mut f);
@@ -136,25 +127,13 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         system.supports().to_frames(0.0, &mut f);
         f
     };
-    // The root of rᵀ K₀⁻¹ r of what a pair leaves, r = (B − K₀/λ) φ, is a bound of the error of 1/λ. The round-off of the matrix that
-    // is inverted makes it stiffer, by as much as it adds to φᵀ K₀ φ = 1 if nothing cancels.
-    let remainder = |reciprocal: f64, v: &Vec<f64>| {
-        let (stiff, mut left) = (product(v), geometric.product(v));
-        for ((left, stiff), fixed) in left.iter_mut().zip(stiff).zip(fixed) {
-            *left = if *fixed { 0.0 } else { *left - reciprocal * stiff };
-        }
-        let mut correction = left.clone();
-        correction.resize(x.len(), 0.0);
-        equilibrium.solve(0.0, &mut correction, false);
-        correction.truncate(n);
-        system.supports().to_frames(0.0, &mut correction);
-        let size = (dot(&left, &correction).abs() * (1.0 + CERTAIN * round_off(&stiffness, v))).sqrt();
-        (size, correction)
-    };
-    let holds = |row: &BorderRow, v: &[f64]| {
-        let terms = row.iter().map(|(i, value)| value * v[*i]);
-        let (sum, size) = terms.fold((0.0, 0.0), |(sum, size), term| (sum + term, size + term.abs()));
-        sum.abs() <= HELD * size
+    let inverse = |force: &[f64]| {
+        let mut change = force.to_vec();
+        change.resize(x.len(), 0.0);
+        equilibrium.solve(0.0, &mut change, false);
+        change.truncate(n);
+        system.supports().to_frames(0.0, &mut change);
+        change
     };
     let of_geometric = |shape: &[f64]| round_off(within.as_ref().unwrap_or(&geometric), shape);
     // A load that compresses nothing has reciprocals that are the round-off of B alone.
@@ -164,38 +143,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let real = |(reciprocal, shape): &(f64, Vec<f64>)| *reciprocal > least.max(CERTAIN * of_geometric(shape));
     let pairs: Vec<(f64, Vec<f64>)> =
         pairs.reciprocals.into_iter().zip(pairs.vectors).take_while(real).collect();
-    // 1/λ, what it may err by, φ.
-    let mut found: Vec<(f64, f64, Vec<f64>)> = pairs.iter().map(|(r, v)| (*r, *r, v.clone())).collect();
-    let mut vectors: Vec<Vec<f64>> = pairs.into_iter().map(|(_, shape)| shape).collect();
-    for round in 0..=CORRECTIONS {
-        let products = |of: &dyn Fn(&Vec<f64>) -> Vec<f64>| vectors.iter().map(of).collect::<Vec<_>>();
-        let (of_b, of_k) = (products(&|v| geometric.product(v)), products(&product));
-        // Vectors that depend on each other tell nothing new.
-        let Ok(mut pairs) = ritz(&vectors, &of_b, &of_k) else { break };
-        pairs.reverse();
-        let largest = pairs.first().map_or(0.0, |(reciprocal, _)| reciprocal.abs());
-        found.clear();
-        let mut corrections = Vec::new();
-        for (number, (reciprocal, shape)) in pairs.into_iter().enumerate() {
-            if number >= count {
-                found.push((reciprocal, 0.0, shape));
-                continue;
-            }
-            let (size, correction) = remainder(reciprocal, &shape);
-            if size > SETTLED * largest
-                && size.is_finite()
-                && border.iter().all(|row| holds(row, &correction))
-            {
-                corrections.push(correction.into_iter().map(|c| c / size).collect());
-            }
-            found.push((reciprocal, size, shape));
-        }
-        if corrections.is_empty() || round == CORRECTIONS {
-            break;
-        }
-        vectors = found.iter().map(|(_, _, shape)| shape.clone()).chain(corrections).collect();
-    }
-    found.truncate(count);
+    let found = corrected(&pencil, pairs, count, &product, &inverse);
     // What balances nothing in the state itself: in the stress-free one the round-off of strains.
     let prestress =
         if system.is_taken_up() { 0.0 } else { system.force_at_start(STRESSING) / system.norm(&load) };
@@ -203,14 +151,14 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let stressed = if prestress > 0.0 { 0.0 } else { unbalanced * system.length() };
     // What 1/λ = φᵀ B φ, with φᵀ K₀ φ = 1, may err by: by the round-off of B, of the products with K₀, in which that of a
     // position acts once and in its square, and of the state's stress.
-    let deviation = |reciprocal: f64, left: f64, shape: &[f64]| {
+    let deviation = |reciprocal: f64, bound: f64, shape: &[f64]| {
         let entries = shape.iter().enumerate().map(|(i, v)| stiffness.get(i, i).abs() * v * v);
         let of_products = f64::EPSILON * entries.sum::<f64>().sqrt();
         let slope = nodes(shape).map(|node| node.slope()).fold(0.0, f64::max);
         let of_stiffness = of_products * (2.0 + of_products);
         CERTAIN * (of_geometric(shape) + reciprocal * of_stiffness)
             + reciprocal * stressed * slope * slope
-            + left
+            + bound
     };
     let (mut turn, mut strain) = (0.0_f64, 0.0_f64);
     for (rate, node) in nodes(&rate[..n]).zip(nodes(q)) {
@@ -221,8 +169,8 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     }
     let (mut load_factors, mut shapes) = (Vec::new(), Vec::new());
     let (mut unsure, mut hidden): (Option<(usize, f64)>, _) = (None, None);
-    for (reciprocal, left, mut shape) in found {
-        let deviation = deviation(reciprocal, left, &shape);
+    for Corrected { reciprocal, bound, vector: mut shape } in found {
+        let deviation = deviation(reciprocal, bound, &shape);
         if reciprocal <= deviation || deviation.is_nan() {
             // Load factors at which beams would be crushed before do not matter.
             hidden = Some(1.0 / deviation).filter(|above| above * strain < 1.0);

@@ -12,10 +12,12 @@
 //! | few, or not many more than wanted pairs | Cholesky's A = L Lᵀ, all of L⁻¹ B L⁻ᵀ by faer | [`dense`] |
 //! | many | Lanczos with one factorisation of the band | [`lanczos`] |
 
+mod correct;
 pub mod dense;
 pub mod lanczos;
 mod ritz;
 
+pub use correct::{Corrected, corrected};
 pub use ritz::ritz;
 
 use crate::linear::bordered::BorderRow;
@@ -134,6 +136,9 @@ pub struct Pairs {
     pub vectors: Vec<Vec<f64>>,
 }
 
+/// A value counts as different from zero if it exceeds its round-off by this many standard
+/// deviations.
+pub(super) const CERTAIN: f64 = 10.0;
 /// A reciprocal smaller than this fraction of the largest one is round-off.
 const NEGLIGIBLE: f64 = 1e-13;
 

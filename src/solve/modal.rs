@@ -13,7 +13,7 @@
 //! frequency that cannot be told from zero is set to zero where a motion without deformation may
 //! have it, and refused else.
 
-use super::eigen::{EigenError, Pencil, dot, largest_reciprocals, ritz, round_off};
+use super::eigen::{CERTAIN, EigenError, Pencil, dot, largest_reciprocals, ritz, round_off};
 use crate::assembly::{InternalVariables, Workspace, nodes};
 use crate::linear::Matrix;
 use crate::system::System;
@@ -124,9 +124,6 @@ pub fn solve(
 const SHIFT: f64 = 10.0;
 /// Vectors computed beyond the wanted ones, which would otherwise be mixed with modes left out.
 const GUARD: usize = 4;
-/// An ω² counts as different from zero if it exceeds its round-off by this many standard
-/// deviations.
-const CERTAIN: f64 = 10.0;
 /// Least ratio of the shift to the round-off of a zero ω².
 const STAND_OUT: f64 = 1e3;
 

@@ -305,6 +305,25 @@ fn errors_are_drawn_about_the_values_and_along_the_beam() {
     }
 }
 
+/// No line leads to a record that is known between two that are not: it has a dot, however many records there are.
+#[test]
+fn errors_of_single_records_are_dots() {
+    let dots = |every: usize| {
+        let mut many = rise(100);
+        let records = (0..100).map(|i| if i % every == 0 { 1e-4 } else { f64::NAN }).collect();
+        let (s, values) = (vec![0.0, 1.0], vec![1e-4; 2]);
+        let along = BeamErrors { beam: "arm".into(), s, position: values.clone(), curvature: values };
+        many.run.error = Some(Box::new(ErrorEstimate {
+            estimated: Errors { result: 1e-4, ..Errors::default() },
+            records,
+            beams: vec![along],
+            ..ErrorEstimate::default()
+        }));
+        picture(&many, "error.svg").named("circle").count()
+    };
+    assert_eq!([dots(1), dots(4)], [0, 25]);
+}
+
 /// Would catch a round-off that looks like a signal, and a small signal that is taken for one.
 #[test]
 fn what_is_negligible_depends_on_the_quantity() {

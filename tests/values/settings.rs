@@ -159,6 +159,18 @@ fn load_steps_are_no_longer_than_allowed() {
         assert_eq!((found.len(), taken), (records + 1, steps), "{statics}");
         assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12), "{statics}: {found:?}");
     }
+    for (step, words) in [
+        ("1e-300", "1.000e300 load steps"),
+        ("5e-7", "2.000e6 load steps, of which 1000000"),
+        ("0", "positive"),
+    ] {
+        let text = format!(
+            "{}analysis.static = {{ steps = 2, max_step = {step} }}\n",
+            BAR.replace("BASIS", "basis.ancf.elements = 1")
+        );
+        let error = parse("scene.toml", &text).expect_err("an illegal step").to_string();
+        assert!(error.contains(words), "{error}");
+    }
     let path = |rough: &str| loads("analysis.static.arc_length = { until_load = 1 }", rough).1;
     assert!(path(rough) >= 2 * path(""), "{} {}", path(rough), path(""));
 }

@@ -46,6 +46,10 @@ pub fn ritz(
             (value, shape)
         })
         .collect();
+    // A pivot that is all round-off passes for a positive one.
+    if pairs.iter().any(|(value, _)| !value.is_finite()) {
+        return Err(EigenError::Projection);
+    }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(pairs)
 }
