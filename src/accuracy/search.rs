@@ -147,7 +147,7 @@ impl<'a, 'o> Search<'a, 'o> {
                 return Ok(self.finished(Judged::unknown(round), Some(why.to_owned())));
             }
             rounds += 1;
-            let (now, mut judged) = self.judged(round, difference, before.as_ref());
+            let (now, mut judged) = self.judged(round, difference, before.as_ref().filter(|_| !alone));
             stalls = match &before {
                 Some(before) if now.excess > STALLED * before.excess => stalls + 1,
                 _ => 0,
@@ -203,12 +203,12 @@ impl<'a, 'o> Search<'a, 'o> {
         }
     }
 
-    /// What a round has seen, and what it tells of the errors of its finer run.
+    /// What a round has seen, and what it tells of the errors of its finer run; together with the round `before` if its
+    /// meshes were like these.
     fn judged(&mut self, round: Round, difference: Difference, before: Option<&Seen>) -> (Seen, Judged) {
         let excess_of =
             |runner: &Runner<'_, '_>, errors| runner.wanted.map_or(0.0, |wanted| excess(errors, wanted));
-        let like = before.filter(|before| before.is_like(&self.runner.meshes));
-        let finer = like.map(|before| (before, before.finer(&self.runner.meshes, self.runner.tolerance)));
+        let finer = before.map(|before| (before, before.finer(&self.runner.meshes, self.runner.tolerance)));
         let all = difference.errors.result;
         let (whole, mut caution) = match finer {
             None => self.runner.fall_alone(round.fall, all),
