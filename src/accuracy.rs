@@ -26,6 +26,9 @@
 //! promises, or that equilibria are a tenth of a beam length apart, those are not paid for: the
 //! search goes on with a finer mesh at once.
 //!
+//! Whether an accuracy is met is decided with these largest errors. What is then stated is what is most
+//! likely: the geometric mean of the largest error and the smallest one, which falls as fast as was seen.
+//!
 //! Radial shape functions that a scene names may have errors that no finer mesh removes, so that all
 //! meshes agree. Where they do, elements on the same nodes are asked as well, and errors are taken to
 //! be at least the difference.

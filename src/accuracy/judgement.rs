@@ -44,6 +44,8 @@ pub(super) struct Judged {
     pub estimate: Option<Estimate>,
     /// By how much errors are taken to be larger.
     pub caution: f64,
+    /// The part of these largest errors of results that they most likely are.
+    pub likely: f64,
     /// The largest error in units of what was wanted.
     pub excess: f64,
 }
@@ -78,10 +80,10 @@ impl Estimate {
 impl Judged {
     /// Nothing is known.
     pub fn unknown(round: Round) -> Self {
-        Self { round, estimate: None, caution: 1.0, excess: f64::INFINITY }
+        Self { round, estimate: None, caution: 1.0, likely: 1.0, excess: f64::INFINITY }
     }
 
-    /// The errors of the finer run; infinite where nothing is known.
+    /// The largest errors that the finer run may have; infinite where nothing is known.
     pub fn errors(&self) -> Errors {
         let unknown = Errors { result: f64::INFINITY, ..Errors::default() };
         self.estimate.as_ref().map_or(unknown, |estimate| self.with_caution(estimate.whole.errors))
@@ -90,6 +92,15 @@ impl Judged {
     /// Errors as they are taken to be.
     pub fn with_caution(&self, errors: Errors) -> Errors {
         scaled(errors, [self.caution.recip(); 2])
+    }
+
+    /// With errors of results that are no less than this.
+    pub fn at_least(&mut self, error: f64) {
+        let seen = self.errors().result;
+        if seen > 0.0 && error > seen {
+            self.caution *= error / seen;
+            self.likely = 1.0;
+        }
     }
 }
 
@@ -162,6 +173,16 @@ impl Runner<'_, '_> {
             None => (Fall::unknown(difference), 1.0),
             Some(factor) => (Fall { difference, factor }, FIRST),
         }
+    }
+
+    /// The part of the `largest` error that the error of a finer run most likely is: the geometric mean of this one and
+    /// of the smallest, which falls as fast as was `seen`, within [`TOO_FAST`] of what the methods promise, to the
+    /// `difference`.
+    pub fn likely(&self, difference: f64, seen: f64, largest: f64) -> f64 {
+        let [promised, _] = self.contractions_with_steps(f64::INFINITY);
+        let fastest = if seen.is_nan() { promised } else { seen.clamp(promised, TOO_FAST * promised) };
+        let part = (difference / (fastest - 1.0) / largest).sqrt();
+        if part < 1.0 { part } else { 1.0 }
     }
 
     /// Factors by which errors fall from a coarse run to a finer one: as the methods promise, and
@@ -289,6 +310,17 @@ mod tests {
         assert_eq!([Some(37.6), None].map(of), [unknown; 2]);
     }
 
+    /// Differences of 14 and 29 are errors of 1 where they fall by 15 and 30, so that 4 is twice the geometric mean.
+    #[test]
+    fn errors_are_most_likely_between_the_largest_and_the_smallest() {
+        let scene = scene("analysis.static = {}");
+        let likely =
+            |difference: f64, seen: f64, largest: f64| runner(&scene, 1e-4).likely(difference, seen, largest);
+        assert_eq!([3.0, f64::NAN].map(|seen| likely(14.0, seen, 4.0)), [0.5; 2]);
+        assert_eq!((likely(29.0, 30.0, 4.0), likely(36.5, 1e3, 16.0)), (0.5, 0.25));
+        assert_eq!((likely(14.0, 15.0, 0.5), likely(0.0, 15.0, 0.0)), (1.0, 1.0));
+    }
+
     #[test]
     fn caution_makes_errors_larger() {
         let scene = scene("analysis.static = {}");
@@ -297,8 +329,15 @@ mod tests {
         let errors = Errors { result: 8.0, curvature: Some(6.0), section_force: None };
         let whole = Difference { errors, ..Difference::default() }.divided([6.0, 3.0]);
         let estimate = Estimate { mesh: whole.clone(), whole, contraction: 7.0, steps: None, missing: None };
-        let judged = Judged { round: round(), estimate: Some(estimate), caution: 1.5, excess: 0.0 };
-        assert_eq!(judged.errors(), Errors { result: 2.0, curvature: Some(3.0), section_force: None });
+        let mut judged =
+            Judged { round: round(), estimate: Some(estimate), caution: 1.5, likely: 0.5, excess: 0.0 };
+        let errors =
+            |result: f64, curvature: f64| Errors { result, curvature: Some(curvature), section_force: None };
+        assert_eq!(judged.errors(), errors(2.0, 3.0));
+        judged.at_least(1.5);
+        assert_eq!((judged.errors(), judged.likely), (errors(2.0, 3.0), 0.5));
+        judged.at_least(4.0);
+        assert_eq!((judged.errors(), judged.likely), (errors(4.0, 6.0), 1.0));
         let unknown = Judged::unknown(round());
         assert_eq!((unknown.errors().result, unknown.excess), (f64::INFINITY, f64::INFINITY));
     }

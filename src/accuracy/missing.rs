@@ -8,13 +8,18 @@
 
 use super::difference::{Difference, Scales, pairs};
 use super::mesh::Mesh;
-use crate::model::{Along, Analysis, Model, Section};
+use crate::effect::BeamDamping;
+use crate::model::{Along, Analysis, Beam, Model, Section};
 use crate::results::{AnalysisKind, BeamErrors, Errors, ProbeErrors, ProbeSample, Results, Trajectory};
+use std::any::Any;
 
 /// Energy that is missing, in the largest energy of the motion, that is worth a word.
 const TELLING: f64 = 1e-5;
 /// Errors of steps that follow a motion fall by this factor at least from a coarse run to a finer one.
 const FALLEN: f64 = 4.0;
+/// The error of positions that is most likely, in the largest that there may be: most vibrations are faster than the slowest
+/// that the steps do not follow.
+pub(super) const LIKELY: f64 = 0.3;
 /// Energies are compared during such a part of the motion at a time.
 const WINDOW: usize = 4;
 /// Fewer records than that are few.
@@ -55,7 +60,7 @@ impl Missing {
         }
         let mut losses = Vec::new();
         for (i, j) in pairs(analysis, &coarse.parameter, &fine.parameter).ok()? {
-            losses.push([lost(coarse, i)?, lost(fine, j)?]);
+            losses.push((*fine.parameter.get(j)?, [lost(coarse, i)?, lost(fine, j)?]));
         }
         // Between two steps a state is interpolated, and its energy errs to both sides: a few records tell nothing, but for
         // the last one, with which a step ends.
@@ -63,20 +68,27 @@ impl Missing {
             losses.drain(..losses.len().saturating_sub(1));
         }
         let window = losses.len().div_ceil(WINDOW) + 1;
-        let missing = |window: &[[f64; 2]]| {
-            let fine = median(window.iter().map(|[_, fine]| *fine));
+        let missing = |window: &[(f64, [f64; 2])]| {
+            let fine = median(window.iter().map(|(_, [_, fine])| *fine));
             // What falls from the coarse run to the finer one is an error of steps that follow the motion.
-            let apart = median(window.iter().map(|[coarse, fine]| (coarse - fine).abs()));
-            (fine - apart / FALLEN).max(0.0)
+            let apart = median(window.iter().map(|(_, [coarse, fine])| (coarse - fine).abs()));
+            (window.last().map_or(0.0, |(time, _)| *time), (fine - apart / FALLEN).max(0.0))
         };
-        let known: Vec<f64> = losses.windows(window.min(losses.len())).map(missing).collect();
-        let mut energies = Vec::with_capacity(fine.parameter.len());
-        let mut most = 0.0_f64;
-        for j in 0..fine.parameter.len() {
-            // What was damped once stays away.
-            most = most.max(known.get(j).copied().unwrap_or(0.0));
-            energies.push(most);
-        }
+        let known = losses.windows(window.min(losses.len())).map(missing);
+        let step =
+            (fine.parameter.last()? - fine.parameter.first()?) / fine.run.statistics.steps.max(1) as f64;
+        let fading = fading(model, meshes, step);
+        let (mut most, mut energy, mut before) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let mut energies: Vec<f64> = known
+            .map(|(time, known)| {
+                // What was damped once stays away, but for what would have faded since.
+                let more = (known - most).max(0.0);
+                energy = energy * (-fading * (time - before)).exp() + more;
+                (most, before) = (most + more, time);
+                energy
+            })
+            .collect();
+        energies.resize(fine.parameter.len(), energy);
         let total = |of: fn(&Section) -> Option<&Along>| {
             let beams = model.beams.iter().zip(meshes);
             let of = beams
@@ -94,8 +106,7 @@ impl Missing {
             axial,
             bending,
             stiffest: [stretch, bend],
-            step: (fine.parameter.last()? - fine.parameter.first()?)
-                / fine.run.statistics.steps.max(1) as f64,
+            step,
             length: meshes.iter().map(Mesh::length).fold(0.0, f64::max),
             largest: parts.fold(0.0, |most, part| most.max(part.abs())),
             energies,
@@ -190,6 +201,27 @@ fn lost(motion: &Trajectory, record: usize) -> Option<f64> {
     Some(motion.energy.first()?.total() - motion.energy.get(record)?.total())
 }
 
+/// The rate \[1/s\] at which the damping of all beams takes at least the energy of a vibration that is faster than a
+/// `step` of h \[s\]: α + η/h² of Rayleigh damping, or where that is too fast to vibrate α + 1/η.
+fn fading(model: &Model, meshes: &[Mesh], step: f64) -> f64 {
+    let of_beam = |(index, (beam, mesh)): (usize, (&Beam, &Mesh))| {
+        let least = |of: fn(&BeamDamping) -> Option<&Along>| -> f64 {
+            let damping = model.parts.iter().filter_map(|part| {
+                let part: &dyn Any = part.as_ref();
+                part.downcast_ref::<BeamDamping>().filter(|damping| damping.beam == index)
+            });
+            damping.filter_map(of).map(|along| along.bounds(mesh.length())[0]).sum()
+        };
+        let viscous = |eta: f64| if eta > 0.0 { (eta / (step * step)).min(eta.recip()) } else { 0.0 };
+        let along = beam.section.axial_stiffness.as_ref().map(|_| viscous(least(|d| d.strain.as_ref())));
+        let across =
+            beam.section.bending_stiffness.as_ref().map(|_| viscous(least(|d| d.curvature.as_ref())));
+        let slowest = [along, across].into_iter().flatten().reduce(f64::min);
+        least(|d| d.mass_proportional.as_ref()) + slowest.unwrap_or(0.0)
+    };
+    model.beams.iter().zip(meshes).enumerate().map(of_beam).fold(f64::INFINITY, f64::min)
+}
+
 /// The middle one of all values, of two the larger.
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
@@ -245,6 +277,37 @@ mod tests {
         let few = |last: f64| missing(&[10.0, 8.0, last], &[10.0, 8.0, last]).map(|missing| missing.energies);
         assert_eq!((few(9.0), few(10.0)), (Some(vec![1.0; 3]), None));
         assert!(missing(&[0.0], &[]).is_none());
+    }
+
+    /// α + η/h² with α = 0.5/s and the smaller one of two η, 2e-4 s and 1e-4 s, at steps of 0.01 s; α + 1/η at such as
+    /// follow nothing of it; strings need η of strain alone. The energy of one second ago is then e^{−1.5} of what it was.
+    #[test]
+    fn damping_takes_what_is_missing() {
+        let meshes = [Mesh::of(&[0.0, 4.0])];
+        let rate = |damping: &str, step: f64| {
+            let motion = "analysis.dynamic = { duration = 1 }";
+            let scene = scene(&format!("effect.damping = [{{ beam = 'arm', {damping} }}]\n{motion}"));
+            fading(scene.model(), &meshes, step)
+        };
+        let near = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-12, "{found}");
+        let both = "mass_proportional = 0.5, strain = 2e-4, curvature = 1e-4";
+        near(rate(both, 0.01), 0.5 + 1.0);
+        near(rate("mass_proportional = 0.5, strain = 2e-2, curvature = 1e-2", 1e-3), 0.5 + 50.0);
+        assert_eq!(rate("curvature = 1e-4", 0.01), 0.0);
+        assert_eq!(rate("mass_proportional = 0.25", 0.01), 0.25);
+        let scene = scene(
+            "effect.damping = [{ beam = 'arm', mass_proportional = 1.5 }]\nanalysis.dynamic = { duration = 1 }",
+        );
+        // A loss of 2 J within a sixteenth of a second.
+        let mut lost = [8.0; 17];
+        lost[0] = 10.0;
+        let motions = [(); 2].map(|()| motion(&lost));
+        let missing = Missing::of(scene.model(), scene.analysis(), &meshes, &motions[0], &motions[1]);
+        let energies = missing.expect("2 J").energies;
+        near(energies[0], 2.0);
+        near(energies[1], 2.0 * (-1.5_f64 / 16.0).exp());
+        assert_eq!(energies[11..], [energies[16]; 6]);
+        near(energies[16], 2.0 * (-1.5_f64 * 11.0 / 16.0).exp());
     }
 
     /// 8 J of 4 kg are 2 m/s, of 4·10⁴ N m a strain of 0.02, and of 4 N m³ a curvature of 2/m; during a step of

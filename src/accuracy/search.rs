@@ -3,7 +3,7 @@
 use super::difference::Difference;
 use super::judgement::{CAUTION, Estimate, Fall, Judged, LEAST_CONTRACTION, Seen, excess};
 use super::mesh::{self, CellErrors, Mesh};
-use super::missing::Missing;
+use super::missing::{self, Missing};
 use super::round::{FINEST, Fineness, LOOSER, Outcome, Purpose, Round, Runner, short};
 use super::{Accurate, model_error, statement};
 use crate::model::{Accuracy, Analysis};
@@ -153,15 +153,16 @@ impl<'a, 'o> Search<'a, 'o> {
                 _ => 0,
             };
             // No error is smaller than what finer meshes do not remove.
-            let seen = judged.errors().result;
-            if seen > 0.0 {
-                judged.caution *= (self.runner.saturation / seen).max(1.0);
-            }
+            judged.at_least(self.runner.saturation);
             let errors = judged.errors();
-            if let Some(run) = self.runner.runs.get_mut(judged.round.run) {
-                run.error = Some(errors.result);
-            }
             judged.excess = self.runner.wanted.map_or(0.0, |wanted| excess(errors, wanted));
+            if judged.excess > 1.0 {
+                // What is not good enough is not said to be better than it may be.
+                judged.likely = 1.0;
+            }
+            if let Some(run) = self.runner.runs.get_mut(judged.round.run) {
+                run.error = Some(judged.likely * errors.result);
+            }
             if judged.excess <= 1.0 && mute < MUTE && !judged.round.tells_of_steps() {
                 // Something else than the tolerance decides about steps: a smaller one will.
                 mute += 1;
@@ -191,6 +192,7 @@ impl<'a, 'o> Search<'a, 'o> {
                     let luck = judged.excess / best.excess;
                     best.caution *= luck;
                     best.excess *= luck;
+                    best.likely = 1.0;
                     best
                 }
                 _ => judged,
@@ -255,11 +257,18 @@ impl<'a, 'o> Search<'a, 'o> {
                 now.apart = Some(falls);
             }
         }
+        let fall = if finer.is_some() { whole.factor } else { round.fall.unwrap_or(f64::NAN) };
+        let largest = caution * estimate.whole.errors.result;
+        let mut likely = self.runner.likely(all, fall, largest);
         if let Some(coarse) = &round.coarse {
             let Runner { model, analysis, meshes, .. } = &self.runner;
             estimate = estimate.with(Missing::of(model, analysis, meshes, coarse, &round.results));
+            let missing = caution * estimate.whole.errors.result - largest;
+            if missing > 0.0 {
+                likely = (likely * largest + missing::LIKELY * missing) / (largest + missing);
+            }
         }
-        (now, Judged { round, estimate: Some(estimate), caution, excess: 0.0 })
+        (now, Judged { round, estimate: Some(estimate), caution, likely, excess: 0.0 })
     }
 
     /// By how much the steps and the mesh of a round err apart from each other: a run on the coarse mesh
@@ -397,7 +406,7 @@ impl<'a, 'o> Search<'a, 'o> {
 
     /// The results of a round with what is known of their errors.
     fn finished(self, judged: Judged, reason: Option<String>) -> Accurate {
-        let Judged { round, estimate: errors, caution, .. } = judged;
+        let Judged { round, estimate: errors, caution, likely, .. } = judged;
         let Round { mut results, setting, .. } = round;
         let lengths: Vec<f64> = self.runner.meshes.iter().map(Mesh::length).collect();
         let largest = model_error::largest(lengths.len(), results.states());
@@ -422,7 +431,7 @@ impl<'a, 'o> Search<'a, 'o> {
         if let Some(Estimate { whole, missing, .. }) = errors {
             estimate.notes.extend(missing.and_then(|missing| missing.note()));
             let Difference { errors, eigenvalues, probes, records, beams, .. } =
-                whole.divided([caution.recip(); 2]);
+                whole.divided([likely * caution, caution].map(f64::recip));
             estimate.probes = probes.into_iter().map(statement::of_probe).collect();
             estimate = ErrorEstimate { estimated: errors, eigenvalues, records, beams, ..estimate };
             estimate.met = self.runner.wanted.is_none_or(|wanted| excess(estimate.estimated, wanted) <= 1.0);
@@ -470,6 +479,7 @@ mod tests {
             round: round(&search.runner, results, None),
             estimate: Some(estimate(difference, contractions)),
             caution: 1.0,
+            likely: 1.0,
             excess: 2.0,
         }
     }

@@ -14,9 +14,10 @@ pub struct ErrorEstimate {
     /// Whether that is the usual accuracy, which is taken where a scene names no mesh and says
     /// nothing of errors.
     pub usual: bool,
-    /// The largest errors of the results; infinite where nothing is known of them.
+    /// The largest errors of the results: what they most likely are, or where the accuracy is not met, at
+    /// most; infinite where nothing is known of them.
     pub estimated: Errors,
-    /// Whether no error is larger than wanted.
+    /// Whether no error is larger than wanted, as large as they may be.
     pub met: bool,
     /// Why not.
     pub reason: Option<String>,

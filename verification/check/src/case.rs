@@ -161,6 +161,10 @@ pub struct Oracle {
     pub peer: Option<Peer>,
     /// The family that the peer solves; may be left out where there is only one.
     pub run: Option<String>,
+    /// Takes the other code longer than some seconds: asked anew by `verify freeze --check` alone, not
+    /// by `cargo test`.
+    #[serde(default)]
+    pub nightly: bool,
     /// What a reader of the numbers must know.
     pub note: Option<String>,
 }

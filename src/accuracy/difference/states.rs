@@ -1,0 +1,369 @@
+//! By how much equilibria and motions differ.
+
+use super::places::interpolated;
+use super::section_forces::section_forces;
+use super::stations::parts;
+use super::{Difference, Scales, larger, pairs};
+use crate::accuracy::mesh::{CellErrors, Mesh};
+use crate::model::{Analysis, Model};
+use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Shape, Trajectory};
+use std::f64::consts::TAU;
+
+/// Curvatures smaller than this per beam length are round-off.
+const STRAIGHT: f64 = 1e-9;
+
+/// Errors of a record of which nothing is known.
+const UNKNOWN: ProbeSample = ProbeSample {
+    x: f64::NAN,
+    y: f64::NAN,
+    angle: f64::NAN,
+    curvature: f64::NAN,
+    strain: f64::NAN,
+    vx: None,
+    vy: None,
+};
+
+/// The difference of two runs in all records that they have in common.
+///
+/// # Errors
+/// In words, where there are none, or what is kept of them is not enough.
+pub fn states<'t>(
+    model: &Model,
+    analysis: &Analysis,
+    meshes: &[Mesh],
+    coarse: &'t Trajectory,
+    fine: &'t Trajectory,
+) -> Result<Difference, String> {
+    let pairs = pairs(analysis, &coarse.parameter, &fine.parameter)?;
+    let lengths: Vec<f64> = meshes.iter().map(Mesh::length).collect();
+    let mut difference = Difference { records: vec![0.0; fine.parameter.len()], ..Difference::default() };
+    let mut result = 0.0_f64;
+    for ((probe, a), b) in model.probes.iter().zip(&coarse.probes).zip(&fine.probes) {
+        let mut samples = vec![ProbeSample::default(); fine.parameter.len()];
+        for &(i, j) in &pairs {
+            let (Some(a), Some(b)) = (a.samples.get(i), b.samples.get(j)) else { continue };
+            samples[j] = differ(a, b);
+            let around = |t: &'t Trajectory, record: usize| t.stations.get(record)?.get(probe.at.beam);
+            if let Some((a, b)) = around(coarse, i).zip(around(fine, j)) {
+                samples[j] = not_by_chance(samples[j], a, b, probe.at.s);
+            }
+            let error = samples[j].x / lengths[probe.at.beam];
+            difference.records[j] = larger(difference.records[j], error);
+            result = larger(result, error);
+        }
+        difference.probes.push(ProbeErrors { name: probe.name.clone(), samples });
+    }
+    let (mut curvature, mut largest) = (0.0_f64, 0.0_f64);
+    for (index, (beam, mesh)) in model.beams.iter().zip(meshes).enumerate() {
+        let s = fine.stations.first().and_then(|beams| beams.get(index)).map_or(&[][..], |shape| &shape.s);
+        let length = mesh.length();
+        let bends = beam.section.bending_stiffness.is_some();
+        let mut along = BeamErrors {
+            beam: beam.name.clone(),
+            s: s.to_vec(),
+            position: vec![0.0; s.len()],
+            curvature: vec![0.0; s.len()],
+        };
+        let mut squares = vec![0.0_f64; mesh.cells()];
+        for &(i, j) in &pairs {
+            let mut now = vec![0.0_f64; mesh.cells()];
+            let at = |t: &'t Trajectory, record: usize| t.stations.get(record)?.get(index);
+            let (Some(a), Some(b)) = (at(coarse, i), at(fine, j)) else {
+                return Err(format!("beam `{}` was not kept at record {j}", beam.name));
+            };
+            for (k, (a, b)) in samples(a).zip(samples(b)).enumerate() {
+                let error = differ(&a, &b);
+                along.position[k] = larger(along.position[k], error.x / length);
+                along.curvature[k] = larger(along.curvature[k], error.curvature);
+                difference.records[j] = larger(difference.records[j], error.x / length);
+                let (end, node) = (k + 1 == s.len(), mesh.must_be(s[k]));
+                // At inner nodes only positions are compared: strains and curvatures may jump there.
+                if bends && (end || !node) {
+                    largest = largest.max(b.curvature.abs());
+                    curvature = larger(curvature, error.curvature);
+                }
+                if !end && !node {
+                    let cell = mesh.cell_at(s[k]);
+                    let ends = &mesh.nodes[cell..=cell + 1];
+                    let width = (ends[1] - ends[0]) / parts(mesh, ends).len() as f64;
+                    let bent = if bends { error.curvature } else { within_half_a_turn(error.angle) / length };
+                    // A part that is longer by its strain moves what is behind it by its length, one that is
+                    // bent by its distance.
+                    let stretched = error.strain / length;
+                    now[cell] += width * (bent * bent + stretched * stretched);
+                }
+            }
+            squares.iter_mut().zip(now).for_each(|(most, now)| *most = larger(*most, now));
+        }
+        result = along.position.iter().copied().fold(result, larger);
+        difference.beams.push(along);
+        difference.cells.push(CellErrors { squares, order: if bends { 2.0 } else { 3.0 } });
+    }
+    // Stations are inside the cells; where cells meet curvatures err most.
+    for ((beam, a), b) in model.beams.iter().zip(&coarse.last).zip(&fine.last) {
+        if beam.section.bending_stiffness.is_none() {
+            continue;
+        }
+        largest = b.curvature.iter().fold(largest, |largest, value| largest.max(value.abs()));
+        for (s, value) in a.s.iter().zip(&a.curvature) {
+            let other = interpolated(&b.s, &b.curvature, *s, true);
+            curvature = other.map_or(curvature, |other| larger(curvature, (value - other).abs()));
+        }
+    }
+    let known: Vec<usize> = pairs.iter().map(|&(_, j)| j).collect();
+    if matches!(analysis, Analysis::Static(_)) {
+        // Each run chooses load factors of its own, and near a critical one even neighbours differ.
+        for j in (0..fine.parameter.len()).filter(|j| !known.contains(j)) {
+            difference.records[j] = f64::NAN;
+            difference.probes.iter_mut().for_each(|probe| probe.samples[j] = UNKNOWN);
+        }
+    } else {
+        fill(&mut difference.records, &known, |a, b| larger(*a, *b));
+        for probe in &mut difference.probes {
+            fill(&mut probe.samples, &known, |a, b| if a.x >= b.x { *a } else { *b });
+        }
+    }
+    let scale = lengths.iter().copied().fold(0.0, f64::max);
+    let (section_force, [force, moment]) = section_forces(&coarse.last, &fine.last);
+    difference.errors = Errors {
+        result,
+        curvature: (largest * scale > STRAIGHT).then(|| curvature / largest),
+        section_force,
+    };
+    difference.scales = Scales { curvature: largest, force, moment };
+    if result.is_finite() { Ok(difference) } else { Err("a position is not a number".into()) }
+}
+
+/// Gives records that the coarse run has not those of the records around them, of which `choose`
+/// takes one.
+fn fill<T: Clone>(values: &mut [T], known: &[usize], choose: impl Fn(&T, &T) -> T) {
+    for i in 0..values.len() {
+        let after = known.partition_point(|&k| k < i);
+        let (before, after) = (after.checked_sub(1).map(|k| known[k]), known.get(after).copied());
+        values[i] = match (before, after) {
+            (_, Some(after)) if after == i => continue,
+            (Some(before), Some(after)) => choose(&values[before], &values[after]),
+            (Some(one), None) | (None, Some(one)) => values[one].clone(),
+            (None, None) => continue,
+        };
+    }
+}
+
+/// The sizes of the differences of what a probe sees; that of x and y is the distance.
+fn differ(a: &ProbeSample, b: &ProbeSample) -> ProbeSample {
+    let distance = (a.x - b.x).hypot(a.y - b.y);
+    let of = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| (a - b).abs());
+    ProbeSample {
+        x: distance,
+        y: distance,
+        angle: (a.angle - b.angle).abs(),
+        curvature: (a.curvature - b.curvature).abs(),
+        strain: (a.strain - b.strain).abs(),
+        vx: of(a.vx, b.vx),
+        vy: of(a.vy, b.vy),
+    }
+}
+
+/// What a shape holds, place by place.
+fn samples(shape: &Shape) -> impl Iterator<Item = ProbeSample> {
+    (0..shape.s.len()).filter_map(|k| sample(shape, k))
+}
+
+/// What a shape holds at its place of this number.
+fn sample(shape: &Shape, k: usize) -> Option<ProbeSample> {
+    Some(ProbeSample {
+        x: *shape.x.get(k)?,
+        y: *shape.y.get(k)?,
+        angle: *shape.angle.get(k)?,
+        curvature: *shape.curvature.get(k)?,
+        strain: *shape.strain.get(k)?,
+        vx: None,
+        vy: None,
+    })
+}
+
+/// What a probe at `s` differs by, and no less than what is on both sides of it. Errors are waves along a beam:
+/// a probe that lies where one passes zero tells nothing.
+fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64) -> ProbeSample {
+    let differ_at = |k: usize| Some(differ(&sample(coarse, k)?, &sample(fine, k)?));
+    let after = fine.s.partition_point(|place| *place < s);
+    let Some((before, after)) = after.checked_sub(1).and_then(differ_at).zip(differ_at(after)) else {
+        return seen;
+    };
+    let angle = within_half_a_turn(before.angle).min(within_half_a_turn(after.angle));
+    let distance = larger(seen.x, before.x.min(after.x));
+    ProbeSample {
+        x: distance,
+        y: distance,
+        angle: larger(seen.angle, angle),
+        curvature: larger(seen.curvature, before.curvature.min(after.curvature)),
+        strain: larger(seen.strain, before.strain.min(after.strain)),
+        ..seen
+    }
+}
+
+/// The size of an angle without whole turns, which shapes do not tell.
+fn within_half_a_turn(angle: f64) -> f64 {
+    (angle - TAU * (angle / TAU).round()).abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::between;
+    use super::super::stations::stations;
+    use super::super::tests::{meshes, scene};
+    use super::*;
+    use crate::results::{ProbeSeries, Results};
+    use crate::scene::Scene;
+
+    /// What one run, at rest but for these samples (record, place, sample), saw at some times: by its probe, and
+    /// at the five stations of the beam and the three of the string.
+    fn seen(parameter: &[f64], samples: &[(usize, usize, ProbeSample)]) -> Trajectory {
+        let at_rest = ProbeSample { vx: Some(0.0), ..ProbeSample::default() };
+        let mut probe = ProbeSeries { name: String::new(), samples: vec![at_rest; parameter.len()] };
+        let still = |s: &Vec<f64>| {
+            let zero = || vec![0.0; s.len()];
+            Shape {
+                s: s.clone(),
+                x: zero(),
+                y: zero(),
+                angle: zero(),
+                strain: zero(),
+                curvature: zero(),
+                ..Shape::default()
+            }
+        };
+        let mut stations = vec![stations(&meshes()).iter().map(still).collect::<Vec<_>>(); parameter.len()];
+        for &(record, place, sample) in samples {
+            let Some(station) = place.checked_sub(1) else {
+                probe.samples[record] = sample;
+                continue;
+            };
+            let shape = &mut stations[record][station / 5];
+            let k = station % 5;
+            (shape.x[k], shape.y[k], shape.angle[k]) = (sample.x, sample.y, sample.angle);
+            (shape.strain[k], shape.curvature[k]) = (sample.strain, sample.curvature);
+        }
+        Trajectory { parameter: parameter.into(), probes: vec![probe], stations, ..Trajectory::default() }
+    }
+
+    /// Worked out by hand: what differs at nine places in two records, the first and the last of three.
+    #[test]
+    fn differences_of_motions_are_those_of_all_places_and_records() {
+        let bent = |curvature: f64| ProbeSample { curvature, ..ProbeSample::default() };
+        let coarse = seen(
+            &[0.0, 1.0],
+            &[
+                (
+                    1,
+                    0,
+                    ProbeSample {
+                        x: 0.3,
+                        y: 0.4,
+                        angle: 0.1,
+                        strain: 0.2,
+                        vx: Some(1.0),
+                        ..ProbeSample::default()
+                    },
+                ),
+                (0, 1, ProbeSample { angle: 5.0, ..bent(3.0) }),
+                (1, 2, bent(2.0)),
+                (1, 3, bent(-7.0)),
+                (1, 4, bent(4.0)),
+                // At the end of the beam, which is in no cell.
+                (1, 5, ProbeSample { x: 0.8, ..bent(3.5) }),
+                // A string that has gone round once more is where it was.
+                (1, 6, ProbeSample { angle: 0.8 + TAU, ..bent(100.0) }),
+            ],
+        );
+        let at_rest = ProbeSample { vx: Some(-1.0), ..ProbeSample::default() };
+        let mut fine = seen(&[0.0, 0.5, 1.0], &[(2, 0, at_rest), (2, 3, bent(-8.0))]);
+        let motion = scene("dynamic = { duration = 1 }");
+        let of = |scene: &Scene, coarse: &Trajectory, fine: &Trajectory| {
+            let results = [coarse, fine].map(|run| Results::from(run.clone()));
+            between(scene.model(), scene.analysis(), &meshes(), &results[0], &results[1])
+        };
+        let found = of(&motion, &coarse, &fine).unwrap();
+        assert_eq!(found.errors, Errors { result: 0.4, curvature: Some(0.5), section_force: None });
+        assert_eq!(found.records, [0.0, 0.4, 0.4]);
+        let tip = &found.probes[0].samples;
+        // The curvature is that of the stations beside it, which differ though the probe does not.
+        let last = ProbeSample {
+            x: 0.5,
+            y: 0.5,
+            angle: 0.1,
+            strain: 0.2,
+            curvature: 3.5,
+            vx: Some(2.0),
+            ..ProbeSample::default()
+        };
+        assert_eq!((found.probes.len(), tip[0].x, tip[1], tip[2]), (1, 0.0, last, last));
+        assert_eq!(found.beams[0].position, [0.0, 0.0, 0.0, 0.0, 0.4]);
+        assert_eq!(found.beams[0].curvature, [3.0, 2.0, 1.0, 4.0, 3.5]);
+        assert_eq!(found.beams[1].curvature, [100.0, 0.0, 0.0]);
+        // Cells of 0.5 m and 1.5 m, with two stations each: the record counts that errs most, 3² of
+        // the first, and 1² and 4² of the last. Of the string the direction counts, over its length.
+        let cells = [(vec![0.25 * 9.0, 0.75 * (1.0 + 16.0)], 2.0), (vec![2.0 * 0.2 * 0.2], 3.0)];
+        for (found, (squares, order)) in found.cells.iter().zip(cells) {
+            assert_eq!(found.order, order);
+            assert!(found.squares.iter().zip(&squares).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?}");
+        }
+        // In equilibria, records without a partner tell nothing.
+        let found = of(&scene("static = {}"), &coarse, &fine).unwrap();
+        assert!(found.records[1].is_nan() && found.records[2] == 0.4);
+        let sample = found.probes[0].samples[1];
+        assert!(sample.x.is_nan() && sample.strain.is_nan());
+        assert_eq!(found.probes[0].samples[2], last);
+        // Where cells meet, curvatures of the last state count, too, but not those of a string.
+        let shape = |curvature: [f64; 3]| Shape {
+            s: vec![0.0, 0.5, 2.0],
+            curvature: curvature.into(),
+            ..Shape::default()
+        };
+        let of_string = Shape { s: vec![0.0, 4.0], curvature: vec![1e3; 2], ..Shape::default() };
+        let coarse = Trajectory { last: vec![shape([0.0, 5.0, 0.0]), Shape::default()], ..coarse };
+        fine.last = vec![shape([0.0, -16.0, 1.0]), of_string];
+        assert_eq!(of(&motion, &coarse, &fine).unwrap().errors.curvature, Some(21.0 / 16.0));
+        // A probe may see more than the stations, and what is not a number is no small difference.
+        let far = ProbeSample { y: 2.0, ..ProbeSample::default() };
+        let found = of(&motion, &seen(&[0.0, 1.0], &[(1, 0, far)]), &seen(&[0.0, 1.0], &[])).unwrap();
+        assert_eq!((found.errors.result, found.errors.curvature), (1.0, None));
+        let lost = ProbeSample { x: f64::NAN, ..ProbeSample::default() };
+        assert!(of(&motion, &seen(&[0.0, 1.0], &[(0, 7, lost)]), &seen(&[0.0, 1.0], &[])).is_err());
+    }
+
+    /// Everything a probe sees differs at least by the smaller one of the differences on both sides of it; at the
+    /// start of a beam there is one side only.
+    #[test]
+    fn probes_differ_no_less_than_both_sides_of_them() {
+        let of = |by: f64| Shape {
+            s: vec![0.0, 1.0, 3.0],
+            x: vec![0.0; 3],
+            y: vec![0.0, by, 2.0 * by],
+            angle: vec![0.0, 3.0 * by + TAU, 4.0 * by],
+            strain: vec![0.0, 6.0 * by, 5.0 * by],
+            curvature: vec![0.0, 7.0 * by, -8.0 * by],
+            ..Shape::default()
+        };
+        let none = ProbeSample::default();
+        let at = |seen, s| not_by_chance(seen, &of(0.0), &of(0.125), s);
+        let least = ProbeSample { x: 0.125, y: 0.125, angle: 0.375, strain: 0.625, curvature: 0.875, ..none };
+        let found = at(none, 2.0);
+        assert!((found.angle - least.angle).abs() < 1e-14);
+        assert_eq!(ProbeSample { angle: least.angle, ..found }, least);
+        let more =
+            ProbeSample { x: 1.0, y: 1.0, angle: 1.0, strain: 1.0, curvature: 1.0, vx: Some(0.0), vy: None };
+        assert_eq!(at(more, 2.0), more);
+        assert_eq!((at(none, 0.0), at(none, 0.5), at(none, 3.5)), (none, none, none));
+    }
+
+    #[test]
+    fn records_without_a_partner_take_the_larger_of_their_neighbours() {
+        let mut values = vec![0.0, 3.0, 0.0, 1.0, 0.0];
+        fill(&mut values, &[1, 3], |a, b| larger(*a, *b));
+        assert_eq!(values, [3.0, 3.0, 3.0, 1.0, 1.0]);
+        let mut none = vec![1.0, 2.0];
+        fill(&mut none, &[], |a, b| larger(*a, *b));
+        assert_eq!(none, [1.0, 2.0]);
+    }
+}
