@@ -44,7 +44,7 @@ pub(super) struct Judged {
     pub estimate: Option<Estimate>,
     /// By how much errors are taken to be larger.
     pub caution: f64,
-    /// The part of these largest errors of results that they most likely are.
+    /// The part of the largest errors of results that was seen which they most likely are.
     pub likely: f64,
     /// The largest error in units of what was wanted.
     pub excess: f64,
@@ -52,8 +52,10 @@ pub(super) struct Judged {
 
 /// The errors of a finer run, told from differences.
 pub(super) struct Estimate {
-    /// All of them.
+    /// All of them, as large as they may be.
     pub whole: Difference,
+    /// Those that the difference of two runs shows.
+    pub seen: Difference,
     /// Those of the mesh; all of them where those of the steps are not known apart from them.
     pub mesh: Difference,
     /// By which factor these fall with halved cells.
@@ -65,13 +67,12 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
-    /// With the errors that missing vibrations make.
+    /// With the errors that missing vibrations make, and those of the finer run that coarser meshes do not tell.
     #[must_use]
-    pub fn with(mut self, missing: Option<Missing>) -> Self {
-        if let Some(missing) = &missing
-            && let Some(whole) = self.whole.plus(&missing.errors(&self.whole))
-        {
-            self.whole = whole;
+    pub fn with(mut self, missing: Option<Missing>, unseen: Option<&Difference>) -> Self {
+        let of_missing = missing.as_ref().map(|missing| missing.errors(&self.seen));
+        for part in of_missing.iter().chain(unseen) {
+            self.whole = self.whole.plus(part).unwrap_or(self.whole);
         }
         Self { missing, ..self }
     }
@@ -89,18 +90,21 @@ impl Judged {
         self.estimate.as_ref().map_or(unknown, |estimate| self.with_caution(estimate.whole.errors))
     }
 
+    /// The errors that are stated: the most likely ones of a result that is good enough, else the largest.
+    pub fn stated(&self) -> Option<Difference> {
+        let estimate = self.estimate.as_ref()?;
+        if self.excess > 1.0 {
+            return Some(estimate.whole.clone().divided([self.caution.recip(); 2]));
+        }
+        let seen = estimate.seen.clone().divided([self.likely * self.caution, self.caution].map(f64::recip));
+        let missing = estimate.missing.as_ref().map(|missing| missing.likely_errors(&estimate.seen));
+        let parts = missing.iter().chain(&self.round.unseen);
+        Some(parts.fold(seen, |sum, part| sum.plus(part).unwrap_or(sum)))
+    }
+
     /// Errors as they are taken to be.
     pub fn with_caution(&self, errors: Errors) -> Errors {
         scaled(errors, [self.caution.recip(); 2])
-    }
-
-    /// With errors of results that are no less than this.
-    pub fn at_least(&mut self, error: f64) {
-        let seen = self.errors().result;
-        if seen > 0.0 && error > seen {
-            self.caution *= error / seen;
-            self.likely = 1.0;
-        }
     }
 }
 
@@ -202,6 +206,8 @@ impl Runner<'_, '_> {
             _ => CONTRACTION,
         };
         let result = if self.model.has_contact() { result.min(CONTRACTION_OF_CONTACT) } else { result };
+        // Steps differ by one halving, whatever meshes do.
+        let result = if self.has_steps() { result } else { result.powf(self.halvings) };
         let seen = if seen.is_nan() { result } else { CAUTION * seen };
         [result.min(seen).max(LEAST_CONTRACTION), CONTRACTION_OF_CURVATURE]
     }
@@ -328,17 +334,27 @@ mod tests {
         let round = || round(&runner, run(AnalysisKind::Static, 1, 0), None);
         let errors = Errors { result: 8.0, curvature: Some(6.0), section_force: None };
         let whole = Difference { errors, ..Difference::default() }.divided([6.0, 3.0]);
-        let estimate = Estimate { mesh: whole.clone(), whole, contraction: 7.0, steps: None, missing: None };
+        let estimate = Estimate {
+            seen: whole.clone(),
+            mesh: whole.clone(),
+            whole,
+            contraction: 7.0,
+            steps: None,
+            missing: None,
+        };
         let mut judged =
             Judged { round: round(), estimate: Some(estimate), caution: 1.5, likely: 0.5, excess: 0.0 };
-        let errors =
-            |result: f64, curvature: f64| Errors { result, curvature: Some(curvature), section_force: None };
-        assert_eq!(judged.errors(), errors(2.0, 3.0));
-        judged.at_least(1.5);
-        assert_eq!((judged.errors(), judged.likely), (errors(2.0, 3.0), 0.5));
-        judged.at_least(4.0);
-        assert_eq!((judged.errors(), judged.likely), (errors(4.0, 6.0), 1.0));
+        assert_eq!(judged.errors(), Errors { result: 2.0, curvature: Some(3.0), section_force: None });
+        // What is good enough is half as wrong, and what coarser meshes do not tell comes to that.
+        let stated = |judged: &Judged| judged.stated().expect("an estimate").errors;
+        assert_eq!(stated(&judged), Errors { result: 1.0, curvature: Some(3.0), section_force: None });
+        let errors = Errors { result: 0.25, curvature: Some(0.5), section_force: None };
+        judged.round.unseen = Some(Difference { errors, ..Difference::default() });
+        assert_eq!(stated(&judged), Errors { result: 1.25, curvature: Some(3.5), section_force: None });
+        judged.excess = 1.5;
+        assert_eq!(stated(&judged), judged.errors());
         let unknown = Judged::unknown(round());
+        assert!(unknown.stated().is_none());
         assert_eq!((unknown.errors().result, unknown.excess), (f64::INFINITY, f64::INFINITY));
     }
 

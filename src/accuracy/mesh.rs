@@ -140,13 +140,60 @@ impl Mesh {
         Self { nodes, fixed: self.fixed.clone() }
     }
 
-    /// Every second of the nodes of a beam, and its end.
-    pub fn every_second_of(&self, nodes: &[f64]) -> Self {
-        let mut places: Vec<f64> = nodes.iter().copied().step_by(2).collect();
-        if nodes.len().is_multiple_of(2) {
-            places.extend(nodes.last());
-        }
-        Self { nodes: places, fixed: self.fixed.clone() }
+    /// A mesh of these nodes and of those that must be.
+    pub fn with(&self, nodes: &[f64]) -> Self {
+        let mut all = nodes.to_vec();
+        let missing = |s: &&f64| nodes.iter().all(|node| (node - *s).abs() > SAME * self.length());
+        all.extend(self.fixed.iter().filter(missing));
+        all.sort_by(f64::total_cmp);
+        Self { nodes: all, fixed: self.fixed.clone() }
+    }
+
+    /// Its parts between nodes that must be: the nodes of each.
+    fn parts(&self) -> Vec<&[f64]> {
+        let inside = |i: &usize| *i > 0 && *i < self.cells() && self.must_be(self.nodes[*i]);
+        let inner: Vec<usize> = (0..self.nodes.len()).filter(inside).collect();
+        let starts = std::iter::once(0).chain(inner.iter().copied());
+        let ends = inner.iter().copied().chain(std::iter::once(self.cells()));
+        starts.zip(ends).map(|(start, end)| &self.nodes[start..=end]).collect()
+    }
+
+    /// With other cells in each of its parts between nodes that must be, of which `cells` has the nodes but for the last.
+    fn with_parts(&self, cells: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        let mut nodes: Vec<f64> = self.parts().into_iter().flat_map(cells).collect();
+        nodes.extend(self.nodes.last());
+        Self { nodes, fixed: self.fixed.clone() }
+    }
+
+    /// Half as many cells in every part between nodes that must be, or of an odd number one less than that, down to
+    /// one: each reaches over as many of those that are.
+    pub fn coarser(&self) -> Self {
+        self.with_parts(|nodes| {
+            let (count, cells) = (nodes.len() - 1, ((nodes.len() - 1) / 2).max(1));
+            let place = |k: usize| {
+                let (before, part) = (k * count / cells, (k * count % cells) as f64 / cells as f64);
+                nodes[before] + if part > 0.0 { part * (nodes[before + 1] - nodes[before]) } else { 0.0 }
+            };
+            (0..cells).map(place).collect()
+        })
+    }
+
+    /// By how many times fewer cells are in [`Self::coarser`], at least in any part between nodes that must be; `None`
+    /// where a part has one cell only.
+    pub fn coarsening(&self) -> Option<f64> {
+        let of = |nodes: &[f64]| {
+            let cells = nodes.len() - 1;
+            (cells > 1).then(|| cells as f64 / (cells / 2) as f64)
+        };
+        self.parts().into_iter().map(of).try_fold(f64::INFINITY, |least, times| Some(times?.min(least)))
+    }
+
+    /// Four cells in every part between nodes that must be that has one.
+    pub fn quartered_parts(&self) -> Self {
+        self.with_parts(|nodes| match nodes {
+            [from, to] => even(*from, *to, 4),
+            _ => nodes[..nodes.len() - 1].to_vec(),
+        })
     }
 
     /// The errors of this mesh, from those of the cells of a `finer` one.
@@ -365,12 +412,30 @@ mod tests {
     }
 
     #[test]
-    fn halves_and_every_second_node_are_inverse() {
+    fn halves_and_coarser_meshes_are_inverse() {
         let coarse = mesh(&[0.0, 1.0, 4.0], &[0.0, 4.0]);
         let fine = coarse.halved();
         assert_eq!(fine.nodes, [0.0, 0.5, 1.0, 2.5, 4.0]);
-        assert_eq!(coarse.every_second_of(&fine.nodes), coarse);
-        assert_eq!(coarse.every_second_of(&[0.0, 1.0, 2.0, 4.0]).nodes, [0.0, 2.0, 4.0]);
+        assert_eq!(fine.coarser(), coarse);
+        let of = |nodes: &[f64]| mesh(nodes, &[0.0, nodes[nodes.len() - 1]]);
+        // Two and a half cells of five in each of two.
+        let five = of(&[0.0, 1.0, 2.0, 3.0, 6.0, 7.0]);
+        assert_eq!((five.coarser().nodes, five.coarsening()), (vec![0.0, 2.5, 7.0], Some(2.5)));
+        let one = of(&[0.0, 4.0]);
+        assert_eq!((one.coarser().nodes, one.coarsening()), (vec![0.0, 4.0], None));
+    }
+
+    /// Of seven cells four are before the node that must be, one between it and the next one, and two behind.
+    #[test]
+    fn parts_between_nodes_that_must_be_are_coarsened_apart() {
+        let fixed = mesh(&[0.0, 4.0, 5.0, 9.0], &[0.0, 4.0, 5.0, 9.0]);
+        let found = fixed.with(&[0.0, 1.0, 2.0, 3.0, 4.0 + 1e-9, 7.0, 9.0]);
+        assert_eq!(found.nodes, [0.0, 1.0, 2.0, 3.0, 4.0 + 1e-9, 5.0, 7.0, 9.0]);
+        assert_eq!(found.coarser().nodes, [0.0, 2.0, 4.0 + 1e-9, 5.0, 9.0]);
+        assert_eq!(found.coarsening(), None);
+        let quartered = found.quartered_parts();
+        assert_eq!(quartered.nodes.len(), 11);
+        assert!((quartered.nodes[6] - 4.5).abs() < 1e-9 && quartered.coarsening() == Some(2.0));
     }
 
     /// On the side of a notch that is 1000 times as soft as the rest.

@@ -19,7 +19,7 @@ const TELLING: f64 = 1e-5;
 const FALLEN: f64 = 4.0;
 /// The error of positions that is most likely, in the largest that there may be: most vibrations are faster than the slowest
 /// that the steps do not follow.
-pub(super) const LIKELY: f64 = 0.3;
+const LIKELY: f64 = 0.3;
 /// Energies are compared during such a part of the motion at a time.
 const WINDOW: usize = 4;
 /// Fewer records than that are few.
@@ -181,6 +181,17 @@ impl Missing {
             beams: difference.beams.iter().map(of_beam).collect(),
             ..Difference::default()
         }
+    }
+
+    /// The same as they most likely are: of positions a part of the largest.
+    pub fn likely_errors(&self, difference: &Difference) -> Difference {
+        let mut likely = self.errors(difference);
+        likely.errors.result *= LIKELY;
+        let of_probes = likely.probes.iter_mut().flat_map(|probe| &mut probe.samples);
+        let positions = of_probes.flat_map(|sample| [&mut sample.x, &mut sample.y]);
+        let of_beams = likely.beams.iter_mut().flat_map(|beam| &mut beam.position);
+        positions.chain(of_beams).chain(&mut likely.records).for_each(|error| *error *= LIKELY);
+        likely
     }
 
     /// What there is to say of them.

@@ -1,7 +1,7 @@
 //! Where the model itself errs: what a beam without shear, of small strains, does not describe.
 //! No finer mesh mends that.
 
-use crate::model::Model;
+use crate::model::{Model, Probe};
 use crate::results::Trajectory;
 
 /// Strain beyond which a linear law of small strains is not to be trusted.
@@ -19,7 +19,7 @@ pub(super) fn notes(model: &Model, lengths: &[f64], largest: &[[f64; 2]]) -> Vec
     let mut notes = Vec::new();
     for ((beam, length), [strain, curvature]) in model.beams.iter().zip(lengths).zip(largest) {
         let name = &beam.name;
-        if *strain > STRAIN {
+        if *strain > STRAIN && beam.section.axial_stiffness.is_some() {
             notes.push(format!(
                 "beam `{name}` strains by up to {strain:.2}; the linear law between strain and force is one of small strains, so that \
                  the model may err by as much"
@@ -53,6 +53,20 @@ pub(super) fn notes(model: &Model, lengths: &[f64], largest: &[[f64; 2]]) -> Vec
         }
     }
     notes
+}
+
+/// What there is to say of probes where what acts in a point makes strains jump, which shape functions do not: `jumps` tells of
+/// each whether it is there.
+pub(super) fn at_jumps(model: &Model, jumps: impl Fn(&Probe) -> bool) -> Option<String> {
+    let names: Vec<String> =
+        model.probes.iter().filter(|probe| jumps(probe)).map(|probe| format!("`{}`", probe.name)).collect();
+    let (s, sees) = if names.len() == 1 { ("", "sees") } else { ("s", "see") };
+    (!names.is_empty()).then(|| {
+        format!(
+            "what acts in a point makes the strain jump where probe{s} {} {sees} it: angle, strain and curvature are between those on both sides, and              their errors are the distance to these; a probe beside it tells each",
+            names.join(", ")
+        )
+    })
 }
 
 /// The largest strain and curvature of each of so many beams, at the stations of all records and in

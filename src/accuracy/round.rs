@@ -73,10 +73,13 @@ pub(super) struct Runner<'a, 'o> {
     pub meshes: Vec<Mesh>,
     /// What open beams are made of.
     pub families: Vec<Family>,
-    /// Beams that the scene gives shape functions whose errors finer meshes do not remove …
+    /// Of the finer runs, nodes that must be included, of beams that the scene gives a basis.
+    named: Vec<Option<Mesh>>,
+    /// Those of them whose errors finer meshes do not remove.
     saturated: Vec<bool>,
-    /// … and by how much the first finer run differs from one of elements in their place.
-    pub saturation: f64,
+    /// The halvings between the meshes of two runs: more than one where the scene gives all beams an odd number of
+    /// cells.
+    pub halvings: f64,
     /// Of the finer runs of a motion whose integrator is open.
     pub tolerance: f64,
     pub runs: Vec<RunForError>,
@@ -120,6 +123,8 @@ pub(super) struct Round {
     /// Number of the finer run among all.
     pub run: usize,
     pub difference: Result<Difference, String>,
+    /// What coarser meshes do not tell of the errors of the finer run.
+    pub unseen: Option<Difference>,
     /// By which factor the difference has fallen, where there was a third run.
     pub fall: Option<f64>,
     /// Cells of the open beams.
@@ -161,20 +166,22 @@ impl<'a, 'o> Runner<'a, 'o> {
             _ => (FIRST_CELLS_DO / result).powf(0.25),
         };
         let mut meshes = Mesh::first(model, waves, times);
+        let named = |(beam, mesh): (&Beam, &Mesh)| {
+            let curve =
+                Curve::new(&beam.centreline).ok().filter(|_| beam.discretization != Discretization::Open)?;
+            let nodes = Discretization::Ancf { nodes: beam.discretization.nodes().clone() };
+            Some(mesh.with(Basis::new(&nodes, curve.length()).ok()?.nodes()))
+        };
+        let named: Vec<Option<Mesh>> = model.beams.iter().zip(&meshes).map(named).collect();
         let saturated = |(beam, mesh): (&Beam, &Mesh)| saturates(&beam.discretization, mesh.length());
         let saturated = model.beams.iter().zip(&meshes).map(saturated).collect();
-        for (beam, mesh) in model.beams.iter().zip(&mut meshes) {
-            if beam.discretization != Discretization::Open {
-                let curve = Curve::new(&beam.centreline);
-                let nodes = curve.ok().and_then(|curve| {
-                    let nodes = Discretization::Ancf { nodes: beam.discretization.nodes().clone() };
-                    Basis::new(&nodes, curve.length()).ok().map(|basis| basis.nodes().to_vec())
-                });
-                if let Some(nodes) = nodes {
-                    *mesh = mesh.every_second_of(&nodes);
-                }
+        for (mesh, named) in meshes.iter_mut().zip(&named) {
+            if let Some(named) = named {
+                *mesh = named.coarser();
             }
         }
+        let coarsening = |named: &Option<Mesh>| named.as_ref().map_or(Some(2.0), Mesh::coarsening);
+        let times = named.iter().filter_map(coarsening).fold(f64::INFINITY, f64::min);
         let tolerance = short((TOLERANCE * result).min(FIRST_TOLERANCE));
         let accurate = wanted.is_some_and(|wanted| wanted.result <= MESHFREE);
         let family = |(beam, mesh): (&Beam, &Mesh)| {
@@ -192,8 +199,9 @@ impl<'a, 'o> Runner<'a, 'o> {
             options,
             meshes,
             families,
+            named,
             saturated,
-            saturation: 0.0,
+            halvings: if times.is_finite() { times.log2() } else { 1.0 },
             tolerance,
             runs: Vec::new(),
         }
@@ -207,7 +215,7 @@ impl<'a, 'o> Runner<'a, 'o> {
     pub fn setting(&self, mesh: Fineness, steps: Fineness) -> Setting {
         let beams = self.model.beams.iter().zip(&self.meshes).enumerate().map(|(index, (beam, coarse))| {
             let nodes = match mesh {
-                Fineness::Coarsest => coarse.every_second_of(&coarse.nodes).places(),
+                Fineness::Coarsest => coarse.coarser().places(),
                 Fineness::Coarse => coarse.places(),
                 Fineness::Fine => coarse.halved().places(),
             };
@@ -343,8 +351,11 @@ impl<'a, 'o> Runner<'a, 'o> {
     /// to a wrong branch. With `hopeful` such a round goes on to the finer run even if it cannot be enough.
     pub fn round(&mut self, alone: bool, hopeful: bool) -> Result<Outcome, RunError> {
         let stations = stations(&self.meshes);
+        // On the same meshes a coarser run tells nothing of how their errors fall.
+        let beams = |mesh: Fineness| self.setting(mesh, mesh).beams;
+        let tells = alone && beams(Fineness::Coarsest) != beams(Fineness::Coarse);
         let mut pair = |fineness, purpose| self.solve(&stations, &self.setting(fineness, fineness), purpose);
-        let coarsest = if alone { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
+        let coarsest = if tells { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
         let coarse = pair(Fineness::Coarse, Purpose::Shapes);
         let before = coarsest.as_ref().zip(coarse.as_ref().ok());
         let before = before.and_then(|(a, b)| {
@@ -358,10 +369,12 @@ impl<'a, 'o> Runner<'a, 'o> {
         let setting = self.setting(Fineness::Fine, Fineness::Fine);
         let results = self.solve(&stations, &setting, Purpose::Results)?;
         let run = self.runs.len() - 1;
-        if alone && let Some(apart) = self.beside_elements(&stations, &setting, &results) {
-            self.saturation = apart;
-        }
+        let (unseen, failed) = match self.beside_finer(&stations, &setting, &results) {
+            Ok(unseen) => (unseen, None),
+            Err(why) => (None, Some(why)),
+        };
         let difference = match &coarse {
+            _ if let Some(why) = failed => Err(why),
             Ok(coarse) if coarse.run().complete => self.difference(coarse, &results),
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
             Err(error) => Err(format!("on half as many cells there is no result: {error}")),
@@ -373,28 +386,60 @@ impl<'a, 'o> Runner<'a, 'o> {
         let cells = self.meshes.iter().enumerate().map(of_open).sum();
         let coarse = coarse.ok();
         let steps_matter = self.has_steps();
-        let round = Round { stations, results, coarse, setting, run, difference, fall, cells, steps_matter };
+        let round =
+            Round { stations, results, coarse, setting, run, difference, unseen, fall, cells, steps_matter };
         Ok(Outcome::Compared(Box::new(round)))
     }
 
-    /// By how much the results of a `setting` differ from those of elements on the same nodes, in place of shape functions
-    /// whose errors finer meshes do not remove; `None` where there are none, or no such results.
-    fn beside_elements(
+    /// Whether coarser meshes tell nothing of the errors of a part of a beam: the scene gives it one cell, or shape functions
+    /// whose errors the number of cells does not decide.
+    fn is_unseen(&self, beam: usize) -> bool {
+        let one = self.named[beam].as_ref().is_some_and(|mesh| mesh.coarsening().is_none());
+        one || self.saturated[beam]
+    }
+
+    /// What the results of a `setting` differ by from those with four cells in every part of a beam that has one, and with elements
+    /// in place of shape functions whose errors finer meshes do not remove; `None` where there are neither.
+    fn beside_finer(
         &mut self,
         stations: &[Vec<f64>],
         setting: &Setting,
         results: &Results,
-    ) -> Option<f64> {
-        if !self.saturated.contains(&true) || !results.run().complete {
-            return None;
+    ) -> Result<Option<Difference>, String> {
+        let unseen: Vec<usize> = (0..self.model.beams.len()).filter(|beam| self.is_unseen(*beam)).collect();
+        if unseen.is_empty() || !results.run().complete {
+            return Ok(None);
         }
-        let mut elements = setting.clone();
-        let of_beams = elements.beams.iter_mut().zip(&self.model.beams).zip(&self.saturated);
-        for ((chosen, beam), _) in of_beams.filter(|(_, saturated)| **saturated) {
-            *chosen = Family::REDUCED.of(beam, chosen.0.nodes().clone());
+        let mut finer = setting.clone();
+        for index in unseen {
+            let (beam, Some(named)) = (&self.model.beams[index], &self.named[index]) else { continue };
+            let nodes = named.quartered_parts().places();
+            finer.beams[index] = match self.saturated[index] {
+                true => Family::REDUCED.of(beam, nodes),
+                false => (coarser(&beam.discretization, nodes), beam.gauss_points),
+            };
         }
-        let elements = self.solve(stations, &elements, Purpose::Positions).ok()?;
-        self.difference(&elements, results).ok().map(|difference| difference.errors.result)
+        let finer = self.solve(stations, &finer, Purpose::Shapes).map_err(|error| {
+            format!("with more cells where the scene gives one there is no result: {error}")
+        })?;
+        if !finer.run().complete {
+            return Err("the run on more cells was stopped".to_owned());
+        }
+        self.difference(&finer, results).map(Some)
+    }
+
+    /// Why no choice for other beams makes errors as small as is wanted, where those are larger that coarser meshes do
+    /// not tell.
+    pub fn remains(&self, round: &Round, caution: f64, wanted: Accuracy) -> Option<String> {
+        let error = caution * round.unseen.as_ref()?.errors.result;
+        let beams = (0..self.model.beams.len()).filter(|beam| self.is_unseen(*beam));
+        let names: Vec<String> = beams.map(|beam| format!("`{}`", self.model.beams[beam].name)).collect();
+        (error > wanted.result).then(|| {
+            format!(
+                "the basis that the scene gives {} leaves an error of {error:.1e}: leave it out, or give it more nodes",
+                names.join(", ")
+            )
+        })
     }
 
     /// The errors of a finer run that has not been made yet, from the difference of two runs that are
@@ -487,7 +532,18 @@ pub(super) mod tests {
         let cells = runner.meshes.iter().map(Mesh::cells).sum();
         let difference = Err(String::new());
         let steps_matter = runner.has_steps();
-        Round { stations, results, coarse, setting, run: 0, difference, fall: None, cells, steps_matter }
+        Round {
+            stations,
+            results,
+            coarse,
+            setting,
+            run: 0,
+            difference,
+            unseen: None,
+            fall: None,
+            cells,
+            steps_matter,
+        }
     }
 
     const MOTION: &str = "analysis.dynamic = { duration = 1 }";
@@ -572,8 +628,10 @@ pub(super) mod tests {
             ),
             14
         );
-        // Of a named mesh of seven cells the coarse run takes every second node, and the end.
-        assert_eq!(cells("beam.arm.basis.ancf.elements = 7\nanalysis.static = {}", 1e-3), 4);
+        // Of a named mesh of seven cells the coarse run takes three, of one cell the same.
+        let named =
+            |elements: usize| format!("beam.arm.basis.ancf.elements = {elements}\nanalysis.static = {{}}");
+        assert_eq!([7, 8, 1].map(|elements| cells(&named(elements), 1e-3)), [3, 4, 1]);
     }
 
     #[test]
@@ -591,6 +649,29 @@ pub(super) mod tests {
         let Discretization::Rpim { neighbours: 3, nodes: Nodes::Uniform(5), .. } = coarse.0 else {
             panic!("{coarse:?}")
         };
+    }
+
+    /// Seven elements are two and a third times as many as three; beside an open beam errors fall as of halves. One element
+    /// tells nothing, nor do narrow radial functions.
+    #[test]
+    fn named_meshes_fall_by_their_own_factor_or_not_at_all() {
+        let of = |basis: &str, more: &str| {
+            let scene = scene(&format!("beam.arm.basis = {basis}\n{more}analysis.static = {{}}"));
+            let runner = runner(&scene, 1e-3);
+            (runner.is_unseen(0), runner.halvings.exp2(), runner.contractions(f64::INFINITY)[0])
+        };
+        let (unseen, times, fall) = of("{ ancf.elements = 7 }", "");
+        assert!(!unseen && (times - 7.0 / 3.0).abs() < 1e-12);
+        assert!((fall - 15.0_f64.powf(times.log2())).abs() < 1e-9, "{fall}");
+        assert_eq!(of("{ ancf.elements = 8 }", ""), (false, 2.0, 15.0));
+        assert_eq!(of("{ ancf.elements = 1 }", ""), (true, 2.0, 15.0));
+        assert!(of("{ rpim = { nodes = 9, kernel = { wendland = { radius = 8.0 } } } }", "").0);
+        // A node that must be at 1.5 m leaves one cell before it.
+        let couple = "effect.moment = [{ beam = 'arm', at = 1.5, value = 1 }]\n";
+        assert!(of("{ ancf.nodes = [0, 2, 3, 4] }", couple).0);
+        assert!(!of("{ ancf.nodes = [0, 1, 1.5, 2, 4] }", couple).0);
+        let moving = scene(&format!("beam.arm.basis.ancf.elements = 7\n{MOTION}"));
+        assert_eq!(runner(&moving, 1e-3).contractions(f64::INFINITY)[0], 10.0, "steps are halved");
     }
 
     /// Small errors of motions are cheaper by interpolation without a mesh, of stiff beams without

@@ -1,9 +1,9 @@
 //! The search for a mesh and steps that are good enough.
 
-use super::difference::Difference;
+use super::difference::{Difference, jumps};
 use super::judgement::{CAUTION, Estimate, Fall, Judged, LEAST_CONTRACTION, Seen, excess};
 use super::mesh::{self, CellErrors, Mesh};
-use super::missing::{self, Missing};
+use super::missing::Missing;
 use super::round::{FINEST, Fineness, LOOSER, Outcome, Purpose, Round, Runner, short};
 use super::{Accurate, model_error, statement};
 use crate::model::{Accuracy, Analysis};
@@ -153,15 +153,10 @@ impl<'a, 'o> Search<'a, 'o> {
                 _ => 0,
             };
             // No error is smaller than what finer meshes do not remove.
-            judged.at_least(self.runner.saturation);
             let errors = judged.errors();
             judged.excess = self.runner.wanted.map_or(0.0, |wanted| excess(errors, wanted));
-            if judged.excess > 1.0 {
-                // What is not good enough is not said to be better than it may be.
-                judged.likely = 1.0;
-            }
-            if let Some(run) = self.runner.runs.get_mut(judged.round.run) {
-                run.error = Some(judged.likely * errors.result);
+            if let Some((run, stated)) = self.runner.runs.get_mut(judged.round.run).zip(judged.stated()) {
+                run.error = Some(stated.errors.result);
             }
             if judged.excess <= 1.0 && mute < MUTE && !judged.round.tells_of_steps() {
                 // Something else than the tolerance decides about steps: a smaller one will.
@@ -174,6 +169,8 @@ impl<'a, 'o> Search<'a, 'o> {
             };
             let why = if wanted.result < ROUND_OFF {
                 Some(format!("errors below {ROUND_OFF:e} are those of round-off"))
+            } else if let Some(remains) = self.runner.remains(&judged.round, judged.caution, wanted) {
+                Some(remains)
             } else if stalls >= STALLS && self.runner.open.load_steps {
                 Some(STICKS.to_owned())
             } else if stalls >= STALLS {
@@ -192,7 +189,6 @@ impl<'a, 'o> Search<'a, 'o> {
                     let luck = judged.excess / best.excess;
                     best.caution *= luck;
                     best.excess *= luck;
-                    best.likely = 1.0;
                     best
                 }
                 _ => judged,
@@ -232,6 +228,7 @@ impl<'a, 'o> Search<'a, 'o> {
         let enough = excess_of(&self.runner, errors_of_both.errors) * caution <= 1.0;
         let mut estimate = Estimate {
             whole: errors_of_both.clone(),
+            seen: errors_of_both.clone(),
             mesh: errors_of_both,
             contraction,
             steps: None,
@@ -252,22 +249,22 @@ impl<'a, 'o> Search<'a, 'o> {
             let mesh = mesh.divided([caution.recip(); 2]);
             if let Some(whole) = mesh.plus(&steps) {
                 caution = 1.0;
-                estimate =
-                    Estimate { whole, mesh, contraction, steps: Some(steps.errors.result), missing: None };
+                estimate = Estimate {
+                    seen: whole.clone(),
+                    whole,
+                    mesh,
+                    contraction,
+                    steps: Some(steps.errors.result),
+                    missing: None,
+                };
                 now.apart = Some(falls);
             }
         }
         let fall = if finer.is_some() { whole.factor } else { round.fall.unwrap_or(f64::NAN) };
-        let largest = caution * estimate.whole.errors.result;
-        let mut likely = self.runner.likely(all, fall, largest);
-        if let Some(coarse) = &round.coarse {
-            let Runner { model, analysis, meshes, .. } = &self.runner;
-            estimate = estimate.with(Missing::of(model, analysis, meshes, coarse, &round.results));
-            let missing = caution * estimate.whole.errors.result - largest;
-            if missing > 0.0 {
-                likely = (likely * largest + missing::LIKELY * missing) / (largest + missing);
-            }
-        }
+        let likely = self.runner.likely(all, fall, caution * estimate.seen.errors.result);
+        let Runner { model, analysis, meshes, .. } = &self.runner;
+        let missing = |coarse| Missing::of(model, analysis, meshes, coarse, &round.results);
+        let estimate = estimate.with(round.coarse.as_ref().and_then(missing), round.unseen.as_ref());
         (now, Judged { round, estimate: Some(estimate), caution, likely, excess: 0.0 })
     }
 
@@ -371,13 +368,12 @@ impl<'a, 'o> Search<'a, 'o> {
     /// Finer meshes in place of those with which the search began, of which two runs were enough to
     /// tell that they do not do; what was seen of them.
     fn begin_finer(&mut self, difference: &Difference) -> Seen {
-        let every_second: Vec<Mesh> =
-            self.runner.meshes.iter().map(|mesh| mesh.every_second_of(&mesh.nodes)).collect();
+        let coarser: Vec<Mesh> = self.runner.meshes.iter().map(Mesh::coarser).collect();
         let [promised, _] = self.runner.contractions(f64::INFINITY);
-        let cells = every_second.iter().zip(&self.runner.meshes).zip(&difference.cells);
+        let cells = coarser.iter().zip(&self.runner.meshes).zip(&difference.cells);
         let seen = Seen {
             cells: cells.map(|((coarser, mesh), errors)| coarser.gathered(mesh, errors)).collect(),
-            meshes: every_second,
+            meshes: coarser,
             tolerance: LOOSER * self.runner.tolerance,
             excess: f64::INFINITY,
             whole: Fall::unknown(difference.errors.result),
@@ -406,11 +402,16 @@ impl<'a, 'o> Search<'a, 'o> {
 
     /// The results of a round with what is known of their errors.
     fn finished(self, judged: Judged, reason: Option<String>) -> Accurate {
-        let Judged { round, estimate: errors, caution, likely, .. } = judged;
+        let stated = judged.stated();
+        let Judged { round, estimate: errors, .. } = judged;
         let Round { mut results, setting, .. } = round;
         let lengths: Vec<f64> = self.runner.meshes.iter().map(Mesh::length).collect();
         let largest = model_error::largest(lengths.len(), results.states());
-        let notes = model_error::notes(self.runner.model, &lengths, &largest);
+        let mut notes = model_error::notes(self.runner.model, &lengths, &largest);
+        let last = &results.states().last;
+        notes.extend(model_error::at_jumps(self.runner.model, |probe| {
+            jumps(self.runner.model, last, probe.at)
+        }));
         results.states_mut().stations.clear();
         let solver = self.runner.steps_are_open() || self.runner.static_tolerance().is_some();
         let chosen = setting.toml_of(self.runner.model, |beam| self.runner.is_open(beam), solver);
@@ -428,10 +429,8 @@ impl<'a, 'o> Search<'a, 'o> {
             estimated: unknown,
             ..ErrorEstimate::default()
         };
-        if let Some(Estimate { whole, missing, .. }) = errors {
-            estimate.notes.extend(missing.and_then(|missing| missing.note()));
-            let Difference { errors, eigenvalues, probes, records, beams, .. } =
-                whole.divided([likely * caution, caution].map(f64::recip));
+        estimate.notes.extend(errors.and_then(|estimate| estimate.missing?.note()));
+        if let Some(Difference { errors, eigenvalues, probes, records, beams, .. }) = stated {
             estimate.probes = probes.into_iter().map(statement::of_probe).collect();
             estimate = ErrorEstimate { estimated: errors, eigenvalues, records, beams, ..estimate };
             estimate.met = self.runner.wanted.is_none_or(|wanted| excess(estimate.estimated, wanted) <= 1.0);
@@ -486,7 +485,14 @@ mod tests {
 
     fn estimate(difference: Difference, contractions: [f64; 2]) -> Estimate {
         let whole = difference.divided(contractions.map(|contraction| contraction - 1.0));
-        Estimate { mesh: whole.clone(), whole, contraction: contractions[0], steps: None, missing: None }
+        Estimate {
+            seen: whole.clone(),
+            mesh: whole.clone(),
+            whole,
+            contraction: contractions[0],
+            steps: None,
+            missing: None,
+        }
     }
 
     /// Errors that were e^{λt}: from 1e-4 to 0.2 within a second, by λ = 7.6/s. A tolerance of 3e-4 may fall

@@ -345,9 +345,13 @@ fn error_text(error: &ErrorEstimate, analysis: AnalysisKind) -> String {
     if let Some(wanted) = error.wanted {
         let usual = if error.usual { ", as usual" } else { "" };
         let _ = write!(text, " ({:e} wanted{usual})", wanted.result);
+        let forces = match analysis {
+            AnalysisKind::Dynamic => "section forces at the end",
+            _ => "section forces",
+        };
         for (what, wanted, found) in [
             ("curvature", wanted.curvature, error.estimated.curvature),
-            ("section forces", wanted.section_force, error.estimated.section_force),
+            (forces, wanted.section_force, error.estimated.section_force),
         ] {
             if let (Some(wanted), Some(found)) = (wanted, found) {
                 let _ = write!(text, ", {what} {found:.0e} ({wanted:e} wanted)");

@@ -415,11 +415,26 @@ impl<'a> Sampler<'a> {
                 let more =
                     (s != even.s()).then(|| View::points(&part.basis, part.offset(), &s).ok()).flatten();
                 let mut shape = self.shape_of(beam, more.as_ref().unwrap_or(even), q);
+                self.bend_before(beam, &sides, q, &mut shape);
                 self.cut(beam, actions, &sides, &mut shape);
                 shape.tendons = self.tendons(beam, &shape);
                 shape
             })
             .collect()
+    }
+
+    /// Gives rows before a cut the strain and the curvature there: those of a node are the ones behind it.
+    fn bend_before(&self, beam: usize, sides: &[Side], q: &[f64], shape: &mut Shape) {
+        let part = &self.system.beams()[beam];
+        let length = part.basis.length();
+        let is_before = |i: &usize| sides[*i] == Side::Left && shape.s[*i] < length;
+        let rows: Vec<usize> = (0..sides.len()).filter(is_before).collect();
+        let places: Vec<f64> = rows.iter().map(|i| (shape.s[*i] - SAME_PLACE * length).max(0.0)).collect();
+        let Ok(view) = View::points(&part.basis, part.offset(), &places) else { return };
+        let before = self.seen(beam, &view, q);
+        for (i, (strain, curvature)) in rows.into_iter().zip(before.strain.iter().zip(&before.curvature)) {
+            (shape.strain[i], shape.curvature[i]) = (*strain, *curvature);
+        }
     }
 
     /// One beam at the arc lengths `s` \[m\], with section forces on the given sides of the cuts.
@@ -479,8 +494,10 @@ impl<'a> Sampler<'a> {
             let stretch = measure.stretch(shape.strain[i]);
             let [axial, shear, moment] =
                 actions.of_tendons(shape.s[i], inside, [stretch, shape.curvature[i]]);
+            let along = force.x * cosine + force.y * sine - axial;
             let across = force.y * cosine - force.x * sine - shear;
-            shape.axial_force.push(force.x * cosine + force.y * sine - axial);
+            // The force in a string has the direction of the string, which at a kink is not that of the node.
+            shape.axial_force.push(if bends { along } else { along.hypot(across).copysign(along) });
             shape.shear_force.push(if bends { across } else { 0.0 });
             let couple = r.perp(&before.force) - before.moment - moment;
             shape.bending_moment.push(if bends { couple } else { 0.0 });

@@ -318,3 +318,40 @@ fn a_law_that_ends_with_the_motion_is_seen_from_before_by_all() {
         assert!(off.iter().all(|off| *off < 1e-5 * largest), "{method}: {off:?} of {largest}");
     }
 }
+
+/// A string of 2π/3 m without weight between supports √3 m apart, pulled down in its middle by 10 N: its halves are straight, and
+/// carry F/(2 sin α) with cos α = (√3/2)/(π/3).
+#[test]
+fn a_string_is_pulled_along_itself_where_it_has_a_kink() {
+    let text = "[beam.s]\narc = { center = [0, 0], radius = 1, from = '210 deg', to = '330 deg' }\nbasis.ancf.elements = 48\n\
+                [[support]]\nbeam = 's'\nat = 'start'\nfix = ['x', 'y']\n[[support]]\nbeam = 's'\nat = 'end'\nfix = ['x', 'y']\n\
+                [[effect.force]]\nbeam = 's'\nat = 1.0471975511965976\nvalue = [0, -10]\n\
+                [analysis.static]\n";
+    let found = solved(text);
+    let cosine = 0.5 * 3.0_f64.sqrt() / std::f64::consts::FRAC_PI_3;
+    let tension = 10.0 / (2.0 * (1.0 - cosine * cosine).sqrt());
+    let shape = &found.last[0];
+    let rows: Vec<f64> = (0..shape.s.len())
+        .filter(|i| (shape.s[*i] - 1.0471975511965976).abs() < 1e-9)
+        .map(|i| shape.axial_force[i])
+        .collect();
+    assert_eq!(rows.len(), 2, "before and behind");
+    assert!(rows.iter().all(|n| (n / tension - 1.0).abs() < 1e-2), "{rows:?} for {tension}");
+}
+
+/// A couple of 1.5 N m at 0.7 m, and none behind it: the row before it is bent by it, and the one behind is straight.
+#[test]
+fn curvature_before_a_couple_is_that_of_its_moment() {
+    for basis in ["ancf.elements = 40", "rpim.nodes = 41"] {
+        let text = beam("arm", [0.0, 0.0], 1.0, 0.0, 1e4, 1.0, basis)
+            + &support("arm", "'start'", CLAMP)
+            + "[[effect.moment]]\nbeam = 'arm'\nat = 0.7\nvalue = 1.5\n[analysis.static]\n";
+        let shape = &solved(&text).last[0];
+        let rows: Vec<usize> = (0..shape.s.len()).filter(|i| (shape.s[*i] - 0.7).abs() < 1e-9).collect();
+        assert_eq!(rows.len(), 2, "before and behind");
+        for (row, moment) in rows.into_iter().zip([1.5, 0.0]) {
+            assert!((shape.bending_moment[row] - moment).abs() < 1e-9, "{basis}");
+            assert!((shape.curvature[row] - moment).abs() < 1e-2, "{basis}: {}", shape.curvature[row]);
+        }
+    }
+}

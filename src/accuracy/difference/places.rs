@@ -25,6 +25,16 @@ pub fn interpolated(places: &[f64], values: &[f64], s: f64, after: bool) -> Opti
     Some((1.0 - part) * values.get(left)? + part * values.get(right)?)
 }
 
+/// Whether the place of this number is there once more: this one is before what acts there in a point, that one behind.
+pub fn is_before(places: &[f64], k: usize) -> bool {
+    places.get(k + 1).is_some_and(|next| next - places[k] <= same_place(places))
+}
+
+/// Whether a place is there twice.
+pub fn is_twice(places: &[f64], s: f64) -> bool {
+    (0..places.len()).any(|k| (places[k] - s).abs() <= same_place(places) && is_before(places, k))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -38,5 +48,6 @@ mod tests {
         assert_eq!((at(1.0, false), at(1.0, true)), (Some(2.0), Some(5.0)));
         assert_eq!((at(0.0, false), at(3.0, true)), (Some(1.0), Some(9.0)));
         assert_eq!((at(-0.5, true), at(3.5, true)), (None, None));
+        assert_eq!([0.0, 1.0, 3.0].map(|place| is_twice(&s, place)), [false, true, false]);
     }
 }

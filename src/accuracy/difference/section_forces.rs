@@ -1,7 +1,7 @@
 //! By how much section forces differ.
 
 use super::larger;
-use super::places::{interpolated, same_place};
+use super::places::{interpolated, is_before};
 use crate::results::Shape;
 
 /// Moments smaller than this, relative to the largest force times the length, are round-off.
@@ -18,8 +18,7 @@ pub fn section_forces(coarse: &[Shape], fine: &[Shape]) -> (Option<f64>, [f64; 2
         for (a, b) in coarse.iter().zip(fine) {
             largest = kind(b).iter().fold(largest, |largest, value| largest.max(value.abs()));
             for (k, (s, value)) in a.s.iter().zip(kind(a)).enumerate() {
-                let after = a.s.get(k + 1).is_none_or(|next| next - s > same_place(&a.s));
-                if let Some(other) = interpolated(&b.s, kind(b), *s, after) {
+                if let Some(other) = interpolated(&b.s, kind(b), *s, !is_before(&a.s, k)) {
                     error = larger(error, (value - other).abs());
                 }
             }

@@ -1,16 +1,19 @@
 //! By how much equilibria and motions differ.
 
-use super::places::interpolated;
+use super::places::{interpolated, is_before, is_twice, same_place};
 use super::section_forces::section_forces;
 use super::stations::parts;
 use super::{Difference, Scales, larger, pairs};
 use crate::accuracy::mesh::{CellErrors, Mesh};
-use crate::model::{Analysis, Model};
+use crate::model::{Analysis, Model, Place};
 use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Shape, Trajectory};
 use std::f64::consts::TAU;
 
 /// Curvatures smaller than this per beam length are round-off.
 const STRAIGHT: f64 = 1e-9;
+
+/// An axial force that differs on both sides of a place by more than this part of the largest jumps there.
+const JUMP: f64 = 1e-6;
 
 /// Errors of a record of which nothing is known.
 const UNKNOWN: ProbeSample = ProbeSample {
@@ -46,6 +49,12 @@ pub fn states<'t>(
             let around = |t: &'t Trajectory, record: usize| t.stations.get(record)?.get(probe.at.beam);
             if let Some((a, b)) = around(coarse, i).zip(around(fine, j)) {
                 samples[j] = not_by_chance(samples[j], a, b, probe.at.s);
+            }
+            if jumps(model, &fine.last, probe.at)
+                && let Some(around) = around(fine, j)
+            {
+                let bends = model.beams[probe.at.beam].section.bending_stiffness.is_some();
+                samples[j] = one_sided(samples[j], b, around, probe.at.s, bends);
             }
             let error = samples[j].x / lengths[probe.at.beam];
             difference.records[j] = larger(difference.records[j], error);
@@ -105,8 +114,8 @@ pub fn states<'t>(
             continue;
         }
         largest = b.curvature.iter().fold(largest, |largest, value| largest.max(value.abs()));
-        for (s, value) in a.s.iter().zip(&a.curvature) {
-            let other = interpolated(&b.s, &b.curvature, *s, true);
+        for (k, (s, value)) in a.s.iter().zip(&a.curvature).enumerate() {
+            let other = interpolated(&b.s, &b.curvature, *s, !is_before(&a.s, k));
             curvature = other.map_or(curvature, |other| larger(curvature, (value - other).abs()));
         }
     }
@@ -200,6 +209,38 @@ fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64) -> Pro
         strain: larger(seen.strain, before.strain.min(after.strain)),
         ..seen
     }
+}
+
+/// Whether what acts in this place makes the strain of its beam jump in the last state, or the direction of a string, so that
+/// one value there is neither that before it nor that behind.
+pub fn jumps(model: &Model, last: &[Shape], at: Place) -> bool {
+    let Some((beam, shape)) = model.beams.get(at.beam).zip(last.get(at.beam)) else { return false };
+    let largest = shape.axial_force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    let here = |k: &usize| (shape.s[*k] - at.s).abs() <= same_place(&shape.s);
+    let forces = || (0..shape.s.len()).filter(here).filter_map(|k| shape.axial_force.get(k));
+    let [least, most] = forces().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], force| {
+        [least.min(*force), most.max(*force)]
+    });
+    let stretched = beam.section.axial_stiffness.is_some() && most - least > JUMP * largest;
+    stretched || beam.section.bending_stiffness.is_none() && is_twice(&shape.s, at.s)
+}
+
+/// What a probe at such a place errs by: at least by what it is off from the stations before and behind it, in strain and
+/// curvature, or in the direction of a string.
+fn one_sided(seen: ProbeSample, value: &ProbeSample, fine: &Shape, s: f64, bends: bool) -> ProbeSample {
+    let same = same_place(&fine.s);
+    let before = fine.s.partition_point(|place| *place < s - same).checked_sub(1);
+    let behind = Some(fine.s.partition_point(|place| *place <= s + same));
+    let sides = [before, behind].into_iter().flatten().filter_map(|k| sample(fine, k));
+    sides.fold(seen, |seen, side| {
+        let off = differ(value, &side);
+        let strain = larger(seen.strain, off.strain);
+        if bends {
+            ProbeSample { curvature: larger(seen.curvature, off.curvature), strain, ..seen }
+        } else {
+            ProbeSample { angle: larger(seen.angle, within_half_a_turn(off.angle)), strain, ..seen }
+        }
+    })
 }
 
 /// The size of an angle without whole turns, which shapes do not tell.
@@ -355,6 +396,38 @@ mod tests {
             ProbeSample { x: 1.0, y: 1.0, angle: 1.0, strain: 1.0, curvature: 1.0, vx: Some(0.0), vy: None };
         assert_eq!(at(more, 2.0), more);
         assert_eq!((at(none, 0.0), at(none, 0.5), at(none, 3.5)), (none, none, none));
+    }
+
+    /// A strain of 2 between 5 before and 0 behind errs by 3; that it is where forces jump, or a string turns, is seen in
+    /// the last shape.
+    #[test]
+    fn one_value_where_strains_jump_errs_by_the_jump() {
+        let scene = scene("static = {}");
+        let at = |beam: usize, s: f64, axial: [f64; 2]| {
+            let shape = |middle: f64| Shape {
+                s: vec![0.0, middle, middle, 2.0 * middle],
+                axial_force: vec![axial[0], axial[0], axial[1], axial[1]],
+                ..Shape::default()
+            };
+            jumps(scene.model(), &[shape(1.0), shape(2.0)], Place::new(beam, s))
+        };
+        assert!(at(0, 1.0, [5.0, 0.0]) && !at(0, 0.5, [5.0, 0.0]) && !at(0, 1.0, [5.0, 5.0 - 1e-6]));
+        assert!(at(1, 2.0, [5.0, 5.0]) && !at(1, 1.0, [5.0, 5.0]));
+        let fine = Shape {
+            s: vec![0.0, 1.0, 2.0],
+            x: vec![0.0; 3],
+            y: vec![0.0; 3],
+            angle: vec![1.0, 0.0, -0.5 + TAU],
+            strain: vec![5.0, 9.0, 0.0],
+            curvature: vec![1.0, 9.0, 4.0],
+            ..Shape::default()
+        };
+        let value = ProbeSample { strain: 2.0, curvature: 2.0, angle: 0.25, ..ProbeSample::default() };
+        let seen = ProbeSample { strain: 1e-9, curvature: 1e-9, angle: 1e-9, ..ProbeSample::default() };
+        let of = |bends: bool| one_sided(seen, &value, &fine, 1.0, bends);
+        assert_eq!(of(true), ProbeSample { strain: 3.0, curvature: 2.0, ..seen });
+        let string = of(false);
+        assert!((string.angle - 0.75).abs() < 1e-14 && string.strain == 3.0 && string.curvature == 1e-9);
     }
 
     #[test]
