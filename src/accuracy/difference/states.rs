@@ -5,13 +5,17 @@ use super::section_forces::section_forces;
 use super::stations::parts;
 use super::{Difference, Scales, larger, pairs};
 use crate::accuracy::mesh::{CellErrors, Mesh};
-use crate::model::{Analysis, Model, Place};
+use crate::model::{Analysis, Beam, Model, Place, Section};
 use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Shape, Trajectory};
 use std::f64::consts::TAU;
 
+/// Strains of strings smaller than this are round-off.
+const NO_STRAIN: f64 = 1e-13;
 /// Curvatures smaller than this per beam length are round-off.
 const STRAIGHT: f64 = 1e-9;
 
+/// How much a curvature errs at most, relative to it, where the strain errs: κ = r' × r''/|r'|², and r'' where r' is too long.
+const OF_CURVATURE: f64 = 2.0;
 /// An axial force that differs on both sides of a place by more than this part of the largest jumps there.
 const JUMP: f64 = 1e-6;
 
@@ -53,8 +57,8 @@ pub fn states<'t>(
             if jumps(model, &fine.last, probe.at)
                 && let Some(around) = around(fine, j)
             {
-                let bends = model.beams[probe.at.beam].section.bending_stiffness.is_some();
-                samples[j] = one_sided(samples[j], b, around, probe.at.s, bends);
+                let section = &model.beams[probe.at.beam].section;
+                samples[j] = one_sided(samples[j], b, around, probe.at.s, section);
             }
             let error = samples[j].x / lengths[probe.at.beam];
             difference.records[j] = larger(difference.records[j], error);
@@ -133,7 +137,8 @@ pub fn states<'t>(
         }
     }
     let scale = lengths.iter().copied().fold(0.0, f64::max);
-    let (section_force, [force, moment]) = section_forces(&coarse.last, &fine.last);
+    let (section_force, [force, moment]) =
+        section_forces(&coarse.last, &fine.last, no_force(model, &lengths));
     difference.errors = Errors {
         result,
         curvature: (largest * scale > STRAIGHT).then(|| curvature / largest),
@@ -141,6 +146,20 @@ pub fn states<'t>(
     };
     difference.scales = Scales { curvature: largest, force, moment };
     if result.is_finite() { Ok(difference) } else { Err("a position is not a number".into()) }
+}
+
+/// The force \[N\] below which that of no beam is more than the round-off of none: EI κ/L of a curvature κ that is none, and of strings
+/// EA times the round-off of a strain.
+fn no_force(model: &Model, lengths: &[f64]) -> f64 {
+    let of_beam = |(beam, length): (&Beam, &f64)| match (
+        &beam.section.bending_stiffness,
+        &beam.section.axial_stiffness,
+    ) {
+        (Some(bending), _) => STRAIGHT * bending.mean(*length) / (length * length),
+        (None, Some(axial)) => NO_STRAIN * axial.mean(*length),
+        (None, None) => 0.0,
+    };
+    model.beams.iter().zip(lengths).map(of_beam).reduce(f64::min).unwrap_or(0.0)
 }
 
 /// Gives records that the coarse run has not those of the records around them, of which `choose`
@@ -225,20 +244,27 @@ pub fn jumps(model: &Model, last: &[Shape], at: Place) -> bool {
     stretched || beam.section.bending_stiffness.is_none() && is_twice(&shape.s, at.s)
 }
 
-/// What a probe at such a place errs by: at least by what it is off from the stations before and behind it, in strain and
-/// curvature, or in the direction of a string.
-fn one_sided(seen: ProbeSample, value: &ProbeSample, fine: &Shape, s: f64, bends: bool) -> ProbeSample {
+/// What a probe at such a place errs by: at least by what its strain, or the direction of a string, is off from those at the stations
+/// before and behind it. Where the tangent is so much too long or too short, so is the curvature; of a section whose strain and curvature
+/// depend on each other it jumps, too.
+fn one_sided(seen: ProbeSample, value: &ProbeSample, fine: &Shape, s: f64, section: &Section) -> ProbeSample {
     let same = same_place(&fine.s);
     let before = fine.s.partition_point(|place| *place < s - same).checked_sub(1);
     let behind = Some(fine.s.partition_point(|place| *place <= s + same));
     let sides = [before, behind].into_iter().flatten().filter_map(|k| sample(fine, k));
     sides.fold(seen, |seen, side| {
         let off = differ(value, &side);
-        let strain = larger(seen.strain, off.strain);
-        if bends {
-            ProbeSample { curvature: larger(seen.curvature, off.curvature), strain, ..seen }
-        } else {
-            ProbeSample { angle: larger(seen.angle, within_half_a_turn(off.angle)), strain, ..seen }
+        let curvature = match (&section.bending_stiffness, &section.coupling) {
+            (None, _) => 0.0,
+            (_, None) => OF_CURVATURE * off.strain * value.curvature.abs(),
+            (_, Some(_)) => off.curvature,
+        };
+        let angle = if section.bending_stiffness.is_some() { 0.0 } else { within_half_a_turn(off.angle) };
+        ProbeSample {
+            angle: larger(seen.angle, angle),
+            curvature: larger(seen.curvature, curvature),
+            strain: larger(seen.strain, off.strain),
+            ..seen
         }
     })
 }
@@ -424,10 +450,12 @@ mod tests {
         };
         let value = ProbeSample { strain: 2.0, curvature: 2.0, angle: 0.25, ..ProbeSample::default() };
         let seen = ProbeSample { strain: 1e-9, curvature: 1e-9, angle: 1e-9, ..ProbeSample::default() };
-        let of = |bends: bool| one_sided(seen, &value, &fine, 1.0, bends);
-        assert_eq!(of(true), ProbeSample { strain: 3.0, curvature: 2.0, ..seen });
-        let string = of(false);
-        assert!((string.angle - 0.75).abs() < 1e-14 && string.strain == 3.0 && string.curvature == 1e-9);
+        let of = |section: &Section| one_sided(seen, &value, &fine, 1.0, section);
+        let [arm, rope] = [0, 1].map(|beam| of(&scene.model().beams[beam].section));
+        assert_eq!(arm, ProbeSample { strain: 3.0, curvature: 2.0 * 3.0 * 2.0, ..seen });
+        assert!((rope.angle - 0.75).abs() < 1e-14 && rope.strain == 3.0 && rope.curvature == 1e-9);
+        let coupled = Section { coupling: Some(0.5.into()), ..scene.model().beams[0].section.clone() };
+        assert_eq!(of(&coupled), ProbeSample { strain: 3.0, curvature: 2.0, ..seen });
     }
 
     #[test]
