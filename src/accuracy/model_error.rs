@@ -63,7 +63,8 @@ pub(super) fn at_jumps(model: &Model, jumps: impl Fn(&Probe) -> bool) -> Option<
     let (s, sees) = if names.len() == 1 { ("", "sees") } else { ("s", "see") };
     (!names.is_empty()).then(|| {
         format!(
-            "what acts in a point makes the strain jump where probe{s} {} {sees} it: angle, strain and curvature are between those on both sides, and              their errors are the distance to these; a probe beside it tells each",
+            "what acts in a point makes the strain, or a string's direction, jump where probe{s} {} {sees} it: strain and curvature, or the \
+             angle, are between those on both sides, and their errors are the distances; a probe beside it tells each",
             names.join(", ")
         )
     })
@@ -122,6 +123,21 @@ mod tests {
         let thin = model("section.rectangle = { width = 0.1, height = 0.1 }, youngs_modulus = 1e9");
         assert_eq!(of(&thin, [6.0, 1.0], [[0.0, 2.99], [0.0; 2]]), [""; 0]);
         assert_eq!(of(&thin, [6.0, 1.0], [[0.0, 3.01], [0.0; 2]]).len(), 1);
+    }
+
+    #[test]
+    fn probes_where_strains_jump_are_named() {
+        let text = "beam.arm = { start = [0, 0], end = [6, 0], axial_stiffness = 1, bending_stiffness = 1 }\n\
+                    support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+                    probe = [{ name = 'a', beam = 'arm', at = 1.0 }, { name = 'b', beam = 'arm', at = 2.0 }]\nanalysis.static = {}\n";
+        let scene = parse("scene", text).unwrap();
+        let of =
+            |jumps: &[f64]| at_jumps(scene.model(), |probe| jumps.contains(&probe.at.s)).unwrap_or_default();
+        assert!(
+            of(&[2.0]).contains("where probe `b` sees it: strain and curvature, or the angle, are between")
+        );
+        assert!(of(&[1.0, 2.0]).contains("where probes `a`, `b` see it"));
+        assert_eq!(of(&[]), "");
     }
 
     /// Of all records of the stations of a beam, and of all places of the last.
