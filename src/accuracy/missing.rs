@@ -290,8 +290,8 @@ mod tests {
         assert!(missing(&[0.0], &[]).is_none());
     }
 
-    /// α + η/h² with α = 0.5/s and the smaller one of two η, 2e-4 s and 1e-4 s, at steps of 0.01 s; α + 1/η at such as
-    /// follow nothing of it; strings need η of strain alone. The energy of one second ago is then e^{−1.5} of what it was.
+    /// α + η/h² with α = 0.5/s and the smaller one of two η, 2e-4 s and 1e-4 s, at steps of 0.01 s; α + 1/η where what is faster
+    /// than a step does not vibrate. At 1.5/s the energy that is missing falls by e^{−1.5} in a second.
     #[test]
     fn damping_takes_what_is_missing() {
         let meshes = [Mesh::of(&[0.0, 4.0])];

@@ -429,6 +429,9 @@ impl<'a> Sampler<'a> {
         let length = part.basis.length();
         let is_before = |i: &usize| sides[*i] == Side::Left && shape.s[*i] < length;
         let rows: Vec<usize> = (0..sides.len()).filter(is_before).collect();
+        if rows.is_empty() {
+            return;
+        }
         let places: Vec<f64> = rows.iter().map(|i| (shape.s[*i] - SAME_PLACE * length).max(0.0)).collect();
         let Ok(view) = View::points(&part.basis, part.offset(), &places) else { return };
         let before = self.seen(beam, &view, q);

@@ -14,9 +14,9 @@ const NO_STRAIN: f64 = 1e-13;
 /// Curvatures smaller than this per beam length are round-off.
 const STRAIGHT: f64 = 1e-9;
 
-/// How much a curvature errs at most, relative to it, where the strain errs: κ = r' × r''/|r'|², and r'' where r' is too long.
+/// A tangent r' that is too long by a small part makes the curvature r' × r''/|r'|² wrong by at most so many times that part.
 const OF_CURVATURE: f64 = 2.0;
-/// An axial force that differs on both sides of a place by more than this part of the largest jumps there.
+/// An axial force that differs on both sides of a place by more than this part of the largest, or of M/L, jumps there.
 const JUMP: f64 = 1e-6;
 
 /// Errors of a record of which nothing is known.
@@ -234,7 +234,9 @@ fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64) -> Pro
 /// one value there is neither that before it nor that behind.
 pub fn jumps(model: &Model, last: &[Shape], at: Place) -> bool {
     let Some((beam, shape)) = model.beams.get(at.beam).zip(last.get(at.beam)) else { return false };
-    let largest = shape.axial_force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    let most_of = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let length = shape.s.last().copied().unwrap_or(0.0);
+    let largest = most_of(&shape.axial_force).max(most_of(&shape.bending_moment) / length);
     let here = |k: &usize| (shape.s[*k] - at.s).abs() <= same_place(&shape.s);
     let forces = || (0..shape.s.len()).filter(here).filter_map(|k| shape.axial_force.get(k));
     let [least, most] = forces().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], force| {
@@ -429,14 +431,17 @@ mod tests {
     #[test]
     fn one_value_where_strains_jump_errs_by_the_jump() {
         let scene = scene("static = {}");
-        let at = |beam: usize, s: f64, axial: [f64; 2]| {
+        let under = |moment: f64, beam: usize, s: f64, axial: [f64; 2]| {
             let shape = |middle: f64| Shape {
                 s: vec![0.0, middle, middle, 2.0 * middle],
                 axial_force: vec![axial[0], axial[0], axial[1], axial[1]],
+                bending_moment: vec![moment; 4],
                 ..Shape::default()
             };
             jumps(scene.model(), &[shape(1.0), shape(2.0)], Place::new(beam, s))
         };
+        let at = |beam: usize, s: f64, axial: [f64; 2]| under(0.0, beam, s, axial);
+        assert!(at(0, 1.0, [1e-9, 0.0]) && !under(8.0, 0, 1.0, [1e-9, 0.0]), "round-off of a moment");
         assert!(at(0, 1.0, [5.0, 0.0]) && !at(0, 0.5, [5.0, 0.0]) && !at(0, 1.0, [5.0, 5.0 - 1e-6]));
         assert!(at(1, 2.0, [5.0, 5.0]) && !at(1, 1.0, [5.0, 5.0]));
         let fine = Shape {
