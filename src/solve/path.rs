@@ -60,6 +60,13 @@ pub struct Point {
     pub rate: Vec<f64>,
 }
 
+impl Point {
+    /// The load factor's rate dλ/dt along the path.
+    pub fn load_rate(&self) -> f64 {
+        self.rate.last().copied().unwrap_or_default()
+    }
+}
+
 /// The parameter of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
@@ -107,6 +114,10 @@ const MOST_TRIALS: usize = 60;
 /// Such a step may miss its target by this many times the tolerance where shorter steps change
 /// nothing.
 const ROUND_OFFS: f64 = 1e4;
+/// A rate that is this part of the larger one at the ends of a step is zero at a turning point …
+const AT_TURN: f64 = 1e-6;
+/// … and one below this part of it at the start of a step is that of a turning point where the step before has ended.
+const LEAVES_TURN: f64 = 1e-4;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
 /// Part of a failed step that is tried next.
@@ -204,10 +215,13 @@ impl<'e, 'a> Path<'e, 'a> {
         }
     }
 
-    /// Extreme value of the load factor near the last two points: the vertex of the parabola
-    /// through the last three, where it lies between them, else the last load.
-    pub fn extreme_load(&self) -> f64 {
+    /// Load factor of what has changed in the last step: that of its end, or where a limit point within the step could not be
+    /// made an end, the vertex of the parabola through the last three points, if it lies between them.
+    pub fn load_of_change(&self) -> f64 {
         let [.., a, b, c] = &self.points[..] else { return self.last().load };
+        if !turns_within([b, c].map(Point::load_rate)) {
+            return c.load;
+        }
         let slope = |p: &Point, q: &Point| (q.load - p.load) / (q.parameter - p.parameter);
         let (first, second) = (slope(a, b), slope(b, c));
         let bend = (second - first) / (c.parameter - a.parameter);
@@ -670,6 +684,38 @@ impl<'e, 'a> Path<'e, 'a> {
         }
     }
 
+    /// Ends the last step at the limit point within it; returns whether there is one.
+    pub fn end_at_limit(&mut self) -> bool {
+        let Point { stability, soft, .. } = *self.last();
+        let turns = self.end_at_turn(Point::load_rate);
+        if turns && let Some(limit) = self.points.last_mut() {
+            // There the tangent is singular, and its signs are round-off: what changes in the whole step changes here.
+            (limit.stability, limit.soft) = (stability, soft);
+        }
+        turns
+    }
+
+    /// Ends the last step where `rate`, which its ends have with opposite signs, vanishes; returns whether they have. The
+    /// quantity whose rate it is then only grows or only falls in any step, and what it reaches in one is seen at the ends.
+    pub fn end_at_turn(&mut self, rate: impl Fn(&Point) -> f64) -> bool {
+        let Some([a, b]) = self.last_two() else { return false };
+        let ends = [rate(a), rate(b)];
+        let largest = ends[0].abs().max(ends[1].abs());
+        if !turns_within(ends) {
+            return false;
+        }
+        let (whole, record, before) = (b.clone(), self.history.last().cloned(), self.points.len() - 1);
+        if self.end_where(&rate, AT_TURN * largest).is_ok() {
+            return true;
+        }
+        // A shorter step failed: the whole one, which did not, remains.
+        self.points.truncate(before);
+        self.points.push(whole);
+        self.history.pop();
+        self.history.extend(record);
+        false
+    }
+
     /// Replaces the last step by one of length `step`.
     fn retake(&mut self, step: f64) -> Result<&Point, NoStep> {
         self.points.pop();
@@ -730,6 +776,11 @@ impl<'e, 'a> Path<'e, 'a> {
     }
 }
 
+/// Whether a rate with these values at the ends of a step vanishes within it.
+fn turns_within([first, last]: [f64; 2]) -> bool {
+    (first < 0.0) != (last < 0.0) && first.abs() > LEAVES_TURN * last.abs()
+}
+
 /// State and load factor on the cubic between two points with their tangents, at a part of the step. A
 /// chord would shorten a beam that turns, and so press it.
 fn within(a: &Point, b: &Point, part: f64) -> (Vec<f64>, f64) {
@@ -740,8 +791,7 @@ fn within(a: &Point, b: &Point, part: f64) -> (Vec<f64>, f64) {
     };
     let states = a.x.iter().zip(&b.x).zip(a.rate.iter().zip(&b.rate));
     let x = states.map(|((a, b), (from, to))| of(*a, *b, [*from, *to])).collect();
-    let of_load = |point: &Point| point.rate.last().copied().unwrap_or_default();
-    (x, of(a.load, b.load, [of_load(a), of_load(b)]))
+    (x, of(a.load, b.load, [a.load_rate(), b.load_rate()]))
 }
 
 /// A state within a step.

@@ -29,6 +29,8 @@ const SAME_SIDE: f64 = 1e-5;
 
 /// By how much a path may miss its target, relative to the wanted load factor or in beam lengths.
 const AT_TARGET: f64 = 1e-12;
+/// Forces below this part of the stiffness stress nothing.
+const SLACK: f64 = 1e-12;
 
 /// The results of a static analysis.
 #[derive(Clone, Debug, Default)]
@@ -135,17 +137,24 @@ impl EndCondition<'_> {
         }
     }
 
-    /// Whether it vanishes between two points.
-    fn is_reached(&self, before: &Point, after: &Point) -> bool {
-        (self.of(before) < 0.0) != (self.of(after) < 0.0) || self.of(after) == 0.0
+    /// What counts as zero between two points.
+    fn near(&self, [before, after]: [&Point; 2], system: &System) -> f64 {
+        match self {
+            Self::Load(until) => AT_TARGET * until.abs().max(before.load.abs()).max(after.load.abs()),
+            Self::Probe(..) => AT_TARGET * system.length(),
+        }
+    }
+
+    /// Whether it vanishes between two points; not where it does so at the first already, which a path that begins there
+    /// leaves.
+    fn is_reached(&self, [before, after]: [&Point; 2], system: &System) -> bool {
+        let [first, second] = [self.of(before), self.of(after)];
+        first.abs() > self.near([before, after], system) && ((first < 0.0) != (second < 0.0) || second == 0.0)
     }
 
     /// Ends the path where it vanishes.
     fn end(&self, path: &mut Path<'_, '_>, system: &System) -> Result<Point, NoStep> {
-        let near = match self {
-            Self::Load(until) => AT_TARGET * until.abs(),
-            Self::Probe(..) => AT_TARGET * system.length(),
-        };
+        let near = path.last_two().map_or(0.0, |points| self.near(points, system));
         let mut point = path.end_where(|point| self.of(point), near)?.clone();
         if let Self::Load(until) = self {
             // The remaining miss, in the last digit, does not change the equilibrium.
@@ -208,10 +217,19 @@ fn settled(
 /// which a path of load steps leads on even where the stress-free structure is floppy.
 fn is_steady(equilibrium: &mut Equilibrium<'_>, x: &[f64]) -> bool {
     let system = equilibrium.system();
-    if !(system.is_taken_up() || system.starts_bent()) {
+    if !(system.is_taken_up() || system.starts_bent()) || is_slack(system, x) {
         return false;
     }
     look(equilibrium, 0.0, x) && !equilibrium.is_unstable()
+}
+
+/// Whether nothing is stressed in the state `x`, so that a structure without stiffness of its own has none.
+fn is_slack(system: &System, x: &[f64]) -> bool {
+    let (q, multipliers) = x.split_at(system.coordinates());
+    let energy = system.energy(0.0, q, None);
+    let stored = energy.stretch + energy.bend + energy.stored;
+    let none = SLACK * system.stiffness();
+    stored.abs() <= SLACK * none * system.length() && multipliers.iter().all(|force| force.abs() <= none)
 }
 
 fn newton_settings(settings: &Static) -> Settings {
@@ -467,13 +485,21 @@ fn along_arc(
                 (outcome, unreached) = (Err(stuck), None);
                 break;
             }
-            Ok(point) => {
-                let point = point.clone();
+            Ok(_) => {
+                // A step passes no limit point, and no point where the coordinate that ends the path turns back: a target
+                // could be reached before it and be left again.
+                let mut at_limit = path.end_at_limit();
+                let conditions = target.end_conditions();
+                for condition in &conditions {
+                    if let EndCondition::Probe(view, axis, _) = condition {
+                        at_limit &= !path.end_at_turn(|point| view.at_point(&point.rate)[*axis]);
+                    }
+                }
                 // Of two targets within a step the one that comes first counts.
-                let (mut last, mut reached) = (Ok(point), false);
-                for miss in target.end_conditions() {
+                let (mut last, mut reached) = (Ok(path.last().clone()), false);
+                for miss in &conditions {
                     if let Ok(point) = &last
-                        && miss.is_reached(&previous, point)
+                        && miss.is_reached([&previous, point], system)
                     {
                         (last, reached) = (miss.end(&mut path, system), true);
                     }
@@ -488,11 +514,7 @@ fn along_arc(
                 if let (Some(before), Some(after)) = (previous.stability, point.stability)
                     && before.differs(after)
                 {
-                    let load = if (point.load - previous.load).abs() < f64::EPSILON {
-                        point.load
-                    } else {
-                        path.extreme_load()
-                    };
+                    let load = if at_limit && !reached { point.load } else { path.load_of_change() };
                     solution.events.push(StabilityChange { load, before, after });
                 }
                 work.add_states(system, (previous.load, &previous.x), (point.load, &point.x));

@@ -180,7 +180,8 @@ fn paths_by_arc_length() {
         let arc = ArcLength { until_load: None, max_points: 40, max_step: None, until_probe: None };
         Analysis::Static(Static { arc_length: Some(arc), ..Static::default() })
     };
-    same_at_all_scales(arch, arc, 1e-9);
+    // Where a path turns is known to the tolerance of its tangent, and so is where its next points lie on it.
+    same_at_all_scales(arch, arc, 1e-8);
 }
 
 #[test]
