@@ -141,7 +141,8 @@ pub enum BuildError {
     #[error("{parts} hold the same motion more than once")]
     #[diagnostic(help(
         "the forces between them have no values: leave one of them out, or let one hold less, such as a support that slides; \
-         a beam with an `axial_stiffness` may be held at both ends"
+         held at both ends may be a beam with an `axial_stiffness`, and one that sags between them, by its stress-free shape (`points`, \
+         `arc`) or by the one in which it begins (`initial_shape`)"
     ))]
     Redundant {
         /// The parts that fix it, with their places.

@@ -50,6 +50,8 @@ const LIMITS: (f64, f64) = (0.3, 4.0);
 const NONE: f64 = 1e-14;
 /// Part of the first σ below which increments measure the distance from the equilibrium.
 const SETTLED: f64 = 1e-3;
+/// Gaps of constraints below this part of the stiffness are closed.
+const CLOSED: f64 = 1e-13;
 /// Most iterations.
 const ITERATIONS: usize = 2000;
 
@@ -116,24 +118,29 @@ fn creep(
     let weights = equilibrium.system().weights();
     let floppy = equilibrium.system().is_floppy();
     let pace = if floppy { FLOPPY } else { STIFF };
-    let (mut sigma, mut first, mut on_a_crest) = (0.0, 0.0, false);
+    let (mut sigma, mut first, mut on_a_crest, mut closes) = (0.0, 0.0, false, false);
     let (mut size, mut before, mut change) = (f64::INFINITY, x.to_vec(), vec![0.0; x.len()]);
     for _ in 0..ITERATIONS {
         let residual = equilibrium.residual(load, x, &mut increment);
         if !residual.is_finite() {
             return Err(Failure::NotFinite);
         }
-        if sigma == 0.0 {
+        if sigma == 0.0 || closes {
             let (system, (forces, gaps)) = (equilibrium.system(), increment.split_at(n));
             let unbalanced = system.norm(forces);
             // Without unbalanced forces `x` is an equilibrium already, and the tangent may be
             // singular.
             let round_off = system.round_off();
-            if unbalanced <= round_off && gaps.iter().all(|gap| gap.abs() <= round_off) {
+            let closed = if closes { round_off.max(CLOSED * system.stiffness()) } else { round_off };
+            if unbalanced <= closed && gaps.iter().all(|gap| gap.abs() <= closed) {
                 return Ok(());
             }
-            sigma = unbalanced / system.stiffness();
-            first = sigma;
+            if sigma == 0.0 {
+                // Gaps of constraints where nothing acts are closed by the smallest change, at any pace.
+                closes = unbalanced <= round_off;
+                sigma = if closes { 1.0 } else { unbalanced / system.stiffness() };
+                first = sigma;
+            }
         }
         let shift = if sigma < NONE { 0.0 } else { sigma };
         let earlier = Earlier { q: &before, increment: &change };

@@ -1,7 +1,7 @@
 //! Constraint rows that are linearly dependent.
 //!
 //! The multipliers of linearly dependent rows are undetermined, and a factorisation finds no pivot
-//! for them. Dependence is detected in the stress-free state by the Gram matrix G = B Bᵀ of the
+//! for them. Dependence is detected in the state in which an analysis begins, by the Gram matrix G = B Bᵀ of the
 //! rows, each normalised to length 1, without coordinates fixed by supports at nodes. The smallest
 //! eigenvalue of G is the squared length of the shortest combination of rows with coefficients of
 //! norm 1. Inverse iteration finds it together with the combination. (Row-by-row elimination is not
@@ -88,10 +88,10 @@ impl System {
         joints.find(|(source, _)| of_joint(source)).map(|(_, joint)| *joint)
     }
 
-    /// The rows in the stress-free state, with positions in beam lengths, each normalised to length
-    /// 1; a row is empty if supports at nodes fix all of its coordinates.
+    /// The rows in the state in which an analysis begins, with positions in beam lengths, each normalised
+    /// to length 1; a row is empty if supports at nodes fix all of its coordinates.
     fn directions(&self) -> Vec<BorderRow> {
-        let mut rows = self.border(0.0, &self.reference);
+        let mut rows = self.border(0.0, self.start());
         let of_lengths = self.stiffness / self.length;
         let usual = self.constraints.iter().map(|row| match row.scale(self.stiffness, self.length) {
             scale if row.is_of_length() => scale,

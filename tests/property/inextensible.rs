@@ -333,6 +333,38 @@ fn what_is_welded_keeps_its_own_length() {
     assert!(trajectory.last.iter().flat_map(|shape| &shape.strain).all(|e| e.abs() < 1e-3));
 }
 
+/// A straight string is hung between two hooks that are nearer to each other than it is long: taut, its length would be
+/// held twice, but it begins with a sag. It hangs in the catenary x = a sinh⁻¹(s/a): 2a sinh(w/2a) = L with the distance w
+/// of the hooks; the sag is a (cosh(w/2a) − 1), and each hook carries ρA g a along, and half the weight.
+#[test]
+fn a_string_that_begins_with_a_sag_may_be_held_at_both_ends() {
+    let (span, weight) = (0.8, 2.0 * 10.0);
+    let open = |a: f64| 2.0 * a * (span / (2.0 * a)).sinh() - 1.0;
+    let (mut low, mut high) = (0.1, 10.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        *(if open(middle) > 0.0 { &mut low } else { &mut high }) = middle;
+    }
+    let sag = low * ((span / (2.0 * low)).cosh() - 1.0);
+    for basis in [ANCF, RPIM] {
+        let text = format!(
+            "[beam.string]\nstart = [0, 0]\nend = [1, 0]\nmass_per_length = 2\nbasis = {basis}\n\
+             initial_shape.points = [[0, 0], [0.4, -0.25], [0.8, 0]]\n\
+             [[support]]\nbeam = 'string'\nat = 'start'\nfix = ['x', 'y']\n\
+             [[support]]\nbeam = 'string'\nat = 'end'\nfix = ['x', 'y']\n\
+             [effect.gravity]\nacceleration = [0, -10]\n\
+             [[probe]]\nname = 'lowest'\nbeam = 'string'\nat = 0.5\n[analysis.static]\n[output]\nreactions = true\n"
+        );
+        let found = solve(&parse("string.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}")));
+        let lowest = found.probes[0].samples.last().expect("an equilibrium");
+        assert!((lowest.x - 0.4).hypot(lowest.y + sag) < 1e-4, "{basis}: {lowest:?} for a sag of {sag}");
+        let hook = found.reactions[1].samples.last().expect("an equilibrium");
+        let expected = [weight * low, 0.5 * weight];
+        let off = (hook.fx - expected[0]).hypot(hook.fy - expected[1]);
+        assert!(off < 1e-3 * weight, "{basis}: {hook:?} for {expected:?}");
+    }
+}
+
 #[test]
 fn what_cannot_be_done_is_refused_with_what_to_try() {
     for method in

@@ -67,13 +67,15 @@ pub enum StartError {
         /// How fast a cell becomes longer \[m/s\].
         rate: f64,
     },
-    /// A joint of the scene is open in a saved state.
+    /// A joint of the scene is open in the state at the start, or a length not the one that is kept.
     #[error(
-        "a joint or a support holds beam `{beam}` near s = {} m, where the saved state misses it by {miss:.3e} beam lengths, or rad",
+        "a joint, a support or a length that is kept holds beam `{beam}` near s = {} m, and the state at the start misses it by {miss:.3e} beam lengths, or \
+         rad",
         plain(*.s, 6)
     )]
     #[diagnostic(help(
-        "the joints of a motion that starts from a saved state must be closed in it: begin with the joints that it had, or close them in statics before, which brings what is apart together"
+        "the joints of a motion must be closed in the state from which it starts, and beams that keep their length must have it: begin with the joints that \
+         a saved state had, or go through statics before (a `[[stage]]`), which brings what is apart together"
     ))]
     Open {
         /// Name of the beam.
