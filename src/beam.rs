@@ -61,6 +61,13 @@ pub struct GaussPoints {
     pub lobatto: bool,
 }
 
+impl GaussPoints {
+    /// The rule of masses and of what acts along a beam.
+    pub fn of_loads(self) -> Quadrature {
+        Quadrature::Gauss(self.stretch.max(self.bend).max(4))
+    }
+}
+
 /// A point of a beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {

@@ -312,7 +312,7 @@ impl Law {
 
     /// An upper bound of the rate of its phase \[rad/s\]: the frequencies of the factors of a product
     /// add up.
-    fn fastest(&self) -> f64 {
+    pub fn fastest(&self) -> f64 {
         match self {
             Self::Harmonic { frequency, .. } => frequency.abs(),
             Self::Sum(laws) => laws.iter().map(Self::fastest).fold(0.0, f64::max),

@@ -3,6 +3,7 @@
 mod electrodes;
 mod error;
 mod events;
+mod fields;
 mod laws;
 mod locking;
 mod loose;
@@ -17,6 +18,7 @@ mod stability;
 mod stages;
 mod start;
 mod statics;
+mod steps;
 mod strings;
 mod surfaces;
 mod tendons;

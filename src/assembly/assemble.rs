@@ -88,8 +88,7 @@ impl<'a> Assembly<'a> {
     /// A rule for integrals of products of two shape functions: exact for the cable element's mass
     /// matrix (degree 6).
     pub fn mass_rule(&self, beam: usize) -> Quadrature {
-        let points = self.beams[beam].gauss_points;
-        Quadrature::Gauss(points.stretch.max(points.bend).max(4))
+        self.beams[beam].gauss_points.of_loads()
     }
 
     /// Adds an effect with an energy: springs, foundations, contacts, a beam's own elasticity.

@@ -81,6 +81,14 @@ impl Field {
         Ok(Self::Components(Components { values, first }))
     }
 
+    /// The force \[N/m\] at x, y \[m\] and t \[s\].
+    pub fn at(&self, place: [f64; 3]) -> [f64; 2] {
+        match self {
+            Self::Potential(potential) => potential.first.each_ref().map(|first| -first.at(&place)),
+            Self::Components(components) => components.values.each_ref().map(|value| value.at(&place)),
+        }
+    }
+
     /// Whether it depends on the time, which only motions have.
     pub fn depends_on_time(&self) -> bool {
         match self {

@@ -7,7 +7,7 @@ use super::loose::Loose;
 use super::stability;
 use super::tendons::Tendons;
 use super::{Detail, RunError};
-use super::{strings, surfaces};
+use super::{fields, steps, strings, surfaces};
 use crate::assembly::{Actions, BuildError, InternalVariables, Kind, Side, TendonPath, nodes, remaining};
 use crate::linear::Singular;
 use crate::model::{
@@ -652,6 +652,9 @@ impl<'a> Sampler<'a> {
             let actions = self.system.static_actions(*load, x, variables);
             trajectory.last = self.loaded(self.coordinates_of(x), &actions);
         }
+        let states = [solution.states.first(), solution.states.last()].into_iter().flatten();
+        let states: Vec<(&[f64], f64)> = states.map(|(_, x)| (self.coordinates_of(x), 0.0)).collect();
+        trajectory.run.warnings.extend(fields::missed(self.model, self.system, &states));
         trajectory.run.warnings.extend(self.folds(&trajectory.last));
         let known = solution.work.last().zip(trajectory.energy.last());
         trajectory.run.warnings.extend(known.and_then(|(work, energy)| put_in(work, energy)));
@@ -864,6 +867,10 @@ impl<'a> Sampler<'a> {
         }
         let least = LEAST_ENERGY * self.system.stiffness() * self.system.length();
         trajectory.run.warnings.extend(unbalanced(&trajectory.energy, least));
+        let states = [solution.states.first(), solution.states.last()].into_iter().flatten();
+        let states: Vec<(&[f64], f64)> = states.map(|state| (&state.q[..], state.time)).collect();
+        trajectory.run.warnings.extend(fields::missed(self.model, self.system, &states));
+        trajectory.run.warnings.extend(steps::too_long(self.system, settings));
         trajectory.run.warnings.extend(self.far_from_origin(settings, &solution.states));
         let unwatched = self.hardly_moving(settings, &trajectory);
         trajectory.run.warnings.extend(unwatched);

@@ -46,6 +46,11 @@ impl System {
         self.laws().flat_map(Law::kinks).chain(timed).collect()
     }
 
+    /// The largest frequency ω \[rad/s\] of loads and supports that are harmonic in time; 0 where none are.
+    pub fn fastest_law(&self) -> f64 {
+        self.laws().map(Law::fastest).fold(0.0, f64::max)
+    }
+
     /// Times between `start` and `end` at which steps should end, so that they see what laws do that
     /// nobody knows beforehand ([`Law::turns`]); in no particular order.
     pub fn turns_of_laws(&self, [start, end]: [f64; 2]) -> Vec<f64> {
