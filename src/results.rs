@@ -84,6 +84,15 @@ impl Results {
         }
     }
 
+    /// What round-off may change each of [`Self::eigenvalues`] by at most, relative to it.
+    pub fn round_off(&self) -> Vec<f64> {
+        match self {
+            Self::Trajectory(_) => Vec::new(),
+            Self::Vibrations(vibrations) => vibrations.modes.iter().map(|mode| mode.round_off).collect(),
+            Self::CriticalLoads(loads) => loads.modes.iter().map(|mode| mode.round_off).collect(),
+        }
+    }
+
     /// The shapes that belong to [`Self::eigenvalues`], each of all beams.
     pub fn mode_shapes(&self) -> Vec<&[ModeShape]> {
         match self {
@@ -186,8 +195,10 @@ mod tests {
     fn every_kind_of_results_has_states_and_only_modes_have_eigenvalues() {
         let states = || Trajectory { parameter: vec![0.25], ..Trajectory::default() };
         let shape = |beam: &str| vec![ModeShape { beam: beam.into(), ..ModeShape::default() }];
-        let vibration = |frequency: f64, beam: &str| Vibration { frequency, shape: shape(beam) };
-        let load = |load_factor: f64, beam: &str| BucklingMode { load_factor, shape: shape(beam) };
+        let vibration =
+            |frequency: f64, beam: &str| Vibration { frequency, round_off: 0.0, shape: shape(beam) };
+        let load =
+            |load_factor: f64, beam: &str| BucklingMode { load_factor, round_off: 0.0, shape: shape(beam) };
         let modes = vec![vibration(2.0, "a"), vibration(3.0, "b")];
         let loads = vec![load(4.0, "c"), load(5.0, "d")];
         for (results, values, beams) in [

@@ -12,6 +12,7 @@ use crate::model::{Analysis, Model};
 use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Results};
 
 use modes::modes;
+pub(super) use modes::round_off;
 pub(super) use states::jumps;
 use states::states;
 pub(super) use stations::stations;

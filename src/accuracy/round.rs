@@ -369,9 +369,14 @@ impl<'a, 'o> Runner<'a, 'o> {
         let setting = self.setting(Fineness::Fine, Fineness::Fine);
         let results = self.solve(&stations, &setting, Purpose::Results)?;
         let run = self.runs.len() - 1;
-        let (unseen, failed) = match self.beside_finer(&stations, &setting, &results) {
-            Ok(unseen) => (unseen, None),
+        let (beside, failed) = match self.beside_finer(&stations, &setting, &results) {
+            Ok(beside) => (beside, None),
             Err(why) => (None, Some(why)),
+        };
+        let round_off = difference::round_off(&results);
+        let unseen = match (beside, round_off) {
+            (Some(beside), Some(round_off)) => beside.plus(&round_off),
+            (beside, round_off) => beside.or(round_off),
         };
         let difference = match &coarse {
             _ if let Some(why) = failed => Err(why),
@@ -432,9 +437,16 @@ impl<'a, 'o> Runner<'a, 'o> {
     /// not tell.
     pub fn remains(&self, round: &Round, caution: f64, wanted: Accuracy) -> Option<String> {
         let error = caution * round.unseen.as_ref()?.errors.result;
+        let round_off = difference::round_off(&round.results).map_or(0.0, |of| of.errors.result);
+        if round_off > wanted.result {
+            return Some(format!(
+                "round-off of the stiffness may change a value by {round_off:.1e}, which more cells make worse: ask for less, or leave out an \
+                 `axial_stiffness` that is of no interest"
+            ));
+        }
         let beams = (0..self.model.beams.len()).filter(|beam| self.is_unseen(*beam));
         let names: Vec<String> = beams.map(|beam| format!("`{}`", self.model.beams[beam].name)).collect();
-        (error > wanted.result).then(|| {
+        (error > wanted.result && !names.is_empty()).then(|| {
             format!(
                 "the basis that the scene gives {} leaves an error of {error:.1e}: leave it out, or give it more nodes",
                 names.join(", ")

@@ -754,7 +754,7 @@ Arm
             run: Run { title: "Arm".into(), analysis, complete: true, ..Run::default() },
             ..Trajectory::default()
         };
-        let vibration = |frequency| Vibration { frequency, shape: Vec::new() };
+        let vibration = |frequency| Vibration { frequency, round_off: 0.0, shape: Vec::new() };
         let modal = Vibrations {
             equilibrium: states(AnalysisKind::Modal),
             modes: vec![vibration(0.0), vibration(12.5)],
@@ -767,7 +767,7 @@ Arm
   seconds      build 0.000, solve 0.000, write 0.000
   report       a/report.html";
         assert_eq!(table(&modal.into(), Path::new("a")), expected);
-        let mode = BucklingMode { load_factor: 2.467, shape: Vec::new() };
+        let mode = BucklingMode { load_factor: 2.467, round_off: 0.0, shape: Vec::new() };
         let buckling = CriticalLoads { unloaded: states(AnalysisKind::Buckling), modes: vec![mode] };
         let expected = "\
 Arm

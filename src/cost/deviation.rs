@@ -152,7 +152,7 @@ mod tests {
     }
 
     fn vibrations(frequency: f64) -> Results {
-        let modes = vec![Vibration { frequency, shape: vec![] }];
+        let modes = vec![Vibration { frequency, round_off: 0.0, shape: vec![] }];
         Vibrations { modes, ..Vibrations::default() }.into()
     }
 
@@ -265,7 +265,7 @@ mod tests {
         let found = between(&modal, [vibrations(3.0), vibrations(4.0)]);
         assert_eq!(found, Deviation { error: 0.25, curvature: None, energy: None });
         let loads = [5.0, 8.0].map(|load_factor| {
-            let modes = vec![BucklingMode { load_factor, shape: vec![] }];
+            let modes = vec![BucklingMode { load_factor, round_off: 0.0, shape: vec![] }];
             CriticalLoads { modes, ..CriticalLoads::default() }.into()
         });
         let found = between(&Analysis::Buckling(Buckling { count: 1 }), loads);
@@ -312,7 +312,7 @@ mod tests {
         assert_eq!(curvature(&still(), [3.0, 4.0].map(|k| bent(k).into())), Some(0.25));
         let modal = Analysis::Modal(Modal { count: 1, about: About::Reference });
         let vibrating = [3.0, 4.0].map(|k| {
-            let modes = vec![Vibration { frequency: 1.0, shape: vec![] }];
+            let modes = vec![Vibration { frequency: 1.0, round_off: 0.0, shape: vec![] }];
             Vibrations { equilibrium: bent(k), modes }.into()
         });
         assert_eq!(curvature(&modal, vibrating), None);

@@ -25,6 +25,9 @@ impl Vibrations {
 pub struct Vibration {
     /// Natural frequency \[Hz\]; 0 where nothing resists the motion.
     pub frequency: f64,
+    /// What round-off may change it by at most, relative to it.
+    #[serde(skip)]
+    pub round_off: f64,
     /// The mode shape φ of each beam, scaled so that φᵀ M φ = 1 kg m²; its sign is arbitrary.
     pub shape: Vec<ModeShape>,
 }
@@ -50,6 +53,9 @@ impl CriticalLoads {
 pub struct BucklingMode {
     /// Factor of all loads at which the structure buckles.
     pub load_factor: f64,
+    /// What round-off may change it by at most, relative to it.
+    #[serde(skip)]
+    pub round_off: f64,
     /// The buckling shape of each beam, its largest displacement 1 m; its sign is arbitrary.
     pub shape: Vec<ModeShape>,
 }

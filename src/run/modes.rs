@@ -181,18 +181,13 @@ impl Sampler<'_> {
         run.warnings.extend(at_corners(self.model, &equilibrium.last, &run.undeformed));
         let modes = modal::solve(system, load, x, variables, count)?;
         run.statistics.factorizations += modes.factorizations;
-        if let Some((number, change)) = modes.unsure.filter(|(_, change)| *change > UNSURE) {
-            run.warnings.push(format!(
-                "round-off of the stiffness may change frequency {number} by {:.1} %: use fewer elements or nodes, or leave out an \
-                 `axial_stiffness` that is of no interest",
-                100.0 * change
-            ));
-        }
+        run.warnings.extend(unsure("frequency", &modes.round_off, self.model));
         let q = self.coordinates_of(x);
         let shapes: Vec<&[f64]> = modes.shapes.iter().map(Vec::as_slice).collect();
         let shapes = self.mode_shapes(&equilibrium.last, q, &shapes);
-        let vibrations = modes.frequencies.iter().zip(shapes);
-        let modes = vibrations.map(|(&frequency, shape)| Vibration { frequency, shape }).collect();
+        let vibrations = modes.frequencies.iter().zip(&modes.round_off).zip(shapes);
+        let vibration = |((&frequency, &round_off), shape)| Vibration { frequency, round_off, shape };
+        let modes = vibrations.map(vibration).collect();
         Ok(Vibrations { equilibrium, modes })
     }
 
@@ -210,13 +205,7 @@ impl Sampler<'_> {
                     .into(),
             );
         }
-        if let Some((number, change)) = modes.unsure.filter(|(_, change)| *change > UNSURE) {
-            unloaded.run.warnings.push(format!(
-                "round-off of the stiffness may change load factor {number} by {:.1} %: use fewer elements or nodes, and none that are close to \
-                 each other, or leave out an `axial_stiffness` that is of no interest",
-                100.0 * change
-            ));
-        }
+        unloaded.run.warnings.extend(unsure("load factor", &modes.round_off, self.model));
         if let Some(above) = modes.hidden {
             unloaded.run.warnings.push(format!(
                 "there are fewer load factors than were asked for: above {above:.2e} the round-off of the stiffness hides them"
@@ -235,8 +224,9 @@ impl Sampler<'_> {
         let scaled: Vec<Vec<f64>> = modes.shapes.iter().map(scaled).collect();
         let shapes: Vec<&[f64]> = scaled.iter().map(Vec::as_slice).collect();
         let shapes = self.mode_shapes(&unloaded.last, q, &shapes);
-        let loads = modes.load_factors.iter().zip(shapes);
-        let modes = loads.map(|(&load_factor, shape)| BucklingMode { load_factor, shape }).collect();
+        let loads = modes.load_factors.iter().zip(&modes.round_off).zip(shapes);
+        let mode = |((&load_factor, &round_off), shape)| BucklingMode { load_factor, round_off, shape };
+        let modes = loads.map(mode).collect();
         CriticalLoads { unloaded, modes }
     }
 
@@ -255,6 +245,21 @@ impl Sampler<'_> {
         }
         all
     }
+}
+
+/// The warning about the value of which round-off may change the largest part, if that is not small.
+fn unsure(what: &str, round_off: &[f64], model: &Model) -> Option<String> {
+    let most = |(number, change): (usize, &f64)| (number + 1, *change);
+    let (number, change) = round_off.iter().enumerate().map(most).max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    let stretches = model.beams.iter().any(|beam| beam.section.axial_stiffness.is_some());
+    let or = if stretches { ", or leave out an `axial_stiffness` that is of no interest" } else { "" };
+    (change > UNSURE).then(|| {
+        format!(
+            "round-off of the stiffness may change {what} {number} by {:.1} %: use fewer elements or nodes, and none that are close to each \
+             other{or}",
+            100.0 * change
+        )
+    })
 }
 
 /// Whether a part is a tendon that is shorter than it would be on the stress-free beam.

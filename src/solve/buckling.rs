@@ -18,7 +18,9 @@
 //! that are evaluated without a matrix, and 1/λ is Rayleigh's quotient ([`super::eigen::corrected`]). What round-off may still
 //! change comes with the results; where it hides every load factor, there is an error.
 
-use super::eigen::{CERTAIN, Corrected, EigenError, Pencil, corrected, largest_reciprocals, round_off};
+use super::eigen::{
+    CERTAIN, Corrected, EigenError, Pencil, corrected, errors, largest_reciprocals, round_off,
+};
 use super::equilibrium::Equilibrium;
 use crate::assembly::{Earlier, Kind, Workspace, nodes};
 use crate::system::System;
@@ -40,9 +42,8 @@ pub struct Modes {
     /// Norm of the forces of springs and contacts that nothing balances in the state whose critical loads
     /// these are, in that of the load.
     pub prestress: f64,
-    /// What round-off may change a load factor by at most, relative to it: the largest of these changes, with the
-    /// number of its factor, from 1.
-    pub unsure: Option<(usize, f64)>,
+    /// What round-off may change each load factor by at most, relative to it.
+    pub round_off: Vec<f64>,
     /// The load factor above which round-off hides others, where fewer were found than were wanted.
     pub hidden: Option<f64>,
     /// Factorisations made.
@@ -115,8 +116,13 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     system.supports().eliminate(0.0, &mut stiffness);
     let (border, fixed) = (system.border(0.0, q), system.fixed());
     let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, fixed };
-    let pairs =
-        largest_reciprocals(&pencil, count + GUARD).or_else(|_| largest_reciprocals(&pencil, count))?;
+    let pairs = largest_reciprocals(&pencil, count + GUARD).or_else(|_| largest_reciprocals(&pencil, count));
+    // The stress-free state is stable: what is said against it is the round-off of its stiffness.
+    let stress_free = !system.is_taken_up() && system.force_at_start(STRESSING) == 0.0;
+    let pairs = pairs.map_err(|error| match error {
+        EigenError::Unstable { .. } if stress_free => EigenError::HiddenLoads { above: 0.0 },
+        error => error,
+    })?;
     // K₀ has lost digits where cells are short. Its products without a matrix have not.
     let product = |v: &[f64]| {
         let (mut v, mut f) = (v.to_vec(), vec![0.0; n]);
@@ -143,22 +149,28 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let real = |(reciprocal, shape): &(f64, Vec<f64>)| *reciprocal > least.max(CERTAIN * of_geometric(shape));
     let pairs: Vec<(f64, Vec<f64>)> =
         pairs.reciprocals.into_iter().zip(pairs.vectors).take_while(real).collect();
-    let found = corrected(&pencil, pairs, count, &product, &inverse);
+    // The one after the last tells how well that is known.
+    let found = corrected(&pencil, pairs, count + 1, &product, &inverse);
+    let errors = errors(&found);
     // What balances nothing in the state itself: in the stress-free one the round-off of strains.
     let prestress =
         if system.is_taken_up() { 0.0 } else { system.force_at_start(STRESSING) / system.norm(&load) };
     let unbalanced = nodes(&negative[..n]).map(|node| node.shift()).fold(0.0, f64::max);
-    let stressed = if prestress > 0.0 { 0.0 } else { unbalanced * system.length() };
+    let stressed = match (prestress > 0.0, stress_free) {
+        (true, _) => 0.0,
+        (_, true) => system.stress_round_off() * system.length(),
+        _ => unbalanced * system.length(),
+    };
     // What 1/λ = φᵀ B φ, with φᵀ K₀ φ = 1, may err by: by the round-off of B, of the products with K₀, in which that of a
     // position acts once and in its square, and of the state's stress.
-    let deviation = |reciprocal: f64, bound: f64, shape: &[f64]| {
+    let deviation = |reciprocal: f64, error: f64, shape: &[f64]| {
         let entries = shape.iter().enumerate().map(|(i, v)| stiffness.get(i, i).abs() * v * v);
         let of_products = f64::EPSILON * entries.sum::<f64>().sqrt();
         let slope = nodes(shape).map(|node| node.slope()).fold(0.0, f64::max);
         let of_stiffness = of_products * (2.0 + of_products);
         CERTAIN * (of_geometric(shape) + reciprocal * of_stiffness)
             + reciprocal * stressed * slope * slope
-            + bound
+            + error
     };
     let (mut turn, mut strain) = (0.0_f64, 0.0_f64);
     for (rate, node) in nodes(&rate[..n]).zip(nodes(q)) {
@@ -168,19 +180,17 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         strain = strain.max((x * dx + y * dy).abs() / squared);
     }
     let (mut load_factors, mut shapes) = (Vec::new(), Vec::new());
-    let (mut unsure, mut hidden): (Option<(usize, f64)>, _) = (None, None);
-    for Corrected { reciprocal, bound, vector: mut shape } in found {
-        let deviation = deviation(reciprocal, bound, &shape);
+    let (mut of_factors, mut hidden) = (Vec::new(), None);
+    for (Corrected { reciprocal, vector: mut shape, .. }, error) in found.into_iter().zip(errors).take(count)
+    {
+        let deviation = deviation(reciprocal, error, &shape);
         if reciprocal <= deviation || deviation.is_nan() {
             // Load factors at which beams would be crushed before do not matter.
             hidden = Some(1.0 / deviation).filter(|above| above * strain < 1.0);
             break;
         }
         load_factors.push(1.0 / reciprocal);
-        let change = deviation / reciprocal;
-        if unsure.is_none_or(|(_, most)| change > most) {
-            unsure = Some((load_factors.len(), change));
-        }
+        of_factors.push(deviation / reciprocal);
         system.supports().from_frames(0.0, &mut shape);
         shapes.push(shape);
     }
@@ -195,5 +205,15 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         system.relative(&changed, system.norm(&load)).max(system.change_of_stiffness(q, &step))
     };
     let changes = load_factors.iter().map(change).collect();
-    Ok(Modes { load_factors, shapes, turn, strain, changes, prestress, unsure, hidden, factorizations: 2 })
+    Ok(Modes {
+        load_factors,
+        shapes,
+        turn,
+        strain,
+        changes,
+        prestress,
+        round_off: of_factors,
+        hidden,
+        factorizations: 2,
+    })
 }

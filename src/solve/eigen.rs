@@ -17,7 +17,7 @@ pub mod dense;
 pub mod lanczos;
 mod ritz;
 
-pub use correct::{Corrected, corrected};
+pub use correct::{Corrected, corrected, errors};
 pub use ritz::ritz;
 
 use crate::linear::bordered::BorderRow;

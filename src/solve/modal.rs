@@ -13,9 +13,11 @@
 //! frequency that cannot be told from zero is set to zero where a motion without deformation may
 //! have it, and refused else.
 
-use super::eigen::{CERTAIN, EigenError, Pencil, dot, largest_reciprocals, ritz, round_off};
+use super::eigen::{
+    CERTAIN, Corrected, EigenError, Pencil, corrected, dot, errors, largest_reciprocals, ritz, round_off,
+};
 use crate::assembly::{InternalVariables, Workspace, nodes};
-use crate::linear::Matrix;
+use crate::linear::{Factor, Matrix};
 use crate::system::System;
 use std::f64::consts::TAU;
 
@@ -26,9 +28,8 @@ pub struct Modes {
     pub frequencies: Vec<f64>,
     /// Mode shapes φ as changes of the coordinates; φᵀ M φ = 1 kg m².
     pub shapes: Vec<Vec<f64>>,
-    /// What round-off of the stiffness may change a frequency by at most, relative to it: the
-    /// largest of these changes, with the number of its frequency, from 1.
-    pub unsure: Option<(usize, f64)>,
+    /// What round-off may change each frequency by at most, relative to it.
+    pub round_off: Vec<f64>,
     /// Factorisations made.
     pub factorizations: usize,
 }
@@ -75,37 +76,45 @@ pub fn solve(
     if pairs.vectors.is_empty() {
         return Err(EigenError::NotConverged { found: 0, wanted: count });
     }
-    let stiff: Vec<Vec<f64>> = pairs
-        .vectors
-        .iter()
-        .map(|vector| {
-            let (mut v, mut f) = (vector.clone(), vec![0.0; q.len()]);
-            supports.from_frames(load, &mut v);
-            system.tangent_product(load, q, &v, &mut f);
-            system.add_winding_tangent_product(variables, q, &v, &mut f);
-            system.add_constraint_stiffness_product(q, multipliers, &v, &mut f);
-            supports.to_frames(load, &mut f);
-            f
-        })
-        .collect();
-    let heavy: Vec<Vec<f64>> = pairs.vectors.iter().map(|vector| mass.product(vector)).collect();
-    let mut found = ritz(&pairs.vectors, &stiff, &heavy)?;
+    let product = |vector: &[f64]| {
+        let (mut v, mut f) = (vector.to_vec(), vec![0.0; q.len()]);
+        supports.from_frames(load, &mut v);
+        system.tangent_product(load, q, &v, &mut f);
+        system.add_winding_tangent_product(variables, q, &v, &mut f);
+        system.add_constraint_stiffness_product(q, multipliers, &v, &mut f);
+        supports.to_frames(load, &mut f);
+        f
+    };
     let mut modes = Modes { factorizations: 1, ..Modes::default() };
+    let stiff: Vec<Vec<f64>> = pairs.vectors.iter().map(|vector| product(vector)).collect();
+    let heavy: Vec<Vec<f64>> = pairs.vectors.iter().map(|vector| mass.product(vector)).collect();
+    // ω², what it may err by, and φ.
+    let entries = |(square, shape): (f64, Vec<f64>)| (square, CERTAIN * round_off(&stiffness, &shape), shape);
+    let mut found: Vec<(f64, f64, Vec<f64>)> =
+        ritz(&pairs.vectors, &stiff, &heavy)?.into_iter().map(entries).collect();
+    if found.iter().take(count).any(|(square, off, _)| *off > LOST * square) {
+        let factor = Factor::new(&shifted, &border)?;
+        modes.factorizations += 1;
+        found = corrected_modes(&pencil, found, shift, &stiffness, &product, &factor);
+    }
     let mut unstable = 0;
     let mut hidden = Vec::new();
     found.truncate(count);
-    for (square, mut shape) in found {
-        // Round-off of K, and of the state, whose stress it may change.
-        let zero = CERTAIN * round_off(&stiffness, &shape)
-            + system.round_off() * system.length() * slope(&shape).powi(2);
-        unstable += usize::from(square < -zero);
+    // Of the stress-free structure it is known how many motions nothing resists.
+    let free = if load == 0.0 { system.rigid_motions().unwrap_or(0) } else { 0 };
+    for (number, (square, off, mut shape)) in found.into_iter().enumerate() {
+        // Round-off changes the stress of the state, too.
+        let turned = system.length() * slope(&shape).powi(2);
+        let likely = off + system.stress_round_off() * turned;
+        let worst = off + system.round_off() * turned;
+        let zero = if number < free { worst } else { likely };
+        unstable += usize::from(square < -worst);
         point_up(&mut shape);
         supports.from_frames(load, &mut shape);
         if square <= zero {
             hidden.push(zero.sqrt() / TAU);
-        } else if zero / (2.0 * square) > modes.unsure.map_or(0.0, |(_, most)| most) {
-            modes.unsure = Some((modes.frequencies.len() + 1, zero / (2.0 * square)));
         }
+        modes.round_off.push(if square > zero { zero / (2.0 * square) } else { 0.0 });
         modes.frequencies.push(if square > zero { square.sqrt() / TAU } else { 0.0 });
         modes.shapes.push(shape);
     }
@@ -126,6 +135,50 @@ const SHIFT: f64 = 10.0;
 const GUARD: usize = 4;
 /// Least ratio of the shift to the round-off of a zero ω².
 const STAND_OUT: f64 = 1e3;
+/// Round-off of the entries of K that is a larger part of an ω² than this is worth corrections.
+const LOST: f64 = 1e-9;
+
+/// ω², what it may err by, and φ with φᵀ M φ = 1 of pairs corrected by products with K + σ M that are evaluated without a matrix.
+fn corrected_modes(
+    pencil: &Pencil<'_>,
+    found: Vec<(f64, f64, Vec<f64>)>,
+    shift: f64,
+    stiffness: &Matrix,
+    product: &dyn Fn(&[f64]) -> Vec<f64>,
+    factor: &Factor,
+) -> Vec<(f64, f64, Vec<f64>)> {
+    let n = pencil.a.size();
+    let shifted = |v: &[f64]| {
+        let mut of_a = product(v);
+        pencil.b.multiply_add(shift, v, &mut of_a);
+        of_a
+    };
+    let inverse = |force: &[f64]| {
+        let mut change = force.to_vec();
+        change.resize(n + pencil.border.len(), 0.0);
+        factor.solve(&mut change);
+        change.truncate(n);
+        change
+    };
+    let wanted = found.len();
+    let pairs = found.into_iter().map(|(square, _, shape)| ((square + shift).recip(), shape)).collect();
+    let corrected = corrected(pencil, pairs, wanted, &shifted, &inverse);
+    let errors = errors(&corrected);
+    let mode = |(pair, error): (Corrected, f64)| {
+        let mut shape = pair.vector;
+        let size = dot(&shape, &pencil.b.product(&shape)).sqrt();
+        shape.iter_mut().for_each(|value| *value /= size);
+        let square = dot(&shape, &product(&shape));
+        // That of a position acts once and in its square.
+        let entries = shape.iter().enumerate().map(|(i, v)| stiffness.get(i, i).abs() * v * v);
+        let of_products = f64::EPSILON * entries.sum::<f64>().sqrt();
+        let off = CERTAIN * of_products * (2.0 * square.abs().sqrt() + of_products);
+        (square, off + error * (square.abs() + shift).powi(2), shape)
+    };
+    let mut modes: Vec<(f64, f64, Vec<f64>)> = corrected.into_iter().zip(errors).map(mode).collect();
+    modes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    modes
+}
 
 /// Turns the largest displacement towards positive x or y.
 fn point_up(shape: &mut [f64]) {

@@ -97,7 +97,11 @@ fn mode(frequency: f64, slope: f64) -> Vibration {
     let Shape { beam, s, x, y, angle, strain, curvature, nodes, .. } = line("arm", slope);
     let x = vec![0.0; x.len()];
     let nodes = nodes.iter().map(|node| [0.0, node[1]]).collect();
-    Vibration { frequency, shape: vec![ModeShape { beam, s, x, y, angle, strain, curvature, nodes }] }
+    Vibration {
+        frequency,
+        round_off: 0.0,
+        shape: vec![ModeShape { beam, s, x, y, angle, strain, curvature, nodes }],
+    }
 }
 
 fn modal() -> Vibrations {

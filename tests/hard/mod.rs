@@ -8,3 +8,5 @@ mod floating;
 mod killed;
 mod motions;
 mod scale;
+mod soft;
+mod turns;

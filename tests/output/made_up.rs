@@ -276,8 +276,11 @@ pub(super) fn vibrations() -> Vibrations {
     let arm = |swing: f64| beam("arm", 0.4, &[[0.0, 0.1], [0.2, 0.1 + swing], [0.4, 0.1 - swing]]);
     let leg = |swing: f64| beam("leg", 0.3, &[[0.4, 0.1 - swing], [0.4 + swing, -0.2]]);
     let both = |swing: f64| vec![arm(swing), leg(swing)];
-    let mode =
-        |(frequency, swing): (f64, f64)| Vibration { frequency, shape: change(&both(0.0), &both(swing)) };
+    let mode = |(frequency, swing): (f64, f64)| Vibration {
+        frequency,
+        round_off: 0.0,
+        shape: change(&both(0.0), &both(swing)),
+    };
     let equilibrium = Trajectory {
         run: Run {
             title: "Modes".to_owned(),
@@ -311,7 +314,8 @@ pub(super) fn buckling() -> CriticalLoads {
         last: column(0.0),
         ..Trajectory::default()
     };
-    let mode = BucklingMode { load_factor: 2.467_401_1, shape: change(&column(0.0), &column(0.06)) };
+    let mode =
+        BucklingMode { load_factor: 2.467_401_1, round_off: 0.0, shape: change(&column(0.0), &column(0.06)) };
     CriticalLoads { unloaded, modes: vec![mode] }
 }
 

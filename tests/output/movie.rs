@@ -110,8 +110,11 @@ fn vibrations_have_room_on_both_sides() {
         ..Trajectory::default()
     };
     let shape = |height: f64| change(&bent(0.0), &bent(height));
-    let modes =
-        [(3.5, 7.0), (4.5, -1e-3)].map(|(frequency, height)| Vibration { frequency, shape: shape(height) });
+    let modes = [(3.5, 7.0), (4.5, -1e-3)].map(|(frequency, height)| Vibration {
+        frequency,
+        round_off: 0.0,
+        shape: shape(height),
+    });
     let equilibrium = states(AnalysisKind::Modal);
     let data = movie(&Vibrations { equilibrium, modes: modes.into() }).expect("a movie");
     assert_eq!(data["vibration"], json!(true));
@@ -124,7 +127,7 @@ fn vibrations_have_room_on_both_sides() {
     assert_eq!(data["rest"], json!([[800, 2560, 8800, 2560]]));
     assert_eq!(data["frames"], json!([[[800, 2560, 8800, 3360]], [[800, 2560, 8800, 1760]]]));
     assert_eq!(data["parameter"], json!([3.5, 4.5]));
-    let modes = vec![BucklingMode { load_factor: 7.0, shape: shape(1.0) }];
+    let modes = vec![BucklingMode { load_factor: 7.0, round_off: 0.0, shape: shape(1.0) }];
     let data = movie(&CriticalLoads { unloaded: states(AnalysisKind::Buckling), modes }).expect("a movie");
     assert_eq!((&data["vibration"], &data["parameter"]), (&json!(true), &json!([7.0])));
     assert_eq!(data["frames"], json!([[[800, 1760, 8800, 2560]]]));
@@ -134,8 +137,8 @@ fn vibrations_have_room_on_both_sides() {
 fn the_parameter_has_its_name_and_unit() {
     let of = |analysis| Trajectory { run: Run { analysis, ..rise(2).run }, ..rise(2) };
     let shape = change(&[level(0.0)], &[level(0.3)]);
-    let vibration = Vibration { frequency: 1.0, shape: shape.clone() };
-    let mode = BucklingMode { load_factor: 1.0, shape };
+    let vibration = Vibration { frequency: 1.0, round_off: 0.0, shape: shape.clone() };
+    let mode = BucklingMode { load_factor: 1.0, round_off: 0.0, shape };
     let modal = Vibrations { equilibrium: of(AnalysisKind::Modal), modes: vec![vibration] };
     let buckling = CriticalLoads { unloaded: of(AnalysisKind::Buckling), modes: vec![mode] };
     for (results, name, unit) in [
@@ -211,7 +214,7 @@ fn modes_are_thinned_to_their_ends() {
             last: shapes.clone(),
             ..Trajectory::default()
         };
-        let modes = vec![Vibration { frequency: 1.0, shape: change(&shapes, &shapes) }];
+        let modes = vec![Vibration { frequency: 1.0, round_off: 0.0, shape: change(&shapes, &shapes) }];
         let data = movie(&Vibrations { equilibrium, modes });
         let data = data.expect("a movie");
         for line in [&data["rest"][0], &data["frames"][0][0]] {

@@ -233,7 +233,7 @@ fn sections_stresses_reactions_and_tensions_have_their_digits() {
 /// Frequencies and critical loads with eight digits, and which vibration nothing resists.
 #[test]
 fn eigenvalues_are_listed_with_their_numbers() {
-    let vibration = |frequency| Vibration { frequency, shape: Vec::new() };
+    let vibration = |frequency| Vibration { frequency, round_off: 0.0, shape: Vec::new() };
     let modes = [0.0, 12.345_678_912].map(vibration).into();
     let page = words(&Vibrations { modes, ..vibrations() });
     assert_eq!(
@@ -242,7 +242,7 @@ fn eigenvalues_are_listed_with_their_numbers() {
     );
     assert!(page.contains("<tr><td>2</td><td>12.345679</td></tr></tbody>"), "{page}");
     assert!(page.contains("Dashed: the equilibrium."));
-    let mode = |load_factor| BucklingMode { load_factor, shape: Vec::new() };
+    let mode = |load_factor| BucklingMode { load_factor, round_off: 0.0, shape: Vec::new() };
     let modes = [0.0, 12.345_678_912].map(mode).into();
     let page = words(&CriticalLoads { modes, ..buckling() });
     assert_eq!(first_row(&page, "Critical loads"), pairs(&[("mode", "1"), ("load factor", "0")]));

@@ -84,6 +84,17 @@ pub fn modes(model: &Model, meshes: &[Mesh], coarse: &Results, fine: &Results) -
     })
 }
 
+/// What round-off may change the values of a run by; `None` where that is nothing, and for states.
+pub(in crate::accuracy) fn round_off(results: &Results) -> Option<Difference> {
+    let eigenvalues = results.round_off();
+    let result = eigenvalues.iter().copied().fold(0.0, larger);
+    (result > 0.0).then(|| Difference {
+        errors: Errors { result, curvature: None, section_force: None },
+        eigenvalues,
+        ..Difference::default()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::between;
@@ -107,7 +118,10 @@ mod tests {
     }
 
     fn vibrations(modes: Vec<(f64, Vec<ModeShape>)>) -> Results {
-        let modes = modes.into_iter().map(|(frequency, shape)| Vibration { frequency, shape }).collect();
+        let modes = modes
+            .into_iter()
+            .map(|(frequency, shape)| Vibration { frequency, round_off: 0.0, shape })
+            .collect();
         Results::from(Vibrations { modes, ..Vibrations::default() })
     }
 
@@ -162,7 +176,7 @@ mod tests {
         assert_eq!(of(&vibrations(Vec::new()), &vibrations(Vec::new())).unwrap().errors.result, 0.0);
         assert!(of(&one(f64::NAN), &one(1.0)).is_err());
         let load = |load_factor: f64| {
-            let modes = vec![BucklingMode { load_factor, shape: fine() }];
+            let modes = vec![BucklingMode { load_factor, round_off: 0.0, shape: fine() }];
             Results::from(CriticalLoads { modes, ..CriticalLoads::default() })
         };
         assert_eq!(of(&load(-3.0), &load(-4.0)).unwrap().eigenvalues, [0.25]);

@@ -68,6 +68,22 @@ pub fn corrected(
     found
 }
 
+/// What each 1/θ errs by at most: the bound, or its square over the distance from those that are not its equals, whichever is smaller
+/// (Parlett, *The Symmetric Eigenvalue Problem*, 1980, theorem 11.7.1). The bounds of pairs that may be equal add up. How near to the
+/// last pair the next one is, nobody knows.
+pub fn errors(pairs: &[Corrected]) -> Vec<f64> {
+    let error = |pair: &Corrected| {
+        let apart = |other: &Corrected| (pair.reciprocal - other.reciprocal).abs();
+        let is_equal = |other: &&Corrected| apart(other) <= pair.bound + other.bound;
+        let square: f64 = pairs.iter().filter(is_equal).map(|other| other.bound.powi(2)).sum();
+        let others = pairs.iter().filter(|other| !is_equal(other));
+        let nearest = others.map(apart).fold(pair.reciprocal.abs(), f64::min);
+        let distance = if pairs.last().as_ref().is_some_and(is_equal) { 0.0 } else { nearest };
+        if square > 0.0 { pair.bound.min(square / distance) } else { pair.bound }
+    };
+    pairs.iter().map(error).collect()
+}
+
 /// What a pair leaves of its equations on the free coordinates.
 fn remainder(
     pencil: &Pencil<'_>,
@@ -93,6 +109,19 @@ fn holds(row: &BorderRow, v: &[f64]) -> bool {
 mod tests {
     use super::*;
     use crate::linear::Matrix;
+
+    /// Of 1, ½ and ½ + 1e-7 with bounds of 1e-3: the first is 0.5 away from the others, which are equal as far as is known and the last.
+    #[test]
+    fn errors_go_with_the_square_of_bounds_where_others_are_far() {
+        let pair = |reciprocal: f64, bound: f64| Corrected { reciprocal, bound, vector: Vec::new() };
+        let of = |pairs: &[Corrected]| errors(pairs);
+        let found = of(&[pair(1.0, 1e-3), pair(0.5 + 1e-7, 1e-3), pair(0.5, 1e-3)]);
+        assert!((found[0] - 1e-6 / (0.5 - 1e-7)).abs() < 1e-18 && found[1..] == [1e-3; 2], "{found:?}");
+        // With one more below, they are known to both bounds together.
+        let found = of(&[pair(1.0, 1e-3), pair(0.5 + 1e-7, 1e-3), pair(0.5, 1e-3), pair(0.25, 1e-3)]);
+        assert!((found[2] - 2e-6 / 0.25).abs() < 1e-11, "{found:?}");
+        assert_eq!(of(&[pair(1.0, 0.0), pair(0.5, 0.0)]), [0.0, 0.0]);
+    }
 
     /// A = diag(1, 4, 9, …) and B = 1, from vectors that are not those of A, and with an inverse of a matrix that is
     /// stiffer: 1/θ = 1 and 1/4.

@@ -130,7 +130,7 @@ fn results(model: &Model, answer: &Answer) -> Result<Results, Failure> {
     if answer.frequencies.is_empty() {
         return Ok(Results::Trajectory(states));
     }
-    let vibration = |&frequency: &f64| Vibration { frequency, shape: Vec::new() };
+    let vibration = |&frequency: &f64| Vibration { frequency, round_off: 0.0, shape: Vec::new() };
     let modes = answer.frequencies.iter().map(vibration).collect();
     Ok(Results::Vibrations(Vibrations { equilibrium: states, modes }))
 }
