@@ -19,6 +19,9 @@ const OF_CURVATURE: f64 = 2.0;
 /// An axial force that differs on both sides of a place by more than this part of the largest, or of M/L, jumps there.
 const JUMP: f64 = 1e-6;
 
+/// Velocities and angles of so many records before and after tell of their errors, too.
+const NEAR_RECORDS: usize = 2;
+
 /// Errors of a record of which nothing is known.
 const UNKNOWN: ProbeSample = ProbeSample {
     x: f64::NAN,
@@ -52,7 +55,8 @@ pub fn states<'t>(
             samples[j] = differ(a, b);
             let around = |t: &'t Trajectory, record: usize| t.stations.get(record)?.get(probe.at.beam);
             if let Some((a, b)) = around(coarse, i).zip(around(fine, j)) {
-                samples[j] = not_by_chance(samples[j], a, b, probe.at.s);
+                let bends = model.beams[probe.at.beam].section.bending_stiffness.is_some();
+                samples[j] = not_by_chance(samples[j], a, b, probe.at.s, bends);
             }
             if jumps(model, &fine.last, probe.at)
                 && let Some(around) = around(fine, j)
@@ -63,6 +67,10 @@ pub fn states<'t>(
             let error = samples[j].x / lengths[probe.at.beam];
             difference.records[j] = larger(difference.records[j], error);
             result = larger(result, error);
+        }
+        if matches!(analysis, Analysis::Dynamic(_)) {
+            let known: Vec<usize> = pairs.iter().map(|&(_, j)| j).collect();
+            also_before_and_after(&mut samples, &known);
         }
         difference.probes.push(ProbeErrors { name: probe.name.clone(), samples });
     }
@@ -180,15 +188,16 @@ fn fill<T: Clone>(values: &mut [T], known: &[usize], choose: impl Fn(&T, &T) -> 
 /// The sizes of the differences of what a probe sees; that of x and y is the distance.
 fn differ(a: &ProbeSample, b: &ProbeSample) -> ProbeSample {
     let distance = (a.x - b.x).hypot(a.y - b.y);
-    let of = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| (a - b).abs());
+    let of = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a - b);
+    let speed = of(a.vx, b.vx).zip(of(a.vy, b.vy)).map(|(x, y)| x.hypot(y));
     ProbeSample {
         x: distance,
         y: distance,
         angle: (a.angle - b.angle).abs(),
         curvature: (a.curvature - b.curvature).abs(),
         strain: (a.strain - b.strain).abs(),
-        vx: of(a.vx, b.vx),
-        vy: of(a.vy, b.vy),
+        vx: speed,
+        vy: speed,
     }
 }
 
@@ -212,13 +221,15 @@ fn sample(shape: &Shape, k: usize) -> Option<ProbeSample> {
 
 /// What a probe at `s` differs by, and no less than what is on both sides of it. Errors are waves along a beam:
 /// a probe that lies where one passes zero tells nothing.
-fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64) -> ProbeSample {
+/// The direction of a string is as rough as the curvature of a beam: it errs by what it does on either side.
+fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64, bends: bool) -> ProbeSample {
     let differ_at = |k: usize| Some(differ(&sample(coarse, k)?, &sample(fine, k)?));
     let after = fine.s.partition_point(|place| *place < s);
     let Some((before, after)) = after.checked_sub(1).and_then(differ_at).zip(differ_at(after)) else {
         return seen;
     };
-    let angle = within_half_a_turn(before.angle).min(within_half_a_turn(after.angle));
+    let angles = [before.angle, after.angle].map(within_half_a_turn);
+    let angle = if bends { angles[0].min(angles[1]) } else { angles[0].max(angles[1]) };
     let distance = larger(seen.x, before.x.min(after.x));
     ProbeSample {
         x: distance,
@@ -227,6 +238,22 @@ fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64) -> Pro
         curvature: larger(seen.curvature, before.curvature.min(after.curvature)),
         strain: larger(seen.strain, before.strain.min(after.strain)),
         ..seen
+    }
+}
+
+/// Velocities and angles of a motion err by no less than they do in the records of these numbers that are near: their errors are
+/// waves of high frequency, and one record may see where they pass zero.
+fn also_before_and_after(samples: &mut [ProbeSample], known: &[usize]) {
+    let seen: Vec<ProbeSample> = known.iter().filter_map(|j| samples.get(*j).copied()).collect();
+    let most = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| larger(a, b));
+    for (k, j) in known.iter().enumerate() {
+        let near = &seen[k.saturating_sub(NEAR_RECORDS)..(k + NEAR_RECORDS + 1).min(seen.len())];
+        samples[*j] = near.iter().fold(samples[*j], |now, near| ProbeSample {
+            angle: larger(now.angle, near.angle),
+            vx: most(now.vx, near.vx),
+            vy: most(now.vy, near.vy),
+            ..now
+        });
     }
 }
 
@@ -288,7 +315,7 @@ mod tests {
     /// What one run, at rest but for these samples (record, place, sample), saw at some times: by its probe, and
     /// at the five stations of the beam and the three of the string.
     fn seen(parameter: &[f64], samples: &[(usize, usize, ProbeSample)]) -> Trajectory {
-        let at_rest = ProbeSample { vx: Some(0.0), ..ProbeSample::default() };
+        let at_rest = ProbeSample { vx: Some(0.0), vy: Some(0.0), ..ProbeSample::default() };
         let mut probe = ProbeSeries { name: String::new(), samples: vec![at_rest; parameter.len()] };
         let still = |s: &Vec<f64>| {
             let zero = || vec![0.0; s.len()];
@@ -332,6 +359,7 @@ mod tests {
                         angle: 0.1,
                         strain: 0.2,
                         vx: Some(1.0),
+                        vy: Some(1.5),
                         ..ProbeSample::default()
                     },
                 ),
@@ -345,7 +373,7 @@ mod tests {
                 (1, 6, ProbeSample { angle: 0.8 + TAU, ..bent(100.0) }),
             ],
         );
-        let at_rest = ProbeSample { vx: Some(-1.0), ..ProbeSample::default() };
+        let at_rest = ProbeSample { vx: Some(-1.0), vy: Some(0.0), ..ProbeSample::default() };
         let mut fine = seen(&[0.0, 0.5, 1.0], &[(2, 0, at_rest), (2, 3, bent(-8.0))]);
         let motion = scene("dynamic = { duration = 1 }");
         let of = |scene: &Scene, coarse: &Trajectory, fine: &Trajectory| {
@@ -363,10 +391,12 @@ mod tests {
             angle: 0.1,
             strain: 0.2,
             curvature: 3.5,
-            vx: Some(2.0),
-            ..ProbeSample::default()
+            vx: Some(2.5),
+            vy: Some(2.5),
         };
         assert_eq!((found.probes.len(), tip[0].x, tip[1], tip[2]), (1, 0.0, last, last));
+        // Velocities and angles of a record near to one that errs may be those of a wave that passes zero.
+        assert_eq!((tip[0].angle, tip[0].strain, tip[0].vx), (0.1, 0.0, Some(2.5)));
         assert_eq!(found.beams[0].position, [0.0, 0.0, 0.0, 0.0, 0.4]);
         assert_eq!(found.beams[0].curvature, [3.0, 2.0, 1.0, 4.0, 3.5]);
         assert_eq!(found.beams[1].curvature, [100.0, 0.0, 0.0]);
@@ -415,7 +445,7 @@ mod tests {
             ..Shape::default()
         };
         let none = ProbeSample::default();
-        let at = |seen, s| not_by_chance(seen, &of(0.0), &of(0.125), s);
+        let at = |seen, s| not_by_chance(seen, &of(0.0), &of(0.125), s, true);
         let least = ProbeSample { x: 0.125, y: 0.125, angle: 0.375, strain: 0.625, curvature: 0.875, ..none };
         let found = at(none, 2.0);
         assert!((found.angle - least.angle).abs() < 1e-14);
@@ -423,6 +453,8 @@ mod tests {
         let more =
             ProbeSample { x: 1.0, y: 1.0, angle: 1.0, strain: 1.0, curvature: 1.0, vx: Some(0.0), vy: None };
         assert_eq!(at(more, 2.0), more);
+        let of_string = not_by_chance(none, &of(0.0), &of(0.125), 2.0, false);
+        assert_eq!(of_string, ProbeSample { angle: 0.5, ..found });
         assert_eq!((at(none, 0.0), at(none, 0.5), at(none, 3.5)), (none, none, none));
     }
 
