@@ -88,15 +88,19 @@ pub fn solve(
     let mut modes = Modes { factorizations: 1, ..Modes::default() };
     let stiff: Vec<Vec<f64>> = pairs.vectors.iter().map(|vector| product(vector)).collect();
     let heavy: Vec<Vec<f64>> = pairs.vectors.iter().map(|vector| mass.product(vector)).collect();
+    let pairs = ritz(&pairs.vectors, &stiff, &heavy)?;
+    // What the entries of K lose.
+    let lost: Vec<f64> =
+        pairs.iter().take(count).map(|(_, shape)| CERTAIN * round_off(&stiffness, shape)).collect();
     // ω², what it may err by, and φ.
-    let entries = |(square, shape): (f64, Vec<f64>)| (square, CERTAIN * round_off(&stiffness, &shape), shape);
     let mut found: Vec<(f64, f64, Vec<f64>)> =
-        ritz(&pairs.vectors, &stiff, &heavy)?.into_iter().map(entries).collect();
-    if found.iter().take(count).any(|(square, off, _)| *off > LOST * square) {
-        let factor = Factor::new(&shifted, &border)?;
-        modes.factorizations += 1;
-        found = corrected_modes(&pencil, found, shift, &stiffness, &product, &factor);
-    }
+        if pairs.iter().zip(&lost).any(|((square, _), off)| *off > LOST * square) {
+            let factor = Factor::new(&shifted, &border)?;
+            modes.factorizations += 1;
+            corrected_modes(&pencil, pairs, shift, &stiffness, &product, &factor)
+        } else {
+            pairs.into_iter().zip(lost).map(|((square, shape), off)| (square, off, shape)).collect()
+        };
     let mut unstable = 0;
     let mut hidden = Vec::new();
     found.truncate(count);
@@ -141,7 +145,7 @@ const LOST: f64 = 1e-9;
 /// ω², what it may err by, and φ with φᵀ M φ = 1 of pairs corrected by products with K + σ M that are evaluated without a matrix.
 fn corrected_modes(
     pencil: &Pencil<'_>,
-    found: Vec<(f64, f64, Vec<f64>)>,
+    found: Vec<(f64, Vec<f64>)>,
     shift: f64,
     stiffness: &Matrix,
     product: &dyn Fn(&[f64]) -> Vec<f64>,
@@ -161,7 +165,7 @@ fn corrected_modes(
         change
     };
     let wanted = found.len();
-    let pairs = found.into_iter().map(|(square, _, shape)| ((square + shift).recip(), shape)).collect();
+    let pairs = found.into_iter().map(|(square, shape)| ((square + shift).recip(), shape)).collect();
     let corrected = corrected(pencil, pairs, wanted, &shifted, &inverse);
     let errors = errors(&corrected);
     let mode = |(pair, error): (Corrected, f64)| {
