@@ -6,9 +6,11 @@ use crate::system::{System, View};
 use std::any::Any;
 
 /// Evenly spaced places of a beam at which a field is looked at.
-const PLACES: usize = 4000;
-/// Part of the larger of both sums of a field by which they may differ.
+const PLACES: usize = 2000;
+/// Part of the largest sum of a field in any state by which both sums may differ.
 const MISSED: f64 = 0.2;
+/// Forces below this part of the stiffness are none.
+const NOTHING: f64 = 1e-30;
 
 /// A message for every force field whose sum over the points of the mesh is not the one that it has on the beam, in one of the
 /// states: their coordinates and times \[s\]. Such a field acts between the points, and neither a coarser mesh nor a finer one
@@ -22,16 +24,20 @@ pub(super) fn missed<'a>(
         let part: &dyn Any = part.as_ref();
         let field = part.downcast_ref::<ForceField>()?;
         let (even, points) = (even(system, field.beam)?, points(model, system, field)?);
-        states.iter().find_map(|(q, time)| {
-            let [fine, summed] = [&even, &points].map(|(view, weights)| sum(field, view, weights, q, *time));
-            let known = fine.is_finite() && summed.is_finite();
-            (known && (fine - summed).abs() > MISSED * fine.max(summed)).then(|| {
-                format!(
-                    "the force field on beam `{}` is narrower than its cells: of {fine:.3e} N, summed by size, the points of the mesh see \
-                     {summed:.3e} N; use more elements or nodes where it acts (`nodes` may be a list of arc lengths)",
-                    model.beams[field.beam].name
-                )
-            })
+        let sums_in = |(q, time): &(&[f64], f64)| {
+            [&even, &points].map(|(view, weights)| sum(field, view, weights, q, *time))
+        };
+        let sums: Vec<[f64; 2]> = states.iter().map(sums_in).filter(|[a, b]| (a + b).is_finite()).collect();
+        // A field that is nowhere to be felt in these states tells nothing.
+        let largest = sums.iter().flatten().fold(NOTHING * system.stiffness(), |most, sum| most.max(*sum));
+        let off = |[fine, summed]: &[f64; 2]| (fine - summed).abs();
+        let [fine, summed] = sums.into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))?;
+        (off(&[fine, summed]) > MISSED * largest).then(|| {
+            format!(
+                "the force field on beam `{}` is narrower than its cells: of {fine:.3e} N, summed by size, the points of the mesh see \
+                 {summed:.3e} N; use more elements or nodes where it acts (`nodes` may be a list of arc lengths)",
+                model.beams[field.beam].name
+            )
         })
     })
 }

@@ -49,7 +49,9 @@ const LARGEST_DRIFT: f64 = 1e-2;
 const LEAST_ENERGY: f64 = 1e-20;
 /// Largest number of states, evenly spread, that are checked for locking …
 const LOOKED_AT: usize = 400;
-/// … and, of a motion, for loose nodes, which are so in most states or do not matter.
+/// … and, of a motion, for force fields that cells miss …
+const FIELDS_AT: usize = 20;
+/// … and for loose nodes, which are so in most states or do not matter.
 const LOOSE_AT: usize = 40;
 
 /// Everything needed to evaluate states of one system.
@@ -867,8 +869,9 @@ impl<'a> Sampler<'a> {
         }
         let least = LEAST_ENERGY * self.system.stiffness() * self.system.length();
         trajectory.run.warnings.extend(unbalanced(&trajectory.energy, least));
-        let states = [solution.states.first(), solution.states.last()].into_iter().flatten();
-        let states: Vec<(&[f64], f64)> = states.map(|state| (&state.q[..], state.time)).collect();
+        let count = solution.states.len();
+        let states = solution.states.iter().enumerate().filter(|(i, _)| is_among(*i, count, FIELDS_AT));
+        let states: Vec<(&[f64], f64)> = states.map(|(_, state)| (&state.q[..], state.time)).collect();
         trajectory.run.warnings.extend(fields::missed(self.model, self.system, &states));
         trajectory.run.warnings.extend(steps::too_long(self.system, settings));
         trajectory.run.warnings.extend(self.far_from_origin(settings, &solution.states));
