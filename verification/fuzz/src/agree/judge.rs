@@ -128,6 +128,9 @@ fn finding(way: Way, what: String, other: String) -> Verdict {
     Verdict::Finding(Finding { way, what, other })
 }
 
+/// Cells of a beam whose halves and quarters tell how errors fall.
+const ENOUGH: usize = 8;
+
 /// Ratio of the round-off of forces to that of positions: a factor of a hundred because forces
 /// follow from differences of positions, and one of ten for beams that lie ten lengths from the
 /// origin.
@@ -303,6 +306,8 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
         Way::Split => stages::split(scene, rng),
         Way::AtOnce => return at_once(case, base, rng),
         Way::Accuracy => return accurate(case, rng),
+        Way::Estimate => return tells_its_error(case, base, rng),
+        Way::Limit => return ends_before_limit(case, rng),
         Way::Turned | Way::Mirrored | Way::Units | Way::Balance | Way::Momentum => None,
     };
     let Some(changed) = changed else { return Verdict::NotApplicable };
@@ -496,6 +501,8 @@ fn in_two_files(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
         Outcome::Failed(said) | Outcome::Refused(said) if said.contains("nodes when it was saved") => {
             return Verdict::NotApplicable;
         }
+        // A path in a file of its own does not know that the state before it holds what only loads hold.
+        Outcome::Refused(said) if said.contains("is under-supported") => return Verdict::NotApplicable,
         // Stages let a tendon go as it is. A state does not know of it: the forces that it has left keep
         // their directions as they fade, and a state that needs it to be stable has no other way.
         Outcome::Failed(_) | Outcome::Refused(_) if tendons(&first) > tendons(&rest) => {
@@ -552,6 +559,58 @@ fn accurate(case: &Case, rng: &mut Rng) -> Verdict {
     let what = "a position or an eigenvalue of a run for an accuracy".to_owned();
     let measured = Measured { value: off, allowed, places: true, what };
     decide(case, way, measured, &frame.write(&open).to_string(), rng)
+}
+
+/// What a scene says of the errors of the mesh that it names, against a mesh four times as fine.
+fn tells_its_error(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
+    let Case { scene, frame, .. } = case;
+    let way = Way::Estimate;
+    // Of motions the steps err, too, and paths end elsewhere on other meshes.
+    let path = settings::get(scene, &["analysis", "static", "arc_length"]).is_some();
+    // Halves and quarters of the fewest cells are too coarse for errors to fall regularly.
+    let cells = [settings::fewest_cells(scene), settings::all_cells(scene)];
+    if settings::motion(scene).is_some() || path || stages::has(scene) || cells[0] < ENOUGH || cells[1] > 40 {
+        return Verdict::NotApplicable;
+    }
+    let Some(fine) = settings::finer(scene).and_then(|fine| settings::finer(&fine)) else {
+        return Verdict::NotApplicable;
+    };
+    let Some(estimate) = outcome::own_estimate(scene, frame) else { return Verdict::NotApplicable };
+    let seen = match other(&fine, frame, way) {
+        Ok(seen) => seen,
+        Err(verdict) => return verdict,
+    };
+    let gap = gap::between(base, &seen, Records::Last);
+    let numbers = matches!(settings::analysis(scene), "modal" | "buckling");
+    let value = if numbers { gap.eigenvalues } else { gap.places };
+    let allowed = ALLOWED * (estimate + settings::tolerance(scene)) + round_off(scene);
+    let what = format!("a position or an eigenvalue, whose error is said to be {estimate:.2e}");
+    decide(case, way, Measured { value, allowed, places: true, what }, &frame.write(&fine).to_string(), rng)
+}
+
+/// A path to a load factor just below its first limit load ends where one by short steps does.
+fn ends_before_limit(case: &Case, rng: &mut Rng) -> Verdict {
+    let Case { scene, frame, .. } = case;
+    let way = Way::Limit;
+    let Some(long) = ways::long_path(scene) else { return Verdict::NotApplicable };
+    let Outcome::Solved(long) = outcome::run(&long, frame) else { return Verdict::NotApplicable };
+    let turn = long.parameter.windows(2).position(|pair| pair[1] < pair[0]);
+    let Some(limit) = turn.and_then(|at| long.parameter.get(at)).filter(|limit| **limit > 0.0) else {
+        return Verdict::NotApplicable;
+    };
+    let load = limit * (1.0 - 10.0_f64.powi(-rng.i32(1..6)));
+    let Some(below) = ways::path_to(scene, load) else { return Verdict::NotApplicable };
+    let Some(slowly) = ways::short_steps(&below) else { return Verdict::NotApplicable };
+    let (ends, expected) = match (other(&below, frame, way), other(&slowly, frame, way)) {
+        (Ok(ends), Ok(expected)) => (ends, expected),
+        (Err(verdict), _) | (_, Err(verdict)) => return verdict,
+    };
+    let gap = gap::between(&ends, &expected, Records::Last);
+    // Near a limit point positions go with the root of the load.
+    let allowed = ALLOWED * settings::tolerance(scene).sqrt() + round_off(scene);
+    let what = format!("a position at load factor {load}, just below the limit load");
+    let measured = Measured { value: gap.places, allowed, places: true, what };
+    decide(case, way, measured, &frame.write(&slowly).to_string(), rng)
 }
 
 fn continued(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {

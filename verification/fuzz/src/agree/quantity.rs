@@ -94,7 +94,7 @@ pub fn nature(path: &str) -> Option<Nature> {
         _ if path.starts_with("beam.*.section.") && path.split('.').count() == 5 => Scalar(LENGTH),
         "support.move.angle" => Turning(NUMBER),
         "support.move.spin_up.speed" | "initial_velocity.rotation" => Turning(RATE),
-        "support.move.spin_up.duration" => Scalar(TIME),
+        "support.move.spin_up.start" | "support.move.spin_up.duration" => Scalar(TIME),
         "joint.along" | "effect.contact.half_plane.normal" => Vector(NUMBER),
         "effect.force.value" | "effect.moving_force.value" => Vector(FORCE),
         "effect.moment.value" => Turning(MOMENT),

@@ -274,6 +274,11 @@ pub fn all_cells(scene: &Table) -> usize {
     beams(scene).filter_map(|(_, beam)| beam.get("basis")?.as_table()).map(cells).sum()
 }
 
+/// Cells of the beam that has the fewest.
+pub fn fewest_cells(scene: &Table) -> usize {
+    beams(scene).filter_map(|(_, beam)| beam.get("basis")?.as_table()).map(cells).min().unwrap_or(0)
+}
+
 /// Whether a list of the scene has entries.
 pub fn names(scene: &Table, path: &[&str]) -> bool {
     items(scene, path).next().is_some()

@@ -7,6 +7,13 @@ use super::draw;
 use super::frame::{Frame, has_axes};
 use super::settings;
 
+/// Points of a path in search of its first limit load …
+const POINTS_OF_LONG_PATH: i64 = 60;
+/// … and most of one to a load just below it.
+const POINTS_OF_SHORT_STEPS: i64 = 2000;
+/// Step that passes no limit load unseen \[beam lengths\].
+const SHORT_STEP: f64 = 5e-3;
+
 /// One way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
@@ -27,10 +34,12 @@ pub enum Way {
     Momentum,
     Split,
     AtOnce,
+    Estimate,
+    Limit,
 }
 
 /// All of them, in the order of the report.
-pub const WAYS: [Way; 17] = [
+pub const WAYS: [Way; 19] = [
     Way::Turned,
     Way::Mirrored,
     Way::Units,
@@ -48,6 +57,8 @@ pub const WAYS: [Way; 17] = [
     Way::Momentum,
     Way::Split,
     Way::AtOnce,
+    Way::Estimate,
+    Way::Limit,
 ];
 
 impl Way {
@@ -67,6 +78,8 @@ impl Way {
             Self::Welded => "welded",
             Self::Count => "count",
             Self::Accuracy => "accuracy",
+            Self::Estimate => "estimate",
+            Self::Limit => "limit",
             Self::Balance => "balance",
             Self::Momentum => "momentum",
             Self::Split => "split",
@@ -215,6 +228,38 @@ pub fn parts(scene: &Table, rng: &mut Rng) -> Option<[Table; 2]> {
         Some(scene)
     };
     Some([of(first)?, of(rest)?])
+}
+
+/// A path that goes on for some points, wherever the scene's own path ends.
+pub fn long_path(scene: &Table) -> Option<Table> {
+    with_path(scene, |path| {
+        path.remove("until_load");
+        path.remove("until_probe");
+        path.insert("max_points".into(), POINTS_OF_LONG_PATH.into());
+    })
+}
+
+/// The scene's path to a load factor.
+pub fn path_to(scene: &Table, load: f64) -> Option<Table> {
+    with_path(scene, |path| {
+        path.remove("until_probe");
+        path.insert("until_load".into(), load.into());
+        path.insert("max_points".into(), POINTS_OF_SHORT_STEPS.into());
+    })
+}
+
+/// The scene's path by short steps.
+pub fn short_steps(scene: &Table) -> Option<Table> {
+    with_path(scene, |path| {
+        path.insert("max_step".into(), SHORT_STEP.into());
+    })
+}
+
+fn with_path(scene: &Table, change: impl Fn(&mut Table)) -> Option<Table> {
+    settings::get(scene, &["analysis", "static", "arc_length"])?;
+    let mut scene = scene.clone();
+    change(settings::table(&mut scene, &["analysis", "static", "arc_length"])?);
+    Some(scene)
 }
 
 /// The scene with more or fewer modes.

@@ -81,8 +81,12 @@ impl Draw<'_> {
         let mut table = Table::new();
         if self.is_motion() && turns && self.chance(0.3) {
             let mut hub = Table::new();
-            hub.insert("speed".into(), (self.signed(0.1, 6.0) / self.duration).into());
+            let speed = self.signed(0.1, 6.0) / self.duration;
+            hub.insert("speed".into(), speed.into());
             hub.insert("duration".into(), (self.duration * self.even(0.2, 1.2)).into());
+            if speed < 0.0 {
+                hub.insert("start".into(), (0.2 * self.duration).into());
+            }
             table.insert("spin_up".into(), hub.into());
             return table;
         }
