@@ -203,6 +203,8 @@ class Scene:
         """
         scene = self._scene
         if accuracy is not None:
+            if scene.analysis == "stages":
+                raise ValueError("this scene has stages, and an accuracy is that of one analysis")
             scene = scene.with_overrides(_overrides({f"analysis.{scene.analysis}.accuracy": accuracy}))
         return self._run(scene, estimate=estimate, start=start, stage=stage, progress=progress, on_step=on_step, shapes=shapes, pictures=pictures)
 
@@ -257,15 +259,15 @@ class Scene:
         >>> for step in scene.steps(0.01):                            # doctest: +SKIP
         ...     step["effect.moment.0.value"] = -20.0 * step.probes["tip"].angle[-1]
 
-        A change acts from this moment on. Where the scene leaves its mesh open, it is chosen first,
-        by a run without control.
+        A change acts from this moment on. A motion that an event stops has no more steps. Where
+        the scene leaves its mesh open, it is chosen first, by a run without control.
         """
         if self.analysis != "dynamic":
             raise _ancf.SceneError(f"{self.name}: only a motion has steps, and this is a {self.analysis} analysis")
         scene = self.chosen()
         duration = _seconds(scene, "duration")
         every = _seconds(scene, "output_every") if every is None else float(every)
-        if not every > 0.0:
+        if not 0.0 < every < math.inf:
             raise ValueError(f"`every` is a positive time in seconds, found {every}")
         return _steps(scene, duration, every, start)
 
@@ -305,6 +307,9 @@ def _steps(scene: Scene, duration: float, every: float, start: Any) -> Iterator[
         step = Step(scene, result)
         yield step
         scene, start = step.scene, result.state
+        if result.time[-1] - result.time[0] < length * (1.0 - 1e-9):
+            # An event has stopped the motion.
+            return
 
 
 def _seconds(scene: Scene, key: str) -> float:

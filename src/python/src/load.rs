@@ -137,6 +137,11 @@ impl Function {
                         "a derivative returns 2 or 3 rows of {wanted} numbers, found rows of {found:?}"
                     )));
                 }
+                if !rows.iter().flatten().all(|number| number.is_finite()) {
+                    return Err(PyValueError::new_err(format!(
+                        "a derivative returned {rows:?}, which are no derivatives of forces"
+                    )));
+                }
                 let entry = |row: usize, column: usize| rows.get(row).map_or(0.0, |row| row[column]);
                 Ok((0..wanted).map(|column| [0, 1, 2].map(|row| entry(row, column))).collect())
             });

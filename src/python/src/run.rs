@@ -5,8 +5,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use ancf::basis::BasisCache;
+use ancf::output::OutputOptions;
 use ancf::restart::SavedState;
 use ancf::run::{Control, Options, Progress, RunError};
+use ancf::scene::Output;
 use ancf::{Analysis, Results as Solved, accuracy};
 use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -87,7 +89,12 @@ pub fn solve(py: Python<'_>, scene: &ancf::Scene, forces: &[PythonForce], run: R
     }
     match (&mut analysis, duration) {
         (_, None) => {}
-        (Analysis::Dynamic(motion), Some(time)) => (motion.duration, motion.output_every) = (time, time),
+        (Analysis::Dynamic(motion), Some(time)) => {
+            motion.duration = time;
+            // Its start and its end are records, and nothing between.
+            let begin = start.as_ref().map_or(0.0, |start| start.time());
+            motion.output_every = 2.0 * (begin + time);
+        }
         (_, Some(_)) => return Err(PyValueError::new_err("only a motion has a duration")),
     }
     let (mut raised, mut asked, mut ended) = (None, Instant::now(), false);
@@ -131,7 +138,10 @@ pub fn solve(py: Python<'_>, scene: &ancf::Scene, forces: &[PythonForce], run: R
             observer: Some(&mut observer),
             cache: Some(&cache),
             states: shapes,
-            frames: if pictures { defaults.frames } else { 0 },
+            frames: match scene.output() {
+                Output { states: false, vtu: false } if !pictures => 0,
+                Output { states, vtu } => OutputOptions { states, vtu }.frames(),
+            },
             ..defaults
         };
         match () {

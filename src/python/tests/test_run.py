@@ -348,3 +348,15 @@ def test_stages_go_on_from_each_other() -> None:
         scene.run(stage="draw")
     with pytest.raises(ValueError, match="takes one analysis"):
         scene.run(estimate=True)
+
+
+def test_all_states_are_saved_where_the_scene_asks_for_them(tmp_path: Path) -> None:
+    """However many they are, and whether or not pictures are wanted."""
+    table = falling(output={"states": True})
+    table["analysis"]["dynamic"]["output_every"] = 0.001
+    for pictures in (True, False):
+        folder = tmp_path / str(pictures)
+        ancf.Scene(table).run(pictures=pictures).save(folder)
+        with open(folder / "states.csv", encoding="utf-8") as file:
+            times = {line.split(",")[0] for line in file} - {"time"}
+        assert len(times) == 501

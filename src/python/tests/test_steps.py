@@ -68,3 +68,35 @@ def test_an_open_mesh_is_chosen_first() -> None:
     steps = list(scene.steps())
     assert steps[-1].probes["tip"].y[-1] == pytest.approx(scene.run().probes["tip"].y[-1], abs=1e-4)
     assert np.isfinite(steps[-1].result.shape().M).all() and arm()["beam"]
+
+
+def test_an_event_that_stops_the_motion_ends_its_steps() -> None:
+    event = [{"probe": "tip", "y": -0.5, "stop": True}]
+    table = falling()
+    table["analysis"]["dynamic"]["event"] = event
+    scene = ancf.Scene(table)
+    end = scene.run().time[-1]
+    assert end < 0.5
+    times = [step.time for step in scene.steps(0.1)]
+    assert times[-1] == pytest.approx(end, abs=1e-4) and times[:-1] == pytest.approx([0.1 * (i + 1) for i in range(len(times) - 1)])
+
+
+def test_steps_have_two_records_wherever_they_begin(pendulum: ancf.Scene) -> None:
+    first = next(iter(pendulum.steps(0.11)))
+    for step in list(pendulum.steps(0.02, start=first.result))[:3]:
+        assert len(step.result.time) == 2
+        assert step.result.time[1] - step.result.time[0] == pytest.approx(0.02)
+
+
+def test_a_spring_whose_stiffness_changes_keeps_its_turns() -> None:
+    """E = k φ²/2 with all turns, whatever happened to k."""
+    table = falling(
+        effect={"torsion_spring": [{"beam": "arm", "at": "start", "stiffness": 0.05}]},
+        initial_velocity=[{"beam": "arm", "rotation": 30.0, "about": [0, 0]}],
+    )
+    table["beam"]["arm"].update(axial_stiffness=1e5, bending_stiffness=1e3)
+    for step in ancf.Scene(table).steps(0.1):
+        step["effect.torsion_spring.0.stiffness"] = 0.05 + 0.01 * step.time
+        angle, k = step.probes["tip"].angle[-1], 0.05 + 0.01 * (step.time - 0.1)
+        assert step.result.energy.stored[-1] == pytest.approx(0.5 * k * angle**2, rel=1e-3)
+    assert angle > 10.0
