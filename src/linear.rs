@@ -263,6 +263,19 @@ impl Matrix {
         y
     }
 
+    /// Σ (Aᵢⱼ xᵢ xⱼ)² over all entries.
+    pub fn squares_of_terms(&self, x: &[f64]) -> f64 {
+        match self {
+            Self::Symmetric(matrix) => matrix.squares_of_terms(x),
+            Self::General(matrix) => {
+                let of_row = |(i, a): (usize, &f64)| -> f64 {
+                    self.columns(i).map(|j| (matrix.get(i, j) * a * x[j]).powi(2)).sum()
+                };
+                x.iter().enumerate().map(of_row).sum()
+            }
+        }
+    }
+
     fn set(&mut self, i: usize, j: usize, value: f64) {
         match self {
             Self::Symmetric(matrix) => matrix.set(i, j, value),

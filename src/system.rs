@@ -33,6 +33,7 @@ pub mod polar;
 pub mod prescribed;
 mod reaction;
 mod redundancy;
+mod resisted;
 mod rows;
 mod sums;
 pub mod supports;
@@ -111,10 +112,11 @@ pub struct System {
     round_off: f64,
     lowest_vibration: f64,
     has_strings: bool,
-    /// Number of rigid motions that neither supports, joints nor springs resist; counted in statics
+    /// Number of rigid motions that neither supports, joints nor springs resist, where it is known; counted in statics
     /// only.
-    rigid_motions: usize,
-    /// The same, if springs and foundations did not resist any.
+    rigid_motions: Option<usize>,
+    /// Number of those that supports and joints leave and that no spring, foundation or other effect has a stiffness
+    /// against where the analysis begins.
     free_motions: usize,
 }
 
@@ -206,7 +208,7 @@ impl System {
             stiffness,
             round_off,
             has_strings: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
-            rigid_motions: 0,
+            rigid_motions: None,
             free_motions: 0,
             lowest_vibration,
         };
@@ -274,7 +276,7 @@ impl System {
         system.check_room()?;
         system.check_rows(model)?;
         if !needs.motion {
-            [system.free_motions, system.rigid_motions] = system.count_rigid_motions(model)?;
+            (system.free_motions, system.rigid_motions) = system.count_rigid_motions(model)?;
         }
         Ok(system)
     }
@@ -316,9 +318,9 @@ impl System {
         Ok(view.fields(self.start()))
     }
 
-    /// Numbers of rigid motions that supports and joints leave to the beams, and of those that no other
-    /// part resists either.
-    fn count_rigid_motions(&self, model: &Model) -> Result<[usize; 2], BuildError> {
+    /// Numbers of rigid motions that supports and joints leave to the beams: of those against which nothing has a stiffness, and,
+    /// where it is known, of those that nothing may resist however far it has moved.
+    fn count_rigid_motions(&self, model: &Model) -> Result<(usize, Option<usize>), BuildError> {
         let resistances = || model.parts.iter().flat_map(|part| part.resists());
         let supports = model.supports.iter().map(|support| support.at);
         let joints = model.joints.iter().flat_map(Joint::places);
@@ -336,20 +338,21 @@ impl System {
         };
         let mut freedom = Freedom::new(model, self.length, position);
         let free = freedom.motions().len();
+        let resisted = self.resisted(&freedom);
         let of_beams =
             |kind: Kind| matches!(kind, Kind::Stretch | Kind::Bend | Kind::Coupling | Kind::Contact);
         let told = |kind: Kind| matches!(kind, Kind::Spring | Kind::TorsionSpring | Kind::Foundation);
         let kinds = || self.terms.internal.iter().map(|effect| effect.kind());
         let left = if kinds().all(of_beams) {
-            free
+            Some(free)
         } else if kinds().all(|kind| of_beams(kind) || told(kind)) {
             freedom.resist(model, position);
-            freedom.motions().len()
+            Some(freedom.motions().len())
         } else {
             // What another effect resists is not known.
-            0
+            None
         };
-        Ok([free, left])
+        Ok((free - resisted, left))
     }
 
     /// The discretised beams.
@@ -446,12 +449,11 @@ impl System {
     /// Whether the stress-free structure can move without resistance: it contains strings, or
     /// supports and joints leave its beams a rigid motion.
     pub fn is_floppy(&self) -> bool {
-        self.has_strings || self.rigid_motions > 0
+        self.has_strings || self.rigid_motions.is_some_and(|left| left > 0)
     }
 
-    /// Number of motions without deformation that supports and joints leave, whatever springs
-    /// resist them, if all beams have a bending stiffness; `None` if there are strings. Counted in
-    /// analyses without motion only.
+    /// Number of motions without deformation of beams against which nothing but loads has a stiffness where the analysis begins,
+    /// if all beams have a bending stiffness; `None` if there are strings. Counted in analyses without motion only.
     pub fn free_motions(&self) -> Option<usize> {
         (!self.has_strings).then_some(self.free_motions)
     }
@@ -459,7 +461,7 @@ impl System {
     /// Number of rigid motions that supports and joints leave in statics, if all beams have a
     /// bending stiffness; `None` if there are strings.
     pub fn rigid_motions(&self) -> Option<usize> {
-        (!self.has_strings).then_some(self.rigid_motions)
+        (!self.has_strings).then_some(self.rigid_motions.unwrap_or(0))
     }
 
     /// Weights of the coordinates, which resemble the diagonal of a mass matrix \[N/m, N m\]: EA/L²

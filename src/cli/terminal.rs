@@ -246,9 +246,14 @@ fn table(results: &Results, directory: &Path) -> String {
         }
     }
     let errors = run.error.as_ref().map(|error| &error.eigenvalues[..]).unwrap_or_default();
+    let lost = results.round_off();
     for (value, mode) in results.eigenvalues().into_iter().zip(1..) {
         let number = |value: f64| known(value, errors.get(mode - 1).map(|error| error * value.abs()));
-        let free = if value == 0.0 { " (nothing resists)" } else { "" };
+        let free = match lost.get(mode - 1) {
+            _ if value != 0.0 => "",
+            Some(lost) if *lost > 0.0 => " (hidden by round-off)",
+            _ => " (nothing resists)",
+        };
         match results {
             Results::CriticalLoads(_) => {
                 row(&format!("critical load {mode}"), format!("{} × the load", number(value)))

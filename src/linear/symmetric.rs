@@ -213,6 +213,26 @@ impl SymmetricBand {
         }
     }
 
+    /// Σ (Aᵢⱼ xᵢ xⱼ)² over all entries of both halves.
+    pub fn squares_of_terms(&self, x: &[f64]) -> f64 {
+        let of_row = |(i, row): (usize, &[f64])| {
+            let within = i % 4;
+            let (own, later) = x[i - within..].split_at(4);
+            let (diagonal, right) = row.split_at(4);
+            let square = |entry: f64, other: f64| (entry * other).powi(2);
+            let mut lanes = [0.0; 4];
+            for (entries, values) in right.as_chunks::<4>().0.iter().zip(later.as_chunks::<4>().0) {
+                for lane in 0..4 {
+                    lanes[lane] += square(entries[lane], values[lane]);
+                }
+            }
+            let beside = (within + 1..4).map(|c| square(diagonal[c], own[c])).sum::<f64>();
+            let twice = beside + lanes.iter().sum::<f64>();
+            x[i].powi(2) * (square(diagonal[within], own[within]) + 2.0 * twice)
+        };
+        self.data.chunks_exact(self.stride()).enumerate().map(of_row).sum()
+    }
+
     /// The same matrix with both halves stored.
     pub fn to_band(&self) -> Band {
         let mut band = Band::zeros(self.size(), self.stride() - 1);

@@ -295,14 +295,20 @@ fn energy(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {
 
 fn eigenvalues(results: &Results) -> Option<NumberTable> {
     let (caption, name, none) = match results {
-        Results::Vibrations(_) => ("Natural frequencies", "frequency [Hz]", "0 (nothing resists)"),
-        Results::CriticalLoads(_) => ("Critical loads", "load factor", "0"),
+        Results::Vibrations(_) => ("Natural frequencies", "frequency [Hz]", " (nothing resists)"),
+        Results::CriticalLoads(_) => ("Critical loads", "load factor", ""),
         Results::Trajectory(_) => return None,
     };
     let errors = results.run().error.as_ref().map(|error| &error.eigenvalues[..]).unwrap_or_default();
+    let lost = results.round_off();
     let number = |i: usize, v: f64| {
         let error = errors.get(i).and_then(|error| with_error(v, error * v.abs()));
-        error.unwrap_or_else(|| if v == 0.0 { none.into() } else { human(v, 8) })
+        let is_hidden = lost.get(i).is_some_and(|lost| *lost > 0.0);
+        error.unwrap_or_else(|| match v {
+            0.0 if is_hidden => "0 (hidden by round-off)".into(),
+            0.0 => format!("0{none}"),
+            _ => human(v, 8),
+        })
     };
     let values = results.eigenvalues();
     let rows = values.iter().enumerate().map(|(i, &v)| vec![format!("{}", i + 1), number(i, v)]).collect();

@@ -116,7 +116,8 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     system.supports().eliminate(0.0, &mut stiffness);
     let (border, fixed) = (system.border(0.0, q), system.fixed());
     let pencil = Pencil { a: &stiffness, b: &geometric, border: &border, fixed };
-    let pairs = largest_reciprocals(&pencil, count + GUARD).or_else(|_| largest_reciprocals(&pencil, count));
+    let pairs =
+        largest_reciprocals(&pencil, count, GUARD).or_else(|_| largest_reciprocals(&pencil, count, 0));
     // The stress-free state is stable: what is said against it is the round-off of its stiffness.
     let stress_free = !system.is_taken_up() && system.force_at_start(STRESSING) == 0.0;
     let pairs = pairs.map_err(|error| match error {

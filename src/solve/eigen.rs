@@ -17,9 +17,10 @@ pub mod dense;
 pub mod lanczos;
 mod ritz;
 
-pub use correct::{Corrected, corrected, errors};
+pub use correct::{Corrected, corrected, errors, settled};
 pub use ritz::ritz;
 
+use crate::lanes::fma;
 use crate::linear::bordered::BorderRow;
 use crate::linear::{Matrix, Singular};
 
@@ -62,9 +63,7 @@ pub enum EigenError {
         free: usize,
     },
     /// Critical load factors are hidden by round-off.
-    #[error(
-        "no critical load factor below {above:.2e} was found, and above it the round-off of the stiffness hides all"
-    )]
+    #[error("the round-off of the stiffness hides {}", hidden(*.above))]
     #[diagnostic(help(
         "use fewer elements or nodes, and none that are close to each other, whose stiffness has less round-off, or leave out axial stiffnesses that are \
          far beyond EI/h² with the spacing h: a beam without `axial_stiffness` keeps its length"
@@ -75,8 +74,8 @@ pub enum EigenError {
     },
     /// Follower loads, fields without a potential or dry friction make the tangent unsymmetric.
     #[error(
-        "follower loads, a `force_field` that is given by its `value`, or dry friction make the tangent unsymmetric, and a {analysis} analysis \
-         needs a symmetric one"
+        "follower loads, a `force_field` that is given by its `value`, a force by a function, or dry friction make the tangent \
+         unsymmetric, and a {analysis} analysis needs a symmetric one"
     )]
     #[diagnostic(help(
         "use dead loads, a `potential` for a field that has one, and contacts without friction; or a static analysis along the path"
@@ -103,6 +102,13 @@ pub enum EigenError {
         /// Pairs wanted.
         wanted: usize,
     },
+}
+
+fn hidden(above: f64) -> String {
+    match above {
+        0.0 => "all critical load factors".to_owned(),
+        _ => format!("all critical load factors above {above:.2e}, and there are none below"),
+    }
 }
 
 /// The matrices of A φ = θ B φ in the supports' frames. Rows of fixed coordinates are those of a
@@ -144,38 +150,45 @@ const NEGLIGIBLE: f64 = 1e-13;
 
 /// Up to this many motions all eigenpairs are computed, however few are wanted: the dense method is
 /// then as fast as the other.
-const FEW: usize = 60;
+const FEW: usize = 40;
 /// If the motions are at most this many times the wanted ones, all eigenpairs are computed, too:
 /// the dense method is then as fast.
 const SHARE: usize = 4;
 
-/// The `count` largest positive 1/θ, fewer where there are not so many.
+/// The `wanted` largest positive 1/θ, fewer where there are not so many, and up to `guards` more, which may be less
+/// accurate.
 ///
 /// # Errors
 /// [`EigenError`] where there are no allowed motions, A is singular or indefinite on them, or an
 /// iteration fails.
-pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, EigenError> {
+pub fn largest_reciprocals(pencil: &Pencil<'_>, wanted: usize, guards: usize) -> Result<Pairs, EigenError> {
+    let count = wanted + guards;
     if pencil.motions() == 0 {
         return Err(EigenError::NoMotion);
     }
     if pencil.motions() <= FEW.max(SHARE * count) {
         dense::largest_reciprocals(pencil, count)
     } else {
-        lanczos::largest_reciprocals(pencil, count)
+        lanczos::largest_reciprocals(pencil, wanted, guards)
     }
 }
 
+/// In eight sums, which need not wait for each other.
 pub(super) fn dot(u: &[f64], v: &[f64]) -> f64 {
-    u.iter().zip(v).map(|(u, v)| u * v).sum()
+    let ((u, last_u), (v, last_v)) = (u.as_chunks::<8>(), v.as_chunks::<8>());
+    let mut sums = [0.0; 8];
+    for (u, v) in u.iter().zip(v) {
+        for lane in 0..8 {
+            sums[lane] = fma(u[lane], v[lane], sums[lane]);
+        }
+    }
+    let rest: f64 = last_u.iter().zip(last_v).map(|(u, v)| u * v).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Standard deviation of φᵀ K φ if the entries of K carry independent round-off.
 pub(super) fn round_off(k: &Matrix, shape: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for (i, a) in shape.iter().enumerate() {
-        sum += k.columns(i).map(|j| (k.get(i, j) * a * shape[j]).powi(2)).sum::<f64>();
-    }
-    f64::EPSILON * sum.sqrt()
+    f64::EPSILON * k.squares_of_terms(shape).sqrt()
 }
 
 #[cfg(test)]
@@ -195,7 +208,7 @@ mod tests {
             pairs.reciprocals.into_iter().zip(pairs.vectors.into_iter().map(squares)).collect()
         };
         let dense = dense::largest_reciprocals(pencil, count).map(squares);
-        let lanczos = lanczos::largest_reciprocals(pencil, count).map(squares);
+        let lanczos = lanczos::largest_reciprocals(pencil, count, 0).map(squares);
         match (&dense, &lanczos) {
             (Ok(a), Ok(b)) => {
                 assert_eq!(a.len(), b.len(), "{a:?} {b:?}");
@@ -265,7 +278,7 @@ mod tests {
         let found = pairs(&pencil, 2);
         assert!(matches!(found, Err(EigenError::Unstable { count: 2 })), "{found:?}");
         let pencil = Pencil { fixed: &[true; 8], ..pencil };
-        assert!(matches!(largest_reciprocals(&pencil, 2), Err(EigenError::NoMotion)));
+        assert!(matches!(largest_reciprocals(&pencil, 2, 0), Err(EigenError::NoMotion)));
     }
 
     /// ε √((4·2·2)² + 2 (1·2·3)² + (9·3·3)²) = 83 ε.

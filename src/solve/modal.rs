@@ -15,6 +15,7 @@
 
 use super::eigen::{
     CERTAIN, Corrected, EigenError, Pencil, corrected, dot, errors, largest_reciprocals, ritz, round_off,
+    settled,
 };
 use crate::assembly::{InternalVariables, Workspace, nodes};
 use crate::linear::{Factor, Matrix};
@@ -72,7 +73,7 @@ pub fn solve(
     shifted.add(shift, &mass);
     let (border, fixed) = (system.border(load, q), system.fixed());
     let pencil = Pencil { a: &shifted, b: &mass, border: &border, fixed };
-    let pairs = largest_reciprocals(&pencil, count + GUARD)?;
+    let pairs = largest_reciprocals(&pencil, count, GUARD)?;
     if pairs.vectors.is_empty() {
         return Err(EigenError::NotConverged { found: 0, wanted: count });
     }
@@ -104,6 +105,9 @@ pub fn solve(
     let mut unstable = 0;
     let mut hidden = Vec::new();
     found.truncate(count);
+    // What loads may add to the stiffness of a motion that turns beams.
+    let loaded =
+        if load != 0.0 && system.has_loads() { Some(system.internal_force(q, |_| true)) } else { None };
     // Of the stress-free structure it is known how many motions nothing resists.
     let free = if load == 0.0 { system.rigid_motions().unwrap_or(0) } else { 0 };
     for (number, (square, off, mut shape)) in found.into_iter().enumerate() {
@@ -113,12 +117,18 @@ pub fn solve(
         let worst = off + system.round_off() * turned;
         let zero = if number < free { worst } else { likely };
         unstable += usize::from(square < -worst);
+        // Where round-off may hide what loads resist with, a motion without a frequency may have one.
+        let turns = turned > TURNS * size(&shape).powi(2) / system.length();
+        let hides = turns && loaded.is_some_and(|force| zero > KNOWN * force * turned);
         point_up(&mut shape);
         supports.from_frames(load, &mut shape);
         if square <= zero {
             hidden.push(zero.sqrt() / TAU);
         }
-        modes.round_off.push(if square > zero { zero / (2.0 * square) } else { 0.0 });
+        modes.round_off.push(match () {
+            () if square > zero => zero / (2.0 * square),
+            () => f64::from(hides),
+        });
         modes.frequencies.push(if square > zero { square.sqrt() / TAU } else { 0.0 });
         modes.shapes.push(shape);
     }
@@ -142,6 +152,11 @@ const STAND_OUT: f64 = 1e3;
 /// Round-off of the entries of K that is a larger part of an ω² than this is worth corrections.
 const LOST: f64 = 1e-9;
 
+/// A motion whose turns, times the length, are less than this part of its displacements is a translation.
+const TURNS: f64 = 1e-3;
+/// Round-off below this part of what loads resist with hides nothing of it.
+const KNOWN: f64 = 1e-3;
+
 /// ω², what it may err by, and φ with φᵀ M φ = 1 of pairs corrected by products with K + σ M that are evaluated without a matrix.
 fn corrected_modes(
     pencil: &Pencil<'_>,
@@ -164,22 +179,31 @@ fn corrected_modes(
         change.truncate(n);
         change
     };
-    let wanted = found.len();
-    let pairs = found.into_iter().map(|(square, shape)| ((square + shift).recip(), shape)).collect();
-    let corrected = corrected(pencil, pairs, wanted, &shifted, &inverse);
+    let squares: Vec<f64> = found.iter().map(|(square, _)| *square).collect();
+    // φᵀ M φ = 1, and those of `settled` have φᵀ (K + σ M) φ = 1.
+    let scaled = |(square, shape): (f64, Vec<f64>)| {
+        let reciprocal = (square + shift).recip();
+        (reciprocal, shape.into_iter().map(|value| value * reciprocal.abs().sqrt()).collect())
+    };
+    let pairs = found.into_iter().map(scaled).collect();
+    // Where round-off makes K + σ M indefinite, nothing is known of the pairs before it is.
+    let definite = squares.iter().all(|square| square + shift > 0.0);
+    let correct = if definite { settled } else { corrected };
+    let corrected = correct(pencil, pairs, squares.len(), &shifted, &inverse);
     let errors = errors(&corrected);
-    let mode = |(pair, error): (Corrected, f64)| {
+    let mode = |((pair, error), square): ((Corrected, f64), f64)| {
         let mut shape = pair.vector;
         let size = dot(&shape, &pencil.b.product(&shape)).sqrt();
         shape.iter_mut().for_each(|value| *value /= size);
-        let square = dot(&shape, &product(&shape));
+        let square = if pair.moved { dot(&shape, &product(&shape)) } else { square };
         // That of a position acts once and in its square.
         let entries = shape.iter().enumerate().map(|(i, v)| stiffness.get(i, i).abs() * v * v);
         let of_products = f64::EPSILON * entries.sum::<f64>().sqrt();
         let off = CERTAIN * of_products * (2.0 * square.abs().sqrt() + of_products);
         (square, off + error * (square.abs() + shift).powi(2), shape)
     };
-    let mut modes: Vec<(f64, f64, Vec<f64>)> = corrected.into_iter().zip(errors).map(mode).collect();
+    let mut modes: Vec<(f64, f64, Vec<f64>)> =
+        corrected.into_iter().zip(errors).zip(squares).map(mode).collect();
     modes.sort_by(|a, b| a.0.total_cmp(&b.0));
     modes
 }
@@ -191,6 +215,11 @@ fn point_up(shape: &mut [f64]) {
     if largest < 0.0 {
         shape.iter_mut().for_each(|value| *value = -*value);
     }
+}
+
+/// Largest displacement.
+fn size(shape: &[f64]) -> f64 {
+    nodes(shape).map(|node| node.shift()).fold(0.0, f64::max)
 }
 
 /// Largest change of a gradient.

@@ -136,13 +136,19 @@ impl System {
     /// Norm of the forces of effects of these `kinds` on what is free in the state in which an analysis
     /// begins, without any load \[N\]; 0 where it is round-off.
     pub fn force_at_start(&self, kinds: &[Kind]) -> f64 {
+        let force = self.internal_force(self.start(), |kind| kinds.contains(&kind));
+        Some(force).filter(|norm| *norm > STRESSED * self.round_off).unwrap_or(0.0)
+    }
+
+    /// Norm of the internal forces of effects of some kinds on what is free in the state `q` \[N\], round-off included.
+    pub fn internal_force(&self, q: &[f64], counts: impl Fn(Kind) -> bool) -> f64 {
         let mut force = vec![0.0; self.coordinates()];
-        for effect in self.terms.internal.iter().filter(|effect| kinds.contains(&effect.kind())) {
-            effect.add_force(1.0, self.start(), &mut force);
+        for effect in self.terms.internal.iter().filter(|effect| counts(effect.kind())) {
+            effect.add_force(1.0, q, &mut force);
         }
         self.supports.to_frames(0.0, &mut force);
         force.iter_mut().zip(&self.fixed).filter(|(_, fixed)| **fixed).for_each(|(force, _)| *force = 0.0);
-        Some(self.norm(&force)).filter(|norm| *norm > STRESSED * self.round_off).unwrap_or(0.0)
+        self.norm(&force)
     }
 
     /// Whether anything fades as the load factor grows.

@@ -19,6 +19,8 @@ pub struct Corrected {
     pub bound: f64,
     /// φ, with φᵀ A φ = 1.
     pub vector: Vec<f64>,
+    /// Whether corrections have changed φ.
+    pub moved: bool,
 }
 
 /// The `count` largest 1/θ of A φ = θ B φ in the span of the vectors of `pairs` and of what corrects them. `product` gives A v
@@ -30,21 +32,36 @@ pub fn corrected(
     product: &dyn Fn(&[f64]) -> Vec<f64>,
     inverse: &dyn Fn(&[f64]) -> Vec<f64>,
 ) -> Vec<Corrected> {
-    // Until more is known any of them may be wrong as a whole.
-    let uncertain =
-        |(reciprocal, vector): (f64, Vec<f64>)| Corrected { reciprocal, bound: reciprocal, vector };
-    let mut found: Vec<Corrected> = pairs.into_iter().map(uncertain).collect();
-    let mut corrections: Vec<Vec<f64>> = Vec::new();
+    let vectors: Vec<Vec<f64>> = pairs.iter().map(|(_, vector)| vector.clone()).collect();
+    match restricted(pencil, &vectors, product) {
+        Some(pairs) => settled(pencil, pairs, count, product, inverse),
+        // Any of them may be wrong as a whole.
+        None => {
+            let uncertain = |(reciprocal, vector): (f64, Vec<f64>)| Corrected {
+                reciprocal,
+                bound: reciprocal,
+                vector,
+                moved: false,
+            };
+            pairs.into_iter().take(count).map(uncertain).collect()
+        }
+    }
+}
+
+/// [`corrected`], from pairs that are those of A and B in the span of their vectors already, the largest first.
+pub fn settled(
+    pencil: &Pencil<'_>,
+    mut pairs: Vec<(f64, Vec<f64>)>,
+    count: usize,
+    product: &dyn Fn(&[f64]) -> Vec<f64>,
+    inverse: &dyn Fn(&[f64]) -> Vec<f64>,
+) -> Vec<Corrected> {
+    let (mut found, mut moved) = (Vec::new(), false);
     for _ in 0..=CORRECTIONS {
-        let vectors: Vec<Vec<f64>> =
-            found.iter().map(|pair| pair.vector.clone()).chain(corrections.drain(..)).collect();
-        let of_a: Vec<Vec<f64>> = vectors.iter().map(|v| product(v)).collect();
-        let of_b: Vec<Vec<f64>> = vectors.iter().map(|v| pencil.b.product(v)).collect();
-        // Vectors that depend on each other tell nothing new.
-        let Ok(pairs) = ritz(&vectors, &of_b, &of_a) else { break };
-        let largest = pairs.last().map_or(0.0, |(reciprocal, _)| reciprocal.abs());
+        let largest = pairs.first().map_or(0.0, |(reciprocal, _)| reciprocal.abs());
+        let mut corrections: Vec<Vec<f64>> = Vec::new();
         found.clear();
-        for (number, (reciprocal, vector)) in pairs.into_iter().rev().enumerate() {
+        for (number, (reciprocal, vector)) in pairs.into_iter().enumerate() {
             let mut bound = 0.0;
             if number < count {
                 let left = remainder(pencil, reciprocal, &vector, product);
@@ -58,14 +75,33 @@ pub fn corrected(
                     corrections.push(correction.into_iter().map(|value| value / bound).collect());
                 }
             }
-            found.push(Corrected { reciprocal, bound, vector });
+            found.push(Corrected { reciprocal, bound, vector, moved });
         }
         if corrections.is_empty() {
             break;
         }
+        let vectors = found.iter().map(|pair| pair.vector.clone());
+        let vectors: Vec<Vec<f64>> = vectors.chain(corrections).collect();
+        // Vectors that depend on each other tell nothing new.
+        let Some(better) = restricted(pencil, &vectors, product) else { break };
+        (pairs, moved) = (better, true);
     }
     found.truncate(count);
     found
+}
+
+/// The pairs of A and B in the span of some vectors, the largest 1/θ first, with φᵀ A φ = 1; none where the vectors depend on each
+/// other.
+fn restricted(
+    pencil: &Pencil<'_>,
+    vectors: &[Vec<f64>],
+    product: &dyn Fn(&[f64]) -> Vec<f64>,
+) -> Option<Vec<(f64, Vec<f64>)>> {
+    let of_a: Vec<Vec<f64>> = vectors.iter().map(|v| product(v)).collect();
+    let of_b: Vec<Vec<f64>> = vectors.iter().map(|v| pencil.b.product(v)).collect();
+    let mut pairs = ritz(vectors, &of_b, &of_a).ok()?;
+    pairs.reverse();
+    Some(pairs)
 }
 
 /// What each 1/θ errs by at most: the bound, or its square over the distance from those that are not its equals, whichever is smaller
@@ -113,7 +149,8 @@ mod tests {
     /// Of 1, ½ and ½ + 1e-7 with bounds of 1e-3: the first is 0.5 away from the others, which are equal as far as is known and the last.
     #[test]
     fn errors_go_with_the_square_of_bounds_where_others_are_far() {
-        let pair = |reciprocal: f64, bound: f64| Corrected { reciprocal, bound, vector: Vec::new() };
+        let pair =
+            |reciprocal: f64, bound: f64| Corrected { reciprocal, bound, vector: Vec::new(), moved: false };
         let of = |pairs: &[Corrected]| errors(pairs);
         let found = of(&[pair(1.0, 1e-3), pair(0.5 + 1e-7, 1e-3), pair(0.5, 1e-3)]);
         assert!((found[0] - 1e-6 / (0.5 - 1e-7)).abs() < 1e-18 && found[1..] == [1e-3; 2], "{found:?}");

@@ -22,29 +22,34 @@ const EXTRA_VECTORS: usize = 120;
 /// Residual relative to 1/θ at which a pair counts as found; its eigenvalue errs by the square of
 /// this.
 const TOLERANCE: f64 = 1e-12;
+/// That of a pair which only keeps the wanted ones apart from the rest.
+const TOLERANCE_OF_GUARDS: f64 = 1e-6;
+/// That at which a pair of a later search is known well enough to be told from a larger one.
+const TOLERANCE_OF_SMALLER: f64 = 1e-3;
 /// A pair found later counts as larger only beyond this fraction.
 const LARGER: f64 = 1e-9;
 /// Size of a new vector, relative to the operator, at which the Krylov space is exhausted.
 const EXHAUSTED: f64 = 1e-14;
 
-/// The `count` largest positive 1/θ, fewer where there are not so many.
+/// The `count` largest positive 1/θ, fewer where there are not so many, and `guards` more, which are less accurate.
 ///
 /// # Errors
 /// [`EigenError`] where A is singular or indefinite on the allowed motions, or the iteration fails.
-pub fn largest_reciprocals(pencil: &Pencil<'_>, count: usize) -> Result<Pairs, EigenError> {
-    if count == 0 {
+pub fn largest_reciprocals(pencil: &Pencil<'_>, wanted: usize, guards: usize) -> Result<Pairs, EigenError> {
+    let count = wanted + guards;
+    if wanted == 0 {
         return Ok(Pairs::default());
     }
     let factor = Factor::new(pencil.a, pencil.border)?;
     if let Some(count) = factor.negative_directions(pencil.a, pencil.border).filter(|count| *count > 0) {
         return Err(EigenError::Unstable { count });
     }
-    let mut search = Search { pencil, factor, found: Vec::new(), searches: 0 };
+    let mut search = Search { pencil, factor, wanted, found: Vec::new(), searches: 0 };
     loop {
         let missing = count.saturating_sub(search.found.len()).max(1);
-        let new = search.krylov(missing)?;
         // The last one that is wanted, if there are enough.
         let bound = search.found.get(count - 1).map_or(0.0, |pair| pair.reciprocal);
+        let new = search.krylov(missing, bound)?;
         let ends = !new.iter().any(|pair| pair.reciprocal > bound * (1.0 + LARGER));
         search.found.extend(new);
         search.found.sort_by(|a, b| b.reciprocal.total_cmp(&a.reciprocal));
@@ -70,6 +75,8 @@ struct Pair {
 struct Search<'a> {
     pencil: &'a Pencil<'a>,
     factor: Factor,
+    /// Pairs that are wanted; those found beyond them are less accurate.
+    wanted: usize,
     /// Converged pairs, the largest first.
     found: Vec<Pair>,
     searches: usize,
@@ -98,8 +105,8 @@ impl Search<'_> {
         w.iter_mut().zip(&change).for_each(|(w, change)| *w += change);
     }
 
-    /// The largest pairs orthogonal to those found, up to `count`; empty if there are none.
-    fn krylov(&mut self, count: usize) -> Result<Vec<Pair>, EigenError> {
+    /// The largest pairs orthogonal to those found, up to `count`; empty if there are none, or none larger than `bound`.
+    fn krylov(&mut self, count: usize, bound: f64) -> Result<Vec<Pair>, EigenError> {
         let n = self.pencil.a.size();
         // A start with a share of every mode: low-discrepancy numbers, different in every search
         // but the same in every run.
@@ -144,9 +151,21 @@ impl Search<'_> {
                 let last = if exhausted { 0.0 } else { norm };
                 let candidates: Vec<usize> =
                     (0..m).rev().filter(|&i| values[i] > NEGLIGIBLE * size).take(count).collect();
-                let converged =
-                    |i: &&usize| (last * small[(m - 1, **i)]).abs() <= TOLERANCE * values[**i].abs();
-                let found = candidates.iter().take_while(converged).count();
+                let residual = |i: usize| (last * small[(m - 1, i)]).abs();
+                // Those of earlier searches may be smaller than these.
+                let accurate = self.wanted;
+                let converged = |(number, i): &(usize, &usize)| {
+                    let tolerance = if *number < accurate { TOLERANCE } else { TOLERANCE_OF_GUARDS };
+                    residual(**i) <= tolerance * values[**i].abs()
+                };
+                let found = candidates.iter().enumerate().take_while(converged).count();
+                let is_smaller = |i: &usize| {
+                    let (value, residual) = (values[*i], residual(*i));
+                    residual <= TOLERANCE_OF_SMALLER * value && value + residual <= bound
+                };
+                if candidates.first().is_some_and(is_smaller) {
+                    return Ok(Vec::new());
+                }
                 if exhausted || m >= limit || found == count {
                     if found == 0 && !candidates.is_empty() {
                         return Err(EigenError::NotConverged { found: self.found.len(), wanted: count });
