@@ -39,8 +39,11 @@ pub enum Law {
     /// Interpolates given points; constant before the first and after the last.
     Table(Tabulated),
     /// The angle of a hub that reaches the speed Ω within the time T (Simo & Vu-Quoc, *J. Appl.
-    /// Mech.* 53, 1986, 855–863): Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) until T, then Ω (t − T/2).
+    /// Mech.* 53, 1986, 855–863): Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) until T, then Ω (t − T/2), with t
+    /// from when it begins.
     SpinUp {
+        /// When it begins \[s\].
+        start: f64,
         /// Ω \[rad/s\].
         speed: f64,
         /// T \[s\].
@@ -216,8 +219,9 @@ impl Law {
                 coefficients.iter().rev().fold([0.0; 3], step)
             }
             Self::Table(table) => table.at(t),
-            Self::SpinUp { speed, duration } if t < *duration => {
-                let w = 2.0 * PI / duration;
+            Self::SpinUp { start, .. } if t < *start => [0.0; 3],
+            Self::SpinUp { start, speed, duration } if t - start < *duration => {
+                let (t, w) = (t - start, 2.0 * PI / duration);
                 let (sine, cosine) = (w * t).sin_cos();
                 let slope = speed / duration;
                 [
@@ -226,7 +230,7 @@ impl Law {
                     slope * (1.0 - cosine),
                 ]
             }
-            Self::SpinUp { speed, duration } => [speed * (t - 0.5 * duration), *speed, 0.0],
+            Self::SpinUp { start, speed, duration } => [speed * (t - start - 0.5 * duration), *speed, 0.0],
             Self::Expression(expression) => expression.at(t),
             Self::Sum(laws) => laws.iter().fold([0.0; 3], |[v, d, s], law| {
                 let [value, rate, second] = law.at(t);
@@ -403,13 +407,12 @@ impl Law {
     /// there.
     pub fn kinks(&self) -> Vec<f64> {
         match self {
-            Self::Ramp { start, duration } | Self::SmoothRamp { start, duration } => {
-                vec![*start, start + duration]
-            }
+            Self::Ramp { start, duration }
+            | Self::SmoothRamp { start, duration }
+            | Self::SpinUp { start, duration, .. } => vec![*start, start + duration],
             Self::Step { start } => vec![*start],
             Self::Harmonic { .. } | Self::Polynomial(_) => Vec::new(),
             Self::Table(table) => table.times.clone(),
-            Self::SpinUp { duration, .. } => vec![*duration],
             Self::Expression(expression) => expression.kinks.clone(),
             Self::Sum(laws) | Self::Product(laws) => merged(laws.iter().flat_map(Self::kinks)),
         }
@@ -432,7 +435,7 @@ mod tests {
             Law::Polynomial(vec![1.0, -2.0, 0.5, 3.0]),
             table(false),
             table(true),
-            Law::SpinUp { speed: 6.0, duration: 1.5 },
+            Law::SpinUp { start: 0.2, speed: 6.0, duration: 1.5 },
             Law::Sum(vec![Law::Step { start: 0.4 }, Law::Polynomial(vec![0.5, -1.0]), table(true)]),
             Law::Product(vec![
                 Law::Step { start: 0.4 },
@@ -473,6 +476,16 @@ mod tests {
                 assert!(v.is_finite());
             }
         }
+    }
+
+    /// Half of Ω T at its end, and nothing before it begins.
+    #[test]
+    fn a_hub_spins_up_from_when_it_begins() {
+        let law = Law::SpinUp { start: 0.5, speed: 6.0, duration: 1.5 };
+        assert_eq!(law.at(0.49), [0.0; 3]);
+        assert!((law.at(2.0)[0] - 4.5).abs() < 1e-12 && (law.at(3.0)[0] - 10.5).abs() < 1e-12);
+        let from_zero = Law::SpinUp { start: 0.0, speed: 6.0, duration: 1.5 };
+        assert_eq!(law.at(1.5), from_zero.at(1.0));
     }
 
     #[test]

@@ -11,7 +11,8 @@
 //! motion at rest in the equilibrium that a static run found, or a static run anywhere. Its beams
 //! must be the same: in name, centreline, discretisation, nodes, stiffness and, where both have
 //! one, mass. The state knows what acted and held in it. In a static run these parts go on to act
-//! in full, while what is new grows with the load factor and what has gone fades.
+//! in full, while what is new grows with the load factor and what has gone fades. Friction and the full turns of torsion
+//! springs stay where they are, whatever coefficients the other scene has.
 //!
 //! A checksum tells whether the file is as it was written.
 
@@ -25,7 +26,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 /// Version of the format.
-const FORMAT: u32 = 6;
+const FORMAT: u32 = 7;
 
 /// A state with the beams to which it belongs.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,6 +56,8 @@ struct Saved {
     /// Checksums of the parts that acted and of the supports that held.
     acted: Vec<String>,
     held: Vec<String>,
+    /// What the internal variables of these parts belong to; empty for those without.
+    remembered: Vec<String>,
     /// Per friction and per torsion spring, the number of its part among those that acted.
     history_of: [Vec<usize>; 2],
     /// The state, and the integrator's data.
@@ -149,7 +152,8 @@ pub enum RestartError {
     /// The scene has other beams.
     #[error("the saved state does not fit this scene: {what}")]
     #[diagnostic(help(
-        "the beams must have the same names, centrelines, discretisations, nodes and sections in both scenes; supports, loads, joints and the integrator may differ"
+        "the beams must have the same names, centrelines, discretisations, nodes and sections in both scenes; supports, loads, joints and the integrator may differ. \
+         What a scene leaves open for an `accuracy` is in the `chosen.toml` beside the state, which goes on"
     ))]
     Mismatch {
         /// What differs.
@@ -242,6 +246,10 @@ fn matches(before: &[String], now: &[String]) -> Vec<Option<usize>> {
     now.iter().map(find).collect()
 }
 
+fn remembered(model: &Model) -> Vec<String> {
+    model.parts.iter().map(|part| part.remembers().unwrap_or_default()).collect()
+}
+
 /// The internal variables by the parts that have them now; springs that are new have turned by `turned`.
 fn moved(
     variables: &InternalVariables,
@@ -290,6 +298,7 @@ impl SavedState {
             directions: directions(model),
             acted: checksums(&model.parts),
             held: checksums(&model.supports),
+            remembered: remembered(model),
             history_of: system.history_of(),
             checkpoint,
             holding: holding.map(|Holding { supports, multipliers }| {
@@ -337,6 +346,23 @@ impl SavedState {
             }
         }
         model
+    }
+
+    /// Per part of a model, the one before whose internal variables it goes on with: the same part, or else one with
+    /// other coefficients at the same place.
+    fn with_the_history_of(&self, model: &Model) -> Vec<Option<usize>> {
+        let mut same = matches(&self.saved.acted, &checksums(&model.parts));
+        let mut before = self.saved.remembered.clone();
+        let mut now = remembered(model);
+        for (part, there) in same.iter().enumerate().filter_map(|(part, there)| Some((part, (*there)?))) {
+            now[part].clear();
+            before.get_mut(there).map(String::clear);
+        }
+        for (part, there) in matches(&before, &now).into_iter().enumerate() {
+            let remembers = !now[part].is_empty();
+            same[part] = same[part].or(there.filter(|_| remembers));
+        }
+        same
     }
 
     /// Its kinetic energy \[J\].
@@ -437,7 +463,7 @@ impl SavedState {
         }
         // What statics goes on with may be other parts.
         if fingerprint.is_empty() || self.saved.motion != fingerprint {
-            let same = matches(&self.saved.acted, &checksums(&model.parts));
+            let same = self.with_the_history_of(model);
             let (before, turned) = (&self.saved.history_of, system.turned(&state.q));
             let variables = moved(&state.variables, before, &system.history_of(), &same, &turned);
             let variables = system.with_energies(variables, &state.q);

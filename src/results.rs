@@ -140,6 +140,9 @@ pub struct Run {
     pub outlines: Vec<Vec<[f64; 2]>>,
     /// Warnings for the user: instabilities met, with the load factor.
     pub warnings: Vec<String>,
+    /// Whether a force field changes within cells by more than their points see.
+    #[serde(skip)]
+    pub misses_fields: bool,
     /// The tensions at the end of the tendons whose lengths are given.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tensions: Vec<Tension>,

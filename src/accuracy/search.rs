@@ -64,6 +64,9 @@ const MUTE_LOAD_STEPS: &str = "with twice the `max_step` there are hardly fewer 
 /// Why the steps of the load are not small enough.
 const TOO_MANY_LOAD_STEPS: &str =
     "friction depends on the path, of which more than 2,500 load steps would be needed";
+/// Why a load is not known.
+const FIELD: &str = "a force field changes within the cells of its beam by more than their points see; name a `basis` with nodes where it acts, or \
+                     let it be smoother";
 /// Why nothing can be refined.
 const NAMED: &str =
     "the scene names the basis of every beam, and with it the mesh: leave it out, or give it more nodes";
@@ -147,6 +150,13 @@ impl<'a, 'o> Search<'a, 'o> {
                 return Ok(self.finished(Judged::unknown(round), Some(why.to_owned())));
             }
             rounds += 1;
+            if self.runner.wanted.is_some() && round.results.run().misses_fields {
+                if rounds < ROUNDS && self.refine_meshes() {
+                    before = None;
+                    continue;
+                }
+                return Ok(self.finished(Judged::unknown(round), Some(FIELD.to_owned())));
+            }
             let (now, mut judged) = self.judged(round, difference, before.as_ref().filter(|_| !alone));
             stalls = match &before {
                 Some(before) if now.excess > STALLED * before.excess => stalls + 1,
@@ -351,7 +361,10 @@ impl<'a, 'o> Search<'a, 'o> {
         }
         let most = self.most;
         if 2 * round.cells >= most {
-            return Err(format!("more than {most} cells would be needed"));
+            return Err(format!(
+                "more than {most} cells would be needed: where something pulls along a beam between its ends, cut it there (two beams in a \
+                 `weld` have a strain each)"
+            ));
         }
         self.spread(&estimate.mesh.cells, times.max(1.1));
         Ok(())
@@ -389,14 +402,20 @@ impl<'a, 'o> Search<'a, 'o> {
 
     /// Twice the cells in all open beams, and steps to match; whether there was any to refine.
     fn refine_everywhere(&mut self) -> bool {
-        let mut any = self.runner.steps_are_open();
+        let any = self.refine_meshes() || self.runner.steps_are_open();
+        self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(self.runner.finest()));
+        any
+    }
+
+    /// Cells of half the length of all open beams; whether there are any.
+    fn refine_meshes(&mut self) -> bool {
+        let mut any = false;
         for index in 0..self.runner.meshes.len() {
             if self.runner.is_open(index) && self.runner.meshes[index].cells() < self.most / 2 {
                 self.runner.meshes[index] = self.runner.meshes[index].halved();
                 any = true;
             }
         }
-        self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(self.runner.finest()));
         any
     }
 

@@ -67,6 +67,12 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
         false
     }
 
+    /// What its internal variables belong to, the place of a torsion spring or a rough obstacle: a part there with other
+    /// coefficients goes on with them. None where it has no such variables.
+    fn remembers(&self) -> Option<String> {
+        None
+    }
+
     /// A mass \[kg\] on which gravity acts, and its place.
     fn mass(&self) -> Option<(Place, f64)> {
         None

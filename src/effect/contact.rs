@@ -68,6 +68,11 @@ impl Part for Contact {
         self.friction.is_some()
     }
 
+    fn remembers(&self) -> Option<String> {
+        let Self { beam, obstacle, half_thickness, between, .. } = self;
+        self.friction.map(|_| format!("contact {beam} {obstacle:?} {half_thickness:?} {between:?}"))
+    }
+
     fn jumps(&self) -> Vec<Place> {
         self.between.into_iter().flatten().map(|s| Place::new(self.beam, s)).collect()
     }

@@ -90,6 +90,10 @@ impl Part for TorsionSpring {
         Ok(())
     }
 
+    fn remembers(&self) -> Option<String> {
+        self.stiffness.map(|_| format!("torsion spring {:?}", self.at))
+    }
+
     fn couple(&self) -> Option<Place> {
         Some(self.at)
     }

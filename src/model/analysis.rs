@@ -93,7 +93,7 @@ impl Static {
 /// Settings of arc-length continuation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArcLength {
-    /// Stop where the load factor first reaches this value.
+    /// Stop where the load factor first reaches this value; the path to one below zero begins with loads that are turned round.
     pub until_load: Option<f64>,
     /// Stop after this many points on the path.
     pub max_points: usize,

@@ -160,7 +160,9 @@ pub enum RunError {
     },
     /// A static stage ended at another load factor than 1, and another one comes after it.
     #[error("stage `{stage}` ends at a load factor other than 1, from which no further stage can start")]
-    #[diagnostic(help("let its path by arc length end with `until_load = 1`, or let it be the last stage"))]
+    #[diagnostic(help(
+        "give it the loads with which it is to end, and let its path by arc length end with `until_load = 1`, or let it be the last stage"
+    ))]
     OpenEnd {
         /// Its name.
         stage: String,

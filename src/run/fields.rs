@@ -1,81 +1,91 @@
 //! Force fields that are narrower than the distances of the points at which they are summed.
 
+use crate::assembly::Part;
 use crate::effect::ForceField;
 use crate::model::Model;
+use crate::numeric::spread;
 use crate::system::{System, View};
+use nalgebra::Vector2;
 use std::any::Any;
+use std::sync::Arc;
 
-/// Evenly spaced places of a beam at which a field is looked at.
+/// Places of a beam at which a field is looked at …
 const PLACES: usize = 2000;
-/// Part of the largest sum of a field in any state by which both sums may differ.
-const MISSED: f64 = 0.2;
+/// … and those of a cell at least.
+const OF_A_CELL: usize = 12;
+/// Part of the largest sum of a field in any state by which the sums over the cells may differ.
+const MISSED: f64 = 0.1;
 /// Forces below this part of the stiffness are none.
 const NOTHING: f64 = 1e-30;
 
-/// A message for every force field whose sum over the points of the mesh is not the one that it has on the beam, in one of the
-/// states: their coordinates and times \[s\]. Such a field acts between the points, and neither a coarser mesh nor a finer one
+/// A message for every force field whose sums over the points of the cells are not those that it has on the beam, in one of the
+/// states: their coordinates and times \[s\]. Such a field changes between the points, and neither a coarser mesh nor a finer one
 /// need see it.
-pub(super) fn missed<'a>(
-    model: &'a Model,
-    system: &'a System,
-    states: &'a [(&'a [f64], f64)],
-) -> impl Iterator<Item = String> + 'a {
-    model.parts.iter().filter_map(move |part| {
+pub(super) fn missed(model: &Model, system: &System, states: &[(&[f64], f64)]) -> Vec<String> {
+    let message = |part: &Arc<dyn Part>| {
         let part: &dyn Any = part.as_ref();
         let field = part.downcast_ref::<ForceField>()?;
-        let (even, points) = (even(system, field.beam)?, points(model, system, field)?);
-        let sums_in = |(q, time): &(&[f64], f64)| {
-            [&even, &points].map(|(view, weights)| sum(field, view, weights, q, *time))
+        let cells = cells(system, field)?;
+        let (xi, weights) = model.beams.get(field.beam)?.gauss_points.of_loads().rule().ok()?;
+        let fine = OF_A_CELL.max(PLACES / cells.len());
+        let even = points(system, field, &cells, &spread(fine).collect::<Vec<_>>())?;
+        let summed = points(system, field, &cells, &xi)?;
+        let even_weights = vec![1.0 / fine as f64; fine];
+        let sums = |(q, time): &(&[f64], f64)| {
+            let fine = means(field, &even, &even_weights, q, *time);
+            let seen = means(field, &summed, &weights, q, *time);
+            let of_cells = fine.into_iter().zip(seen).zip(&cells);
+            of_cells.fold([0.0; 2], |[off, size], (((fine, of), (seen, by)), [start, end])| {
+                let width = end - start;
+                [off + width * (fine - seen).norm(), size + width * of.max(by)]
+            })
         };
-        let sums: Vec<[f64; 2]> = states.iter().map(sums_in).filter(|[a, b]| (a + b).is_finite()).collect();
+        let found: Vec<[f64; 2]> = states.iter().map(sums).filter(|[a, b]| (a + b).is_finite()).collect();
         // A field that is nowhere to be felt in these states tells nothing.
-        let largest = sums.iter().flatten().fold(NOTHING * system.stiffness(), |most, sum| most.max(*sum));
-        let off = |[fine, summed]: &[f64; 2]| (fine - summed).abs();
-        let [fine, summed] = sums.into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))?;
-        (off(&[fine, summed]) > MISSED * largest).then(|| {
+        let largest = found.iter().fold(NOTHING * system.stiffness(), |most, [_, size]| most.max(*size));
+        let off = found.iter().fold(0.0_f64, |most, [off, _]| most.max(*off)) / largest;
+        (off > MISSED).then(|| {
             format!(
-                "the force field on beam `{}` is narrower than its cells: of {fine:.3e} N, summed by size, the points of the mesh see \
-                 {summed:.3e} N; use more elements or nodes where it acts (`nodes` may be a list of arc lengths)",
-                model.beams[field.beam].name
+                "the force field on beam `{}` changes within its cells by more than their points see: what they sum up differs by {:.0} % of \
+                 its size from what acts; use more elements or nodes where it acts (`nodes` may be a list of arc lengths)",
+                model.beams[field.beam].name,
+                100.0 * off
             )
         })
-    })
+    };
+    model.parts.iter().filter_map(message).collect()
 }
 
-/// ∫ |F| ds \[N\].
-fn sum(field: &ForceField, view: &View, weights: &[f64], q: &[f64], time: f64) -> f64 {
-    let places = view.positions(1, q).zip(view.s()).zip(weights);
-    places
-        .map(|(([x, y], s), weight)| {
-            let [fx, fy] = field.field.at([x, y, time]);
-            weight * field.acting.at(*s, *s) * fx.hypot(fy)
-        })
-        .sum()
+/// Per cell, the means of F and of |F| \[N/m\] over its points.
+fn means(field: &ForceField, view: &View, weights: &[f64], q: &[f64], time: f64) -> Vec<(Vector2<f64>, f64)> {
+    let force =
+        |([x, y], s): ([f64; 2], &f64)| Vector2::from(field.field.at([x, y, time])) * field.acting.at(*s, *s);
+    let forces: Vec<Vector2<f64>> = view.positions(1, q).zip(view.s()).map(force).collect();
+    let of_cell = |forces: &[Vector2<f64>]| {
+        let mean = |(sum, size): (Vector2<f64>, f64), (force, weight): (&Vector2<f64>, &f64)| {
+            (sum + force * *weight, size + force.norm() * weight)
+        };
+        forces.iter().zip(weights).fold((Vector2::zeros(), 0.0), mean)
+    };
+    forces.chunks_exact(weights.len()).map(of_cell).collect()
 }
 
-/// The middles of many equal parts of a beam, with their lengths \[m\].
-fn even(system: &System, beam: usize) -> Option<(View, Vec<f64>)> {
-    let part = system.beams().get(beam)?;
-    let width = part.basis.length() / PLACES as f64;
-    let s: Vec<f64> = (0..PLACES).map(|k| (k as f64 + 0.5) * width).collect();
-    Some((View::points(&part.basis, part.offset(), &s).ok()?, vec![width; PLACES]))
-}
-
-/// The points at which the field is summed, with their weights \[m\].
-fn points(model: &Model, system: &System, field: &ForceField) -> Option<(View, Vec<f64>)> {
-    let (part, beam) = (system.beams().get(field.beam)?, model.beams.get(field.beam)?);
-    let (xi, weights) = beam.gauss_points.of_loads().rule().ok()?;
-    // Cells are divided where what acts begins and ends.
+/// The cells of its beam, divided where what acts begins and ends.
+fn cells(system: &System, field: &ForceField) -> Option<Vec<[f64; 2]>> {
+    let part = system.beams().get(field.beam)?;
     let jumps = field.acting.jumps().into_iter().filter(|s| (0.0..part.basis.length()).contains(s));
     let mut ends: Vec<f64> = part.basis.nodes().iter().copied().chain(jumps).collect();
     ends.sort_by(f64::total_cmp);
-    let (mut s, mut lengths) = (Vec::new(), Vec::new());
-    for cell in ends.windows(2) {
-        let width = cell[1] - cell[0];
-        s.extend(xi.iter().map(|xi| cell[0] + xi * width));
-        lengths.extend(weights.iter().map(|weight| weight * width));
-    }
-    Some((View::points(&part.basis, part.offset(), &s).ok()?, lengths))
+    ends.dedup();
+    Some(ends.windows(2).map(|cell| [cell[0], cell[1]]).collect())
+}
+
+/// The same places within each of the cells.
+fn points(system: &System, field: &ForceField, cells: &[[f64; 2]], within: &[f64]) -> Option<View> {
+    let part = system.beams().get(field.beam)?;
+    let of_cell = |&[start, end]: &[f64; 2]| within.iter().map(move |xi| start + xi * (end - start));
+    let s: Vec<f64> = cells.iter().flat_map(of_cell).collect();
+    View::points(&part.basis, part.offset(), &s).ok()
 }
 
 #[cfg(test)]
@@ -96,13 +106,17 @@ mod tests {
             results.run().warnings.clone()
         };
         let narrow = "100*exp(-((x-0.43)/0.003)^2)";
-        let found = messages(8, narrow);
-        // ∫ 100 exp(−(x/0.003)²) dx = 0.3 √π.
-        assert!(
-            found.iter().any(|text| text.contains("narrower than its cells: of 5.317e-1 N")),
-            "{found:?}"
-        );
-        for (elements, value) in [(8, "0.1"), (8, "sin(3*x)"), (400, narrow)] {
+        let told = |elements: usize, value: &str| {
+            messages(elements, value).iter().filter(|text| text.contains("changes within its cells")).count()
+        };
+        assert_eq!(told(8, narrow), 1);
+        // As many waves as would look constant at the points of eight cells, and others.
+        for waves in [16, 24, 40, 56, 64, 136, 144, 160, 192] {
+            assert_eq!(told(8, &format!("3*cos(2*pi*{waves}*x)")), 1, "{waves} waves");
+        }
+        for (elements, value) in
+            [(8, "0.1"), (8, "sin(3*x)"), (8, "3*cos(2*pi*8*x)"), (400, narrow), (100, "3*cos(2*pi*64*x)")]
+        {
             assert_eq!(messages(elements, value), [""; 0], "{value}");
         }
     }

@@ -114,7 +114,7 @@ impl Sampler<'_> {
             let settings = Static { tolerance: Some(TO_THE_END), steps: Some(parts), ..Static::default() };
             let mut solution = statics::solve(self.system, &settings, None, &mut *report);
             if let Some(stuck) = &solution.stuck {
-                return Err(self.stuck(stuck, &solution));
+                return Err(self.stuck(stuck, &solution, false));
             }
             // Only the last equilibrium matters, not the path to it.
             solution.keep_last();

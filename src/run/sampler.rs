@@ -47,6 +47,8 @@ const WORK_KNOWN: f64 = 1e-2;
 const LARGEST_DRIFT: f64 = 1e-2;
 /// Energies below this, in EA L, are due to the round-off of strains.
 const LEAST_ENERGY: f64 = 1e-20;
+/// The same in EI/L where no beam stretches.
+const LEAST_OF_INEXTENSIBLE: f64 = 1e-14;
 /// Largest number of states, evenly spread, that are checked for locking …
 const LOOKED_AT: usize = 400;
 /// … and, of a motion, for force fields that cells miss …
@@ -656,7 +658,7 @@ impl<'a> Sampler<'a> {
         }
         let states = [solution.states.first(), solution.states.last()].into_iter().flatten();
         let states: Vec<(&[f64], f64)> = states.map(|(_, x)| (self.coordinates_of(x), 0.0)).collect();
-        trajectory.run.warnings.extend(fields::missed(self.model, self.system, &states));
+        self.see_fields(&mut trajectory.run, &states);
         trajectory.run.warnings.extend(self.folds(&trajectory.last));
         let known = solution.work.last().zip(trajectory.energy.last());
         trajectory.run.warnings.extend(known.and_then(|(work, energy)| put_in(work, energy)));
@@ -682,6 +684,13 @@ impl<'a> Sampler<'a> {
              and all that comes has come: {:.0} % of it is still as it was before",
             100.0 * remaining(*load)[0]
         ))
+    }
+
+    /// Looks at force fields in states, coordinates and times \[s\].
+    fn see_fields(&self, run: &mut Run, states: &[(&[f64], f64)]) {
+        let missed = fields::missed(self.model, self.system, states);
+        run.misses_fields = !missed.is_empty();
+        run.warnings.extend(missed);
     }
 
     /// The last state, if it is the equilibrium under the full loads.
@@ -749,7 +758,8 @@ impl<'a> Sampler<'a> {
         folds.collect()
     }
 
-    pub(super) fn stuck(&self, stuck: &NoStep, solution: &Solution) -> RunError {
+    /// Why there is no way on; `along_arc`, where a path was followed by arc length already.
+    pub(super) fn stuck(&self, stuck: &NoStep, solution: &Solution, along_arc: bool) -> RunError {
         let (beam, s) = stuck.at;
         let pulled_in = self.pulled_in(solution.states.last().map(|(_, q)| &q[..]));
         let advice = match stuck.failure {
@@ -781,6 +791,10 @@ impl<'a> Sampler<'a> {
             }
             _ if stuck.step == 0.0 => {
                 "the undeformed structure can move without resistance: add a support, or give the beam a bending stiffness"
+            }
+            _ if along_arc => {
+                "no step along the path converges from here: where the load is far beyond what the structure carries, give less of it, or a \
+                 smaller `max_step`; if the shape is folded there, use more nodes"
             }
             _ => {
                 "near a limit point the load cannot grow: follow the path with `arc_length` in [analysis.static]; \
@@ -867,13 +881,24 @@ impl<'a> Sampler<'a> {
                 }
             }
         }
-        let least = LEAST_ENERGY * self.system.stiffness() * self.system.length();
+        let stretches = self.model.beams.iter().any(|beam| beam.section.axial_stiffness.is_some());
+        let least = if stretches { LEAST_ENERGY } else { LEAST_OF_INEXTENSIBLE };
+        let least = least * self.system.stiffness() * self.system.length();
         trajectory.run.warnings.extend(unbalanced(&trajectory.energy, least));
         let count = solution.states.len();
         let states = solution.states.iter().enumerate().filter(|(i, _)| is_among(*i, count, FIELDS_AT));
         let states: Vec<(&[f64], f64)> = states.map(|(_, state)| (&state.q[..], state.time)).collect();
-        trajectory.run.warnings.extend(fields::missed(self.model, self.system, &states));
-        trajectory.run.warnings.extend(steps::too_long(self.system, settings));
+        self.see_fields(&mut trajectory.run, &states);
+        if let [first, .., last] = &solution.states[..] {
+            let begin = (first.time, &first.q[..]);
+            trajectory.run.warnings.extend(steps::too_long(
+                self.model,
+                self.system,
+                settings,
+                begin,
+                last.time,
+            ));
+        }
         trajectory.run.warnings.extend(self.far_from_origin(settings, &solution.states));
         let unwatched = self.hardly_moving(settings, &trajectory);
         trajectory.run.warnings.extend(unwatched);

@@ -34,7 +34,7 @@ impl Solve for Static {
         stopwatch.solved();
         let unreached = solution.unreached.zip(self.arc_length.as_ref());
         let mut outcome = match (&solution.stuck, unreached) {
-            (Some(stuck), _) => Err(sampler.stuck(stuck, &solution)),
+            (Some(stuck), _) => Err(sampler.stuck(stuck, &solution, self.arc_length.is_some())),
             (None, Some((why, arc))) => Err(sampler.unreached(why, arc, &solution)),
             (None, None) => {
                 let mut trajectory = sampler.statics(&solution);

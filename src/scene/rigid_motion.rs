@@ -92,10 +92,16 @@ pub(super) fn check_rigid_motions(model: &Model, built: &[Built], resisting: Res
         beam.name.span(),
         format!("beam `{}` is under-supported: it is free for {words}", beam.name.get()),
     )
-    .help(
-        "an equilibrium needs every rigid motion held: add a `[[support]]`, such as \
-         `fix = [\"x\", \"y\", \"angle\"]` at the start, or a `[[joint]]`",
-    ))
+    .help(match resisting {
+        Resisting::Weight => {
+            "an equilibrium needs every rigid motion held: add a `[[support]]`, such as \
+             `fix = [\"x\", \"y\", \"angle\"]` at the start, or a `[[joint]]`"
+        }
+        Resisting::Nothing => {
+            "a path by arc length and a buckling analysis need every rigid motion held without loads: add a `[[support]]`, such as \
+             `fix = [\"x\", \"y\", \"angle\"]` at the start, or a `[[joint]]`, or let a `[[stage]]` before it load what loads hold"
+        }
+    }))
 }
 
 /// Per beam, whether weight, and loads of fixed direction beside it, give it a direction, because

@@ -10,8 +10,8 @@ use crate::model::{
 
 use super::error::Fault;
 use super::file::{
-    ArcTable, BeamTable, FixName, InitialShapeTable, MoveTable, OutputTable, SceneTable, StrainName,
-    SupportTable,
+    ArcTable, BeamTable, FixName, InitialShapeTable, MoveTable, OutputTable, SceneTable, SpinUpTable,
+    StrainName, SupportTable,
 };
 use super::place::{Built, place};
 use super::quantity::Length;
@@ -313,9 +313,10 @@ fn prescribed(by: &Located<MoveTable>, fix: Fixed) -> Result<(Displacement, Opti
             return Err(Fault::new(hub.span(), "`spin_up` moves the angle alone, by a law of its own")
                 .help("keep `spin_up`, or `x`, `y`, `angle` with `in_time`"));
         }
-        let (speed, duration) = (hub.get().speed.si, hub.get().duration.si);
+        let SpinUpTable { start, speed, duration } = hub.get();
+        let start = start.as_ref().map_or(0.0, |start| start.si);
         displacement.angle = 1.0;
-        return Ok((displacement, Some(Law::SpinUp { speed, duration })));
+        return Ok((displacement, Some(Law::SpinUp { start, speed: speed.si, duration: duration.si })));
     }
     let law = in_time.as_ref().map(to_law::law).transpose()?;
     if law.is_some() && displacement == Displacement::default() {

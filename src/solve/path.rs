@@ -23,6 +23,8 @@
 //! elements that locks under full quadrature may still fail, because it has branches of its own
 //! within a step.
 //!
+//! Where beams slide without turning, shifts in beam lengths take the place of turns.
+//!
 //! A step that passes no limit point and yet ends in an unstable equilibrium is redone smaller too,
 //! and so is one that turns the nodes against the prediction. The path of an imperfect column bends
 //! away from its critical load and stays stable. A long step may end on the unstable path beside
@@ -96,6 +98,8 @@ const LARGEST_STEP: (f64, f64) = (7.0, 0.8);
 /// The same where the path between two points matters, as it does for contacts and for torsion
 /// springs.
 const BY_SMALL_STEPS: f64 = 0.5;
+/// Beams whose shifts, in beam lengths, are more than so many times their turns only slide.
+const SLIDING: f64 = 10.0;
 /// A corrector that turns no node by more than this, and by less than was predicted, stays on its
 /// side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
@@ -114,6 +118,8 @@ const MOST_TRIALS: usize = 60;
 /// Such a step may miss its target by this many times the tolerance where shorter steps change
 /// nothing.
 const ROUND_OFFS: f64 = 1e4;
+/// A rate that falls below this part of both of those at the ends of a step may vanish between.
+const STANDS_STILL: f64 = 0.2;
 /// A rate that is this part of the larger one at the ends of a step is zero at a turning point …
 const AT_TURN: f64 = 1e-6;
 /// … and one below this part of it at the start of a step is that of a turning point where the step before has ended.
@@ -236,6 +242,13 @@ impl<'e, 'a> Path<'e, 'a> {
     /// The step that will be tried next.
     pub fn next_step(&self) -> f64 {
         self.step
+    }
+
+    /// Follows the path to the other side of its start, before the first step.
+    pub fn turn_round(&mut self) {
+        if let [start] = &mut self.points[..] {
+            start.rate.iter_mut().for_each(|rate| *rate = -*rate);
+        }
     }
 
     /// Limits the next step.
@@ -512,6 +525,34 @@ impl<'e, 'a> Path<'e, 'a> {
         turns(&a[..n], &b[..n]).fold(0.0, f64::max)
     }
 
+    /// Largest shift of a node between two states, in beam lengths.
+    fn shift(&self, a: &[f64], b: &[f64]) -> f64 {
+        let n = self.equilibrium.system().coordinates();
+        let shifts = nodes(&a[..n]).zip(nodes(&b[..n])).map(|(a, b)| {
+            let ([ax, ay], [bx, by]) = (a.position, b.position);
+            (bx - ax).hypot(by - ay)
+        });
+        shifts.fold(0.0, f64::max) / self.equilibrium.system().length()
+    }
+
+    /// Whether beams move between two states without turning, so that turns tell nothing of the step.
+    fn slides(&self, a: &[f64], b: &[f64]) -> bool {
+        self.shift(a, b) > SLIDING * self.turn(a, b)
+    }
+
+    /// What is left of the largest shift of a node between two points \[beam lengths\] that the trapezoidal rule does not lead to,
+    /// with the rates at both; 0 where one is unknown.
+    fn unexplained_shift(&self, from: &Point, to: &Point) -> f64 {
+        let half = 0.5 * (to.parameter - from.parameter);
+        let n = self.equilibrium.system().coordinates();
+        if from.rate.len() < n || to.rate.len() < n {
+            return 0.0;
+        }
+        let rates = from.rate.iter().zip(&to.rate).map(|(a, b)| half * (a + b));
+        let led: Vec<f64> = from.x.iter().zip(rates).map(|(x, by)| x + by).collect();
+        self.shift(&led, &to.x)
+    }
+
     /// Largest angle between a gradient of `to` and the one to which the trapezoidal rule leads
     /// from `from`, with the turning rates at both; 0 where one is unknown.
     fn unexplained(&self, from: &Point, to: &Point) -> f64 {
@@ -584,9 +625,14 @@ impl<'e, 'a> Path<'e, 'a> {
         if self.parameter == Parameter::Load {
             point.parameter = target;
         }
-        let turn = self.turn(&point.x, &predicted.x);
-        let unexplained = self.unexplained(&before, &point);
-        let explained = UNEXPLAINED_OF_STEP * self.predicted_turn(predicted.parameter - before.parameter);
+        let (turn, unexplained, predicted_turn) = if self.slides(&before.x, &point.x) {
+            let predicted_shift = self.shift(&before.x, &predicted.x);
+            (self.shift(&point.x, &predicted.x), self.unexplained_shift(&before, &point), predicted_shift)
+        } else {
+            let predicted_turn = self.predicted_turn(predicted.parameter - before.parameter);
+            (self.turn(&point.x, &predicted.x), self.unexplained(&before, &point), predicted_turn)
+        };
+        let explained = UNEXPLAINED_OF_STEP * predicted_turn;
         let jump = unexplained > UNEXPLAINED_TURN.max(UNEXPLAINED_PART * turn).max(explained);
         let outcome = match result {
             Ok(()) if turn > LARGEST_TURN || jump => {
@@ -657,7 +703,20 @@ impl<'e, 'a> Path<'e, 'a> {
     /// [`NoStep`] where a shorter step does not converge, or leads to another branch on which
     /// `miss` does not vanish.
     pub fn end_where(&mut self, miss: impl Fn(&Point) -> f64, near: f64) -> Result<&Point, NoStep> {
-        let [.., before, point] = &self.points[..] else { return Ok(self.last()) };
+        let (whole, record, before) =
+            (self.last().clone(), self.history.last().cloned(), self.points.len() - 1);
+        if let Err(stuck) = self.try_to_end_where(miss, near) {
+            self.points.truncate(before);
+            self.points.push(whole);
+            self.history.pop();
+            self.history.extend(record);
+            return Err(stuck);
+        }
+        Ok(self.last())
+    }
+
+    fn try_to_end_where(&mut self, miss: impl Fn(&Point) -> f64, near: f64) -> Result<(), NoStep> {
+        let [.., before, point] = &self.points[..] else { return Ok(()) };
         let mut low = (0.0, miss(before));
         let mut high = (self.history.last().map_or(0.0, |record| record.step), miss(point));
         for _ in 0..MOST_TRIALS {
@@ -677,7 +736,7 @@ impl<'e, 'a> Path<'e, 'a> {
         }
         let last = self.last();
         if miss(last).abs() <= ROUND_OFFS * near {
-            Ok(last)
+            Ok(())
         } else {
             let at = self.equilibrium.system().place_of(0);
             Err(NoStep { load: last.load, step: high.0, failure: Failure::Bifurcation, at })
@@ -704,16 +763,39 @@ impl<'e, 'a> Path<'e, 'a> {
         if !turns_within(ends) {
             return false;
         }
-        let (whole, record, before) = (b.clone(), self.history.last().cloned(), self.points.len() - 1);
-        if self.end_where(&rate, AT_TURN * largest).is_ok() {
-            return true;
+        self.end_where(&rate, AT_TURN * largest).is_ok()
+    }
+
+    /// Whether a quantity turns back within the last step and goes on again, so that its rates at the ends do not tell: on the
+    /// cubic with these rates it nearly stands still between. Changes below `least` are none.
+    pub fn hides_turns(
+        &self,
+        value: impl Fn(&Point) -> f64,
+        rate: impl Fn(&Point) -> f64,
+        least: f64,
+    ) -> bool {
+        let Some([a, b]) = self.last_two() else { return false };
+        let h = b.parameter - a.parameter;
+        let (change, [from, to]) = (value(b) - value(a), [h * rate(a), h * rate(b)]);
+        if from.abs().max(to.abs()).max(change.abs()) <= least {
+            return false;
         }
-        // A shorter step failed: the whole one, which did not, remains.
-        self.points.truncate(before);
-        self.points.push(whole);
-        self.history.pop();
-        self.history.extend(record);
-        false
+        if from.abs() <= LEAVES_TURN * to.abs() {
+            // The step leaves a turn, and comes through another one if it ends as the path went before, or against the way that
+            // it went itself.
+            let before = match &self.points[..] {
+                [.., before, a, _] => value(a) - value(before),
+                _ => 0.0,
+            };
+            return change * to < 0.0 || before * to > 0.0;
+        }
+        if (from < 0.0) != (to < 0.0) {
+            return false;
+        }
+        // The rate on the cubic is from + p t + q t².
+        let (p, q) = (6.0 * change - 4.0 * from - 2.0 * to, 3.0 * (from + to - 2.0 * change));
+        let turns = (0.0..1.0).contains(&(-0.5 * p / q));
+        turns && (from - 0.25 * p * p / q) * from.signum() < STANDS_STILL * from.abs().min(to.abs())
     }
 
     /// Replaces the last step by one of length `step`.

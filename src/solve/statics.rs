@@ -164,6 +164,14 @@ impl EndCondition<'_> {
     }
 }
 
+/// Changes of load factors, and of coordinates in beam lengths, that are too small to be a turn that is passed.
+const UNSEEN: f64 = 1e-6;
+
+/// How often a step is shortened at most for what it may hide.
+const SHORTENED: usize = 8;
+/// After so many the softest motion stands out.
+const INVERSE_ITERATIONS: usize = 4;
+
 /// Called with (load factor, step, counts) after every step, and after every iteration of a search
 /// for a place of rest (the load factor is then that of the last equilibrium); returns whether to
 /// go on.
@@ -326,7 +334,7 @@ fn relaxed(
         } else {
             Some(x.clone())
         };
-        if let (None, Some(free)) = (solution.pressed, equilibrium.system().rigid_motions()) {
+        if let (None, Some(free)) = (solution.pressed, equilibrium.system().free_motions()) {
             let pressed = |unstable| UnstableMechanism { load, unstable, free };
             let unstable = moved.as_ref().and_then(|x| equilibrium.directions_at(load, x));
             solution.pressed = unstable.filter(|unstable| *unstable > free).map(pressed);
@@ -401,8 +409,40 @@ fn may_leave(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
     look(equilibrium, load, x)
         && match equilibrium.stability_and_softness() {
             (_, Some(soft)) => soft > 0,
-            _ => equilibrium.is_unstable(),
+            _ => equilibrium.is_unstable() && !is_stiff_without_matrix(equilibrium, load, x),
         }
+}
+
+/// Whether the softest motion at the last linearised state, the only one that its matrix calls unstable, is stable by products
+/// with the tangent that are evaluated without a matrix: its entries have then lost what resists this motion, as those of a stiff
+/// bar on many elements that hangs.
+fn is_stiff_without_matrix(equilibrium: &Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
+    let system = equilibrium.system();
+    if !equilibrium.is_symmetric() || equilibrium.unstable_directions() != Some(1) {
+        return false;
+    }
+    let (q, multipliers) = x.split_at(system.coordinates());
+    let weights = system.weights();
+    let mut v = vec![0.0; x.len()];
+    push(equilibrium, 1.0, &mut v);
+    // The inverse of the matrix leaves the motion with the least stiffness, whatever its sign.
+    let mut by_matrix = 0.0;
+    for _ in 0..INVERSE_ITERATIONS {
+        let size = v.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
+        v.iter_mut().zip(&weights).for_each(|(v, weight)| *v *= weight / size);
+        v[q.len()..].fill(0.0);
+        system.supports().to_frames(load, &mut v[..q.len()]);
+        v.iter_mut().zip(system.fixed()).filter(|(_, fixed)| **fixed).for_each(|(v, _)| *v = 0.0);
+        let mut force = v[..q.len()].to_vec();
+        system.supports().from_frames(load, &mut force);
+        equilibrium.solve(load, &mut v, false);
+        by_matrix = v.iter().zip(&force).map(|(v, f)| v * f).sum();
+    }
+    let (v, mut force) = (&v[..q.len()], vec![0.0; q.len()]);
+    system.tangent_product(load, q, v, &mut force);
+    system.add_constraint_stiffness_product(q, multipliers, v, &mut force);
+    let stiffness: f64 = v.iter().zip(&force).map(|(v, f)| v * f).sum();
+    by_matrix < 0.0 && stiffness > 0.0
 }
 
 /// The equilibrium to which `x` relaxes; `None` where it does not come to rest. Nothing is accepted.
@@ -460,6 +500,69 @@ fn notice(path: &mut Path<'_, '_>, events: &mut Vec<StabilityChange>) {
     events.push(StabilityChange { load: 0.5 * (bracket.0 + bracket.1), before, after });
 }
 
+/// A step of a path by arc length.
+struct Stride {
+    /// Its end.
+    point: Point,
+    /// Whether that is a limit point.
+    at_limit: bool,
+    /// Whether a target is reached there.
+    reached: bool,
+}
+
+/// Takes a step to a new equilibrium, or to where the load factor or a coordinate that ends the path turns back within it, or
+/// reaches its target. What a step may hide is sought by a shorter one.
+fn stride(
+    path: &mut Path<'_, '_>,
+    conditions: &[EndCondition<'_>],
+    system: &System,
+) -> Result<Stride, NoStep> {
+    let mut shorter = 0;
+    let mut take_back = |path: &mut Path<'_, '_>| {
+        shorter += 1;
+        shorter <= SHORTENED && path.take_back()
+    };
+    loop {
+        path.advance(f64::INFINITY)?;
+        let hidden = path.hides_turns(|point| point.load, Point::load_rate, UNSEEN * path.last().load.abs())
+            || conditions.iter().any(|condition| match condition {
+                EndCondition::Load(_) => false,
+                EndCondition::Probe(view, axis, _) => path.hides_turns(
+                    |point| condition.of(point),
+                    |point| view.at_point(&point.rate)[*axis],
+                    UNSEEN * system.length(),
+                ),
+            });
+        if hidden && take_back(path) {
+            continue;
+        }
+        let Some(previous) = path.last_two().map(|[previous, _]| previous.clone()) else { continue };
+        // A step passes no limit point, and no point where the coordinate that ends the path turns back: a target could be
+        // reached before it and be left again.
+        let mut at_limit = path.end_at_limit();
+        for condition in conditions {
+            if let EndCondition::Probe(view, axis, _) = condition {
+                at_limit &= !path.end_at_turn(|point| view.at_point(&point.rate)[*axis]);
+            }
+        }
+        // Of two targets within a step the one that comes first counts.
+        let (mut last, mut reached) = (Ok(path.last().clone()), false);
+        for miss in conditions {
+            if let Ok(point) = &last
+                && miss.is_reached([&previous, point], system)
+            {
+                (last, reached) = (miss.end(path, system), true);
+            }
+        }
+        match last {
+            Ok(point) => return Ok(Stride { point, at_limit, reached }),
+            // A long step may have passed over what lies between.
+            Err(_) if take_back(path) => {}
+            Err(stuck) => return Err(stuck),
+        }
+    }
+}
+
 fn along_arc(
     equilibrium: &mut Equilibrium<'_>,
     x: Vec<f64>,
@@ -475,61 +578,39 @@ fn along_arc(
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let mut outcome = Ok(());
+    if target.arc.until_load.is_some_and(|load| load < 0.0) {
+        path.turn_round();
+    }
     let aims = target.arc.until_load.is_some() || target.probe.is_some();
+    let conditions = target.end_conditions();
     let mut unreached = aims.then_some(Unreached::OutOfPoints);
     for _ in 0..target.arc.max_points {
         path.limit_step(largest);
         let previous = path.last().clone();
-        match path.advance(f64::INFINITY) {
+        let Stride { point, at_limit, reached } = match stride(&mut path, &conditions, system) {
+            Ok(stride) => stride,
             Err(stuck) => {
                 (outcome, unreached) = (Err(stuck), None);
                 break;
             }
-            Ok(_) => {
-                // A step passes no limit point, and no point where the coordinate that ends the path turns back: a target
-                // could be reached before it and be left again.
-                let mut at_limit = path.end_at_limit();
-                let conditions = target.end_conditions();
-                for condition in &conditions {
-                    if let EndCondition::Probe(view, axis, _) = condition {
-                        at_limit &= !path.end_at_turn(|point| view.at_point(&point.rate)[*axis]);
-                    }
-                }
-                // Of two targets within a step the one that comes first counts.
-                let (mut last, mut reached) = (Ok(path.last().clone()), false);
-                for miss in &conditions {
-                    if let Ok(point) = &last
-                        && miss.is_reached([&previous, point], system)
-                    {
-                        (last, reached) = (miss.end(&mut path, system), true);
-                    }
-                }
-                let point = match last {
-                    Ok(point) => point,
-                    Err(stuck) => {
-                        (outcome, unreached) = (Err(stuck), None);
-                        break;
-                    }
-                };
-                if let (Some(before), Some(after)) = (previous.stability, point.stability)
-                    && before.differs(after)
-                {
-                    let load = if at_limit && !reached { point.load } else { path.load_of_change() };
-                    solution.events.push(StabilityChange { load, before, after });
-                }
-                work.add_states(system, (previous.load, &previous.x), (point.load, &point.x));
-                solution.record(path.equilibrium, point.load, &point.x, work);
-                let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
-                if reached || !go_on {
-                    unreached = None;
-                    break;
-                }
-                // What comes and what goes has done so at load factor 1.
-                if target.arc.until_load.is_none() && !system.is_driven(point.load) {
-                    unreached = aims.then_some(Unreached::NothingGrows);
-                    break;
-                }
-            }
+        };
+        if let (Some(before), Some(after)) = (previous.stability, point.stability)
+            && before.differs(after)
+        {
+            let load = if at_limit && !reached { point.load } else { path.load_of_change() };
+            solution.events.push(StabilityChange { load, before, after });
+        }
+        work.add_states(system, (previous.load, &previous.x), (point.load, &point.x));
+        solution.record(path.equilibrium, point.load, &point.x, work);
+        let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
+        if reached || !go_on {
+            unreached = None;
+            break;
+        }
+        // What comes and what goes has done so at load factor 1.
+        if target.arc.until_load.is_none() && !system.is_driven(point.load) {
+            unreached = aims.then_some(Unreached::NothingGrows);
+            break;
         }
     }
     solution.history = std::mem::take(&mut path.history);

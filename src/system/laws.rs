@@ -35,7 +35,8 @@ fn seen(looks: &[LoadSample], f: impl Fn(f64) -> f64) -> [f64; 2] {
 }
 
 impl System {
-    fn laws(&self) -> impl Iterator<Item = &Law> {
+    /// The laws of time of loads, supports and tendons of given length.
+    pub fn laws(&self) -> impl Iterator<Item = &Law> {
         let lengths = self.terms.held.iter().filter_map(|length| length.amplitude.as_ref()?.law());
         self.terms.loads.iter().filter_map(law).chain(self.supports.laws()).chain(lengths)
     }
@@ -44,11 +45,6 @@ impl System {
     pub fn kinks(&self) -> Vec<f64> {
         let timed = self.terms.timed_loads.iter().flat_map(|load| load.kinks());
         self.laws().flat_map(Law::kinks).chain(timed).collect()
-    }
-
-    /// The largest frequency ω \[rad/s\] of loads and supports that are harmonic in time; 0 where none are.
-    pub fn fastest_law(&self) -> f64 {
-        self.laws().map(Law::fastest).fold(0.0, f64::max)
     }
 
     /// Times between `start` and `end` at which steps should end, so that they see what laws do that

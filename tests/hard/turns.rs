@@ -82,3 +82,97 @@ fn a_path_that_begins_at_its_target_leaves_it() {
     let load = found.parameter.last().expect("a state");
     assert!(load.abs() < 1e-9, "{load} in the mirrored state");
 }
+
+/// Upwards the truss only stiffens: the load −0.5 is reached at once, and not after the limit loads below.
+#[test]
+fn a_path_to_a_negative_load_begins_with_loads_turned_round() {
+    let expected = zero(|y| load(y) + 0.5, [0.3, 1.0]);
+    let found = solved(&truss("until_load = -0.5"));
+    let tip = found.probes[0].samples.last().expect("a state");
+    assert!((tip.y - expected).abs() < 1e-9, "y = {} for {expected}", tip.y);
+    assert!(found.parameter.windows(2).all(|loads| loads[1] < loads[0]), "{:?}", found.parameter);
+}
+
+/// A bar from (0, 0) to a guide that lets its end (1, 0.3) move down, held by a spring k there: two limit points, at
+/// w = 0.18 and 0.42 below the start, between which the load falls.
+const GUIDED: [f64; 2] = [22.173_714_778_848_65, 34.173_714_778_848_65];
+
+fn guided(k: f64, target: &str) -> String {
+    format!(
+        "beam.bar = {{ start = [0, 0], end = [1, 0.3], axial_stiffness = 1000, bending_stiffness = 100, basis.ancf.elements = 2 }}\n\
+         support = [{{ beam = 'bar', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'bar', at = 'end', fix = ['x'] }}]\n\
+         effect.spring = [{{ beam = 'bar', at = 'end', stiffness = {k:?} }}]\n\
+         effect.force = [{{ beam = 'bar', at = 'end', value = [0, -100] }}]\n\
+         probe = [{{ name = 'p', beam = 'bar', at = 'end' }}]\nanalysis.static.arc_length = {{ {target} }}\n"
+    )
+}
+
+/// The load factor in equilibrium with the end at the height y.
+fn guided_load(k: f64, y: f64) -> f64 {
+    let (long, now) = (1.0_f64.hypot(0.3), 1.0_f64.hypot(y));
+    (-1000.0 * (now - long) / long * y / now + k * (0.3 - y)) / 100.0
+}
+
+/// A load far beyond what the structure carries makes steps long. Even one that would pass both limit points, at whose ends the
+/// load grows, ends at the first of them.
+#[test]
+fn two_limit_points_within_a_step_are_not_passed() {
+    for k in GUIDED {
+        let height = |turn: usize| 0.3 - 1e-4 * turn as f64;
+        let highest = (1..3000).find(|turn| guided_load(k, height(turn + 1)) < guided_load(k, height(*turn)));
+        let highest = highest.expect("a limit point");
+        let limit = guided_load(k, height(highest));
+        for part in [0.9, 0.99, 0.999] {
+            let until = part * limit;
+            let expected = zero(|y| guided_load(k, y) - until, [height(highest), 0.3]);
+            let found = solved(&guided(k, &format!("until_load = {until:?}")));
+            let tip = found.probes[0].samples.last().expect("a state");
+            assert!((tip.y - expected).abs() < 1e-8, "k = {k}, {part}: y = {} for {expected}", tip.y);
+        }
+        let found = solved(&guided(k, "until_probe = { probe = 'p', y = -0.35 }"));
+        let turns = |sign: f64| {
+            let loads = found.parameter.windows(3);
+            let mut turns = loads
+                .filter(|loads| sign * (loads[1] - loads[0]) > 0.0 && sign * (loads[1] - loads[2]) > 0.0);
+            turns.next().unwrap_or_else(|| panic!("{:?} of {k}", found.parameter))[1]
+        };
+        let lowest =
+            (highest + 1..6000).map(|turn| guided_load(k, height(turn))).fold(f64::INFINITY, f64::min);
+        assert!((turns(1.0) / limit - 1.0).abs() < 1e-6, "{} for {limit}", turns(1.0));
+        assert!((turns(-1.0) / lowest - 1.0).abs() < 1e-6, "{} for {lowest}", turns(-1.0));
+    }
+}
+
+/// A bar that only slides, on a spring k = 1 and a slanted one of 300 from (−1, −0.3): nothing turns that would tell of a step.
+fn sliding(force: f64, analysis: &str) -> String {
+    format!(
+        "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1e6, basis.ancf.elements = 2 }}\n\
+         support = [{{ beam = 'b', at = 'start', fix = ['x', 'angle'] }}]\n\
+         probe = [{{ name = 'p', beam = 'b', at = 'start' }}]\n\
+         effect.force = [{{ beam = 'b', at = 'start', value = [0, {force:?}] }}]\n\
+         effect.spring = [{{ beam = 'b', at = 'start', stiffness = 1 }}, {{ beam = 'b', at = 'start', stiffness = 300, anchor = [-1, -0.3] }}]\n\
+         analysis.static{analysis}\n"
+    )
+}
+
+/// The force in equilibrium with the bar at the height y \[N\].
+fn sliding_force(y: f64) -> f64 {
+    let (now, long) = (1.0_f64.hypot(y + 0.3), 1.0_f64.hypot(0.3));
+    y + 300.0 * (now - long) * (y + 0.3) / now
+}
+
+/// Load steps end at the limit load of 1.49 N, and paths go on behind it to the only height of a larger load.
+#[test]
+fn beams_that_only_slide_do_not_jump() {
+    let lowest = (0..3000).map(|i| sliding_force(-1e-4 * f64::from(i))).fold(0.0, f64::min);
+    let error = outcome(&sliding(-20.0, " = {}")).expect_err("beyond the limit load");
+    assert!(error.contains(&format!("beyond load factor {:.6}", lowest / -20.0)), "{error}, {lowest} N");
+    let expected = zero(|y| sliding_force(y) + 20.0, [-2.0, -0.7]);
+    for step in ["", ", max_step = 0.2", ", max_step = 0.05"] {
+        let found = solved(&sliding(-10.0, &format!(".arc_length = {{ until_load = 2{step} }}")));
+        let end = found.probes[0].samples.last().expect("a state").y;
+        assert!((end - expected).abs() < 1e-8, "{end} for {expected}{step}");
+        let heights = found.probes[0].samples.windows(2);
+        assert!(heights.into_iter().all(|pair| pair[1].y < pair[0].y), "it comes back{step}");
+    }
+}

@@ -119,6 +119,7 @@ pub(super) fn path() -> Trajectory {
             undeformed: beams(0.0),
             outlines: vec![vec![[-0.05, -0.21], [0.5, -0.21]], vec![[0.6, 0.0], [0.6, 0.1]]],
             tensions: Vec::new(),
+            misses_fields: false,
             warnings: vec!["the path turns at load factor 0.9 & <more>".to_owned()],
             statistics: Statistics {
                 steps: 4,

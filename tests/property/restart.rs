@@ -312,3 +312,105 @@ fn velocities_that_part_joints_are_refused_as_such() {
         }
     }
 }
+
+/// A torsion spring that is wound up stays so where another scene gives it another stiffness: E = k φ²/2 with all turns, whose
+/// part between −π and π the coordinates know.
+#[test]
+fn a_spring_of_another_stiffness_keeps_its_turns() {
+    let arm = |stiffness: f64, duration: f64| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 1e3, mass_per_length = 1, basis.ancf.elements = 2 }}
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y'] }}]
+             initial_velocity = [{{ beam = 'arm', rotation = 10, about = [0, 0] }}]
+             effect.torsion_spring = [{{ beam = 'arm', at = 'start', stiffness = {stiffness} }}]
+             probe = [{{ name = 'tip', beam = 'arm', at = 'end' }}]
+             analysis.dynamic = {{ duration = {duration}, radau.tolerance = 1e-7 }}"
+        )
+    };
+    let first = solve(&arm(0.05, 1.2));
+    let angle = first.probes[0].samples.last().expect("a state").angle;
+    assert!(angle > 10.0, "{angle}");
+    let second = go_on(&arm(0.06, 0.05).replace("rotation = 10", "rotation = 0"), &first).expect("a motion");
+    let stored = second.energy[0].stored;
+    assert!((stored / (0.5 * 0.06 * angle * angle) - 1.0).abs() < 1e-4, "{stored} at {angle}");
+}
+
+/// What sticks on rough ground goes on to stick where another scene changes a coefficient of the contact.
+#[test]
+fn friction_of_another_coefficient_keeps_its_place() {
+    let bar = |coefficient: f64, stiffness: f64| {
+        format!(
+            "beam.bar = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 1e3, mass_per_length = 1, basis.ancf.elements = 2 }}
+             effect.gravity.acceleration = [3, -9.81]
+             effect.damping = [{{ beam = 'bar', mass_proportional = 20 }}]
+             effect.contact = [{{ beam = 'bar', half_plane = {{ point = [0, 0], normal = [0, 1] }}, stiffness = {stiffness}, friction = {{ coefficient = {coefficient}, stiffness = 1e4 }} }}]
+             probe = [{{ name = 'tip', beam = 'bar', at = 'end' }}]
+             analysis.dynamic = {{ duration = 2, output_every = 0.5, radau.tolerance = 1e-6 }}"
+        )
+    };
+    let first = solve(&bar(0.5, 1e4));
+    let at = |motion: &Trajectory| motion.probes[0].samples.last().expect("a state").x;
+    // 3 N on springs of 1e4 N/m² along 1 m.
+    assert!((at(&first) - 1.0003).abs() < 2e-5, "{}", at(&first));
+    for (coefficient, stiffness) in [(0.6, 1e4), (0.5, 1.0001e4)] {
+        let second = go_on(&bar(coefficient, stiffness), &first).expect("a motion");
+        assert!((at(&second) - at(&first)).abs() < 1e-6, "{coefficient}, {stiffness}: {}", at(&second));
+    }
+    // Other ground has held nothing yet.
+    let moved = bar(0.5, 1e4).replace("point = [0, 0]", "point = [0, -1e-9]");
+    let second = go_on(&moved, &first).expect("a motion");
+    assert!((at(&second) - at(&first) - 3e-4).abs() < 5e-5, "{}", at(&second));
+}
+
+/// A law that begins where the motion before has ended, but for the last digit: 0.12 + 0.02 is less than 0.14.
+#[test]
+fn a_motion_may_begin_a_digit_before_a_law_does() {
+    let ramp = |start: f64| {
+        format!(
+            "{{ beam = 'arm', at = 'end', value = [0, -1], in_time.ramp = {{ start = {start}, duration = 0.02 }} }}"
+        )
+    };
+    let arm = |forces: &str, duration: f64, integrator: &str| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 2 }}
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             effect.force = [{forces}]
+             probe = [{{ name = 'tip', beam = 'arm', at = 'end' }}]
+             analysis.dynamic = {{ duration = {duration}, {integrator} }}"
+        )
+    };
+    for integrator in [
+        "radau.tolerance = 1e-6",
+        "gauss.tolerance = 1e-6",
+        "generalized_alpha.step = 1e-3",
+        "radau.step = 1e-3",
+    ] {
+        let both = format!("{}, {}", ramp(0.12), ramp(0.14));
+        let whole = solve(&arm(&both, 0.24, integrator));
+        let first = solve(&arm(&ramp(0.12), 0.14, integrator));
+        let second = go_on(&arm(&both, 0.1, integrator), &first).expect(integrator);
+        let at = |motion: &Trajectory| motion.probes[0].samples.last().expect("a state").y;
+        assert!((at(&second) - at(&whole)).abs() < 1e-5, "{integrator}: {} for {}", at(&second), at(&whole));
+    }
+}
+
+/// A beam that keeps its length and hangs at rest has velocities that are round-off. It goes on, and has lost nothing.
+#[test]
+fn an_inextensible_beam_at_rest_goes_on() {
+    for stiffness in ["bending_stiffness = 1, ", ""] {
+        let hanging = |force: f64| {
+            format!(
+                "beam.a = {{ start = [0, 0], end = [0, -1], {stiffness}mass_per_length = 1, basis.ancf.elements = 4 }}
+                 support = [{{ beam = 'a', at = 'start', fix = ['x', 'y'] }}]
+                 effect.gravity.acceleration = [0, -9.81]
+                 effect.force = [{{ beam = 'a', at = 'end', value = [{force}, 0] }}]
+                 probe = [{{ name = 'tip', beam = 'a', at = 'end' }}]
+                 analysis.dynamic = {{ duration = 0.1, radau.tolerance = 1e-6 }}"
+            )
+        };
+        let first = solve(&hanging(0.0));
+        assert_eq!(first.run.warnings, [""; 0]);
+        let second = go_on(&hanging(1.0), &first).unwrap_or_else(|error| panic!("{error}"));
+        assert!(second.probes[0].samples.last().expect("a state").x > 1e-3);
+    }
+}

@@ -139,6 +139,12 @@ fn supports_go_where_their_laws_say() {
     // Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) in the middle of the run-up, and Ω (t − T/2) behind it.
     near(angles[1], 6.0 * (0.03125 - 2.0 * (0.25 / PI).powi(2)), 1e-9, "half way");
     near(angles[4], 3.0 * 0.75, 1e-9, "at speed");
+    // The same a quarter of a second later.
+    let later = clamp("spin_up = { start = 0.25, speed = '3 rad/s', duration = 0.5 }");
+    let later = Written::of(&format!("{ROD}{later}{SECOND}"));
+    for (later, angle) in later.column("probes.csv", "start.angle")[1..].iter().zip(angles) {
+        near(*later, angle, 1e-9, "later");
+    }
 }
 
 /// In statics what moves does so with the load factor, and the other of two supports stays.

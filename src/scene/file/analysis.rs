@@ -45,7 +45,7 @@ pub struct StaticTable {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ArcLengthTable {
-    /// Stop where the load factor first reaches this value.
+    /// Stop where the load factor first reaches this value; the path to one below zero begins with loads that are turned round.
     pub until_load: Option<Quantity<Ratio>>,
     /// Stop after this many points on the path; 1000 when left out. A path that has not reached its
     /// `until` by then is incomplete.

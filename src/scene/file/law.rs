@@ -98,10 +98,13 @@ pub struct PointsTable {
     pub smooth: bool,
 }
 
-/// A hub that is brought to speed: Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) until T, then Ω (t − T/2).
+/// A hub that is brought to speed: Ω/T (t²/2 + (T/2π)² (cos(2πt/T) − 1)) until T, then Ω (t − T/2), with t from when it
+/// begins.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpinUpTable {
+    /// When it begins; time zero when left out.
+    pub start: Option<Quantity<Time>>,
     /// Ω.
     pub speed: Quantity<AngularVelocity>,
     /// T.

@@ -307,6 +307,8 @@ impl<'t, 'a> Driver<'t, 'a> {
     fn run(&mut self, observe: &mut dyn FnMut(f64, f64, &Statistics) -> bool) {
         let mut new = self.state.clone();
         let mut kept = Instant::now();
+        // The state may be that of a motion that has ended just before a kink.
+        self.go_on(End::Smooth);
         while self.solution.stuck.is_none() && !self.has_ended() {
             let before = self.may_be_cut().then(|| self.checkpoint());
             let ends_early = self.end_cuts();
