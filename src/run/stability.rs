@@ -3,6 +3,11 @@
 use crate::solve::stability::{Stability, StabilityChange};
 use crate::solve::statics::{Solution, UnstableMechanism};
 
+/// Load factors that differ by this part of the largest one at most, and coordinates by this part of theirs, are those of one
+/// equilibrium: limit points of a path that comes back to them are.
+const SAME_LOAD: f64 = 1e-8;
+const SAME_STATE: f64 = 1e-5;
+
 /// What a static analysis has met on its way.
 pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
     let pressed = solution.pressed.map(|UnstableMechanism { load, unstable, free }| {
@@ -42,8 +47,30 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
              `steps`, or add a small imperfection"
         )
     });
-    let others = [pressed, crest, start, unwatched, softened].into_iter().flatten();
+    let returns = returns(&solution.states).map(|load| {
+        format!(
+            "the path comes back to a state that it has passed, at load factor {load:.6}: it is a closed one, or has turned round at a kink, \
+             as where a snap ends at a stiff stop, or within a fold of the mesh; what it finds from there on may not be what comes first: use a \
+             softer stop, another `max_step` or more nodes"
+        )
+    });
+    let others = [pressed, crest, start, unwatched, softened, returns].into_iter().flatten();
     others.chain(solution.events.iter().map(of_change))
+}
+
+/// The load factor of the first equilibrium of a path that is the same as an earlier one.
+fn returns(states: &[(f64, Vec<f64>)]) -> Option<f64> {
+    let largest = states.iter().fold(0.0_f64, |most, (load, _)| most.max(load.abs()));
+    let is_same = |(a, x): &(f64, Vec<f64>), (b, y): &(f64, Vec<f64>)| {
+        (a - b).abs() <= SAME_LOAD * largest && {
+            let size = x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+            x.iter().zip(y).all(|(x, y)| (x - y).abs() <= SAME_STATE * size)
+        }
+    };
+    let later = states.iter().enumerate().skip(2);
+    let found = later.map(|(i, state)| (state, &states[..i - 1]));
+    let mut found = found.filter(|(state, before)| before.iter().any(|earlier| is_same(earlier, state)));
+    found.next().map(|((load, _), _)| *load)
 }
 
 /// What is said where directions lose or regain their stiffness.

@@ -176,3 +176,22 @@ fn beams_that_only_slide_do_not_jump() {
         assert!(heights.into_iter().all(|pair| pair[1].y < pair[0].y), "it comes back{step}");
     }
 }
+
+/// A cantilever whose end is pulled across until its mesh folds: the path comes back through the states on its way there, and
+/// says so.
+#[test]
+fn a_path_that_comes_back_is_told() {
+    let arm = |end: &str, arc: &str| {
+        format!(
+            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 10, basis.ancf.elements = 16 }}\n\
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}, {end}]\n\
+             probe = [{{ name = 'p', beam = 'b', at = 'end' }}]\nanalysis.static.arc_length = {{ {arc} }}\n"
+        )
+    };
+    let pulled = "{ beam = 'b', at = 'end', fix = ['y'], move = { y = 0.2 } }";
+    let told = |text: &str| {
+        solved(text).run.warnings.iter().filter(|text| text.contains("comes back to a state")).count()
+    };
+    assert_eq!(told(&arm(pulled, "until_probe = { probe = 'p', y = -0.1 }")), 1);
+    assert_eq!(told(&arm(pulled, "until_load = 3")), 0);
+}
