@@ -46,7 +46,7 @@
 //! | `lanes` | four numbers side by side, multiply–add | – |
 //! | `threads` | loops over the nodes of long chains, on several threads | – |
 //! | `linear` | block-banded LDLᵀ, real and complex, also with rows of neighbouring nodes; banded LU, also with constraint rows; bordered sparse LDLᵀ and LU; inertia | `lanes`, `threads` |
-//! | `numeric` | Gauss' rules with few points, cubic splines, formulas, numbers in messages | – |
+//! | `numeric` | Gauss' rules with few points, cubic splines, formulas, numbers in messages, places at which to look | – |
 //! | [`centreline`] | stress-free curves | `numeric` |
 //! | [`basis`] | shape functions of either discretisation, tabulated at points; extended precision | – |
 //! | [`law`] | laws of time | `numeric` |

@@ -11,4 +11,4 @@ pub use decimals::plain;
 pub use formula::Formula;
 pub use gauss::{GAUSS_2, GAUSS_3, GAUSS_6, GAUSS_10};
 pub use spline::{End, rates};
-pub use spread::spread;
+pub use spread::{GOLDEN, spread};

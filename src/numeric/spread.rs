@@ -1,7 +1,7 @@
 //! Places that are spread evenly and yet not regularly.
 
 /// (√5 − 1)/2: the fractional parts of its multiples are those that are the least near to each other.
-const GOLDEN: f64 = 0.618_033_988_749_895;
+pub const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// One place in each of `count` equal parts of the unit interval, rising, no two of them at the same part of theirs: what
 /// oscillates as often as places lie in it does not look constant there.

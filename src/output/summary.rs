@@ -43,7 +43,7 @@ pub struct Summary {
     /// only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Vec<f64>>,
-    /// Estimated errors of the frequencies \[Hz\], where they are known.
+    /// Estimated errors of the frequencies \[Hz\], where they are known; `null` of one that round-off hides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequency_errors: Option<Vec<f64>>,
     /// Critical load factors, ascending; buckling only.
@@ -213,7 +213,12 @@ impl Summary {
         let absolute = |kind: AnalysisKind| {
             let error = error.filter(|_| run.analysis == kind)?;
             let pairs = results.eigenvalues().into_iter().zip(&error.eigenvalues);
-            Some(pairs.map(|(value, error)| error * value.abs()).collect())
+            // Of what round-off hides, which has a relative error, none is known.
+            let absolute = |(value, error): (f64, &f64)| match value {
+                0.0 if *error > 0.0 => f64::INFINITY,
+                _ => error * value.abs(),
+            };
+            Some(pairs.map(absolute).collect())
         };
         Self {
             title: run.title.clone(),

@@ -98,11 +98,15 @@ pub enum Failure {
     NotFinite,
     /// Converged, but so far from the prediction that it may be another equilibrium than the one
     /// that continues the path.
-    #[error("the solution lies {turn:.2} rad from where the path's tangents lead, perhaps on another branch")]
+    #[error(
+        "the solution lies {off:.2} {unit} from where the path's tangents lead, perhaps on another branch"
+    )]
     OtherBranch {
         /// Largest turn of a node between solution and prediction, or turn that the path's tangents
-        /// do not explain, if that is larger \[rad\].
-        turn: f64,
+        /// do not explain, if that is larger; the same of shifts where nothing turns.
+        off: f64,
+        /// What it is counted in.
+        unit: &'static str,
     },
     /// A node's gradient has shrunk so far that the beam model no longer holds there.
     #[error(

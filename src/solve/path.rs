@@ -625,7 +625,8 @@ impl<'e, 'a> Path<'e, 'a> {
         if self.parameter == Parameter::Load {
             point.parameter = target;
         }
-        let (turn, unexplained, predicted_turn) = if self.slides(&before.x, &point.x) {
+        let slides = self.slides(&before.x, &point.x);
+        let (turn, unexplained, predicted_turn) = if slides {
             let predicted_shift = self.shift(&before.x, &predicted.x);
             (self.shift(&point.x, &predicted.x), self.unexplained_shift(&before, &point), predicted_shift)
         } else {
@@ -636,8 +637,11 @@ impl<'e, 'a> Path<'e, 'a> {
         let jump = unexplained > UNEXPLAINED_TURN.max(UNEXPLAINED_PART * turn).max(explained);
         let outcome = match result {
             Ok(()) if turn > LARGEST_TURN || jump => {
-                let turn = turn.max(unexplained);
-                Err((Failure::OtherBranch { turn }, self.worst(&point.x, &predicted.x)))
+                let unit = if slides { "beam lengths" } else { "rad" };
+                Err((
+                    Failure::OtherBranch { off: turn.max(unexplained), unit },
+                    self.worst(&point.x, &predicted.x),
+                ))
             }
             Ok(()) => {
                 let n = self.equilibrium.system().coordinates();

@@ -8,6 +8,7 @@ use super::relax::relax;
 use super::stability::{Stability, StabilityChange};
 use crate::assembly::{InternalVariables, Kind};
 use crate::model::{ArcLength, Static};
+use crate::numeric::GOLDEN;
 use crate::solve::{Statistics, StepRecord, Work};
 use crate::system::{System, View};
 
@@ -31,6 +32,13 @@ const SAME_SIDE: f64 = 1e-5;
 const AT_TARGET: f64 = 1e-12;
 /// Forces below this part of the stiffness stress nothing.
 const SLACK: f64 = 1e-12;
+
+/// Changes of load factors, and of coordinates in beam lengths, that are too small to be a turn that is passed.
+const UNSEEN: f64 = 1e-6;
+/// How often a step is shortened at most for what it may hide.
+const SHORTENED: usize = 8;
+/// Inverse iterations after which the softest motion stands out.
+const INVERSE_ITERATIONS: usize = 4;
 
 /// The results of a static analysis.
 #[derive(Clone, Debug, Default)]
@@ -163,14 +171,6 @@ impl EndCondition<'_> {
         Ok(point)
     }
 }
-
-/// Changes of load factors, and of coordinates in beam lengths, that are too small to be a turn that is passed.
-const UNSEEN: f64 = 1e-6;
-
-/// How often a step is shortened at most for what it may hide.
-const SHORTENED: usize = 8;
-/// After so many the softest motion stands out.
-const INVERSE_ITERATIONS: usize = 4;
 
 /// Called with (load factor, step, counts) after every step, and after every iteration of a search
 /// for a place of rest (the load factor is then that of the last equilibrium); returns whether to
@@ -418,7 +418,9 @@ fn may_leave(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
 /// bar on many elements that hangs.
 fn is_stiff_without_matrix(equilibrium: &Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
     let system = equilibrium.system();
-    if !equilibrium.is_symmetric() || equilibrium.unstable_directions() != Some(1) {
+    // The products leave out the full turns of torsion springs.
+    let applies = equilibrium.is_symmetric() && !system.has_windings();
+    if !applies || equilibrium.unstable_directions() != Some(1) {
         return false;
     }
     let (q, multipliers) = x.split_at(system.coordinates());
@@ -473,7 +475,7 @@ fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
     let mut push: Vec<f64> = (1..=system.coordinates())
         .map(|i| {
             let unit = if i % 4 == 1 || i % 4 == 2 { system.length() } else { 1.0 };
-            side * PUSH * unit * ((i as f64 * 0.618_033_988_749_895).fract() - 0.4)
+            side * PUSH * unit * ((i as f64 * GOLDEN).fract() - 0.4)
         })
         .collect();
     system.supports().to_frames(0.0, &mut push);

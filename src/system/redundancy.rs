@@ -14,7 +14,7 @@ use super::reaction::Source;
 use super::{BuildError, System};
 use crate::linear::bordered::BorderRow;
 use crate::model::{Joint, Model, Place};
-use crate::numeric::plain;
+use crate::numeric::{GOLDEN, plain};
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
@@ -152,8 +152,7 @@ fn dependent(rows: &[BorderRow]) -> Option<Vec<usize>> {
     let gram = SparseColMat::<usize, f64>::try_new_from_triplets(rows.len(), rows.len(), &gram).ok()?;
     let factor = gram.sp_cholesky(Side::Upper).ok()?;
     // Irregular starting values, the same in every run.
-    let mut shares =
-        Mat::from_fn(rows.len(), 1, |i, _| ((i + 1) as f64 * 0.618_033_988_749_895).fract() - 0.5);
+    let mut shares = Mat::from_fn(rows.len(), 1, |i, _| ((i + 1) as f64 * GOLDEN).fract() - 0.5);
     for _ in 0..ITERATIONS {
         shares = factor.solve(&shares);
         let size = shares.norm_l2();

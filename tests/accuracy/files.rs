@@ -89,6 +89,29 @@ fn frequencies_and_critical_loads_have_errors() {
     assert!(off <= 3.0 * estimated + 1e-7 && estimated <= 1e-4 * exact, "{off:e} {estimated:e}");
 }
 
+/// Of a frequency that round-off hides no error is known, and none is written; one that nothing resists has none.
+#[test]
+fn a_hidden_frequency_has_no_error() {
+    let bar = |stiffness: &str, rest: &str| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [0, -1], {stiffness}, mass_per_length = 1 }}\n\
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y'] }}]\n{rest}\n"
+        )
+    };
+    let weight = "effect.gravity.acceleration = [0, -9.81]\n\
+                  analysis.modal = { count = 2, about = 'equilibrium', accuracy = 1e-3 }";
+    let hidden = bar("axial_stiffness = 1e16, bending_stiffness = 1e13", weight);
+    let (_, summary, _) = written(&hidden);
+    assert_eq!((&summary["frequencies"][0], &summary["error"]["met"]), (&0.0.into(), &false.into()));
+    assert!(summary["frequency_errors"][0].is_null(), "{}", summary["frequency_errors"]);
+    let free = bar(
+        "axial_stiffness = 1e6, bending_stiffness = 1e2",
+        "analysis.modal = { count = 2, accuracy = 1e-3 }",
+    );
+    let (_, summary, _) = written(&free);
+    assert_eq!((number(&summary, "/frequencies/0"), number(&summary, "/frequency_errors/0")), (0.0, 0.0));
+}
+
 /// What is missed is said with the reason, and in the summary too.
 #[test]
 fn a_missed_accuracy_has_its_reason() {

@@ -414,3 +414,20 @@ fn an_inextensible_beam_at_rest_goes_on() {
         assert!(second.probes[0].samples.last().expect("a state").x > 1e-3);
     }
 }
+
+/// A slow motion of a stiff beam is no round-off, which a support that comes might take without a word.
+#[test]
+fn a_support_does_not_stop_a_slow_motion() {
+    let rod = |rest: &str| {
+        format!(
+            "beam.rod = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e12, bending_stiffness = 1e6, mass_per_length = 1, basis.ancf.elements = 2 }}
+             {rest}
+             analysis.dynamic.duration = 0.1"
+        )
+    };
+    let first =
+        solve(&rod("initial_velocity = [{ beam = 'rod', table = { s = [0, 1], vy = [0.01, 0.01] } }]"));
+    let held = rod("support = [{ beam = 'rod', at = 'start', fix = ['x', 'y', 'angle'] }]");
+    let error = go_on(&held, &first).expect_err("it moves").to_string();
+    assert!(error.contains("the velocity at the start moves what a support holds"), "{error}");
+}

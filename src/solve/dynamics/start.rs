@@ -209,15 +209,15 @@ pub fn from_state(
     }
     let (worst, change) = largest(system, |i| given[i] - admissible[i]);
     let allowed = if velocities.is_empty() { WITHIN_A_STEP } else { ROUND_OFF };
-    let kinetic = |v: &[f64]| system.energy(state.time, &state.q, Some(v)).kinetic;
-    // What is at rest until laws move it has no velocity that supports could contradict, and the velocities of a motion that has
-    // come to rest are round-off.
-    let rest = f64::EPSILON * system.stiffness() * system.length();
-    let at_rest = at_rest || velocities.is_empty() && kinetic(&state.v) <= rest;
-    let allowed = allowed * largest(system, |i| state.v[i]).1;
+    // Velocities of a motion that has come to rest are round-off beside those of its slowest vibration.
+    let rest =
+        if velocities.is_empty() { f64::EPSILON * system.lowest_vibration_scale().sqrt() } else { 0.0 };
+    // What is at rest until laws move it has no velocity that supports could contradict.
+    let allowed = rest.max(allowed * largest(system, |i| state.v[i]).1);
     if !at_rest && change > allowed {
         return Err(refused(system, &state, allowed, (worst, (given[worst] - admissible[worst]).abs())));
     }
+    let kinetic = |v: &[f64]| system.energy(state.time, &state.q, Some(v)).kinetic;
     state.work += kinetic(&admissible) - kinetic(&state.v);
     state.v = admissible;
     Ok(Checkpoint { state, ..Checkpoint::default() })

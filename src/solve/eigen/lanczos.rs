@@ -15,6 +15,7 @@
 
 use super::{EigenError, NEGLIGIBLE, Pairs, Pencil, dot};
 use crate::linear::{Factor, Matrix};
+use crate::numeric::GOLDEN;
 use faer::Side;
 
 /// A search may keep twice as many vectors as pairs are wanted, and this many more.
@@ -112,8 +113,7 @@ impl Search<'_> {
         // but the same in every run.
         self.searches += 1;
         let shift = self.searches as f64 * 0.754_877_666_246_693;
-        let seed: Vec<f64> =
-            (1..=n).map(|i| (i as f64).mul_add(0.618_033_988_749_895, shift).fract() - 0.5).collect();
+        let seed: Vec<f64> = (1..=n).map(|i| (i as f64).mul_add(GOLDEN, shift).fract() - 0.5).collect();
         let mut w = self.apply(&seed);
         // The operator's size, as far as it is known.
         let start = size_of(self.pencil.a, &w);
@@ -152,7 +152,7 @@ impl Search<'_> {
                 let candidates: Vec<usize> =
                     (0..m).rev().filter(|&i| values[i] > NEGLIGIBLE * size).take(count).collect();
                 let residual = |i: usize| (last * small[(m - 1, i)]).abs();
-                // Those of earlier searches may be smaller than these.
+                // In a later search as well: what it finds may be among the wanted ones of all.
                 let accurate = self.wanted;
                 let converged = |(number, i): &(usize, &usize)| {
                     let tolerance = if *number < accurate { TOLERANCE } else { TOLERANCE_OF_GUARDS };
