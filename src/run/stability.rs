@@ -105,6 +105,23 @@ fn of_change(change: &StabilityChange) -> String {
 mod tests {
     use super::*;
 
+    /// A path around a circle comes back after its last point of four; one that goes on along a line does not.
+    #[test]
+    fn a_path_that_comes_back_is_told() {
+        let state = |x: f64, load: f64| (load, vec![x, 1.0]);
+        let mut states = vec![state(1.0, 0.0), state(0.0, 1.0), state(-1.0, 0.0), state(0.0, -1.0)];
+        assert_eq!(returns(&states), None);
+        states.push(state(1.0 + 1e-9, 1e-9));
+        assert_eq!(returns(&states), Some(1e-9));
+        let told: Vec<String> = warnings(&Solution { states, ..Solution::default() }).collect();
+        assert!(
+            told.len() == 1 && told[0].starts_with("the path comes back to a state that it has passed"),
+            "{told:?}"
+        );
+        let line: Vec<_> = (0..5).map(|i| state(f64::from(i), f64::from(i))).collect();
+        assert_eq!(returns(&line), None);
+    }
+
     #[test]
     fn several_directions_at_once_are_told() {
         let solution = Solution { softened: Some(0.25), ..Solution::default() };

@@ -486,6 +486,8 @@ pub struct AcrossPath<'e, 'a> {
     /// τ, one longer than x; already weighted, so that its dot product with a change is that change
     /// along the path.
     pub normal: Vec<f64>,
+    /// λ at the last linearised state.
+    load: f64,
     rate: Vec<f64>,
     scratch: Vec<f64>,
 }
@@ -495,7 +497,7 @@ impl<'e, 'a> AcrossPath<'e, 'a> {
     pub fn new(equilibrium: &'e mut Equilibrium<'a>, normal: Vec<f64>) -> Self {
         let rate = vec![0.0; equilibrium.unknowns()];
         let scratch = rate.clone();
-        Self { equilibrium, normal, rate, scratch }
+        Self { equilibrium, normal, load: 0.0, rate, scratch }
     }
 
     /// The direction (dx/dλ, 1) of the path at the last linearised state.
@@ -509,6 +511,7 @@ impl Equations for AcrossPath<'_, '_> {
     fn increment(&mut self, x: &[f64], earlier: Earlier<'_>, increment: &mut [f64]) -> Result<f64, Singular> {
         let n = self.equilibrium.unknowns();
         let load = x[n];
+        self.load = load;
         self.equilibrium.statistics.newton_iterations += 1;
         let residual =
             self.equilibrium.linearize(load, &x[..n], Some(earlier), &mut increment[..n], &mut self.rate)?;
@@ -528,8 +531,10 @@ impl Equations for AcrossPath<'_, '_> {
         self.equilibrium.residual(x[n], &x[..n], &mut self.scratch)
     }
 
+    /// The load factor counts too: where a structure slides along the plane's normal, it alone is corrected.
     fn size(&self, increment: &[f64]) -> f64 {
-        self.equilibrium.size(increment)
+        let load = increment[self.equilibrium.unknowns()].abs();
+        larger(self.equilibrium.size(increment), load / (1.0 + self.load.abs()))
     }
 
     fn apply(&self, increment: &[f64], x: &mut [f64]) {

@@ -32,9 +32,14 @@
 //! where ever smaller steps lose stability as well is the path itself unstable; it is then followed
 //! further, with a warning.
 //!
+//! Where a contact closes or a law has a corner, a path by arc length has a kink, at which it may turn
+//! by more than a right angle ([`kink`]).
+//!
 //! Predictors by polynomials through the last points, with and without the tangents there, were
 //! rejected: their corrections are smaller, but Newton's method takes as many iterations a step,
 //! and the first steps, which have no past to extrapolate, decide on the cost.
+
+mod kink;
 
 use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
 use super::newton::{self, Failure, Iterations, Settings};
@@ -120,6 +125,8 @@ const MOST_TRIALS: usize = 60;
 const ROUND_OFFS: f64 = 1e4;
 /// A rate that falls below this part of both of those at the ends of a step may vanish between.
 const STANDS_STILL: f64 = 0.2;
+/// A rate that changes its sign within this part of a step jumps there.
+const AT_KINK: f64 = 1e-9;
 /// A rate that is this part of the larger one at the ends of a step is zero at a turning point …
 const AT_TURN: f64 = 1e-6;
 /// … and one below this part of it at the start of a step is that of a turning point where the step before has ended.
@@ -285,10 +292,10 @@ impl<'e, 'a> Path<'e, 'a> {
                 self.step = step * (0.95 * largest / turn);
                 step = self.step;
             }
-            let predicted = self.predict(here + step);
-            let predicted_state = predicted.x.clone();
+            let increment = self.increment(step);
+            let predicted_state = self.predict(&increment, here + step).x;
             let target = if step >= left { end } else { here + step };
-            let corrected = match self.correct(predicted, target, step) {
+            let corrected = match self.correct(&increment, target, step) {
                 Ok((mut point, turn)) => {
                     if self.loses_stability(&point) {
                         self.judge_again(&mut point);
@@ -296,6 +303,7 @@ impl<'e, 'a> Path<'e, 'a> {
                     let doubtful = self.loses_stability(&point)
                         || turn > SURE_TURN.min(self.predicted_turn(step)).max(STILL)
                             && self.turns_back(&point, &predicted_state)
+                        || self.passes_more_than_a_limit(&point)
                         || self.crosses_twice(&point);
                     if doubtful && step > BELIEVED_STEP {
                         if let Some(record) = self.history.last_mut() {
@@ -320,6 +328,9 @@ impl<'e, 'a> Path<'e, 'a> {
                             Failure::FarOff { size } => (WANTED_TURN / size).sqrt().clamp(0.05, 0.4),
                             _ => SHORTER,
                         };
+                    if let Some((point, turn)) = self.through_kink(step) {
+                        return Ok(self.accept(point, step, turn));
+                    }
                     if self.step >= SMALLEST_STEP * self.first_step {
                         continue;
                     }
@@ -381,6 +392,16 @@ impl<'e, 'a> Path<'e, 'a> {
         let along = |rate: &[f64]| rate.last().is_some_and(|load| *load > 0.0);
         let (Some(before), Some(after)) = (last.stability, point.stability) else { return false };
         before.is_lost(after) && along(&last.rate) == along(&point.rate)
+    }
+
+    /// Whether a path by arc length meets more on the way to a point than one limit point, where one direction loses or regains
+    /// its stiffness and the load factor turns back.
+    fn passes_more_than_a_limit(&self, point: &Point) -> bool {
+        let last = self.last();
+        let (Some(before), Some(after)) = (last.stability, point.stability) else { return false };
+        let turns = turns_within([last, point].map(Point::load_rate));
+        self.parameter == Parameter::ArcLength
+            && (before.changes_sign(after) != turns || before.count().abs_diff(after.count()) > 1)
     }
 
     /// Whether nodes turn the other way than was predicted, as on the mirrored branch of a column.
@@ -496,21 +517,20 @@ impl<'e, 'a> Path<'e, 'a> {
         weighted
     }
 
-    /// Goes on along the tangent to `parameter`.
-    fn predict(&self, parameter: f64) -> Point {
-        let Point { mut x, mut load, rate, parameter: here, .. } = self.last().clone();
-        let h = parameter - here;
-        self.equilibrium.retraction.apply(&self.increment(h), &mut x);
-        load = if self.parameter == Parameter::Load { parameter } else { load + h * rate[x.len()] };
+    /// The point to which `increment` leads from the last one.
+    fn predict(&self, increment: &[f64], parameter: f64) -> Point {
+        let Point { mut x, load, rate, .. } = self.last().clone();
+        let (of_load, of_x) = increment.split_last().unwrap_or((&0.0, &[]));
+        self.equilibrium.retraction.apply(of_x, &mut x);
+        let load = if self.parameter == Parameter::Load { parameter } else { load + of_load };
         let n = self.equilibrium.system().coordinates();
         self.equilibrium.system().supports().impose(load, &mut x[..n]);
         Point { parameter, load, x, stability: None, soft: None, rate }
     }
 
-    /// The increment of a step of length `h` along the tangent.
+    /// The increment of (x, λ) in a step of length `h` along the tangent.
     fn increment(&self, h: f64) -> Vec<f64> {
-        let last = self.last();
-        last.rate[..last.x.len()].iter().map(|rate| h * rate).collect()
+        self.last().rate.iter().map(|rate| h * rate).collect()
     }
 
     /// Largest turn of a node in a step of length `h` along the tangent \[rad\].
@@ -574,22 +594,23 @@ impl<'e, 'a> Path<'e, 'a> {
         })
     }
 
+    /// The equilibrium at the load factor `target`, or on the plane through the point to which `increment` leads from the last
+    /// one, across it; and by how much it has turned against that point.
     fn correct(
         &mut self,
-        predicted: Point,
+        increment: &[f64],
         target: f64,
         step: f64,
     ) -> Result<(Point, f64), (Failure, (usize, f64))> {
         let mut record = Iterations::default();
         let before = self.last().clone();
-        let mut increment = self.increment(predicted.parameter - before.parameter);
-        increment.push(predicted.load - before.load);
+        let predicted = self.predict(increment, target);
         let mut point = predicted.clone();
         let result = match self.parameter {
             Parameter::Load => {
                 point.load = target;
                 let mut equations = AtLoad::new(self.equilibrium, target);
-                let start = Earlier { q: &before.x, increment: &increment };
+                let start = Earlier { q: &before.x, increment };
                 let result = newton::solve(&mut equations, &mut point.x, start, &self.settings, &mut record);
                 // A tangent that could not be factorised gives none.
                 if result.is_ok() {
@@ -608,7 +629,7 @@ impl<'e, 'a> Path<'e, 'a> {
                 let mut start = before.x.clone();
                 start.push(before.load);
                 let mut equations = AcrossPath::new(self.equilibrium, normal);
-                let start = Earlier { q: &start, increment: &increment };
+                let start = Earlier { q: &start, increment };
                 let result = newton::solve(&mut equations, &mut x, start, &self.settings, &mut record);
                 let rate = result.is_ok().then(|| equations.rate());
                 point.load = x.pop().unwrap_or(before.load);
@@ -630,7 +651,7 @@ impl<'e, 'a> Path<'e, 'a> {
             let predicted_shift = self.shift(&before.x, &predicted.x);
             (self.shift(&point.x, &predicted.x), self.unexplained_shift(&before, &point), predicted_shift)
         } else {
-            let predicted_turn = self.predicted_turn(predicted.parameter - before.parameter);
+            let predicted_turn = self.predicted_turn(step);
             (self.turn(&point.x, &predicted.x), self.unexplained(&before, &point), predicted_turn)
         };
         let explained = UNEXPLAINED_OF_STEP * predicted_turn;
@@ -668,6 +689,9 @@ impl<'e, 'a> Path<'e, 'a> {
         });
         let turn = outcome?;
         (point.stability, point.soft) = self.equilibrium.stability_and_softness();
+        if self.goes_back(&before, &point) {
+            point.rate.iter_mut().for_each(|rate| *rate = -*rate);
+        }
         Ok((point, turn))
     }
 
@@ -707,30 +731,55 @@ impl<'e, 'a> Path<'e, 'a> {
     /// [`NoStep`] where a shorter step does not converge, or leads to another branch on which
     /// `miss` does not vanish.
     pub fn end_where(&mut self, miss: impl Fn(&Point) -> f64, near: f64) -> Result<&Point, NoStep> {
-        let (whole, record, before) =
-            (self.last().clone(), self.history.last().cloned(), self.points.len() - 1);
-        if let Err(stuck) = self.try_to_end_where(miss, near) {
-            self.points.truncate(before);
-            self.points.push(whole);
-            self.history.pop();
-            self.history.extend(record);
-            return Err(stuck);
-        }
+        self.restoring(|path| {
+            path.try_to_end_where(&miss, near, f64::EPSILON)?;
+            let Point { load, .. } = *path.last();
+            if miss(path.last()).abs() <= ROUND_OFFS * near {
+                return Ok(());
+            }
+            let step = path.history.last().map_or(0.0, |record| record.step);
+            let at = path.equilibrium.system().place_of(0);
+            Err(NoStep { load, step, failure: Failure::Bifurcation, at })
+        })?;
         Ok(self.last())
     }
 
-    fn try_to_end_where(&mut self, miss: impl Fn(&Point) -> f64, near: f64) -> Result<(), NoStep> {
+    /// Calls `shorten`, and makes the last step what it was before where that fails.
+    fn restoring(&mut self, shorten: impl FnOnce(&mut Self) -> Result<(), NoStep>) -> Result<(), NoStep> {
+        let (whole, record) = (self.last().clone(), self.history.last().cloned());
+        let shortened = shorten(self);
+        if shortened.is_err() {
+            self.points.pop();
+            self.points.push(whole);
+            self.history.pop();
+            self.history.extend(record);
+        }
+        shortened
+    }
+
+    /// Shortens the last step until `miss` vanishes to within `near`, or changes its sign within the part `narrow` of the step.
+    fn try_to_end_where(
+        &mut self,
+        miss: &impl Fn(&Point) -> f64,
+        near: f64,
+        narrow: f64,
+    ) -> Result<(), NoStep> {
         let [.., before, point] = &self.points[..] else { return Ok(()) };
         let mut low = (0.0, miss(before));
         let mut high = (self.history.last().map_or(0.0, |record| record.step), miss(point));
         for _ in 0..MOST_TRIALS {
             let width = high.0 - low.0;
-            if miss(self.last()).abs() <= near || width.abs() <= f64::EPSILON * high.0.abs().max(low.0.abs())
-            {
+            if miss(self.last()).abs() <= near || width.abs() <= narrow * high.0.abs().max(low.0.abs()) {
                 break;
             }
-            let step = (low.0 - low.1 * width / (high.1 - low.1)).clamp(low.0.min(high.0), low.0.max(high.0));
-            let found = miss(self.retake(step)?);
+            let mut step =
+                (low.0 - low.1 * width / (high.1 - low.1)).clamp(low.0.min(high.0), low.0.max(high.0));
+            if self.retake(step).is_err() {
+                // At a limit point that is met exactly, no tangent can be factorised.
+                step = 0.5 * (step + high.0);
+                self.retake(step)?;
+            }
+            let found = miss(self.last());
             if (found < 0.0) == (high.1 < 0.0) {
                 low.1 *= 0.5;
             } else {
@@ -738,36 +787,46 @@ impl<'e, 'a> Path<'e, 'a> {
             }
             high = (step, found);
         }
-        let last = self.last();
-        if miss(last).abs() <= ROUND_OFFS * near {
-            Ok(())
-        } else {
-            let at = self.equilibrium.system().place_of(0);
-            Err(NoStep { load: last.load, step: high.0, failure: Failure::Bifurcation, at })
-        }
+        Ok(())
     }
 
     /// Ends the last step at the limit point within it; returns whether there is one.
-    pub fn end_at_limit(&mut self) -> bool {
+    ///
+    /// # Errors
+    /// As [`Self::end_at_turn`].
+    pub fn end_at_limit(&mut self) -> Result<bool, NoStep> {
         let Point { stability, soft, .. } = *self.last();
-        let turns = self.end_at_turn(Point::load_rate);
+        let turns = self.end_at_turn(Point::load_rate)?;
         if turns && let Some(limit) = self.points.last_mut() {
             // There the tangent is singular, and its signs are round-off: what changes in the whole step changes here.
             (limit.stability, limit.soft) = (stability, soft);
         }
-        turns
+        Ok(turns)
     }
 
     /// Ends the last step where `rate`, which its ends have with opposite signs, vanishes; returns whether they have. The
     /// quantity whose rate it is then only grows or only falls in any step, and what it reaches in one is seen at the ends.
-    pub fn end_at_turn(&mut self, rate: impl Fn(&Point) -> f64) -> bool {
-        let Some([a, b]) = self.last_two() else { return false };
+    ///
+    /// # Errors
+    /// [`NoStep`] where a shorter step does not converge; the step is then what it was.
+    pub fn end_at_turn(&mut self, rate: impl Fn(&Point) -> f64) -> Result<bool, NoStep> {
+        let Some([a, b]) = self.last_two() else { return Ok(false) };
         let ends = [rate(a), rate(b)];
-        let largest = ends[0].abs().max(ends[1].abs());
         if !turns_within(ends) {
-            return false;
+            return Ok(false);
         }
-        self.end_where(&rate, AT_TURN * largest).is_ok()
+        let near = AT_TURN * ends[0].abs().max(ends[1].abs());
+        self.restoring(|path| {
+            path.try_to_end_where(&rate, near, AT_KINK)?;
+            // At a kink the rate jumps. The path goes on beyond it.
+            let last = rate(path.last());
+            if last.abs() > near && (last < 0.0) != (ends[1] < 0.0) {
+                let step = path.history.last().map_or(0.0, |record| record.step);
+                path.retake(step * (1.0 + 2.0 * AT_KINK))?;
+            }
+            Ok(())
+        })?;
+        Ok(true)
     }
 
     /// Whether a quantity turns back within the last step and goes on again, so that its rates at the ends do not tell: on the
@@ -802,18 +861,22 @@ impl<'e, 'a> Path<'e, 'a> {
         turns && (from - 0.25 * p * p / q) * from.signum() < STANDS_STILL * from.abs().min(to.abs())
     }
 
-    /// Replaces the last step by one of length `step`.
-    fn retake(&mut self, step: f64) -> Result<&Point, NoStep> {
-        self.points.pop();
-        self.history.pop();
-        let parameter = self.last().parameter + step;
-        let predicted = self.predict(parameter);
-        match self.correct(predicted, parameter, step) {
+    /// Replaces the last step by one of length `step`, if that converges.
+    fn retake(&mut self, step: f64) -> Result<(), NoStep> {
+        let (point, record) = (self.points.pop(), self.history.pop());
+        let increment = self.increment(step);
+        match self.correct(&increment, self.last().parameter + step, step) {
             Ok((point, _)) => {
                 self.points.push(point);
-                Ok(self.last())
+                Ok(())
             }
-            Err((failure, at)) => Err(NoStep { load: self.last().load, step, failure, at }),
+            Err((failure, at)) => {
+                let load = self.last().load;
+                self.points.extend(point);
+                self.history.pop();
+                self.history.extend(record);
+                Err(NoStep { load, step, failure, at })
+            }
         }
     }
 

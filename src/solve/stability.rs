@@ -14,7 +14,7 @@ pub enum Stability {
 
 impl Stability {
     /// Directions, or determinants.
-    fn count(self) -> usize {
+    pub(super) fn count(self) -> usize {
         let (Self::Directions(count) | Self::NegativeDeterminants(count)) = self;
         count
     }
@@ -29,6 +29,11 @@ impl Stability {
         if std::mem::discriminant(&self) == std::mem::discriminant(&after) {
             return self != after;
         }
+        self.changes_sign(after)
+    }
+
+    /// Whether the determinant of the tangent has the other sign at a point further on.
+    pub fn changes_sign(self, after: Self) -> bool {
         self.count() % 2 != after.count() % 2
     }
 

@@ -543,10 +543,15 @@ fn stride(
         // reached before it and be left again.
         let mut at_limit = path.end_at_limit();
         for condition in conditions {
-            if let EndCondition::Probe(view, axis, _) = condition {
-                at_limit &= !path.end_at_turn(|point| view.at_point(&point.rate)[*axis]);
+            if let (Ok(limit), EndCondition::Probe(view, axis, _)) = (&at_limit, condition) {
+                let turns = path.end_at_turn(|point| view.at_point(&point.rate)[*axis]);
+                at_limit = turns.map(|turns| *limit && !turns);
             }
         }
+        if at_limit.is_err() && take_back(path) {
+            continue;
+        }
+        let at_limit = at_limit.unwrap_or(false);
         // Of two targets within a step the one that comes first counts.
         let (mut last, mut reached) = (Ok(path.last().clone()), false);
         for miss in conditions {

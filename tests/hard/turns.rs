@@ -177,21 +177,77 @@ fn beams_that_only_slide_do_not_jump() {
     }
 }
 
-/// A cantilever whose end is pulled across until its mesh folds: the path comes back through the states on its way there, and
-/// says so.
+/// A bar that snaps onto a stop, as a bar on two springs does: where it touches, the load that fell begins to grow, at nearly half
+/// a turn of the path. Paths with any step go on from there, and limit point and kink are told with their loads.
 #[test]
-fn a_path_that_comes_back_is_told() {
-    let arm = |end: &str, arc: &str| {
-        format!(
-            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 10, basis.ancf.elements = 16 }}\n\
-             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}, {end}]\n\
-             probe = [{{ name = 'p', beam = 'b', at = 'end' }}]\nanalysis.static.arc_length = {{ {arc} }}\n"
-        )
-    };
-    let pulled = "{ beam = 'b', at = 'end', fix = ['y'], move = { y = 0.2 } }";
-    let told = |text: &str| {
-        solved(text).run.warnings.iter().filter(|text| text.contains("comes back to a state")).count()
-    };
-    assert_eq!(told(&arm(pulled, "until_probe = { probe = 'p', y = -0.1 }")), 1);
-    assert_eq!(told(&arm(pulled, "until_load = 3")), 0);
+fn paths_go_on_where_a_snap_ends_at_a_stop() {
+    let lowest = (0..3000).map(|i| sliding_force(-1e-4 * f64::from(i))).fold(0.0, f64::min);
+    for (at, k) in [(-0.2, 1e3), (-0.38, 1e2), (-0.38, 1e5), (-0.3, 1e4)] {
+        let stop = format!(
+            "effect.contact = [{{ beam = 'b', half_plane = {{ point = [0, {at:?}], normal = [0, 1] }}, stiffness = {k:?} }}]\n"
+        );
+        let force = |y: f64| sliding_force(y) + if y < at { k * (y - at) } else { 0.0 };
+        let expected = zero(|y| force(y) + 10.0, [at - 1.0, at]);
+        for step in ["", ", max_step = 0.1", ", max_step = 0.03", ", max_step = 0.02"] {
+            let path = sliding(-10.0, &format!(".arc_length = {{ until_load = 1{step} }}\n{stop}"));
+            let found = outcome(&path).unwrap_or_else(|error| panic!("{error}, {at} {k}{step}"));
+            let end = found.probes[0].samples.last().expect("a state").y;
+            // The contact is along the bar, which its force of some 10 N bends by 10/(8 EI).
+            assert!((end - expected).abs() < 2e-6, "{end} for {expected}, {at} {k}{step}");
+            let told: Vec<f64> =
+                found.run.warnings.iter().map(|text| number_after(text, "load factor ")).collect();
+            // A long step may pass both together.
+            if !told.is_empty() {
+                let right = [lowest / -10.0, sliding_force(at) / -10.0];
+                assert!(
+                    told.len() == 2 && (0..2).all(|i| (told[i] - right[i]).abs() < 2e-6),
+                    "{told:?} {right:?}, {at} {k}{step}"
+                );
+            }
+        }
+    }
+}
+
+/// The number in `text` behind the first `words`.
+fn number_after(text: &str, words: &str) -> f64 {
+    let rest = text.split_once(words).map_or("", |(_, rest)| rest);
+    rest.split([':', ',', ';']).next().and_then(|number| number.parse().ok()).unwrap_or(f64::NAN)
+}
+
+/// A bar that slides on one slanted spring turns back at both limits of its load, ∓k (l₀ − l) y/(l F) with l³ = l₀ a²: after the
+/// first one a step changes the load factor alone.
+#[test]
+fn limit_points_of_a_sliding_bar_are_exact() {
+    let long = 1.0_f64.hypot(0.3);
+    let now = long.powf(1.0 / 3.0);
+    let limit = 100.0 * (long - now) / now * (now * now - 1.0).sqrt();
+    for force in [0.3, 2.0, 5.0, 20.0, 100.0] {
+        let found = solved(&format!(
+            "beam.b = {{ start = [0, 0.3], end = [0.5, 0.3], axial_stiffness = 1e6, bending_stiffness = 1e3, basis.ancf.elements = 2 }}\n\
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'angle'] }}]\n\
+             effect.spring = [{{ beam = 'b', at = 'start', stiffness = 100, anchor = [-1, 0] }}]\n\
+             effect.force = [{{ beam = 'b', at = 'start', value = [0, {:?}] }}]\n\
+             analysis.static.arc_length.until_load = {:?}\n",
+            -force,
+            10.0 / force
+        ));
+        let told: Vec<f64> =
+            found.run.warnings.iter().map(|text| number_after(text, "load factor ")).collect();
+        let right = limit / force;
+        assert!(told.len() == 2, "{force}: {:?}", found.run.warnings);
+        let near = |found: f64, right: f64| (found - right).abs() < 1e-6 + 1e-6 * right.abs();
+        assert!(near(told[0], right) && near(told[1], -right), "{force}: {told:?} for {right}");
+    }
+}
+
+/// A cantilever whose end is pulled across, away from where its path is to end, until its mesh folds: the path does not walk back
+/// through the states on its way there, but ends for lack of points.
+#[test]
+fn a_path_away_from_its_target_does_not_walk_back() {
+    let text = "beam.b = { start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 10, basis.ancf.elements = 16 }\n\
+        support = [{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'b', at = 'end', fix = ['y'], move = { y = 0.2 } }]\n\
+        probe = [{ name = 'p', beam = 'b', at = 'end' }]\n\
+        analysis.static.arc_length = { until_probe = { probe = 'p', y = -0.1 }, max_points = 300 }\n";
+    let error = outcome(text).expect_err("the other way");
+    assert!(error.contains("ends after `max_points = 300` at load factor"), "{error}");
 }
