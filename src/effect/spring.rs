@@ -7,6 +7,7 @@ use crate::assembly::{
 };
 use crate::beam::Place;
 use nalgebra::{Matrix2, Vector2};
+use std::f64::consts::TAU;
 
 /// A spring and a dashpot in parallel. With an anchor they act along the line from it to the point:
 /// W = ½ k (ℓ − ℓ₀)², R = ½ c ℓ̇². Without an anchor they resist, in all directions, displacements
@@ -266,12 +267,15 @@ impl Density<1> for Torsion {
         &self,
         point: usize,
         z: &Gradient<1>,
-        _: &Gradient<1>,
-        _: &Gradient<1>,
+        before: &Gradient<1>,
+        change: &Gradient<1>,
     ) -> (Gradient<1>, Hessian<1>) {
         let first = direction::gradient(&z[0]);
-        let hessian =
-            (first * first.transpose() + direction::hessian(&z[0]) * self.angle(&z[0])) * self.stiffness;
+        // The moment is extrapolated; both angles are counted on the same side of a half turn.
+        let (angle, angle_before) = (self.angle(&z[0]), self.angle(&before[0]));
+        let turns = TAU * ((angle - angle_before) / TAU).round();
+        let ahead = angle_before + turns + direction::gradient(&before[0]).dot(&change[0]);
+        let hessian = (first * first.transpose() + direction::hessian(&z[0]) * ahead) * self.stiffness;
         (self.gradient(point, z), [[hessian]])
     }
 }

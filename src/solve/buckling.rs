@@ -19,7 +19,7 @@
 //! change comes with the results; where it hides every load factor, there is an error.
 
 use super::eigen::{
-    CERTAIN, Corrected, EigenError, Pencil, corrected, errors, largest_reciprocals, round_off,
+    CERTAIN, Corrected, EigenError, Pairs, Pencil, corrected, errors, largest_reciprocals, round_off,
 };
 use super::equilibrium::Equilibrium;
 use crate::assembly::{Earlier, Kind, Workspace, nodes};
@@ -120,10 +120,21 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
         largest_reciprocals(&pencil, count, GUARD).or_else(|_| largest_reciprocals(&pencil, count, 0));
     // The stress-free state is stable: what is said against it is the round-off of its stiffness.
     let stress_free = !system.is_taken_up() && system.force_at_start(STRESSING) == 0.0;
-    let pairs = pairs.map_err(|error| match error {
-        EigenError::Unstable { .. } if stress_free => EigenError::HiddenLoads { above: 0.0 },
-        error => error,
-    })?;
+    let (mut turn, mut strain) = (0.0_f64, 0.0_f64);
+    for (rate, node) in nodes(&rate[..n]).zip(nodes(q)) {
+        let ([x, y], [dx, dy]) = (node.gradient, rate.gradient);
+        let squared = x * x + y * y;
+        turn = turn.max((x * dy - y * dx).abs() / squared);
+        strain = strain.max((x * dx + y * dy).abs() / squared);
+    }
+    let pairs = match pairs {
+        // Load factors at which beams would be crushed before do not matter.
+        Err(EigenError::NotConverged { largest, .. }) if strain > largest => Pairs::default(),
+        Err(EigenError::Unstable { .. }) if stress_free => {
+            return Err(EigenError::HiddenLoads { above: 0.0 });
+        }
+        pairs => pairs?,
+    };
     // K₀ has lost digits where cells are short. Its products without a matrix have not.
     let product = |v: &[f64]| {
         let (mut v, mut f) = (v.to_vec(), vec![0.0; n]);
@@ -173,13 +184,6 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
             + reciprocal * stressed * slope * slope
             + error
     };
-    let (mut turn, mut strain) = (0.0_f64, 0.0_f64);
-    for (rate, node) in nodes(&rate[..n]).zip(nodes(q)) {
-        let ([x, y], [dx, dy]) = (node.gradient, rate.gradient);
-        let squared = x * x + y * y;
-        turn = turn.max((x * dy - y * dx).abs() / squared);
-        strain = strain.max((x * dx + y * dy).abs() / squared);
-    }
     let (mut load_factors, mut shapes) = (Vec::new(), Vec::new());
     let (mut of_factors, mut hidden) = (Vec::new(), None);
     for (Corrected { reciprocal, vector: mut shape, .. }, error) in found.into_iter().zip(errors).take(count)

@@ -92,15 +92,17 @@ pub enum EigenError {
     #[error("the projected eigenproblem did not converge")]
     Projection,
     /// Lanczos' method stopped short of the wanted number.
-    #[error("found {found} of {wanted} eigenpairs to full accuracy")]
+    #[error("found {found} of {wanted} eigenpairs to full accuracy, and then one that is too near to others")]
     #[diagnostic(help(
-        "ask for fewer, or use a coarser mesh: the stiffness is at the limit of double precision"
+        "ask for fewer, or take fewer elements or nodes: the stiffness is at the limit of double precision"
     ))]
     NotConverged {
         /// Pairs found.
         found: usize,
         /// Pairs wanted.
         wanted: usize,
+        /// The largest reciprocal that there may be.
+        largest: f64,
     },
 }
 

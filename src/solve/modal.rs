@@ -75,7 +75,7 @@ pub fn solve(
     let pencil = Pencil { a: &shifted, b: &mass, border: &border, fixed };
     let pairs = largest_reciprocals(&pencil, count, GUARD)?;
     if pairs.vectors.is_empty() {
-        return Err(EigenError::NotConverged { found: 0, wanted: count });
+        return Err(EigenError::NotConverged { found: 0, wanted: count, largest: f64::INFINITY });
     }
     let product = |vector: &[f64]| {
         let (mut v, mut f) = (vector.to_vec(), vec![0.0; q.len()]);

@@ -379,3 +379,57 @@ fn stresses_of_round_off_are_told() {
         assert!(told == (round_off > 1e-3) && (!told || axial > 1e6), "{:?}", found.run().warnings);
     }
 }
+
+/// A lateral force turns a torsion spring on its column, and to first order changes nothing of the critical load along it: the
+/// moment of the spring jumps in that of the beam, and neither softens the cells beside it, however short they are.
+#[test]
+fn a_torsion_spring_that_is_turned_keeps_its_critical_load() {
+    let critical = |elements: usize, across: f64| {
+        let text = format!(
+            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = {elements} }}\n\
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+             effect.torsion_spring = [{{ beam = 'b', at = 0.75, stiffness = 4 }}]\n\
+             effect.force = [{{ beam = 'b', at = 'end', value = [-10, {across:?}] }}]\n\
+             analysis.buckling.count = 1\n"
+        );
+        solve(&text).eigenvalues()[0]
+    };
+    let alone = torsion_column(0.75, 4.0) / 10.0;
+    for elements in [8, 64, 512] {
+        for across in [0.0, 0.5] {
+            let found = critical(elements, across);
+            assert!((found / alone - 1.0).abs() < 4e-5, "{elements} {across}: {found} for {alone}");
+        }
+    }
+}
+
+/// Critical load of a column of length and EI 1 that is clamped at 0 and free at 1, with a torsion spring `k` at `a`.
+///
+/// No part of it carries a force across, so that the slope θ obeys θ'' + β² θ = 0 with β² the load: below, θ ∝ sin βx, above,
+/// θ ∝ cos β(1 − x). At the spring the moment θ' jumps by k θ: β tan β(1 − a) − β cot βa = k.
+fn torsion_column(a: f64, k: f64) -> f64 {
+    let jump = |beta: f64| beta / (beta * a).tan() + k - beta * (beta * (1.0 - a)).tan();
+    let (mut low, mut high) = (1.0, (PI / a).min(0.5 * PI / (1.0 - a)) - 1e-9);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if jump(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    low * low
+}
+
+/// A force that pulls, and presses only by its small part across, buckles nothing at a thousand times EI/L² or below: there is no
+/// error, however many elements there are, and however near to each other the load factors are at which the beam would long be crushed.
+#[test]
+fn a_column_that_is_pulled_does_not_buckle() {
+    for elements in [12, 60, 240] {
+        let text = format!(
+            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 6e3, bending_stiffness = 0.13, basis.ancf.elements = {elements} }}\n\
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+             effect.spring = [{{ beam = 'b', at = 0.5, stiffness = 23 }}]\n\
+             effect.force = [{{ beam = 'b', at = 0.85, value = [0.28, 0.006] }}]\n\
+             analysis.buckling.count = 2\n"
+        );
+        let found = solve(&text).eigenvalues();
+        assert!(found.iter().all(|load| 0.28 * load > 1e3 * 0.13), "{elements}: {found:?}");
+    }
+}

@@ -168,7 +168,13 @@ impl Search<'_> {
                 }
                 if exhausted || m >= limit || found == count {
                     if found == 0 && !candidates.is_empty() {
-                        return Err(EigenError::NotConverged { found: self.found.len(), wanted: count });
+                        let next = candidates.first().map_or(0.0, |i| values[*i] + residual(*i));
+                        let largest = self.found.iter().map(|pair| pair.reciprocal).fold(next, f64::max);
+                        return Err(EigenError::NotConverged {
+                            found: self.found.len(),
+                            wanted: count,
+                            largest,
+                        });
                     }
                     let pair = |&i: &usize| {
                         let combine = |basis: &[Vec<f64>]| {
