@@ -155,15 +155,30 @@ impl System {
         !self.terms.damping.is_empty()
     }
 
-    /// Power \[W\] at time `parameter` of the loads without a potential in the state (q, v);
-    /// `scratch` is overwritten.
-    pub fn power(&self, parameter: f64, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {
+    /// Power \[W\] at time `parameter` of the loads without a potential in the state (q, v), or of those alone whose force has
+    /// none at any time; `scratch` is overwritten.
+    pub fn power(&self, parameter: f64, q: &[f64], v: &[f64], at_no_time: bool, scratch: &mut [f64]) -> f64 {
         scratch.fill(0.0);
-        for load in self.terms.loads.iter().filter(|load| !load.has_potential()) {
+        let counts =
+            |load: &&ActingLoad| !(load.has_potential() || at_no_time && load.effect.is_conservative());
+        for load in self.terms.loads.iter().filter(counts) {
             load.effect.add_force(self.amplitude_of(load).at(parameter), q, scratch);
         }
         self.terms.timed_loads.iter().for_each(|load| load.add_force(1.0, parameter, q, scratch));
         -scratch.iter().zip(v).map(|(f, v)| f * v).sum::<f64>()
+    }
+
+    /// Work \[J\] between two states and times of the loads whose force has a potential W at any time, times a factor a that
+    /// follows a law of time: −½ (a₀ + a₁)(W(q₁) − W(q₀)). Forces that nearly cancel those within a beam, as those of actuation do,
+    /// then do their work with the same strains.
+    pub fn work_of_laws(&self, [(from, q0), (to, q1)]: [(f64, &[f64]); 2]) -> f64 {
+        let by_law = |load: &&ActingLoad| !load.has_potential() && load.effect.is_conservative();
+        let work = |load: &ActingLoad| {
+            let amplitude = self.amplitude_of(load);
+            let change = load.effect.energy(q1) - load.effect.energy(q0);
+            -0.5 * (amplitude.at(from) + amplitude.at(to)) * change
+        };
+        self.terms.loads.iter().filter(by_law).map(work).sum()
     }
 
     /// `f += ` the forces that depend on velocities.

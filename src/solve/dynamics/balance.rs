@@ -73,7 +73,8 @@ impl Driver<'_, '_> {
     /// Work of the loads without potential and of moving supports, and energy taken by damping and
     /// friction, until `time` in the step to `new`. The powers of loads and friction, which follow
     /// from a state alone, are integrated by the trapezoidal rule if the method is of second order,
-    /// and otherwise at three Gauss points.
+    /// and otherwise at three Gauss points. Of loads that have a potential times a factor, the former rule is taken along the
+    /// potential: velocities of second order would not tell how strains follow those that actuation imposes.
     pub(super) fn work(&mut self, new: &State, time: f64, accelerations: Option<[&[f64]; 2]>) -> (f64, f64) {
         let (mut work, mut lost) = (self.state.work, self.state.lost);
         if !self.has_work() {
@@ -87,22 +88,20 @@ impl Driver<'_, '_> {
         let h = time - self.state.time;
         if self.method.order() <= 2.0 {
             let before = self.power_at_start();
-            let after = if time == new.time {
-                self.power(new)
-            } else {
-                let state = self.state.between(new, time, accelerations);
-                self.power(&state)
-            };
+            let between = (time != new.time).then(|| self.state.between(new, time, accelerations));
+            let end = between.as_ref().unwrap_or(new);
+            let after = self.power(end, true);
             if time == new.time {
                 self.powers[1] = (time, after);
             }
+            work += self.system.work_of_laws([&self.state, end].map(|state| (state.time, &state.q[..])));
             return (work + 0.5 * h * (before.0 + after.0), lost + 0.5 * h * (before.1 + after.1));
         }
         let offset = 0.6_f64.sqrt();
         for (x, weight) in [(-offset, 5.0), (0.0, 8.0), (offset, 5.0)] {
             let state = self.state.between(new, self.state.time + 0.5 * h * (1.0 + x), accelerations);
             let weight = weight * h / 18.0;
-            let (put_in, taken) = self.power(&state);
+            let (put_in, taken) = self.power(&state, false);
             work += weight * put_in;
             lost += weight * taken;
         }
@@ -116,16 +115,16 @@ impl Driver<'_, '_> {
         let known = self.powers.iter().find(|(time, _)| *time == self.state.time).map(|(_, power)| *power);
         let power = known.filter(|_| !self.system.has_friction()).unwrap_or_else(|| {
             let state = self.state.clone();
-            self.power(&state)
+            self.power(&state, true)
         });
         self.powers[0] = (self.state.time, power);
         power
     }
 
-    /// Power \[W\] put in by loads without potential, and taken by friction.
-    pub(super) fn power(&self, state: &State) -> (f64, f64) {
+    /// Power \[W\] put in by loads without potential, or only by those that have none at any time, and taken by friction.
+    pub(super) fn power(&self, state: &State, at_no_time: bool) -> (f64, f64) {
         let mut scratch = vec![0.0; state.q.len()];
-        let loads = self.system.power(state.time, &state.q, &state.v, &mut scratch);
+        let loads = self.system.power(state.time, &state.q, &state.v, at_no_time, &mut scratch);
         if !self.system.has_friction() {
             return (loads, 0.0);
         }
