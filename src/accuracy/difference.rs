@@ -5,6 +5,7 @@ mod places;
 mod section_forces;
 mod states;
 mod stations;
+mod strain_jumps;
 
 use super::judgement::scaled;
 use super::mesh::{CellErrors, Mesh};
@@ -16,6 +17,7 @@ pub(super) use modes::round_off;
 pub(super) use states::jumps;
 use states::states;
 pub(super) use stations::stations;
+pub(super) use strain_jumps::strain_jumps;
 
 /// Parameters of records are the same when they differ by less, relative to the last one.
 const SAME: f64 = 1e-9;

@@ -63,6 +63,9 @@ const HOPELESS: f64 = 1.5;
 /// … and of a motion, of which loose tolerances tell less.
 const HOPELESS_MOTION: f64 = 10.0;
 
+/// What acts this near to a node, in cells, acts there: the error is the cube of it.
+const AT_NODE: f64 = 0.02;
+
 /// Positions of two equilibria, in beam lengths, beyond which they do not show the same shape.
 const APART: f64 = 0.1;
 
@@ -81,6 +84,8 @@ pub(super) struct Runner<'a, 'o> {
     named: Vec<Option<Mesh>>,
     /// Those of them whose errors finer meshes do not remove.
     saturated: Vec<bool>,
+    /// Those of them with elements within which something acts in a point.
+    pointed: Vec<bool>,
     /// The halvings between the meshes of two runs: more than one where the scene gives all beams an odd number of
     /// cells.
     pub halvings: f64,
@@ -177,6 +182,11 @@ impl<'a, 'o> Runner<'a, 'o> {
             Some(mesh.with(Basis::new(&nodes, curve.length()).ok()?.nodes()))
         };
         let named: Vec<Option<Mesh>> = model.beams.iter().zip(&meshes).map(named).collect();
+        let pointed = |(index, named): (usize, &Option<Mesh>)| {
+            let elements = matches!(model.beams[index].discretization, Discretization::Ancf { .. });
+            elements && named.as_ref().is_some_and(|named| has_points(model, index, named))
+        };
+        let pointed = named.iter().enumerate().map(pointed).collect();
         let saturated = |(beam, mesh): (&Beam, &Mesh)| saturates(&beam.discretization, mesh.length());
         let saturated = model.beams.iter().zip(&meshes).map(saturated).collect();
         for (mesh, named) in meshes.iter_mut().zip(&named) {
@@ -205,6 +215,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             families,
             named,
             saturated,
+            pointed,
             halvings: if times.is_finite() { times.log2() } else { 1.0 },
             tolerance,
             runs: Vec::new(),
@@ -378,16 +389,24 @@ impl<'a, 'o> Runner<'a, 'o> {
             Err(why) => (None, Some(why)),
         };
         let round_off = difference::round_off(&results);
-        let unseen = match (beside, round_off) {
-            (Some(beside), Some(round_off)) => beside.plus(&round_off),
-            (beside, round_off) => beside.or(round_off),
+        let both = |a: Option<Difference>, b: Option<Difference>| match (a, b) {
+            (Some(a), Some(b)) => a.plus(&b),
+            (a, b) => a.or(b),
         };
+        let mut unseen = both(beside, round_off);
         let difference = match &coarse {
             _ if let Some(why) = failed => Err(why),
             Ok(coarse) if coarse.run().complete => self.difference(coarse, &results),
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
             Err(error) => Err(format!("on half as many cells there is no result: {error}")),
         };
+        // A search sees how errors fall; of one mesh nothing else tells these.
+        if let (None, Ok(difference), Results::Trajectory(run)) = (self.wanted, &difference, &results) {
+            let nodes: Vec<Vec<f64>> = self.named.iter().flatten().map(|mesh| mesh.nodes.clone()).collect();
+            let jumps = (nodes.len() == self.model.beams.len())
+                .then(|| difference::strain_jumps(self.model, &nodes, run, difference));
+            unseen = both(unseen, jumps.flatten());
+        }
         let fall = before
             .zip(difference.as_ref().ok())
             .map(|(before, now)| before.errors.result / now.errors.result);
@@ -407,15 +426,18 @@ impl<'a, 'o> Runner<'a, 'o> {
         one || self.saturated[beam]
     }
 
-    /// What the results of a `setting` differ by from those with four cells in every part of a beam that has one, and with elements
-    /// in place of shape functions whose errors finer meshes do not remove; `None` where there are neither.
+    /// What the results of a `setting` differ by from those with four cells in every part of a beam that has one, with nodes where
+    /// something acts in a point, and with elements in place of shape functions whose errors finer meshes do not remove; `None`
+    /// where there is nothing of it.
     fn beside_finer(
         &mut self,
         stations: &[Vec<f64>],
         setting: &Setting,
         results: &Results,
     ) -> Result<Option<Difference>, String> {
-        let unseen: Vec<usize> = (0..self.model.beams.len()).filter(|beam| self.is_unseen(*beam)).collect();
+        // What acts in a point within a cell makes an error by its place in the cell, which is another one in coarser cells.
+        let beams = 0..self.model.beams.len();
+        let unseen: Vec<usize> = beams.filter(|beam| self.is_unseen(*beam) || self.pointed[*beam]).collect();
         if unseen.is_empty() || !results.run().complete {
             return Ok(None);
         }
@@ -498,6 +520,19 @@ fn looser(times: i32, control: StepControl, settings: &Dynamic) -> StepControl {
 fn every(stride: usize, places: usize) -> usize {
     let spaces = places.saturating_sub(1);
     if spaces.is_multiple_of(stride) { spaces / stride + 1 } else { places }
+}
+
+/// Whether something acts in a point within a cell that the scene gives a beam. `named` has nodes there, and those that the scene
+/// names.
+fn has_points(model: &Model, beam: usize, named: &Mesh) -> bool {
+    let Ok(length) = Curve::new(&model.beams[beam].centreline).map(|curve| curve.length()) else {
+        return false;
+    };
+    let Ok(basis) = Basis::new(&model.beams[beam].discretization, length) else { return false };
+    let own: Vec<f64> = basis.nodes().iter().copied().chain(model.breaks(beam)).collect();
+    let near = AT_NODE * length / own.len() as f64;
+    let within = |s: &f64| own.iter().all(|node| (node - s).abs() > near);
+    named.nodes.iter().any(within)
 }
 
 /// Two digits, which is enough for a tolerance.

@@ -130,3 +130,30 @@ fn estimates_for_a_scene_as_it_is_take_its_own_mesh() {
     assert!(error(&known).wanted.is_none());
     assert!((0.2..3.0).contains(&(truth / estimated)), "{truth:e} {estimated:e}");
 }
+
+/// Within a cubic cell of length h a force at ξ h misses the deflection F h³ ξ³ (1 − ξ)³/(3 EI) of a beam that is held at its
+/// nodes, which no coarser mesh tells: there the force has another place in its cell.
+#[test]
+fn a_force_within_a_cell_errs_by_its_place_there() {
+    let (cells, load) = (12.0_f64, 0.3_f64);
+    for s in [0.4, 0.46, 0.7] {
+        let text = cantilever(
+            1e4,
+            1.0,
+            &format!(
+                "effect.force = [{{ beam = 'arm', at = {s:?}, value = [0, {load:?}] }}]\nanalysis.static = {{}}"
+            ),
+        );
+        let text = text.replace(
+            "name = 'tip', beam = 'arm', at = 'end'",
+            &format!("name = 'there', beam = 'arm', at = {s:?}"),
+        );
+        let scene = scene(&text.replace("mass_per_length", "basis.ancf.elements = 12, mass_per_length"));
+        let known =
+            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+        let part = (cells * s).fract();
+        let truth = load * (part * (1.0 - part) / cells).powi(3) / 3.0;
+        let estimated = error(&known).estimated.result;
+        assert!((0.2..3.0).contains(&(truth / estimated)), "{s}: {truth:e} {estimated:e}");
+    }
+}

@@ -1,0 +1,117 @@
+//! Errors of positions beside places where the strain of a beam jumps.
+//!
+//! Shape functions with continuous tangents have one strain where two cells meet. If the strain jumps there by Δε, as where a force
+//! pulls along the beam or its axial stiffness jumps, elements of the lengths h on both sides move the place by Δε h/12 along the
+//! beam, and no others: the cubics that come nearest to a corner in energy do. Where the section couples stretch and bending by
+//! a stiffness EB that jumps, the strain that is wrong on one side bends the beam by ΔEB/EI times as much. These errors fall in
+//! proportion to h only, beside others that fall faster, so that runs on coarser meshes do not tell them.
+
+use super::{Difference, larger};
+use crate::model::{Along, Beam, Model, Place};
+use crate::results::{Errors, ProbeSample, Shape, Trajectory};
+
+/// Of Δε h.
+const OF_JUMP: f64 = 1.0 / 12.0;
+/// Places that are nearer to each other are one, in lengths of a beam.
+const SAME: f64 = 1e-9;
+/// Strains below this are round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+/// What strains that jump make the positions of a run err by on beams with the `nodes` \[m\] given, in the records of another
+/// `difference` of it; `None` where none jumps.
+pub(in crate::accuracy) fn strain_jumps(
+    model: &Model,
+    nodes: &[Vec<f64>],
+    run: &Trajectory,
+    difference: &Difference,
+) -> Option<Difference> {
+    let mut sum = Difference {
+        errors: Errors {
+            result: 0.0,
+            curvature: difference.errors.curvature.map(|_| 0.0),
+            section_force: difference.errors.section_force.map(|_| 0.0),
+        },
+        ..difference.clone()
+    };
+    sum.records.fill(0.0);
+    for beam in &mut sum.beams {
+        beam.position.fill(0.0);
+        beam.curvature.fill(0.0);
+    }
+    for sample in sum.probes.iter_mut().flat_map(|probe| &mut probe.samples) {
+        let none = |v: Option<f64>| v.map(|_| 0.0);
+        *sample = ProbeSample { vx: none(sample.vx), vy: none(sample.vy), ..ProbeSample::default() };
+    }
+    for (index, ((beam, nodes), shape)) in model.beams.iter().zip(nodes).zip(&run.last).enumerate() {
+        let length = nodes.last().copied().unwrap_or(0.0);
+        for s in places(model, index, length) {
+            let [along, turn] = at(model, beam, index, shape, (s, length));
+            if along.is_nan() || along <= ROUND_OFF {
+                continue;
+            }
+            let behind = nodes.partition_point(|node| *node <= s + SAME * length).clamp(1, nodes.len() - 1);
+            let before = nodes.partition_point(|node| *node < s - SAME * length).max(1) - 1;
+            let cell = (nodes[behind] - s).max(s - nodes[before]);
+            let (moved, turned) = (OF_JUMP * cell * along, OF_JUMP * cell * turn);
+            let result = (moved + turned * length) / length;
+            sum.errors.result = larger(sum.errors.result, result);
+            sum.records.iter_mut().for_each(|record| *record = larger(*record, result));
+            if let Some(errors) = sum.beams.get_mut(index) {
+                for (place, error) in errors.s.iter().zip(&mut errors.position) {
+                    let near = if (place - s).abs() <= cell { moved } else { 0.0 };
+                    *error = larger(*error, (near + turned * length) / length);
+                }
+            }
+            for (probe, errors) in model.probes.iter().zip(&mut sum.probes) {
+                let near = probe.at.beam == index && (probe.at.s - s).abs() <= cell;
+                let here = if near { moved } else { 0.0 };
+                let error = here + turned * length;
+                for sample in &mut errors.samples {
+                    (sample.x, sample.y) = (larger(sample.x, error), larger(sample.y, error));
+                    sample.angle = larger(sample.angle, turned);
+                }
+            }
+        }
+    }
+    (sum.errors.result > 0.0).then_some(sum)
+}
+
+/// Where within a beam the strain may jump.
+fn places(model: &Model, beam: usize, length: f64) -> Vec<f64> {
+    let points = model.parts.iter().filter_map(|part| part.point());
+    let of_beam = points.filter(|at: &Place| at.beam == beam).map(|at| at.s).chain(model.breaks(beam));
+    let mut places: Vec<f64> = of_beam.filter(|s| *s > SAME * length && *s < (1.0 - SAME) * length).collect();
+    places.sort_by(f64::total_cmp);
+    places.dedup_by(|a, b| (*a - *b).abs() <= SAME * length);
+    places
+}
+
+/// By how much the strain jumps at `s`, and that times the jump of EB over EI.
+fn at(model: &Model, beam: &Beam, index: usize, shape: &Shape, (s, length): (f64, f64)) -> [f64; 2] {
+    // Where nothing acts in the point itself, the forces are those of the places beside it.
+    let first = shape.s.partition_point(|place| *place < s - SAME * length);
+    let behind = shape.s.partition_point(|place| *place <= s + SAME * length);
+    let [before, behind] = if first == behind { [first.max(1) - 1, behind] } else { [first, behind - 1] };
+    let forces = |k: usize| Some([*shape.axial_force.get(k)?, *shape.bending_moment.get(k)?]);
+    let Some((before, behind)) = forces(before).zip(forces(behind)) else { return [0.0; 2] };
+    let side = |[force, moment]: [f64; 2], inside: f64| -> Option<[f64; 3]> {
+        let value = |along: &Along| along.at(s, inside);
+        let axial = value(beam.section.axial_stiffness.as_ref()?);
+        let bending = beam.section.bending_stiffness.as_ref().map_or(f64::INFINITY, value);
+        let coupling = beam.section.coupling.as_ref().map_or(0.0, value);
+        let imposed: f64 = model
+            .parts
+            .iter()
+            .filter_map(|part| part.actuation(index).filter(|imposed| imposed.layer.is_none()))
+            .map(|imposed| value(imposed.strain))
+            .sum();
+        let strain = (force - coupling / bending * moment) / (axial - coupling * coupling / bending);
+        Some([strain + imposed, coupling, bending])
+    };
+    let sides = [side(before, 0.5 * s), side(behind, 0.5 * (s + length))];
+    let [Some([strain, coupling, bending]), Some([other, other_coupling, _])] = sides else {
+        return [0.0; 2];
+    };
+    let jump = (other - strain).abs();
+    [jump, jump * (other_coupling - coupling).abs() / bending]
+}
