@@ -106,8 +106,8 @@ struct Beginning {
     motion: String,
     /// A message on how a saved state was taken up.
     told: Option<String>,
-    /// A warning about kinetic energy that it has and the saved state had not.
-    brought: Option<String>,
+    /// Warnings about energy that it has and the saved state had not.
+    brought: Vec<String>,
 }
 
 /// Where a motion begins. If it starts from a saved state, supports without a law of time fix the
@@ -123,10 +123,17 @@ fn beginning(
         let start = start::from_rest(system, &model.initial_velocities)?;
         let end = settings.duration;
         start::check_jumps(system, 0.0, end)?;
-        return Ok(Beginning { start, end, motion, told: None, brought: None });
+        return Ok(Beginning { start, end, motion, told: None, brought: Vec::new() });
     };
     let (start, same) = saved.take_up(model, system, &motion)?;
-    let brought = if same { None } else { brought(system, &start.state, saved.kinetic()) };
+    let brought = match same {
+        true => Vec::new(),
+        false => {
+            let stands = saved.gone_on(model);
+            let pressed = pressed(system, &start.state, |part| stands.stands(part));
+            brought(system, &start.state, saved.kinetic()).into_iter().chain(pressed).collect()
+        }
+    };
     system.freeze(&start.state.q);
     let (begin, end) = (saved.time(), later(saved.time(), settings.duration));
     start::check_jumps(system, begin, end)?;
@@ -153,6 +160,23 @@ fn brought(system: &System, state: &State, before: f64) -> Option<String> {
             "the motion begins with a kinetic energy of {now:.6e} J, and the one before it ended with {before:.6e} J: a mass that comes has the \
              velocity of the beam where it sits, as if it had been carried along, and one that goes takes its own with it; a beam that catches \
              a mass at rest would be slowed down, which is not computed"
+        )
+    })
+}
+
+/// A warning where contacts with obstacles that did not stand in the saved state begin deep within these.
+fn pressed(system: &System, state: &State, stands: impl Fn(usize) -> bool) -> Option<String> {
+    let of_new = system.contact_energies(&state.q).filter(|(part, ..)| !stands(*part));
+    let pressed: Vec<(usize, f64)> =
+        of_new.map(|(_, beam, energy)| (beam, energy)).filter(|(_, energy)| *energy > 0.0).collect();
+    let energy: f64 = pressed.iter().map(|(_, energy)| energy).sum();
+    let beam = system.beams().get(pressed.first()?.0)?;
+    let kinetic = system.energy(state.time, &state.q, Some(&state.v)).kinetic;
+    (energy > SAME_ENERGY * kinetic).then(|| {
+        format!(
+            "an obstacle that comes has beam `{}` within it already: its contact begins with {energy:.6e} J, which nothing put in, and throws the \
+             beam out; let it come in a static stage, in which contacts grow, or where the beam is not",
+            beam.name
         )
     })
 }

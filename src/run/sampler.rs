@@ -778,9 +778,9 @@ impl<'a> Sampler<'a> {
                  be softer, or a beam come to it by a support that moves"
             }
             _ if self.system.is_fading() => {
-                "what held the state with which this analysis starts and has gone fades on the way, that of supports, joints and \
-                 tendons of another file as forces of fixed directions: let it go in a `[[stage]]` of one file, where tendons \
-                 fade as they are, or in a damped motion, which passes states that are unstable"
+                "what held the state with which this analysis starts and has gone fades on the way, that of supports, joints, springs, \
+                 tendons and moments of another file as forces of fixed directions, which allow no large turns: let it go in a `[[stage]]` of one file, \
+                 where loads and tendons fade as they are, or in a damped motion, which passes states that are unstable"
             }
             _ if self.system.is_floppy() => {
                 "strings and beams on hinges come to rest where loads of fixed direction hold them: let such a load act on all \

@@ -99,6 +99,17 @@ impl System {
         force
     }
 
+    /// The energies \[J\] of the contacts with obstacles in the state `q`, each with the number of its part and the index of its
+    /// beam.
+    pub fn contact_energies<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
+        let effects = self.terms.internal.iter().zip(&self.terms.owners.internal);
+        effects.filter(|(effect, _)| effect.kind() == Kind::Contact).filter_map(|(effect, owner)| match owner
+        {
+            Owner::Part(part) => Some((*part, effect.beam(), effect.energy(q))),
+            Owner::Beam(_) | Owner::Gone(_) => None,
+        })
+    }
+
     /// Per effect of the model: its name (kind and beam, and a number where a beam has several of a kind,
     /// in the order of the model), its energy \[J\] if it has one, and the resultant \[N\] of its
     /// forces on the beam.

@@ -168,11 +168,18 @@ impl System {
         self.tied.iter().map(|&r| (r, &self.constraints[r]))
     }
 
-    /// The row that the state `q` violates most: one of its coordinates, and the violation (in beam
-    /// lengths; in rad for directions).
-    pub fn missed(&self, parameter: f64, q: &[f64]) -> Option<(usize, f64)> {
-        let missed = self.constraints.iter().map(|row| (row.first(), row.miss(parameter, q, self.length)));
-        missed.max_by(|a, b| a.1.total_cmp(&b.1))
+    /// The row that the state `q` violates most: a beam that it holds and the place there \[m\], whether it is of a length, and
+    /// the violation (in beam lengths; in rad for directions).
+    pub fn missed(&self, parameter: f64, q: &[f64]) -> Option<((usize, f64), bool, f64)> {
+        let missed = self.constraints.iter().map(|row| (row, row.miss(parameter, q, self.length)));
+        let (row, miss) = missed.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some((self.place_of_row(row), row.is_of_length(), miss))
+    }
+
+    /// The place of a row, or the node of its first coordinate.
+    fn place_of_row(&self, row: &Constraint) -> (usize, f64) {
+        let (beam, node) = self.place_of(row.first());
+        (beam, row.places().first().copied().unwrap_or(node))
     }
 
     /// The row whose rate dg/dt the velocities `v` violate most, relative to beam lengths where it is a length: a beam that
@@ -185,8 +192,7 @@ impl System {
             (row, rate, rate / unit)
         });
         let (row, rate, _) = rates.max_by(|a, b| a.2.total_cmp(&b.2))?;
-        let (beam, node) = self.place_of(row.first());
-        Some(((beam, row.places().first().copied().unwrap_or(node)), row.holds(), rate))
+        Some((self.place_of_row(row), row.holds(), rate))
     }
 
     /// Writes −g(q), scaled.

@@ -951,3 +951,21 @@ fn friction_is_remembered_by_its_contact() {
         near(found[1], found[0], 1e-9, when);
     }
 }
+
+/// A plane that comes in a motion where the beam is 0.3 m within it is told with the energy k/2 ∫ g² ds of its contact.
+#[test]
+fn an_obstacle_that_comes_around_a_beam_is_told_with_its_energy() {
+    let warned = |height: f64| {
+        let text = format!(
+            "beam.rod = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }}
+             effect.contact = [{{ beam = 'rod', half_plane = {{ point = [0, {height:?}], normal = [0, 1] }}, stiffness = 100, stage = 'two' }}]
+             stage = [{{ name = 'one', analysis.dynamic.duration = 0.01 }}, {{ name = 'two', analysis.dynamic.duration = 0.01 }}]"
+        );
+        solved(&text)[1].run().warnings.clone()
+    };
+    let told = warned(0.3);
+    let expected =
+        "an obstacle that comes has beam `rod` within it already: its contact begins with 4.500000e0 J";
+    assert!(told.iter().any(|warning| warning.starts_with(expected)), "{told:?}");
+    assert!(warned(-0.3).is_empty());
+}

@@ -407,7 +407,7 @@ pub struct JointTable {
 pub enum JointName {
     /// The points coincide.
     Hinge,
-    /// The points coincide and the angle between the beams stays.
+    /// The points coincide and the angle between the beams is the one that they have at the start of the scene.
     Weld,
     /// The point moves along a line of the ground.
     Slider,

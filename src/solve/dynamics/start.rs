@@ -23,7 +23,7 @@ const WITHIN_A_STEP: f64 = 1e-3;
 pub enum StartError {
     /// A support does not allow the velocity.
     #[error(
-        "the velocity at the start moves what a support holds: near s = {} m of beam `{beam}` the supports change it by {change:.3e} m/s",
+        "the velocity at the start moves what a support holds: near s = {} m of beam `{beam}` the supports change it by {change:.3e} {unit}",
         plain(*.s, 6)
     )]
     #[diagnostic(help(
@@ -35,8 +35,29 @@ pub enum StartError {
         beam: String,
         /// Arc length \[m\].
         s: f64,
-        /// By how much the supports change the velocity \[m/s\].
+        /// By how much the supports change the velocity.
         change: f64,
+        /// Unit of the change.
+        unit: &'static str,
+    },
+    /// A support comes that does not allow the velocity with which an earlier analysis has ended.
+    #[error(
+        "what moves is held all at once: near s = {} m of beam `{beam}` a support that was not there before changes its velocity by {change:.3e} {unit}",
+        plain(*.s, 6)
+    )]
+    #[diagnostic(help(
+        "an impact on what is rigid has no bound: let the motion before end where this point, or its direction, is at rest (an `[[event]]` with `stop`), or \
+         catch it by a stiff `effect.spring` or `effect.torsion_spring` with `damping`"
+    ))]
+    Caught {
+        /// Name of the beam.
+        beam: String,
+        /// Arc length \[m\].
+        s: f64,
+        /// By how much the support changes the velocity.
+        change: f64,
+        /// Unit of the change.
+        unit: &'static str,
     },
     /// A joint does not allow the velocity.
     #[error("the velocity at the start parts a joint: near s = {} m of beam `{beam}` what it holds moves apart at {rate:.3e} {unit}", plain(*.s, 6))]
@@ -69,8 +90,7 @@ pub enum StartError {
     },
     /// A joint of the scene is open in the state at the start, or a length not the one that is kept.
     #[error(
-        "a joint, a support or a length that is kept holds beam `{beam}` near s = {} m, and the state at the start misses it by {miss:.3e} beam lengths, or \
-         rad",
+        "a joint, a support or a length that is kept holds beam `{beam}` near s = {} m, and the state at the start misses it by {miss:.3e} {unit}",
         plain(*.s, 6)
     )]
     #[diagnostic(help(
@@ -82,8 +102,10 @@ pub enum StartError {
         beam: String,
         /// Arc length \[m\].
         s: f64,
-        /// By how much the state misses it, in beam lengths or rad.
+        /// By how much the state misses it.
         miss: f64,
+        /// Unit of that.
+        unit: &'static str,
     },
     /// A tendon does not have its length at the start.
     #[error("a tendon of beam `{beam}` is {excess:.3e} m too long for its given length at t = {time} s")]
@@ -179,9 +201,11 @@ pub fn from_state(
     {
         return Err(StartError::Tendon { beam: beam.to_owned(), excess, time: state.time });
     }
-    if let Some((at, miss)) = system.missed(state.time, &state.q).filter(|(_, miss)| *miss > JOINED) {
-        let (beam, s) = system.place_of(at);
-        return Err(StartError::Open { beam: system.beams()[beam].name.clone(), s, miss });
+    if let Some(((beam, s), is_length, miss)) = system.missed(state.time, &state.q)
+        && miss > JOINED
+    {
+        let (miss, unit) = if is_length { (miss * system.length(), "m") } else { (miss, "rad") };
+        return Err(StartError::Open { beam: system.beams()[beam].name.clone(), s, miss, unit });
     }
     state.q = imposed;
     let at_rest = velocities.is_empty() && state.v.iter().all(|v| *v == 0.0);
@@ -215,7 +239,9 @@ pub fn from_state(
     // What is at rest until laws move it has no velocity that supports could contradict.
     let allowed = rest.max(allowed * largest(system, |i| state.v[i]).1);
     if !at_rest && change > allowed {
-        return Err(refused(system, &state, allowed, (worst, (given[worst] - admissible[worst]).abs())));
+        let changes: Vec<f64> =
+            given.iter().zip(&admissible).map(|(given, admissible)| given - admissible).collect();
+        return Err(refused(system, &state, allowed, (worst, changes), velocities.is_empty()));
     }
     let kinetic = |v: &[f64]| system.energy(state.time, &state.q, Some(v)).kinetic;
     state.work += kinetic(&admissible) - kinetic(&state.v);
@@ -224,8 +250,15 @@ pub fn from_state(
 }
 
 /// What does not allow the velocities of a state: a joint or a length whose own rate is larger than `allowed` (1/s, lengths in
-/// beam lengths), or else supports, which change the coordinate `worst` of the velocities by `change`.
-fn refused(system: &System, state: &State, allowed: f64, (worst, change): (usize, f64)) -> StartError {
+/// beam lengths), or else supports, which make `changes` of the velocities, the largest of coordinate `worst`. Where the velocities
+/// are those with which an `earlier` analysis has ended, these supports are new.
+fn refused(
+    system: &System,
+    state: &State,
+    allowed: f64,
+    (worst, mut changes): (usize, Vec<f64>),
+    earlier: bool,
+) -> StartError {
     let name = |beam: usize| system.beams()[beam].name.clone();
     if let Some(((beam, s), holds, rate)) = system.missed_rate(state.time, &state.q, &state.v) {
         let beam = name(beam);
@@ -240,6 +273,14 @@ fn refused(system: &System, state: &State, allowed: f64, (worst, change): (usize
             _ => {}
         }
     }
-    let (beam, s) = system.place_of(worst);
-    StartError::Held { beam: name(beam), s, change }
+    // What is held itself tells more than what it drags along.
+    let of_worst = changes[worst].abs();
+    system.supports().keep_fixed(state.time, &mut changes);
+    let (held, excess) = largest(system, |i| changes[i]);
+    let (at, change) = if excess > 0.0 { (held, changes[held].abs()) } else { (worst, of_worst) };
+    let ((beam, s), unit) = (system.place_of(at), if at % 4 < 2 { "m/s" } else { "rad/s" });
+    match earlier {
+        false => StartError::Held { beam: name(beam), s, change, unit },
+        true => StartError::Caught { beam: name(beam), s, change, unit },
+    }
 }
