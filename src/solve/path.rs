@@ -33,7 +33,7 @@
 //! further, with a warning.
 //!
 //! Where a contact closes or a law has a corner, a path by arc length has a kink, at which it may turn
-//! by more than a right angle ([`kink`]).
+//! by more than a right angle (`kink.rs`).
 //!
 //! Predictors by polynomials through the last points, with and without the tangents there, were
 //! rejected: their corrections are smaller, but Newton's method takes as many iterations a step,
