@@ -125,6 +125,8 @@ const MOST_TRIALS: usize = 60;
 const ROUND_OFFS: f64 = 1e4;
 /// A rate that falls below this part of both of those at the ends of a step may vanish between.
 const STANDS_STILL: f64 = 0.2;
+/// Part of a step by which the cubic between its ends may miss the path halfway.
+const MISSED: f64 = 0.03;
 /// A rate that changes its sign within this part of a step jumps there.
 const AT_KINK: f64 = 1e-9;
 /// A rate that is this part of the larger one at the ends of a step is zero at a turning point …
@@ -827,6 +829,39 @@ impl<'e, 'a> Path<'e, 'a> {
             Ok(())
         })?;
         Ok(true)
+    }
+
+    /// Whether the cubic between the ends of the last step, with their tangents, misses the path halfway by more than a part
+    /// of the step, in its shape or in its load: the step may then have passed over a snap as a whole. One iteration at the
+    /// middle, across the step, tells.
+    pub fn misses_middle(&mut self) -> bool {
+        let [.., a, b] = &self.points[..] else { return false };
+        let n = a.x.len();
+        if a.rate.len() <= n || b.rate.len() <= n {
+            return false;
+        }
+        let (mut x, load) = within(a, b, 0.5);
+        let mut step: Vec<f64> = b.x.iter().zip(&a.x).map(|(b, a)| b - a).collect();
+        step.push(b.load - a.load);
+        let turning = b.load_rate().abs().max(a.load_rate().abs()) * (b.parameter - a.parameter).abs();
+        let coordinates = self.equilibrium.system().coordinates();
+        self.equilibrium.system().supports().impose(load, &mut x[..coordinates]);
+        let (mut off, mut rate) = (vec![0.0; n], vec![0.0; n]);
+        if self.equilibrium.linearize(load, &x, None, &mut off, &mut rate).is_err() {
+            return false;
+        }
+        self.equilibrium.solve(load, &mut off, false);
+        self.equilibrium.solve(load, &mut rate, true);
+        let normal = self.weights(&step);
+        let along = |v: &[f64]| -> f64 { v.iter().zip(&normal).map(|(v, n)| v * n).sum() };
+        let of_load = -along(&off) / (normal[n] + along(&rate));
+        off.iter_mut().zip(&rate).for_each(|(off, rate)| *off += of_load * rate);
+        off.push(0.0);
+        let moved = step[n].abs().max(turning);
+        step[n] = 0.0;
+        let size = |v: &[f64]| self.dot(v, v).sqrt();
+        // What cannot be computed tells nothing.
+        size(&off) > MISSED * size(&step) || of_load.abs() > MISSED * moved
     }
 
     /// Whether a quantity turns back within the last step and goes on again, so that its rates at the ends do not tell: on the

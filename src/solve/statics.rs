@@ -535,7 +535,7 @@ fn stride(
                     UNSEEN * system.length(),
                 ),
             });
-        if hidden && take_back(path) {
+        if (hidden || path.misses_middle()) && take_back(path) {
             continue;
         }
         let Some(previous) = path.last_two().map(|[previous, _]| previous.clone()) else { continue };

@@ -240,6 +240,35 @@ fn limit_points_of_a_sliding_bar_are_exact() {
     }
 }
 
+/// A shallow bar whose law stiffens under pressure snaps through within 0.3°, less than any step turns it: the middle of a step tells,
+/// and the path ends where its target is reached first. With N of the law, the load is λ = −N y/(l F).
+#[test]
+fn a_snap_that_turns_next_to_nothing_is_not_passed() {
+    let (height, force) = (0.005, 1.250_803_7e-8);
+    let long = 1.0_f64.hypot(height);
+    let law = |strain: f64| if strain > -7.5e-6 { 0.1 * strain } else { -7.5e-7 + strain + 7.5e-6 };
+    let load = |y: f64| {
+        let now = 1.0_f64.hypot(y);
+        -law((now - long) / long) * y / now / force
+    };
+    let highest = (1..1000).map(|k| 1e-3 * f64::from(k) * height);
+    let highest = highest.max_by(|a, b| load(*a).total_cmp(&load(*b))).expect("a limit point");
+    for until in [0.3, 0.5, 0.9 * load(highest)] {
+        let expected = zero(|y| load(y) - until, [highest, height]);
+        let found = solved(&format!(
+            "beam.b = {{ start = [0, 0], end = [1, {height:?}], bending_stiffness = 0.1, basis.ancf.elements = 4, \
+             axial_law = {{ strain = [-1, -7.5e-6, 0, 1], force = [-0.99999325, -7.5e-7, 0, 1] }} }}\n\
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'b', at = 'end', fix = ['x'] }}]\n\
+             effect.force = [{{ beam = 'b', at = 'end', value = [0, {:?}] }}]\n\
+             probe = [{{ name = 'p', beam = 'b', at = 'end' }}]\n\
+             analysis.static.arc_length.until_load = {until:?}\n",
+            -force
+        ));
+        let end = found.probes[0].samples.last().expect("a state").y;
+        assert!((end - expected).abs() < 1e-3 * height, "{until}: {end} for {expected}");
+    }
+}
+
 /// A cantilever whose end is pulled across, away from where its path is to end, until its mesh folds: the path does not walk back
 /// through the states on its way there, but ends for lack of points.
 #[test]
