@@ -127,6 +127,8 @@ const ROUND_OFFS: f64 = 1e4;
 const STANDS_STILL: f64 = 0.2;
 /// Part of a step by which the cubic between its ends may miss the path halfway.
 const MISSED: f64 = 0.03;
+/// Changes of the shape below this part of a step are round-off.
+const UNMOVED: f64 = 1e-7;
 /// A rate that changes its sign within this part of a step jumps there.
 const AT_KINK: f64 = 1e-9;
 /// A rate that is this part of the larger one at the ends of a step is zero at a turning point …
@@ -295,7 +297,6 @@ impl<'e, 'a> Path<'e, 'a> {
                 step = self.step;
             }
             let increment = self.increment(step);
-            let predicted_state = self.predict(&increment, here + step).x;
             let target = if step >= left { end } else { here + step };
             let corrected = match self.correct(&increment, target, step) {
                 Ok((mut point, turn)) => {
@@ -304,7 +305,7 @@ impl<'e, 'a> Path<'e, 'a> {
                     }
                     let doubtful = self.loses_stability(&point)
                         || turn > SURE_TURN.min(self.predicted_turn(step)).max(STILL)
-                            && self.turns_back(&point, &predicted_state)
+                            && self.turns_back(&point, &increment)
                         || self.passes_more_than_a_limit(&point)
                         || self.crosses_twice(&point);
                     if doubtful && step > BELIEVED_STEP {
@@ -406,15 +407,19 @@ impl<'e, 'a> Path<'e, 'a> {
             && (before.changes_sign(after) != turns || before.count().abs_diff(after.count()) > 1)
     }
 
-    /// Whether nodes turn the other way than was predicted, as on the mirrored branch of a column.
-    fn turns_back(&self, point: &Point, predicted: &[f64]) -> bool {
+    /// Whether nodes turn the other way than `increment` foretells, as on the mirrored branch of a column.
+    fn turns_back(&self, point: &Point, increment: &[f64]) -> bool {
+        if self.parameter != Parameter::Load {
+            return false;
+        }
+        let predicted = self.predict(increment, point.load).x;
         let n = self.equilibrium.system().coordinates();
         let gradients = |x: &'_ [f64]| nodes(&x[..n]).map(|node| node.gradient).collect::<Vec<_>>();
-        let [here, there, wanted] = [&self.last().x, &point.x, predicted].map(gradients);
+        let [here, there, wanted] = [&self.last().x[..], &point.x, &predicted].map(gradients);
         let angle = |from: [f64; 2], to: [f64; 2]| cross(from, to).atan2(dot(from, to));
         let turns = here.iter().zip(there).zip(wanted);
         let along: f64 = turns.map(|((from, to), wanted)| angle(*from, to) * angle(*from, wanted)).sum();
-        self.parameter == Parameter::Load && along < 0.0
+        along < 0.0
     }
 
     /// Whether the determinant changes its sign twice on the way to a point, where it alone tells
@@ -860,8 +865,9 @@ impl<'e, 'a> Path<'e, 'a> {
         let moved = step[n].abs().max(turning);
         step[n] = 0.0;
         let size = |v: &[f64]| self.dot(v, v).sqrt();
+        let least = UNMOVED * (b.parameter - a.parameter).abs();
         // What cannot be computed tells nothing.
-        size(&off) > MISSED * size(&step) || of_load.abs() > MISSED * moved
+        size(&off) > (MISSED * size(&step)).max(least) || of_load.abs() > MISSED * moved
     }
 
     /// Whether a quantity turns back within the last step and goes on again, so that its rates at the ends do not tell: on the
