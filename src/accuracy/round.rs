@@ -84,7 +84,7 @@ pub(super) struct Runner<'a, 'o> {
     named: Vec<Option<Mesh>>,
     /// Those of them whose errors finer meshes do not remove.
     saturated: Vec<bool>,
-    /// Those of them with elements within which something acts in a point.
+    /// Those of them within whose cells something acts in a point.
     pointed: Vec<bool>,
     /// The halvings between the meshes of two runs: more than one where the scene gives all beams an odd number of
     /// cells.
@@ -183,8 +183,7 @@ impl<'a, 'o> Runner<'a, 'o> {
         };
         let named: Vec<Option<Mesh>> = model.beams.iter().zip(&meshes).map(named).collect();
         let pointed = |(index, named): (usize, &Option<Mesh>)| {
-            let elements = matches!(model.beams[index].discretization, Discretization::Ancf { .. });
-            elements && named.as_ref().is_some_and(|named| has_points(model, index, named))
+            named.as_ref().is_some_and(|named| has_points(model, index, named))
         };
         let pointed = named.iter().enumerate().map(pointed).collect();
         let saturated = |(beam, mesh): (&Beam, &Mesh)| saturates(&beam.discretization, mesh.length());

@@ -129,8 +129,8 @@ fn beginning(
     let brought = match same {
         true => Vec::new(),
         false => {
-            let stands = saved.gone_on(model);
-            let pressed = pressed(system, &start.state, |part| stands.stands(part));
+            let gone_on = saved.gone_on(model);
+            let pressed = pressed(system, &start.state, |part| gone_on.stands(part));
             brought(system, &start.state, saved.kinetic()).into_iter().chain(pressed).collect()
         }
     };

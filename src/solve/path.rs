@@ -39,6 +39,8 @@
 //! rejected: their corrections are smaller, but Newton's method takes as many iterations a step,
 //! and the first steps, which have no past to extrapolate, decide on the cost.
 
+mod ends;
+mod hidden;
 mod kink;
 
 use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
@@ -71,6 +73,11 @@ impl Point {
     /// The load factor's rate dλ/dt along the path.
     pub fn load_rate(&self) -> f64 {
         self.rate.last().copied().unwrap_or_default()
+    }
+
+    /// Turns its tangent to the other side.
+    fn turn_round(&mut self) {
+        self.rate.iter_mut().for_each(|rate| *rate = -*rate);
     }
 }
 
@@ -110,30 +117,7 @@ const SLIDING: f64 = 10.0;
 const SURE_TURN: f64 = 0.05;
 /// Turns of the corrector below this are round-off \[rad\].
 const STILL: f64 = 1e-10;
-/// A step without a count of unstable directions is also checked between its ends, if it turns no
-/// node by more than this \[rad\]: a beam that is bent more keeps to its side of a bifurcation.
-const STRAIGHT: f64 = 0.1;
-/// Number of parts of such a step at whose ends it is checked.
-const BETWEEN: u32 = 5;
-/// How often such a part is halved at most where two directions lose their stiffness within it.
-const HALVINGS: u32 = 20;
-/// Most trials for the length of a step that must end at a target: halving alone needs as many as a
-/// number has binary digits.
-const MOST_TRIALS: usize = 60;
-/// Such a step may miss its target by this many times the tolerance where shorter steps change
-/// nothing.
-const ROUND_OFFS: f64 = 1e4;
-/// A rate that falls below this part of both of those at the ends of a step may vanish between.
-const STANDS_STILL: f64 = 0.2;
-/// Part of a step by which the cubic between its ends may miss the path halfway.
-const MISSED: f64 = 0.03;
-/// Changes of the shape below this part of a step are round-off.
-const UNMOVED: f64 = 1e-7;
-/// A rate that changes its sign within this part of a step jumps there.
-const AT_KINK: f64 = 1e-9;
-/// A rate that is this part of the larger one at the ends of a step is zero at a turning point …
-const AT_TURN: f64 = 1e-6;
-/// … and one below this part of it at the start of a step is that of a turning point where the step before has ended.
+/// A rate that is below this part of that at the end of a step is that of a turning point, where the step before has ended.
 const LEAVES_TURN: f64 = 1e-4;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
@@ -258,7 +242,7 @@ impl<'e, 'a> Path<'e, 'a> {
     /// Follows the path to the other side of its start, before the first step.
     pub fn turn_round(&mut self) {
         if let [start] = &mut self.points[..] {
-            start.rate.iter_mut().for_each(|rate| *rate = -*rate);
+            start.turn_round();
         }
     }
 
@@ -397,16 +381,6 @@ impl<'e, 'a> Path<'e, 'a> {
         before.is_lost(after) && along(&last.rate) == along(&point.rate)
     }
 
-    /// Whether a path by arc length meets more on the way to a point than one limit point, where one direction loses or regains
-    /// its stiffness and the load factor turns back.
-    fn passes_more_than_a_limit(&self, point: &Point) -> bool {
-        let last = self.last();
-        let (Some(before), Some(after)) = (last.stability, point.stability) else { return false };
-        let turns = turns_within([last, point].map(Point::load_rate));
-        self.parameter == Parameter::ArcLength
-            && (before.changes_sign(after) != turns || before.count().abs_diff(after.count()) > 1)
-    }
-
     /// Whether nodes turn the other way than `increment` foretells, as on the mirrored branch of a column.
     fn turns_back(&self, point: &Point, increment: &[f64]) -> bool {
         if self.parameter != Parameter::Load {
@@ -420,39 +394,6 @@ impl<'e, 'a> Path<'e, 'a> {
         let turns = here.iter().zip(there).zip(wanted);
         let along: f64 = turns.map(|((from, to), wanted)| angle(*from, to) * angle(*from, wanted)).sum();
         along < 0.0
-    }
-
-    /// Whether the determinant changes its sign twice on the way to a point, where it alone tells
-    /// of stability. It is evaluated at several states between, and where the number of directions
-    /// that lack stiffness changes by more than one, at states ever nearer to the change. In a step
-    /// that bends the beams states between would be compressed, as chords are; there the number at
-    /// both ends has to do.
-    fn crosses_twice(&mut self, point: &Point) -> bool {
-        let last = self.last().clone();
-        let (Some(before), Some(Stability::NegativeDeterminants(_))) = (last.stability, point.stability)
-        else {
-            return false;
-        };
-        if self.turn(&point.x, &last.x) >= STRAIGHT {
-            return softens(&last, point);
-        }
-        let mut scratch = vec![0.0; point.x.len()];
-        let mut rate = scratch.clone();
-        let mut look = |part: f64| -> Option<Between> {
-            let (x, load) = within(&last, point, part);
-            self.equilibrium.linearize(load, &x, None, &mut scratch, &mut rate).ok()?;
-            let crossed = before.differs(self.equilibrium.stability()?);
-            Some(Between { part, crossed, soft: self.equilibrium.soft_directions() })
-        };
-        let parts = (0..=BETWEEN).map(|k| f64::from(k) / f64::from(BETWEEN));
-        let crossed = match parts.map(&mut look).collect::<Option<Vec<_>>>() {
-            Some(looks) => {
-                looks.windows(2).any(|ends| ends[0].crossed || crosses_within(ends, &mut look, HALVINGS))
-            }
-            None => true,
-        };
-        // The last factorisation must be that of the point.
-        crossed || look(1.0).is_none()
     }
 
     /// Determines stability at the point itself: near a critical load the last increment may still
@@ -697,7 +638,7 @@ impl<'e, 'a> Path<'e, 'a> {
         let turn = outcome?;
         (point.stability, point.soft) = self.equilibrium.stability_and_softness();
         if self.goes_back(&before, &point) {
-            point.rate.iter_mut().for_each(|rate| *rate = -*rate);
+            point.turn_round();
         }
         Ok((point, turn))
     }
@@ -728,197 +669,6 @@ impl<'e, 'a> Path<'e, 'a> {
             .fold((0, 0.0), |worst, (i, d)| if d > worst.1 || d.is_nan() { (i, d) } else { worst })
             .0;
         self.equilibrium.system().place_of(4 * node)
-    }
-
-    /// Shortens the last step until `miss` of its end vanishes to within `near`, by the secant
-    /// method with halved ends (known as Illinois). `miss` must have opposite signs at both ends of
-    /// the step.
-    ///
-    /// # Errors
-    /// [`NoStep`] where a shorter step does not converge, or leads to another branch on which
-    /// `miss` does not vanish.
-    pub fn end_where(&mut self, miss: impl Fn(&Point) -> f64, near: f64) -> Result<&Point, NoStep> {
-        self.restoring(|path| {
-            path.try_to_end_where(&miss, near, f64::EPSILON)?;
-            let Point { load, .. } = *path.last();
-            if miss(path.last()).abs() <= ROUND_OFFS * near {
-                return Ok(());
-            }
-            let step = path.history.last().map_or(0.0, |record| record.step);
-            let at = path.equilibrium.system().place_of(0);
-            Err(NoStep { load, step, failure: Failure::Bifurcation, at })
-        })?;
-        Ok(self.last())
-    }
-
-    /// Calls `shorten`, and makes the last step what it was before where that fails.
-    fn restoring(&mut self, shorten: impl FnOnce(&mut Self) -> Result<(), NoStep>) -> Result<(), NoStep> {
-        let (whole, record) = (self.last().clone(), self.history.last().cloned());
-        let shortened = shorten(self);
-        if shortened.is_err() {
-            self.points.pop();
-            self.points.push(whole);
-            self.history.pop();
-            self.history.extend(record);
-        }
-        shortened
-    }
-
-    /// Shortens the last step until `miss` vanishes to within `near`, or changes its sign within the part `narrow` of the step.
-    fn try_to_end_where(
-        &mut self,
-        miss: &impl Fn(&Point) -> f64,
-        near: f64,
-        narrow: f64,
-    ) -> Result<(), NoStep> {
-        let [.., before, point] = &self.points[..] else { return Ok(()) };
-        let mut low = (0.0, miss(before));
-        let mut high = (self.history.last().map_or(0.0, |record| record.step), miss(point));
-        for _ in 0..MOST_TRIALS {
-            let width = high.0 - low.0;
-            if miss(self.last()).abs() <= near || width.abs() <= narrow * high.0.abs().max(low.0.abs()) {
-                break;
-            }
-            let mut step =
-                (low.0 - low.1 * width / (high.1 - low.1)).clamp(low.0.min(high.0), low.0.max(high.0));
-            if self.retake(step).is_err() {
-                // At a limit point that is met exactly, no tangent can be factorised.
-                step = 0.5 * (step + high.0);
-                self.retake(step)?;
-            }
-            let found = miss(self.last());
-            if (found < 0.0) == (high.1 < 0.0) {
-                low.1 *= 0.5;
-            } else {
-                low = high;
-            }
-            high = (step, found);
-        }
-        Ok(())
-    }
-
-    /// Ends the last step at the limit point within it; returns whether there is one.
-    ///
-    /// # Errors
-    /// As [`Self::end_at_turn`].
-    pub fn end_at_limit(&mut self) -> Result<bool, NoStep> {
-        let Point { stability, soft, .. } = *self.last();
-        let turns = self.end_at_turn(Point::load_rate)?;
-        if turns && let Some(limit) = self.points.last_mut() {
-            // There the tangent is singular, and its signs are round-off: what changes in the whole step changes here.
-            (limit.stability, limit.soft) = (stability, soft);
-        }
-        Ok(turns)
-    }
-
-    /// Ends the last step where `rate`, which its ends have with opposite signs, vanishes; returns whether they have. The
-    /// quantity whose rate it is then only grows or only falls in any step, and what it reaches in one is seen at the ends.
-    ///
-    /// # Errors
-    /// [`NoStep`] where a shorter step does not converge; the step is then what it was.
-    pub fn end_at_turn(&mut self, rate: impl Fn(&Point) -> f64) -> Result<bool, NoStep> {
-        let Some([a, b]) = self.last_two() else { return Ok(false) };
-        let ends = [rate(a), rate(b)];
-        if !turns_within(ends) {
-            return Ok(false);
-        }
-        let near = AT_TURN * ends[0].abs().max(ends[1].abs());
-        self.restoring(|path| {
-            path.try_to_end_where(&rate, near, AT_KINK)?;
-            // At a kink the rate jumps. The path goes on beyond it.
-            let last = rate(path.last());
-            if last.abs() > near && (last < 0.0) != (ends[1] < 0.0) {
-                let step = path.history.last().map_or(0.0, |record| record.step);
-                path.retake(step * (1.0 + 2.0 * AT_KINK))?;
-            }
-            Ok(())
-        })?;
-        Ok(true)
-    }
-
-    /// Whether the cubic between the ends of the last step, with their tangents, misses the path halfway by more than a part
-    /// of the step, in its shape or in its load: the step may then have passed over a snap as a whole. One iteration at the
-    /// middle, across the step, tells.
-    pub fn misses_middle(&mut self) -> bool {
-        let [.., a, b] = &self.points[..] else { return false };
-        let n = a.x.len();
-        if a.rate.len() <= n || b.rate.len() <= n {
-            return false;
-        }
-        let (mut x, load) = within(a, b, 0.5);
-        let mut step: Vec<f64> = b.x.iter().zip(&a.x).map(|(b, a)| b - a).collect();
-        step.push(b.load - a.load);
-        let turning = b.load_rate().abs().max(a.load_rate().abs()) * (b.parameter - a.parameter).abs();
-        let coordinates = self.equilibrium.system().coordinates();
-        self.equilibrium.system().supports().impose(load, &mut x[..coordinates]);
-        let (mut off, mut rate) = (vec![0.0; n], vec![0.0; n]);
-        if self.equilibrium.linearize(load, &x, None, &mut off, &mut rate).is_err() {
-            return false;
-        }
-        self.equilibrium.solve(load, &mut off, false);
-        self.equilibrium.solve(load, &mut rate, true);
-        let normal = self.weights(&step);
-        let along = |v: &[f64]| -> f64 { v.iter().zip(&normal).map(|(v, n)| v * n).sum() };
-        let of_load = -along(&off) / (normal[n] + along(&rate));
-        off.iter_mut().zip(&rate).for_each(|(off, rate)| *off += of_load * rate);
-        off.push(0.0);
-        let moved = step[n].abs().max(turning);
-        step[n] = 0.0;
-        let size = |v: &[f64]| self.dot(v, v).sqrt();
-        let least = UNMOVED * (b.parameter - a.parameter).abs();
-        // What cannot be computed tells nothing.
-        size(&off) > (MISSED * size(&step)).max(least) || of_load.abs() > MISSED * moved
-    }
-
-    /// Whether a quantity turns back within the last step and goes on again, so that its rates at the ends do not tell: on the
-    /// cubic with these rates it nearly stands still between. Changes below `least` are none.
-    pub fn hides_turns(
-        &self,
-        value: impl Fn(&Point) -> f64,
-        rate: impl Fn(&Point) -> f64,
-        least: f64,
-    ) -> bool {
-        let Some([a, b]) = self.last_two() else { return false };
-        let h = b.parameter - a.parameter;
-        let (change, [from, to]) = (value(b) - value(a), [h * rate(a), h * rate(b)]);
-        if from.abs().max(to.abs()).max(change.abs()) <= least {
-            return false;
-        }
-        if from.abs() <= LEAVES_TURN * to.abs() {
-            // The step leaves a turn, and comes through another one if it ends as the path went before, or against the way that
-            // it went itself.
-            let before = match &self.points[..] {
-                [.., before, a, _] => value(a) - value(before),
-                _ => 0.0,
-            };
-            return change * to < 0.0 || before * to > 0.0;
-        }
-        if (from < 0.0) != (to < 0.0) {
-            return false;
-        }
-        // The rate on the cubic is from + p t + q t².
-        let (p, q) = (6.0 * change - 4.0 * from - 2.0 * to, 3.0 * (from + to - 2.0 * change));
-        let turns = (0.0..1.0).contains(&(-0.5 * p / q));
-        turns && (from - 0.25 * p * p / q) * from.signum() < STANDS_STILL * from.abs().min(to.abs())
-    }
-
-    /// Replaces the last step by one of length `step`, if that converges.
-    fn retake(&mut self, step: f64) -> Result<(), NoStep> {
-        let (point, record) = (self.points.pop(), self.history.pop());
-        let increment = self.increment(step);
-        match self.correct(&increment, self.last().parameter + step, step) {
-            Ok((point, _)) => {
-                self.points.push(point);
-                Ok(())
-            }
-            Err((failure, at)) => {
-                let load = self.last().load;
-                self.points.extend(point);
-                self.history.pop();
-                self.history.extend(record);
-                Err(NoStep { load, step, failure, at })
-            }
-        }
     }
 
     /// The equilibrium at load factor `load`, starting from the state between the last two points
@@ -971,47 +721,10 @@ fn turns_within([first, last]: [f64; 2]) -> bool {
     (first < 0.0) != (last < 0.0) && first.abs() > LEAVES_TURN * last.abs()
 }
 
-/// State and load factor on the cubic between two points with their tangents, at a part of the step. A
-/// chord would shorten a beam that turns, and so press it.
-fn within(a: &Point, b: &Point, part: f64) -> (Vec<f64>, f64) {
-    let (h, rest) = (b.parameter - a.parameter, 1.0 - part);
-    let of = |a: f64, b: f64, [from, to]: [f64; 2]| {
-        let (start, end) = (h * from - (b - a), (b - a) - h * to);
-        rest * a + part * b + part * rest * (rest * start + part * end)
-    };
-    let states = a.x.iter().zip(&b.x).zip(a.rate.iter().zip(&b.rate));
-    let x = states.map(|((a, b), (from, to))| of(*a, *b, [*from, *to])).collect();
-    (x, of(a.load, b.load, [a.load_rate(), b.load_rate()]))
-}
-
-/// A state within a step.
-#[derive(Clone, Copy)]
-struct Between {
-    /// Part of the step up to it.
-    part: f64,
-    /// Whether its determinant has the other sign than at the start of the step.
-    crossed: bool,
-    /// Directions that lack stiffness there.
-    soft: Option<usize>,
-}
-
 /// Whether several directions lose their stiffness between two states, so that the determinant may
 /// have the same sign in both.
 fn softens(before: &Point, after: &Point) -> bool {
     before.soft.zip(after.soft).is_some_and(|(before, after)| after >= before + 2)
-}
-
-/// Whether the determinant has the other sign somewhere between two states at which it has not.
-fn crosses_within(ends: &[Between], look: &mut impl FnMut(f64) -> Option<Between>, halvings: u32) -> bool {
-    let [a, b] = ends else { return false };
-    let count = |state: &Between| state.soft.unwrap_or(0);
-    if halvings == 0 || count(a).abs_diff(count(b)) < 2 {
-        return false;
-    }
-    let Some(middle) = look(0.5 * (a.part + b.part)) else { return true };
-    middle.crossed
-        || crosses_within(&[*a, middle], look, halvings - 1)
-        || crosses_within(&[middle, *b], look, halvings - 1)
 }
 
 /// By how much the gradient of each node differs between two states.

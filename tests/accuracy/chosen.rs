@@ -157,3 +157,39 @@ fn a_force_within_a_cell_errs_by_its_place_there() {
         assert!((0.2..3.0).contains(&(truth / estimated)), "{s}: {truth:e} {estimated:e}");
     }
 }
+
+/// Meshfree cells tell as little of it by themselves: at the tip, errors on fewer of them may have either sign.
+#[test]
+fn a_force_within_a_meshfree_cell_errs_by_its_place_there() {
+    for (nodes, s) in [(14, 0.43), (23, 0.4531), (18, 0.7)] {
+        let load =
+            format!("effect.force = [{{ beam = 'arm', at = {s:?}, value = [0, 1] }}]\nanalysis.static");
+        let text = cantilever(1e4, 1.0, &format!("{load} = {{}}"));
+        let named = format!("basis.rpim.nodes = {nodes}, mass_per_length");
+        let scene = scene(&text.replace("mass_per_length", &named));
+        let known =
+            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+        let fine = run(&super::scene(&cantilever(1e4, 1.0, &format!("{load}.accuracy = 1e-10"))));
+        let truth = (last(&known).x - last(&fine).x).hypot(last(&known).y - last(&fine).y);
+        let told = error(&known).probes[0].samples.last().expect("a state").x;
+        assert!(truth <= 3.0 * told, "{nodes} {s}: {truth:e} {told:e}");
+    }
+}
+
+/// Where an imposed strain begins, elements of length h move the place by Δε h/12, beside errors that fall much faster.
+#[test]
+fn a_strain_that_jumps_moves_its_place() {
+    let scene = scene(
+        "beam.arm = { start = [0, 0], end = [-0.51, 0.86], axial_stiffness = 7200, bending_stiffness = 1, mass_per_length = 1, \
+         basis.ancf.elements = 22 }\n\
+         support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+         effect.gravity.acceleration = [-2.7, 0.88]\neffect.foundation = [{ beam = 'arm', stiffness = [11, 11] }]\n\
+         effect.actuation = [{ beam = 'arm', strain = 2.7e-4, from = 0.27 }]\n\
+         probe = [{ name = 'there', beam = 'arm', at = 0.27 }]\nanalysis.static = {}\n",
+    );
+    let known =
+        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+    let truth = 2.7e-4 * 0.51_f64.hypot(0.86) / 22.0 / 12.0;
+    let told = error(&known).probes[0].samples.last().expect("a state").x;
+    assert!((0.5..3.0).contains(&(told / truth)), "{told:e} {truth:e}");
+}

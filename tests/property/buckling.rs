@@ -433,3 +433,30 @@ fn a_column_that_is_pulled_does_not_buckle() {
         assert!(found.iter().all(|load| 0.28 * load > 1e3 * 0.13), "{elements}: {found:?}");
     }
 }
+
+/// A hinged rod on a soft spring k across its end buckles at k L. On many elements the round-off of the rod hides the spring: that
+/// is said, and not that nothing is pressed.
+#[test]
+fn a_spring_that_round_off_hides_is_not_left_out() {
+    let mut hidden = 0;
+    for (elements, stiffness) in [(10, 1e-4), (400, 1e-4), (400, 1e-6), (1600, 1e-4)] {
+        let text = format!(
+            "beam.a = {{ start = [0, 0], end = [0, 1], axial_stiffness = 1e6, bending_stiffness = 1, basis.ancf.elements = {elements} }}\n\
+             support = [{{ beam = 'a', at = 'start', fix = ['x', 'y'] }}]\n\
+             effect.spring = [{{ beam = 'a', at = 'end', anchor = [-1, 1], stiffness = {stiffness:?} }}]\n\
+             effect.force = [{{ beam = 'a', at = 'end', value = [0, -1] }}]\nanalysis.buckling.count = 1\n"
+        );
+        let scene = parse("scene.toml", &text).expect("a scene");
+        match scene.model().solve(scene.analysis()) {
+            Ok(found) => {
+                let load = found.eigenvalues()[0];
+                assert!((load / stiffness - 1.0).abs() < 1e-3, "{elements} {stiffness}: {load}");
+            }
+            Err(error) => {
+                assert!(error.to_string().contains("the round-off of the stiffness hides"), "{error}");
+                hidden += 1;
+            }
+        }
+    }
+    assert!(hidden < 4, "with few elements it is seen");
+}

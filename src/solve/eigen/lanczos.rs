@@ -130,8 +130,13 @@ impl Search<'_> {
             self.purify(&mut w);
             orthogonalize(&mut w, known);
             let mut aw = times(self.pencil.a, &w);
-            let norm = dot(&w, &aw).max(0.0).sqrt();
+            let square = dot(&w, &aw);
             let m = vectors.len();
+            if m == 0 && square < 0.0 {
+                // The signs of the pivots are those of round-off: a motion is softer than that.
+                return Err(EigenError::Unstable { count: 1 });
+            }
+            let norm = square.max(0.0).sqrt();
             let off_diagonal = beta.iter().skip(1);
             let size = match m {
                 0 => start,

@@ -40,7 +40,7 @@ impl Path<'_, '_> {
         beyond.stability = self.equilibrium.stability();
         // The side with the same sign of λ̇ det K.
         if (here.load_rate() > 0.0) == here.stability?.changes_sign(beyond.stability?) {
-            beyond.rate.iter_mut().for_each(|rate| *rate = -*rate);
+            beyond.turn_round();
         }
         let bends = self.cosine(&here.rate, &beyond.rate).min(self.cosine_of_shapes(&here, &beyond)) < SMOOTH;
         let through: Vec<f64> =
