@@ -162,14 +162,16 @@ fn a_force_within_a_cell_errs_by_its_place_there() {
 #[test]
 fn a_force_within_a_meshfree_cell_errs_by_its_place_there() {
     for (nodes, s) in [(14, 0.43), (23, 0.4531), (18, 0.7)] {
-        let load =
-            format!("effect.force = [{{ beam = 'arm', at = {s:?}, value = [0, 1] }}]\nanalysis.static");
-        let text = cantilever(1e4, 1.0, &format!("{load} = {{}}"));
-        let named = format!("basis.rpim.nodes = {nodes}, mass_per_length");
-        let scene = scene(&text.replace("mass_per_length", &named));
+        let text = |basis: &str| {
+            let load = format!(
+                "effect.force = [{{ beam = 'arm', at = {s:?}, value = [0, 1] }}]\nanalysis.static = {{}}"
+            );
+            cantilever(1e4, 1.0, &load).replace("mass_per_length", &format!("basis.{basis}, mass_per_length"))
+        };
+        let named = scene(&text(&format!("rpim.nodes = {nodes}")));
         let known =
-            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
-        let fine = run(&super::scene(&cantilever(1e4, 1.0, &format!("{load}.accuracy = 1e-10"))));
+            ancf::accuracy::estimate(named.model(), named.analysis(), ancf::Options::default()).expect("one");
+        let fine = run(&scene(&text("ancf.elements = 200")));
         let truth = (last(&known).x - last(&fine).x).hypot(last(&known).y - last(&fine).y);
         let told = error(&known).probes[0].samples.last().expect("a state").x;
         assert!(truth <= 3.0 * told, "{nodes} {s}: {truth:e} {told:e}");
