@@ -97,7 +97,8 @@ pub struct ArcLength {
     pub until_load: Option<f64>,
     /// Stop after this many points on the path.
     pub max_points: usize,
-    /// Longest step along the path, as a fraction of the beam's length.
+    /// Longest step along the path, as a fraction of the beam's length; a change of the load factor by 1, or by `until_load` where that
+    /// is larger, counts as a length.
     pub max_step: Option<f64>,
     /// Stop where a probe's coordinate first reaches a value.
     pub until_probe: Option<ProbeTarget>,

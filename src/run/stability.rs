@@ -3,11 +3,6 @@
 use crate::solve::stability::{Stability, StabilityChange};
 use crate::solve::statics::{Solution, UnstableMechanism};
 
-/// Load factors that differ by this part of the largest one at most, and coordinates by this part of theirs, are those of one
-/// equilibrium: limit points of a path that comes back to them are.
-const SAME_LOAD: f64 = 1e-8;
-const SAME_STATE: f64 = 1e-5;
-
 /// What a static analysis has met on its way.
 pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
     let pressed = solution.pressed.map(|UnstableMechanism { load, unstable, free }| {
@@ -47,7 +42,7 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
              `steps`, or add a small imperfection"
         )
     });
-    let returns = returns(&solution.states).map(|load| {
+    let returns = solution.returns.map(|load| {
         format!(
             "the path comes back to a state that it has passed, at load factor {load:.6}: it is a closed one, or has turned round at a kink, \
              as where a snap ends at a stiff stop, or within a fold of the mesh; what it finds from there on may not be what comes first: use a \
@@ -56,21 +51,6 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
     });
     let others = [pressed, crest, start, unwatched, softened, returns].into_iter().flatten();
     others.chain(solution.events.iter().map(of_change))
-}
-
-/// The load factor of the first equilibrium of a path that is the same as an earlier one.
-fn returns(states: &[(f64, Vec<f64>)]) -> Option<f64> {
-    let largest = states.iter().fold(0.0_f64, |most, (load, _)| most.max(load.abs()));
-    let is_same = |(a, x): &(f64, Vec<f64>), (b, y): &(f64, Vec<f64>)| {
-        (a - b).abs() <= SAME_LOAD * largest && {
-            let size = x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-            x.iter().zip(y).all(|(x, y)| (x - y).abs() <= SAME_STATE * size)
-        }
-    };
-    let later = states.iter().enumerate().skip(2);
-    let found = later.map(|(i, state)| (state, &states[..i - 1]));
-    let mut found = found.filter(|(state, before)| before.iter().any(|earlier| is_same(earlier, state)));
-    found.next().map(|((load, _), _)| *load)
 }
 
 /// What is said where directions lose or regain their stiffness.
@@ -105,21 +85,17 @@ fn of_change(change: &StabilityChange) -> String {
 mod tests {
     use super::*;
 
-    /// A path around a circle comes back after its last point of four; one that goes on along a line does not.
     #[test]
     fn a_path_that_comes_back_is_told() {
-        let state = |x: f64, load: f64| (load, vec![x, 1.0]);
-        let mut states = vec![state(1.0, 0.0), state(0.0, 1.0), state(-1.0, 0.0), state(0.0, -1.0)];
-        assert_eq!(returns(&states), None);
-        states.push(state(1.0 + 1e-9, 1e-9));
-        assert_eq!(returns(&states), Some(1e-9));
-        let told: Vec<String> = warnings(&Solution { states, ..Solution::default() }).collect();
+        let solution = Solution { returns: Some(0.25), ..Solution::default() };
+        let told: Vec<String> = warnings(&solution).collect();
         assert!(
-            told.len() == 1 && told[0].starts_with("the path comes back to a state that it has passed"),
+            told.len() == 1
+                && told[0].starts_with(
+                    "the path comes back to a state that it has passed, at load factor 0.250000"
+                ),
             "{told:?}"
         );
-        let line: Vec<_> = (0..5).map(|i| state(f64::from(i), f64::from(i))).collect();
-        assert_eq!(returns(&line), None);
     }
 
     #[test]

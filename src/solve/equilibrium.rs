@@ -296,12 +296,14 @@ impl<'a> Equilibrium<'a> {
     }
 
     /// Stability at the last linearised state, where the factorisation tells.
+    /// Where the directions of a symmetric tangent cannot be counted, it is singular, and the sign of its determinant is
+    /// round-off.
     pub fn stability(&self) -> Option<Stability> {
-        let determinants = || {
-            let count = self.factor.as_ref()?.negative_determinants(&self.tangent, &self.border)?;
-            Some(Stability::NegativeDeterminants(count))
-        };
-        self.unstable_directions().map(Stability::Directions).or_else(determinants)
+        if self.is_symmetric() {
+            return self.unstable_directions().map(Stability::Directions);
+        }
+        let count = self.factor.as_ref()?.negative_determinants(&self.tangent, &self.border)?;
+        Some(Stability::NegativeDeterminants(count))
     }
 
     /// Whether the tangent is symmetric.
@@ -311,12 +313,7 @@ impl<'a> Equilibrium<'a> {
 
     /// Whether the last linearised state is known to be unstable.
     pub fn is_unstable(&self) -> bool {
-        match self.stability() {
-            // Where the directions of a symmetric tangent cannot be counted, it is singular, and the
-            // sign of its determinant is round-off.
-            Some(Stability::NegativeDeterminants(_)) if self.is_symmetric() => false,
-            stability => stability.is_some_and(Stability::is_unstable),
-        }
+        self.stability().is_some_and(Stability::is_unstable)
     }
 
     /// The factorised tangent.
@@ -488,16 +485,18 @@ pub struct AcrossPath<'e, 'a> {
     pub normal: Vec<f64>,
     /// λ at the last linearised state.
     load: f64,
+    /// Change of λ that counts as one beam length.
+    load_scale: f64,
     rate: Vec<f64>,
     scratch: Vec<f64>,
 }
 
 impl<'e, 'a> AcrossPath<'e, 'a> {
     /// `normal` as in [`Self::normal`].
-    pub fn new(equilibrium: &'e mut Equilibrium<'a>, normal: Vec<f64>) -> Self {
+    pub fn new(equilibrium: &'e mut Equilibrium<'a>, normal: Vec<f64>, load_scale: f64) -> Self {
         let rate = vec![0.0; equilibrium.unknowns()];
         let scratch = rate.clone();
-        Self { equilibrium, normal, load: 0.0, rate, scratch }
+        Self { equilibrium, normal, load: 0.0, load_scale, rate, scratch }
     }
 
     /// The direction (dx/dλ, 1) of the path at the last linearised state.
@@ -534,7 +533,7 @@ impl Equations for AcrossPath<'_, '_> {
     /// The load factor counts too: where a structure slides along the plane's normal, it alone is corrected.
     fn size(&self, increment: &[f64]) -> f64 {
         let load = increment[self.equilibrium.unknowns()].abs();
-        larger(self.equilibrium.size(increment), load / (1.0 + self.load.abs()))
+        larger(self.equilibrium.size(increment), load / (self.load_scale + self.load.abs()))
     }
 
     fn apply(&self, increment: &[f64], x: &mut [f64]) {

@@ -39,9 +39,12 @@
 //! rejected: their corrections are smaller, but Newton's method takes as many iterations a step,
 //! and the first steps, which have no past to extrapolate, decide on the cost.
 
+mod closed;
 mod ends;
 mod hidden;
 mod kink;
+
+pub use closed::comes_back;
 
 use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
 use super::newton::{self, Failure, Iterations, Settings};
@@ -82,12 +85,17 @@ impl Point {
 }
 
 /// The parameter of a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Parameter {
     /// The load factor, which is prescribed.
     Load,
-    /// The arc length in the scaled space of states and load factors.
-    ArcLength,
+    /// The arc length in the scaled space of states and load factors. The load factor counts in parts of `loads`, the largest
+    /// that is of interest, or where the structure yields more at first, so that it counts no less than the shape there: what a
+    /// path finds does not depend on the unit in which loads are given.
+    ArcLength {
+        /// \[1\]
+        loads: f64,
+    },
 }
 
 /// Points kept: enough for the vertex of a parabola.
@@ -115,6 +123,9 @@ const SLIDING: f64 = 10.0;
 /// A corrector that turns no node by more than this, and by less than was predicted, stays on its
 /// side of a bifurcation \[rad\].
 const SURE_TURN: f64 = 0.05;
+/// A point so many steps away on the plane across the path, where that turns by 120° within a step, may be one that the path
+/// comes to later.
+const FAR_ACROSS: f64 = 2.0;
 /// Turns of the corrector below this are round-off \[rad\].
 const STILL: f64 = 1e-10;
 /// A rate that is below this part of that at the end of a step is that of a turning point, where the step before has ended.
@@ -152,6 +163,8 @@ pub struct Path<'e, 'a> {
     points: Vec<Point>,
     step: f64,
     first_step: f64,
+    /// Change of the load factor that counts as one beam length in the arc length.
+    load_scale: f64,
     /// A doubtful equilibrium ahead, from the shortest step that led to one, with its corrector's
     /// turn.
     crossing: Option<(Point, f64)>,
@@ -195,6 +208,10 @@ impl<'e, 'a> Path<'e, 'a> {
             points: vec![start],
             step,
             first_step: step,
+            load_scale: match parameter {
+                Parameter::Load => 1.0,
+                Parameter::ArcLength { loads } => loads,
+            },
             crossing: None,
             history: Vec::new(),
             softened: None,
@@ -246,9 +263,14 @@ impl<'e, 'a> Path<'e, 'a> {
         }
     }
 
-    /// Limits the next step.
+    /// Limits the next step: of a load factor, or of an arc length in which load factors count in parts of those that are of
+    /// interest.
     pub fn limit_step(&mut self, largest: f64) {
-        self.step = self.step.min(largest);
+        let of_step = match self.parameter {
+            Parameter::Load => 1.0,
+            Parameter::ArcLength { loads } => self.size(&self.last().rate, loads),
+        };
+        self.step = self.step.min(largest / of_step);
     }
 
     /// Takes one step to a new equilibrium, not beyond the parameter `end`, shortened as often as
@@ -290,6 +312,7 @@ impl<'e, 'a> Path<'e, 'a> {
                     let doubtful = self.loses_stability(&point)
                         || turn > SURE_TURN.min(self.predicted_turn(step)).max(STILL)
                             && self.turns_back(&point, &increment)
+                        || self.parameter != Parameter::Load && point.parameter - here > FAR_ACROSS * step
                         || self.passes_more_than_a_limit(&point)
                         || self.crosses_twice(&point);
                     if doubtful && step > BELIEVED_STEP {
@@ -355,16 +378,14 @@ impl<'e, 'a> Path<'e, 'a> {
 
     /// Takes the last step back, to try a shorter one in its place; returns whether it could be shorter.
     pub fn take_back(&mut self) -> bool {
-        let Some([a, b]) = self.last_two() else { return false };
-        let step = SHORTER * (b.parameter - a.parameter);
+        let Some(record) = self.history.last_mut() else { return false };
+        let step = SHORTER * record.step;
         if step < SHORTEST_AGAIN * self.first_step {
             return false;
         }
+        record.accepted = false;
         self.step = step;
         self.points.pop();
-        if let Some(record) = self.history.last_mut() {
-            record.accepted = false;
-        }
         let counts = &mut self.equilibrium.statistics;
         counts.steps -= 1;
         counts.load_steps -= 1;
@@ -425,7 +446,8 @@ impl<'e, 'a> Path<'e, 'a> {
             return Err(NoStep { load, step: 0.0, failure: Failure::NotFinite, at });
         }
         rate.push(1.0);
-        if self.parameter == Parameter::ArcLength {
+        if self.parameter != Parameter::Load {
+            self.load_scale = self.load_scale.min(1.0 / self.size(&rate, f64::INFINITY));
             rate = self.along(rate, None);
         }
         (self.points[0].stability, self.points[0].soft) = self.equilibrium.stability_and_softness();
@@ -433,10 +455,15 @@ impl<'e, 'a> Path<'e, 'a> {
         Ok(())
     }
 
-    /// ⟨a, b⟩ over (x, λ): mean square of nodal changes, positions in beam lengths, plus the load
+    /// ⟨a, b⟩ over (x, λ): mean square of nodal changes, positions in beam lengths, plus that of the load
     /// factor.
     fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
-        self.weights(a).iter().zip(b).map(|(a, b)| a * b).sum()
+        self.weights(a, self.load_scale).iter().zip(b).map(|(a, b)| a * b).sum()
+    }
+
+    /// Length of a change of (x, λ) where load factors count in parts of `load_scale`.
+    fn size(&self, change: &[f64], load_scale: f64) -> f64 {
+        self.weights(change, load_scale).iter().zip(change).map(|(a, b)| a * b).sum::<f64>().sqrt()
     }
 
     /// The unit vector along ±`rate` on the side of `direction`, if one is given.
@@ -448,7 +475,7 @@ impl<'e, 'a> Path<'e, 'a> {
         rate
     }
 
-    fn weights(&self, v: &[f64]) -> Vec<f64> {
+    fn weights(&self, v: &[f64], load_scale: f64) -> Vec<f64> {
         let system = self.equilibrium.system();
         let n = system.coordinates();
         let nodes = (n / 4) as f64;
@@ -456,7 +483,7 @@ impl<'e, 'a> Path<'e, 'a> {
         let mut weighted: Vec<f64> = v.to_vec();
         for (i, w) in weighted.iter_mut().enumerate() {
             *w *= match i {
-                _ if i + 1 == v.len() => 1.0,
+                _ if i + 1 == v.len() => load_scale.powi(-2),
                 _ if i >= n => 0.0,
                 _ if i % 4 < 2 => inverse,
                 _ => 1.0 / nodes,
@@ -566,17 +593,17 @@ impl<'e, 'a> Path<'e, 'a> {
                 }
                 result
             }
-            Parameter::ArcLength => {
+            Parameter::ArcLength { .. } => {
                 let mut direction: Vec<f64> = point.x.iter().zip(&before.x).map(|(a, b)| a - b).collect();
                 direction.push(point.load - before.load);
                 let length = self.dot(&direction, &direction).sqrt();
                 direction.iter_mut().for_each(|d| *d /= length);
-                let normal = self.weights(&direction);
+                let normal = self.weights(&direction, self.load_scale);
                 let mut x = std::mem::take(&mut point.x);
                 x.push(point.load);
                 let mut start = before.x.clone();
                 start.push(before.load);
-                let mut equations = AcrossPath::new(self.equilibrium, normal);
+                let mut equations = AcrossPath::new(self.equilibrium, normal, self.load_scale);
                 let start = Earlier { q: &start, increment };
                 let result = newton::solve(&mut equations, &mut x, start, &self.settings, &mut record);
                 let rate = result.is_ok().then(|| equations.rate());

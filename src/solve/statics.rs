@@ -3,7 +3,7 @@
 
 use super::equilibrium::Equilibrium;
 use super::newton::{Failure, Iterations, Settings};
-use super::path::{NoStep, Parameter, Path, Point};
+use super::path::{self, NoStep, Parameter, Path, Point};
 use super::relax::relax;
 use super::stability::{Stability, StabilityChange};
 use crate::assembly::{InternalVariables, Kind};
@@ -35,6 +35,8 @@ const SLACK: f64 = 1e-12;
 
 /// Changes of load factors, and of coordinates in beam lengths, that are too small to be a turn that is passed.
 const UNSEEN: f64 = 1e-6;
+/// First step along a path \[beam lengths\].
+const FIRST_STEP: f64 = 0.05;
 /// How often a step is shortened at most for what it may hide.
 const SHORTENED: usize = 8;
 /// Inverse iterations after which the softest motion stands out.
@@ -59,6 +61,8 @@ pub struct Solution {
     /// Load factor at which several directions lost their stiffness at once, where only the sign of
     /// the determinant is watched.
     pub softened: Option<f64>,
+    /// Load factor at which a path by arc length comes back to a state that it has passed.
+    pub returns: Option<f64>,
     /// Instabilities met.
     pub events: Vec<StabilityChange>,
     /// A mechanism under its loads that, before it was relaxed, had more unstable directions than
@@ -258,7 +262,8 @@ fn along_load(
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
     let mut path = Path::new(equilibrium, Parameter::Load, newton, 1.0, x)?;
-    solution.unstable_start = path.last().stability.filter(|_| path.equilibrium.is_unstable());
+    let mut known = path.last().stability;
+    solution.unstable_start = known.filter(|stability| stability.is_unstable());
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let recorded = settings.steps.unwrap_or(1).max(1);
@@ -275,7 +280,7 @@ fn along_load(
         if !work.keep_step(&mut path) {
             continue;
         }
-        notice(&mut path, &mut solution.events);
+        notice(&mut path, &mut known, &mut solution.events);
         let at_end = point.load >= end;
         if settings.steps.is_none() || at_end && part.is_multiple_of(between) {
             solution.record(path.equilibrium, point.load, &point.x, work);
@@ -484,12 +489,10 @@ fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
 }
 
 /// Records a change of stability in the last step and locates it by bisection.
-fn notice(path: &mut Path<'_, '_>, events: &mut Vec<StabilityChange>) {
+fn notice(path: &mut Path<'_, '_>, known: &mut Option<Stability>, events: &mut Vec<StabilityChange>) {
     let Some([a, b]) = path.last_two() else { return };
-    let (Some(before), Some(after)) = (a.stability, b.stability) else { return };
-    if !before.differs(after) {
-        return;
-    }
+    let Some(after) = b.stability else { return };
+    let Some(before) = known.replace(after).filter(|before| before.differs(after)) else { return };
     let mut bracket = (a.load, b.load);
     for _ in 0..20 {
         let middle = 0.5 * (bracket.0 + bracket.1);
@@ -580,8 +583,11 @@ fn along_arc(
 ) -> Result<(), NoStep> {
     let system = equilibrium.system();
     let largest = settings.largest_step(system.has_friction());
-    let mut path = Path::new(equilibrium, Parameter::ArcLength, newton, largest.min(0.05), x)?;
-    solution.unstable_start = path.last().stability.filter(|_| path.equilibrium.is_unstable());
+    let loads = target.arc.until_load.map_or(1.0, |load| load.abs().max(1.0));
+    let first = largest.min(FIRST_STEP);
+    let mut path = Path::new(equilibrium, Parameter::ArcLength { loads }, newton, first, x)?;
+    let mut known = path.last().stability;
+    solution.unstable_start = known.filter(|stability| stability.is_unstable());
     let mut work = Work::default();
     solution.record(path.equilibrium, 0.0, &path.last().x, work);
     let mut outcome = Ok(());
@@ -593,7 +599,7 @@ fn along_arc(
     let mut unreached = aims.then_some(Unreached::OutOfPoints);
     for _ in 0..target.arc.max_points {
         path.limit_step(largest);
-        let previous = path.last().clone();
+        let from = path.last().clone();
         let Stride { point, at_limit, reached } = match stride(&mut path, &conditions, system) {
             Ok(stride) => stride,
             Err(stuck) => {
@@ -601,13 +607,13 @@ fn along_arc(
                 break;
             }
         };
-        if let (Some(before), Some(after)) = (previous.stability, point.stability)
-            && before.differs(after)
+        if let Some(after) = point.stability
+            && let Some(before) = known.replace(after).filter(|before| before.differs(after))
         {
             let load = if at_limit && !reached { point.load } else { path.load_of_change() };
             solution.events.push(StabilityChange { load, before, after });
         }
-        work.add_states(system, (previous.load, &previous.x), (point.load, &point.x));
+        work.add_states(system, (from.load, &from.x), (point.load, &point.x));
         solution.record(path.equilibrium, point.load, &point.x, work);
         let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
         if reached || !go_on {
@@ -623,6 +629,7 @@ fn along_arc(
     solution.history = std::mem::take(&mut path.history);
     solution.unwatched = path.last().stability.is_none() && !path.equilibrium.is_symmetric();
     solution.softened = path.softened;
+    solution.returns = path::comes_back(system, &solution.states);
     solution.unreached = unreached;
     outcome
 }

@@ -177,6 +177,26 @@ fn beams_that_only_slide_do_not_jump() {
     }
 }
 
+/// Whether loads are given in small units or in large ones, a path finds the height that a load has first: below the limit load,
+/// as close as it may be, before the snap, and above it behind.
+#[test]
+fn the_unit_of_loads_does_not_change_what_a_path_finds() {
+    let heights = (0..3000).map(|i| -1e-4 * f64::from(i));
+    let limit = heights.min_by(|a, b| sliding_force(*a).total_cmp(&sliding_force(*b))).expect("a limit");
+    for part in [0.5, 0.999, 1.01, 10.0] {
+        let force = part * sliding_force(limit);
+        let between = if part < 1.0 { [limit, 0.0] } else { [-2.0, -0.3] };
+        let expected = zero(|y| sliding_force(y) - force, between);
+        for unit in [1e-5, 1e-2, 1.0, 1e2, 1e5] {
+            let path = format!(".arc_length = {{ until_load = {:?} }}", -force / unit);
+            let found =
+                outcome(&sliding(-unit, &path)).unwrap_or_else(|error| panic!("{error}, {unit} {part}"));
+            let end = found.probes[0].samples.last().expect("a state").y;
+            assert!((end - expected).abs() < 1e-7, "{end} for {expected}, {part} of the limit in {unit} N");
+        }
+    }
+}
+
 /// A bar that snaps onto a stop, as a bar on two springs does: where it touches, the load that fell begins to grow, at nearly half
 /// a turn of the path. Paths with any step go on from there, and limit point and kink are told with their loads.
 #[test]

@@ -50,7 +50,7 @@ pub struct ArcLengthTable {
     /// Stop after this many points on the path; 1000 when left out. A path that has not reached its
     /// `until` by then is incomplete.
     pub max_points: Option<Located<Count<1>>>,
-    /// Longest step, as a fraction of the beam's length.
+    /// Longest step, as a fraction of the beam's length; a change of the load factor by 1, or by `until_load` where that is larger, counts as a length.
     pub max_step: Option<Quantity<Ratio, Positive>>,
     /// Stop where a probe's coordinate first reaches a value.
     pub until_probe: Option<Located<UntilProbeTable>>,

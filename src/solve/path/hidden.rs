@@ -27,7 +27,7 @@ impl Path<'_, '_> {
         let last = self.last();
         let (Some(before), Some(after)) = (last.stability, point.stability) else { return false };
         let turns = turns_within([last, point].map(Point::load_rate));
-        self.parameter == Parameter::ArcLength
+        self.parameter != Parameter::Load
             && (before.changes_sign(after) != turns || before.count().abs_diff(after.count()) > 1)
     }
 
@@ -117,8 +117,11 @@ impl Path<'_, '_> {
         middle.push(load);
         let (mut off, still) = (vec![0.0; n + 1], vec![0.0; n + 1]);
         let here = Earlier { q: &middle, increment: &still };
-        let normal = self.weights(&step);
-        if AcrossPath::new(self.equilibrium, normal).increment(&middle, here, &mut off).is_err() {
+        let normal = self.weights(&step, self.load_scale);
+        if AcrossPath::new(self.equilibrium, normal, self.load_scale)
+            .increment(&middle, here, &mut off)
+            .is_err()
+        {
             return false;
         }
         let off_load = std::mem::take(&mut off[n]);

@@ -23,7 +23,7 @@ impl Path<'_, '_> {
     ///
     /// With the tangents t₁ before and t₂ beyond, the plane across t₁ + t₂ meets the path only beyond the kink.
     pub(super) fn through_kink(&mut self, step: f64) -> Option<(Point, f64)> {
-        if self.parameter != Parameter::ArcLength || step > LOOKED_AT * self.first_step {
+        if self.parameter == Parameter::Load || step > LOOKED_AT * self.first_step {
             return None;
         }
         let here = self.last().clone();
@@ -56,7 +56,7 @@ impl Path<'_, '_> {
         // At a limit point the sign of λ̇ tells nothing.
         let at_limit = rates[0].abs() <= LEAVES_TURN * rates[1].abs();
         let turns = (rates[0] > 0.0) != (rates[1] > 0.0);
-        self.parameter == Parameter::ArcLength
+        self.parameter != Parameter::Load
             && !at_limit
             && turns != from.changes_sign(to)
             && self.cosine_of_shapes(before, point) < SMOOTH
