@@ -160,9 +160,9 @@ impl Tabulated {
 /// Largest phase angle \[rad\] of a harmonic within a step for which Gauss' rule integrates it to
 /// round-off.
 const SLOW: f64 = 1.5;
-/// Change of the moments of an expression by twice as many parts that counts as none.
+/// Change of the moments of an expression by twice as many parts that counts as none, in its largest value.
 const SETTLED: f64 = 1e-11;
-/// Change of a value at a kink that counts as a jump.
+/// Change of a value at a kink that counts as a jump, in the largest of the value v, v' t and v'' t².
 const JUMP: f64 = 1e-12;
 /// Most parts in which a product of fast laws is integrated.
 const MOST_PARTS: f64 = 1e6;
@@ -172,6 +172,10 @@ const BESIDE: f64 = 1e-9;
 const EARLIEST: f64 = 1e-6;
 /// Points at which an expression is evaluated to find out where it changes.
 const SAMPLES: u32 = 1 << 14;
+/// Smooth changes that take less than so many steps are divided …
+const SHORT_CHANGE: f64 = 4.0;
+/// … into so many.
+const PARTS_OF_CHANGE: u32 = 8;
 /// Parts of equal change into which an expression is divided.
 const TURNS: u32 = 64;
 
@@ -184,7 +188,7 @@ fn merged(times: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 /// ∫₀¹ f dx and ∫₀¹ (1 − x) f dx; exact for polynomials up to degree 10.
-fn quadrature(time: impl Fn(f64) -> f64, f: impl Fn(f64) -> f64) -> [f64; 2] {
+fn quadrature(time: impl Fn(f64) -> f64, mut f: impl FnMut(f64) -> f64) -> [f64; 2] {
     GAUSS_6.iter().fold([0.0; 2], |[mean, moment], (x, weight)| {
         let term = weight * f(time(*x));
         [mean + term, moment + (1.0 - x) * term]
@@ -262,9 +266,14 @@ impl Law {
 
     /// Those of `times` at which the value jumps, and the heights of the jumps.
     fn jumps_at(&self, times: &[f64]) -> Vec<(f64, f64)> {
-        let height = |time: f64| self.at(time)[0] - self.at(time.next_down())[0];
-        let heights = times.iter().map(|time| (*time, height(*time)));
-        heights.filter(|(_, height)| height.abs() > JUMP).collect()
+        let jump = |time: &f64| {
+            let sides = [time.next_down(), *time].map(|time| self.at(time));
+            let terms = |[value, rate, second]: &[f64; 3]| [*value, rate * time, second * time * time];
+            let size = sides.iter().flat_map(terms).fold(0.0_f64, |size, term| size.max(term.abs()));
+            let height = sides[1][0] - sides[0][0];
+            (height.abs() > JUMP * size).then_some((*time, height))
+        };
+        times.iter().filter_map(jump).collect()
     }
 
     /// Whether an expression is part of it.
@@ -369,7 +378,7 @@ impl Law {
                     return self.in_parts(start, h);
                 }
                 let parts = (self.fastest() * h.abs() / SLOW).ceil().clamp(1.0, MOST_PARTS);
-                self.in_equal_parts(start, h, parts as usize)
+                self.in_equal_parts(start, h, parts as usize).0
             }
             Self::Expression(_) => self.in_parts(start, h),
             _ => quadrature(|x| h.mul_add(x, start), |t| self.at(t)[0]),
@@ -379,28 +388,52 @@ impl Law {
     /// [`Self::moments`] of a law of which nobody knows how fast it is: in parts, twice as many until
     /// that changes nothing.
     fn in_parts(&self, start: f64, h: f64) -> [f64; 2] {
-        let mut before = self.in_equal_parts(start, h, 1);
+        let (mut before, _) = self.in_equal_parts(start, h, 1);
         let mut parts = 2;
         loop {
-            let sums = self.in_equal_parts(start, h, parts);
+            let (sums, largest) = self.in_equal_parts(start, h, parts);
             let change = (sums[0] - before[0]).abs().max((sums[1] - before[1]).abs());
-            let size = sums[0].abs().max(sums[1].abs()).max(1.0);
             // A law that is not a number anywhere is none in its sums either.
-            if change.is_nan() || change <= SETTLED * size || parts as f64 >= MOST_PARTS {
+            if change.is_nan() || change <= SETTLED * largest || parts as f64 >= MOST_PARTS {
                 return sums;
             }
             (before, parts) = (sums, 2 * parts);
         }
     }
 
-    fn in_equal_parts(&self, start: f64, h: f64, parts: usize) -> [f64; 2] {
+    /// The moments, and the largest value that was seen.
+    fn in_equal_parts(&self, start: f64, h: f64, parts: usize) -> ([f64; 2], f64) {
         let share = 1.0 / parts as f64;
-        (0..parts).fold([0.0; 2], |[mean, moment], part| {
+        let mut largest = 0.0_f64;
+        let mut value = |t: f64| {
+            let [value, ..] = self.at(t);
+            largest = largest.max(value.abs());
+            value
+        };
+        let sums = (0..parts).fold([0.0; 2], |[mean, moment], part| {
             let from = part as f64 * share;
-            let [a, b] = quadrature(|x| h.mul_add(share.mul_add(x, from), start), |t| self.at(t)[0]);
+            let [a, b] = quadrature(|x| h.mul_add(share.mul_add(x, from), start), &mut value);
             // ∫ (1 − x) f over the part, with 1 − x = (1 − from − share) + share (1 − ξ).
             [mean + share * a, moment + share * ((1.0 - from - share) * a + share * b)]
-        })
+        });
+        (sums, largest)
+    }
+
+    /// Times at which steps of this length should also end: those that divide a smooth change which is over within few of them, of
+    /// which a step from its beginning to its end sees no velocity and no acceleration.
+    pub fn short_changes(&self, step: f64) -> Vec<f64> {
+        match self {
+            Self::SmoothRamp { start, duration } | Self::SpinUp { start, duration, .. }
+                if *duration < SHORT_CHANGE * step =>
+            {
+                let part = duration / f64::from(PARTS_OF_CHANGE);
+                (1..PARTS_OF_CHANGE).map(|k| part.mul_add(f64::from(k), *start)).collect()
+            }
+            Self::Sum(laws) | Self::Product(laws) => {
+                laws.iter().flat_map(|law| law.short_changes(step)).collect()
+            }
+            _ => Vec::new(),
+        }
     }
 
     /// Times at which the value or a low derivative of it jumps: steps of an integrator should end
@@ -448,6 +481,33 @@ mod tests {
 
     fn written(text: &str, kinks: Vec<f64>) -> Law {
         Law::Expression(Box::new(Expression::new(text, kinks).expect("an expression")))
+    }
+
+    /// In whatever unit: what differs from one side of a kink to the other by the round-off of the time is no jump.
+    #[test]
+    fn a_kink_is_no_jump_in_any_unit() {
+        for unit in ["1e-9", "1", "1e9"] {
+            let smooth = ["t", "(t-0.3)", "sqrt((t-0.3)^2)", "(sin(3*t)+sqrt((t-0.3)^2)-0.3)"];
+            for of in smooth {
+                assert_eq!(written(&format!("{unit}*{of}"), vec![0.3]).jumps(), [], "{unit} {of}");
+            }
+            let height = PI * unit.parse::<f64>().expect("a number");
+            let jumps = written(&format!("{unit}*atan(1/(t-0.3))"), vec![0.3]).jumps();
+            assert!(
+                matches!(jumps[..], [(0.3, up)] if (up / height - 1.0).abs() < 1e-12),
+                "{unit}: {jumps:?}"
+            );
+        }
+    }
+
+    /// ∫₀¹ 10 exp(−(50 (t − ½))²) dt = √π/5, in whatever unit.
+    #[test]
+    fn fast_laws_are_integrated_in_any_unit() {
+        for unit in [1e-15, 1.0, 1e15] {
+            let law = written(&format!("{unit:e}*10*exp(-(50*(t-0.5))^2)"), vec![]);
+            let [mean, _] = law.moments(0.0, 1.0);
+            assert!((mean / (unit * PI.sqrt() / 5.0) - 1.0).abs() < 1e-9, "{unit}: {mean}");
+        }
     }
 
     #[test]

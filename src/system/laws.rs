@@ -47,6 +47,11 @@ impl System {
         self.laws().flat_map(Law::kinks).chain(timed).collect()
     }
 
+    /// Times at which steps of a fixed length should also end ([`Law::short_changes`]); in no particular order.
+    pub fn short_changes(&self, step: f64) -> Vec<f64> {
+        self.laws().flat_map(|law| law.short_changes(step)).collect()
+    }
+
     /// Times between `start` and `end` at which steps should end, so that they see what laws do that
     /// nobody knows beforehand ([`Law::turns`]); in no particular order.
     pub fn turns_of_laws(&self, [start, end]: [f64; 2]) -> Vec<f64> {

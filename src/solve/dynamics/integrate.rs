@@ -262,6 +262,9 @@ impl<'t, 'a> Driver<'t, 'a> {
             contacts.map(|contact| ContactState::new(system.contact_force(contact, &state.q))).collect();
         let mut kinks = system.kinks();
         kinks.extend(sharp_turns(system.turns_of_laws([state.time, task.duration]), control));
+        if let StepControl::Fixed(step) = control {
+            kinks.extend(system.short_changes(step));
+        }
         kinks.retain(|kink| *kink > state.time && *kink <= task.duration);
         kinks.sort_by(f64::total_cmp);
         let next_record = (first.time / task.output_every + 1.0 + SLACK).floor() as u64;
@@ -616,7 +619,11 @@ impl<'t, 'a> Driver<'t, 'a> {
             |driver: &Self| driver.system.energy(kink, &driver.state.q, Some(&driver.state.v)).kinetic;
         let earlier = kinetic(self);
         self.state.time = kink;
-        let jump = self.method.pass(before, &mut self.state)?;
+        let usual = match self.control {
+            StepControl::Fixed(step) => step,
+            StepControl::Tolerance(_) => self.step,
+        };
+        let jump = self.method.pass(before, &mut self.state, usual)?;
         // Work of the impulse of supports whose velocity jumps.
         self.state.work += kinetic(self) - earlier;
         if let StepControl::Tolerance(tolerance) = self.control {
