@@ -26,6 +26,7 @@ impl Sampler<'_> {
                 round_off: self.round_off(number, event.quantity),
                 is_rate: matches!(event.quantity, Vx | Vy | Speed),
                 is_relative: event.quantity == Angle,
+                is_square: event.quantity == Speed,
                 when: event.when,
                 stop: event.stop,
             })
@@ -72,8 +73,10 @@ impl Sampler<'_> {
             .map(|along| along.as_ref().map_or(0.0, |along| along.bounds(length)[1]));
         let unit = ROUND_OFFS * f64::EPSILON * length / h;
         let bend = STILL / length;
-        let axial = unit * stretching;
-        let across = unit * 12.0 * bending / (h * h) + axial * (h / length).powi(2);
+        let bent = unit * 12.0 * bending / (h * h);
+        // The force in a beam that keeps its length balances those across its neighbours.
+        let axial = if section.axial_stiffness.is_some() { unit * stretching } else { bent };
+        let across = bent + unit * stretching * (h / length).powi(2);
         let moment = (across * h).max(bending * bend);
         let stress = |face: usize| {
             let signs = [1.0, -1.0].map(|sign| section.stresses(s, s, [axial, sign * moment], &[]));
@@ -93,7 +96,7 @@ impl Sampler<'_> {
         }
     }
 
-    /// A quantity at probe number `number` as a function of the state.
+    /// A quantity at probe number `number` as a function of the state; of a speed its square.
     fn quantity(&self, number: usize, quantity: ProbeQuantity) -> dynamics::Quantity<'_> {
         use dynamics::Quantity::{OfForces, OfMotion, Position};
         let ProbePoint { beam, view, measure, reference_strain, .. } = &self.probes[number];
@@ -115,7 +118,7 @@ impl Sampler<'_> {
             ProbeQuantity::Vy => OfMotion(Box::new(|state| view.at_point(&state.v)[1])),
             ProbeQuantity::Speed => OfMotion(Box::new(|state| {
                 let [x, y] = view.at_point(&state.v);
-                x.hypot(y)
+                x * x + y * y
             })),
             // The strain of a state that is interpolated between steps errs by far more than its
             // position.

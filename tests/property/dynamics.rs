@@ -609,6 +609,7 @@ fn events_are_located_to_the_accuracy_of_the_motion() {
                 round_off: 0.0,
                 is_rate: false,
                 is_relative: false,
+                is_square: false,
                 when,
                 stop,
             }

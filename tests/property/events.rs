@@ -186,3 +186,27 @@ fn forces_that_are_round_off_do_not_turn() {
         assert!(of("middle") > if load < 1.0 { 2 } else { 5 }, "{end}: {:?}", states.events);
     }
 }
+
+/// A speed falls to zero and grows again where what is thrown up turns round: it has a corner there, and is met on both sides of
+/// it, however near.
+#[test]
+fn speeds_are_met_on_both_sides_of_a_reversal() {
+    for integrator in INTEGRATORS {
+        let text = format!(
+            "effect.gravity.acceleration = [0, -10]
+            beam.rod = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 2 }}
+            initial_velocity = [{{ beam = 'rod', value = [0, 10] }}]
+            probe = [{{ name = 'm', beam = 'rod', at = 0.5 }}]
+            analysis.dynamic = {{ duration = 2, {integrator}, event = [{{ probe = 'm', speed = 0.02 }}, {{ probe = 'm', speed = 3 }}, \
+            {{ probe = 'm', minimum = 'speed' }}] }}"
+        );
+        let scene = ancf::scene::parse("thrown.toml", &text).expect("a legal scene");
+        let found = scene.model().solve(scene.analysis()).expect("a motion").into_states();
+        let times: Vec<f64> = found.events.iter().map(Event::time).collect();
+        let expected = [0.7, 0.998, 1.0, 1.002, 1.3];
+        let near = times.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6);
+        assert!(times.len() == 5 && near, "{times:?} by {integrator}");
+        let at_rest = matches!(found.events[2], Event::Probe { value, .. } if value.abs() < 1e-5);
+        assert!(at_rest, "{:?}", found.events[2]);
+    }
+}

@@ -36,6 +36,9 @@ pub struct EventWatch<'t> {
     pub is_rate: bool,
     /// Whether its zero is one of many, as that of a direction: its size is then that of its change.
     pub is_relative: bool,
+    /// Whether `quantity` is the square of what is watched: a speed has a corner where a point reverses, and no polynomial
+    /// represents it.
+    pub is_square: bool,
     /// What it has to do.
     pub when: EventKind,
     /// Whether the motion ends there.
@@ -88,7 +91,10 @@ impl Driver<'_, '_> {
             let memory = &mut self.watched[number];
             let first = pieces.first().map_or(0.0, |(_, piece)| piece.at(0.0)[0]);
             let zero = if watch.is_relative { *memory.first.get_or_insert(first) } else { 0.0 };
-            let ends = pieces.iter().flat_map(|(_, piece)| [0.0, 1.0].map(|x| (piece.at(x)[0] - zero).abs()));
+            let watched = |value: f64| if watch.is_square { value.max(0.0).sqrt() } else { value };
+            let ends = pieces
+                .iter()
+                .flat_map(|(_, piece)| [0.0, 1.0].map(|x| (watched(piece.at(x)[0]) - zero).abs()));
             memory.largest = ends.fold(memory.largest, f64::max);
             let (unit, noise) = match watch.quantity {
                 Quantity::Position(..) => (self.system.length(), NEAR),
@@ -98,14 +104,18 @@ impl Driver<'_, '_> {
                 EventKind::Reaches { value, crossing } => {
                     // What rests where it is zero does not reach zero again and again.
                     let near = round_off.max(NEAR * unit.max(value.abs()));
-                    reached(&pieces, value, crossing, near, memory)
+                    let (followed, near) = match watch.is_square {
+                        true => (value * value.abs(), near * (2.0 * value.abs() + near)),
+                        false => (value, near),
+                    };
+                    reached(&pieces, followed, crossing, near, memory)
                 }
-                EventKind::Maximum => turned(&pieces, 1.0, round_off.max(noise * unit), memory),
-                EventKind::Minimum => turned(&pieces, -1.0, round_off.max(noise * unit), memory),
+                EventKind::Maximum => turned(&pieces, 1.0, round_off.max(noise * unit), memory, watched),
+                EventKind::Minimum => turned(&pieces, -1.0, round_off.max(noise * unit), memory, watched),
             };
             memory.value = pieces.last().map(|(_, piece)| piece.at(1.0)[0]);
             let later = events.into_iter().filter(|(at, _)| self.state.time + at * h > self.first.time);
-            found.extend(later.map(|(at, value)| (at, number, value)));
+            found.extend(later.map(|(at, value)| (at, number, watched(value))));
         }
         // Among simultaneous events, one that ends the motion comes last.
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then(task.watches[a.1].stop.cmp(&task.watches[b.1].stop)));
@@ -221,9 +231,15 @@ fn reached(pieces: &[Piece], value: f64, crossing: Crossing, near: f64, memory: 
     found
 }
 
-/// Where the quantity times `sign` begins to fall after it has risen by more than `near`, and its
+/// Where the quantity times `sign` begins to fall after what is `watched` of it has risen by more than `near`, and its
 /// values there.
-fn turned(pieces: &[Piece], sign: f64, near: f64, memory: &mut Watched) -> Vec<(f64, f64)> {
+fn turned(
+    pieces: &[Piece],
+    sign: f64,
+    near: f64,
+    memory: &mut Watched,
+    watched: impl Fn(f64) -> f64,
+) -> Vec<(f64, f64)> {
     let mut found = Vec::new();
     for ([from, to], piece) in pieces {
         let start = piece.at(0.0)[0];
@@ -237,7 +253,7 @@ fn turned(pieces: &[Piece], sign: f64, near: f64, memory: &mut Watched) -> Vec<(
         }
         for at in turns {
             let value = piece.at(at)[0];
-            let change = value - reference;
+            let change = watched(value) - watched(reference);
             if change * rising > near {
                 reference = value;
                 if rising == sign {
@@ -263,6 +279,10 @@ mod tests {
         );
     }
 
+    fn same(value: f64) -> f64 {
+        value
+    }
+
     /// x³/3 − x²/2 + 3x/16 rises to 1/48 at ¼ and falls to 0 at ¾, from where it rises again.
     fn wave() -> Polynomial {
         Polynomial::hermite([0.0, 1.0 / 48.0], [3.0 / 16.0; 2], None)
@@ -280,20 +300,20 @@ mod tests {
             (1.0, 0.021, &[]),
             (-1.0, 0.021, &[]),
         ] {
-            near(&turned(&pieces, sign, near_to, &mut Watched::default()), expected);
+            near(&turned(&pieces, sign, near_to, &mut Watched::default(), same), expected);
         }
         // What was falling before has turned at the border, and comes from the value that is
         // remembered.
         let mut memory = Watched { slope: -1.0, turned: Some(1.0), ..Watched::default() };
-        near(&turned(&pieces, -1.0, 1e-9, &mut memory), &[(0.5, 0.0), (0.875, low)]);
+        near(&turned(&pieces, -1.0, 1e-9, &mut memory, same), &[(0.5, 0.0), (0.875, low)]);
         assert_eq!(memory.slope, 1.0);
         assert!(memory.turned.is_some_and(|value| value.abs() < 1e-9), "{memory:?}");
         // A line has no turn; two pieces may have one where they meet.
         let line = |from: f64, to: f64| Polynomial::hermite([from, to], [to - from; 2], None);
-        near(&turned(&[([0.0, 1.0], line(0.0, 1.0))], 1.0, 1e-9, &mut Watched::default()), &[]);
+        near(&turned(&[([0.0, 1.0], line(0.0, 1.0))], 1.0, 1e-9, &mut Watched::default(), same), &[]);
         let peak = [([0.0, 0.25], line(0.0, 1.0)), ([0.25, 1.0], line(1.0, 0.5))];
-        near(&turned(&peak, 1.0, 1e-9, &mut Watched::default()), &[(0.25, 1.0)]);
-        near(&turned(&peak, -1.0, 1e-9, &mut Watched::default()), &[]);
+        near(&turned(&peak, 1.0, 1e-9, &mut Watched::default(), same), &[(0.25, 1.0)]);
+        near(&turned(&peak, -1.0, 1e-9, &mut Watched::default(), same), &[]);
     }
 
     #[test]
