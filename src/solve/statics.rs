@@ -30,6 +30,8 @@ const SAME_SIDE: f64 = 1e-5;
 
 /// By how much a path may miss its target, relative to the wanted load factor or in beam lengths.
 const AT_TARGET: f64 = 1e-12;
+/// A structure that is held by what strains its given shape alone, and that ends at so small a load factor, was not held.
+const NEXT_TO_NOTHING: f64 = 1e-3;
 /// Forces below this part of the stiffness stress nothing.
 const SLACK: f64 = 1e-12;
 
@@ -192,16 +194,53 @@ pub fn solve(
     let mut equilibrium = Equilibrium::new(system);
     let mut solution = Solution::default();
     let newton = newton_settings(settings);
-    let outcome = settled(&mut equilibrium, newton, observe).and_then(|x| match target {
-        None if system.is_floppy() && !is_steady(&mut equilibrium, &x) => {
-            relaxed(&mut equilibrium, x, settings, newton, &mut solution, observe)
-        }
-        None => along_load(&mut equilibrium, x, settings, newton, &mut solution, observe),
-        Some(target) => along_arc(&mut equilibrium, x, (settings, target), newton, &mut solution, observe),
-    });
+    let outcome = match target {
+        None => loaded(&mut equilibrium, settings, newton, &mut solution, observe),
+        Some(target) => settled(&mut equilibrium, newton, observe)
+            .and_then(|x| along_arc(&mut equilibrium, x, (settings, target), newton, &mut solution, observe)),
+    };
     solution.statistics = equilibrium.statistics;
     solution.stuck = outcome.err().filter(|stuck| stuck.failure != Failure::Stopped);
     solution
+}
+
+/// The equilibria up to the full loads: along a path of load steps, or, where nothing holds the structure before loads do, where it
+/// comes to rest under each of them.
+fn loaded(
+    equilibrium: &mut Equilibrium<'_>,
+    settings: &Static,
+    newton: Settings,
+    solution: &mut Solution,
+    observe: Observer<'_>,
+) -> Result<(), NoStep> {
+    let system = equilibrium.system();
+    let was_stopped = |stuck: &NoStep| stuck.failure == Failure::Stopped;
+    let x = match settled(equilibrium, newton, observe) {
+        Err(stuck) if !system.is_floppy() || was_stopped(&stuck) => return Err(stuck),
+        // What strains the given shape may be next to nothing.
+        Err(_) => {
+            let given = equilibrium.start();
+            return relaxed(equilibrium, given, settings, newton, solution, observe);
+        }
+        Ok(x) => x,
+    };
+    if system.is_floppy() && !is_steady(equilibrium, &x) {
+        return relaxed(equilibrium, x, settings, newton, solution, observe);
+    }
+    match along_load(equilibrium, x.clone(), settings, newton, solution, observe) {
+        Err(stuck) if !was_stopped(&stuck) && is_loose(system, &stuck) => {
+            *solution = Solution::default();
+            relaxed(equilibrium, x, settings, newton, solution, observe)
+        }
+        path => path,
+    }
+}
+
+/// Whether a path of load steps ends where it begins because nothing holds the structure there but what strains a given shape, or
+/// beams that resist either tension or pressure.
+fn is_loose(system: &System, stuck: &NoStep) -> bool {
+    system.is_floppy() && system.starts_bent() && stuck.load < NEXT_TO_NOTHING
+        || system.gives_way() && stuck.load == 0.0
 }
 
 /// The state at load factor 0: where a given shape, or one in which springs are stretched, comes to
@@ -217,9 +256,11 @@ fn settled(
         || !system.is_taken_up() && !system.is_floppy() && system.force_at_start(&[Kind::Spring]) > 0.0;
     if system.starts_bent() || stressed() {
         let goes_on = &mut |counts: &Statistics| observe(0.0, 0.0, counts);
-        let rest = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default(), goes_on);
-        let at = system.place_of(0);
-        rest.map_err(|failure| NoStep { load: 0.0, step: 0.0, failure, at })?;
+        let before = equilibrium.accepted().clone();
+        if let Err(failure) = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default(), goes_on) {
+            equilibrium.restore(before);
+            return Err(NoStep { load: 0.0, step: 0.0, failure, at: system.place_of(0) });
+        }
         equilibrium.set_accepted(&x);
     }
     Ok(x)

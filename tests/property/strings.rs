@@ -67,6 +67,42 @@ fn a_slack_cable_hangs_as_a_catenary() {
     assert!(trajectory.last[0].bending_moment.iter().all(|m| *m == 0.0));
 }
 
+/// Laid out from its `start` as an arc as long as it is, of 100°, a string hangs as a catenary on any mesh: what the cubics
+/// of its cells stretch the arc by is a tension that holds nothing. 2 c sinh(w/2c) = 1 for hooks at a distance w.
+#[test]
+fn a_string_laid_out_as_long_as_it_is_hangs_on_any_mesh() {
+    let half = 50.0_f64.to_radians();
+    let radius = 0.5 / half;
+    let width = 2.0 * radius * half.sin();
+    let mut bracket = (0.05_f64, 50.0_f64);
+    for _ in 0..200 {
+        let c = 0.5 * (bracket.0 + bracket.1);
+        if 2.0 * c * (0.5 * width / c).sinh() > 1.0 { bracket.0 = c } else { bracket.1 = c }
+    }
+    let height = |s: f64| (bracket.0 * bracket.0 + (s - 0.5).powi(2)).sqrt();
+    let expected = height(0.43) - height(0.0);
+    for (stiffness, elements) in [(1e5, 10), (1e6, 20), (1e5, 40), (1e6, 80), (1e4, 80)] {
+        let text = format!(
+            "beam.a = {{ start = [0, 0], end = [1, 0], mass_per_length = 1, axial_stiffness = {stiffness:e}, \
+             basis.ancf.elements = {elements}, initial_shape.arc = {{ center = [{}, {}], radius = {radius}, \
+             from = '220 deg', to = '320 deg' }} }}\n\
+             support = [{{ beam = 'a', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'a', at = 'end', fix = ['x', 'y'] }}]\n\
+             effect.gravity.acceleration = [0, -9.81]\nprobe = [{{ name = 'p', beam = 'a', at = 0.43 }}]\nanalysis.static = {{}}\n",
+            radius * half.sin(),
+            radius * half.cos()
+        );
+        let scene = ancf::scene::parse("string.toml", &text).expect("a legal scene");
+        let found =
+            scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}, {elements} cells"));
+        let y = found.states().probes[0].samples.last().expect("a state").y;
+        // The weight stretches the string by 10/EA.
+        assert!(
+            (y - expected).abs() < 2e-4 + 10.0 / stiffness,
+            "{y} for {expected}, EA = {stiffness}, {elements} cells"
+        );
+    }
+}
+
 /// Where nothing acts a string stays where it is, though nothing would resist it.
 #[test]
 fn a_string_without_load_stays() {
@@ -395,4 +431,26 @@ fn a_string_in_a_faint_wind_hangs() {
         let found = sag(more);
         assert!((found - still).abs() < 1e-3, "{more}: {found} for {still}");
     }
+}
+
+/// A rope that resists tension only, held 5 % closer than it is long, hangs as the same rope with a little stiffness against bending: that
+/// nothing resists pressure where it begins is no reason to refuse it.
+#[test]
+fn a_rope_that_gives_way_under_pressure_hangs_with_or_without_bending() {
+    let of = |bending: &str| {
+        let text = format!(
+            "beam.a = {{ start = [0, 0], end = [1, 0], mass_per_length = 0.4, {bending} basis.ancf.elements = 20, \
+             axial_law = {{ strain = [-0.05, 0, 0.02, 0.1], force = [0, 0, 200, 3000] }} }}\n\
+             support = [{{ beam = 'a', at = 'start', fix = ['x', 'y'] }}, \
+             {{ beam = 'a', at = 'end', fix = ['x', 'y'], move = {{ x = -0.05 }} }}]\n\
+             effect.gravity.acceleration = [0, -9.81]\nprobe = [{{ name = 'p', beam = 'a', at = 0.43 }}]\nanalysis.static = {{}}\n"
+        );
+        let scene = ancf::scene::parse("rope.toml", &text).expect("a legal scene");
+        let found =
+            scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}, {bending}"));
+        found.states().probes[0].samples.last().expect("a state").y
+    };
+    let [limp, stiff] = ["", "bending_stiffness = 1e-3,"].map(of);
+    // Bending flattens the rope at its ends over √(EI/N), 0.03 m.
+    assert!((stiff - limp).abs() < 1e-3 && limp < -0.1, "{limp} {stiff}");
 }
