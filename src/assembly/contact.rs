@@ -32,6 +32,10 @@ pub trait ContactEffect: Effect {
     /// Whether the beam might leave the obstacle on the other side on a deep path `way`.
     fn crosses(&self, way: CubicStates<'_>) -> bool;
 
+    /// Whether a stretch of the beam lies along the border of the obstacle, nearer to it than `near` \[m\], in the state `q`: at the kink of
+    /// its force.
+    fn lies_along(&self, q: &[f64], near: f64) -> bool;
+
     /// Whether anything touches in the state `q`.
     fn touches(&self, q: &[f64]) -> bool {
         self.intervals(q) > 0

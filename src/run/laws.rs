@@ -159,24 +159,33 @@ fn zero([mut left, mut right]: [(f64, f64); 2], of: impl Fn(f64) -> Option<f64>)
 }
 
 /// Warnings on beams in the state `now` that are at corners of their laws, of which a linear
-/// solution about the state takes one side only; `free` is the stress-free state.
+/// solution about the state takes one side, or another one from point to point; `free` is the stress-free state. Strains tell
+/// where these are given, section forces where loads give them.
 pub(super) fn at_corners(model: &Model, now: &[Shape], free: &[Shape]) -> Vec<String> {
     let mut warnings = Vec::new();
     for (beam, (now, free)) in model.beams.iter().zip(now.iter().zip(free)) {
         let bend = now.curvature.iter().zip(&free.curvature).map(|(now, free)| now - free).collect();
         let laws = [
-            (&beam.section.axial_law, now.strain.clone(), "axial strain", "axial_law"),
-            (&beam.section.bending_law, bend, "curvature", "bending_law"),
+            (&beam.section.axial_law, now.strain.clone(), &now.axial_force, "axial strain", "axial_law"),
+            (&beam.section.bending_law, bend, &now.bending_moment, "curvature", "bending_law"),
         ];
-        for (law, strains, what, key) in laws {
+        for (law, strains, forces, what, key) in laws {
             let Some(law) = law else { continue };
             // A single place, such as a free end, resists nothing by itself.
             let corner = |strain: f64| law.corner(strain, CORNER);
             let along = strains.windows(2).find_map(|pair| corner(pair[0]).and(corner(pair[1])));
-            let Some([left, right]) = along else { continue };
+            let largest = forces.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+            let carried = || {
+                law.corners(CORNER).find_map(|strain| {
+                    let force = law.force_and_stiffness(strain).0;
+                    let is_there = |now: &f64| force != 0.0 && (now - force).abs() <= CORNER * largest;
+                    forces.windows(2).any(|pair| pair.iter().all(is_there)).then(|| corner(strain)).flatten()
+                })
+            };
+            let Some([left, right]) = along.or_else(carried) else { continue };
             warnings.push(format!(
                 "the {what} of beam `{}` is at a corner of its `{key}`, where its stiffness is {left:.4e} on one side and {right:.4e} on the other: \
-                 a linear solution about this state takes one of both; give the table no corner there, or load the beam before",
+                 a linear solution about this state takes one of both, or now this and now that along the beam; give the table no corner there, or load the beam before",
                 beam.name
             ));
         }

@@ -179,6 +179,7 @@ impl Sampler<'_> {
         let about = if load == 0.0 { "the stress-free state" } else { "the equilibrium under all loads" };
         run.settings.push(("vibrations about".into(), about.into()));
         run.warnings.extend(at_corners(self.model, &equilibrium.last, &run.undeformed));
+        run.warnings.extend(lying_along(system, self.coordinates_of(x)));
         let modes = modal::solve(system, load, x, variables, count)?;
         run.statistics.factorizations += modes.factorizations;
         run.warnings.extend(unsure("frequency", &modes.round_off, self.model));
@@ -214,6 +215,7 @@ impl Sampler<'_> {
         unloaded.run.warnings.extend(beyond_the_linear(modes));
         let corners = at_corners(self.model, &unloaded.last, &unloaded.run.undeformed);
         unloaded.run.warnings.extend(corners);
+        unloaded.run.warnings.extend(lying_along(self.system, q));
         let divided = divided(self.model, &unloaded.last, &|_, _| None);
         unloaded.run.warnings.extend(divided.and_then(|divided| within_cells(&divided, self.system)));
         let scaled = |mode: &Vec<f64>| -> Vec<f64> {
@@ -302,4 +304,13 @@ fn beyond_the_linear(modes: &buckling::Modes) -> Option<String> {
         )),
         (None, None, None) => None,
     }
+}
+/// The warning on a beam that lies along an obstacle and presses it by nothing, in a state about which a linear solution is sought.
+fn lying_along(system: &System, q: &[f64]) -> Option<String> {
+    let contact = system.lies_along(q)?;
+    Some(format!(
+        "contact `{}` just touches along a stretch of its beam and presses it by nothing: round-off decides whether its stiffness acts there, or where; \
+         move the obstacle away, or load the beam so that it rests on it or leaves it",
+        system.contact_names().nth(contact)?
+    ))
 }

@@ -4,6 +4,9 @@
 use super::System;
 use crate::assembly::AcceptedState;
 
+/// Distances of this part of a beam's length are round-off of positions.
+const ALONG: f64 = 1e-13;
+
 impl System {
     /// Whether there are any contacts.
     pub fn has_contacts(&self) -> bool {
@@ -23,6 +26,13 @@ impl System {
     /// Whether contact number `contact` touches in the state `q`.
     pub fn touches(&self, contact: usize, q: &[f64]) -> bool {
         self.terms.contacts.get(contact).is_some_and(|contact| contact.touches(q))
+    }
+
+    /// The first contact whose beam lies along its obstacle in the state `q`, as far as positions tell, and whose stiffness acts there or
+    /// does not by chance.
+    pub fn lies_along(&self, q: &[f64]) -> Option<usize> {
+        let near = ALONG * self.length();
+        self.terms.contacts.iter().position(|contact| contact.lies_along(q, near))
     }
 
     /// The resultant \[N\] of contact number `contact` on its beam in the state `q`, without

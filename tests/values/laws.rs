@@ -214,3 +214,47 @@ fn a_stiffness_that_jumps_inside_a_cell_is_told() {
     }
     assert!(!told(2.3, "nodes = [0, 0.2, 0.456421, 0.7, 1]", "buckling.count = 1"));
 }
+
+/// A cantilever under a moment that is just that of a corner of its law: forces tell, where curvatures of elements miss the corner by
+/// what they err. A moment less by a millionth is on one side.
+#[test]
+fn a_moment_at_a_corner_is_told() {
+    let of = |moment: f64| {
+        let text = format!(
+            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, mass_per_length = 1, basis.ancf.elements = 10, \
+             bending_law = {{ curvature = [-2, -1, 0, 1, 2], moment = [-1.5, -1, 0, 1, 1.5] }} }}\n\
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+             effect.moment = [{{ beam = 'b', at = 'end', value = {moment:?} }}]\nanalysis.modal = {{ count = 1, about = 'equilibrium' }}\n"
+        );
+        let scene = ancf::scene::parse("corner.toml", &text).expect("a legal scene");
+        scene.model().solve(scene.analysis()).expect("vibrations").run().warnings.join("; ")
+    };
+    let said = "the curvature of beam `b` is at a corner of its `bending_law`";
+    let found = [1.0, 1.0 - 1e-6].map(of);
+    assert!(found[0].contains(said) && !found[1].contains(said), "{found:?}");
+}
+
+/// A beam that lies on a plane and presses it by nothing vibrates with the plane's stiffness or without, by the sign of round-off; one
+/// that rests on it, or is clear of it, does not.
+#[test]
+fn a_contact_that_just_touches_is_told() {
+    let of = |height: f64, weight: f64, analysis: &str| {
+        let text = format!(
+            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 8 }}\n\
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'b', at = 'end', fix = ['y'] }}]\n\
+             effect.gravity.acceleration = [0, {:?}]\n\
+             effect.contact = [{{ beam = 'b', stiffness = 1e3, half_plane = {{ point = [0, {height:?}], normal = [0, 1] }} }}]\n\
+             analysis.modal = {{ count = 2, about = '{analysis}' }}\n",
+            -weight
+        );
+        let scene = ancf::scene::parse("plane.toml", &text).expect("a legal scene");
+        let results = scene.model().solve(scene.analysis()).expect("vibrations");
+        results
+            .run()
+            .warnings
+            .iter()
+            .any(|told| told.starts_with("contact `b.1` just touches along a stretch"))
+    };
+    assert!(of(0.0, 0.0, "equilibrium") && of(0.0, 0.0, "reference"));
+    assert!(!of(0.0, 1.0, "equilibrium") && !of(-0.1, 0.0, "equilibrium") && !of(-1e-6, 0.0, "reference"));
+}

@@ -138,6 +138,15 @@ impl ContactEffect for ContactIntegral {
         self.first_deeper(way, GRAZE * shortest, GRAZE * shortest)
     }
 
+    fn lies_along(&self, q: &[f64], near: f64) -> bool {
+        let at_border = |r: &Vector2<f64>| self.penalty.gap_at(r).abs() <= near;
+        (0..self.cells.count()).any(|cell| {
+            let curve = self.cells.curve(cell, q);
+            let ends = [curve.points().first(), curve.points().last()];
+            at_border(&curve.middle()) && ends.into_iter().flatten().any(at_border)
+        })
+    }
+
     fn is_deep(&self, way: CubicStates<'_>) -> bool {
         let deepest = self.penalty.obstacle.deepest(self.penalty.gap);
         deepest.is_finite() && self.first_deeper(way, DEEPER * deepest, FINE * deepest).is_some()
