@@ -1,5 +1,6 @@
 //! By how much two runs of a model differ: where along the beams, when, and in which cells.
 
+mod laid_out;
 mod modes;
 mod places;
 mod section_forces;
@@ -12,12 +13,13 @@ use super::mesh::{CellErrors, Mesh};
 use crate::model::{Analysis, Model};
 use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Results};
 
+pub(super) use laid_out::laid_out;
 use modes::modes;
 pub(super) use modes::round_off;
 pub(super) use states::jumps;
 use states::states;
 pub(super) use stations::stations;
-pub(super) use strain_jumps::strain_jumps;
+pub(super) use strain_jumps::{stiffness_jumps, strain_jumps};
 
 /// Parameters of records are the same when they differ by less, relative to the last one.
 const SAME: f64 = 1e-9;
@@ -75,6 +77,23 @@ impl Difference {
             beam.curvature.iter_mut().for_each(|error| *error /= curvature);
         }
         self
+    }
+
+    /// None at all, of the same quantities.
+    fn none(&self) -> Self {
+        let mut none = self.clone();
+        let zero = |of: Option<f64>| of.map(|_| 0.0);
+        let Errors { curvature, section_force, .. } = self.errors;
+        none.errors = Errors { result: 0.0, curvature: zero(curvature), section_force: zero(section_force) };
+        none.records.fill(0.0);
+        for beam in &mut none.beams {
+            beam.position.fill(0.0);
+            beam.curvature.fill(0.0);
+        }
+        for sample in none.probes.iter_mut().flat_map(|probe| &mut probe.samples) {
+            *sample = ProbeSample { vx: zero(sample.vx), vy: zero(sample.vy), ..ProbeSample::default() };
+        }
+        none
     }
 
     /// The errors of both together, in the cells of this one; `None` where they are not of as many records.

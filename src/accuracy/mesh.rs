@@ -196,6 +196,19 @@ impl Mesh {
         })
     }
 
+    /// With cells that are shorter and shorter, down to an eighth, towards both sides of `places`.
+    pub fn graded_towards(mut self, places: &[f64]) -> Self {
+        for s in places {
+            let node = self.nodes.partition_point(|node| *node < s - SAME * self.length());
+            let ends = [node.checked_sub(1), Some(node + 1)].into_iter().flatten();
+            let ends: Vec<f64> = ends.filter_map(|end| self.nodes.get(end).copied()).collect();
+            let new = ends.iter().flat_map(|end| [0.5, 0.25, 0.125].map(|part| s + part * (end - s)));
+            self.nodes.extend(new);
+            self.nodes.sort_by(f64::total_cmp);
+        }
+        self
+    }
+
     /// The errors of this mesh, from those of the cells of a `finer` one.
     pub fn gathered(&self, finer: &Self, errors: &CellErrors) -> CellErrors {
         let mut squares = vec![0.0; self.cells()];
@@ -436,6 +449,12 @@ mod tests {
         let quartered = found.quartered_parts();
         assert_eq!(quartered.nodes.len(), 11);
         assert!((quartered.nodes[6] - 4.5).abs() < 1e-9 && quartered.coarsening() == Some(2.0));
+    }
+
+    #[test]
+    fn cells_are_shorter_towards_a_jump() {
+        let graded = mesh(&[0.0, 4.0, 12.0, 16.0], &[0.0, 4.0, 16.0]).graded_towards(&[4.0]);
+        assert_eq!(graded.nodes, [0.0, 2.0, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 12.0, 16.0]);
     }
 
     /// On the side of a notch that is 1000 times as soft as the rest.

@@ -64,7 +64,7 @@ pub(super) fn at_jumps(model: &Model, jumps: impl Fn(&Probe) -> bool) -> Option<
     (!names.is_empty()).then(|| {
         format!(
             "what acts in a point makes the strain, or a string's direction, jump where probe{s} {} {sees} it: strain and curvature, or the \
-             angle, are between those on both sides, and their errors are the distances; a probe beside it tells each",
+             angle, are between those on both sides, and their errors are the distances; a probe more than a cell away tells each",
             names.join(", ")
         )
     })

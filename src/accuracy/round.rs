@@ -1,6 +1,6 @@
 //! A round of a search: the same problem on meshes and with steps of two or three finenesses.
 
-use super::difference::{self, Difference, stations};
+use super::difference::{self, Difference, stations, stiffness_jumps};
 use super::judgement::{excess, scaled};
 use super::mesh::Mesh;
 use super::saturation::saturates;
@@ -86,6 +86,8 @@ pub(super) struct Runner<'a, 'o> {
     saturated: Vec<bool>,
     /// Those of them within whose cells something acts in a point.
     pointed: Vec<bool>,
+    /// Where in them the stiffness against stretching jumps.
+    softer: Vec<Vec<f64>>,
     /// The halvings between the meshes of two runs: more than one where the scene gives all beams an odd number of
     /// cells.
     pub halvings: f64,
@@ -186,6 +188,10 @@ impl<'a, 'o> Runner<'a, 'o> {
             named.as_ref().is_some_and(|named| has_points(model, index, named))
         };
         let pointed = named.iter().enumerate().map(pointed).collect();
+        let softer = |(index, named): (usize, &Option<Mesh>)| {
+            named.as_ref().map_or_else(Vec::new, |named| stiffness_jumps(model, index, named.length()))
+        };
+        let softer = named.iter().enumerate().map(softer).collect();
         let saturated = |(beam, mesh): (&Beam, &Mesh)| saturates(&beam.discretization, mesh.length());
         let saturated = model.beams.iter().zip(&meshes).map(saturated).collect();
         for (mesh, named) in meshes.iter_mut().zip(&named) {
@@ -215,6 +221,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             named,
             saturated,
             pointed,
+            softer,
             halvings: if times.is_finite() { times.log2() } else { 1.0 },
             tolerance,
             runs: Vec::new(),
@@ -406,6 +413,9 @@ impl<'a, 'o> Runner<'a, 'o> {
                 .then(|| difference::strain_jumps(self.model, &nodes, run, difference));
             unseen = both(unseen, jumps.flatten());
         }
+        if let (Ok(difference), Results::Trajectory(_)) = (&difference, &results) {
+            unseen = both(unseen, difference::laid_out(self.model, difference));
+        }
         let fall = before
             .zip(difference.as_ref().ok())
             .map(|(before, now)| before.errors.result / now.errors.result);
@@ -426,7 +436,7 @@ impl<'a, 'o> Runner<'a, 'o> {
     }
 
     /// What the results of a `setting` differ by from those with four cells in every part of a beam that has one, with nodes where
-    /// something acts in a point, and with elements in place of shape functions whose errors finer meshes do not remove; `None`
+    /// something acts in a point, with short cells where a stiffness jumps, and with elements in place of shape functions whose errors finer meshes do not remove; `None`
     /// where there is nothing of it.
     fn beside_finer(
         &mut self,
@@ -436,14 +446,17 @@ impl<'a, 'o> Runner<'a, 'o> {
     ) -> Result<Option<Difference>, String> {
         // What acts in a point within a cell makes an error by its place in the cell, which is another one in coarser cells.
         let beams = 0..self.model.beams.len();
-        let unseen: Vec<usize> = beams.filter(|beam| self.is_unseen(*beam) || self.pointed[*beam]).collect();
+        // Where a stiffness jumps, errors of the first order are beside others that fall so fast that coarser meshes show these only.
+        let is_unseen =
+            |beam: &usize| self.is_unseen(*beam) || self.pointed[*beam] || !self.softer[*beam].is_empty();
+        let unseen: Vec<usize> = beams.filter(is_unseen).collect();
         if unseen.is_empty() || !results.run().complete {
             return Ok(None);
         }
         let mut finer = setting.clone();
         for index in unseen {
             let (beam, Some(named)) = (&self.model.beams[index], &self.named[index]) else { continue };
-            let nodes = named.quartered_parts().places();
+            let nodes = named.quartered_parts().graded_towards(&self.softer[index]).places();
             finer.beams[index] = match self.saturated[index] {
                 true => Family::REDUCED.of(beam, nodes),
                 false => (coarser(&beam.discretization, nodes), beam.gauss_points),

@@ -3,6 +3,7 @@
 use super::{cantilever, error, last, run, scene};
 use ancf::model::{Analysis, Discretization, Integrator, Nodes, StepControl};
 use ancf::scene::parse;
+use std::f64::consts::TAU;
 
 const MOTION: &str = "effect.gravity.acceleration = [0, -9.81]\n\
                       analysis.dynamic = { duration = 0.4, output_every = 0.05, accuracy = 1e-4 }";
@@ -194,4 +195,47 @@ fn a_strain_that_jumps_moves_its_place() {
     let truth = 2.7e-4 * 0.51_f64.hypot(0.86) / 22.0 / 12.0;
     let told = error(&known).probes[0].samples.last().expect("a state").x;
     assert!((0.5..3.0).contains(&(told / truth)), "{told:e} {truth:e}");
+}
+
+/// A rod whose axial stiffness falls from 1e4 N to a fifth at 0.37 m: elements have one strain there and two on both sides, and
+/// frequency and elongation err by as much as they are long, which fewer of them do not show. With ω = k₁ √EA₁ = k₂ √EA₂ the two parts
+/// vibrate by EA₁ k₁ cot k₁ℓ₁ = EA₂ k₂ tan k₂ℓ₂.
+#[test]
+fn a_stiffness_that_jumps_errs_by_the_length_of_elements() {
+    let [stiff, soft] = [1e4_f64, 2e3];
+    let residual = |omega: f64| {
+        let [before, behind] = [stiff, soft].map(|stiffness| omega / stiffness.sqrt());
+        stiff * before / (before * 0.37).tan() - soft * behind * (behind * 0.63).tan()
+    };
+    let (mut low, mut high) = (90.0, 105.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if (residual(middle) < 0.0) == (residual(low) < 0.0) { low = middle } else { high = middle }
+    }
+    for (basis, times) in [
+        ("ancf.elements = 8", 3.0),
+        ("ancf.elements = 16", 3.0),
+        ("ancf.elements = 40", 3.0),
+        ("rpim.nodes = 15", 5.0),
+    ] {
+        let of = |rest: &str| {
+            let scene = scene(&format!(
+                "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = {{ pieces = {{ until = [0.37], value = [1e4, 2e3] }} }}, \
+                 bending_stiffness = 1e7, mass_per_length = 1, basis.{basis} }}\n\
+                 support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+                 probe = [{{ name = 'end', beam = 'b', at = 'end' }}]\n{rest}"
+            ));
+            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one")
+        };
+        let vibrations = of("analysis.modal.count = 2\n");
+        let found = TAU * vibrations.eigenvalues()[0];
+        let (truth, told) = ((found / low - 1.0).abs(), error(&vibrations).estimated.result);
+        assert!((0.3..times).contains(&(told / truth)), "{told:e} for {truth:e}, {basis}");
+        let pulled =
+            of("effect.force = [{ beam = 'b', at = 'end', value = [100, 0] }]\nanalysis.static = {}\n");
+        let end = pulled.states().probes[0].samples.last().expect("a state").x;
+        let truth = (end - 1.0 - 100.0 * (0.37 / stiff + 0.63 / soft)).abs();
+        let told = error(&pulled).probes[0].samples.last().expect("a state").x;
+        assert!((0.3..times).contains(&(told / truth)), "{told:e} for {truth:e}, pulled, {basis}");
+    }
 }

@@ -6,6 +6,8 @@ use crate::accuracy::mesh::{CellErrors, Mesh};
 use crate::model::Model;
 use crate::results::{Errors, ModeShape, Results};
 
+/// The part of the largest error that a value has at least, in proportion to the squares of both.
+const LEAST: f64 = 0.1;
 /// Bending of a mode, relative to its displacement, that is round-off.
 const RIGID: f64 = 1e-5;
 
@@ -20,7 +22,15 @@ pub fn modes(model: &Model, meshes: &[Mesh], coarse: &Results, fine: &Results) -
     }
     // The frequency of a motion that nothing resists is zero in both.
     let relative = |(a, b): (&f64, &f64)| if a == b { 0.0 } else { (a - b).abs() / b.abs() };
-    let eigenvalues: Vec<f64> = a.iter().zip(&b).map(relative).collect();
+    let seen: Vec<f64> = a.iter().zip(&b).map(relative).collect();
+    // Two runs may happen to agree in one value. Errors of bending and of stretching grow with the square of the value.
+    let least = |value: &f64| {
+        let of_others =
+            seen.iter().zip(&b).map(|(error, other)| LEAST * error * (value / other).powi(2).min(1.0));
+        of_others.filter(|error| error.is_finite()).fold(0.0, f64::max)
+    };
+    let eigenvalues: Vec<f64> =
+        seen.iter().zip(&b).map(|(error, value)| larger(*error, least(value))).collect();
     let result = eigenvalues.iter().copied().fold(0.0, larger);
     if !result.is_finite() {
         return Err("a value is not a number".into());

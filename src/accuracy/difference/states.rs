@@ -19,6 +19,9 @@ const OF_CURVATURE: f64 = 2.0;
 /// An axial force that differs on both sides of a place by more than this part of the largest, or of M/L, jumps there.
 const JUMP: f64 = 1e-6;
 
+/// The parts of the largest errors of positions and of angles on its beam that those of a probe are at least.
+const LEAST: (f64, f64) = (0.1, 0.04);
+
 /// Velocities and angles of so many records before and after tell of their errors, too.
 const NEAR_RECORDS: usize = 2;
 
@@ -64,6 +67,9 @@ pub fn states<'t>(
                 let section = &model.beams[probe.at.beam].section;
                 samples[j] = one_sided(samples[j], b, around, probe.at.s, section);
             }
+            let beside = beside_jump(model, &fine.last, &meshes[probe.at.beam], probe.at);
+            samples[j].strain = larger(samples[j].strain, beside);
+            samples[j].curvature = larger(samples[j].curvature, OF_CURVATURE * beside * b.curvature.abs());
             let error = samples[j].x / lengths[probe.at.beam];
             difference.records[j] = larger(difference.records[j], error);
             result = larger(result, error);
@@ -75,6 +81,8 @@ pub fn states<'t>(
         difference.probes.push(ProbeErrors { name: probe.name.clone(), samples });
     }
     let (mut curvature, mut largest) = (0.0_f64, 0.0_f64);
+    // Per beam and record: the largest distance and angle.
+    let mut most = vec![vec![[0.0_f64; 2]; fine.parameter.len()]; model.beams.len()];
     for (index, (beam, mesh)) in model.beams.iter().zip(meshes).enumerate() {
         let s = fine.stations.first().and_then(|beams| beams.get(index)).map_or(&[][..], |shape| &shape.s);
         let length = mesh.length();
@@ -97,6 +105,9 @@ pub fn states<'t>(
                 along.position[k] = larger(along.position[k], error.x / length);
                 along.curvature[k] = larger(along.curvature[k], error.curvature);
                 difference.records[j] = larger(difference.records[j], error.x / length);
+                let now_most = &mut most[index][j];
+                *now_most =
+                    [larger(now_most[0], error.x), larger(now_most[1], within_half_a_turn(error.angle))];
                 let (end, node) = (k + 1 == s.len(), mesh.must_be(s[k]));
                 // At inner nodes only positions are compared: strains and curvatures may jump there.
                 if bends && (end || !node) {
@@ -119,6 +130,15 @@ pub fn states<'t>(
         result = along.position.iter().copied().fold(result, larger);
         difference.beams.push(along);
         difference.cells.push(CellErrors { squares, order: if bends { 2.0 } else { 3.0 } });
+    }
+    // A difference that vanishes in one place, where the runs happen to agree, is no error that does.
+    for (probe, errors) in model.probes.iter().zip(&mut difference.probes) {
+        for (sample, [distance, angle]) in errors.samples.iter_mut().zip(&most[probe.at.beam]) {
+            // What is held does not err.
+            let least = |seen: f64, least: f64| if seen > 0.0 { larger(seen, least) } else { seen };
+            (sample.x, sample.y) = (least(sample.x, LEAST.0 * distance), least(sample.y, LEAST.0 * distance));
+            sample.angle = least(sample.angle, LEAST.1 * angle);
+        }
     }
     // Stations are inside the cells; where cells meet curvatures err most.
     for ((beam, a), b) in model.beams.iter().zip(&coarse.last).zip(&fine.last) {
@@ -271,6 +291,25 @@ pub fn jumps(model: &Model, last: &[Shape], at: Place) -> bool {
     });
     let stretched = beam.section.axial_stiffness.is_some() && most - least > JUMP * largest;
     stretched || beam.section.bending_stiffness.is_none() && is_twice(&shape.s, at.s)
+}
+
+/// What the strain errs by in the cells beside a place where it jumps by Δε: Δε/2 there, and nothing at their other ends. 0 where the
+/// nearest one is farther away, or where it is itself such a place.
+fn beside_jump(model: &Model, last: &[Shape], mesh: &Mesh, at: Place) -> f64 {
+    let Some((beam, shape)) = model.beams.get(at.beam).zip(last.get(at.beam)) else { return 0.0 };
+    let Some(axial) = &beam.section.axial_stiffness else { return 0.0 };
+    let places = model.parts.iter().filter_map(|part| part.point()).filter(|place| place.beam == at.beam);
+    let of = |place: Place| {
+        let force = |after: bool| interpolated(&shape.s, &shape.axial_force, place.s, after);
+        let jump = force(false).zip(force(true)).map_or(0.0, |(before, behind)| (behind - before).abs());
+        let away = (at.s - place.s).abs();
+        // The cells of the finer run are half as long.
+        let ends = &mesh.nodes[mesh.cell_at(0.5 * (at.s + place.s))..];
+        let cell = 0.5 * (ends[1] - ends[0]);
+        let near = away > same_place(&shape.s) && away < cell;
+        if near { 0.5 * jump / axial.at(place.s, at.s) * (1.0 - away / cell) } else { 0.0 }
+    };
+    places.map(of).fold(0.0, larger)
 }
 
 /// What a probe at such a place errs by: at least by what its strain, or the direction of a string, is off from those at the stations

@@ -1,14 +1,14 @@
 //! Errors of positions beside places where the strain of a beam jumps.
 //!
 //! Shape functions with continuous tangents have one strain where two cells meet. If the strain jumps there by Δε, as where a force
-//! pulls along the beam or its axial stiffness jumps, elements of the lengths h on both sides move the place by Δε h/12 along the
+//! pulls along the beam, elements of the lengths h on both sides move the place by Δε h/12 along the
 //! beam, and no others: the cubics that come nearest to a corner in energy do. Where the section couples stretch and bending by
 //! a stiffness EB that jumps, the strain that is wrong on one side bends the beam by ΔEB/EI times as much. These errors fall in
 //! proportion to h only, beside others that fall faster, so that runs on coarser meshes do not tell them.
 
 use super::{Difference, larger};
-use crate::model::{Along, Beam, Model, Place};
-use crate::results::{Errors, ProbeSample, Shape, Trajectory};
+use crate::model::{Along, Beam, Model, Place, Section};
+use crate::results::{Shape, Trajectory};
 
 /// Of Δε h.
 const OF_JUMP: f64 = 1.0 / 12.0;
@@ -25,23 +25,7 @@ pub(in crate::accuracy) fn strain_jumps(
     run: &Trajectory,
     difference: &Difference,
 ) -> Option<Difference> {
-    let mut sum = Difference {
-        errors: Errors {
-            result: 0.0,
-            curvature: difference.errors.curvature.map(|_| 0.0),
-            section_force: difference.errors.section_force.map(|_| 0.0),
-        },
-        ..difference.clone()
-    };
-    sum.records.fill(0.0);
-    for beam in &mut sum.beams {
-        beam.position.fill(0.0);
-        beam.curvature.fill(0.0);
-    }
-    for sample in sum.probes.iter_mut().flat_map(|probe| &mut probe.samples) {
-        let none = |v: Option<f64>| v.map(|_| 0.0);
-        *sample = ProbeSample { vx: none(sample.vx), vy: none(sample.vy), ..ProbeSample::default() };
-    }
+    let mut sum = difference.none();
     for (index, ((beam, nodes), shape)) in model.beams.iter().zip(nodes).zip(&run.last).enumerate() {
         let length = nodes.last().copied().unwrap_or(0.0);
         for s in places(model, index, length) {
@@ -76,11 +60,34 @@ pub(in crate::accuracy) fn strain_jumps(
     (sum.errors.result > 0.0).then_some(sum)
 }
 
-/// Where within a beam the strain may jump.
+/// Where within a beam the strain may jump, but for [`stiffness_jumps`].
 fn places(model: &Model, beam: usize, length: f64) -> Vec<f64> {
     let points = model.parts.iter().filter_map(|part| part.point());
     let of_beam = points.filter(|at: &Place| at.beam == beam).map(|at| at.s).chain(model.breaks(beam));
-    let mut places: Vec<f64> = of_beam.filter(|s| *s > SAME * length && *s < (1.0 - SAME) * length).collect();
+    let mut places = within(of_beam, length);
+    let softer = stiffness_jumps(model, beam, length);
+    places.retain(|s| softer.iter().all(|other| (s - other).abs() > SAME * length));
+    places
+}
+
+/// Where within a beam its stiffness against stretching, or its coupling, jumps. The strain that is a compromise there makes the
+/// beam longer or shorter as a whole, by an amount in proportion to h, and its vibrations and critical loads wrong.
+pub(in crate::accuracy) fn stiffness_jumps(model: &Model, beam: usize, length: f64) -> Vec<f64> {
+    let Section { axial_stiffness, coupling, .. } = &model.beams[beam].section;
+    let jumps = |along: &Along, s: f64| {
+        let [before, behind] = [0.5 * s, 0.5 * (s + length)].map(|inside| along.at(s, inside));
+        (behind - before).abs() > SAME * before.abs().max(behind.abs())
+    };
+    let of_beam = model.breaks(beam).into_iter();
+    within(
+        of_beam.filter(|s| [axial_stiffness, coupling].into_iter().flatten().any(|along| jumps(along, *s))),
+        length,
+    )
+}
+
+/// Places between the ends of a beam, rising, each once.
+fn within(places: impl Iterator<Item = f64>, length: f64) -> Vec<f64> {
+    let mut places: Vec<f64> = places.filter(|s| *s > SAME * length && *s < (1.0 - SAME) * length).collect();
     places.sort_by(f64::total_cmp);
     places.dedup_by(|a, b| (*a - *b).abs() <= SAME * length);
     places
