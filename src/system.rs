@@ -112,7 +112,6 @@ pub struct System {
     round_off: f64,
     lowest_vibration: f64,
     has_strings: bool,
-    gives_way: bool,
     /// Number of rigid motions that neither supports, joints nor springs resist, where it is known; counted in statics
     /// only.
     rigid_motions: Option<usize>,
@@ -209,10 +208,6 @@ impl System {
             stiffness,
             round_off,
             has_strings: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
-            gives_way: model.beams.iter().any(|beam| {
-                let law = beam.section.axial_law.as_ref();
-                law.and_then(|law| law.corner(0.0, 0.0)).is_some_and(|sides| sides.contains(&0.0))
-            }),
             rigid_motions: None,
             free_motions: 0,
             lowest_vibration,
@@ -455,11 +450,6 @@ impl System {
     /// supports and joints leave its beams a rigid motion.
     pub fn is_floppy(&self) -> bool {
         self.has_strings || self.rigid_motions.is_some_and(|left| left > 0)
-    }
-
-    /// Whether a beam resists only one of tension and pressure, so that nothing resists the other in the stress-free state.
-    pub fn gives_way(&self) -> bool {
-        self.gives_way
     }
 
     /// Number of motions without deformation of beams against which nothing but loads has a stiffness where the analysis begins,

@@ -90,9 +90,12 @@ impl ComplexLdl {
         for (position, panel) in self.rows.chunks_exact_mut(self.blocks).enumerate() {
             for (b, target) in panel.iter_mut().enumerate() {
                 let (node, turned) = order.source(position, b);
-                let [k, m] = [k, m].map(|matrix| matrix.block(node, b));
+                let (k, m) = (k.block(node, b), m.block(node, b));
                 let [re, im] = [Lanes::splat(zeta.re), Lanes::splat(zeta.im)];
-                let block = std::array::from_fn(|r| [m[r].mul_add(re, k[r]), m[r] * im]);
+                let mut block = [ZERO; 4];
+                for (row, (k, m)) in block.iter_mut().zip(k.iter().zip(&m)) {
+                    *row = [m.mul_add(re, *k), *m * im];
+                }
                 *target = if turned { transpose(block) } else { block };
             }
         }
@@ -121,7 +124,9 @@ impl ComplexLdl {
             let Some((diagonal, right)) = panel.split_first_mut() else { break };
             let products = &mut self.transposed[position * (blocks - 1)..(position + 1) * (blocks - 1)];
             for (w, u) in products.iter_mut().zip(&*right) {
-                *w = diagonal.map(|row| product(u, numbers(row)));
+                for (w, row) in w.iter_mut().zip(&*diagonal) {
+                    *w = product(u, numbers(*row));
+                }
             }
             for (a, u) in right.iter().enumerate() {
                 let Some(next) = order.next(position, a + 1) else { break };
@@ -263,7 +268,7 @@ fn exchange<const R: usize>(block: &mut Block) -> Result<(), usize> {
     let scale = 1.0 / size;
     let row = add(c64::new(pivot.re * scale, -pivot.im * scale), row, ZERO);
     for (r, target) in block.iter_mut().enumerate() {
-        let rest = target.map(|part| with(part, 0.0));
+        let rest = [with(target[0], 0.0), with(target[1], 0.0)];
         *target = if r == R { row } else { subtract(numbers(*target)[R], row, rest) };
     }
     Ok(())

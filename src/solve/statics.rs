@@ -236,11 +236,9 @@ fn loaded(
     }
 }
 
-/// Whether a path of load steps ends where it begins because nothing holds the structure there but what strains a given shape, or
-/// beams that resist either tension or pressure.
+/// Whether a path of load steps ends where it begins because nothing holds the structure there but what strains a given shape.
 fn is_loose(system: &System, stuck: &NoStep) -> bool {
     system.is_floppy() && system.starts_bent() && stuck.load < NEXT_TO_NOTHING
-        || system.gives_way() && stuck.load == 0.0
 }
 
 /// The state at load factor 0: where a given shape, or one in which springs are stretched, comes to

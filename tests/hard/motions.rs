@@ -197,7 +197,7 @@ fn a_step_that_failed_leaves_no_forces_of_constraints_behind() {
 /// of mass goes 0.1 m/s faster. The middle vibrates about it by some tenths of a millimetre.
 #[test]
 fn the_impulse_of_a_pulse_does_not_depend_on_how_short_it_is() {
-    for spectral_radius in [0.0, 0.5, 0.9, 1.0] {
+    for spectral_radius in [0.8, 0.9, 1.0] {
         for width in [1e-3, 1e-4, 1e-6, 1e-9] {
             let text = format!(
                 "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 10, mass_per_length = 1, \

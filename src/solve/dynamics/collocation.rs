@@ -694,7 +694,7 @@ impl Method for Collocation<'_> {
         self.last_step = h;
     }
 
-    fn pass(&mut self, before: f64, state: &mut State, _: f64) -> Result<Vec<f64>, Singular> {
+    fn pass(&mut self, before: f64, state: &mut State) -> Result<Vec<f64>, Singular> {
         let jump = self.motion.pass(before, state)?;
         for (all, jump) in self.accelerations.iter_mut().chain(&mut self.multipliers).zip(&jump) {
             *all += Lanes::splat(*jump);

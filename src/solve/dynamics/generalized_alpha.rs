@@ -18,11 +18,12 @@
 //! supports between the ends of the step ([`crate::system::laws`]) are added to the estimate, and
 //! corrected for, through the same matrix.
 //!
-//! Where a contact begins, ends, or turns, and at a kink of loads or supports that has cut a step short, a is set to the
-//! q̈ of the equations of motion. Otherwise it would carry the earlier force into the next steps: a hinged beam on a stiff box erred by 364
-//! times the tolerance, and a pulse of a hundredth of a step gave more than twice its impulse, since a differs from q̈ by
-//! what the force changes in the short step, which the long one after it goes on with. The q̈ of the formula above would
-//! not do, because it rings.
+//! Where a contact begins, ends, or turns, and where a much longer step follows a kink of loads or supports, a is set
+//! to the q̈ of the equations of motion. Otherwise it would carry the earlier force into the next steps: a hinged beam on
+//! a stiff box erred by 364 times the tolerance, and a pulse of a hundredth of a step gave more than twice its impulse,
+//! since a differs from q̈ by what the force changes in the short step, which the long one after it goes on with. Behind
+//! every kink of a densely sampled load the method would so lose an order. The q̈ of the formula above would not do,
+//! because it rings.
 //!
 //! # A tangent for many steps
 //! The tangent is kept, turned with the nodes ([`super::turns`]), as long as the increments shrink
@@ -55,8 +56,8 @@ const SLOW: f64 = 0.5;
 const LARGEST_CORRECTION: f64 = 0.05;
 /// Relative change of the step length that is ignored.
 const ROUND_OFF: f64 = 1e-6;
-/// Behind a step that a kink has cut from the usual length by more than this, q̈ takes the place of a.
-const LONGER: f64 = 1.01;
+/// Where a step follows a kink that is so many times longer than the one before, q̈ takes the place of a.
+const LONGER: f64 = 4.0;
 /// The acceleration is extrapolated over at most this many lengths of the last step.
 const LONGEST: f64 = 4.0;
 /// Most iterations with a kept tangent.
@@ -127,6 +128,8 @@ pub struct GeneralizedAlpha<'a> {
     /// a of the step before the last, and the last step: from them the next a is extrapolated.
     before: Option<(Vec<f64>, f64)>,
     trial_step: f64,
+    /// Whether the last step ended at a kink.
+    passed: bool,
     x: Vec<f64>,
     predicted: Vec<f64>,
     rule: Rule,
@@ -178,6 +181,7 @@ impl<'a> GeneralizedAlpha<'a> {
             last,
             before: None,
             trial_step: 0.0,
+            passed: false,
             x: vec![0.0; unknowns],
             predicted: vec![0.0; unknowns],
             rule: Rule { e: vec![0.0; n], o: vec![0.0; n], velocity: vec![0.0; n], ..Rule::default() },
@@ -397,6 +401,10 @@ impl Method for GeneralizedAlpha<'_> {
         to: &mut State,
         record: &mut Iterations,
     ) -> Result<f64, Failure> {
+        let is_longer = |(_, step): &(Vec<f64>, f64)| LONGER * step < end - state.time;
+        if self.passed && self.before.as_ref().is_some_and(is_longer) {
+            self.start(state)?;
+        }
         self.motion.set_accepted(state);
         if self.motion.remembers() {
             // A kept tangent belongs to the accepted state at which it was taken.
@@ -486,6 +494,7 @@ impl Method for GeneralizedAlpha<'_> {
     }
 
     fn accept(&mut self) {
+        self.passed = false;
         let n = self.motion.coordinates();
         let oldest = self.before.take().map_or_else(|| vec![0.0; n], |(a, _)| a);
         std::mem::swap(&mut self.last, &mut self.trial);
@@ -493,12 +502,8 @@ impl Method for GeneralizedAlpha<'_> {
         self.before = Some((before, self.trial_step));
     }
 
-    fn pass(&mut self, before: f64, state: &mut State, usual: f64) -> Result<Vec<f64>, Singular> {
+    fn pass(&mut self, before: f64, state: &mut State) -> Result<Vec<f64>, Singular> {
         let jump = self.motion.pass(before, state)?;
-        if self.before.as_ref().is_some_and(|(_, step)| LONGER * step < usual) {
-            self.start(state)?;
-            return Ok(jump);
-        }
         let n = self.motion.coordinates();
         let Accelerations { physical, algorithmic, multipliers } = &mut self.last;
         let before = self.before.iter_mut().map(|(before, _)| before);
@@ -506,6 +511,7 @@ impl Method for GeneralizedAlpha<'_> {
             acceleration.iter_mut().zip(&jump).for_each(|(a, jump)| *a += jump);
         }
         multipliers.iter_mut().zip(&jump[n..]).for_each(|(mu, jump)| *mu += jump);
+        self.passed = true;
         Ok(jump)
     }
 
@@ -548,6 +554,7 @@ impl Method for GeneralizedAlpha<'_> {
             algorithmic,
             multipliers,
             before: self.before.clone(),
+            passed: self.passed,
             tangent,
             factorized: [c, self.rule.d],
         })
@@ -555,8 +562,15 @@ impl Method for GeneralizedAlpha<'_> {
 
     fn restore(&mut self, memory: Memory) -> bool {
         let Memory::GeneralizedAlpha(memory) = memory else { return false };
-        let GeneralizedAlphaMemory { physical, algorithmic, multipliers, before, tangent, factorized } =
-            memory;
+        let GeneralizedAlphaMemory {
+            physical,
+            algorithmic,
+            multipliers,
+            before,
+            passed,
+            tangent,
+            factorized,
+        } = memory;
         let (n, m) = (self.motion.coordinates(), self.motion.unknowns() - self.motion.coordinates());
         if [physical.len(), algorithmic.len(), multipliers.len()] != [n, n, m]
             || before.as_ref().is_some_and(|(before, _)| before.len() != n)
@@ -566,7 +580,7 @@ impl Method for GeneralizedAlpha<'_> {
         }
         let [c, d] = factorized;
         self.last = Accelerations { physical, algorithmic, multipliers };
-        self.before = before;
+        (self.before, self.passed) = (before, passed);
         self.rule.d = d;
         let Some(TangentMemory { time, q, v, multipliers, rate }) = tangent else { return true };
         self.keep(&State { time, q, v, ..State::default() }, multipliers, rate);

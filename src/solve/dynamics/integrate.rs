@@ -619,11 +619,7 @@ impl<'t, 'a> Driver<'t, 'a> {
             |driver: &Self| driver.system.energy(kink, &driver.state.q, Some(&driver.state.v)).kinetic;
         let earlier = kinetic(self);
         self.state.time = kink;
-        let usual = match self.control {
-            StepControl::Fixed(step) => step,
-            StepControl::Tolerance(_) => self.step,
-        };
-        let jump = self.method.pass(before, &mut self.state, usual)?;
+        let jump = self.method.pass(before, &mut self.state)?;
         // Work of the impulse of supports whose velocity jumps.
         self.state.work += kinetic(self) - earlier;
         if let StepControl::Tolerance(tolerance) = self.control {

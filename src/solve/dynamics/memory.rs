@@ -45,6 +45,9 @@ pub struct GeneralizedAlphaMemory {
     pub multipliers: Vec<f64>,
     /// Accelerations before the last step, and its length \[s\].
     pub before: Option<(Vec<f64>, f64)>,
+    /// Whether the last step ended at a kink of loads or supports.
+    #[serde(default)]
+    pub passed: bool,
     /// The tangent that is kept.
     pub tangent: Option<TangentMemory>,
     /// c and d of the matrix K + dD + cM that is factorised with it; c is 0 where none is.
@@ -118,6 +121,7 @@ mod tests {
             algorithmic: vec![1.0],
             multipliers: vec![1.0],
             before: Some((vec![1.0], 0.1)),
+            passed: true,
             tangent: Some(tangent()),
             factorized: [1.0, 2.0],
         }

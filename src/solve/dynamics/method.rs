@@ -54,12 +54,11 @@ pub trait Method: Send {
     fn accept(&mut self);
 
     /// Continues from `state`, just after a time at which loads or supports are not smooth; the
-    /// last step ended at `before`, just before that time, and steps that end at no such time are `usual` seconds long. Returns the
-    /// jump of the accelerations.
+    /// last step ended at `before`, just before that time. Returns the jump of the accelerations.
     ///
     /// # Errors
     /// [`Singular`] where a coordinate has no mass.
-    fn pass(&mut self, before: f64, state: &mut State, usual: f64) -> Result<Vec<f64>, Singular>;
+    fn pass(&mut self, before: f64, state: &mut State) -> Result<Vec<f64>, Singular>;
 
     /// Discards accelerations from before `state`, the end of the last step, because forces have
     /// changed there. A method that only predicts from them need not do anything.
