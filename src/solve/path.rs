@@ -90,8 +90,8 @@ pub enum Parameter {
     /// The load factor, which is prescribed.
     Load,
     /// The arc length in the scaled space of states and load factors. The load factor counts in parts of `loads`, the largest
-    /// that is of interest, or where the structure yields more at first, so that it counts no less than the shape there: what a
-    /// path finds does not depend on the unit in which loads are given.
+    /// that is of interest, or where the structure yields more at first, so that it counts no less than the shape there. Where
+    /// `loads` follows from a load that ends the path, what that finds does not depend on the unit of loads.
     ArcLength {
         /// \[1\]
         loads: f64,

@@ -1,13 +1,13 @@
 //! By how much meshfree shape functions miss the curves along which beams are laid out.
 //!
 //! Where nothing acts a beam keeps the shape that its nodes give it, between which it differs from its centreline by the error of
-//! the interpolation. Of cables with nodes twice as dense it falls sixteen times, so that two meshes tell it; of radial functions on
+//! the interpolation. Of cable elements half as long it is a sixteenth, so that two meshes tell it; of radial functions on
 //! uneven nodes it falls as it may. The curve itself is known.
 
 use super::{Difference, larger};
-use crate::basis::{Basis, BasisTable};
+use crate::basis::{Basis, Cell};
 use crate::centreline::Curve;
-use crate::model::{Beam, Discretization, Model};
+use crate::model::{Discretization, Model};
 
 /// Distances below this part of a beam's length are round-off.
 const ROUND_OFF: f64 = 1e-14;
@@ -21,8 +21,10 @@ pub(in crate::accuracy) fn laid_out(model: &Model, difference: &Difference) -> O
         else {
             continue;
         };
-        let breaks = model.breaks(index);
-        let off = |places: &[f64]| off(beam, &curve, &breaks, places).unwrap_or_default();
+        let Ok(basis) = Basis::broken(&beam.discretization, curve.length(), &model.breaks(index)) else {
+            continue;
+        };
+        let off = |places: &[f64]| off(&basis, &curve, places).unwrap_or_default();
         if let Some(along) = sum.beams.get_mut(index) {
             for (error, off) in along.position.iter_mut().zip(off(&along.s)) {
                 *error = larger(*error, off / curve.length());
@@ -42,13 +44,12 @@ pub(in crate::accuracy) fn laid_out(model: &Model, difference: &Difference) -> O
     (result > ROUND_OFF).then_some(sum)
 }
 
-/// The distances \[m\] at `places` of a beam from its centreline.
-fn off(beam: &Beam, curve: &Curve, breaks: &[f64], places: &[f64]) -> Option<Vec<f64>> {
-    let basis = Basis::broken(&beam.discretization, curve.length(), breaks).ok()?;
+/// The distances \[m\] at `places` from a curve of what shape functions make of its positions and tangents at their nodes.
+fn off(basis: &Basis, curve: &Curve, places: &[f64]) -> Option<Vec<f64>> {
     let at_nodes = basis.nodes().iter().flat_map(|s| [curve.position(*s), curve.tangent(*s)]);
     let q: Vec<[f64; 2]> = at_nodes.collect();
-    let table: BasisTable = basis.points(places, &[0]).ok()?;
-    let of = |(cell, s): (&crate::basis::Cell, &f64)| {
+    let table = basis.points(places, &[0]).ok()?;
+    let of = |(cell, s): (&Cell, &f64)| {
         let (_, row) = table.block(*cell);
         let values = &q[cell.first as usize..];
         let [x, y] = [0, 1].map(|axis| row.iter().zip(values).map(|(n, q)| n * q[axis]).sum::<f64>());

@@ -105,6 +105,8 @@ impl Driver<'_, '_> {
                     // What rests where it is zero does not reach zero again and again.
                     let near = round_off.max(NEAR * unit.max(value.abs()));
                     let (followed, near) = match watch.is_square {
+                        // At rest the square turns back at zero, as near to it as polynomials are.
+                        true if value == 0.0 => (0.0, (near * near).max(CLOSE * memory.largest.powi(2))),
                         true => (value * value.abs(), near * (2.0 * value.abs() + near)),
                         false => (value, near),
                     };
