@@ -112,6 +112,7 @@ pub struct System {
     round_off: f64,
     lowest_vibration: f64,
     has_strings: bool,
+    goes_slack: bool,
     /// Number of rigid motions that neither supports, joints nor springs resist, where it is known; counted in statics
     /// only.
     rigid_motions: Option<usize>,
@@ -208,6 +209,10 @@ impl System {
             stiffness,
             round_off,
             has_strings: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
+            goes_slack: model
+                .beams
+                .iter()
+                .any(|beam| beam.section.axial_law.as_ref().is_some_and(|law| law.goes_slack())),
             rigid_motions: None,
             free_motions: 0,
             lowest_vibration,
@@ -450,6 +455,17 @@ impl System {
     /// supports and joints leave its beams a rigid motion.
     pub fn is_floppy(&self) -> bool {
         self.has_strings || self.rigid_motions.is_some_and(|left| left > 0)
+    }
+
+    /// Whether a beam has no bending stiffness.
+    pub fn has_strings(&self) -> bool {
+        self.has_strings
+    }
+
+    /// Whether an axial law resists tension only, or pressure only, so that a beam with it has no stiffness along its axis where
+    /// nothing acts.
+    pub fn goes_slack(&self) -> bool {
+        self.goes_slack
     }
 
     /// Number of motions without deformation of beams against which nothing but loads has a stiffness where the analysis begins,

@@ -101,6 +101,12 @@ impl Elastic {
         (0..self.strain.len() - 1).map(|piece| self.slope(piece)).fold(0.0, f64::max)
     }
 
+    /// Whether it has no stiffness on one side of its stress-free state, as that of a rope that resists tension only.
+    pub fn goes_slack(&self) -> bool {
+        let [below, above] = [self.piece(-f64::MIN_POSITIVE), self.piece(f64::MIN_POSITIVE)];
+        self.slope(below) == 0.0 || self.slope(above) == 0.0
+    }
+
     /// The stiffnesses on both sides of a corner at `strain`, or within `near` of its width.
     pub fn corner(&self, strain: f64, near: f64) -> Option<[f64; 2]> {
         let [first, last] = self.ends();

@@ -7,6 +7,7 @@ use super::{Options, RunError, Solve, Stopwatch, Watch, memory, timed};
 use crate::assembly::{InternalVariables, Part, Side, nodes};
 use crate::effect::Tendon;
 use crate::model::{About, Analysis, Buckling, Displacement, Modal, Model, Static};
+use crate::numeric::plain;
 use crate::results::{
     AnalysisKind, BucklingMode, CriticalLoads, ModeShape, Shape, Statistics, Trajectory, Vibration,
     Vibrations,
@@ -285,22 +286,25 @@ fn beyond_the_linear(modes: &buckling::Modes) -> Option<String> {
     };
     match (turned, strained, changed) {
         (Some(load), ..) => Some(format!(
-            "{}the loads turn the beam by {:.2} rad before it buckles at load factor {load:.6}, by the linear solution, which holds for small turns only: \
+            "{}the loads turn the beam by {:.2} rad before it buckles at load factor {}, by the linear solution, which holds for small turns only: \
              follow the path with `arc_length` in [analysis.static], which finds limit points and bifurcations of the bent structure",
             which(number),
             load * modes.turn,
+            plain(*load, 6),
         )),
         (None, _, Some(((load, number), change))) => Some(format!(
-            "{}loads, or the stiffness of loads or contacts, change by {:.0} % before the beam buckles at load factor {load:.6e}, by the linear \
+            "{}loads, or the stiffness of loads or contacts, change by {:.0} % before the beam buckles at load factor {}, by the linear \
              solution, which takes them to be as they are: follow the path with `arc_length` in [analysis.static], which finds limit points and bifurcations as all acts on the way",
             which(Some(number)),
             100.0 * change,
+            plain(*load, 6),
         )),
         (None, Some(load), None) => Some(format!(
-            "{}the loads strain the beam by {:.2} before it buckles at load factor {load:.6}, by the linear solution, which holds for small strains only, as \
+            "{}the loads strain the beam by {:.2} before it buckles at load factor {}, by the linear solution, which holds for small strains only, as \
              does the beam itself: give a larger `axial_stiffness`, or ask for fewer critical loads",
             which(second),
             load * modes.strain,
+            plain(*load, 6),
         )),
         (None, None, None) => None,
     }

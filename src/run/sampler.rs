@@ -771,8 +771,12 @@ impl<'a> Sampler<'a> {
             Failure::Singular(Singular { row }) if row >= self.system.coordinates() => {
                 "supports between nodes hold the same motion more than once: leave some out, or use more nodes"
             }
-            Failure::Crushed { .. } => TOO_SOFT,
             Failure::Crossed { .. } => PUSHED_THROUGH,
+            _ if self.system.goes_slack() => {
+                "an `axial_law` resists tension only, or pressure only, and what loads the other way shortens or lengthens its beam without \
+                 bounds: let loads strain it where the law has a stiffness, or give the law a small one on both sides"
+            }
+            Failure::Crushed { .. } => TOO_SOFT,
             _ if stuck.load == 0.0 && self.system.force_at_start(&[Kind::Contact]) > 0.0 => {
                 "the structure begins inside an obstacle, which presses it before any load does: begin beside it, or let the obstacle \
                  be softer, or a beam come to it by a support that moves"

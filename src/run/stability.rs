@@ -1,20 +1,22 @@
 //! Warnings of equilibria that are unstable, or that chance decides on.
 
+use crate::numeric::plain;
 use crate::solve::stability::{Stability, StabilityChange};
 use crate::solve::statics::{Solution, UnstableMechanism};
 
 /// What a static analysis has met on its way.
 pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
     let pressed = solution.pressed.map(|UnstableMechanism { load, unstable, free }| {
+        let load = plain(load, 6);
         format!(
-            "the load up to factor {load:.6} presses the structure so that it is unstable in {unstable} directions where it stands, and \
+            "the load up to factor {load} presses the structure so that it is unstable in {unstable} directions where it stands, and \
              supports and joints leave it {free} to move in: its beams buckle before it moves, and on which side it comes to rest may be \
              chance; reach the load in more `steps`"
         )
     });
-    let crest = solution.crest.map(|load| {
+    let crest = solution.crest.map(|load| plain(load, 6)).map(|load| {
         format!(
-            "at load factor {load:.6} the structure stands on a crest of its energy, from which it may come to rest in more than one \
+            "at load factor {load} the structure stands on a crest of its energy, from which it may come to rest in more than one \
              equilibrium: which of them was found is arbitrary; a small load, or a small change of the geometry, decides"
         )
     });
@@ -35,16 +37,16 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
          that the sign of the determinant of the tangent would take too long; use fewer elements or nodes to see it"
             .to_owned()
     });
-    let softened = solution.softened.map(|load| {
+    let softened = solution.softened.map(|load| plain(load, 6)).map(|load| {
         format!(
-            "at load factor {load:.6} several directions lose their stiffness at once, so that the determinant of the tangent, by which \
+            "at load factor {load} several directions lose their stiffness at once, so that the determinant of the tangent, by which \
              loads without a potential are watched, keeps its sign: the equilibria found beyond may be unstable; reach the load in more \
              `steps`, or add a small imperfection"
         )
     });
-    let returns = solution.returns.map(|load| {
+    let returns = solution.returns.map(|load| plain(load, 6)).map(|load| {
         format!(
-            "the path comes back to a state that it has passed, at load factor {load:.6}: it is a closed one, or has turned round at a kink, \
+            "the path comes back to a state that it has passed, at load factor {load}: it is a closed one, or has turned round at a kink, \
              as where a snap ends at a stiff stop, or within a fold of the mesh; what it finds from there on may not be what comes first: use a \
              softer stop, another `max_step` or more nodes"
         )
@@ -56,16 +58,17 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
 /// What is said where directions lose or regain their stiffness.
 fn of_change(change: &StabilityChange) -> String {
     let StabilityChange { load, before, after } = *change;
+    let load = plain(load, 6);
     let unstable = "beyond it the equilibrium found is unstable: a bifurcation or a limit point";
     let (Stability::Directions(before), Stability::Directions(after)) = (before, after) else {
         return if after.is_unstable() {
             format!(
-                "the determinant of the tangent changes its sign at load factor {load:.6}: a direction loses its stiffness, or an odd \
+                "the determinant of the tangent changes its sign at load factor {load}: a direction loses its stiffness, or an odd \
                  number of them; {unstable}"
             )
         } else {
             format!(
-                "the determinant of the tangent changes its sign back at load factor {load:.6}: an odd number of directions lose or \
+                "the determinant of the tangent changes its sign back at load factor {load}: an odd number of directions lose or \
                  regain their stiffness; the equilibrium found beyond it is stable only if they regain it"
             )
         };
@@ -77,7 +80,7 @@ fn of_change(change: &StabilityChange) -> String {
     };
     let plural = if before == 1 { "" } else { "s" };
     format!(
-        "the tangent {verb} definiteness at load factor {load:.6}: {before} unstable direction{plural} before, {after} after; {advice}"
+        "the tangent {verb} definiteness at load factor {load}: {before} unstable direction{plural} before, {after} after; {advice}"
     )
 }
 

@@ -168,6 +168,16 @@ pub enum Failure {
     Stopped,
 }
 
+impl Failure {
+    /// The first unknown of the node at which it shows, where it shows at one.
+    pub fn unknown(&self) -> Option<usize> {
+        match self {
+            Self::Crushed { node, .. } => Some(4 * node),
+            _ => None,
+        }
+    }
+}
+
 /// Increments that no longer shrink count as converged below this size: they are round-off.
 pub(super) const ROUND_OFF: f64 = 1e-6;
 

@@ -90,8 +90,9 @@ pub enum Parameter {
     /// The load factor, which is prescribed.
     Load,
     /// The arc length in the scaled space of states and load factors. The load factor counts in parts of `loads`, the largest
-    /// that is of interest, or where the structure yields more at first, so that it counts no less than the shape there. Where
-    /// `loads` follows from a load that ends the path, what that finds does not depend on the unit of loads.
+    /// that is of interest, or of the largest that the path has reached, where that is beyond; and where the structure yields more
+    /// at first, so that it counts no less than the shape there. Where `loads` follows from a load that ends the path, what that
+    /// finds does not depend on the unit of loads.
     ArcLength {
         /// \[1\]
         loads: f64,
@@ -163,6 +164,10 @@ pub struct Path<'e, 'a> {
     points: Vec<Point>,
     step: f64,
     first_step: f64,
+    /// The largest load factor that is of interest, or that was reached.
+    loads: f64,
+    /// Change of the load factor by which the structure yields by one beam length at first.
+    yields: f64,
     /// Change of the load factor that counts as one beam length in the arc length.
     load_scale: f64,
     /// A doubtful equilibrium ahead, from the shortest step that led to one, with its corrector's
@@ -201,6 +206,10 @@ impl<'e, 'a> Path<'e, 'a> {
         }
         equilibrium.set_accepted(&x);
         let start = Point { parameter: 0.0, load: 0.0, x, stability: None, soft: None, rate: Vec::new() };
+        let loads = match parameter {
+            Parameter::Load => 1.0,
+            Parameter::ArcLength { loads } => loads,
+        };
         let mut path = Self {
             equilibrium,
             settings: Settings { first_increment: LARGEST_TURN, ..settings },
@@ -208,10 +217,9 @@ impl<'e, 'a> Path<'e, 'a> {
             points: vec![start],
             step,
             first_step: step,
-            load_scale: match parameter {
-                Parameter::Load => 1.0,
-                Parameter::ArcLength { loads } => loads,
-            },
+            loads,
+            yields: f64::INFINITY,
+            load_scale: loads,
             crossing: None,
             history: Vec::new(),
             softened: None,
@@ -268,7 +276,7 @@ impl<'e, 'a> Path<'e, 'a> {
     pub fn limit_step(&mut self, largest: f64) {
         let of_step = match self.parameter {
             Parameter::Load => 1.0,
-            Parameter::ArcLength { loads } => self.size(&self.last().rate, loads),
+            Parameter::ArcLength { .. } => self.size(&self.last().rate, self.loads),
         };
         self.step = self.step.min(largest / of_step);
     }
@@ -279,6 +287,7 @@ impl<'e, 'a> Path<'e, 'a> {
     /// # Errors
     /// [`NoStep`] where no step converges.
     pub fn advance(&mut self, end: f64) -> Result<&Point, NoStep> {
+        self.count_loads();
         let last = &self.points[self.points.len() - 1];
         self.equilibrium.set_accepted(&last.x);
         let here = self.last().parameter;
@@ -355,6 +364,26 @@ impl<'e, 'a> Path<'e, 'a> {
                     }
                 }
             }
+        }
+    }
+
+    /// Lets load factors count in parts of the largest that was reached. Otherwise a path to loads that are many times those of the
+    /// scene would be one of prescribed loads, which jumps where these turn back.
+    fn count_loads(&mut self) {
+        let reached = self.last().load.abs();
+        if self.parameter == Parameter::Load || reached <= self.loads {
+            return;
+        }
+        self.loads = reached;
+        self.load_scale = reached.min(self.yields);
+        let length = self.dot(&self.last().rate, &self.last().rate).sqrt();
+        self.step *= length;
+        self.first_step *= length;
+        let Some((last, before)) = self.points.split_last_mut() else { return };
+        last.rate.iter_mut().for_each(|rate| *rate /= length);
+        for point in before {
+            point.parameter = last.parameter - length * (last.parameter - point.parameter);
+            point.rate.iter_mut().for_each(|rate| *rate /= length);
         }
     }
 
@@ -447,7 +476,8 @@ impl<'e, 'a> Path<'e, 'a> {
         }
         rate.push(1.0);
         if self.parameter != Parameter::Load {
-            self.load_scale = self.load_scale.min(1.0 / self.size(&rate, f64::INFINITY));
+            self.yields = 1.0 / self.size(&rate, f64::INFINITY);
+            self.load_scale = self.loads.min(self.yields);
             rate = self.along(rate, None);
         }
         (self.points[0].stability, self.points[0].soft) = self.equilibrium.stability_and_softness();
@@ -649,12 +679,10 @@ impl<'e, 'a> Path<'e, 'a> {
             }
             Err(failure) => Err((failure, self.worst(&point.x, &predicted.x))),
         };
-        let outcome = match outcome {
-            Err((failure @ Failure::Crushed { node, .. }, _)) => {
-                Err((failure, self.equilibrium.system().place_of(4 * node)))
-            }
-            outcome => outcome,
-        };
+        let outcome = outcome.map_err(|(failure, worst)| {
+            let place = failure.unknown().map(|unknown| self.equilibrium.system().place_of(unknown));
+            (failure, place.unwrap_or(worst))
+        });
         self.history.push(StepRecord {
             parameter: point.load,
             step,

@@ -21,7 +21,7 @@
 //! are short enough to follow that.
 
 use super::equilibrium::Equilibrium;
-use super::newton::{Failure, Iterations, ROUND_OFF, Settings};
+use super::newton::{self, Failure, Iterations, ROUND_OFF, Settings};
 use crate::assembly::Earlier;
 use crate::solve::Statistics;
 use crate::system::System;
@@ -175,6 +175,10 @@ fn creep(
         }
         change.iter_mut().zip(&increment).for_each(|(change, d)| *change = part * d);
         x.iter_mut().zip(&change).for_each(|(x, d)| *x += d);
+        // A beam that nothing resists along its axis could be pressed through a point; strings may shrink on their way.
+        if !equilibrium.system().has_strings() {
+            newton::not_crushed_since(&before[..n], &x[..n])?;
+        }
         equilibrium.follow_windings(x);
         // On an unstable equilibrium σ stays large enough to outweigh the unstable directions.
         let settled = sigma < SETTLED * first || on_a_crest;

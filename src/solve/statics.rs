@@ -236,9 +236,11 @@ fn loaded(
     }
 }
 
-/// Whether a path of load steps ends where it begins because nothing holds the structure there but what strains a given shape.
+/// Whether a path of load steps ends where it begins because nothing holds the structure there but what strains a given shape, or
+/// because a beam has no stiffness along its axis yet.
 fn is_loose(system: &System, stuck: &NoStep) -> bool {
-    system.is_floppy() && system.starts_bent() && stuck.load < NEXT_TO_NOTHING
+    let is_loose = system.is_floppy() && system.starts_bent() || system.goes_slack();
+    is_loose && stuck.load < NEXT_TO_NOTHING
 }
 
 /// The state at load factor 0: where a given shape, or one in which springs are stretched, comes to
@@ -257,7 +259,8 @@ fn settled(
         let before = equilibrium.accepted().clone();
         if let Err(failure) = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default(), goes_on) {
             equilibrium.restore(before);
-            return Err(NoStep { load: 0.0, step: 0.0, failure, at: system.place_of(0) });
+            let at = system.place_of(failure.unknown().unwrap_or(0));
+            return Err(NoStep { load: 0.0, step: 0.0, failure, at });
         }
         equilibrium.set_accepted(&x);
     }
@@ -411,7 +414,6 @@ fn relaxed(
                 before = after;
             }
         }
-        let at = equilibrium.system().place_of(0);
         solution.history.push(StepRecord {
             parameter: load,
             step,
@@ -419,7 +421,10 @@ fn relaxed(
             increments: record.increments,
             residuals: record.residuals,
         });
-        let sure = outcome.map_err(|failure| NoStep { load: load - step, step, failure, at })?;
+        let sure = outcome.map_err(|failure| {
+            let at = equilibrium.system().place_of(failure.unknown().unwrap_or(0));
+            NoStep { load: load - step, step, failure, at }
+        })?;
         if !sure {
             solution.softened.get_or_insert(load);
         }

@@ -40,6 +40,18 @@ fn zero(f: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
     low
 }
 
+/// A path ends at the height that is asked for first, in whatever part or multiple of the load of the truss its loads are given.
+#[test]
+fn the_unit_of_loads_does_not_change_where_a_path_to_a_place_ends() {
+    let expected = 50.0 * load(-0.45);
+    for unit in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
+        let text = truss("until_probe = { probe = 'p', y = -0.45 }").replace("-50", &format!("{:?}", -unit));
+        let found = outcome(&text).unwrap_or_else(|error| panic!("{error}, {unit} N"));
+        let force = unit * found.parameter.last().expect("a state");
+        assert!((force / expected - 1.0).abs() < 1e-7, "{force} N for {expected} N in parts of {unit} N");
+    }
+}
+
 /// The height at the limit point: (1 + y²)^{3/2} = l₀.
 fn at_limit() -> f64 {
     (1.0_f64.hypot(0.3).powf(2.0 / 3.0) - 1.0).sqrt()
