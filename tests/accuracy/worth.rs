@@ -246,6 +246,21 @@ fn errors_that_finer_meshes_do_not_remove_are_seen() {
     assert_eq!(error(&of("{ rpim = { nodes = 10 } }")).runs.len(), 3);
 }
 
+/// At the end of a bar that is pulled, meshfree cells of every size have the same part of the strain too little.
+#[test]
+fn the_strain_at_an_end_of_a_meshfree_bar_errs_by_as_much_as_beside_it() {
+    for nodes in [9, 21, 81] {
+        let pull = "effect.force = [{ beam = 'arm', at = 'end', value = [50, 0] }]\nanalysis.static = {}";
+        let basis = format!("basis.rpim.nodes = {nodes}, mass_per");
+        let scene = scene(&cantilever(1e4, 1.0, pull).replace("mass_per", &basis));
+        let known =
+            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+        let truth = (last(&known).strain - 50.0 / 1e4).abs();
+        let told = error(&known).probes[0].samples.last().expect("a state").strain;
+        assert!(truth <= 3.0 * told, "{nodes}: {truth:e} for {told:e}");
+    }
+}
+
 /// One element cannot be made coarser, and the halves of an odd number are not its halves. Many elements are the judge.
 #[test]
 fn errors_of_a_few_named_elements_are_seen() {

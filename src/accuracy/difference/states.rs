@@ -5,7 +5,7 @@ use super::section_forces::section_forces;
 use super::stations::parts;
 use super::{Difference, Scales, larger, pairs};
 use crate::accuracy::mesh::{CellErrors, Mesh};
-use crate::model::{Analysis, Beam, Model, Place, Section};
+use crate::model::{Analysis, Beam, Discretization, Model, Place, Section};
 use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Shape, Trajectory};
 use std::f64::consts::TAU;
 
@@ -58,8 +58,7 @@ pub fn states<'t>(
             samples[j] = differ(a, b);
             let around = |t: &'t Trajectory, record: usize| t.stations.get(record)?.get(probe.at.beam);
             if let Some((a, b)) = around(coarse, i).zip(around(fine, j)) {
-                let bends = model.beams[probe.at.beam].section.bending_stiffness.is_some();
-                samples[j] = not_by_chance(samples[j], a, b, probe.at.s, bends);
+                samples[j] = not_by_chance(samples[j], a, b, probe.at.s, &model.beams[probe.at.beam]);
             }
             if jumps(model, &fine.last, probe.at)
                 && let Some(around) = around(fine, j)
@@ -242,14 +241,27 @@ fn sample(shape: &Shape, k: usize) -> Option<ProbeSample> {
 /// What a probe at `s` differs by, and no less than what is on both sides of it. Errors are waves along a beam:
 /// a probe that lies where one passes zero tells nothing.
 /// The direction of a string is as rough as the curvature of a beam: it errs by what it does on either side.
-fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64, bends: bool) -> ProbeSample {
+fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64, beam: &Beam) -> ProbeSample {
     let differ_at = |k: usize| Some(differ(&sample(coarse, k)?, &sample(fine, k)?));
     let after = fine.s.partition_point(|place| *place < s);
-    let Some((before, after)) = after.checked_sub(1).and_then(differ_at).zip(differ_at(after)) else {
-        return seen;
+    let is_end = fine.s.last().is_some_and(|end| *end <= s);
+    let behind = if is_end { None } else { differ_at(after) };
+    let (before, after) = match (after.checked_sub(1).and_then(differ_at), behind) {
+        (Some(before), Some(after)) => (before, after),
+        // An end of the beam, at which meshfree shape functions strain alike in all meshes.
+        (Some(beside), None) | (None, Some(beside))
+            if matches!(beam.discretization, Discretization::Rpim { .. }) =>
+        {
+            return ProbeSample { strain: larger(seen.strain, beside.strain), ..seen };
+        }
+        _ => return seen,
     };
     let angles = [before.angle, after.angle].map(within_half_a_turn);
-    let angle = if bends { angles[0].min(angles[1]) } else { angles[0].max(angles[1]) };
+    let angle = if beam.section.bending_stiffness.is_some() {
+        angles[0].min(angles[1])
+    } else {
+        angles[0].max(angles[1])
+    };
     let distance = larger(seen.x, before.x.min(after.x));
     ProbeSample {
         x: distance,
