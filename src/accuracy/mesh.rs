@@ -59,6 +59,14 @@ pub(super) struct CellErrors {
     pub order: f64,
 }
 
+/// A cell that ends at a node.
+struct Beside {
+    /// -1 before the node, 1 behind it.
+    side: f64,
+    /// \[m\]
+    length: f64,
+}
+
 impl Mesh {
     /// Where the search begins, for every beam; with `waves` half-waves of a mode along the longest
     /// each has some cells. There are `times` as many as an error of a thousandth needs.
@@ -199,14 +207,56 @@ impl Mesh {
     /// With cells that are shorter and shorter, down to an eighth, towards both sides of `places`.
     pub fn graded_towards(mut self, places: &[f64]) -> Self {
         for s in places {
-            let node = self.nodes.partition_point(|node| *node < s - SAME * self.length());
-            let ends = [node.checked_sub(1), Some(node + 1)].into_iter().flatten();
-            let ends: Vec<f64> = ends.filter_map(|end| self.nodes.get(end).copied()).collect();
-            let new = ends.iter().flat_map(|end| [0.5, 0.25, 0.125].map(|part| s + part * (end - s)));
-            self.nodes.extend(new);
+            for end in self.beside(*s) {
+                let parts = [0.5, 0.25, 0.125];
+                self.nodes.extend(parts.map(|part| s + part * end.length.copysign(end.side)));
+            }
             self.nodes.sort_by(f64::total_cmp);
         }
         self
+    }
+
+    /// The longest cell beside one of `places`, which are nodes; infinite where there is none.
+    pub fn longest_beside(&self, places: &[f64]) -> f64 {
+        let longest = places.iter().flat_map(|s| self.beside(*s)).map(|end| end.length).reduce(f64::max);
+        longest.unwrap_or(f64::INFINITY)
+    }
+
+    /// With half the cells on both sides of `places`, which are nodes.
+    pub fn halved_beside(mut self, places: &[f64]) -> Self {
+        for s in places {
+            for end in self.beside(*s) {
+                self.nodes.push(s + 0.5 * end.length.copysign(end.side));
+            }
+            self.nodes.sort_by(f64::total_cmp);
+        }
+        self
+    }
+
+    /// With cells that are shorter and shorter towards both sides of `places`, which are nodes, down to a `length`. There is an even
+    /// number more of them on either side, so that every second node makes a mesh still.
+    pub fn graded_down_to(mut self, places: &[f64], length: f64) -> Self {
+        for s in places {
+            for end in self.beside(*s) {
+                let halvings = (end.length / length).log2().ceil().max(0.0) as i32;
+                let halvings = halvings + halvings % 2;
+                self.nodes
+                    .extend((1..=halvings).map(|k| s + 0.5_f64.powi(k) * end.length.copysign(end.side)));
+            }
+            self.nodes.sort_by(f64::total_cmp);
+        }
+        self
+    }
+
+    /// The cells that end at the node `s`.
+    fn beside(&self, s: f64) -> impl Iterator<Item = Beside> + use<> {
+        let node = self.nodes.partition_point(|node| *node < s - SAME * self.length());
+        let others = [(node.checked_sub(1), -1.0), (Some(node + 1), 1.0)];
+        let cells = others.map(|(other, side)| {
+            let other = *self.nodes.get(other?)?;
+            Some(Beside { side, length: (other - s).abs() })
+        });
+        cells.into_iter().flatten()
     }
 
     /// The errors of this mesh, from those of the cells of a `finer` one.
@@ -455,6 +505,13 @@ mod tests {
     fn cells_are_shorter_towards_a_jump() {
         let graded = mesh(&[0.0, 4.0, 12.0, 16.0], &[0.0, 4.0, 16.0]).graded_towards(&[4.0]);
         assert_eq!(graded.nodes, [0.0, 2.0, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 12.0, 16.0]);
+        let coarse = || mesh(&[0.0, 4.0, 12.0, 16.0], &[0.0, 4.0, 16.0]);
+        assert_eq!(coarse().longest_beside(&[4.0]), 8.0);
+        assert_eq!(coarse().longest_beside(&[]), f64::INFINITY);
+        let down = coarse().graded_down_to(&[4.0], 3.0);
+        assert_eq!(down.nodes, [0.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0]);
+        assert_eq!(down.clone().graded_down_to(&[4.0], 3.0), down);
+        assert_eq!(coarse().graded_down_to(&[4.0], f64::INFINITY), coarse());
     }
 
     /// On the side of a notch that is 1000 times as soft as the rest.

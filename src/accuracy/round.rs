@@ -63,6 +63,16 @@ const HOPELESS: f64 = 1.5;
 /// … and of a motion, of which loose tolerances tell less.
 const HOPELESS_MOTION: f64 = 10.0;
 
+/// Part of the wanted error that may be due to jumps of stiffnesses …
+const AT_JUMPS: f64 = 0.25;
+/// … the part of their length to which cells beside these become shorter at once …
+const MOST_SHORTER: f64 = 0.01;
+/// … and how short they may be, in beam lengths: the round-off of positions makes forces that grow as the third power of what
+/// follows from it.
+const SHORTEST: f64 = 1e-4;
+/// With half of their length errors that fall with the first order are told by half.
+const TOLD_BY_HALF: f64 = 2.0;
+
 /// What acts this near to a node, in cells, acts there: the error is the cube of it.
 const AT_NODE: f64 = 0.02;
 
@@ -86,8 +96,10 @@ pub(super) struct Runner<'a, 'o> {
     saturated: Vec<bool>,
     /// Those of them within whose cells something acts in a point.
     pointed: Vec<bool>,
-    /// Where in them the stiffness against stretching jumps.
+    /// Where in each beam the stiffness against stretching jumps.
     softer: Vec<Vec<f64>>,
+    /// How long the cells beside these may be in the coarse runs, of open beams \[m\].
+    beside: Vec<f64>,
     /// The halvings between the meshes of two runs: more than one where the scene gives all beams an odd number of
     /// cells.
     pub halvings: f64,
@@ -136,6 +148,8 @@ pub(super) struct Round {
     pub difference: Result<Difference, String>,
     /// What coarser meshes do not tell of the errors of the finer run.
     pub unseen: Option<Difference>,
+    /// The part of it that shorter cells would make smaller where the stiffness of an open beam jumps.
+    pub at_jumps: f64,
     /// By which factor the difference has fallen, where there was a third run.
     pub fall: Option<f64>,
     /// Cells of the open beams.
@@ -188,10 +202,8 @@ impl<'a, 'o> Runner<'a, 'o> {
             named.as_ref().is_some_and(|named| has_points(model, index, named))
         };
         let pointed = named.iter().enumerate().map(pointed).collect();
-        let softer = |(index, named): (usize, &Option<Mesh>)| {
-            named.as_ref().map_or_else(Vec::new, |named| stiffness_jumps(model, index, named.length()))
-        };
-        let softer = named.iter().enumerate().map(softer).collect();
+        let softer = |(index, mesh): (usize, &Mesh)| stiffness_jumps(model, index, mesh.length());
+        let softer = meshes.iter().enumerate().map(softer).collect();
         let saturated = |(beam, mesh): (&Beam, &Mesh)| saturates(&beam.discretization, mesh.length());
         let saturated = model.beams.iter().zip(&meshes).map(saturated).collect();
         for (mesh, named) in meshes.iter_mut().zip(&named) {
@@ -222,6 +234,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             saturated,
             pointed,
             softer,
+            beside: vec![f64::INFINITY; model.beams.len()],
             halvings: if times.is_finite() { times.log2() } else { 1.0 },
             tolerance,
             runs: Vec::new(),
@@ -394,6 +407,9 @@ impl<'a, 'o> Runner<'a, 'o> {
             Ok(beside) => (beside, None),
             Err(why) => (None, Some(why)),
         };
+        let jumps =
+            (0..self.model.beams.len()).any(|beam| self.is_open(beam) && !self.softer[beam].is_empty());
+        let at_jumps = beside.as_ref().filter(|_| jumps).map_or(0.0, |beside| beside.errors.result);
         let round_off = difference::round_off(&results);
         let both = |a: Option<Difference>, b: Option<Difference>| match (a, b) {
             (Some(a), Some(b)) => a.plus(&b),
@@ -423,8 +439,19 @@ impl<'a, 'o> Runner<'a, 'o> {
         let cells = self.meshes.iter().enumerate().map(of_open).sum();
         let coarse = coarse.ok();
         let steps_matter = self.has_steps();
-        let round =
-            Round { stations, results, coarse, setting, run, difference, unseen, fall, cells, steps_matter };
+        let round = Round {
+            stations,
+            results,
+            coarse,
+            setting,
+            run,
+            difference,
+            unseen,
+            at_jumps,
+            fall,
+            cells,
+            steps_matter,
+        };
         Ok(Outcome::Compared(Box::new(round)))
     }
 
@@ -433,6 +460,11 @@ impl<'a, 'o> Runner<'a, 'o> {
     fn is_unseen(&self, beam: usize) -> bool {
         let one = self.named[beam].as_ref().is_some_and(|mesh| mesh.coarsening().is_none());
         one || self.saturated[beam]
+    }
+
+    /// Whether the stiffness of a beam jumps whose mesh is chosen.
+    fn has_open_jumps(&self) -> bool {
+        (0..self.model.beams.len()).any(|beam| self.is_open(beam) && !self.softer[beam].is_empty())
     }
 
     /// What the results of a `setting` differ by from those with four cells in every part of a beam that has one, with nodes where
@@ -453,22 +485,64 @@ impl<'a, 'o> Runner<'a, 'o> {
         if unseen.is_empty() || !results.run().complete {
             return Ok(None);
         }
+        let at_jumps = self.has_open_jumps();
         let mut finer = setting.clone();
         for index in unseen {
-            let (beam, Some(named)) = (&self.model.beams[index], &self.named[index]) else { continue };
-            let nodes = named.quartered_parts().graded_towards(&self.softer[index]).places();
-            finer.beams[index] = match self.saturated[index] {
-                true => Family::REDUCED.of(beam, nodes),
-                false => (coarser(&beam.discretization, nodes), beam.gauss_points),
+            let beam = &self.model.beams[index];
+            finer.beams[index] = match &self.named[index] {
+                None => {
+                    let mesh = self.meshes[index].halved();
+                    self.families[index].of(beam, mesh.halved_beside(&self.softer[index]).places())
+                }
+                Some(named) => {
+                    let nodes = named.quartered_parts().graded_towards(&self.softer[index]).places();
+                    match self.saturated[index] {
+                        true => Family::REDUCED.of(beam, nodes),
+                        false => (coarser(&beam.discretization, nodes), beam.gauss_points),
+                    }
+                }
             };
         }
         let finer = self.solve(stations, &finer, Purpose::Shapes).map_err(|error| {
-            format!("with more cells where the scene gives one there is no result: {error}")
+            format!("on more cells, by which errors are told that coarser ones do not show, there is no result: {error}")
         })?;
         if !finer.run().complete {
             return Err("the run on more cells was stopped".to_owned());
         }
-        self.difference(&finer, results).map(Some)
+        let difference = self.difference(&finer, results)?;
+        Ok(Some(if at_jumps { difference.divided([TOLD_BY_HALF.recip(); 2]) } else { difference }))
+    }
+
+    /// Shorter cells where the stiffness of an open beam jumps, if errors of the first order there are more than a part of the
+    /// `wanted` one; whether they are.
+    ///
+    /// # Errors
+    /// In words, where round-off allows no shorter ones.
+    pub fn grade(&mut self, at_jumps: f64, wanted: f64) -> Result<bool, String> {
+        let part = AT_JUMPS * wanted / at_jumps;
+        if part >= 1.0 {
+            return Ok(false);
+        }
+        let mut shorter = false;
+        for (index, (mesh, beside)) in self.meshes.iter().zip(&mut self.beside).enumerate() {
+            let longest = mesh.longest_beside(&self.softer[index]);
+            if self.open.beams.get(index) == Some(&true) && longest.is_finite() {
+                let least = SHORTEST * mesh.length();
+                *beside = (part.max(MOST_SHORTER) * longest).max(least);
+                shorter |= *beside < longest;
+            }
+        }
+        let why = "the strain jumps where the stiffness of a beam does, which one beam cannot follow: cut it there (two beams in a `weld` have a \
+                   strain each)";
+        if shorter || at_jumps <= wanted { Ok(shorter) } else { Err(why.to_owned()) }
+    }
+
+    /// Gives open beams these meshes, with cells as short as they must be where a stiffness jumps.
+    pub fn take(&mut self, meshes: Vec<Mesh>) {
+        let graded = meshes.into_iter().enumerate();
+        self.meshes = graded
+            .map(|(index, mesh)| mesh.graded_down_to(&self.softer[index], self.beside[index]))
+            .collect();
     }
 
     /// Why no choice for other beams makes errors as small as is wanted, where those are larger that coarser meshes do
@@ -603,6 +677,7 @@ pub(super) mod tests {
             run: 0,
             difference,
             unseen: None,
+            at_jumps: 0.0,
             fall: None,
             cells,
             steps_matter,

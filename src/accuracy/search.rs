@@ -353,7 +353,11 @@ impl<'a, 'o> Search<'a, 'o> {
                 self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(self.runner.finest()));
             }
         }
-        if steps && (times <= 1.0 || round.cells == 0) {
+        let graded = self.runner.grade(round.at_jumps, wanted.result)?;
+        if graded && times <= 1.0 {
+            self.runner.take(self.runner.meshes.clone());
+        }
+        if (steps || graded) && (times <= 1.0 || round.cells == 0) {
             return Ok(());
         }
         if round.cells == 0 {
@@ -375,7 +379,7 @@ impl<'a, 'o> Search<'a, 'o> {
         let of_open =
             |(index, cells): (usize, &CellErrors)| self.runner.is_open(index).then(|| cells.clone());
         let errors: Vec<Option<CellErrors>> = cells.iter().enumerate().map(of_open).collect();
-        self.runner.meshes = mesh::refined(&self.runner.meshes, &errors, times, self.most / 2);
+        self.runner.take(mesh::refined(&self.runner.meshes, &errors, times, self.most / 2));
     }
 
     /// Finer meshes in place of those with which the search began, of which two runs were enough to

@@ -360,6 +360,7 @@ mod tests {
     use super::super::stations::stations;
     use super::super::tests::{meshes, scene};
     use super::*;
+    use crate::model::Along;
     use crate::results::{ProbeSeries, Results};
     use crate::scene::Scene;
 
@@ -496,7 +497,13 @@ mod tests {
             ..Shape::default()
         };
         let none = ProbeSample::default();
-        let at = |seen, s| not_by_chance(seen, &of(0.0), &of(0.125), s, true);
+        let beam = |bending_stiffness: Option<Along>, discretization| {
+            let section = Section { bending_stiffness, ..Section::new(1.0, 1.0) };
+            Beam::line("arm", [0.0; 2], [3.0, 0.0], section, discretization)
+        };
+        let elements = Discretization::ancf(2);
+        let stiff = beam(Some(1.0.into()), elements.clone());
+        let at = |seen, s| not_by_chance(seen, &of(0.0), &of(0.125), s, &stiff);
         let least = ProbeSample { x: 0.125, y: 0.125, angle: 0.375, strain: 0.625, curvature: 0.875, ..none };
         let found = at(none, 2.0);
         assert!((found.angle - least.angle).abs() < 1e-14);
@@ -504,9 +511,12 @@ mod tests {
         let more =
             ProbeSample { x: 1.0, y: 1.0, angle: 1.0, strain: 1.0, curvature: 1.0, vx: Some(0.0), vy: None };
         assert_eq!(at(more, 2.0), more);
-        let of_string = not_by_chance(none, &of(0.0), &of(0.125), 2.0, false);
+        let of_string = not_by_chance(none, &of(0.0), &of(0.125), 2.0, &beam(None, elements));
         assert_eq!(of_string, ProbeSample { angle: 0.5, ..found });
         assert_eq!((at(none, 0.0), at(none, 0.5), at(none, 3.5)), (none, none, none));
+        let meshfree = beam(Some(1.0.into()), Discretization::rpim(9));
+        let at_end = not_by_chance(none, &of(0.0), &of(0.125), 3.0, &meshfree);
+        assert_eq!(at_end, ProbeSample { strain: 0.75, ..none });
     }
 
     /// A strain of 2 between 5 before and 0 behind errs by 3; that it is where forces jump, or a string turns, is seen in
