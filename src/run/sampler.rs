@@ -593,11 +593,20 @@ impl<'a> Sampler<'a> {
                 }
                 History::Before(before) => {
                     let part = &self.system.beams()[*beam];
+                    // A string that nothing loads yet has no shape of its own: the turns count from where it was laid out.
+                    let is_first = trajectory.parameter.len() == 2 && self.system.starts_bent();
+                    let is_slack = is_first && self.model.beams[*beam].section.bending_stiffness.is_none();
+                    let (before, from) = if is_slack {
+                        let start = self.system.start();
+                        (Some(start), Some(view.fields(start).angle()))
+                    } else {
+                        (before, series.samples.last().map(|sample| sample.angle))
+                    };
                     let turned = before.map_or(0.0, |before| {
                         let turns = turns[*beam].get_or_insert_with(|| turning::turns(part, before, q));
                         turns[turning::nearest(part, view.s()[0])]
                     });
-                    unfold(fields.angle(), series.samples.last().map(|s| s.angle + turned))
+                    unfold(fields.angle(), from.map(|angle| angle + turned))
                 }
             };
             series.samples.push(ProbeSample {
