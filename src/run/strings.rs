@@ -1,7 +1,16 @@
-//! Demands of a model on its strings that a string cannot meet.
+//! Demands of a model on its strings that a string, or its mesh, cannot meet.
 
 use crate::model::{FixedRotation, Joint, Model, Place};
 use crate::numeric::plain;
+use crate::results::Shape;
+use crate::system::System;
+
+/// Part of a string's length by which a kink within it may move it without a message.
+const UNMOVED: f64 = 1e-4;
+/// Places that are nearer to each other are one, in lengths of a beam.
+const SAME: f64 = 1e-9;
+/// Of the angle of a kink and the length of the cells beside it: so far continuous tangents put the place of a kink off.
+const OF_KINK: f64 = 1.0 / 12.0;
 
 /// A message for every place where a string, which has no bending stiffness, has a fixed direction
 /// or carries a couple. It transmits no couple: only its first cells would bend, whatever their
@@ -30,4 +39,53 @@ pub(super) fn couples(model: &Model) -> impl Iterator<Item = String> {
         ))
     };
     supports.chain(welds).chain(parts).filter_map(on_strings)
+}
+
+/// A message for every place within a string where what acts in a point gives it a kink in the last state: its shape functions have
+/// one direction there, and are off by what that is in the cells beside it.
+pub(super) fn kinks(model: &Model, system: &System, last: &[Shape]) -> Vec<String> {
+    let of_parts = model.parts.iter().filter_map(|part| part.point());
+    let of_joints = model.joints.iter().flat_map(|joint| match *joint {
+        Joint::Weld { first, second } | Joint::Hinge { first, second } => vec![first, second],
+        Joint::Slider { at, .. } => vec![at],
+    });
+    let mut places: Vec<Place> =
+        of_parts.chain(of_joints).chain(model.supports.iter().map(|support| support.at)).collect();
+    places.sort_by(|a, b| (a.beam, a.s).partial_cmp(&(b.beam, b.s)).unwrap_or(std::cmp::Ordering::Equal));
+    places.dedup();
+    let message = |at: Place| {
+        let beam = model.beams.get(at.beam).filter(|beam| beam.section.bending_stiffness.is_none())?;
+        let (nodes, shape) = (system.beams().get(at.beam)?.basis.nodes(), last.get(at.beam)?);
+        let cells = cells_around(nodes, at.s)?;
+        let cell = (at.s - cells[0]).max(cells[1] - at.s);
+        let (off, length) = (OF_KINK * kink(shape, cells)? * cell, nodes.last()?);
+        (off > UNMOVED * length).then(|| {
+            format!(
+                "string `{}` has a kink at s = {} m, where something acts in a point, and its tangents are continuous: it may be off by {off:.0e} m there; \
+                 cut it there, two strings in a `hinge`",
+                beam.name,
+                plain(at.s, 6),
+            )
+        })
+    };
+    places.into_iter().filter_map(message).collect()
+}
+
+/// The ends \[m\] of the cells that meet at `s`, or of the one around it; `None` at an end of the beam.
+fn cells_around(nodes: &[f64], s: f64) -> Option<[f64; 2]> {
+    let same = SAME * nodes.last()?;
+    let before = nodes.partition_point(|node| *node < s - same).checked_sub(1)?;
+    let behind = nodes.partition_point(|node| *node <= s + same);
+    Some([nodes[before], *nodes.get(behind)?])
+}
+
+/// By how much a string turns between two places, beyond what it does in as long a piece on either side \[rad\].
+fn kink(shape: &Shape, [before, behind]: [f64; 2]) -> Option<f64> {
+    let (end, long) = (*shape.s.last()?, behind - before);
+    let angle = |s: f64| shape.angle.get(shape.s.partition_point(|place| *place < s)).copied();
+    let turn = |from: f64, to: f64| Some((angle(to)? - angle(from)?).abs());
+    let beside = [(before - long, before), (behind, behind + long)];
+    let inside = beside.into_iter().filter(|(from, to)| *from >= 0.0 && *to <= end);
+    let usual = inside.filter_map(|(from, to)| turn(from, to)).fold(0.0, f64::max);
+    Some(turn(before, behind)? - usual)
 }

@@ -332,3 +332,40 @@ fn bending_before_buckling_is_told_with_its_angle() {
         }
     }
 }
+
+/// A taut string of 2 m, EA = 1000 N, under a force in its middle: a V with 2 EA (l − 1) y/l = P. One string has no kink there, and
+/// says how far off it is; two on a hinge have one.
+#[test]
+fn a_kink_within_a_string_is_told_with_what_it_is_off_by() {
+    let (axial, force) = (1000.0, 30.0);
+    let residual = |y: f64| 2.0 * axial * (y.hypot(1.0) - 1.0) * y / y.hypot(1.0) - force;
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if residual(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    let ends = "support = [{ beam = 'a', at = 'start', fix = ['x', 'y'] }, { beam = 'b', at = 'end', fix = ['x', 'y'] }]\n\
+                effect.force = [{ beam = 'b', at = 1.0, value = [0, -30] }]\nprobe = [{ name = 'p', beam = 'b', at = 1.0 }]\nanalysis.static = {}\n";
+    for elements in [8, 40] {
+        let one = format!(
+            "beam.b = {{ start = [0, 0], end = [2, 0], axial_stiffness = {axial:?}, basis.ancf.elements = {elements} }}\n{}",
+            ends.replace("beam = 'a'", "beam = 'b'")
+        );
+        let found = solved(&one);
+        let told = found.run.warnings.iter().find(|warning| warning.contains("has a kink at s = 1.000000 m"));
+        let told = between(told.expect("a kink"), "may be off by ", " m there");
+        let off = (found.probes[0].samples.last().expect("a state").y + low).abs();
+        assert!((0.3..3.0).contains(&(told / off)), "{told:e} m for {off:e} m with {elements} elements");
+    }
+    let piece = |name: &str, x: f64| {
+        let end = x + 1.0;
+        format!(
+            "beam.{name} = {{ start = [{x:?}, 0], end = [{end:?}, 0], axial_stiffness = {axial:?}, basis.ancf.elements = 8 }}\n"
+        )
+    };
+    let hinge = "joint = [{ type = 'hinge', first = { beam = 'a', at = 'end' }, second = { beam = 'b', at = 'start' } }]\n";
+    let two = [&piece("a", 0.0), &piece("b", 1.0), hinge, &ends.replace("at = 1.0", "at = 'start'")].concat();
+    let found = solved(&two);
+    assert!(found.run.warnings.is_empty(), "{:?}", found.run.warnings);
+    near(found.probes[0].samples.last().expect("a state").y, -low, 1e-9, "the middle of two strings");
+}
