@@ -21,6 +21,8 @@ const LEAST: usize = 2;
 /// the logarithm of the change up to which that is sought.
 const CHANGE: f64 = 8.0;
 const MOST_CHANGE: f64 = 40.0;
+/// How often cells are halved towards a place where the stiffness jumps.
+const GRADES: usize = 3;
 /// How often an interval is halved in search of a place.
 const HALVINGS: usize = 30;
 /// Largest turn of a stress-free centreline in a cell of the first mesh \[rad\].
@@ -204,47 +206,37 @@ impl Mesh {
         })
     }
 
-    /// With cells that are shorter and shorter, down to an eighth, towards both sides of `places`.
+    /// With cells that are shorter and shorter, down to an eighth, towards both sides of `places`, which are nodes.
     pub fn graded_towards(mut self, places: &[f64]) -> Self {
-        for s in places {
-            for end in self.beside(*s) {
-                let parts = [0.5, 0.25, 0.125];
-                self.nodes.extend(parts.map(|part| s + part * end.length.copysign(end.side)));
-            }
-            self.nodes.sort_by(f64::total_cmp);
+        for _ in 0..GRADES {
+            self = self.halved_beside(places);
         }
         self
-    }
-
-    /// The longest cell beside one of `places`, which are nodes; infinite where there is none.
-    pub fn longest_beside(&self, places: &[f64]) -> f64 {
-        let longest = places.iter().flat_map(|s| self.beside(*s)).map(|end| end.length).reduce(f64::max);
-        longest.unwrap_or(f64::INFINITY)
     }
 
     /// With half the cells on both sides of `places`, which are nodes.
     pub fn halved_beside(mut self, places: &[f64]) -> Self {
         for s in places {
-            for end in self.beside(*s) {
-                self.nodes.push(s + 0.5 * end.length.copysign(end.side));
-            }
+            self.nodes.extend(self.beside(*s).map(|end| s + 0.5 * end.length.copysign(end.side)));
             self.nodes.sort_by(f64::total_cmp);
         }
         self
     }
 
-    /// With cells that are shorter and shorter towards both sides of `places`, which are nodes, down to a `length`. There is an even
-    /// number more of them on either side, so that every second node makes a mesh still.
-    pub fn graded_down_to(mut self, places: &[f64], length: f64) -> Self {
-        for s in places {
-            for end in self.beside(*s) {
-                let halvings = (end.length / length).log2().ceil().max(0.0) as i32;
-                let halvings = halvings + halvings % 2;
-                self.nodes
-                    .extend((1..=halvings).map(|k| s + 0.5_f64.powi(k) * end.length.copysign(end.side)));
-            }
-            self.nodes.sort_by(f64::total_cmp);
+    /// The longer one of the cells that meet at the node `s`.
+    pub fn longest_beside(&self, s: f64) -> f64 {
+        self.beside(s).map(|end| end.length).fold(0.0, f64::max)
+    }
+
+    /// With cells that are shorter and shorter towards both sides of the node `s`, down to a `length`. There is an even number more
+    /// of them on either side, so that every second node makes a mesh still.
+    pub fn graded_down_to(mut self, s: f64, length: f64) -> Self {
+        for end in self.beside(s) {
+            let halvings = (end.length / length).log2().ceil().max(0.0) as i32;
+            let halvings = halvings + halvings % 2;
+            self.nodes.extend((1..=halvings).map(|k| s + 0.5_f64.powi(k) * end.length.copysign(end.side)));
         }
+        self.nodes.sort_by(f64::total_cmp);
         self
     }
 
@@ -506,12 +498,11 @@ mod tests {
         let graded = mesh(&[0.0, 4.0, 12.0, 16.0], &[0.0, 4.0, 16.0]).graded_towards(&[4.0]);
         assert_eq!(graded.nodes, [0.0, 2.0, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 12.0, 16.0]);
         let coarse = || mesh(&[0.0, 4.0, 12.0, 16.0], &[0.0, 4.0, 16.0]);
-        assert_eq!(coarse().longest_beside(&[4.0]), 8.0);
-        assert_eq!(coarse().longest_beside(&[]), f64::INFINITY);
-        let down = coarse().graded_down_to(&[4.0], 3.0);
+        assert_eq!(coarse().longest_beside(4.0), 8.0);
+        let down = coarse().graded_down_to(4.0, 3.0);
         assert_eq!(down.nodes, [0.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0]);
-        assert_eq!(down.clone().graded_down_to(&[4.0], 3.0), down);
-        assert_eq!(coarse().graded_down_to(&[4.0], f64::INFINITY), coarse());
+        assert_eq!(down.clone().graded_down_to(4.0, 3.0), down);
+        assert_eq!(coarse().graded_down_to(4.0, f64::INFINITY), coarse());
     }
 
     /// On the side of a notch that is 1000 times as soft as the rest.

@@ -1,6 +1,6 @@
 //! A round of a search: the same problem on meshes and with steps of two or three finenesses.
 
-use super::difference::{self, Difference, stations, stiffness_jumps};
+use super::difference::{self, Difference, StrainJump, stations, stiffness_jumps};
 use super::judgement::{excess, scaled};
 use super::mesh::Mesh;
 use super::saturation::saturates;
@@ -11,6 +11,7 @@ use crate::model::{
     Accuracy, Analysis, Beam, Discretization, Dynamic, Integrator, Model, Nodes, Open, RPIM_GAUSS_POINTS,
     Static, StepControl,
 };
+use crate::numeric::plain;
 use crate::results::{Errors, Results, RunForError};
 use crate::run::{Options, RunError};
 
@@ -63,7 +64,7 @@ const HOPELESS: f64 = 1.5;
 /// … and of a motion, of which loose tolerances tell less.
 const HOPELESS_MOTION: f64 = 10.0;
 
-/// Part of the wanted error that may be due to jumps of stiffnesses …
+/// Part of the wanted error that may be due to strains that jump …
 const AT_JUMPS: f64 = 0.25;
 /// … the part of their length to which cells beside these become shorter at once …
 const MOST_SHORTER: f64 = 0.01;
@@ -98,8 +99,8 @@ pub(super) struct Runner<'a, 'o> {
     pointed: Vec<bool>,
     /// Where in each beam the stiffness against stretching jumps.
     softer: Vec<Vec<f64>>,
-    /// How long the cells beside these may be in the coarse runs, of open beams \[m\].
-    beside: Vec<f64>,
+    /// Where in each open beam the strain jumps, and how long cells beside that may be in the coarse runs \[m\].
+    short: Vec<Vec<[f64; 2]>>,
     /// The halvings between the meshes of two runs: more than one where the scene gives all beams an odd number of
     /// cells.
     pub halvings: f64,
@@ -148,8 +149,8 @@ pub(super) struct Round {
     pub difference: Result<Difference, String>,
     /// What coarser meshes do not tell of the errors of the finer run.
     pub unseen: Option<Difference>,
-    /// The part of it that shorter cells would make smaller where the stiffness of an open beam jumps.
-    pub at_jumps: f64,
+    /// Where in open beams the strain jumps, with the part of it that shorter cells there would make smaller.
+    pub jumps: Vec<StrainJump>,
     /// By which factor the difference has fallen, where there was a third run.
     pub fall: Option<f64>,
     /// Cells of the open beams.
@@ -234,7 +235,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             saturated,
             pointed,
             softer,
-            beside: vec![f64::INFINITY; model.beams.len()],
+            short: vec![Vec::new(); model.beams.len()],
             halvings: if times.is_finite() { times.log2() } else { 1.0 },
             tolerance,
             runs: Vec::new(),
@@ -407,9 +408,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             Ok(beside) => (beside, None),
             Err(why) => (None, Some(why)),
         };
-        let jumps =
-            (0..self.model.beams.len()).any(|beam| self.is_open(beam) && !self.softer[beam].is_empty());
-        let at_jumps = beside.as_ref().filter(|_| jumps).map_or(0.0, |beside| beside.errors.result);
+        let mut jumps = self.stiffness_jumps(beside.as_ref());
         let round_off = difference::round_off(&results);
         let both = |a: Option<Difference>, b: Option<Difference>| match (a, b) {
             (Some(a), Some(b)) => a.plus(&b),
@@ -422,12 +421,16 @@ impl<'a, 'o> Runner<'a, 'o> {
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
             Err(error) => Err(format!("on half as many cells there is no result: {error}")),
         };
-        // A search sees how errors fall; of one mesh nothing else tells these.
-        if let (None, Ok(difference), Results::Trajectory(run)) = (self.wanted, &difference, &results) {
-            let nodes: Vec<Vec<f64>> = self.named.iter().flatten().map(|mesh| mesh.nodes.clone()).collect();
-            let jumps = (nodes.len() == self.model.beams.len())
-                .then(|| difference::strain_jumps(self.model, &nodes, run, difference));
-            unseen = both(unseen, jumps.flatten());
+        if let (Ok(difference), Results::Trajectory(run)) = (&difference, &results) {
+            let nodes = self.named.iter().zip(&self.meshes).map(|(named, mesh)| match named {
+                Some(named) => named.nodes.clone(),
+                None => mesh.halved().nodes,
+            });
+            let nodes: Vec<Vec<f64>> = nodes.collect();
+            if let Some((errors, places)) = difference::strain_jumps(self.model, &nodes, run, difference) {
+                unseen = both(unseen, Some(errors));
+                jumps.extend(places.into_iter().filter(|jump| self.is_open(jump.beam)));
+            }
         }
         if let (Ok(difference), Results::Trajectory(_)) = (&difference, &results) {
             unseen = both(unseen, difference::laid_out(self.model, difference));
@@ -447,7 +450,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             run,
             difference,
             unseen,
-            at_jumps,
+            jumps,
             fall,
             cells,
             steps_matter,
@@ -465,6 +468,14 @@ impl<'a, 'o> Runner<'a, 'o> {
     /// Whether the stiffness of a beam jumps whose mesh is chosen.
     fn has_open_jumps(&self) -> bool {
         (0..self.model.beams.len()).any(|beam| self.is_open(beam) && !self.softer[beam].is_empty())
+    }
+
+    /// Where the stiffnesses of open beams jump, with all that results differ by from those `beside` them.
+    fn stiffness_jumps(&self, beside: Option<&Difference>) -> Vec<StrainJump> {
+        let error = beside.map_or(0.0, |beside| beside.errors.result);
+        let open = (0..self.model.beams.len()).filter(|beam| self.is_open(*beam));
+        open.flat_map(|beam| self.softer[beam].iter().map(move |s| StrainJump { beam, s: *s, error }))
+            .collect()
     }
 
     /// What the results of a `setting` differ by from those with four cells in every part of a beam that has one, with nodes where
@@ -513,36 +524,38 @@ impl<'a, 'o> Runner<'a, 'o> {
         Ok(Some(if at_jumps { difference.divided([TOLD_BY_HALF.recip(); 2]) } else { difference }))
     }
 
-    /// Shorter cells where the stiffness of an open beam jumps, if errors of the first order there are more than a part of the
+    /// Shorter cells where the strain of an open beam jumps, if errors of the first order there are more than a part of the
     /// `wanted` one; whether they are.
     ///
     /// # Errors
     /// In words, where round-off allows no shorter ones.
-    pub fn grade(&mut self, at_jumps: f64, wanted: f64) -> Result<bool, String> {
-        let part = AT_JUMPS * wanted / at_jumps;
-        if part >= 1.0 {
-            return Ok(false);
-        }
-        let mut shorter = false;
-        for (index, (mesh, beside)) in self.meshes.iter().zip(&mut self.beside).enumerate() {
-            let longest = mesh.longest_beside(&self.softer[index]);
-            if self.open.beams.get(index) == Some(&true) && longest.is_finite() {
-                let least = SHORTEST * mesh.length();
-                *beside = (part.max(MOST_SHORTER) * longest).max(least);
-                shorter |= *beside < longest;
+    pub fn grade(&mut self, jumps: &[StrainJump], wanted: f64) -> Result<bool, String> {
+        let mut any = false;
+        for StrainJump { beam, s, error } in jumps.iter().filter(|jump| jump.error > AT_JUMPS * wanted) {
+            let mesh = &self.meshes[*beam];
+            let longest = mesh.longest_beside(*s);
+            let short = (MOST_SHORTER.max(AT_JUMPS * wanted / error) * longest).max(SHORTEST * mesh.length());
+            if short < longest {
+                let others = self.short[*beam].iter().copied().filter(|[place, _]| place != s);
+                self.short[*beam] = others.chain([[*s, short]]).collect();
+                any = true;
+            } else if *error > wanted {
+                return Err(format!(
+                    "the strain of beam `{}` jumps at s = {} m, which one beam cannot follow: cut it there (two beams in a `weld` have a strain each)",
+                    self.model.beams[*beam].name,
+                    plain(*s, 6)
+                ));
             }
         }
-        let why = "the strain jumps where the stiffness of a beam does, which one beam cannot follow: cut it there (two beams in a `weld` have a \
-                   strain each)";
-        if shorter || at_jumps <= wanted { Ok(shorter) } else { Err(why.to_owned()) }
+        Ok(any)
     }
 
-    /// Gives open beams these meshes, with cells as short as they must be where a stiffness jumps.
+    /// Gives open beams these meshes, with cells as short as they must be where strains jump.
     pub fn take(&mut self, meshes: Vec<Mesh>) {
-        let graded = meshes.into_iter().enumerate();
-        self.meshes = graded
-            .map(|(index, mesh)| mesh.graded_down_to(&self.softer[index], self.beside[index]))
-            .collect();
+        let graded = |(mesh, short): (Mesh, &Vec<[f64; 2]>)| {
+            short.iter().fold(mesh, |mesh, [s, length]| mesh.graded_down_to(*s, *length))
+        };
+        self.meshes = meshes.into_iter().zip(&self.short).map(graded).collect();
     }
 
     /// Why no choice for other beams makes errors as small as is wanted, where those are larger that coarser meshes do
@@ -677,7 +690,7 @@ pub(super) mod tests {
             run: 0,
             difference,
             unseen: None,
-            at_jumps: 0.0,
+            jumps: Vec::new(),
             fall: None,
             cells,
             steps_matter,

@@ -353,7 +353,7 @@ impl<'a, 'o> Search<'a, 'o> {
                 self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(self.runner.finest()));
             }
         }
-        let graded = self.runner.grade(round.at_jumps, wanted.result)?;
+        let graded = self.runner.grade(&round.jumps, wanted.result)?;
         if graded && times <= 1.0 {
             self.runner.take(self.runner.meshes.clone());
         }

@@ -17,15 +17,26 @@ const SAME: f64 = 1e-9;
 /// Strains below this are round-off.
 const ROUND_OFF: f64 = 1e-12;
 
+/// A place within a beam where its strain jumps, and by how much the result errs for that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::accuracy) struct StrainJump {
+    /// Index of the beam.
+    pub beam: usize,
+    /// Arc length \[m\].
+    pub s: f64,
+    /// In beam lengths, or relative.
+    pub error: f64,
+}
+
 /// What strains that jump make the positions of a run err by on beams with the `nodes` \[m\] given, in the records of another
-/// `difference` of it; `None` where none jumps.
+/// `difference` of it, and where; `None` where none jumps.
 pub(in crate::accuracy) fn strain_jumps(
     model: &Model,
     nodes: &[Vec<f64>],
     run: &Trajectory,
     difference: &Difference,
-) -> Option<Difference> {
-    let mut sum = difference.none();
+) -> Option<(Difference, Vec<StrainJump>)> {
+    let (mut sum, mut jumps) = (difference.none(), Vec::new());
     for (index, ((beam, nodes), shape)) in model.beams.iter().zip(nodes).zip(&run.last).enumerate() {
         let length = nodes.last().copied().unwrap_or(0.0);
         for s in places(model, index, length) {
@@ -38,6 +49,7 @@ pub(in crate::accuracy) fn strain_jumps(
             let cell = (nodes[behind] - s).max(s - nodes[before]);
             let (moved, turned) = (OF_JUMP * cell * along, OF_JUMP * cell * turn);
             let result = (moved + turned * length) / length;
+            jumps.push(StrainJump { beam: index, s, error: result });
             sum.errors.result = larger(sum.errors.result, result);
             sum.records.iter_mut().for_each(|record| *record = larger(*record, result));
             if let Some(errors) = sum.beams.get_mut(index) {
@@ -57,7 +69,7 @@ pub(in crate::accuracy) fn strain_jumps(
             }
         }
     }
-    (sum.errors.result > 0.0).then_some(sum)
+    (!jumps.is_empty()).then_some((sum, jumps))
 }
 
 /// Where within a beam the strain may jump, but for [`stiffness_jumps`].
