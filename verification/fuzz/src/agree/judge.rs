@@ -498,6 +498,9 @@ fn in_two_files(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
     let Case { scene, frame, .. } = case;
     let way = Way::Continued;
     let Some([first, rest]) = stages::two_files(scene, rng) else { return Verdict::NotApplicable };
+    if stages::ends_shape_functions(&first, &rest) {
+        return Verdict::NotApplicable;
+    }
     let tendons = |scene: &Table| settings::items(scene, &["effect", "tendon"]).count();
     let half = match other(&first, frame, way) {
         Ok(half) => half,

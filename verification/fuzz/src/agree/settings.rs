@@ -56,6 +56,12 @@ pub fn stops_beyond_tolerance(scene: &Table) -> bool {
     items(scene, &["analysis", "dynamic", "event"]).any(|event| event.contains_key("stop") && !bounded(event))
 }
 
+/// Whether a beam has shape functions of radial point interpolation.
+pub fn is_meshfree(scene: &Table) -> bool {
+    let beams = scene.get("beam").and_then(Value::as_table).into_iter().flat_map(Table::values);
+    beams.into_iter().any(|beam| beam.get("basis").is_some_and(|basis| basis.get("rpim").is_some()))
+}
+
 /// The kind of analysis, as a scene names it.
 pub fn analysis(scene: &Table) -> &str {
     get(scene, &["analysis"])

@@ -231,6 +231,23 @@ pub fn two_files(scene: &Table, rng: &mut Rng) -> Option<[Table; 2]> {
     Some([part(scene, 0..at)?, rest])
 }
 
+/// Whether between two of its files something comes or goes within a meshfree beam: shape functions end at what holds or turns a point
+/// there, in all stages of one file, and in one of two files only.
+pub fn ends_shape_functions(first: &Table, rest: &Table) -> bool {
+    let inside = |at: Option<&Value>| at.is_some_and(|at| at.is_float() || at.is_integer());
+    let acts_inside = |item: &Table| {
+        let sides = ["first", "second"].into_iter().filter_map(|side| item.get(side)?.as_table()?.get("at"));
+        inside(item.get("at")) || sides.map(Some).any(inside)
+    };
+    let within = |scene: &Table| -> Vec<String> {
+        let effects = scene.get("effect").and_then(Value::as_table).into_iter().flat_map(Table::values);
+        let lists = [scene.get("support"), scene.get("joint")].into_iter().flatten().chain(effects);
+        let items = lists.filter_map(Value::as_array).flatten().filter_map(Value::as_table);
+        items.filter(|item| acts_inside(item)).map(Table::to_string).collect()
+    };
+    settings::is_meshfree(first) && within(first) != within(rest)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -243,6 +260,19 @@ mod tests {
             effect.force = [{ at = 1.0, until = 'two' }, { at = 2.0, stage = 'two', until = 'three' }]
             effect.gravity = { acceleration = [0.0, 1.0], stage = 'three' }";
         text.parse().unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[test]
+    fn what_goes_within_a_meshfree_beam_ends_shape_functions() {
+        let of = |basis: &str, supports: &str| -> Table {
+            let text = format!("beam.a.basis.{basis} = 9\nsupport = [{supports}]");
+            text.parse().unwrap_or_else(|error| panic!("{error}"))
+        };
+        let (end, inside) = ("{ beam = 'a', at = 'start' }", "{ beam = 'a', at = 0.3 }");
+        let both = format!("{end}, {inside}");
+        assert!(ends_shape_functions(&of("rpim.nodes", &both), &of("rpim.nodes", end)));
+        assert!(!ends_shape_functions(&of("rpim.nodes", &both), &of("rpim.nodes", inside)));
+        assert!(!ends_shape_functions(&of("ancf.nodes", &both), &of("ancf.nodes", end)));
     }
 
     #[test]
