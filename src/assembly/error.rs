@@ -89,9 +89,12 @@ pub enum BuildError {
     },
     /// The two points of a joint do not coincide.
     #[error(
-        "a joint ties s = {first_s} m of beam `{first}` to s = {second_s} m of beam `{second}`, but these points are {gap:.3e} m apart"
+        "a joint ties s = {first_s} m of beam `{first}`, at {at:?} m, to s = {second_s} m of beam `{second}`, but these points are {gap:.3e} m \
+         apart"
     )]
-    #[diagnostic(help("let the stress-free shapes of the beams meet where they are joined"))]
+    #[diagnostic(help(
+        "let the stress-free shapes of the beams meet where they are joined, to 1e-9 of a beam's length"
+    ))]
     Apart {
         /// The first beam's name.
         first: String,
@@ -101,6 +104,8 @@ pub enum BuildError {
         second: String,
         /// Arc length of the second point \[m\].
         second_s: f64,
+        /// Where the first point is at the start \[m\].
+        at: [f64; 2],
         /// Their distance \[m\].
         gap: f64,
     },

@@ -78,7 +78,8 @@ pub enum EigenError {
          unsymmetric, and a {analysis} analysis needs a symmetric one"
     )]
     #[diagnostic(help(
-        "use dead loads, a `potential` for a field that has one, and contacts without friction; or a static analysis along the path"
+        "use dead loads, a `potential` for a field that has one, and contacts without friction; or a static analysis along the path for limit points, and a \
+         motion (`dynamic`) with a small `initial_velocity`, in which a flutter by follower loads grows"
     ))]
     NotSymmetric {
         /// The analysis.

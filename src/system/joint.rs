@@ -55,6 +55,7 @@ fn coincide(system: &System, open: bool, first: Place, second: Place) -> Result<
             first_s: first.s,
             second: name(second),
             second_s: second.s,
+            at: system.fields_of(first)?.position,
             gap,
         });
     }

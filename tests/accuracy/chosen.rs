@@ -239,3 +239,34 @@ fn a_stiffness_that_jumps_errs_by_the_length_of_elements() {
         assert!((0.3..times).contains(&(told / truth)), "{told:e} for {truth:e}, pulled, {basis}");
     }
 }
+
+/// A layer on one side of a sheet that becomes thinner at 0.43 m: where the coupling of stretch and bending jumps, one beam errs with
+/// the first order in the length of the cells there, beside errors that fall so fast that they hide it. Two beams in a weld have a
+/// strain each, and tell.
+#[test]
+fn errors_where_a_coupling_jumps_are_seen_by_a_search() {
+    let layers = |height: &str| {
+        format!(
+            "section.layers = [{{ youngs_modulus = 70e9, density = 2700, width = 0.02, height = 0.002 }}, \
+             {{ youngs_modulus = 3.72e10, density = 1200, width = 0.02, height = {height} }}]"
+        )
+    };
+    let rest = "support = [{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'] }]\n";
+    let one = scene(&format!(
+        "beam.a = {{ start = [0, 0], end = [1, 0], {} }}\n{rest}analysis.modal = {{ count = 3, accuracy = 1e-4 }}\n",
+        layers("{ pieces = { until = [0.43], value = [0.00703, 0.00068] } }")
+    ));
+    let two = scene(&format!(
+        "beam.a = {{ start = [0, 0], end = [0.43, 0], {}, basis.ancf.elements = 60 }}\n\
+         beam.b = {{ start = [0.43, 0], end = [1, 0], {}, basis.ancf.elements = 60 }}\n{rest}\
+         joint = [{{ type = 'weld', first = {{ beam = 'a', at = 'end' }}, second = {{ beam = 'b', at = 'start' }} }}]\n\
+         analysis.modal.count = 3\n",
+        layers("0.00703"),
+        layers("0.00068")
+    ));
+    let [found, exact] = [run(&one), run(&two)];
+    for (i, (f, exact)) in found.eigenvalues().iter().zip(exact.eigenvalues()).enumerate() {
+        let (truth, told) = ((f / exact - 1.0).abs(), error(&found).eigenvalues[i] / f);
+        assert!(truth <= 1e-4 && truth <= 3.0 * told, "{i}: {truth:e} for {told:e}");
+    }
+}
