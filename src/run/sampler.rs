@@ -33,6 +33,8 @@ use std::f64::consts::FRAC_PI_2;
 const SAME_PLACE: f64 = 1e-9;
 /// A frame of the animation takes every so many of these points.
 const FRAME_STRIDE: usize = 2;
+/// A load factor of next to nothing.
+const NEXT_TO_NOTHING: f64 = 1e-3;
 /// Part of the loads beyond which the round-off of internal forces prevents convergence.
 const DROWNED: f64 = 1e-2;
 /// Increments below this that do not vanish are round-off \[beam lengths\].
@@ -773,6 +775,10 @@ impl<'a> Sampler<'a> {
         let (beam, s) = stuck.at;
         let pulled_in = self.pulled_in(solution.states.last().map(|(_, q)| &q[..]));
         let advice = match stuck.failure {
+            _ if self.system.has_friction() && stuck.load < NEXT_TO_NOTHING => {
+                "a contact that sticks as it begins finds no first step, and shorter ones press it by round-off only: give a `max_step` of some thousandths, \
+                 or friction a smaller `stiffness`"
+            }
             _ if self.limited_by_round_off(&stuck.failure) => {
                 "double precision cannot resolve these loads: the stiffness is so large, or nodes are so close, that the \
                  round-off of positions alone makes forces of their size; use fewer nodes, even spacing, or an axial \

@@ -169,7 +169,8 @@ pub fn looser(scene: &Table, factor: f64) -> Option<Table> {
     let kind = analysis(&scene).to_owned();
     let loosen = |value: &mut Value| {
         if let Value::Float(accuracy) = value {
-            *accuracy *= factor;
+            // Relative ones are below 1.
+            *accuracy = (*accuracy * factor).min(accuracy.max(0.9));
         }
     };
     match table(&mut scene, &["analysis", &kind])?.get_mut("accuracy")? {
