@@ -228,12 +228,12 @@ impl Mesh {
         self.beside(s).map(|end| end.length).fold(0.0, f64::max)
     }
 
-    /// With cells that are shorter and shorter towards both sides of the node `s`, down to a `length`. There is an even number more
-    /// of them on either side, so that every second node makes a mesh still.
+    /// With cells that are shorter and shorter towards both sides of the node `s`, down to some `length` between half and twice of
+    /// what is given. There is an even number more of them on either side, so that every second node makes a mesh still.
     pub fn graded_down_to(mut self, s: f64, length: f64) -> Self {
         for end in self.beside(s) {
             let halvings = (end.length / length).log2().ceil().max(0.0) as i32;
-            let halvings = halvings + halvings % 2;
+            let halvings = if halvings > 2 { halvings - halvings % 2 } else { halvings + halvings % 2 };
             self.nodes.extend((1..=halvings).map(|k| s + 0.5_f64.powi(k) * end.length.copysign(end.side)));
         }
         self.nodes.sort_by(f64::total_cmp);

@@ -70,7 +70,7 @@ const AT_JUMPS: f64 = 0.25;
 const MOST_SHORTER: f64 = 0.01;
 /// … and how short they may be, in beam lengths: the round-off of positions makes forces that grow as the third power of what
 /// follows from it.
-const SHORTEST: f64 = 1e-4;
+const SHORTEST: f64 = 2e-4;
 /// With half of their length errors that fall with the first order are told by half.
 const TOLD_BY_HALF: f64 = 2.0;
 
@@ -540,14 +540,26 @@ impl<'a, 'o> Runner<'a, 'o> {
                 self.short[*beam] = others.chain([[*s, short]]).collect();
                 any = true;
             } else if *error > wanted {
-                return Err(format!(
-                    "the strain of beam `{}` jumps at s = {} m, which one beam cannot follow: cut it there (two beams in a `weld` have a strain each)",
-                    self.model.beams[*beam].name,
-                    plain(*s, 6)
-                ));
+                return Err(self.jump_at(*beam, *s));
             }
         }
         Ok(any)
+    }
+
+    /// What is to be done about a strain that jumps.
+    fn jump_at(&self, beam: usize, s: f64) -> String {
+        format!(
+            "the strain of beam `{}` jumps at s = {} m, which one beam cannot follow: cut it there (two beams in a `weld` have a strain each)",
+            self.model.beams[beam].name,
+            plain(s, 6)
+        )
+    }
+
+    /// The same, where cells beside such a place have become short: with these there may be no result.
+    pub fn shortened(&self) -> Option<String> {
+        let (beam, [s, _]) =
+            self.short.iter().enumerate().find_map(|(beam, short)| Some((beam, *short.first()?)))?;
+        Some(self.jump_at(beam, s))
     }
 
     /// Gives open beams these meshes, with cells as short as they must be where strains jump.

@@ -110,6 +110,9 @@ impl<'a, 'o> Search<'a, 'o> {
                 // What is wrong with the model is wrong on all meshes.
                 Err(error) if error.exit_status() == 2 => return Err(error),
                 Err(error) => {
+                    if let (Some(why), Some(best)) = (self.runner.shortened(), best.take()) {
+                        return Ok(self.finished(best, Some(why)));
+                    }
                     failures += 1;
                     if failures < FAILURES && self.refine_everywhere() {
                         continue;
@@ -134,6 +137,9 @@ impl<'a, 'o> Search<'a, 'o> {
             let difference = match &round.difference {
                 Ok(difference) => difference.clone(),
                 Err(why) => {
+                    if let (Some(why), Some(best)) = (self.runner.shortened(), best.take()) {
+                        return Ok(self.finished(best, Some(why)));
+                    }
                     failures += 1;
                     if failures < FAILURES && self.refine_everywhere() {
                         continue;

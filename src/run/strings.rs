@@ -9,6 +9,8 @@ use crate::system::System;
 const UNMOVED: f64 = 1e-4;
 /// Places that are nearer to each other are one, in lengths of a beam.
 const SAME: f64 = 1e-9;
+/// Part of a cell within which a kink beside a node spreads over both cells that meet there.
+const NEAR_NODE: f64 = 0.25;
 /// Of the angle of a kink and the length of the cells beside it: so far continuous tangents put the place of a kink off.
 const OF_KINK: f64 = 1.0 / 12.0;
 
@@ -71,12 +73,19 @@ pub(super) fn kinks(model: &Model, system: &System, last: &[Shape]) -> Vec<Strin
     places.into_iter().filter_map(message).collect()
 }
 
-/// The ends \[m\] of the cells that meet at `s`, or of the one around it; `None` at an end of the beam.
+/// The ends \[m\] of the cells over which a kink at `s` spreads: the one around it, and the next one where it is near; `None` at an end of
+/// the beam.
 fn cells_around(nodes: &[f64], s: f64) -> Option<[f64; 2]> {
     let same = SAME * nodes.last()?;
-    let before = nodes.partition_point(|node| *node < s - same).checked_sub(1)?;
-    let behind = nodes.partition_point(|node| *node <= s + same);
-    Some([nodes[before], *nodes.get(behind)?])
+    let cell = nodes.partition_point(|node| *node <= s + same).checked_sub(1)?;
+    let (start, end) = (nodes[cell], *nodes.get(cell + 1)?);
+    if cell == 0 && s - start <= same {
+        return None;
+    }
+    let near = NEAR_NODE * (end - start);
+    let before = if s - start < near { nodes[cell.saturating_sub(1)] } else { start };
+    let behind = if end - s < near { nodes.get(cell + 2).copied().unwrap_or(end) } else { end };
+    Some([before, behind])
 }
 
 /// By how much a string turns between two places, beyond what it does in as long a piece on either side \[rad\].
@@ -86,6 +95,6 @@ fn kink(shape: &Shape, [before, behind]: [f64; 2]) -> Option<f64> {
     let turn = |from: f64, to: f64| Some((angle(to)? - angle(from)?).abs());
     let beside = [(before - long, before), (behind, behind + long)];
     let inside = beside.into_iter().filter(|(from, to)| *from >= 0.0 && *to <= end);
-    let usual = inside.filter_map(|(from, to)| turn(from, to)).fold(0.0, f64::max);
+    let usual = inside.filter_map(|(from, to)| turn(from, to)).reduce(f64::min).unwrap_or(0.0);
     Some(turn(before, behind)? - usual)
 }

@@ -270,3 +270,18 @@ fn errors_where_a_coupling_jumps_are_seen_by_a_search() {
         assert!(truth <= 1e-4 && truth <= 3.0 * told, "{i}: {truth:e} for {told:e}");
     }
 }
+
+/// A bar that heats up by 3e-3 from its middle on: there the strain is 0 before and 3e-3 behind, and one value errs by as much as it
+/// is off from either.
+#[test]
+fn the_strain_errs_by_its_jump_where_it_jumps() {
+    let text = "beam.a = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 10 }\n\
+                support = [{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+                effect.actuation = [{ beam = 'a', strain = 3e-3, from = 0.5 }]\n\
+                probe = [{ name = 'p', beam = 'a', at = 0.5 }]\nanalysis.static.accuracy = 1e-5\n";
+    let results = run(&scene(text));
+    let (found, told) =
+        (last(&results).strain, error(&results).probes[0].samples.last().expect("a state").strain);
+    let off = found.abs().max((found - 3e-3).abs());
+    assert!(off <= 3.0 * told && told < 1e-2, "{found:e} for 0 and 3e-3, {told:e} told");
+}

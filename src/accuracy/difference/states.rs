@@ -3,6 +3,7 @@
 use super::places::{interpolated, is_before, is_twice, same_place};
 use super::section_forces::section_forces;
 use super::stations::parts;
+use super::strain_jumps::strain_jump;
 use super::{Difference, Scales, larger, pairs};
 use crate::accuracy::mesh::{CellErrors, Mesh};
 use crate::model::{Analysis, Beam, Discretization, Model, Place, Section};
@@ -309,7 +310,8 @@ pub fn jumps(model: &Model, last: &[Shape], at: Place) -> bool {
         [least.min(*force), most.max(*force)]
     });
     let stretched = beam.section.axial_stiffness.is_some() && most - least > JUMP * largest;
-    stretched || beam.section.bending_stiffness.is_none() && is_twice(&shape.s, at.s)
+    let softer = strain_jump(model, at, shape) > JUMP * most_of(&shape.strain);
+    stretched || softer || beam.section.bending_stiffness.is_none() && is_twice(&shape.s, at.s)
 }
 
 /// What the strain errs by in the cells beside a place where it jumps by Δε: Δε/2 there, and nothing at their other ends. 0 where the

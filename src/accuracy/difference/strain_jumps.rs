@@ -105,6 +105,19 @@ fn within(places: impl Iterator<Item = f64>, length: f64) -> Vec<f64> {
     places
 }
 
+/// By how much the strain jumps at a place of a beam in its last shape; 0 at its ends, and for round-off.
+pub(in crate::accuracy) fn strain_jump(model: &Model, place: Place, shape: &Shape) -> f64 {
+    let length = shape.s.last().copied().unwrap_or(0.0);
+    let is_break = within(model.breaks(place.beam).into_iter(), length)
+        .iter()
+        .any(|s| (s - place.s).abs() <= SAME * length);
+    if !is_break {
+        return 0.0;
+    }
+    let [jump, _] = at(model, &model.beams[place.beam], place.beam, shape, (place.s, length));
+    if jump > ROUND_OFF { jump } else { 0.0 }
+}
+
 /// By how much the strain jumps at `s`, and that times the jump of EB over EI.
 fn at(model: &Model, beam: &Beam, index: usize, shape: &Shape, (s, length): (f64, f64)) -> [f64; 2] {
     // Where nothing acts in the point itself, the forces are those of the places beside it.
