@@ -555,11 +555,11 @@ impl<'a, 'o> Runner<'a, 'o> {
         )
     }
 
-    /// The same, where cells beside such a place have become short: with these there may be no result.
-    pub fn shortened(&self) -> Option<String> {
-        let (beam, [s, _]) =
-            self.short.iter().enumerate().find_map(|(beam, short)| Some((beam, *short.first()?)))?;
-        Some(self.jump_at(beam, s))
+    /// The same where there is no result, for such a reason, since cells beside such a place have become short.
+    pub fn shortened(&self, why: &str) -> Option<String> {
+        let first = |(beam, short): (usize, &Vec<[f64; 2]>)| Some((beam, short.first()?[0]));
+        let (beam, s) = self.short.iter().enumerate().find_map(first)?;
+        Some(format!("{}; with shorter cells beside it there is no result: {why}", self.jump_at(beam, s)))
     }
 
     /// Gives open beams these meshes, with cells as short as they must be where strains jump.

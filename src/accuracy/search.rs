@@ -110,15 +110,16 @@ impl<'a, 'o> Search<'a, 'o> {
                 // What is wrong with the model is wrong on all meshes.
                 Err(error) if error.exit_status() == 2 => return Err(error),
                 Err(error) => {
-                    if let (Some(why), Some(best)) = (self.runner.shortened(), best.take()) {
-                        return Ok(self.finished(best, Some(why)));
-                    }
+                    let shortened =
+                        best.is_some().then(|| self.runner.shortened(&error.to_string())).flatten();
                     failures += 1;
-                    if failures < FAILURES && self.refine_everywhere() {
+                    if shortened.is_none() && failures < FAILURES && self.refine_everywhere() {
                         continue;
                     }
                     return match best {
-                        Some(best) => Ok(self.finished(best, Some(error.to_string()))),
+                        Some(best) => {
+                            Ok(self.finished(best, Some(shortened.unwrap_or_else(|| error.to_string()))))
+                        }
                         None => Err(error),
                     };
                 }
@@ -137,14 +138,12 @@ impl<'a, 'o> Search<'a, 'o> {
             let difference = match &round.difference {
                 Ok(difference) => difference.clone(),
                 Err(why) => {
-                    if let (Some(why), Some(best)) = (self.runner.shortened(), best.take()) {
-                        return Ok(self.finished(best, Some(why)));
-                    }
+                    let shortened = best.is_some().then(|| self.runner.shortened(why)).flatten();
                     failures += 1;
-                    if failures < FAILURES && self.refine_everywhere() {
+                    if shortened.is_none() && failures < FAILURES && self.refine_everywhere() {
                         continue;
                     }
-                    let why = Some(why.clone());
+                    let why = shortened.or_else(|| Some(why.clone()));
                     return Ok(self.finished(best.unwrap_or_else(|| Judged::unknown(round)), why));
                 }
             };

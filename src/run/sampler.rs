@@ -39,7 +39,10 @@ const NEXT_TO_NOTHING: f64 = 1e-3;
 const DROWNED: f64 = 1e-2;
 /// Increments below this that do not vanish are round-off \[beam lengths\].
 const STALLED: f64 = 1e-6;
-/// What to try where a beam is crushed.
+/// What to try where a beam has no stiffness along its axis against what loads it.
+const WITHOUT_BOUNDS: &str = "an `axial_law` resists tension only, or pressure only, and what loads the other way shortens or lengthens its beam \
+                              without bounds: let loads strain it where the law has a stiffness, or give the law a small one on both sides";
+/// What to try where a beam is crushed for another reason.
 const TOO_SOFT: &str = "a beam is a model for small strains: use smaller loads, or a larger axial stiffness";
 /// What to try where a beam is pushed through an obstacle.
 const PUSHED_THROUGH: &str = "the obstacle gives way by more than half its thickness: give the contact a larger `stiffness`, or the obstacle a larger size";
@@ -775,7 +778,10 @@ impl<'a> Sampler<'a> {
         let (beam, s) = stuck.at;
         let pulled_in = self.pulled_in(solution.states.last().map(|(_, q)| &q[..]));
         let advice = match stuck.failure {
-            _ if self.system.has_friction() && stuck.load < NEXT_TO_NOTHING => {
+            _ if self.limited_by_round_off(&stuck.failure)
+                && self.system.has_friction()
+                && stuck.load < NEXT_TO_NOTHING =>
+            {
                 "a contact that sticks as it begins finds no first step, and shorter ones press it by round-off only: give a `max_step` of some thousandths, \
                  or friction a smaller `stiffness`"
             }
@@ -788,10 +794,8 @@ impl<'a> Sampler<'a> {
                 "supports between nodes hold the same motion more than once: leave some out, or use more nodes"
             }
             Failure::Crossed { .. } => PUSHED_THROUGH,
-            _ if self.system.goes_slack() => {
-                "an `axial_law` resists tension only, or pressure only, and what loads the other way shortens or lengthens its beam without \
-                 bounds: let loads strain it where the law has a stiffness, or give the law a small one on both sides"
-            }
+            Failure::Crushed { .. } if self.system.goes_slack() => WITHOUT_BOUNDS,
+            _ if self.system.goes_slack() && stuck.load < NEXT_TO_NOTHING => WITHOUT_BOUNDS,
             Failure::Crushed { .. } => TOO_SOFT,
             _ if stuck.load == 0.0 && self.system.force_at_start(&[Kind::Contact]) > 0.0 => {
                 "the structure begins inside an obstacle, which presses it before any load does: begin beside it, or let the obstacle \
