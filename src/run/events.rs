@@ -2,8 +2,9 @@
 
 use super::RunError;
 use super::sampler::{ProbePoint, Sampler};
+use crate::assembly::Side;
 use crate::model::{Dynamic, EventCondition, ProbeQuantity};
-use crate::results::{ProbeSeries, SectionForces, Trajectory};
+use crate::results::{ProbeSeries, Shape, Trajectory};
 use crate::solve::dynamics;
 use crate::system::unfold;
 
@@ -99,12 +100,20 @@ impl Sampler<'_> {
     /// A quantity at probe number `number` as a function of the state; of a speed its square.
     fn quantity(&self, number: usize, quantity: ProbeQuantity) -> dynamics::Quantity<'_> {
         use dynamics::Quantity::{OfForces, OfMotion, Position};
-        let ProbePoint { beam, view, measure, reference_strain, .. } = &self.probes[number];
-        let place = (*beam, view.s()[0]);
-        let carries = move |of: fn(SectionForces) -> Option<f64>| {
+        let ProbePoint { beam, view, .. } = &self.probes[number];
+        let length = self.system.beams()[*beam].basis.length();
+        // The probe comes first, and then places along the beam, the last of which is its end.
+        let mut places = vec![view.s()[0]];
+        places.extend(self.frame_places(*beam, None).0);
+        let side = |s: &f64| if *s >= length { Side::Left } else { Side::Right };
+        let sides: Vec<Side> = places.iter().map(side).collect();
+        let carries = move |of: fn(&Shape) -> Option<&[f64]>| {
             OfForces(Box::new(move |balance| {
                 let actions = self.system.actions(balance.view());
-                of(self.section_at(place, &balance.state.q, &actions)).unwrap_or(f64::NAN)
+                let shape = self.cut_shape(*beam, &places, &sides, &balance.state.q, &actions[*beam]);
+                let along = of(&shape).unwrap_or_default();
+                let value = along.first().copied().unwrap_or(f64::NAN);
+                (value, along.iter().fold(0.0, |largest, value| largest.max(value.abs())))
             }))
         };
         match quantity {
@@ -122,17 +131,13 @@ impl Sampler<'_> {
             })),
             // The strain of a state that is interpolated between steps errs by far more than its
             // position.
-            ProbeQuantity::Strain => OfForces(Box::new(move |balance| {
-                view.fields(&balance.state.q).strain(*measure) - reference_strain
-            })),
-            ProbeQuantity::Curvature => {
-                OfForces(Box::new(|balance| view.fields(&balance.state.q).curvature()))
-            }
-            ProbeQuantity::AxialForce => carries(|section| Some(section.axial_force)),
-            ProbeQuantity::ShearForce => carries(|section| Some(section.shear_force)),
-            ProbeQuantity::BendingMoment => carries(|section| Some(section.bending_moment)),
-            ProbeQuantity::StressBottom => carries(|section| section.stress_bottom),
-            ProbeQuantity::StressTop => carries(|section| section.stress_top),
+            ProbeQuantity::Strain => carries(|shape| Some(&shape.strain)),
+            ProbeQuantity::Curvature => carries(|shape| Some(&shape.curvature)),
+            ProbeQuantity::AxialForce => carries(|shape| Some(&shape.axial_force)),
+            ProbeQuantity::ShearForce => carries(|shape| Some(&shape.shear_force)),
+            ProbeQuantity::BendingMoment => carries(|shape| Some(&shape.bending_moment)),
+            ProbeQuantity::StressBottom => carries(|shape| shape.face_stresses().map(|[bottom, _]| bottom)),
+            ProbeQuantity::StressTop => carries(|shape| shape.face_stresses().map(|[_, top]| top)),
         }
     }
 }

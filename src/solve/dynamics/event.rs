@@ -10,16 +10,18 @@ use super::State;
 use super::crossing::{NEAR, Polynomial};
 use super::integrate::Driver;
 use super::motion::Balance;
-use crate::model::{Crossing, EventKind};
+use crate::model::{Crossing, EventKind, StepControl};
 use crate::system::View;
 
 /// Largest error of a polynomial, relative to the change of the quantity in the step.
 const CLOSE: f64 = 1e-8;
 /// How often a step is halved at most to represent a quantity.
 const HALVINGS: u32 = 4;
-/// Changes of velocities, directions, strains and forces below this part of the largest value so far are
-/// errors of the integration, and no turns.
+/// Changes of velocities and directions below this part of the largest value so far, and of strains and
+/// forces below this part of the largest along the beam so far, are errors of the integration, and no turns.
 const NOISE: f64 = 1e-6;
+/// The same part for strains and forces \[tolerances of the motion\]: they err by more than positions.
+const NOISE_OF_FORCES: f64 = 10.0;
 /// Places at which a polynomial is compared with the quantity.
 const BETWEEN: [f64; 3] = [0.2, 0.5, 0.8];
 
@@ -51,8 +53,9 @@ pub enum Quantity<'t> {
     Position(View, usize),
     /// A function of coordinates and velocities.
     OfMotion(Box<dyn Fn(&State) -> f64 + 't>),
-    /// A function of a state in which all forces are in balance.
-    OfForces(Box<dyn Fn(&Balance) -> f64 + 't>),
+    /// A function of a state in which all forces are in balance: the value at the point, and the largest
+    /// magnitude along its beam.
+    OfForces(Box<dyn Fn(&Balance) -> (f64, f64) + 't>),
 }
 
 /// What is remembered of a watched quantity from step to step.
@@ -62,7 +65,7 @@ pub(super) struct Watched {
     value: Option<f64>,
     /// Its first value, from which its size is counted where its zero is one of many.
     first: Option<f64>,
-    /// Its largest magnitude so far.
+    /// Its largest magnitude so far; of strains and forces, along the whole beam.
     largest: f64,
     /// The sign of its slope there, or of the last slope that was not zero.
     slope: f64,
@@ -79,10 +82,14 @@ impl Driver<'_, '_> {
     pub(super) fn note_events(&mut self, new: &State, accelerations: Option<[&[f64]; 2]>) -> Option<State> {
         let task = self.task;
         let h = new.time - self.state.time;
+        let noise_of_forces = match self.control {
+            StepControl::Fixed(_) => NOISE,
+            StepControl::Tolerance(tolerance) => NOISE.max(NOISE_OF_FORCES * tolerance),
+        };
         // Place in the step, number and value of each.
         let mut found: Vec<(f64, usize, f64)> = Vec::new();
         for (number, watch) in task.watches.iter().enumerate() {
-            let pieces = self.pieces(watch, new, accelerations);
+            let (pieces, along) = self.pieces(watch, new, accelerations);
             if pieces.iter().any(|(_, piece)| !(piece.at(0.0)[0] + piece.at(1.0)[0]).is_finite()) {
                 self.solution.unseen.get_or_insert((number, self.state.time));
                 continue;
@@ -95,10 +102,11 @@ impl Driver<'_, '_> {
             let ends = pieces
                 .iter()
                 .flat_map(|(_, piece)| [0.0, 1.0].map(|x| (watched(piece.at(x)[0]) - zero).abs()));
-            memory.largest = ends.fold(memory.largest, f64::max);
+            memory.largest = ends.fold(memory.largest.max(along), f64::max);
             let (unit, noise) = match watch.quantity {
                 Quantity::Position(..) => (self.system.length(), NEAR),
-                _ => (memory.largest, NOISE),
+                Quantity::OfMotion(_) => (memory.largest, NOISE),
+                Quantity::OfForces(_) => (memory.largest, noise_of_forces),
             };
             let events = match watch.when {
                 EventKind::Reaches { value, crossing } => {
@@ -150,24 +158,30 @@ impl Driver<'_, '_> {
         far * watch.round_off.max(of_position)
     }
 
-    /// A watched quantity in the step to `new`.
+    /// A watched quantity in the step to `new`, and its largest magnitude along the beam where it is a strain or
+    /// a force.
     fn pieces(
         &mut self,
         watch: &EventWatch<'_>,
         new: &State,
         accelerations: Option<[&[f64]; 2]>,
-    ) -> Vec<Piece> {
+    ) -> (Vec<Piece>, f64) {
         let h = new.time - self.state.time;
         if let Quantity::Position(view, axis) = &watch.quantity {
             let of = |scale: f64, vectors: [&[f64]; 2]| vectors.map(|v| scale * view.at_point(v)[*axis]);
             let halves = accelerations.map(|pair| of(0.5 * h * h, pair));
             let (positions, slopes) = (of(1.0, [&self.state.q, &new.q]), of(h, [&self.state.v, &new.v]));
-            return vec![([0.0, 1.0], Polynomial::hermite(positions, slopes, halves))];
+            return (vec![([0.0, 1.0], Polynomial::hermite(positions, slopes, halves))], 0.0);
         }
         // Accelerations are interpolated between the stages of a step, so that forces are smooth in it;
         // and each of their values costs as much as an iteration.
         let halvings = if matches!(watch.quantity, Quantity::OfForces(_)) { 0 } else { HALVINGS };
-        let mut at = |x: f64| self.value(&watch.quantity, new, x, accelerations);
+        let mut largest = 0.0_f64;
+        let mut at = |x: f64| {
+            let (value, along) = self.value(&watch.quantity, new, x, accelerations);
+            largest = largest.max(along);
+            value
+        };
         let (mut pieces, mut open) = (Vec::new(), vec![([0.0, 1.0], halvings)]);
         while let Some(([from, to], halvings)) = open.pop() {
             let place = |x: f64| from + x * (to - from);
@@ -185,26 +199,26 @@ impl Driver<'_, '_> {
                 pieces.push(([from, to], polynomial));
             }
         }
-        pieces
+        (pieces, largest)
     }
 
-    /// A watched quantity at the place `x`, from 0 to 1, of the step to `new`; no number where it is
-    /// not known.
+    /// A watched quantity at the place `x`, from 0 to 1, of the step to `new`, no number where it is
+    /// not known; and its largest magnitude along the beam where it is a strain or a force.
     fn value(
         &mut self,
         quantity: &Quantity<'_>,
         new: &State,
         x: f64,
         accelerations: Option<[&[f64]; 2]>,
-    ) -> f64 {
+    ) -> (f64, f64) {
         let time = self.state.time + x * (new.time - self.state.time);
         let mut state = self.state.between(new, time, accelerations);
         match quantity {
-            Quantity::Position(view, axis) => view.at_point(&state.q)[*axis],
-            Quantity::OfMotion(value) => value(&state),
+            Quantity::Position(view, axis) => (view.at_point(&state.q)[*axis], 0.0),
+            Quantity::OfMotion(value) => (value(&state), 0.0),
             Quantity::OfForces(value) => {
                 self.settle(&mut state);
-                self.balance_within(new, &state).map_or(f64::NAN, |balance| value(&balance))
+                self.balance_within(new, &state).map_or((f64::NAN, 0.0), |balance| value(&balance))
             }
         }
     }
