@@ -100,7 +100,7 @@ impl Sampler<'_> {
     /// A quantity at probe number `number` as a function of the state; of a speed its square.
     fn quantity(&self, number: usize, quantity: ProbeQuantity) -> dynamics::Quantity<'_> {
         use dynamics::Quantity::{OfForces, OfMotion, Position};
-        let ProbePoint { beam, view, .. } = &self.probes[number];
+        let ProbePoint { beam, view, measure, reference_strain, .. } = &self.probes[number];
         let length = self.system.beams()[*beam].basis.length();
         // The probe comes first, and then places along the beam, the last of which is its end.
         let mut places = vec![view.s()[0]];
@@ -131,8 +131,12 @@ impl Sampler<'_> {
             })),
             // The strain of a state that is interpolated between steps errs by far more than its
             // position.
-            ProbeQuantity::Strain => carries(|shape| Some(&shape.strain)),
-            ProbeQuantity::Curvature => carries(|shape| Some(&shape.curvature)),
+            ProbeQuantity::Strain => OfForces(Box::new(move |balance| {
+                (view.fields(&balance.state.q).strain(*measure) - reference_strain, 0.0)
+            })),
+            ProbeQuantity::Curvature => {
+                OfForces(Box::new(|balance| (view.fields(&balance.state.q).curvature(), 0.0)))
+            }
             ProbeQuantity::AxialForce => carries(|shape| Some(&shape.axial_force)),
             ProbeQuantity::ShearForce => carries(|shape| Some(&shape.shear_force)),
             ProbeQuantity::BendingMoment => carries(|shape| Some(&shape.bending_moment)),

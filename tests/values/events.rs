@@ -121,6 +121,9 @@ fn a_force_has_maxima() {
         (9.0 * quarter, 1.0),
     ];
     expect(text, &expected, 1e-4, "force");
+    // However loose the tolerance, they are seen.
+    let (loose, _) = events(&text.replace("1e-9,", "0.2,"));
+    assert_eq!(loose.len(), expected.len(), "{loose:?}");
     // The stress on a face of 0.25 m by 0.5 m is eight times the force.
     let stiff = "section.rectangle = { height = 0.5, width = 0.25 }, youngs_modulus = 800";
     let stressed = text
@@ -265,4 +268,23 @@ fn what_vanishes_at_the_end_of_a_beam_has_no_turns() {
         analysis.dynamic = { duration = 0.5, radau.tolerance = 1e-4, event = [\
             { probe = 'end', maximum = 'bending_moment' }, { probe = 'end', minimum = 'bending_moment' }] }\n";
     expect(text, &[], 0.0, "moment at a hinge");
+}
+
+/// Strains of a stiff piece are a hundred-millionth of those in the soft one beside it, and have their maxima with the
+/// force in both.
+#[test]
+fn strains_of_a_stiff_piece_have_maxima() {
+    let text = "beam.bar = { start = [0, 0], end = [0, -2], axial_stiffness.pieces = { until = [1], value = [1e10, 100] }, \
+         bending_stiffness = 1, mass_per_length = 1e-6, basis.ancf.elements = 2 }
+        support = [{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.point_mass = [{ beam = 'bar', at = 'end', mass = 4 }]
+        initial_velocity = [{ beam = 'bar', table = { s = [0, 1, 2], vy = [0, 0, -0.05] } }]
+        probe = [{ name = 'stiff', beam = 'bar', at = 0.5 }, { name = 'soft', beam = 'bar', at = 1.5 }]
+        analysis.dynamic = { duration = 3, output_every = 0.1, radau.tolerance = 1e-7, event = [{ probe = 'NAME', maximum = 'strain' }] }\n";
+    let times = |probe: &str| -> Vec<f64> {
+        events(&text.replace("NAME", probe)).0.into_iter().map(|(time, _)| time).collect()
+    };
+    let [stiff, soft] = ["stiff", "soft"].map(times);
+    assert!(stiff.len() == 3 && soft.len() == 3, "{stiff:?} {soft:?}");
+    stiff.iter().zip(&soft).for_each(|(a, b)| near(*a, *b, 1e-4, "stiff and soft"));
 }

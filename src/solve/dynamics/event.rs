@@ -17,11 +17,13 @@ use crate::system::View;
 const CLOSE: f64 = 1e-8;
 /// How often a step is halved at most to represent a quantity.
 const HALVINGS: u32 = 4;
-/// Changes of velocities and directions below this part of the largest value so far, and of strains and
-/// forces below this part of the largest along the beam so far, are errors of the integration, and no turns.
+/// Changes below this part of the largest value so far, of forces along the whole beam, are errors of the integration, and
+/// no turns.
 const NOISE: f64 = 1e-6;
-/// The same part for strains and forces \[tolerances of the motion\]: they err by more than positions.
+/// The same part for strains and forces \[tolerances of the motion\], which err by more than positions …
 const NOISE_OF_FORCES: f64 = 10.0;
+/// … and its largest value, for motions whose tolerance is so loose that no turn would be left.
+const LARGEST_NOISE: f64 = 1e-2;
 /// Places at which a polynomial is compared with the quantity.
 const BETWEEN: [f64; 3] = [0.2, 0.5, 0.8];
 
@@ -54,7 +56,8 @@ pub enum Quantity<'t> {
     /// A function of coordinates and velocities.
     OfMotion(Box<dyn Fn(&State) -> f64 + 't>),
     /// A function of a state in which all forces are in balance: the value at the point, and the largest
-    /// magnitude along its beam.
+    /// magnitude along its beam. The latter is zero of strains, which may be any small part of those in a softer
+    /// piece of the beam and yet be known.
     OfForces(Box<dyn Fn(&Balance) -> (f64, f64) + 't>),
 }
 
@@ -65,7 +68,7 @@ pub(super) struct Watched {
     value: Option<f64>,
     /// Its first value, from which its size is counted where its zero is one of many.
     first: Option<f64>,
-    /// Its largest magnitude so far; of strains and forces, along the whole beam.
+    /// Its largest magnitude so far; of forces, along the whole beam.
     largest: f64,
     /// The sign of its slope there, or of the last slope that was not zero.
     slope: f64,
@@ -84,7 +87,7 @@ impl Driver<'_, '_> {
         let h = new.time - self.state.time;
         let noise_of_forces = match self.control {
             StepControl::Fixed(_) => NOISE,
-            StepControl::Tolerance(tolerance) => NOISE.max(NOISE_OF_FORCES * tolerance),
+            StepControl::Tolerance(tolerance) => (NOISE_OF_FORCES * tolerance).clamp(NOISE, LARGEST_NOISE),
         };
         // Place in the step, number and value of each.
         let mut found: Vec<(f64, usize, f64)> = Vec::new();
@@ -158,8 +161,7 @@ impl Driver<'_, '_> {
         far * watch.round_off.max(of_position)
     }
 
-    /// A watched quantity in the step to `new`, and its largest magnitude along the beam where it is a strain or
-    /// a force.
+    /// A watched quantity in the step to `new`, and its largest magnitude along the beam where it is a force.
     fn pieces(
         &mut self,
         watch: &EventWatch<'_>,
@@ -203,7 +205,7 @@ impl Driver<'_, '_> {
     }
 
     /// A watched quantity at the place `x`, from 0 to 1, of the step to `new`, no number where it is
-    /// not known; and its largest magnitude along the beam where it is a strain or a force.
+    /// not known; and its largest magnitude along the beam where it is a force.
     fn value(
         &mut self,
         quantity: &Quantity<'_>,
