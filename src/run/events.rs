@@ -5,7 +5,7 @@ use super::sampler::{ProbePoint, Sampler};
 use crate::assembly::Side;
 use crate::model::{Dynamic, EventCondition, ProbeQuantity};
 use crate::results::{ProbeSeries, Shape, Trajectory};
-use crate::solve::dynamics;
+use crate::solve::dynamics::{self, Observed};
 use crate::system::unfold;
 
 /// Round-offs of single positions that may add up in a quantity.
@@ -113,7 +113,7 @@ impl Sampler<'_> {
                 let shape = self.cut_shape(*beam, &places, &sides, &balance.state.q, &actions[*beam]);
                 let along = of(&shape).unwrap_or_default();
                 let value = along.first().copied().unwrap_or(f64::NAN);
-                (value, along.iter().fold(0.0, |largest, value| largest.max(value.abs())))
+                Observed { value, along: along.iter().fold(0.0, |largest, value| largest.max(value.abs())) }
             }))
         };
         match quantity {
@@ -132,10 +132,10 @@ impl Sampler<'_> {
             // The strain of a state that is interpolated between steps errs by far more than its
             // position.
             ProbeQuantity::Strain => OfForces(Box::new(move |balance| {
-                (view.fields(&balance.state.q).strain(*measure) - reference_strain, 0.0)
+                Observed::at_point(view.fields(&balance.state.q).strain(*measure) - reference_strain)
             })),
             ProbeQuantity::Curvature => {
-                OfForces(Box::new(|balance| (view.fields(&balance.state.q).curvature(), 0.0)))
+                OfForces(Box::new(|balance| Observed::at_point(view.fields(&balance.state.q).curvature())))
             }
             ProbeQuantity::AxialForce => carries(|shape| Some(&shape.axial_force)),
             ProbeQuantity::ShearForce => carries(|shape| Some(&shape.shear_force)),

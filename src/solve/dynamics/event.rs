@@ -55,10 +55,25 @@ pub enum Quantity<'t> {
     Position(View, usize),
     /// A function of coordinates and velocities.
     OfMotion(Box<dyn Fn(&State) -> f64 + 't>),
-    /// A function of a state in which all forces are in balance: the value at the point, and the largest
-    /// magnitude along its beam. The latter is zero of strains, which may be any small part of those in a softer
-    /// piece of the beam and yet be known.
-    OfForces(Box<dyn Fn(&Balance) -> (f64, f64) + 't>),
+    /// A function of a state in which all forces are in balance.
+    OfForces(Box<dyn Fn(&Balance) -> Observed + 't>),
+}
+
+/// What is seen of a quantity in a state.
+#[derive(Clone, Copy, Debug)]
+pub struct Observed {
+    /// Its value at the point; no number where it is not known.
+    pub value: f64,
+    /// The largest magnitude of a force along its beam. Zero of other quantities: strains may be any small part of those in a
+    /// softer piece of the beam, and yet be known.
+    pub along: f64,
+}
+
+impl Observed {
+    /// A quantity that is known at the point only.
+    pub fn at_point(value: f64) -> Self {
+        Self { value, along: 0.0 }
+    }
 }
 
 /// What is remembered of a watched quantity from step to step.
@@ -180,9 +195,9 @@ impl Driver<'_, '_> {
         let halvings = if matches!(watch.quantity, Quantity::OfForces(_)) { 0 } else { HALVINGS };
         let mut largest = 0.0_f64;
         let mut at = |x: f64| {
-            let (value, along) = self.value(&watch.quantity, new, x, accelerations);
-            largest = largest.max(along);
-            value
+            let seen = self.value(&watch.quantity, new, x, accelerations);
+            largest = largest.max(seen.along);
+            seen.value
         };
         let (mut pieces, mut open) = (Vec::new(), vec![([0.0, 1.0], halvings)]);
         while let Some(([from, to], halvings)) = open.pop() {
@@ -204,23 +219,23 @@ impl Driver<'_, '_> {
         (pieces, largest)
     }
 
-    /// A watched quantity at the place `x`, from 0 to 1, of the step to `new`, no number where it is
-    /// not known; and its largest magnitude along the beam where it is a force.
+    /// A watched quantity at the place `x`, from 0 to 1, of the step to `new`.
     fn value(
         &mut self,
         quantity: &Quantity<'_>,
         new: &State,
         x: f64,
         accelerations: Option<[&[f64]; 2]>,
-    ) -> (f64, f64) {
+    ) -> Observed {
         let time = self.state.time + x * (new.time - self.state.time);
         let mut state = self.state.between(new, time, accelerations);
         match quantity {
-            Quantity::Position(view, axis) => (view.at_point(&state.q)[*axis], 0.0),
-            Quantity::OfMotion(value) => (value(&state), 0.0),
+            Quantity::Position(view, axis) => Observed::at_point(view.at_point(&state.q)[*axis]),
+            Quantity::OfMotion(value) => Observed::at_point(value(&state)),
             Quantity::OfForces(value) => {
                 self.settle(&mut state);
-                self.balance_within(new, &state).map_or((f64::NAN, 0.0), |balance| value(&balance))
+                self.balance_within(new, &state)
+                    .map_or(Observed::at_point(f64::NAN), |balance| value(&balance))
             }
         }
     }
