@@ -37,6 +37,8 @@ const JAMMED_WORK: f64 = 1e-5;
 const LEAST_STRAIN: f64 = 1e-9;
 /// Strain within the cells of a beam that round-off of positions makes.
 const ROUND_OFF: f64 = 1e-12;
+/// Places that are nearer to each other are one, in lengths of a cell.
+const SAME: f64 = 1e-9;
 /// Gauss points for bending that are too few where bending strains are large …
 const FEW: usize = 2;
 /// … beyond this κ √(EI/EA).
@@ -65,6 +67,8 @@ struct LockingBeam {
     offset: usize,
     /// r' at the points for stretching, r' and r'' at those for bending.
     tables: [BasisTable; 2],
+    /// Per cell, whether an imposed strain jumps at an end of it: shape functions that cannot follow that oscillate, whatever bends.
+    jumps: Vec<bool>,
     /// ε and κ of the stress-free state there.
     reference: [Vec<f64>; 2],
     /// Energies \[J\] of each state: of bending, of all stretch, and of that which bending causes.
@@ -110,7 +114,7 @@ impl Locking {
     /// Watches strings, and all beams that resist stretch at more points than a cell can follow.
     pub fn new(model: &Model, system: &System) -> Result<Self, BuildError> {
         let mut beams = Vec::new();
-        for (beam, part) in model.beams.iter().zip(system.beams()) {
+        for (index, (beam, part)) in model.beams.iter().zip(system.beams()).enumerate() {
             let points = beam.gauss_points;
             let Some(axial_stiffness) = beam.section.axial_stiffness.clone() else { continue };
             // What it compares are energies of linear springs.
@@ -126,7 +130,14 @@ impl Locking {
                 part.basis.table(rule, orders).map_err(|e| BuildError::basis(&part.name, e))
             };
             let tables = [table(points.stretch_rule(), &[1])?, table(points.bend_rule(), &[1, 2])?];
+            let imposed = model.parts.iter().filter_map(|part| part.actuation(index));
+            let jumps: Vec<f64> = imposed.flat_map(|imposed| imposed.strain.jumps()).collect();
+            let at_jump = |ends: &[f64]| {
+                let near = SAME * (ends[1] - ends[0]);
+                jumps.iter().any(|s| (ends[0] - near..=ends[1] + near).contains(s))
+            };
             let mut watched = LockingBeam {
+                jumps: part.basis.nodes().windows(2).map(at_jump).collect(),
                 name: beam.name.clone(),
                 points,
                 cable: matches!(beam.discretization, crate::model::Discretization::Ancf { .. }),
@@ -245,7 +256,7 @@ impl LockingBeam {
         let points = of_stretch.points_per_cell;
         let cells =
             of_stretch.cells.iter().zip(strains.chunks_exact(points)).zip(of_stretch.s.chunks_exact(points));
-        for ((cell, strain), s) in cells {
+        for (((cell, strain), s), jumps) in cells.zip(&self.jumps) {
             let (w, _) = of_stretch.block(*cell);
             let sum = |f: &dyn Fn(usize) -> f64| (0..points).map(|i| w[i] * f(i)).sum::<f64>();
             let length = sum(&|_| 1.0);
@@ -254,7 +265,9 @@ impl LockingBeam {
             let slope = sum(&|i| (s[i] - centre) * (strain[i] - mean)) / spread;
             let ea = self.axial_stiffness.at(centre, centre);
             energies[1] += 0.5 * ea * sum(&|i| strain[i].powi(2));
-            energies[2] += 0.5 * ea * sum(&|i| (strain[i] - mean - slope * (s[i] - centre)).powi(2));
+            if !jumps {
+                energies[2] += 0.5 * ea * sum(&|i| (strain[i] - mean - slope * (s[i] - centre)).powi(2));
+            }
         }
         energies
     }
@@ -351,6 +364,24 @@ mod tests {
         );
     }
 
+    /// An imposed strain that jumps at the only node within a beam leaves no cell that tells of bending.
+    #[test]
+    fn cells_beside_an_imposed_strain_that_jumps_do_not_count() {
+        let text = "beam.arm = { start = [0, 0], end = [3, 0], axial_stiffness = 3, bending_stiffness = 5, basis.rpim.nodes = 4 }\n\
+                    support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+                    effect.actuation = [{ beam = 'arm', strain = 0.1, to = 1.0 }]\nanalysis.static = {}\n";
+        let scene = crate::scene::parse("scene", text).unwrap_or_else(|error| panic!("{error}"));
+        let system = System::build(scene.model(), Needs::default()).unwrap();
+        let locking = Locking::new(scene.model(), &system).unwrap();
+        assert_eq!(locking.beams[0].jumps, [true, true, false]);
+        let (mut beam, mut q) = (locking.beams[0].clone(), system.reference().to_vec());
+        q.iter_mut().enumerate().for_each(|(i, q)| *q += 0.01 * (i as f64).sin());
+        let all = LockingBeam { jumps: vec![false; 3], ..beam.clone() }.energies(&q)[2];
+        let last = beam.energies(&q)[2];
+        beam.jumps = vec![false, false, true];
+        assert!((beam.energies(&q)[2] + last - all).abs() < 1e-12 * all && last > 0.0 && last < all);
+    }
+
     /// The worst of the states that are bent by a tenth of the most at least, and where what is locked
     /// is more than a thousandth of all energy.
     #[test]
@@ -424,6 +455,7 @@ mod tests {
                 length: 2.0,
                 offset: 0,
                 tables: [BasisTable::default(), BasisTable::default()],
+                jumps: Vec::new(),
                 reference: [Vec::new(), Vec::new()],
                 seen: vec![[0.0, stretch, 0.0]],
             };
