@@ -1,7 +1,7 @@
 //! Runs a scene in a way that must agree, and says whether it does.
 
 use fastrand::Rng;
-use toml::{Table, Value};
+use toml::Table;
 
 use super::frame::Frame;
 use super::gap::{self, Gap, Largest, Records};
@@ -212,13 +212,15 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         return Verdict::Warned;
     }
     let same = a.counts == b.counts;
-    let free_end = settings::get(scene, &["analysis", "static", "arc_length"])
-        .and_then(Value::as_table)
-        .is_some_and(|path| !path.contains_key("until_load") && !path.contains_key("until_probe"));
+    let free_end = settings::ends_by_points(scene);
     let factors = [a, b].map(|seen| seen.parameter.last().copied().unwrap_or(0.0));
     let elsewhere = (factors[0] - factors[1]).abs() > FORCES * factors[0].abs();
     // Round-off may change the last of its steps.
     if free_end && (!same || elsewhere) {
+        return Verdict::NotApplicable;
+    }
+    // So it may the steps before a turn that no tolerance bounds.
+    if settings::stops_beyond_tolerance(scene) && !same {
         return Verdict::NotApplicable;
     }
     let motion = settings::motion(scene);
@@ -237,7 +239,16 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         () if free_end => FORCES,
         () => settings::tolerance(scene),
     };
+    // Friction depends on the path: where round-off changes which load steps are taken, both runs err by their own.
+    let of_load_steps = match ways::half_load_steps(scene).filter(|_| !same && accuracy.is_none()) {
+        None => None,
+        Some(halved) => match other(&halved, frame, way) {
+            Ok(halved) => Some(gap::between(a, &halved, Records::Last).places),
+            Err(verdict) => return verdict,
+        },
+    };
     let (places, all) = match chosen {
+        _ if let Some(error) = of_load_steps => (ALLOWED * wanted.max(error), f64::INFINITY),
         _ if accuracy.is_some() => (ALLOWED * wanted, f64::INFINITY),
         // Round-off may change the choice of a step, and where an expression turns. Both runs then err by their own
         // steps, as two runs with different tolerances do.
@@ -533,8 +544,11 @@ fn in_two_files(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
     let gone = base.before.len() - seen.before.len();
     let later = Seen { before: base.before[gone..].to_vec(), ..base.clone() };
     let gap = gap::between(&later, &seen, Records::Last);
-    let tolerance =
-        if settings::has_expression(scene) { ALLOWED * settings::tolerance(scene) } else { CONTINUED };
+    let tolerance = match () {
+        () if settings::ends_by_points(&rest) => FORCES,
+        () if settings::has_expression(scene) => ALLOWED * settings::tolerance(scene),
+        () => CONTINUED,
+    };
     decide(case, way, places_or_forces(&gap, tolerance + round_off(scene), scene), &text(), rng)
 }
 

@@ -56,6 +56,12 @@ pub fn stops_beyond_tolerance(scene: &Table) -> bool {
     items(scene, &["analysis", "dynamic", "event"]).any(|event| event.contains_key("stop") && !bounded(event))
 }
 
+/// Whether a path ends by the number of its points, wherever its steps have brought it.
+pub fn ends_by_points(scene: &Table) -> bool {
+    let path = get(scene, &["analysis", "static", "arc_length"]).and_then(Value::as_table);
+    path.is_some_and(|path| !path.contains_key("until_load") && !path.contains_key("until_probe"))
+}
+
 /// Whether a beam has shape functions of radial point interpolation.
 pub fn is_meshfree(scene: &Table) -> bool {
     let beams = scene.get("beam").and_then(Value::as_table).into_iter().flat_map(Table::values);

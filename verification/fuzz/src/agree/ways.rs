@@ -1,5 +1,6 @@
 //! The ways of running a scene that must give the same results.
 
+use ancf::model::Static;
 use fastrand::Rng;
 use toml::{Table, Value};
 
@@ -253,6 +254,18 @@ pub fn short_steps(scene: &Table) -> Option<Table> {
     with_path(scene, |path| {
         path.insert("max_step".into(), SHORT_STEP.into());
     })
+}
+
+/// The load from rest in load steps half as long; `None` without friction, for which they do not matter.
+pub fn half_load_steps(scene: &Table) -> Option<Table> {
+    let statics = settings::get(scene, &["analysis", "static"])?.as_table()?;
+    if statics.contains_key("arc_length") || !settings::has_friction(scene) {
+        return None;
+    }
+    let step = statics.get("max_step").and_then(Value::as_float).unwrap_or(Static::FRICTION_STEP);
+    let mut other = scene.clone();
+    settings::table(&mut other, &["analysis", "static"])?.insert("max_step".into(), (0.5 * step).into());
+    Some(other)
 }
 
 fn with_path(scene: &Table, change: impl Fn(&mut Table)) -> Option<Table> {
